@@ -18,7 +18,7 @@ from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, nearest
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.recovery import advice_rows, lines, rewrites
-from tiniscript.recovery.behind import ASKING, Above, Behind, Placed, placed, whole
+from tiniscript.recovery.behind import ASKING, Behind, Placed, placed, whole
 from tiniscript.recovery.concepts import ENDED, NEAR, Lexeme, Names, lexemes, made, plain, said_of
 from tiniscript.recovery.orders import Order, made_up, orders, question_in, written
 from tiniscript.recovery.slots import filled
@@ -34,7 +34,7 @@ MOST = 1_000  # instructions of a text that are read
 _ASIDE = (codes.REPEATED.number, codes.WORDS_BEHIND.number)
 _FEW = frozenset(map(str, range(2, 20)))  # times: more behind a turn are rather an angle
 _MOST_BEFORE = 8  # instructions that an example repeats
-_FARTHEST = 40  # instructions of a text that are looked at for what is done again
+_FARTHEST = 40  # lines of a text that are looked at for what is done again
 _ONE_IN_LOOP = 2  # separators of a loop of one instruction
 _BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
 # An instruction of a line, and the bar of a `SI|`.
@@ -81,7 +81,7 @@ def advised(text: str, kit: Kit) -> list[Advice]:
     bodies = [without_note(line)[0] for line in text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
     found: list[Advice] = []
-    above = Above([], None)
+    above: list[str | None] = []
     start = depth = 0
     left = MOST
     for body, line in zip(bodies, text.split("\n"), strict=True):
@@ -96,28 +96,23 @@ def advised(text: str, kit: Kit) -> list[Advice]:
                     told.append(each)
         found += told
         if body.strip() and not any(each.diagnostic.code is codes.SAME_AGAIN for each in told):
-            above = _below(above, body.partition("|")[2] or body, is_right)
+            above.append(_as_orders(body.partition("|")[2] or body, is_right))
         depth += sum((each.text in BLOCK_ENDS) - (each.text in ENDED) for each in words)
         start += len(line) + 1
     return found
 
 
-def _below(above: Above, line: str, is_right: bool) -> Above:
-    """Return what stands above the line that follows one."""
+def _as_orders(line: str, is_right: bool) -> str | None:
+    """Return a line of orders, "" for another one, None for one that begins a block."""
     parts = [each for each in map(lexemes, line.split(";")) if each]
-    words = {each.text for part in parts for each in part}
     if parts and parts[-1][0].text in _BEGIN_BODY:
-        return Above(None, None)
-    if words & {*_BEGIN_BODY, *ENDED} or not is_right:
-        return Above(None, "")
-    shown = [each.strip() for each in line.split(";") if each.strip().upper() not in ("", "START")]
-    is_long = above.orders is None or len(above.orders) > _FARTHEST
-    orders = None if is_long else [*(above.orders or ()), *shown]
-    return Above(orders, line.strip().rstrip(" ;") if words & {*WORDS} else "")
+        return None
+    is_block = any(each.text in (*_BEGIN_BODY, *ENDED) for part in parts for each in part)
+    return "" if is_block or not is_right else line.strip().rstrip(" ;")
 
 
 def _parts(
-    body: str, start: int, text: str, names: Names, depth: int, above: Above
+    body: str, start: int, text: str, names: Names, depth: int, above: list[str | None]
 ) -> Iterator[Behind]:
     """Give each instruction of a line that has words behind it, and words without one."""
     before: list[str] | None = []
@@ -272,12 +267,20 @@ class _Gaps(dict[str, str]):
         return number
 
 
+def _above(part: Behind) -> list[str] | None:
+    """The orders above a line, None where anything else is among them."""
+    if len(part.above) > _FARTHEST or not all(part.above):
+        return None
+    orders = (each.strip() for line in part.above if line for each in line.split(";"))
+    return [each for each in orders if each.upper() not in ("", "START")]
+
+
 def _all(gaps: _Gaps, times: str) -> str:
     """The loop that does so often all that stands before, nothing where that is long."""
-    part = gaps.part
-    if part.before is None or part.above.orders is None or part.is_in_block or times in ("0", "1"):
+    part, above = gaps.part, _above(gaps.part)
+    if part.before is None or above is None or part.is_in_block or times in ("0", "1"):
         return ""
-    orders = [*part.above.orders, *part.before, *([part.call] if part.call else [])]
+    orders = [*above, *part.before, *([part.call] if part.call else [])]
     said = "".join(f"{each};" for each in orders)
     if once := _ONCE.fullmatch("".join(said.split()).upper()):  # F and L of `F; L; F; L`
         orders = orders[: once[1].count(";")]
@@ -398,7 +401,7 @@ def _by_way(gaps: _Gaps) -> str:
 
 def _previous(gaps: _Gaps) -> str:
     """The instruction before the words, or before the call that has them behind it."""
-    found = [*(gaps.part.above.orders or ()), *(gaps.part.before or ())]
+    found = [*(_above(gaps.part) or ()), *(gaps.part.before or ())]
     return found[-1] if found else ""
 
 
@@ -467,7 +470,7 @@ def _note(gaps: _Gaps) -> str:
 
 
 _GAPS: dict[str, Callable[[_Gaps], str]] = {
-    "above?": lambda gaps: [gaps.part.above.line or "", *(gaps.part.before or ())][-1],
+    "above?": lambda gaps: ["", *gaps.part.above, *(gaps.part.before or ())][-1] or "",
     "all": lambda gaps: _all(gaps, gaps["n"]), "often?": lambda gaps: _all(gaps, "4"),
     "endless": lambda gaps: _all(gaps, "FOREVER"),
     "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)), "twice": _twice,

@@ -94,34 +94,24 @@ def _is_set(word: str, text: str) -> bool:
     return bool(re.search(rf"(?i)\b{word}\s*=", text))
 
 
-class Above(NamedTuple):
-    """What stands above a line: the orders of the text, None where anything else is among them.
-
-    `line` is the last one that says more than that it is done again, "" where that is no row of
-    orders; None where there is none.
-    """
-
-    orders: Sequence[str] | None
-    line: str | None
-
-
 class Behind:
     """An instruction and the words behind it; or words without one, where `call` is empty.
 
-    `before` are the other instructions of its line, None where a block is among them. `own` is the
+    `before` are the other instructions of its line, None where a block is among them. `above` are
+    the lines before it, "" for one of no orders, None for one that begins a block. `own` is the
     word of the language that it begins with, "" for none. `said` is the call where words say it.
     """
 
     def __init__(
         self, call: Sequence[Placed], row: Sequence[Placed], before: Sequence[str] | None,
-        above: Above, text: str, names: Names, depth: int, said: str = "",
+        above: Sequence[str | None], text: str, names: Names, depth: int, said: str = "",
     ) -> None:  # fmt: skip
         self.is_said = bool(said)
         self.tokens = lexemes(said) if said else [each.token for each in call]
         self.row = [each.token for each in row]
         self.before = before
         self.above = above
-        self.is_later = bool(before) or above.line is not None
+        self.is_later = bool(before) or (bool(above) and above[-1] is not None)
         self.names = names
         self.is_in_block = depth > 0
         begin = (*call, *row)[0].span.start
@@ -146,8 +136,9 @@ class Behind:
         if not self.tokens:
             return not lines.is_right(self.row, self.names)
         has_dots = self.is_later and all(each.text in DOTS for each in self.row)
-        has_words = any(each.kind in (WORD, NUMBER) for each in self.row)
-        return has_words or has_dots or self.words == "()"
+        kinds = {each.kind for each in self.row}
+        has_sign = has_dots or NUMBER in kinds or self.words == "()"
+        return WORD in kinds or (has_sign and lines.is_right(self.tokens, self.names))
 
     def labels(self) -> list[str]:
         """Return the classes of the instruction and of each word, as patterns match them."""
