@@ -147,42 +147,27 @@ class Change(NamedTuple):
     value: int
 
 
-class Board:
-    """A robot's sketch and what comes to it from outside; `ran` runs it."""
+class Simulated:
+    """A sketch on the board of a robot: what comes to it from outside, and what is looked at."""
 
-    def __init__(self, robot: Robot, text: str = BUILT_IN, more: str = "") -> None:
+    def __init__(self, robot: Robot) -> None:
         need(missing())
         self.robot = robot
         self.board = robot.board.chip
         self.avr = AVRS[self.board]
-        elf = built(firmware.header([robot], "the tests."), self.board, more)
-        compiled = compile_text(text, robot.kit)
-        assert compiled.image, compiled.diagnostics
-        before = compile_text(BUILT_IN, robot.kit).image
-        at = elf.index(before)
-        self.elf = elf[:at] + compiled.image + b"\0" * 4 + elf[at + len(compiled.image) + 4 :]
         self.script: list[str] = []
         self.watched: set[int] = set()
-        self.changes: list[Change] = []
-        self.copies: list[dict[int, int]] = []  # watched registers at the end of each
-        self.quiet_us = 0.0  # for how long interrupts were off, at most
         self.events: list[tuple[int, int, bool]] = []
-        for pin in self.motor_pins():
-            self.watch(pin)
         self.level(0, robot.board.start_button, True)  # by its pull-up
-
-    # -- before the run
 
     def bit(self, pin: int) -> Bit:
         return self.avr.bits[pin]
 
     def watch(self, pin: int) -> None:
-        """Watch whether a pin is an output, and what the sketch writes to it."""
-        address = PORTS[self.bit(pin).port]
-        self.watched |= {address, address - 1}
+        """Watch what the sketch writes to a pin."""
+        self.watched.add(PORTS[self.bit(pin).port])
         if pin in self.avr.compares:
-            self.watched.add(CONTROLS[self.avr.compares[pin].timer])
-            self.watched.add(self.compare_address(pin))
+            self.watched |= {CONTROLS[self.avr.compares[pin].timer], self.compare_address(pin)}
 
     def compare_address(self, pin: int) -> int:
         timer, channel = self.avr.compares[pin]
@@ -191,13 +176,6 @@ class Board:
 
     def level(self, ms: float, pin: int, is_high: bool) -> None:
         self.events.append((round(ms * MS), pin, is_high))
-
-    def press(self, ms: float, release_ms: float) -> None:
-        self.level(ms, self.robot.board.start_button, False)
-        self.level(release_ms, self.robot.board.start_button, True)
-
-    def analog(self, channel: int, millivolts: int) -> None:
-        self.script.append(f"adc {channel} {millivolts}")
 
     def echoes(
         self,
@@ -214,6 +192,54 @@ class Board:
             cycles = " ".join(str(round(us * 16)) for us in times)
             self.script.append(f"ping {a.port.upper()} {a.bit} {b.port.upper()} {b.bit} {cycles}")
 
+    def simulated(self, elf: Path, ms: float) -> str:
+        """Run it for so long; return what the simulator tells."""
+        lines = [f"watch {address}" for address in sorted(self.watched)]
+        for cycle, pin, is_high in sorted(self.events, key=lambda event: event[0]):
+            port, bit = self.bit(pin)
+            lines.append(f"pin {cycle} {port.upper()} {bit} {int(is_high)}")
+        done = subprocess.run(
+            [simulator(), elf, CHIPS[self.board], str(round(ms * MS))],
+            input="\n".join([*lines, *self.script]) + "\n",
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+
+class Board(Simulated):
+    """A robot's firmware with one program; `ran` runs it."""
+
+    def __init__(self, robot: Robot, text: str = BUILT_IN, more: str = "") -> None:
+        super().__init__(robot)
+        elf = built(firmware.header([robot], "the tests."), self.board, more)
+        compiled = compile_text(text, robot.kit)
+        assert compiled.image, compiled.diagnostics
+        before = compile_text(BUILT_IN, robot.kit).image
+        at = elf.index(before)
+        self.elf = elf[:at] + compiled.image + b"\0" * 4 + elf[at + len(compiled.image) + 4 :]
+        self.changes: list[Change] = []
+        self.copies: list[dict[int, int]] = []  # watched registers at the end of each
+        self.quiet_us = 0.0  # for how long interrupts were off, at most
+        for pin in self.motor_pins():
+            self.watch(pin)
+
+    # -- before the run
+
+    def watch(self, pin: int) -> None:
+        """Watch whether a pin is an output, too."""
+        super().watch(pin)
+        self.watched.add(PORTS[self.bit(pin).port] - 1)
+
+    def press(self, ms: float, release_ms: float) -> None:
+        self.level(ms, self.robot.board.start_button, False)
+        self.level(release_ms, self.robot.board.start_button, True)
+
+    def analog(self, channel: int, millivolts: int) -> None:
+        self.script.append(f"adc {channel} {millivolts}")
+
     # -- the run, and what it was like
 
     def sweep(self, step: int, count: int, span_us: float, pin: int) -> None:
@@ -223,24 +249,13 @@ class Board:
         self.script.append(f"sweep {step} {count} {span} {port.upper()} {bit}")
 
     def ran(self, ms: float) -> Board:
-        lines = [f"watch {address}" for address in sorted(self.watched)]
-        for cycle, pin, is_high in sorted(self.events, key=lambda event: event[0]):
-            port, bit = self.bit(pin)
-            lines.append(f"pin {cycle} {port.upper()} {bit} {int(is_high)}")
         with tempfile.TemporaryDirectory() as name:
             program = Path(name) / "firmware.elf"
             program.write_bytes(self.elf)
-            done = subprocess.run(
-                [simulator(), program, CHIPS[self.board], str(round(ms * MS))],
-                input="\n".join([*lines, *self.script]) + "\n",
-                capture_output=True,
-                text=True,
-                timeout=120,
-            )
-        assert done.returncode == 0, done.stderr
-        rows = [line.split() for line in done.stdout.splitlines()]
+            said = self.simulated(program, ms)
+        rows = [line.split() for line in said.splitlines()]
         ends = [row for row in rows if row[1:2] == ["END"]]
-        assert ends and int(ends[0][0]) >= round(ms * MS), done.stderr
+        assert ends and int(ends[0][0]) >= round(ms * MS), said
         self.changes = [
             Change(*map(int, row))
             for row in rows

@@ -6,7 +6,6 @@ UART did: signals that have a value from a time on, in milliseconds.
 
 from __future__ import annotations
 
-import subprocess
 import tempfile
 from functools import lru_cache
 from pathlib import Path
@@ -15,11 +14,9 @@ from typing import NamedTuple
 from tests.machines import board as boards
 from tests.machines.board import ARDUINO, CONNECTIONS, CONTROLS, CPP, HERTZ, MS, PORTS, run
 from tests.machines.host import kept
-from tests.support.needs import need
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.driver import Bridge
 from tiniscript.robots.drivers import motors_of
-from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import Robot
 
 FLAGS = ("-Os", "-flto", "-ffunction-sections", "-fdata-sections", "-DF_CPU=16000000L",
@@ -66,34 +63,18 @@ def built(sketch: str, board: str) -> Path:
     return elf
 
 
-class SketchBoard:
-    """A sketch on the board of a robot, and what comes to it from outside; `ran` runs it."""
+class SketchBoard(boards.Simulated):
+    """A sketch on the board of a robot; `ran` runs it."""
 
     def __init__(self, robot: Robot, sketch: str) -> None:
-        need(boards.missing())
-        self.robot = robot
-        self.board = robot.board.chip
-        self.avr = AVRS[self.board]
+        super().__init__(robot)
         self.elf = built(sketch, self.board)
-        self.script = ["uart"]
-        self.events: list[tuple[int, int, bool]] = []
-        self.level(0, robot.board.start_button, True)
-
-    def level(self, ms: float, pin: int, is_high: bool) -> None:
-        self.events.append((round(ms * MS), pin, is_high))
+        self.script.append("uart")
 
     def count(self, pin: int, counts: list[int]) -> None:
         """Say what conversions of a pin find, the last one for good."""
         channel = pin - (CHIPS[self.board].first_analog or 0)
         self.script += [f"next {channel} {-(-count * 5000 // 1023)}" for count in counts]
-
-    def echoes(self, trigger: int, echo: int, widths_us: list[float]) -> None:
-        a, b = self.avr.bits[trigger], self.avr.bits[echo]
-        for width_us in widths_us:
-            self.script.append(
-                f"ping {a.port.upper()} {a.bit} {b.port.upper()} {b.bit} "
-                f"{460 * 16} {round(width_us * 16)} 0 0"
-            )
 
     def ran(self, ms: float) -> Ran:
         board = self.robot.board
@@ -101,31 +82,10 @@ class SketchBoard:
         devices += [
             pin for key, pin in board.motors.pins.items() if key in ("standby", *SERVO_KEYS)
         ]
-        pins = {*board.motors.pins.values(), *devices}
-        watched = set(TIMER_2.values())
-        for pin in pins:
-            watched.add(PORTS[self.avr.bits[pin].port])
-            if pin in self.avr.compares:
-                timer, channel = self.avr.compares[pin]
-                watched |= {CONTROLS[timer], self._compare(timer, channel)}
-        lines = [f"watch {address}" for address in sorted(watched)]
-        for cycle, pin, is_high in sorted(self.events, key=lambda event: event[0]):
-            port, bit = self.avr.bits[pin]
-            lines.append(f"pin {cycle} {port.upper()} {bit} {int(is_high)}")
-        done = subprocess.run(
-            [boards.simulator(), self.elf, boards.CHIPS[self.board], str(round(ms * MS))],
-            input="\n".join([*lines, *self.script]) + "\n",
-            capture_output=True,
-            text=True,
-            timeout=300,
-        )
-        assert done.returncode == 0, done.stderr
-        return self._seen(done.stdout, devices)
-
-    @staticmethod
-    def _compare(timer: int, channel: str) -> int:
-        number = "abc".index(channel)
-        return CONTROLS[timer] + (3 + number if timer in (0, 2) else 8 + 2 * number)
+        self.watched |= set(TIMER_2.values())
+        for pin in {*board.motors.pins.values(), *devices}:
+            self.watch(pin)
+        return self._seen(self.simulated(self.elf, ms), devices)
 
     def _seen(self, printed: str, devices: list[int]) -> Ran:
         now: dict[int, int] = {}
@@ -149,11 +109,11 @@ class SketchBoard:
 
     def _level(self, now: dict[int, int], pin: int) -> int:
         """Return 0 to 255: what a pin does on the average."""
-        port, bit = self.avr.bits[pin]
+        port, bit = self.bit(pin)
         if pin in self.avr.compares:
             timer, channel = self.avr.compares[pin]
             if now.get(CONTROLS[timer], 0) & CONNECTIONS[channel]:
-                return now.get(self._compare(timer, channel), 0)
+                return now.get(self.compare_address(pin), 0)
         return 255 if now.get(PORTS[port], 0) >> bit & 1 else 0
 
     def _motors(self, now: dict[int, int]) -> tuple[int, ...]:
