@@ -73,6 +73,14 @@ def holding(text: str = "SB|F(0.2, 80)") -> tuple[HostFirmware, Session]:
     return robot, session
 
 
+def driving(milliseconds: int) -> tuple[HostFirmware, Session]:
+    """Return a robot that has driven for so long, and goes on."""
+    robot, session = switched_on(), computer()
+    send(robot, session, AWAY)
+    robot.talk(session, milliseconds)
+    return robot, session
+
+
 def broken_upload(robot: HostFirmware, session: Session) -> None:
     """Let the robot hold what is stored, and nothing of it in memory."""
     request = session.upload(image_of(LONG))
@@ -154,9 +162,7 @@ def test_sb_waits_for_the_button() -> None:
 
 
 def test_the_button_stops_and_the_next_push_starts() -> None:
-    robot, session = switched_on(), computer()
-    send(robot, session, AWAY)
-    robot.talk(session, 300)
+    robot, session = driving(300)
     assert not robot.is_lit
     robot.talk(session, 1, flags=1)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
@@ -173,9 +179,7 @@ def test_the_button_stops_and_the_next_push_starts() -> None:
 
 
 def test_the_stop_sequence_stops_and_latches() -> None:
-    robot, session = switched_on(), computer()
-    send(robot, session, AWAY)
-    robot.talk(session, 300)
+    robot, session = driving(300)
     session.stop(robot.now_ms)
     robot.talk(session, 2)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
@@ -191,9 +195,7 @@ def test_the_stop_sequence_stops_and_latches() -> None:
 
 
 def test_without_frames_the_motors_go_off_in_time() -> None:
-    robot, session = switched_on(), computer()
-    send(robot, session, AWAY)
-    robot.talk(session, 700)
+    robot, session = driving(700)
     silent_ms = robot.now_ms
     robot.wait(2000)
     assert happened(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
@@ -227,9 +229,7 @@ def test_a_fault_stops_and_is_remembered() -> None:
 
 
 def test_a_main_loop_that_stood_still_is_a_fault() -> None:
-    robot, session = switched_on(), computer()
-    send(robot, session, AWAY)
-    robot.talk(session, 100)
+    robot, session = driving(100)
     robot.talk(session, 1, flags=4)
     robot.talk(session, 100)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FAULTED"]
@@ -253,9 +253,7 @@ def test_nobody_is_connected_any_more(is_detached: bool) -> None:
 @pytest.mark.parametrize("starts", [1, 256])
 def test_no_run_of_the_button_is_tethered(starts: int) -> None:
     """However often it starts: runs are counted in one byte, and one of them was tethered."""
-    robot, session = switched_on(), computer()
-    send(robot, session, AWAY)
-    robot.talk(session, 100)
+    robot, _ = driving(100)
     robot.push()
     assert happened(robot)[-1] == "MOTORS 0 0"
     robot.wait(1500)

@@ -42,18 +42,17 @@ def recorded(table: Owned, session: Session, text: str) -> tuple[list[bytes], li
     return table.frames(session, session.upload(image_of(text), saves=False))
 
 
-def open_(table: Owned, nonce: int = 4) -> tuple[Session, Keys]:
-    """Return a session whose seal both know."""
-    keys = Keys()
+def opened(*defines: str) -> tuple[Owned, Session, Keys]:
+    """Return a robot, and a session whose seal both know, with its keys."""
+    table, keys = Owned(defines=defines), Keys()
     table.claimed(keys)
-    session = table.session(keys, nonce=nonce)
+    session = table.session(keys, nonce=4)
     assert owner_of(table, session) == YOUR_OWN
-    return session, keys
+    return table, session, keys
 
 
 def test_the_robot_says_that_it_seals_and_does() -> None:
-    table = Owned()
-    session, _ = open_(table)
+    table, session, _ = opened()
     assert session.robot and session.robot.values.features & SEALS
     there, back = recorded(table, session, SHORT)
     for frame in map(decoded, there[-1:] + back[-1:]):
@@ -61,8 +60,7 @@ def test_the_robot_says_that_it_seals_and_does() -> None:
 
 
 def test_a_firmware_without_seals_does_as_before() -> None:
-    table = Owned(defines=("tiniscript_without_seals",))
-    session, _ = open_(table)
+    table, session, _ = opened("tiniscript_without_seals")
     assert session.robot and session.robot.values.features & (SEALS | OWNERS) == OWNERS
     there, _ = recorded(table, session, SHORT)
     assert not any(frame.is_sealed for frame in map(decoded, there) if frame)
@@ -73,8 +71,7 @@ def test_a_firmware_without_seals_does_as_before() -> None:
 
 def test_what_is_not_sealed_has_no_authority() -> None:
     """Who writes into the owner's line, in its epoch, with the next number."""
-    table = Owned()
-    session, _ = open_(table)
+    table, session, _ = opened()
     recorded(table, session, FOREVER)
     open_to_all = {"HELLO", "PING", "STATUS", "STOP", "CLAIM", "AUTHENTICATE", "IDENTIFY"}
     for message in MESSAGES:
@@ -93,8 +90,7 @@ def test_what_is_not_sealed_has_no_authority() -> None:
 
 def test_an_answer_is_told_again_to_nobody_else() -> None:
     """The same number without a seal gets no receipt and no bytes of the program."""
-    table = Owned()
-    session, _ = open_(table)
+    table, session, _ = opened()
     recorded(table, session, SHORT)
     request = session.fetch()
     assert table.outcome(session, request) == "OK"
@@ -107,8 +103,7 @@ def test_a_stranger_keeps_no_program_running() -> None:
     """The owner is gone, and somebody else pings: or opens a session and pings."""
     ping, hello = BY_NAME["PING"].number, BY_NAME["HELLO"].number
     for is_greeting in (False, True):
-        table = Owned()
-        session, _ = open_(table)
+        table, session, _ = opened()
         recorded(table, session, FOREVER)
         begun_ms = table.robot.now_ms
         if is_greeting:
@@ -123,8 +118,7 @@ def test_a_stranger_keeps_no_program_running() -> None:
 def test_a_relay_cannot_say_that_it_worked() -> None:
     """Nothing reaches the robot, and what comes back is forged in all ways but with the key."""
     chance = random.Random(1)
-    table = Owned()
-    session, _ = open_(table)
+    table, session, _ = opened()
     there, back = recorded(table, session, SHORT)
     table.pass_time(session, 400)
     request = session.live(image_of(SHORT).code)
@@ -171,8 +165,7 @@ def refused_by_a_stranger(table: Owned, session: Session, is_cut: bool) -> Reply
 
 def with_a_key(is_pending: bool) -> tuple[Owned, Keys, Session]:
     """Return an owned robot, and a session of a computer that has its key."""
-    table = Owned()
-    _, keys = open_(table)
+    table, _, keys = opened()
     keys.found = [each._replace(is_pending=is_pending) for each in keys.found]
     return table, keys, table.session(keys, nonce=8)
 
@@ -199,8 +192,7 @@ def test_no_refusal_takes_a_key_from_a_computer(is_pending: bool) -> None:
 
 
 def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
-    table = Owned()
-    session, _ = open_(table)
+    table, session, _ = opened()
     recorded(table, session, FOREVER)
     session.events()
     session.stop(table.robot.now_ms)
@@ -218,10 +210,9 @@ def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
 @pytest.mark.parametrize("payload", [b"", bytes(12), bytes(13), bytes(40)])
 def test_a_stop_whose_seal_is_wrong_stops_all_the_same(payload: bytes) -> None:
     for is_claimed in (False, True):
-        table = Owned()
-        if is_claimed:
-            session, _ = open_(table)
-        else:
+        table, session, _ = opened()
+        if not is_claimed:
+            table = Owned()
             session = table.session()
         recorded(table, session, FOREVER)
         table.answer(Frame(BY_NAME["STOP"].number, 1, 0, payload, is_sealed=True))
@@ -242,8 +233,7 @@ def test_a_teachers_stop_needs_the_teachers_seal() -> None:
 
 
 def test_a_counter_at_its_end_begins_another_seal() -> None:
-    table = Owned()
-    session, _ = open_(table)
+    table, session, _ = opened()
     seal = session._sealing.seal
     assert seal
     seal.sent = LAST - 1
@@ -255,8 +245,7 @@ def test_a_counter_at_its_end_begins_another_seal() -> None:
 
 
 def test_a_seal_that_has_lapsed_is_made_again_for_the_same_request() -> None:
-    table = Owned()
-    session, _ = open_(table)
+    table, session, _ = opened()
     before = session._sealing.seal
     table.pass_time(None, 2100)
     table.robot.did.clear()
@@ -268,8 +257,7 @@ def test_a_seal_that_has_lapsed_is_made_again_for_the_same_request() -> None:
 
 def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
     """Whatever is asked first, also what needs no HELLO."""
-    table = Owned()
-    session, _ = open_(table)
+    table, session, _ = opened()
     later = Owned(table.robot.memory(), seed=7)
     later.robot.now_ms = table.robot.now_ms
     assert later.outcome(session, session.status()) == "OK"
@@ -278,8 +266,7 @@ def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
 
 def test_more_requests_than_numbers_and_a_lapse() -> None:
     """AUTHENTICATE has a number after those of the sealed requests."""
-    table = Owned()
-    session, _ = open_(table)
+    table, session, _ = opened()
     for _ in range(200):
         assert table.outcome(session, session.trim()) == "OK"
     table.pass_time(None, 2100)
@@ -287,8 +274,7 @@ def test_more_requests_than_numbers_and_a_lapse() -> None:
 
 
 def test_another_session_with_the_same_numbers_is_another_seal() -> None:
-    table = Owned()
-    session, keys = open_(table)
+    table, session, keys = opened()
     there, _ = recorded(table, session, SHORT)
     table.pass_time(None, 3000)
     table.robot.did.clear()
@@ -302,8 +288,7 @@ def test_another_session_with_the_same_numbers_is_another_seal() -> None:
 
 
 def test_a_stranger_is_told_all_that_is_for_all_beside_a_seal() -> None:
-    table = Owned()
-    session, _ = open_(table)
+    table, session, _ = opened()
     for name, payload in (("PING", b""), ("STATUS", b""), ("IDENTIFY", b"")):
         frame = Frame(BY_NAME[name].number, (session._seq + 9) & 0xFF, session._epoch, payload)
         said = table.answer(frame)
@@ -315,8 +300,7 @@ def test_a_stranger_is_told_all_that_is_for_all_beside_a_seal() -> None:
 
 def test_the_button_and_the_zeros_stop_beside_a_seal() -> None:
     for how in ("zeros", "button"):
-        table = Owned()
-        session, _ = open_(table)
+        table, session, _ = opened()
         recorded(table, session, FOREVER)
         table.robot.step(*((bytes(4),) if how == "zeros" else (b"", PRESSED)))
         assert table.robot.is_latched
@@ -336,8 +320,7 @@ def attacked(frames: int, seed: int) -> Counter[str]:
     how many of each kind, how many were accepted, and how many stops were tried and obeyed.
     """
     chance = random.Random(seed)
-    table = Owned()
-    session, _keys = open_(table)
+    table, session, _keys = opened()
     there, _ = recorded(table, session, SHORT)
     old = there[-1:]
     robot = table.robot

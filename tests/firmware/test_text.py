@@ -162,6 +162,14 @@ def fetched(robot: HostFirmware, session: Session) -> bytes:
     return robot.done(session, session.fetch()).image
 
 
+def read_back(saves: bool = True) -> tuple[HostFirmware, Session, bytes]:
+    """Return a robot that holds a program, and that program, when its client has gone."""
+    robot, session = holding(saves=saves)
+    before = fetched(robot, session)
+    robot.wait(4000)
+    return robot, session, before
+
+
 def done_after(robot: HostFirmware, text: str | bytes, milliseconds: int = 1200) -> list[str]:
     """Return what the robot does after a line."""
     robot.did.clear()
@@ -184,9 +192,7 @@ def test_a_line_moves_and_its_end_is_told() -> None:
 @pytest.mark.parametrize("saves", [True, False])
 def test_the_program_that_it_holds_is_untouched(saves: bool) -> None:
     """Also one that is in memory only: there is room for two programs."""
-    robot, session = holding(saves=saves)
-    before = fetched(robot, session)
-    robot.wait(4000)
+    robot, session, before = read_back(saves)
     assert typed(robot, "SI|F(0.2,50);SHOW(1.5)\r\n", 400) == ["// OK", "// 1.5", "// DONE"]
     assert fetched(robot, session) == before
     assert status(robot, session).saved == (SAVED_STORED if saves else SAVED_MEMORY)
@@ -195,9 +201,7 @@ def test_the_program_that_it_holds_is_untouched(saves: bool) -> None:
 
 
 def test_sb_waits_for_the_button_and_is_gone_with_the_power() -> None:
-    robot, session = holding()
-    before = fetched(robot, session)
-    robot.wait(4000)
+    robot, session, before = read_back()
     assert typed(robot, "SB|F(0.2,50)\n", 2000) == ["// OK. The button starts it."]
     assert robot.did == [] and robot.is_lit
     for _ in range(2):

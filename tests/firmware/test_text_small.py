@@ -26,6 +26,7 @@ from tests.firmware.test_text import (
     done_after,
     fetched,
     holding,
+    read_back,
     status,
     typed,
 )
@@ -67,9 +68,7 @@ def test_these_are_all_tests_that_differ() -> None:
 
 
 def test_a_stored_program_comes_back_with_the_button() -> None:
-    robot, session = holding()
-    before = fetched(robot, session)
-    robot.wait(4000)
+    robot, session, before = read_back()
     assert typed(robot, "SI|F(0.2,50);SHOW(1.5)\r\n", 400) == ["// OK", "// 1.5", "// DONE"]
     assert fetched(robot, session) == before
     assert status(robot, session).saved == SAVED_STORED
@@ -90,9 +89,7 @@ def test_a_program_in_memory_only_is_lost_and_that_is_said(has_stored: bool) -> 
 
 
 def test_sb_keeps_the_button_until_the_next_line() -> None:
-    robot, session = holding()
-    before = fetched(robot, session)
-    robot.wait(4000)
+    robot, session, before = read_back()
     assert typed(robot, "SB|F(0.2,50)\n", 2000) == ["// OK. The button starts it."]
     assert robot.did == [] and robot.is_lit
     for _ in range(2):
@@ -168,9 +165,7 @@ def test_the_button_while_a_block_is_open_starts_the_stored_program() -> None:
 
 
 def test_a_request_while_a_block_is_open_finds_the_stored_program() -> None:
-    robot, session = holding()
-    before = fetched(robot, session)
-    robot.wait(4000)
+    robot, session, before = read_back()
     typed(robot, "SI|LOOP(3)\n F(0.1,50)\n", 1500)
     assert fetched(robot, session) == before
     assert robot.until(session, session.start()) == OK
@@ -180,9 +175,7 @@ def test_a_request_while_a_block_is_open_finds_the_stored_program() -> None:
 
 @pytest.mark.parametrize("at_ms", range(0, 60, 7))
 def test_power_that_goes_while_text_is_read_takes_nothing_that_is_stored(at_ms: int) -> None:
-    robot, session = holding()
-    before = fetched(robot, session)
-    robot.wait(4000)
+    robot, _, before = read_back()
     typed(robot, "SI|LOOP(3);F(0.01,50);END_LOOP;SHOW(1)\n"[: at_ms + 1], at_ms)
     again = switched_on(robot.memory())
     assert pushed(again) == SAVED_BACK
