@@ -92,11 +92,10 @@ def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) ->
     if stop in ("S", "STOP") and first[-1].word in MOVES and "UNTIL" not in first[-1].text:
         if "ELSE" in rest:
             return []
-        move = first[-1]
-        until = move.text + f" UNTIL{header[2:]}"
-        first = [*first[:-1], move._replace(text=until, samples=move.samples + samples)]
-        is_more = len(rest) > 1
-        return [*first, *([Order("IF", ";".join((header, *rest)), ())] if is_more else [])]
+        move, made_of = first[-1], first[-1].samples + samples
+        stopped = move._replace(text=f"{move.text} UNTIL{header[2:]}", samples=made_of)
+        left = [Order("IF", ";".join((header, *rest)), ())] if len(rest) > 1 else []
+        return [*first[:-1], stopped, *left]
     return [*first, Order("IF", asked, samples)]
 
 
@@ -165,11 +164,11 @@ def _near(words: Sequence[Lexeme], names: Names, sign: str) -> tuple[str, tuple[
     """Return the question for something near that words ask, and what they do not say of it."""
     numbers = [each.text for each in words if each.kind is NUMBER]
     is_wall = any(said_of(each.text, "wall") for each in words)
-    is_ahead = not any(
-        names.meant(each.text) in _ASIDE or said_of(each.text, "light") for each in words
+    is_other = any(
+        names.meant(it.text) in _ASIDE or said_of(it.text, "light") or said_of(it.text, "more")
+        for it in words
     )
-    is_other = any(said_of(each.text, "more") for each in words)
-    if not (numbers or is_wall) or not is_ahead or is_other or len(numbers) > 1:
+    if not (numbers or is_wall) or is_other or len(numbers) > 1:
         return "", ()
     far = numbers[0] if numbers else _NEAR_CM
     return f"DISTANCE {sign} {far}", () if numbers else (f"{far} cm",)

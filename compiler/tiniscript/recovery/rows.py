@@ -203,25 +203,22 @@ a=@num b=0 | @cat:a:b | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
 a=@num c=, b=@num | @dec:a:c:b | 1 | TS012 | applied | W(2,5) => W(2.5)
 o=(|,|; a=@num % ) | $o $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
 a=@num by @hundred | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 50)
-a=@num % of b=@num|@val | $b * $a / 100 | 1 | TS049 | first offered | X = 50% of 80⏎SHOW(X) => X = 80 * 50 / 100⏎SHOW(X)
-half of b=@num|@val | $b / 2 | 1 | TS010 | first offered | X = half of DISTANCE⏎SHOW(X) => X = DISTANCE / 2⏎SHOW(X)
+⟨half¦a=@num %⟩ of b=@num|@val | $b ⟨/ 2¦* $a / 100⟩ | 1 | ⟨TS010¦TS049⟩ | first offered | X = ⟨half¦50%⟩ of DISTANCE => X = DISTANCE ⟨/ 2¦* 50 / 100⟩
 a=@num|@val s=+|- n=@num % e=)|$ | $a $s $a * $n / 100 $e | 1 | TS049 | offered | F(2, 80 - 20%) => F(2, 80 - 80 * 20 / 100)
 a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
 s=<|>|<=|>= n=@num M|@in_m e=) | $s @cm:n $e | 1 | TS049 | applied | IF(DISTANCE < 1 m);S;ENDIF => IF(DISTANCE < 100);S;ENDIF
 s=<|>|<=|>=|=|<> n=@num @unit | $s $n | 1 | TS049 | first | x = 5 cm => x = 5
 v=@val CM|in? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
-ROUND ( v=@noparen+ , n=@num decimals ) | ROUND ( $v , $n ) | 1 | TS049 | applied | SHOW(ROUND(DISTANCE, 1 decimales)) => SHOW(ROUND(DISTANCE, 1))
+⟨ROUND ( v=@noparen+ , n=@num decimals )¦v=@val ROUND n=@num⟩ | ROUND ( $v , $n ) | 1 | ⟨TS049¦TS015⟩ | ⟨applied¦offered⟩ | SHOW(⟨ROUND(DISTANCE, 1 decimales)¦DISTANCE ROUND 1⟩) => SHOW(ROUND(DISTANCE, 1))
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 ^ v=@val '->' SHOW $ | SHOW ( $v ) | 1 | TS015 | offered | DISTANCE -> SHOW => SHOW(DISTANCE)
-v=@val ROUND n=@num | ROUND ( $v , $n ) | 1 | TS015 | offered | SHOW(DISTANCE ROUND 1) => SHOW(ROUND(DISTANCE, 1))
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
 # variables
 v=@name = a=@num|@val ⟨¦s=<|>|<=|>= n=@num⟩ b=@start | $v = $a ⟨¦$s $n⟩ ; $b | 1 | TS013 | applied | X = DISTANCE⟨¦ > 30⟩ F(1, 50) => X = DISTANCE⟨¦ > 30⟩;F(1, 50)
 v=@name ⟨++¦- - $⟩ | $v = $v ⟨+¦-⟩ 1 | 1 | TS050 | applied | v = 0⏎v⟨++¦--⟩ => v = 0⏎v = v ⟨+ 1¦-1⟩
-^ v=@name = w=@name ++ $ | $v = $w + 1 | 1 | TS050 | offered | X = 1⏎X = X++ => X = 1⏎X = X + 1
+^ v=@name = ⟨w=@name ++¦+ e=@num⟩ $ | $v = ⟨$w + 1¦$v + $e⟩ | 1 | TS050 | offered | X = 1⏎X = ⟨X++¦+1⟩ => X = 1⏎X = X + 1
 ^ c=@callw ( v=@name ⟨++¦+= e=@num⟩ r=@any* $ | $v = $v + ⟨1¦$e⟩ ; $c ( $v $r | 1 | TS050 | offered | X = 1⏎SHOW(X⟨++¦ += 2⟩) => X = 1⏎X = X + ⟨1¦2⟩;SHOW(X)
-^ v=@name = + e=@num $ | $v = $v + $e | 1 | TS050 | offered | X = 1⏎X = +1 => X = 1⏎X = X + 1
 v=@name ⟨+=¦-=¦*=⟩ e=@any+ | $v = $v ⟨+¦-¦*⟩ $e | 1 | TS050 | applied | X = 1⏎X ⟨+=¦-=¦*=⟩ 2 => X = 1⏎X = X ⟨+¦-¦*⟩ 2
 ^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
 ^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
@@ -340,8 +337,7 @@ LOOP ( ⟨@name =¦⟩ 1 to|until⟨¦|,⟩ n=@num ) | LOOP ( $n ) | 1 | TS063 |
 ⟨a=F|B ( FOREVER¦a=RANDOM ( n=@whole¦a=ROUND ( n=@num|@val⟩ ) | $a ( ⟨FOREVER , 80¦1 , $n¦$n , 0⟩ ) | 2 | TS020 | offered | ⟨F(FOREVER) UNTIL(DISTANCE < 10)¦SHOW(RANDOM(6))¦SHOW(ROUND(3))⟩ => ⟨F(FOREVER, 80) UNTIL(DISTANCE < 10)¦SHOW(RANDOM(1, 6))¦SHOW(ROUND(3, 0))⟩
 ^ M ( ⟨¦n=@time ,⟩ s='-'? a=@power , t='-'? b=@power ⟨, n=@time¦⟩ ) $ | M ( $s $a , $t $b ) ; W ( $n ) ; S | 2 | TS020 | offered | M(⟨¦2, ⟩50, -80⟨, 2¦⟩) => M(50, -80);W(2);S
 ^ BEEP ( n=@time , a=@num , b=@num ⟨¦, c=@num⟩ ) $ | BEEP ( $n , $a ) ; BEEP ( $n , $b ) ⟨¦; BEEP ( $n , $c )⟩ | 2 | TS020 | offered | BEEP(0.2, 440, 660⟨¦, 880⟩) => BEEP(0.2, 440);BEEP(0.2, 660)⟨¦;BEEP(0.2, 880)⟩
-^ a=F|B|L|R ( b=@num|FOREVER ,? c=@num ,? UNTIL (? q=@noparen+ )? ) $ | $a ( $b , $c ) UNTIL ( $q ) | 2 | TS029 | offered | F(5, 60, UNTIL DISTANCE < 10) => F(5, 60) UNTIL(DISTANCE < 10)
-^ a=F|B|L|R ( b=@num , c=@num , d=@val e=<|> f=@num ) $ | $a ( $b , $c ) UNTIL ( $d $e $f ) | 2 | TS020 | offered | F(3, 80, DISTANCE < 10) => F(3, 80) UNTIL(DISTANCE < 10)
+^ a=F|B|L|R ( b=@num⟨|FOREVER ,? c=@num ,? UNTIL (? q=@noparen+ )?¦ , c=@num , d=@val e=<|> f=@num⟩ ) $ | $a ( $b , $c ) UNTIL ( ⟨$q¦$d $e $f⟩ ) | 2 | ⟨TS029¦TS020⟩ | offered | F(5, 60, ⟨UNTIL ¦⟩DISTANCE < 10) => F(5, 60) UNTIL(DISTANCE < 10)
 h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num ) | &h ( $a $s $b AND $c $t $d ) | 2 | TS020 | offered | IF(DISTANCE < 10, LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
 ^ h=IF|WHILE ( c=@noparen+ , b=@start r=@noparen* ) $ | &h ( $c ) ; $b $r | 2 | TS080 | applied | IF(DISTANCE < 10, S)⏎ELSE⏎F(1,50)⏎ENDIF => IF(DISTANCE < 10);S⏎ELSE⏎F(1,50)⏎ENDIF
 LOOP ( n=@num , <body> ) | LOOP ( $n ) ; $b $r | 2 | TS080 | applied | LOOP(4, F(1,50))⏎END_LOOP => LOOP(4);F(1, 50)⏎END_LOOP
@@ -406,12 +402,9 @@ a=@close please|CM|@in_cm|@in_secs+ $ | $a | 1 | TS044 | applied | SHOW(DISTANCE
 ^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
 ^ a=⟨F|B¦L|R⟩ ( n=@num , p=@num ) ⟨CM|@in_cm¦DEG|@in_deg|°⟩ $ | $a ( $n ⟨CM¦DEG⟩ , $p ) | .5 | TS076 | offered | ⟨F(20, 60) CM¦R(90, 60) DEG⟩ => ⟨F(20 CM, 60)¦R(90 DEG, 60)⟩
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
-a=@close ,? then|soon+ ,? b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
+a=@close ⟨,? then|soon+ ,? b=@start¦,|.|:? b=@start¦&|+|AND b=@startm¦->|=>|/|>|>>|_|*|'|' b=@start⟩ | $a ; $b | 1 | ⟨TS044¦TS013¦TS061¦TS061⟩ | applied | F(1, 75)⟨ y¦,¦&¦->⟩ R(1, 75) => F(1, 75);R(1, 75)
 W n=@num seconds? then+ b=@start | W ( $n ) ; $b | 1 | TS015 | applied | F(2, 80) THEN WAIT 1 THEN B(2, 80) => F(2, 80);W(1);B(2, 80)
-a=@close ,|.|:? b=@start | $a ; $b | 1 | TS013 | applied | F(2,80), B(2,80) => F(2, 80);B(2, 80)
-a=@close ⟨&|+|AND b=@startm¦->|=>|/|>|>>|_|*|'|' b=@start⟩ | $a ; $b | 1 | TS061 | applied | F(2,80)⟨&¦->⟩B(2,80) => F(2, 80);B(2, 80)
-a=@close +|&|AND|->|'|' $ | $a ; | 1 | TS061 | applied | F(2, 80) +⏎R(1, 50) => F(2, 80)⏎R(1, 50)
-a=@close , $ | $a ; | .8 | TS013 | applied | F(2,80),⏎R(1,50), => F(2, 80)⏎R(1, 50)
+a=@close ⟨+|&|AND|->|'|'¦,⟩ $ | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | applied | F(2, 80)⟨ +¦,⟩⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 ; ( b=@start r=@all* e=@close ) ; | ; $b $r $e ; | 1 | TS080 | applied | LOOP(4);(F(1, 60);R(1, 50));END_LOOP => LOOP(4);F(1, 60);R(1, 50);END_LOOP
 ; first+ ,? b=@start | ; $b | 1 | TS044 | applied | F(2, 80); y despues B(1, 80) => F(2, 80);B(1, 80)
 ^ ⟨(¦[⟩ <body> ⟨)¦]⟩ $ | $b $r | 1 | TS080 | applied | ⟨(¦[⟩F(2,80), R(1,60)⟨)¦]⟩ => F(2, 80);R(1, 60)
