@@ -242,10 +242,11 @@ class _Usage:
         if len(words) < 2 or {*self.signs} & {*COMPARISONS, "(", "="} or len(text) > _LONGEST:
             return None
         if words[0] == "TSC":
-            return Diagnostic(codes.PROSE, self.piece, {"command": text})
+            return Diagnostic(codes.PROSE, self.piece, {"command": text, "fix": ""})
         if name := next((each for each in words if each in self.names.variables), ""):
             example = f"{name} = {name} + {self.number}"
-            return Diagnostic(codes.PROSE, self.piece, {"name": name, "example": example})
+            values = {"name": name, "example": example, "fix": ""}
+            return Diagnostic(codes.PROSE, self.piece, values)
         return self.offers(codes.PROSE, f"// {text}")
 
     def turn(self, said: Sequence[str]) -> Diagnostic:
