@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from collections.abc import Sequence
 from importlib.metadata import Distribution, distribution
 from importlib.util import find_spec
 from pathlib import Path
@@ -251,56 +252,49 @@ def test_a_folder_with_something_in_it_is_left_alone(tmp_path: Path) -> None:
     assert [each.name for each in tmp_path.iterdir()] == ["mine.txt"]
 
 
+def wheel(folder: Path, name: str, needs: Sequence[str] = (), tag: str = "py3-none-any") -> Path:
+    """Make a wheel with nothing in it."""
+    head = f"Metadata-Version: 2.1\nName: {name}\nVersion: 1\n"
+    head += "".join(f"Requires-Dist: {each}\n" for each in needs)
+    path = folder / f"{name}-1-{tag}.whl"
+    with zipfile.ZipFile(path, "w") as made:
+        made.writestr(f"{name}-1.dist-info/METADATA", head)
+        made.writestr(f"{name}-1.dist-info/WHEEL", f"Wheel-Version: 1.0\nTag: {tag}\n")
+        made.writestr(f"{name}-1.dist-info/RECORD", "")
+    return path
+
+
+def fetched(folder: Path, target: Path, system: str, python: str, wanted: str | Path) -> set[str]:
+    """Return the names of what pip takes from a folder for a system and a Python."""
+    words = ["download", "--quiet", "--no-index", "--find-links", str(folder), "--dest",
+             str(target), "--only-binary=:all:", "--python-version", python]  # fmt: skip
+    for tag in SYSTEMS[system].tags:
+        words += ["--platform", tag]
+    stick_wheels._pip([*words, str(wanted)], SYSTEMS[system].markers(python))
+    return {each.name for each in target.iterdir()}
+
+
 @pytest.mark.sampled(of="sticks that pip reads")
 def test_markers_are_those_of_the_target(tmp_path: Path) -> None:
     """pip resolves for Windows what only Windows needs, and for an old Python what it lacks."""
-    packages = tmp_path / "packages"
-    packages.mkdir()
-    for name, needs in (("robot", ["only_windows; sys_platform == 'win32'",
-                                   "only_old; python_version < '3.11'"]),
-                        ("only_windows", []), ("only_old", [])):  # fmt: skip
-        head = f"Metadata-Version: 2.1\nName: {name}\nVersion: 1\n"
-        head += "".join(f"Requires-Dist: {each}\n" for each in needs)
-        inside = f"{name}-1.dist-info"
-        with zipfile.ZipFile(packages / f"{name}-1-py3-none-any.whl", "w") as wheel:
-            wheel.writestr(f"{inside}/METADATA", head)
-            wheel.writestr(f"{inside}/WHEEL", "Wheel-Version: 1.0\nTag: py3-none-any\n")
-            wheel.writestr(f"{inside}/RECORD", "")
-    ours = packages / "robot-1-py3-none-any.whl"
-    seen = {}
-    for system, python in (("windows", "3.10"), ("windows", "3.12"), ("mac-apple", "3.10")):
-        target = tmp_path / f"{system}{python}"
-        shutil.copytree(packages, target)
-        for each in list(target.glob("*.whl")):
-            each.unlink()
-        words = ["download", "--quiet", "--no-index", "--find-links", str(packages), "--dest",
-                 str(target), "--only-binary=:all:", "--python-version", python]  # fmt: skip
-        words += ["--platform", SYSTEMS[system].tags[0], str(ours)]
-        stick_wheels._pip(words, SYSTEMS[system].markers(python))
-        seen[system, python] = {each.name.split("-")[0] for each in target.glob("*.whl")}
-    assert seen["windows", "3.10"] == {"robot", "only_windows", "only_old"}
-    assert seen["windows", "3.12"] == {"robot", "only_windows"}
-    assert seen["mac-apple", "3.10"] == {"robot", "only_old"}
+    for name in ("only_windows", "only_old"):
+        wheel(tmp_path, name)
+    needs = ["only_windows; sys_platform == 'win32'", "only_old; python_version < '3.11'"]
+    ours = wheel(tmp_path, "robot", needs)
+    for system, python, wanted in (
+        ("windows", "3.10", {"only_windows", "only_old"}),
+        ("windows", "3.12", {"only_windows"}),
+        ("mac-apple", "3.10", {"only_old"}),
+    ):
+        found = fetched(tmp_path, tmp_path / f"{system}{python}", system, python, ours)
+        assert {each.split("-")[0] for each in found} == {"robot", *wanted}
 
 
 def test_linux_gets_the_wheel_with_the_parts_in_c(tmp_path: Path) -> None:
     """wasmtime has one for manylinux1 and one of Python alone, which does not run."""
-    packages = tmp_path / "packages"
-    packages.mkdir()
-    for tag in ("py3-none-any", "py3-none-manylinux1_x86_64"):
-        with zipfile.ZipFile(packages / f"robot-1-{tag}.whl", "w") as wheel:
-            wheel.writestr(
-                "robot-1.dist-info/METADATA", "Metadata-Version: 2.1\nName: robot\nVersion: 1\n"
-            )
-            wheel.writestr("robot-1.dist-info/WHEEL", f"Wheel-Version: 1.0\nTag: {tag}\n")
-            wheel.writestr("robot-1.dist-info/RECORD", "")
-    target = tmp_path / "target"
-    words = ["download", "--quiet", "--no-index", "--find-links", str(packages), "--dest",
-             str(target), "--only-binary=:all:", "--python-version", "3.12"]  # fmt: skip
-    for tag in SYSTEMS["linux"].tags:
-        words += ["--platform", tag]
-    stick_wheels._pip([*words, "robot"], SYSTEMS["linux"].markers("3.12"))
-    assert [each.name for each in target.iterdir()] == ["robot-1-py3-none-manylinux1_x86_64.whl"]
+    wheel(tmp_path, "robot")
+    made = wheel(tmp_path, "robot", tag="py3-none-manylinux1_x86_64")
+    assert fetched(tmp_path, tmp_path / "target", "linux", "3.12", "robot") == {made.name}
 
 
 def test_a_wheel_without_its_parts_in_c_is_for_every_system(tmp_path: Path) -> None:
