@@ -14,7 +14,7 @@ from itertools import accumulate, groupby, pairwise
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Span
-from tiniscript.base.words import BLOCK_ENDS, WAYS, WORDS
+from tiniscript.base.words import BLOCK_ENDS, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery import rows
 from tiniscript.recovery.blocks import BRACES
@@ -483,22 +483,21 @@ def _word(
     if code in (codes.NO_VALUE.number, codes.NO_BRACKETS_HERE.number):
         part = old[start:]
     elif code == rows.NO_BRACKETS:
-        is_made = [each.text == "(" and each.source is None for each in new]
-        made_at = next((k for k in range(1, len(new)) if is_made[k]), 0)
-        if made_at and new[made_at - 1].kind is WORD:
-            return new[made_at - 1].text
+        for word, sign in pairwise(new):
+            if sign.text == "(" and sign.source is None and word.kind is WORD:
+                return word.text
     words = [each.text for each in part if each.kind is WORD]
     return next((each for each in words if each in WORDS), "".join(words[:1]))
 
 
 def _with_unit(tokens: Sequence[Lexeme]) -> list[Lexeme]:
     """Return the first number with its unit; one of the language only where there is no other."""
-    found = [
+    found = (
         [number, unit]
         for number, unit in pairwise(tokens)
         if number.kind is NUMBER and (said_of(unit.text, "unit") or unit.text == "%")
-    ]
-    return min(found, key=lambda pair: pair[1].text in WAYS, default=[])
+    )
+    return next(found, [])
 
 
 def _first_difference(
