@@ -85,6 +85,7 @@ def _checked(page: Page) -> None:
     page.click("#lesson_hint summary")
     page.click("#lesson_check")
     page.locator("#lesson_said[data-verdict]").wait_for()
+    page.evaluate("Promise.all(arena.getAnimations().map((each) => each.finished))")  # a bump
 
 
 def _real(page: Page) -> None:
@@ -131,6 +132,7 @@ def each_screen(page: Page, sizes: Iterable[Size]) -> Iterator[tuple[str, Size]]
         see(page)
         for width, height in sizes:
             page.set_viewport_size({"width": width, "height": height})
-            turn(page, "robot" if screen in BESIDE else "program")
+            if screen != "start":  # which has no halves
+                turn(page, "robot" if screen in BESIDE else "program")
             page.evaluate(SETTLED)
             yield screen, (width, height)

@@ -87,6 +87,16 @@ DIALOG = """() => {
   if (stop.top < 0 || stop.bottom > innerHeight) found.push('no stop in reach');
   return found;
 }"""
+# Each choice whose name is cut where it is chosen.
+CUT = """() => [...document.querySelectorAll('select')].filter((e) => e.checkVisibility()).flatMap((e) => {
+  const chosen = e.value;
+  const cut = [...e.options].filter((each) => {
+    e.value = each.value;
+    return e.scrollWidth > e.clientWidth + 1 || e.scrollHeight > e.clientHeight + 1;
+  });
+  e.value = chosen;
+  return cut.map((each) => each.innerText);
+})"""
 THEMES = {"dark": "[data-dark]", "light": ":not([data-dark])"}
 
 
@@ -104,6 +114,8 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
         assert page.locator("#stop").is_visible()
         if screen not in ("teacher", "programs"):  # one is scrolled, one in front of all
             assert page.evaluate(LOOK if size in SCREENS else SCROLLED) == [], (screen, size)
+        if size in SCREENS:
+            assert page.evaluate(CUT) == [], (screen, size)
         if size in SCREENS and screen in LEAST:
             where, width, height = LEAST[screen]
             box = page.locator(where).bounding_box()

@@ -129,6 +129,7 @@ export class Lessons {
       const { lessons } = await this.#page.python.ask({ do: 'lesson_titles', language });
       if (asked !== this.#asked) return;
       this.#lessons = lessons;
+      if (!this.#steps.length) this.#number = 1 + Math.max(0, this.#lessons.findIndex(({ name }) => !lessonsDone().has(name)));
       this.#list();
       await this.#choose(this.#number);
     } catch (why) {
