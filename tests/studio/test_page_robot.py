@@ -89,7 +89,7 @@ def test_stop_stops_it(page: Page, how: str, is_paused: bool) -> None:
     page.click("#run")
     page.locator(".cm-running").first.wait_for()
     if is_paused:
-        page.click("#pause")
+        page.dblclick("#pause")
         in_phase(page, "paused")
     assert value(page, "Motors").split() != ["0", "%", "0", "%"]
     if how == "button":

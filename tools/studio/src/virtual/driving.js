@@ -108,7 +108,8 @@ export class Driving {
       tell: () => this.#show(),
     });
     this.#run.addEventListener('click', () => this.#start(false));
-    this.#pause.addEventListener('click', () => {
+    this.#pause.addEventListener('click', ({ detail }) => {
+      if (detail > 1) return; // it was pressed twice to pause
       if (this.#simulator.phase === 'paused') this.#simulator.goOn();
       else this.#pauseIt();
     });
