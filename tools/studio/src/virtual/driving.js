@@ -312,6 +312,7 @@ export class Driving {
     this.#show();
     await this.#simulator.stop(); // also before a program with mistakes: what runs is not what is seen
     if (start !== this.#starts || !program?.image) return;
+    this.#sounds.begin();
     this.#wasStopped = false;
     this.#bumps = 0;
     this.#arena.begin(this.#world.shapes, so.robot.value, this.#world.goals);

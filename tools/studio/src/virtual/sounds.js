@@ -16,6 +16,12 @@ export class Sounds {
   #playing = new Set();
   #closing = 0;
 
+  /** Makes the computer's sound ready before a run, whose picture would wait for it. */
+  begin() {
+    const context = this.#awake();
+    if (context) this.#rest(context);
+  }
+
   /** @param {number} hertz @param {number} duration_s of this computer's time */
   beep(hertz, duration_s) {
     const context = this.#awake();
@@ -81,9 +87,14 @@ export class Sounds {
     this.#playing.add(tone);
     tone.addEventListener('ended', () => {
       this.#playing.delete(tone);
-      clearTimeout(this.#closing);
-      if (!this.#playing.size) this.#closing = window.setTimeout(() => context.suspend(), OPEN_MS); // an open one works without a sound, too
+      this.#rest(context);
     });
     return tone;
+  }
+
+  /** Closes it after a while: an open one works without a sound, too. @param {AudioContext} context */
+  #rest(context) {
+    clearTimeout(this.#closing);
+    if (!this.#playing.size) this.#closing = window.setTimeout(() => context.suspend(), OPEN_MS);
   }
 }
