@@ -145,6 +145,7 @@ def _moved(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
             waits.append((moving_ms - page.evaluate("clicked_ms")) / 1000)
             page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
         page.select_option("#speed", "20")
+        page.wait_for_timeout(SETTLES_MS)
         page.evaluate("window.frames.length = 0")
         page.wait_for_timeout(FRAMES_MS)
         frames += page.evaluate("window.frames")
