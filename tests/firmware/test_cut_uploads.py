@@ -6,6 +6,8 @@ the new one, nothing drives that was stopped, and the next upload is whole.
 
 from __future__ import annotations
 
+from argparse import ArgumentParser
+
 import pytest
 
 from tests.firmware.test_host_firmware import KIT, computer, happened, held, image_of, send, stored
@@ -105,5 +107,6 @@ def test_an_upload_that_is_broken_off(kind: str) -> None:
 
 
 if __name__ == "__main__":
+    ArgumentParser(description=__doc__).parse_args()
     for each in KINDS:
         break_off(each, 0, 1)

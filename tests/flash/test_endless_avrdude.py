@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 from functools import partial
 from pathlib import Path
@@ -49,7 +50,7 @@ def test_one_that_says_a_little_for_ever(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_one_that_has_said_all_and_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(children, "LEAVE_S", 0.1)
+    monkeypatch.setattr(avrdude, "LEAVE_S", 0.1)
     body = "import os, time\nos.close(1); os.close(2); time.sleep(600)\n"
     assert ended(tmp_path, body)[0].how == avrdude.ENDLESS
 
@@ -75,6 +76,20 @@ def test_a_slow_reader_takes_nothing_of_the_file_that_is_opened_next(
     assert [end.recv(2) for end in next_ones] == [b"?"] * 8
     for end in next_ones:
         end.close()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there a program gets no Ctrl-C")
+def test_a_second_ctrl_c_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    running = subprocess.Popen(["sleep", "600"], start_new_session=True)
+
+    def again(seconds_s: float) -> int:
+        monkeypatch.undo()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(running, "wait", again)
+    with pytest.raises(KeyboardInterrupt):
+        children._end(running)
+    assert running.poll() is not None
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes as Linux has them")

@@ -230,6 +230,7 @@ def test_plurals_follow_the_rule_of_the_language() -> None:
         ('[x]\na = "Read {file."\n', 2, "a: a brace { or } has no other half"),
         ('[x]\na = { one = "{n}", other = "{n" }\n', 2, "a: a brace { or } has no other half"),
         ("[x]\na = 5\n", 2, "a: it has no text"),
+        ('a = { one = "{n}", others = "{n}" }\n', 1, "a: it has no text"),
         ('[x]\na = ""\n', 2, "a: it has no text"),
         ('[x]\na = { one = "{n} byte" }\n', 2, "a: it has no text"),
     ],

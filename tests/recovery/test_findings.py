@@ -167,3 +167,10 @@ def test_a_long_text_is_not_read_as_a_whole() -> None:
     wrong = "W(2 s)\n"
     assert all(each.repair is not None for each in check(wrong))
     assert all(each.repair is None for each in check(wrong * 3000)[:3])
+
+
+def test_many_blanks_take_no_time() -> None:
+    """They stand where a value may begin, and behind one; a minute for each would be seen."""
+    for blank in (" ", "( ", "5 ", "(5) "):
+        assert check(f"SI|F({blank * 20_000}((5)+1), 60) hola amigo\n")
+        assert check(f"SI|F(5{blank * 20_000}hola amigo\n")

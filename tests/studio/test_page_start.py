@@ -196,6 +196,16 @@ def test_a_second_press_is_not_for_what_comes_to_the_place_of_the_first(start: P
     start.locator("html[data-phase=ended]").wait_for(state="attached")
 
 
+def test_nor_is_a_second_tap(pages: Pages) -> None:
+    page = pages.open("start", has_touch=True)
+    box = page.locator("#start_write").bounding_box()
+    assert box
+    for _ in range(2):
+        page.touchscreen.tap(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    shown(page)
+    assert page.get_attribute("#side_real", "aria-pressed") == "false"
+
+
 def test_the_keyboard_alone_is_enough(again: Page) -> None:
     again.locator("#language").focus()
     visited = []

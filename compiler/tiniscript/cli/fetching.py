@@ -133,8 +133,8 @@ def run(
 
     try:
         code, log = children.run(command, folder, look, environment, may_end)
-    except OSError as why:
-        code, log = 1, f"{type(why).__name__}: {why}"
+    except children.CannotStart as why:
+        code, log = 1, str(why)
     finally:
         progress.end()
     if code:

@@ -20,6 +20,7 @@ from tiniscript.flash.bootloaders import Bootloader
 
 # Timeouts without output: before a bootloader has answered, and after that.
 NOBODY_S, SILENCE_S = 15.0, 30.0
+LEAVE_S = 5.0  # that it has after its last output
 WHOLE_S = 300.0  # timeout of the whole run: writing and reading back a Mega's 256 KB takes 50 s
 MOST_BYTES = 200_000  # limit of its output; about 2,000 are normal
 MOST_ATTEMPTS = 2  # of its ten, which take five seconds each
@@ -98,13 +99,14 @@ def write(
 ) -> Ended:
     """Write a firmware, read it back, and compare. `look` is called periodically."""
     words = [*command, "-c", to.programmer, "-p", to.part, "-P", port, "-b", str(to.baud), "-D"]
+    words += ["-U", f"flash:w:{firmware}:i"]
     try:
-        code, said = children.run([*words, "-U", f"flash:w:{firmware}:i"], None, _Watch(look))
+        code, said = children.run(words, None, _Watch(look), leave_s=LEAVE_S)
     except _Over as over:
         return over.ended
     except subprocess.TimeoutExpired:
         return Ended(ENDLESS)
-    except OSError as why:
+    except children.CannotStart as why:
         return Ended(FAILED, str(why.strerror or why))
     return outcome(code, said)
 

@@ -18,7 +18,10 @@ from threading import Thread
 LOG_BYTES = 1 << 20  # of what a program says; the last ones
 LOOK_S = 0.1
 KILLED_AFTER_S = 5.0  # that a program has to end by itself
-LEAVE_S = 5.0  # that it has after its last output
+
+
+class CannotStart(OSError):
+    """A program is not there, or may not be started."""
 
 
 def run(
@@ -27,22 +30,27 @@ def run(
     look: Callable[[str], None],
     environment: Mapping[str, str] | None = None,
     may_end: Callable[[str], bool] = lambda said: True,
+    leave_s: float | None = None,
 ) -> tuple[int, str]:
     """Run a program in a folder, or here; return its exit code, and what it has said.
 
     `look` gets what it has said until now, ten times a second. An exception, such as Ctrl-C,
     ends the program and its children; where it may not end after what it has said, it is waited for
-    first. Raises OSError where it cannot be started, and TimeoutExpired where it does not end.
+    first. Raises CannotStart, and TimeoutExpired where it has not ended `leave_s` after its last
+    output.
     """
-    running = subprocess.Popen(
-        command,
-        cwd=folder,
-        env=environment,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        start_new_session=True,  # it has children, which end with it
-    )
+    try:
+        running = subprocess.Popen(
+            command,
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,  # it has children, which end with it
+        )
+    except OSError as why:
+        raise CannotStart(*why.args) from why
     assert running.stdout
     pipe, said = running.stdout, bytearray()
 
@@ -58,7 +66,7 @@ def run(
         while reader.is_alive():
             reader.join(LOOK_S)
             look(said.decode(errors="replace"))
-        code = running.wait(LEAVE_S)
+        code = running.wait(leave_s)
     except BaseException:
         if may_end(said.decode(errors="replace")):
             _end(running)
@@ -71,11 +79,13 @@ def run(
 
 def _end(running: subprocess.Popen[bytes]) -> None:
     """End a program and its children: it may be in the middle of keeping what it has fetched."""
-    if sys.platform != "win32":
-        with suppress(OSError, subprocess.TimeoutExpired):
-            os.killpg(running.pid, signal.SIGINT)
-            running.wait(KILLED_AFTER_S)
-    _kill(running)
+    try:
+        if sys.platform != "win32":
+            with suppress(OSError, subprocess.TimeoutExpired):
+                os.killpg(running.pid, signal.SIGINT)
+                running.wait(KILLED_AFTER_S)
+    finally:  # also at a second Ctrl-C
+        _kill(running)
 
 
 def _kill(running: subprocess.Popen[bytes]) -> None:

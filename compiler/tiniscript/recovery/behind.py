@@ -34,7 +34,8 @@ _NOTHING = re.compile(r"\s*\Z")
 _BEGUN = re.compile(r"(?i)\s*(?:S[IB]|PING)\s*\|")
 MARKS = f"{QUOTES}-–—_,"  # below a line that is meant again
 # The first value of a call, and the last one where that is a whole number.
-_TIME = re.compile(r"\w+\s*\(\s*((?:[^(),]|\([^()]*\))+?)(?=\s*[,)])")
+_PART = r"(?:[^\s(),]|\([^()]*\))"
+_TIME = re.compile(rf"\w+\s*\(\s*({_PART}(?:\s*{_PART})*)(?=\s*[,)])")
 _POWER = re.compile(r"(?i)[(,]\s*([0-9]{1,3})\s*\)(?=\s*(?:UNTIL\b|$))")
 _HALF = 60  # a power that is neither fast nor slow
 _BEFORE_NOTE = frozenset(("=", ">", "<", "*", ":", ",", "(", *COMPARISONS))

@@ -491,7 +491,7 @@ def _word(
 
 
 def _with_unit(tokens: Sequence[Lexeme]) -> list[Lexeme]:
-    """Return the first number with its unit; one of the language only where there is no other."""
+    """Return the first number that has a unit, and its unit."""
     found = (
         [number, unit]
         for number, unit in pairwise(tokens)

@@ -78,7 +78,8 @@ def _pieces(text: str) -> Iterator[_Piece]:
         body, note = without_note(row)
         parts = [each for each in body.split(";") if each.strip()] or [""]
         for k, part in enumerate(parts):
-            ((word, name), *_) = _FIRST.findall(part.upper())
+            found = _FIRST.match(part.upper())
+            word, name = found.groups() if found else ("", "")
             shown = part + note if note and k + 1 == len(parts) else part.rstrip()
             yield _Piece(shown, line, ALIASES.get(word, word), name)
 

@@ -68,6 +68,7 @@ def cells(table: str) -> Iterator[list[str]]:
     for row in table.strip("\n").split("\n"):
         if row.strip() and not row.startswith("# "):
             parts = [each.split("¦") for each in re.split("[⟨⟩]", row)]
+            assert len({*map(len, parts)} - {1}) < 2, row
             for k in range(max(map(len, parts))):
                 one = "".join(each[k % len(each)] for each in parts)
                 yield [cell.strip() for cell in re.split(r"\s\|(?=\s|$)", one, maxsplit=5)]

@@ -392,7 +392,10 @@ DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩ | DEF $n ; ⟨¦$b⟩ | 1 | TS
 ^ ⟨end¦END_DEF⟩ @def $ | END_DEF | 1 | ⟨TS022¦TS044⟩ | ⟨applied¦first⟩ | DEF SALTO⏎F(1, 50)⏎⟨FIN¦END_DEF⟩ SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
 h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS039 | first offered | LOOP(3)⏎F(2, 80)⏎END_LOOP(3) => LOOP(3)⏎F(2, 80)⏎END_LOOP
 ; LOOP $ | ; END_LOOP | 4 | TS014 | applied | LOOP(4) F(1,50) R(0.5,50) LOOP => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
-^ ⟨program @word¦then ,?¦leaves 0 ;?¦import @any+ ;?¦idles⟩ $ |  | 1 | ⟨TS044¦TS044¦TS065¦TS072¦TS044⟩ | ⟨applied¦applied¦applied¦applied¦offered⟩ | ⟨programa baile¦luego,¦return 0;¦import robot¦NADA⟩⏎F(1, 50) => ⏎F(1, 50)
+^ ⟨program @word¦then ,?⟩ $ |  | 1 | TS044 | applied | ⟨programa baile¦luego,⟩⏎F(1, 50) => ⏎F(1, 50)
+^ leaves 0 ;? $ |  | 1 | TS065 | applied | return 0;⏎F(1, 50) => ⏎F(1, 50)
+^ import @any+ ;? $ |  | 1 | TS072 | applied | import robot⏎F(1, 50) => ⏎F(1, 50)
+^ idles $ |  | 1 | TS044 | offered | NADA⏎F(1, 50) => ⏎F(1, 50)
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
@@ -409,7 +412,9 @@ a=@close ⟨+|&|AND|->|'|'¦,⟩ $ | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | a
 ; first+ ,? b=@start | ; $b | 1 | TS044 | applied | F(2, 80); y despues B(1, 80) => F(2, 80);B(1, 80)
 ^ ⟨(¦[⟩ <body> ⟨)¦]⟩ $ | $b $r | 1 | TS080 | applied | ⟨(¦[⟩F(2,80), R(1,60)⟨)¦]⟩ => F(2, 80);R(1, 60)
 # words of other languages around a program
-⟨W8¦brake¦eff⟩ | ⟨W¦BREAK¦F⟩ | 1 | TS102 | ⟨offered¦offered¦first offered⟩ | ⟨W8(1)¦LOOP(3)⏎S⏎BRAKE⏎END_LOOP¦efe dos coma ochenta⟩ => ⟨W(1)¦LOOP(3)⏎S⏎BREAK⏎END_LOOP¦F(2, 80)⟩
+W8 | W | 1 | TS102 | offered | W8(1) => W(1)
+brake | BREAK | 1 | TS102 | offered | LOOP(3)⏎S⏎BRAKE⏎END_LOOP => LOOP(3)⏎S⏎BREAK⏎END_LOOP
+eff | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
 ⟨read ( v=@val )¦^ read the? v=@val $⟩ | $v | 1 | TS102 | applied | ⟨X = leer(DISTANCE)¦leer DISTANCE⟩ => ⟨X =DISTANCE¦DISTANCE⟩
 ^ ⟨no F|B|L|R|M extra?¦cease of F⟩ $ | S | .5 | TS102 | first | ⟨no avanzar mas¦para de avanzar⟩ => S
 ^ off|S the? engine $ | S | 1 | TS102 | applied | apaga motores => S

@@ -122,7 +122,9 @@ QUEUE_S = 20.0  # a page that is silent for longer waits no more
 # A page that was heard since then may get a turn, and keeps one while others wait. It asks once a
 # second. With the time of a look the next one has waited less than 3 s.
 HERE_S = 2.0
-PLACE_S = 5.0  # a page that is silent for longer gives its place at a full address away
+# A page that is silent for longer gives its place away: where its address is full, or to who comes
+# back with its name.
+PLACE_S = 5.0
 REST_S = 10.0  # of a robot with which a turn has failed
 SILENT_S = 60.0  # after which a place in a full class is given away
 OVER_S = 6.0  # for pages to hear that the class is over

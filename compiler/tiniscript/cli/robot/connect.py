@@ -190,7 +190,7 @@ class Connection(Client):
         return reply
 
     def watch(self, end_s: float | None) -> Iterator[tuple[int, Event] | None]:
-        """Yield what happens until then, of whoever drives; None now and then.
+        """Yield what happens until `end_s`, of whoever drives; None now and then.
 
         Raises CommandError where the robot is lost.
         """

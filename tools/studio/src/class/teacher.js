@@ -13,6 +13,7 @@ import { hostPorts, post } from '../robot/host.js';
 import { shown } from '../robot/said.js';
 import { so } from '../page/so.js';
 import { known, text } from '../page/texts.js';
+import { isSecond } from '../page/twice.js';
 
 /** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, left_s: number, version: number, is_right: boolean, hand: number, lessons: string[]}} PupilRow */
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */
@@ -351,8 +352,8 @@ export class Teacher {
 /** A button of what cannot be taken back: it acts at the second press. @param {'class_end' | 'class_anew'} key @param {() => void} act */
 function pressedTwice(key, act) {
   let isSure = false;
-  const found = button(key, ({ detail }) => {
-    if (detail > 1) return; // a habit is no second thought
+  const found = button(key, (event) => {
+    if (isSecond(event)) return; // a habit is no second thought
     if (isSure) act();
     sure(!isSure);
   });

@@ -9,6 +9,7 @@ import { keepDone, lessonsDone } from './progress.js';
 import { offer, pictured, worldPicture } from '../page/pictures.js';
 import { so } from '../page/so.js';
 import { currentLanguage, text } from '../page/texts.js';
+import { isSecond } from '../page/twice.js';
 
 /** @typedef {{name: string, title: string, robot: string, worlds: number, world: import('../world/parts.js').World}} Lesson */
 /** @typedef {{blocks: import('./page.js').Block[], hint: string}} Step */
@@ -79,8 +80,8 @@ export class Lessons {
       this.#said.textContent = text('lesson_ended');
       this.#check.focus();
     });
-    this.#next.addEventListener('click', ({ detail }) => {
-      if (detail > 1) return; // one step is seen after the other
+    this.#next.addEventListener('click', (event) => {
+      if (isSecond(event)) return; // one step is seen after the other
       if (this.#step < this.#steps.length - 1) this.#go(this.#step + 1);
       else this.#choose(this.#number + 1).catch((why) => this.#fail(why));
     });

@@ -11,6 +11,7 @@ import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
 import { so } from '../page/so.js';
 import { hasText, text } from '../page/texts.js';
+import { isSecond } from '../page/twice.js';
 import { nameOf, onBlock, ROBOTS } from '../page/words.js';
 import { OWN_WORLD } from '../programs/work.js';
 import { WorldChoice } from '../world/choice.js';
@@ -108,8 +109,8 @@ export class Driving {
       tell: () => this.#show(),
     });
     this.#run.addEventListener('click', () => this.#start(false));
-    this.#pause.addEventListener('click', ({ detail }) => {
-      if (detail > 1) return; // it was pressed twice to pause
+    this.#pause.addEventListener('click', (event) => {
+      if (isSecond(event)) return; // it was pressed twice to pause
       if (this.#simulator.phase === 'paused') this.#simulator.goOn();
       else this.#pauseIt();
     });
