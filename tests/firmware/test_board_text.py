@@ -101,6 +101,8 @@ def test_its_words_are_those_of_its_level(board: str, robot: Uno) -> None:
     words = " ".join(typed(robot, "HELP\n", 600)).replace("// ", "").split()
     assert {"F", "LOOP", "END_LOOP", "ROUND", "UNTIL", "DISTANCE"} <= {*words}
     assert bool({"DEF", "END_DEF", "ENDDEF", "TASK"} & {*words}) == (board == "mega")
+    said = typed(robot, "SI|SHOW(12.5);F(0.1,50)\n", 300)
+    assert said == ["// OK", "// 12.5", "// DONE"]
 
 
 @pytest.mark.parametrize("board", ["mega"])

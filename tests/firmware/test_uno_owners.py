@@ -7,7 +7,7 @@ from pathlib import Path
 from tests.machines.wired import Wired
 from tests.support.owners import Keys
 from tiniscript import robots
-from tiniscript.link.authority import whose
+from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
 from tiniscript.link.messages import KEY_OWNER
 from tiniscript.link.session import Session
 from tools.bench.firmware_stack import pin
@@ -27,7 +27,7 @@ def owner_of(wired: Wired) -> str:
     return whose(wired.session.robot)
 
 
-def test_a_stop_acts_at_once_while_a_tag_is_made(sketch: Path) -> None:
+def test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset(sketch: Path) -> None:
     """A key that is shown takes the main loop some milliseconds, and no more."""
     keys = Keys()
     with Uno(sketch, baud=ROBOT.board.baud, tells_sleep=False) as uno:
@@ -43,3 +43,8 @@ def test_a_stop_acts_at_once_while_a_tag_is_made(sketch: Path) -> None:
         # HELLO and its answer, a challenge, a tag: about 150 bytes on the line
         bytes_ms = 150 * 10 * 1000 / ROBOT.board.baud
         assert wired.now_ms - begun_ms <= bytes_ms + 2 * HASH_MS + 8
+        uno.reset("external")
+        uno.run_ms(300)
+        for nonce, shown, owner in ((3, keys, YOUR_OWN), (4, None, OF_ANOTHER)):
+            wired.session = session(shown, nonce)
+            assert owner_of(wired) == owner

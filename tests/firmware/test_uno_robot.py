@@ -9,6 +9,7 @@ import pytest
 from tests.machines.wired import Wired
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
+from tiniscript.link.messages import SAVED_STORED
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.link.trim import Pace, Trim, told
@@ -96,6 +97,24 @@ def test_what_is_saved_is_there_after_a_power_cut(sketch: Path, memory: Path) ->
         assert states(again) == OFF
 
 
+def test_an_undo_writes_eight_bytes(uno: Uno) -> None:
+    """Five of them are erased first."""
+    wired = computer(uno)
+    for text in ("SB|F(0.2, 80); " + "SHOW(1); " * 20, "SB|B(0.2, 60); " + "SHOW(2); " * 30):
+        send(wired, text)
+        wired.run(2500)
+        assert saved(wired) == SAVED_STORED
+    begun = uno.cycle
+    assert wired.until(wired.session.undo()) == OK
+    wired.run(500)
+    written = [each.cycle for each in uno.events if each.what == "eeprom" and each.cycle > begun]
+    assert len(written) == 13
+    assert written[-1] - written[0] < 60 * CYCLES_PER_MS
+    uno.press("button")
+    uno.run_ms(130)
+    assert states(uno) == FORWARD
+
+
 def test_a_measured_robot_keeps_how_fast_it_is(sketch: Path, memory: Path) -> None:
     uno = switched_on(sketch, memory)
     wired = computer(uno)
@@ -163,6 +182,17 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
     assert wired.until(status) == OK
     assert status.outcome
     assert status.outcome.values.damaged == 0
+
+
+def test_the_motors_go_off_without_frames(uno: Uno) -> None:
+    wired = computer(uno)
+    send(wired, AWAY)
+    wired.run(500)
+    last = max(byte.cycle for byte in uno.received)
+    assert states(uno) == FORWARD
+    uno.run_ms(1500)
+    assert states(uno) == OFF
+    assert max(uno.pins[name].cycle for name in MOTORS) - last <= 1050 * CYCLES_PER_MS
 
 
 def low_for(uno: Uno, ms: float) -> None:

@@ -25,5 +25,7 @@ def test_the_sketch_leaves_stack_free(
     stack = measured(sketches(environment), robots.load(robot), environment.partition("_")[0])
     with capsys.disabled():
         print(f"\n  {stack.untouched} bytes untouched, {stack.least_free} at least", end=" ")
+    assert stack.program > 100 and stack.interrupt > 20
+    assert stack.least_free <= stack.untouched + 4
     assert stack.untouched >= LEAST_FREE
     assert stack.least_free >= LEAST_FREE

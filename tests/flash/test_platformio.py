@@ -195,6 +195,16 @@ def offline(*words: str, **variables: str) -> tuple[int, str, str]:
     return done.returncode, done.stdout, done.stderr
 
 
+def test_own_installation_is_left_alone(project: Path, tmp_path: Path) -> None:
+    manifest = tmp_path / "platforms" / "native" / "platform.json"
+    manifest.parent.mkdir(parents=True)
+    manifest.write_text("{}")
+    code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+    assert (code, out) == (0, "")
+    assert "platforms of its own (native)" in err
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == [manifest]
+
+
 def test_every_platform_has_its_version_and_another_one_is_refused(
     project: Path, tmp_path: Path
 ) -> None:
@@ -205,3 +215,9 @@ def test_every_platform_has_its_version_and_another_one_is_refused(
         code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
     assert (code, out) == (2, "")
     assert "wants atmelavr @ 5.0.0, the stand-in is one for 5.1.0" in err
+
+
+def test_command_runs_in_the_project(project: Path) -> None:
+    code, out, _ = offline("--project", str(project), "pio", "project", "config")
+    assert code == 0
+    assert "env:native" in out

@@ -1,8 +1,8 @@
 """A second machine for the bytecode, written from the words of `bytecode_spec.md` alone.
 
 It shares nothing with the package: opcodes and operands come from the tables of the page. It runs
-verified code on the clock of a trace, plainly and slowly, but for what an image has to say that it
-needs. What a robot has comes in as the kit of the interpreter beside it.
+verified code without tasks on the clock of a trace, plainly and slowly. What a robot has comes in
+as the kit of the interpreter beside it.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from tests.oracle.arithmetic import (
     Fault,
     answer,
     calculated,
+    divided,
     fits,
     printed,
     random_between,
@@ -131,6 +132,8 @@ class Run:
             elif not holds:
                 self.pc = to
         elif last in WAYS:
+            if "GO" in family:
+                taken[0] = self.way(taken[0], within(whole(taken[1]), 0, 100), last in "LR")
             self.drive(family, WAYS[last], taken, operands)
         elif name in ("WATCH_WAIT", "WATCH_FOREVER_WAIT"):
             self.watch(None, max(taken[0], 0) if taken else None)
@@ -280,6 +283,15 @@ class Run:
             assert time is not None
             self.motors(powers)
             self.wait(time, "MOVE")
+
+    def way(self, way: int, power: int, turns: bool) -> int:
+        """How many milliseconds a way takes."""
+        if way <= 0:
+            return 0
+        per_second = (self.kit.turn if turns else self.kit.speed) * power
+        if per_second == 0:
+            raise Fault("NO_POWER")
+        return fits(divided(100_000 * way, per_second))
 
     def watch(self, powers: tuple[int, int] | None, time: int | None) -> None:
         """Keep a prepared move; its check begins behind the instruction."""

@@ -14,7 +14,7 @@ import pytest
 
 from tests.machines import MACHINES, Machine, Senses
 from tests.machines.python import run_python
-from tests.oracle import programs
+from tests.oracle import machine, programs
 from tests.oracle.interpreter import PAPER_KIT, Kit, Mistake, run
 from tests.oracle.task_programs import task_program
 from tests.support.campaign import each_seed, wanted
@@ -51,6 +51,8 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
         for each in machines:
             got = each(image, kit, Senses(readings, MAX_MS, MAX_STEPS))
             assert same(want, got), f"seed {seed}, {image.hex()}:\n{text}"
+        got = machine.trace(unpack(image).code, theirs, readings, MAX_MS, max_steps=MAX_STEPS)
+        assert machine.TOO_MANY in got or same(want, got), f"seed {seed}, the page:\n{text}"
     laid_out = formatted(Source(text))
     assert compile_text(laid_out, kit).image == both[0].image, f"seed {seed}"
     return want.split(" ", 1)[1].split("\n")[-2].split(" ", 1)[1] if want.count("\n") > 1 else ""

@@ -72,7 +72,7 @@ GOALS: tuple[Goal, ...] = (
          "random and mutated codes", 10_000_000, 200_000, "tests.vm.test_cpp_agreement {count} --seed {seed}", 1000),
     Goal("verifier", "Both verifiers and the one in the specification give the same verdict at the same offset.",
          "random and damaged codes", 10_000_000, 100_000, "tests.oracle.test_verifier {count} --seed {seed}", 1000),
-    Goal("machine", "The machine does what the one written from the specification does.",
+    Goal("machine", "The machine does what the one written from the specification does with programs without tasks.",
          "runs", 100_000, 5_000, "tests.oracle.test_machine {count} --seed {seed}"),
     Goal("compiler", "Programs do what the interpreter written from the language reference does.",
          "programs, right and broken", 100_000, 5_000, "tests.vm.test_agreement {count} --seed {seed}", 10_000),
