@@ -14,6 +14,7 @@ Size = tuple[int, int]  # in pixels
 # Beside the program; on a phone a screen of their own.
 BESIDE = {"running", "paused", "driven", "trace", "plot", "floor", "drawing", "box", "flag",
           "lesson", "checked", "real", "teacher", "programs"}  # fmt: skip
+STARTS = {"start", "own programs"}  # which have no halves
 WRONG = "SI|" + "F(-2, 80);\nIF(DISTANCE < 10;\n" * 6
 See = Callable[["Page"], None]
 
@@ -40,7 +41,7 @@ def _wrong(page: Page) -> None:
 
 
 def _running(page: Page) -> None:
-    _write(page, "F(3, 80);SHOW(1 / 0)")
+    _write(page, ";".join(f"V{k} = {k}" for k in range(12)) + ";F(3, 80);SHOW(1 / 0)")
     page.select_option("#world", "maze")
     page.select_option("#speed", "0.1")
     page.click("#run")
@@ -100,6 +101,12 @@ def _programs(page: Page) -> None:
     page.locator("#programs:not([data-shared=asked])").wait_for()
 
 
+def _own_programs(page: Page) -> None:
+    page.click("#programs_close")
+    page.click("#home")
+    page.locator("#start_programs li").first.wait_for()
+
+
 SCREENS: dict[str, See] = {
     "start": lambda page: page.locator("#pictures").wait_for(),
     "blocks": _blocks,
@@ -121,6 +128,7 @@ SCREENS: dict[str, See] = {
     "real": _real,
     "teacher": lambda page: page.click("#link_teacher summary"),
     "programs": _programs,
+    "own programs": _own_programs,
 }
 
 
@@ -132,7 +140,7 @@ def each_screen(page: Page, sizes: Iterable[Size]) -> Iterator[tuple[str, Size]]
         see(page)
         for width, height in sizes:
             page.set_viewport_size({"width": width, "height": height})
-            if screen != "start":  # which has no halves
+            if screen not in STARTS:
                 turn(page, "robot" if screen in BESIDE else "program")
             page.evaluate(SETTLED)
             yield screen, (width, height)

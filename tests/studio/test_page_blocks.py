@@ -481,7 +481,7 @@ LOWEST = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].map(
     .map((block) => block.getBoundingClientRect().bottom);
   press();
   const { bottom } = document.querySelector('#blocks').getBoundingClientRect();
-  return [row.textContent, bottoms.length, Math.max(...bottoms) - bottom];
+  return [row.textContent, bottoms.length, Math.max(...bottoms) - bottom, height];
 })"""
 
 
@@ -497,8 +497,8 @@ def test_no_group_of_the_toolbox_scrolls(page: Page) -> None:
                 assert rows.evaluate("e => e.scrollHeight <= e.clientHeight"), (screen, level)
                 groups = page.evaluate(LOWEST)
                 assert len(groups) > 3
-                for words, count, below in groups:
-                    assert count and below <= 1, (screen, name, level, words)
+                for words, count, below, height in groups:
+                    assert count and below <= 1 and height >= 40, (screen, name, level, words)
 
 
 def test_more_cases_of_an_if(page: Page) -> None:

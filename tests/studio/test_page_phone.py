@@ -66,6 +66,7 @@ def test_the_messages_can_be_put_away(phone: Page) -> None:
         if phone.get_attribute("#sheet", "aria-expanded") == "true":
             phone.click("#sheet")
         assert not phone.locator("#messages li").is_visible()
+    assert axe(phone) == []
     phone.click("#run")  # says why not
     assert half(phone) == "program"
     assert phone.locator("#messages li").is_visible()

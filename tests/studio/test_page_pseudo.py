@@ -19,7 +19,8 @@ WINDOWS = (("#class_come", "#big_code"), ("#wall .see >> nth=0", "#big_pupil"),
 WANTS = {"do": "here", "text": "SI|F(1, 50)", "robot": "tinibot", "lessons": [], "wants": True,
          "hand": True}  # fmt: skip
 # Each text that can be seen, and whether what holds it cuts it, or it leaves its button or the
-# page. What may be scrolled, and what only screen readers read, cuts nothing.
+# page. What may be scrolled, and what only screen readers read, cuts nothing; the title of
+# a program of one's own ends in an ellipsis.
 CUT = """() => {
   const found = new Set();
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
@@ -27,7 +28,8 @@ CUT = """() => {
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
     const holder = node.parentElement;
     if (!node.textContent.trim() || !holder.checkVisibility()) continue;
-    if (holder.closest('option, svg') || holder.getBoundingClientRect().width < 2) continue;
+    if (holder.closest('option, svg, #start_programs strong')) continue;
+    if (holder.getBoundingClientRect().width < 2) continue;
     range.selectNodeContents(node);
     const text = range.getBoundingClientRect();
     const said = holder.closest('[id]')?.id + ': ' + node.textContent.trim().slice(0, 40);
