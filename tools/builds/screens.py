@@ -1,0 +1,42 @@
+"""Pictures of each screen of the studio, to look at: `python -m tools.builds.screens FOLDER`.
+
+Four sizes, each language, light and dark. They show what is wrong; nobody keeps them.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Literal
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tests.studio.screens import each_screen
+from tests.support import studio
+from tiniscript.base.languages import languages
+
+SIZES = ((1366, 768), (1024, 600), (390, 844), (844, 390))
+THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
+
+
+def main(folder: Path) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    with studio.driver() as driver, studio.browser(driver) as browser, studio.served() as server:
+        for theme in THEMES:
+            for language in languages():
+                pages = studio.Pages(browser, server.address)
+                page = pages.open("start", color_scheme=theme, reduced_motion="reduce")
+                studio.speak(page, language)
+                for screen, (width, height) in each_screen(page, SIZES):
+                    name = f"{screen.replace(' ', '_')}.{width}x{height}.{language}.{theme}.png"
+                    page.screenshot(path=folder / name)
+                pages.close()
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("python -m tools.builds.screens FOLDER")
+    if why := studio.missing():
+        sys.exit(why)
+    main(Path(sys.argv[1]))
