@@ -131,7 +131,8 @@ def test_stop_all_stops_what_another_command_drives(class_: RobotFleet) -> None:
     assert len(rows) == len(class_.pupils)
     done = ended(command)
     assert done.code == 3
-    assert done.out.count("The robot was stopped from a computer.") == len(class_.pupils)
+    told = ("The robot was stopped from a computer.", "another command has stopped the robot")
+    assert sum(map(done.out.count, told)) == len(class_.pupils)  # before or after its start
 
 
 def test_ctrl_c_stops_all(class_: RobotFleet) -> None:
