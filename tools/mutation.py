@@ -37,7 +37,6 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tests.support import order
 from tiniscript.base.files import cache_folder
 
-EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
 LIMIT_S = 300  # processor time of the tests of one mutant: an endless loop is noticed, too
 WAITS_S = 1800  # for what waits and does not work
 AT_ONCE = 2
@@ -124,7 +123,7 @@ OPPOSITES = [("breq", "brne"), ("brsh", "brlo"), ("brcs", "brcc"), ("brmi", "brp
              ("add", "sub"), ("adc", "sbc"), ("dec", "inc"), ("and", "or")]  # fmt: skip
 OPPOSITE = dict(OPPOSITES) | {b: a for a, b in OPPOSITES}
 
-OPERATOR = re.compile(r"(?<= )(?:[!=]==?|<<=?|>>=?|[-+&|]=|[-+*/%&|^<>]|[<>]=|&&|\|\||\?\?)(?= )")
+OPERATOR = re.compile(r"(?<= )(?:[!=]==?|<<|>>|[-+&|]=|[-+*/%&|^<>]|[<>]=|&&|\|\||\?\?)(?= )")
 NOT = re.compile(r"!(?=[\w(])")
 NUMBER = re.compile(r"(?<![\w.#$])(0x[0-9a-f]+|\d+)\b(?!\.)")
 IF = re.compile(r"\bif \(")
@@ -149,8 +148,7 @@ def braces_edits(text: str, suffix: str) -> Iterator[Edit]:
     """Yield the edits of a text in C++ or JavaScript."""
     plain = STILL[suffix].sub(lambda found: re.sub(r"[^\n]", "\0", found[0]), text)
     for found in OPERATOR.finditer(plain):
-        if found[0] in SHARED:
-            yield found.start(), found.end(), SHARED[found[0]]
+        yield found.start(), found.end(), SHARED[found[0]]
     for found in NOT.finditer(plain):
         yield found.start(), found.end(), ""
     for found in NUMBER.finditer(plain):
@@ -237,7 +235,8 @@ EDITS: dict[str, Callable[[str], Iterator[Edit]]] = {
 
 def equivalent() -> dict[tuple[str, str, str], str]:
     """Return why nothing can notice a mutant: of this file, of this line, that becomes this."""
-    rows: dict[str, list[tuple[str, str, str]]] = json.loads(EQUIVALENT.read_text("utf-8"))
+    found = Path(__file__).with_name("equivalent_mutants.json").read_text("utf-8")
+    rows: dict[str, list[tuple[str, str, str]]] = json.loads(found)
     return {(file, was, becomes): why for why, row in rows.items() for file, was, becomes in row}
 
 
@@ -333,9 +332,8 @@ class Copy:
             return f"the build: {why}"
         # A size, and what is generated or built, notice any change.
         left_out = "not keeps_to_its_size and not generated and not same_page"
-        return self._ends(
-            ["-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-k", left_out, *tests]
-        )
+        chosen = ["-q", "-x", "-p", "no:cacheprovider", "-k", left_out, *tests]
+        return self._ends(["-m", "pytest", *chosen])
 
     def _ends(self, words: list[str]) -> str:
         environment = {
@@ -363,7 +361,7 @@ class Copy:
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Make small mistakes; say which no test notices.")
-    parser.add_argument("count", nargs="?", type=int, default=30, help="how many (30)")
+    parser.add_argument("count", nargs="?", type=int, default=30)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--file", default="*", help="only files like this one")
     parser.add_argument("--list", action="store_true", help="only list them")
