@@ -28,7 +28,7 @@ from tiniscript.base import catalogue_source
 from tiniscript.base.catalogue_file import Catalogue, Entry, load, written
 from tiniscript.base.languages import FOLDER, SOURCE, files, languages, table
 from tiniscript.base.words import WORDS
-from tiniscript.diagnostics.rendering import examples
+from tiniscript.diagnostics.codes import CODES
 from tiniscript.recovery.concepts import plain
 
 PSEUDO = "qps"  # by custom: no language has this code
@@ -39,21 +39,21 @@ ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")
 def sources() -> dict[str, Catalogue]:
     """Return the English catalogues by name.
 
-    Beside a message, and what to try, stands the wrong program of `diagnostics/examples.toml`.
+    Beside a message, and what to try, stands the wrong program of its code.
     """
     found = {path.stem: catalogue_source.load(path) for path in (FOLDER / SOURCE).glob("*.toml")}
-    programs = examples(SOURCE)
+    programs = {each.key: each.english.splitlines() for each in found["messages"].entries.values()}
     for entry in found["messages"].entries.values():
         code, _, part = entry.key.partition("/")
-        if code in programs and part in ("message", "try"):
-            entry.notes = [f"wrong: {row}" for row in programs[code]["wrong"].strip().splitlines()]
+        if code in CODES and part in ("message", "try"):
+            entry.notes = [f"wrong: {row}" for row in programs.get(f"{code}/wrong", [])]
     return dict(sorted({**found, "names": names()}.items()))
 
 
 def names() -> Catalogue:
     """Return the catalogue of what is said in other TOML files of the package, each text once."""
     made = Catalogue(catalogue_source.HEAD)
-    for folder in ("robots", "virtual/worlds", "lessons", "diagnostics"):
+    for folder in ("robots", "virtual/worlds", "lessons"):
         for path in sorted((FOLDER.parent / folder).rglob("*.toml")):
             place = path.relative_to(FOLDER.parent).as_posix()
             for said in _said_in(tomllib.loads(path.read_text(encoding="utf-8"))):
@@ -78,7 +78,7 @@ def in_step(source: Catalogue, own: Catalogue, language: str) -> Catalogue:
         r"^(Language|X-Name): .*$", rf"\1: {language}", source.head, flags=re.M
     )
     made = Catalogue(head)
-    entries = {at: each for at, each in source.entries.items() if not each.is_gap}
+    entries = {at: each for at, each in source.entries.items() if not each.is_same}
     olds = _before(entries, own)
     for at, entry in entries.items():
         old = olds.get(at, entry)
@@ -117,6 +117,8 @@ def pseudo(source: Catalogue) -> Catalogue:
     head = re.sub(r"^(Language|X-Name): .*$", rf"\1: {PSEUDO}", source.head, flags=re.M)
     made = Catalogue(head)
     for at, entry in source.entries.items():
+        if entry.is_same:
+            continue
         forms = [_longer(each) for each in (entry.english, entry.plural) if each]
         made.entries[at] = Entry(*at, entry.plural, forms, entry.notes)
     return made

@@ -34,9 +34,7 @@ KIT = Kit(
 )
 LANGUAGES = languages()
 TEXTS = {language: all_said(language, "messages") for language in languages()}
-SAID = {language: rendering.examples(language) for language in languages()}
-PROGRAMS = SAID[SOURCE]
-EXAMPLES = sorted(PROGRAMS)
+EXAMPLES = [code for code in sorted(CODES) if f"{code}/wrong" in TEXTS[SOURCE]]
 BOARD = {"robot": "TINIBOT", "limit": "900", "code": "1000", "over": "100"}
 LEVEL = {"level": "uno", "limit": "255", "code": "260", "over": "5"}
 WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
@@ -85,7 +83,7 @@ def shown(text: str, lang: str = "en") -> list[str]:
 def test_each_code_has_its_words_and_no_words_lack_a_code() -> None:
     for texts in TEXTS.values():
         assert {key.partition("/")[0] for key in texts} == {"label", "term", *CODES}
-    assert set(PROGRAMS) == set(CODES) - set(WITHOUT_EXAMPLE)
+    assert set(EXAMPLES) == set(CODES) - set(WITHOUT_EXAMPLE)
 
 
 @each_row("code", sorted(CODES))
@@ -100,27 +98,27 @@ def test_each_code_has_all_texts_in_every_language(code: str) -> None:
 def test_a_translator_sees_the_wrong_program_of_a_message(language: str) -> None:
     entries = load(files("messages", language)[1]).entries.values()
     notes = {entry.key: entry.notes for entry in entries}
-    for code, programs in PROGRAMS.items():
-        rows = [f"wrong: {row}" for row in programs["wrong"].strip().splitlines()]
+    for code in EXAMPLES:
+        rows = [f"wrong: {row}" for row in TEXTS[SOURCE][f"{code}/wrong"].splitlines()]
         assert notes[f"{code}/message"] == rows, "python -m tools.languages"
 
 
 @each_row("code", EXAMPLES)
 def test_the_wrong_example_has_its_diagnostic_first(code: str) -> None:
-    for programs in SAID.values():
-        found = compile_text(programs[code]["wrong"], KIT).diagnostics
+    for texts in TEXTS.values():
+        found = compile_text(texts[f"{code}/wrong"], KIT).diagnostics
         assert [diagnostic.code.number for diagnostic in found][:1] == [code]
 
 
 @each_row("code", EXAMPLES)
 def test_the_right_example_has_no_diagnostic(code: str) -> None:
-    for programs in SAID.values():
-        assert compile_text(programs[code]["right"], KIT).diagnostics == []
+    for texts in TEXTS.values():
+        assert compile_text(texts[f"{code}/right"], KIT).diagnostics == []
 
 
 @each_row("code", EXAMPLES)
 def test_the_examples_fill_all_gaps_of_their_messages(code: str) -> None:
-    found = compile_text(PROGRAMS[code]["wrong"], KIT)
+    found = compile_text(TEXTS[SOURCE][f"{code}/wrong"], KIT)
     values = found.diagnostics[0].values
     if found.diagnostics[0].repair is None:  # else what it becomes is told
         assert gaps(code) <= set(values)
@@ -332,7 +330,7 @@ def test_each_code_is_explained(code: str, lang: str) -> None:
     assert TEXTS[lang][f"{code}/title"] in text
     assert TEXTS[lang][f"{code}/more"] in text
     for example in ("wrong", "right"):
-        for row in SAID[lang].get(code, {}).get(example, "").strip().split("\n"):
+        for row in TEXTS[lang].get(f"{code}/{example}", "").split("\n"):
             assert row in text
 
 

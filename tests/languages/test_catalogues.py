@@ -48,7 +48,7 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(path: Path) ->
     own, source = load(path), SOURCES[path.stem]
     assert own.problems == []
     if "X-Complete: yes" in own.head:
-        assert list(own.entries) == [at for at, each in source.entries.items() if not each.is_gap]
+        assert list(own.entries) == [at for at, each in source.entries.items() if not each.is_same]
         for at, entry in own.entries.items():
             assert entry.is_translated, at
             assert entry.plural == source.entries[at].plural, at
@@ -233,6 +233,8 @@ def test_plurals_follow_the_rule_of_the_language() -> None:
         ('a = { one = "{n}", others = "{n}" }\n', 1, "a: it has no text"),
         ('[x]\na = ""\n', 2, "a: it has no text"),
         ('[x]\na = { one = "{n} byte" }\n', 2, "a: it has no text"),
+        ('"a/b".same = ""\n', 1, "a/b: it has no text"),
+        ('[x]\nb = "B."\n"a/b".same = "S"\n"a/b".other = "S"\n', 3, "a/b: it has no text"),
     ],
 )
 def test_what_is_wrong_in_an_english_text_is_said_with_its_line(
@@ -242,6 +244,16 @@ def test_what_is_wrong_in_an_english_text_is_said_with_its_line(
     source.write_text(text, encoding="utf-8")
     ((at, why),) = catalogue_source.load(source).problems
     assert at == line and why.startswith(said)
+
+
+def test_a_program_is_for_no_translator_and_may_have_a_lone_brace(tmp_path: Path) -> None:
+    source, own = tmp_path / "en.toml", tmp_path / "own.po"
+    source.write_text('a = "A."\n"b/wrong".same = "LOOP(3) {"\n', encoding="utf-8")
+    found = catalogue_source.load(source)
+    assert found.problems == []
+    assert [each.key for each in in_step(found, Catalogue(), "es").entries.values()] == ["a"]
+    assert [each.key for each in pseudo(found).entries.values()] == ["a"]
+    assert compiling.merged(source, own)[1]["b/wrong"] == ["LOOP(3) {"]
 
 
 @pytest.mark.parametrize("spoilt", ["x = ", 'x = "{"', f'x = "{"y" * 41}"'])

@@ -15,7 +15,6 @@ from string import Formatter
 ESCAPES = {"n": "\n", "t": "\t", "r": "\r", '"': '"', "\\": "\\"}
 BRACES = "python-brace-format"  # gettext's flag for a text with gaps like {file}
 _ROW = re.compile(r'(msgctxt|msgid|msgid_plural|msgstr|msgstr\[(\d)\])?\s*"((?:[^"\\]|\\.)*)"\s*')
-_GAP = re.compile(r"\{@?\w+\}")
 _PLURALS = re.compile(r"nplurals\s*=\s*(\d+)")
 
 
@@ -23,7 +22,8 @@ _PLURALS = re.compile(r"nplurals\s*=\s*(\d+)")
 class Entry:
     """A text. `said` has its translation, of a text with a plural each form; empty is none yet.
 
-    `notes` are the comments for translators. A fuzzy entry is of an English text that has changed.
+    `notes` are the comments for translators. A fuzzy entry is of an English text that has changed;
+    `is_same`: no language says it in another way.
     """
 
     key: str = ""
@@ -32,16 +32,12 @@ class Entry:
     said: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     is_fuzzy: bool = False
+    is_same: bool = False
     line: int = 0
 
     @property
     def at(self) -> tuple[str, str]:
         return self.key, self.english
-
-    @property
-    def is_gap(self) -> bool:
-        """Whether it is a gap and nothing else, which no language says in another way."""
-        return _GAP.fullmatch(self.english) is not None
 
     @property
     def is_translated(self) -> bool:

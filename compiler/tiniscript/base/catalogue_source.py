@@ -1,8 +1,9 @@
 """Reads the English texts, `en/*.toml`, from which all languages are translated.
 
 A row is a text by its key. A list has several texts with one key, of which a message says the first
-whose gaps all have values; `one` and `other` are a text with a plural. The name of a table is the
-note that translators read beside each of its texts; rows above all tables need none.
+whose gaps all have values; `one` and `other` are a text with a plural; `same` is a program, which
+no language says in another way. The name of a table is the note that translators read beside each
+of its texts; rows above all tables need none.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ from pathlib import Path
 
 from tiniscript.base.catalogue_file import Catalogue, Entry, gaps
 
+_GAP = re.compile(r"\{@?\w+\}")
+_FORMS = {"one", "other", "same"}
 HEAD = """\
 Project-Id-Version: TiniScript
 Language: en
@@ -41,12 +44,15 @@ def load(path: Path) -> Catalogue:
         at = re.search(r"at line (\d+)", str(error))
         found.problems.append((int(at[1]) if at else text.count("\n"), f"this is no TOML: {error}"))
         return found
-    rows = enumerate(text.split("\n"), 1)
-    lines = {row.partition(" = ")[0].strip("\"'"): number for number, row in rows}
+    heads = (row.partition(" = ")[0].removesuffix(".same") for row in text.split("\n"))
+    lines = {head.strip("\"'"): number for number, head in enumerate(heads, 1)}
     keys = set[str]()
     for key, value, notes in _rows(tables):
         line = lines.get(key, 1)
         entries = [Entry(key, *texts, [], notes, line=line) for texts in _texts(value)]
+        for entry in entries:
+            is_gap = _GAP.fullmatch(entry.english) is not None
+            entry.is_same = is_gap or (isinstance(value, dict) and "same" in value)
         if why := "it is there twice" if key in keys else _problem(entries):
             found.problems.append((line, f"{key}: {why}"))
         keys.add(key)
@@ -58,7 +64,7 @@ def load(path: Path) -> Catalogue:
 def _rows(tables: dict[str, object]) -> Iterator[tuple[str, object, list[str]]]:
     """Yield each key, what stands behind it, and the notes for translators."""
     for name, value in tables.items():
-        if isinstance(value, dict) and not {"one", "other"} & value.keys():
+        if isinstance(value, dict) and not _FORMS & value.keys():
             yield from ((key, each, [name]) for key, each in value.items())
         else:
             yield name, value, []
@@ -71,6 +77,8 @@ def _texts(value: object) -> list[tuple[str, str]]:
             return [(value, "")]
         case {"one": str(one), "other": str(other), **more} if not more:
             return [(one, other)]
+        case {"same": str(same), **more} if not more:
+            return [(same, "")]
         case list() if all(isinstance(each, str) for each in value):
             return [(each, "") for each in value]
     return []
@@ -85,7 +93,8 @@ def _problem(entries: list[Entry]) -> str:
         return "it has a text twice"
     try:
         for entry in entries:
-            gaps(entry.english), gaps(entry.plural)
+            if entry.plural or not entry.is_same:
+                gaps(entry.english), gaps(entry.plural)
     except ValueError:
         return "a brace { or } has no other half"
     return ""

@@ -4,7 +4,8 @@ Knows how the texts of the catalogue are filled, and how a line of a program is 
 marked under it. Knows no single diagnostic. Prints nothing.
 
 Of each code the catalogue has a title, which is the diagnostic in general words; a message, which
-is one cause; what to try, which is one thing; and more, which `tsc explain` says. Messages and
+is one cause; what to try, which is one thing; and what `tsc explain` says: more, a program with the
+diagnostic, its first one, and the mended program, both if it is in a short text. Messages and
 things to try have gaps: `{found}` is a value itself, `{@unit}` one in the reader's language. Words
 in it that are terms are translated, all else stays: `F(time, power)` is `F(tiempo, potencia)`. A
 value that begins with @ is a term, wherever it stands. Of several texts, `/message`, `/message/2`,
@@ -15,10 +16,8 @@ after a gap or a piece of program: it would look like a part of it.
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import count
-from pathlib import Path
 from typing import Literal, NamedTuple
 
 from tiniscript.base import languages
@@ -115,29 +114,15 @@ def explain(code: str, lang: str) -> str | None:
         f"{number} ({severity}): {_text(f'{number}/title', lang)}",
         _text(f"{number}/more", lang),
     ]
-    for example, program in examples(lang).get(number, {}).items():
-        parts.append(_label(example, lang) + "\n\n" + indent(program.strip(), "    "))
+    for part in ("wrong", "right"):
+        if program := languages.found(CATALOGUE, f"{number}/{part}", lang):
+            parts.append(_label(part, lang) + "\n\n" + indent(program, "    "))
     return "\n\n".join(parts)
 
 
 def titles(lang: str) -> list[tuple[str, str]]:
     """Return every code with its diagnostic in general words."""
     return [(number, _text(f"{number}/title", lang)) for number in sorted(CODES)]
-
-
-def examples(lang: str) -> dict[str, dict[str, str]]:
-    """Return a wrong and a right program for each code that is in a short text."""
-    if sys.version_info >= (3, 11):
-        import tomllib
-    else:
-        import tomli as tomllib
-    path = Path(__file__).with_name("examples.toml")
-    found = tomllib.loads(path.read_text(encoding="utf-8"))
-    return {
-        code: {name: languages.ByLanguage(it)[lang] if isinstance(it, dict) else it
-               for name, it in programs.items()}
-        for code, programs in found.items()
-    }  # fmt: skip
 
 
 # -- words --------------------------------------------------------------------------------------
