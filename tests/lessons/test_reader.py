@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from tiniscript.lessons import catalogue
-from tiniscript.lessons.catalogue import describe
 from tiniscript.lessons.lesson import LessonRefused
+from tiniscript.robots.refusals import describe
 
 HEAD = 'robot = "tinibot"\nseconds = 20\n[title]\nen = "A"\nes = "B"\n'
 WORLD = "[floor]\nwidth_cm = 200\nheight_cm = 100\n[start]\nx_cm = 50\ny_cm = 50\n"

@@ -14,7 +14,8 @@ from tests.support.command import Tsc
 from tests.support.texts import LANGUAGES
 from tests.support.virtual_robot import floor, robot_in
 from tiniscript import robots
-from tiniscript.virtual import world, worlds
+from tiniscript.robots.refusals import describe
+from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
 from tiniscript.virtual.geometry import Point, Segment
 from tiniscript.virtual.picture import LARGEST, png
@@ -28,7 +29,7 @@ def refused(text: str) -> list[str]:
     """Return what is said of a world, in English; it is said in Spanish, too."""
     with pytest.raises(WorldRefused) as found:
         read(text, "some")
-    lines = {language: world.describe(found.value, language) for language in ("en", "es")}
+    lines = {language: describe(found.value, language) for language in ("en", "es")}
     assert len(lines["es"]) == len(lines["en"]) > 0
     assert not set(lines["es"]) & set(lines["en"])
     return lines["en"]
@@ -157,7 +158,7 @@ def test_all_that_is_wrong_is_said_at_once() -> None:
 def test_a_robot_that_does_not_fit_is_refused() -> None:
     with pytest.raises(WorldRefused) as found:
         robot_in(floor(start="x_cm = 5\ny_cm = 50"))
-    [said] = world.describe(found.value, "en")
+    [said] = describe(found.value, "en")
     assert said.startswith("The robot does not fit where it starts, at x_cm = 5, y_cm = 50. Move")
 
 

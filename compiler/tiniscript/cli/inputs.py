@@ -91,14 +91,21 @@ def robot(options: Namespace, language: str) -> Robot:
     """Return the robot that `--robot` names, or the default one."""
     try:
         return robots.load(robots.DEFAULT if options.robot is None else options.robot)
-    except ProfileRefused as refused:
-        from tiniscript.robots.refusals import describe
+    except ProfileRefused as why:
+        raise refused(why, language, "profile_refused", file=shown(options.robot)) from None
 
-        lines = describe(refused, language)
-        is_none = refused.reasons[0][0].startswith(("file_", "no_such_robot"))
-        if len(lines) == 1 and is_none:
-            raise CommandError(2, "plain", said=lines[0]) from None
-        reasons = Said("\n".join("  " + line for line in lines))
-        raise CommandError(
-            2, "profile_refused", file=shown(options.robot), reasons=reasons
-        ) from None
+
+def refused(
+    why: ProfileRefused, language: str, key: str,
+    alone: tuple[str, ...] = ("file_", "no_such_robot", "no_such_world"), **values: str,
+) -> CommandError:  # fmt: skip
+    """Return why a profile, a world or a lesson is refused: the sentence `key`, with all reasons.
+
+    A single reason that begins with one of `alone` says it all.
+    """
+    from tiniscript.robots.refusals import describe
+
+    lines = describe(why, language)
+    if len(lines) == 1 and why.reasons[0][0].startswith(alone):
+        return CommandError(2, "plain", said=lines[0])
+    return CommandError(2, key, reasons=Said("\n".join("  " + line for line in lines)), **values)

@@ -29,7 +29,7 @@ from tiniscript.cli.options import whole_number
 from tiniscript.cli.program_files import Found, in_folder, read
 from tiniscript.cli.robot.simulator_options import check_picture, draw_picture
 from tiniscript.cli.spreadsheet import as_csv
-from tiniscript.cli.texts import Said, text
+from tiniscript.cli.texts import text
 from tiniscript.diagnostics.rendering import message
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.lesson import Lesson
@@ -39,7 +39,7 @@ from tiniscript.lessons.sentences import sentence
 from tiniscript.library.compiling import Compiled, for_robot, maker
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.module import NoWebAssembly
-from tiniscript.virtual.world import WorldRefused, describe
+from tiniscript.virtual.world import WorldRefused
 
 PROGRAMS = 200  # of a folder
 LEAST_COLUMNS = 24  # of a sentence beside its program; below that it stands under it
@@ -140,7 +140,8 @@ class _Marker:
         try:
             found = marking.whole()
         except WorldRefused as refused:
-            raise self._blocked(refused, marking.seed) from None
+            values = {"file": inputs.shown(self.lesson.name), "seed": str(marking.seed)}
+            raise inputs.refused(refused, self.language, "lesson_world", (), **values) from None
         except NoWebAssembly as why:
             raise not_installed("virtual_needs_wasmtime", why) from None
         return Mark(given.name, found.verdict, found.seed, self._said(found.findings), found.run)
@@ -156,13 +157,6 @@ class _Marker:
                 line = text("fault_line", self.language).format(**values)
                 fix = text("lesson_try", self.language).format(fix=said.fix) if said.fix else ""
                 yield "", f"{line}   {fix}".strip()
-
-    def _blocked(self, refused: Exception, seed: int) -> CommandError:
-        assert isinstance(refused, WorldRefused)
-        lines = describe(refused, self.language)
-        reasons = Said("\n".join("  " + line for line in lines))
-        file = inputs.shown(self.lesson.name)
-        return CommandError(2, "lesson_world", file=file, seed=str(seed), reasons=reasons)
 
 
 def _is_folder(options: Namespace) -> bool:

@@ -15,7 +15,6 @@ from tiniscript.lessons.lesson import Answer, Criterion, Lesson, LessonRefused
 from tiniscript.lessons.markdown import printed
 from tiniscript.lessons.reader import read, read_answers
 from tiniscript.lessons.variation import point_of
-from tiniscript.robots import refusals
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.refusals import shown
 from tiniscript.virtual import worlds
@@ -122,8 +121,3 @@ def _text(path: Path) -> str:
         return robots.text_of(str(path))
     except ProfileRefused as refused:
         raise LessonRefused(*refused.reasons) from None
-
-
-def describe(refused: LessonRefused, language: str) -> list[str]:
-    """Return a sentence for each reason."""
-    return refusals.describe(refused, language, "lesson", "world")

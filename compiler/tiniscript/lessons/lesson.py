@@ -19,6 +19,8 @@ PARTS = ("start", "walls", "boxes", "lines", "lamps")  # of a world
 class LessonRefused(ProfileRefused):
     """A lesson that cannot be used; its reasons are like those of a profile."""
 
+    kinds = ("lesson", "world")
+
 
 class Place(NamedTuple):
     """A place in a world: a part of it, counted from 1, or a point where `part` is empty."""

@@ -13,11 +13,12 @@ from tiniscript.library.programs import Language, profile_of
 from tiniscript.library.runs import LARGEST_SEED, Readings, thousandths, whole, within
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
+from tiniscript.robots.refusals import describe
 from tiniscript.virtual import worlds
 from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.simulator import SimulatorThread
-from tiniscript.virtual.world import WorldRefused, describe
+from tiniscript.virtual.world import WorldRefused
 
 MOST_NOISE = 0.5
 SLOWEST_HURRY, FASTEST_HURRY = 0.1, 10_000

@@ -6,7 +6,7 @@ Knows no TOML (`reader`), no chips (`boards`) and no sentences (`refusals`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.languages import told_in
@@ -19,8 +19,11 @@ class ProfileRefused(Exception):
 
     `reasons` holds every complaint as (code, values): the code is a short, stable name, and the
     values fill the gaps of its sentence in `refusals`. The value `path` is the path of the key,
-    such as `kit.sensors[2].range`; tables are counted from 1.
+    such as `kit.sensors[2].range`; tables are counted from 1. `kinds` are those whose sentences
+    count before that of a profile: other files have some of their own.
     """
+
+    kinds: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, *reasons: Reason) -> None:
         super().__init__(", ".join(code for code, _ in reasons))

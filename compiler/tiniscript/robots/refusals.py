@@ -18,12 +18,8 @@ SHOWN_CHARACTERS = 40
 DEVICE = re.compile(r"board\.(?:sensors|actuators)\.[^.]*")  # the path of its table
 
 
-def describe(refused: ProfileRefused, lang: str, *kinds: str) -> list[str]:
-    """Return a sentence for each reason.
-
-    `kinds` are those of whose sentences the first one is taken, before that of a profile: other
-    files have some of their own.
-    """
+def describe(refused: ProfileRefused, lang: str) -> list[str]:
+    """Return a sentence for each reason."""
     sentences = []
     for code, values in _causes(refused.reasons):
         words = {key: printable(value) for key, value in values.items()}
@@ -34,7 +30,10 @@ def describe(refused: ProfileRefused, lang: str, *kinds: str) -> list[str]:
                 for key, word in words.items()
             }
         key = f"{code}/near" if words.get("near") else code
-        said = (languages.found(CATALOGUE, f"{kind}/{key}", lang) for kind in (*kinds, "profile"))
+        said = (
+            languages.found(CATALOGUE, f"{kind}/{key}", lang)
+            for kind in (*refused.kinds, "profile")
+        )
         sentences.append(next(filter(None, said)).format_map(words))
     return sentences
 

@@ -9,12 +9,13 @@ from typing import Any
 
 from tiniscript.robots import decoded
 from tiniscript.robots.profile import ProfileRefused
+from tiniscript.robots.refusals import describe
 from tiniscript.studio import checking, recordings
 from tiniscript.studio.simulation import Marks, Simulation
 from tiniscript.studio.world_form import form_of, toml_of
 from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Driving
-from tiniscript.virtual.world import World, WorldRefused, describe
+from tiniscript.virtual.world import World, WorldRefused
 from tiniscript.virtual.worlds import read as read_world
 
 Answer = dict[str, Any]

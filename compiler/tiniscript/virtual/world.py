@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from tiniscript.robots import refusals
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.virtual.geometry import Point, Segment, joined
@@ -17,6 +16,8 @@ from tiniscript.virtual.geometry import Point, Segment, joined
 
 class WorldRefused(ProfileRefused):
     """A world that cannot be used; its reasons are like those of a profile."""
+
+    kinds = ("world",)
 
 
 class Line(NamedTuple):
@@ -72,8 +73,3 @@ class World(NamedTuple):
             corners = [Point(0, 0), Point(right, 0), Point(right, top), Point(0, top)]
             found += joined([*corners, corners[0]])
         return found
-
-
-def describe(refused: WorldRefused, language: str) -> list[str]:
-    """Return a sentence for each reason."""
-    return refusals.describe(refused, language, "world")

@@ -10,11 +10,10 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.lesson_check import check
 from tiniscript.cli.terminal import pager
-from tiniscript.cli.texts import Said, text
+from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import LESSON_ACTIONS as ACTIONS
 from tiniscript.cli.texts.options import of_verb
 from tiniscript.lessons import catalogue
-from tiniscript.lessons.catalogue import describe
 from tiniscript.lessons.lesson import Lesson, LessonRefused
 from tiniscript.lessons.markdown import as_text
 from tiniscript.lessons.sheet import sheet
@@ -41,7 +40,8 @@ def run(options: Namespace, language: str) -> int:
             return _show(folder, options.teacher, language)
         return _sheet(folder, lesson, options, language)
     except LessonRefused as refused:
-        raise _refused(options.number, refused, language) from None
+        alone, file = ("no_such_lesson", "no_page"), inputs.shown(options.number)
+        raise inputs.refused(refused, language, "lesson_refused", alone, file=file) from None
 
 
 def _refuse_others(options: Namespace, action: str) -> None:
@@ -54,14 +54,6 @@ def _refuse_others(options: Namespace, action: str) -> None:
                 raise CommandError(
                     2, "lesson_only", option=label, action="" if action == LIST else f" {action}"
                 )
-
-
-def _refused(name: str, refused: LessonRefused, language: str) -> CommandError:
-    lines = describe(refused, language)
-    if refused.reasons[0][0] in ("no_such_lesson", "no_page"):
-        return CommandError(2, "plain", said=lines[0])
-    reasons = Said("\n".join("  " + line for line in lines))
-    return CommandError(2, "lesson_refused", file=inputs.shown(name), reasons=reasons)
 
 
 def _list(language: str) -> int:

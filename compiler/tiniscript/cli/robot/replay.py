@@ -7,7 +7,7 @@ from argparse import Namespace
 from tiniscript import robots
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError, not_installed
-from tiniscript.cli.robot.simulator_options import refused_world, world_of
+from tiniscript.cli.robot.simulator_options import world_of
 from tiniscript.cli.texts import text
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import BadRecording, Parting, Recorded, Recording, read
@@ -32,8 +32,9 @@ def replay(options: Namespace, language: str) -> int:
     world = world_of(options, language)
     try:
         found = recordings.replay(recording, given.data, robot, world)
-    except WorldRefused as refused:
-        raise refused_world(world.name, refused, language) from None
+    except WorldRefused as why:
+        file = inputs.shown(world.name)
+        raise inputs.refused(why, language, "world_refused", file=file) from None
     except NoWebAssembly as why:
         raise not_installed("virtual_needs_wasmtime", why) from None
     print(sentence(found, language))

@@ -7,15 +7,15 @@ from pathlib import Path
 
 from tiniscript.cli import outputs
 from tiniscript.cli.errors import CommandError, not_installed
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import refused, shown
 from tiniscript.cli.options import decimal, sensor_lists, thousandths, whole_number
-from tiniscript.cli.texts import Said, text
+from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import virtual_names
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import worlds
 from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.robot import Settings, VirtualRobot
-from tiniscript.virtual.world import World, WorldRefused, describe
+from tiniscript.virtual.world import World, WorldRefused
 
 ONE = 1000  # thousandths
 MOST_NOISE = 50 * ONE  # percent
@@ -49,8 +49,8 @@ def made(
         return VirtualRobot(profile.speaking(language), world, settings, memory)
     except NoWebAssembly as why:
         raise not_installed("virtual_needs_wasmtime", why) from None
-    except WorldRefused as refused:
-        raise refused_world(world.name, refused, language) from None
+    except WorldRefused as why:
+        raise refused(why, language, "world_refused", file=shown(world.name)) from None
 
 
 def world_of(options: Namespace, language: str) -> World:
@@ -58,18 +58,8 @@ def world_of(options: Namespace, language: str) -> World:
     name = worlds.DEFAULT if options.world is None else options.world
     try:
         return worlds.load(name)
-    except WorldRefused as refused:
-        raise refused_world(name, refused, language) from None
-
-
-def refused_world(name: str, refused: Exception, language: str) -> CommandError:
-    """Return why the robot or a file of a world is refused."""
-    assert isinstance(refused, WorldRefused)
-    lines = describe(refused, language)
-    if len(lines) == 1 and refused.reasons[0][0].startswith(("file_", "no_such_world")):
-        return CommandError(2, "plain", said=lines[0])
-    reasons = Said("\n".join("  " + line for line in lines))
-    return CommandError(2, "world_refused", file=shown(name), reasons=reasons)
+    except WorldRefused as why:
+        raise refused(why, language, "world_refused", file=shown(name)) from None
 
 
 def hurry_of(options: Namespace, language: str) -> float:
