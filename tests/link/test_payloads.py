@@ -9,7 +9,7 @@ import pytest
 from tests.support.link_events import EVENTS as SOME_EVENTS
 from tiniscript.link.messages import FIRST_EVENT, MESSAGES, Field, Malformed, Message
 from tiniscript.link.outcomes import (
-    ALL_EVENTS,
+    EVENTS,
     EchoEvent,
     Event,
     JoinedEvent,
@@ -19,7 +19,7 @@ from tiniscript.link.outcomes import (
     RestartedEvent,
     TextEvent,
 )
-from tiniscript.link.payloads import EVENTS, REPLIES, ReceiptReply, StatusReply
+from tiniscript.link.payloads import REPLIES, ReceiptReply, StatusReply
 from tiniscript.link.sharing import protocol
 from tiniscript.link.sharing.protocol import event_of, filled, of_event
 
@@ -54,7 +54,7 @@ OTHERS: tuple[Event, ...] = (
 def test_every_event_comes_through_a_shared_port() -> None:
     """Its fields are written as JSON and read again."""
     told = (*SOME_EVENTS, *OTHERS)
-    assert {type(each) for each in told} == set(get_args(Event)) == {*ALL_EVENTS.values()}
+    assert {type(each) for each in told} == set(get_args(Event)) == {*EVENTS.values()}
     reader = protocol.MessageReader(protocol.LINE_BYTES)
     for each in told:
         values = protocol.plain(of_event(each))

@@ -272,8 +272,12 @@ def payloads(command: str) -> str:
     for each in events:
         tag = f'    name: Literal["{each.name}"] = "{each.name}"\n'
         parts.append(_type(_event(each), each.meaning, each.reply, tag))
-    parts.append(_table("SentReply", "REPLIES", [(each.name, _reply(each)) for each in replies]))
-    parts.append(_table("SentEvent", "EVENTS", [(each.name, _event(each)) for each in events]))
+    inside = "".join(f"    | {each}\n" for each in types)
+    entries = "".join(f'    "{each.name}": {_reply(each)},\n' for each in replies)
+    parts.append(
+        f"SentReply = (\n{inside.replace('| ', '', 1)})\n"
+        f"REPLIES: dict[str, type[SentReply]] = {{\n{entries}}}\n"
+    )
     return "\n\n".join(parts)
 
 
@@ -291,13 +295,3 @@ def _type(name: str, meaning: str, fields: Sequence[Field], tag: str = "") -> st
     rows = [f"    {each.name}: {'bytes' if each.kind == 'rest' else 'int'}\n" for each in fields]
     lines = "".join((*rows, tag))
     return f'class {name}(NamedTuple):\n    """{meaning}"""\n' + (f"\n{lines}" if lines else "")
-
-
-def _table(what: str, name: str, rows: Sequence[tuple[str, str]]) -> str:
-    types = " | ".join(dict.fromkeys(each for _, each in rows))
-    entries = "".join(f'    "{key}": {each},\n' for key, each in rows)
-    union = f"{what} = {types}\n"
-    if len(union) > 101:
-        inside = types.replace(" | ", "\n    | ")
-        union = f"{what} = (\n    {inside}\n)\n"
-    return f"{union}{name}: dict[str, type[{what}]] = {{\n{entries}}}\n"

@@ -112,6 +112,18 @@ def as_text(value: int) -> str:
     return f"{sign}{units}.{rest:03d}".rstrip("0") if rest else f"{sign}{units}"
 
 
+def value_text(value: int, is_yes_no: bool) -> str:
+    """Return a value as a run prints it, and as a program may have it."""
+    return ("TRUE" if value else "FALSE") if is_yes_no else as_text(value)
+
+
+def value_of(value: int, is_yes_no: bool) -> float | bool:
+    """Return thousandths as a Python value: a bool, an int if it is whole, or a float."""
+    if is_yes_no:
+        return bool(value)
+    return value // ONE if value % ONE == 0 else value / ONE
+
+
 # xorshift32, shifts 13, 17, 5 (Marsaglia 2003): the state is never 0.
 def next_random(state: int) -> int:
     state ^= state << 13 & 0xFFFFFFFF

@@ -9,7 +9,7 @@ import zlib
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import Fault, as_text, divided, in_range
+from tiniscript.base.fixed_point import Fault, divided, in_range, value_text
 from tiniscript.base.words import Argument, Word
 
 NUMBER = "number"
@@ -36,13 +36,13 @@ class Device(NamedTuple):
     def word(self) -> Word:
         """An actuator as a word that takes one value."""
         middle = self.low + (self.high - self.low) // 2000 * 1000
-        sample = "TRUE" if self.is_yes_no else as_text(middle)
+        sample = self.text(1 if self.is_yes_no else middle)
         value = Argument("value", self.unit, self.low, self.high, sample)
         return Word(self.name, "actuator", (value,))
 
     def text(self, value: int) -> str:
         """Return a reading or a setting as a run prints it."""
-        return ("TRUE" if value else "FALSE") if self.is_yes_no else as_text(value)
+        return value_text(value, self.is_yes_no)
 
 
 class Kit(NamedTuple):

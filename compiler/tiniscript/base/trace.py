@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import as_text, limited, whole
+from tiniscript.base.fixed_point import limited, value_text, whole
 from tiniscript.base.kit import Kit
 
 
@@ -83,8 +83,7 @@ class TracedRobot:
         self.say("BEEP", (hertz, duration_ms), f"BEEP {hertz} {duration_ms}")
 
     def show(self, value: int, is_yes_no: bool) -> bool:
-        shown = ("TRUE" if value else "FALSE") if is_yes_no else as_text(value)
-        self.say("SHOW", (value,), f"SHOW {shown}")
+        self.say("SHOW", (value,), f"SHOW {value_text(value, is_yes_no)}")
         return True
 
     def set(self, actuator: int, value: int) -> None:

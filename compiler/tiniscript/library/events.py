@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from time import monotonic
 from typing import Literal, NamedTuple
 
+from tiniscript.base.fixed_point import value_of
 from tiniscript.base.source import printable
 from tiniscript.library import source_map
 from tiniscript.library.endings import DONE, FAULT
-from tiniscript.library.runs import Fault, Value, fault_of, value_of
+from tiniscript.library.runs import Fault, Value, fault_of
 from tiniscript.library.source_map import Map
 from tiniscript.link.names import cause_name, fault_name
 from tiniscript.link.outcomes import Event

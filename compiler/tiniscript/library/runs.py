@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple
 
+from tiniscript.base.fixed_point import value_of
 from tiniscript.base.kit import Device, Kit
 from tiniscript.base.source import printable
 from tiniscript.base.trace import Ending, Event, Senses
@@ -156,13 +157,6 @@ def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int
             raise UsageError("bad_readings", language, {"name": devices[number].name})
         lists[number] = [_reading(devices[number], each, language) for each in found]
     return lists
-
-
-def value_of(number: int, is_yes_no: bool) -> float | bool:
-    """Return thousandths as a Python value: a bool, an int if it is whole, or a float."""
-    if is_yes_no:
-        return bool(number)
-    return number // 1000 if number % 1000 == 0 else number / 1000
 
 
 def fault_of(name: str, offset: int, places: Map | None) -> Fault:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
-from tiniscript.link.payloads import EVENTS, DoneEvent, FaultEvent, ShowEvent, StoppedEvent
+from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent, StoppedEvent
 
 # Outcomes that the session produces. UNKEPT: of a key; UNPROVEN: whoever answers does not seal, and
 # our key says that the robot does.
@@ -99,18 +99,7 @@ Event = (
     | JoinedEvent
     | LeftEvent
 )
-OWN_EVENTS: dict[str, type[Event]] = {
-    "TEXT": TextEvent,
-    "MISSED": MissedEvent,
-    "LOST": LostEvent,
-    "ECHO": EchoEvent,
-    "RESTARTED": RestartedEvent,
-    "STARTED": StartedEvent,
-    "PLACE": PlaceEvent,
-    "JOINED": JoinedEvent,
-    "LEFT": LeftEvent,
-}
-ALL_EVENTS: dict[str, type[Event]] = {**EVENTS, **OWN_EVENTS}
+EVENTS: dict[str, type[Event]] = {each._field_defaults["name"]: each for each in get_args(Event)}
 
 
 class Gone(Exception):

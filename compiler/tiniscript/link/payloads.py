@@ -182,12 +182,3 @@ REPLIES: dict[str, type[SentReply]] = {
     "TEXT": TextReply,
     "WIFI": WifiReply,
 }
-
-
-SentEvent = ShowEvent | FaultEvent | StoppedEvent | DoneEvent
-EVENTS: dict[str, type[SentEvent]] = {
-    "SHOW": ShowEvent,
-    "FAULT": FaultEvent,
-    "STOPPED": StoppedEvent,
-    "DONE": DoneEvent,
-}

@@ -35,6 +35,7 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.outcomes import (
     CANCELLED,
+    EVENTS,
     LOST,
     UNPROVEN,
     EchoEvent,
@@ -46,7 +47,6 @@ from tiniscript.link.outcomes import (
     TextEvent,
 )
 from tiniscript.link.payloads import (
-    EVENTS,
     DoneEvent,
     FaultEvent,
     NextReply,

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple, TypeVar
 
 from tiniscript import robots
-from tiniscript.base.fixed_point import as_text
+from tiniscript.base.fixed_point import value_text
 from tiniscript.base.source import printable
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.library.known_kits import shipped_of_kit
@@ -191,8 +191,7 @@ class RobotLink:
     def _event(self, event: Event) -> list[Json]:
         found: Json = {"event": event.name}
         if event.name == "SHOW":
-            yes_no = "TRUE" if event.value else "FALSE"
-            found["value"] = yes_no if event.is_yes_no else as_text(event.value)
+            found["value"] = value_text(event.value, bool(event.is_yes_no))
         elif event.name == "FAULT":
             found |= {"fault": fault_name(event.fault), "at": event.at,
                       "program": f"{event.program:08x}"}  # fmt: skip

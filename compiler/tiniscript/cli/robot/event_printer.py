@@ -9,7 +9,7 @@ import json
 import sys
 from collections.abc import Callable, Mapping
 
-from tiniscript.base.fixed_point import as_text
+from tiniscript.base.fixed_point import value_of, value_text
 from tiniscript.cli.faults import fault_text
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
@@ -19,7 +19,6 @@ from tiniscript.library import source_map
 from tiniscript.library.source_map import Map
 from tiniscript.link.names import cause_name, fault_name
 from tiniscript.link.outcomes import Event
-from tiniscript.link.payloads import ShowEvent
 
 
 def fault_sentence(number: int, at: int, program: int, places: Map | None, language: str) -> str:
@@ -30,12 +29,6 @@ def fault_sentence(number: int, at: int, program: int, places: Map | None, langu
     if not has_text(f"fault_{name}"):
         return text("fault_unknown", language).format(number=number)
     return fault_text(name, at, places, is_other, language)
-
-
-def value_text(value: int, is_yes_no: bool) -> str:
-    if is_yes_no:
-        return "TRUE" if value else "FALSE"
-    return as_text(value)
 
 
 def _out(line: str) -> None:
@@ -81,8 +74,8 @@ class EventPrinter:
             self.began_ms = time_ms
         since_ms = time_ms - self.began_ms
         if event.name == "SHOW":
-            value = value_text(event.value, bool(event.is_yes_no))
-            self.say(since_ms, "SHOW", value, value=json_value(event))
+            value = event.value, bool(event.is_yes_no)
+            self.say(since_ms, "SHOW", value_text(*value), value=value_of(*value))
         elif event.name == "DONE":
             self.say(since_ms, "DONE", "", text("robot_done", self.language))
         elif event.name == "FAULT":
@@ -136,10 +129,3 @@ def printer_of(
         return EventPrinter(connection.language, is_json, places=places)
     out, err = simulator.say, simulator.complain
     return EventPrinter(connection.language, is_json, places=places, out=out, err=err)
-
-
-def json_value(event: ShowEvent) -> object:
-    """Return a value for JSON: a number with its decimals, or true and false."""
-    if event.is_yes_no:
-        return bool(event.value)
-    return event.value // 1000 if event.value % 1000 == 0 else event.value / 1000

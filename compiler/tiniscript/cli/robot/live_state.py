@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import as_text
+from tiniscript.base.fixed_point import as_text, value_text
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, Span
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
@@ -29,12 +29,6 @@ _UNUSED = (codes.UNUSED_VARIABLE, codes.UNUSED_DEF)
 class Value(NamedTuple):
     value: int
     is_yes_no: bool
-
-    @property
-    def text(self) -> str:
-        if self.is_yes_no:
-            return "TRUE" if self.value else "FALSE"
-        return as_text(self.value)
 
 
 class Line(NamedTuple):
@@ -111,7 +105,7 @@ class Known:
             words = {token.text for token in scan(texts.pop()).tokens if token.kind is WORD}
             texts += [self.defs[name] for name in words - used if name in self.defs]
             used |= words
-        values = "".join(f"{name} = {value.text}\n" for name, value in self.values.items()
+        values = "".join(f"{name} = {value_text(*value)}\n" for name, value in self.values.items()
                          if name in used)  # fmt: skip
         defs = "".join(f"{each}\n" for name, each in self.defs.items()
                        if name in used and name not in own)  # fmt: skip

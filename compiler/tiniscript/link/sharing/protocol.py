@@ -28,7 +28,7 @@ from functools import cache
 from typing import NamedTuple, TypeVar, cast, get_type_hints
 
 from tiniscript.link.messages import Malformed
-from tiniscript.link.outcomes import ALL_EVENTS, Event
+from tiniscript.link.outcomes import EVENTS, Event
 from tiniscript.link.requests import OK, Reply
 
 HOST = "127.0.0.1"
@@ -183,9 +183,9 @@ def filled(kind: type[T], values: Mapping[str, int | bytes]) -> T:
 
 def event_of(name: str, values: Mapping[str, int | bytes]) -> Event:
     """Return an event. Raises Malformed if no event has this name and these fields."""
-    if name not in ALL_EVENTS:
+    if name not in EVENTS:
         raise Malformed
-    return filled(ALL_EVENTS[name], values)
+    return filled(EVENTS[name], values)
 
 
 @cache
