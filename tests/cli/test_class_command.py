@@ -7,7 +7,9 @@ import json
 import shutil
 import signal
 import subprocess
+from argparse import Namespace
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
@@ -21,11 +23,15 @@ from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto
 from tests.support.pty_robot import on
 from tests.support.waiting import HANGS_S, until
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot import robot_broker
 from tiniscript.cli.robot.classroom import Classroom, Listener
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import Member
 from tiniscript.link.line import now_ms
+from tiniscript.link.messages import STATUSES
 from tiniscript.link.payloads import ShowEvent
+from tiniscript.link.requests import Reply
 from tiniscript.link.transports.broker import ROOT, Present
 
 SECRET = b"the password of all robots"
@@ -289,3 +295,15 @@ def test_who_comes_after_a_driver_that_was_killed(room: Class) -> None:
     command.process.wait()
     code, said, error = tsc(room, "upload", "-e", DRIVES)
     assert code == 0, said + error
+
+
+def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
+    """Its firmware refuses the step: the sentence about a bad value would help nobody."""
+    told = SimpleNamespace(
+        name="Tini", do=lambda make: None, failure=AssertionError, port="/dev/ttyUSB0",
+        wait=lambda request: Reply(STATUSES["BAD_VALUE"]),
+    )  # fmt: skip
+    told.ask_or = partial(Connection.ask_or, cast(Connection, told))
+    with pytest.raises(CommandError) as found:
+        robot_broker.use(cast(Connection, told), None, Namespace())
+    assert "older than this tsc" in found.value.sentence("en")

@@ -61,7 +61,7 @@ def check(options: Namespace, robot: Robot, language: str) -> int:
 
 def _row(found: Found, options: Namespace, robot: Robot, language: str) -> Row:
     if found.problem is not None:
-        return Row(found.name, [], 0, found.problem.sentence(language).removeprefix("tsc: "))
+        return Row(found.name, [], 0, found.problem.plain(language))
     repaired = 0
     if options.fix or options.diff:
         compiled, repaired, problem = _repaired(found, options, robot, language)
@@ -90,7 +90,7 @@ def _repaired(
         try:
             outputs.write(Path(found.name), its.data, "unwritable_source")
         except CommandError as problem:
-            return its.compiled, 0, problem.sentence(language).removeprefix("tsc: ")
+            return its.compiled, 0, problem.plain(language)
     return its.compiled, its.repairs, ""
 
 

@@ -27,6 +27,10 @@ class CommandError(Exception):
             return Said(f"{what} {near}{advice}{example}" if advice else f"{said} {near}")
         return said
 
+    def plain(self, language: str) -> str:
+        """Return the sentence without the name of the command, for a table or a list."""
+        return self.sentence(language).removeprefix("tsc: ")
+
 
 def _said(value: str | Exception) -> str:
     return (value.strerror if isinstance(value, OSError) else None) or str(value)

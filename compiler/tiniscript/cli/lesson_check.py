@@ -120,7 +120,7 @@ class _Marker:
                 raise found.problem
             compiled = self.compiled(given, "check")
         except CommandError as failure:
-            said = failure.sentence(self.language).removeprefix("tsc: ")
+            said = failure.plain(self.language)
             said = said.replace(inputs.shown(found.name), inputs.shown(name))
             return Mark(name, UNREADABLE, 0, (("", said),))
         return self.mark(given, compiled)

@@ -30,6 +30,20 @@ def write(path: Path, data: bytes, key: str, mode: int | None = None) -> None:
         raise CommandError(2, key, file=shown(str(path)), why=why) from None
 
 
+def put(name: str | None, data: bytes) -> bool:
+    """Write into the file that `-o` names, or to standard output; return whether into a file.
+
+    Text is UTF-8 there, whatever the locale. Raises CommandError.
+    """
+    if name not in (None, "-"):
+        write(Path(name), data, "unwritable")
+        return True
+    sys.stdout.flush()
+    sys.stdout.buffer.write(data)
+    sys.stdout.flush()
+    return False
+
+
 def print_diagnostics(compiled: Compiled, language: str) -> None:
     """Print a program's diagnostics to standard error, the first ones in full."""
     if not compiled.diagnostics:

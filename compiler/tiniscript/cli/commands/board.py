@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os.path
-import sys
 from argparse import Namespace
 from pathlib import Path
 
@@ -22,10 +21,8 @@ def run(options: Namespace, language: str) -> int:
             2, "no_firmware", chip=robot.board.chip, known=", ".join(firmware.BOARDS)
         )
     header = firmware.header([robot], "tsc board, from a robot profile.")
-    if options.output in (None, "-"):
-        sys.stdout.write(header)
+    if not outputs.put(options.output, header.encode()):
         return 0
-    outputs.write(Path(options.output), header.encode(), "unwritable")
     now = _next(options.robot, Path(options.output), robot.board.chip, language)
     print(text("board", language).format(
         file=inputs.shown(options.output), robot=robot.name, chip=robot.board.chip, now=now

@@ -65,8 +65,7 @@ def _repaired(
         return found.compiled, found.compiled.is_right and not found.repairs
     if given.path is None:
         if says:
-            sys.stdout.flush()
-            sys.stdout.buffer.write(found.data)  # a program is UTF-8, whatever the locale
+            outputs.put(None, found.data)
     elif found.repairs:
         outputs.write(given.path, found.data, "unwritable_source")
     if says and found.repairs and given.path is not None:

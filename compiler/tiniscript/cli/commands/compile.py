@@ -34,18 +34,14 @@ def run(options: Namespace, language: str) -> int:
     if not compiled.is_right:
         return 1
     places = source_map.made(compiled.source, compiled.places)
-    if target is None:
-        sys.stdout.buffer.write(compiled.image)
-        sys.stdout.flush()
-    else:
-        outputs.write(target, compiled.image, "unwritable")
+    outputs.put(target, compiled.image)
     if options.map is not None:
         data = (source_map.as_json(places) + "\n").encode(errors="backslashreplace")
         outputs.write(Path(options.map), data, "unwritable_map")
     source_map.remember(compiled.image, places)
     said = text("compiled", language).format(
         source=inputs.shown(given.name),
-        target=inputs.shown(str(target or "-")),
+        target=inputs.shown(target or "-"),
         image=len(compiled.image),
         code=len(compiled.code),
         stack=compiled.verdict.stack_values if compiled.verdict else 0,
@@ -70,12 +66,7 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
 
     assert compiled.program is not None
     line = (line_of(compiled.source) + "\n").encode()
-    is_printed = options.output in (None, "-")
-    if is_printed:
-        sys.stdout.buffer.write(line)
-        sys.stdout.flush()
-    else:
-        outputs.write(Path(options.output), line, "unwritable")
+    is_printed = not outputs.put(options.output, line)
     said = text("compiled_text", language).format(
         source=inputs.shown(given.name),
         target="-" if is_printed else inputs.shown(options.output),
@@ -86,13 +77,13 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
     return 0
 
 
-def _target(given: inputs.Input, output: str | None) -> Path | None:
+def _target(given: inputs.Input, output: str | None) -> str | None:
     """Return the file to write, or None for standard output."""
     if output == "-":
         return None
     if output is None and given.path is None:
         raise CommandError(2, "needs_output")
-    return Path(paths.default_output(given.name) if output is None else output)
+    return paths.default_output(given.name) if output is None else output
 
 
 def _will_fault(compiled: Compiled) -> bool:

@@ -14,14 +14,14 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.robot.connect import FASTEST_BAUD, SLOWEST_BAUD, port_failure
+from tiniscript.cli.robot.connect import FASTEST_BAUD, SLOWEST_BAUD, opening_port
 from tiniscript.cli.texts import text
 from tiniscript.conformance import port_checks
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, Verdict, verdicts
 from tiniscript.conformance.kit import LINK_VERSION, VERSION, link_kit, machine_cases
 from tiniscript.conformance.machine_process import CannotStart, MachineProcess
 from tiniscript.conformance.wire_robot import Silent, WireRobot
-from tiniscript.link import errors, ports
+from tiniscript.link import ports
 from tiniscript.link.messages import MAJOR, MINOR, OWNED, STOP_BYTES
 from tiniscript.link.wire import Wire
 
@@ -69,10 +69,8 @@ def _port(options: Namespace, language: str) -> int:
     checks = [check for check in checks if (options.only or "") in check.name]
     if not checks:
         raise CommandError(2, "conform_no_case", found=shown(options.only))
-    try:
+    with opening_port(port):
         wire = Wire(ports.opened(ports.resolved(port), baud))
-    except errors.PortError as failure:
-        raise port_failure(port, failure) from None
     is_radio = ports.is_radio(port)
     nonce = int.from_bytes(os.urandom(4), "little")
     robot = WireRobot(wire, nonce, RADIO_MS if is_radio else CABLE_MS)

@@ -16,9 +16,7 @@ def run(options: Namespace, language: str) -> int:
         if which == KEY_OWNER and not info.values.features & OWNED:
             print(text("not_owned", language).format(robot=connection.name))
             return 0
-        reply = connection.give(lambda session: session.disown(which))
-        if reply.status:  # the robot has begun, but may not have finished
-            raise connection.failure(reply)
+        connection.ask(lambda session: session.disown(which))
         key = "disowned" if which == KEY_OWNER else "disowned_teacher"
         print(text(key, language).format(robot=connection.name))
     return 0

@@ -10,14 +10,14 @@ from tiniscript.cli.commands.info import Description
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import bad_choice
-from tiniscript.cli.robot.connect import Connection, port_failure
+from tiniscript.cli.robot.connect import Connection, opening_port
 from tiniscript.cli.terminal.progress import Progress, waiting
 from tiniscript.cli.texts import text
 from tiniscript.flash import avrdude
 from tiniscript.flash.avrdude import Ended, Seen
 from tiniscript.flash.bootloaders import BOARDS, UNO, Bootloader
 from tiniscript.flash.ready import Ready
-from tiniscript.link import errors, ports
+from tiniscript.link import ports
 from tiniscript.link.port_names import is_address
 from tiniscript.robots.ports import ESP32S
 from tiniscript.robots.profile import Robot
@@ -96,10 +96,8 @@ def _port(options: Namespace) -> str:
     port = inputs.port(options.port)
     if is_address(port):
         raise CommandError(2, "flash_address", port=shown(port))
-    try:
+    with opening_port(port):
         ports.opened(port, UNO.baud).close()
-    except errors.PortError as failure:
-        raise port_failure(port, failure) from None
     return port
 
 

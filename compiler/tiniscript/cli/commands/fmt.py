@@ -30,8 +30,7 @@ def run(options: Namespace, language: str) -> int:
         print(text(key, language).format(file=name), file=sys.stdout if is_same else sys.stderr)
         return 0 if is_same else 1
     if given.path is None:
-        sys.stdout.flush()
-        sys.stdout.buffer.write(laid_out.encode())  # a program is UTF-8, whatever the locale
+        outputs.put(None, laid_out.encode())
     elif not is_same:
         outputs.write(given.path, laid_out.encode(), "unwritable_source")
         print(text("formatted", language).format(file=name))

@@ -93,10 +93,8 @@ def _sheet(folder: Path, lesson: Lesson, options: Namespace, language: str) -> i
     if options.output is None:
         raise CommandError(2, "lesson_where", number=inputs.shown(options.number))
     page = sheet(_page(folder, options.teacher, language), lesson, options.teacher, language)
-    if options.output == "-":
-        sys.stdout.write(page)
+    if not outputs.put(options.output, page.encode()):
         return 0
-    outputs.write(Path(options.output), page.encode(), "unwritable")
     said = text("lesson_sheet", language)
     print(said.format(file=inputs.shown(options.output), title=lesson.titles[language]))
     return 0

@@ -9,10 +9,10 @@ from argparse import Namespace
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import port_failure
+from tiniscript.cli.robot.connect import opening_port
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
-from tiniscript.link import errors, ports
+from tiniscript.link import ports
 from tiniscript.link.modules import set_up
 from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
 from tiniscript.link.modules.set_up import BAUD, DONE, GOOD, NAME, PIN, Outcome, Step, Wanted
@@ -83,12 +83,10 @@ def _wire(options: Namespace) -> Wire:
     if options.port is None:
         raise CommandError(2, "module_no_port")
     port = inputs.port(options.port)
-    try:
+    with opening_port(port):
         if ports.is_radio(port):
             raise CommandError(2, "module_by_radio", port=shown(port))
         return Wire(ports.opened(port, BAUDS[0]))
-    except errors.PortError as failure:
-        raise port_failure(port, failure) from None
 
 
 class _SetUp:

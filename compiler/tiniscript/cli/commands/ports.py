@@ -104,7 +104,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> dict[str, 
             reply = client.hello()
             device_info, heard = client.line.robot, client.line.heard
     except CommandError as failure:
-        return {"answer": None, "said": failure.sentence(language).removeprefix("tsc: ")}
+        return {"answer": None, "said": failure.plain(language)}
     except RobotError as gone:
         return {"answer": None, "said": str(gone)}
     if reply.status == OK and device_info is not None:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import sys
 from argparse import Namespace
-from pathlib import Path
 
 from tiniscript.bytecode.disassembly import listing, rows
 from tiniscript.cli import compiling, images, inputs, outputs
@@ -55,11 +53,8 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     if any(map(is_open_way, every(compiled.program))):
         raise CommandError(2, "sketch_no_ways", file=inputs.shown(given.name))
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
-    if options.output in (None, "-"):
-        sys.stdout.buffer.write(sketch)
-        sys.stdout.flush()
+    if not outputs.put(options.output, sketch):
         return 0
-    outputs.write(Path(options.output), sketch, "unwritable")
     print(text("sketch", language).format(
         file=inputs.shown(options.output), robot=inputs.shown(robot.labels[language]["robot"])
     ))  # fmt: skip

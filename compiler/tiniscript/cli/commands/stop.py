@@ -45,14 +45,10 @@ def run(options: Namespace, language: str) -> int:
 
 def _hold_back(connection: Connection) -> None:
     """Have a robot that was stopped wait for the teacher, or its button. Raises CommandError."""
-    from tiniscript.link.authority import NOT_OWNER, WRONG_KEY
-
     connection.meet()
-    reply = connection.wait(connection.do(lambda session: session.hold_back()))
-    if reply.status in (NOT_OWNER, WRONG_KEY):
-        raise CommandError(3, "no_teachers_key", robot=connection.name)
-    if reply.status:
-        raise connection.failure(reply)
+    connection.ask_or(
+        lambda session: session.hold_back(), "no_teachers_key", "NOT_OWNER", "WRONG_KEY"
+    )
 
 
 def _may_be_opened(connection: Connection) -> bool:

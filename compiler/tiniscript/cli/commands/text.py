@@ -7,7 +7,7 @@ from argparse import Namespace
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import connected
 from tiniscript.cli.texts import text
-from tiniscript.link.messages import OWNED, STATUSES
+from tiniscript.link.messages import OWNED
 
 
 def run(options: Namespace, language: str) -> int:
@@ -16,11 +16,7 @@ def run(options: Namespace, language: str) -> int:
     is_allowed = options.whether == "on"
     with connected(options, language) as connection:
         info = connection.meet()
-        reply = connection.wait(connection.do(lambda session: session.allow_text(is_allowed)))
-        if reply.status == STATUSES["BAD_VALUE"]:
-            raise CommandError(3, "text_none", robot=connection.name)
-        if reply.status:
-            raise connection.failure(reply)
+        connection.ask_or(lambda session: session.allow_text(is_allowed), "text_none", "BAD_VALUE")
         key = "text_on" if is_allowed else "text_off"
         if not info.values.features & OWNED:
             key = "text_free"

@@ -20,10 +20,8 @@ from tiniscript.link.messages import (
     OWNED,
     PASSWORD_BYTES,
     SEALS,
-    STATUSES,
 )
 from tiniscript.link.payloads import WifiReply
-from tiniscript.link.requests import Reply
 from tiniscript.link.wifi import MODES, STATES, Network, address
 
 # states from which nothing further follows by itself
@@ -57,7 +55,7 @@ def run(options: Namespace, language: str) -> int:
         if options.forget or name is not None:
             _refuse_itself(connection)
         if options.forget:
-            _taken(connection, connection.give(lambda session: session.forget_wifi()))
+            connection.ask(lambda session: session.forget_wifi())
             print(text("wifi_forgotten", language).format(robot=connection.name))
         elif name is not None:
             _join(connection, name, options.access_point)
@@ -79,23 +77,13 @@ def _refuse_itself(connection: Connection) -> None:
 
 def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
     network = Network(name, _password(connection.language), is_access_point)
-    _taken(connection, connection.give(lambda session: session.join(network)))
+    connection.ask(lambda session: session.join(network))
     ask = partial(_told, connection)
     _tell(connection, robot_broker.awaited(ask, lambda told: told.state in ENDS))
 
 
-def _taken(connection: Connection, reply: Reply[WifiReply]) -> None:
-    if reply.status:
-        raise connection.failure(reply)
-
-
 def _told(connection: Connection) -> WifiReply:
-    reply = connection.wait(connection.do(lambda session: session.wifi()))
-    if reply.status == STATUSES["UNKNOWN_MESSAGE"]:
-        raise CommandError(3, "wifi_none", robot=connection.name)
-    if reply.status:
-        raise connection.failure(reply)
-    return reply.values
+    return connection.ask_or(lambda session: session.wifi(), "wifi_none", "UNKNOWN_MESSAGE").values
 
 
 def _tell(connection: Connection, told: WifiReply) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from pathlib import Path
 from shutil import get_terminal_size
 from textwrap import wrap
 
@@ -38,11 +37,8 @@ def run(options: Namespace, language: str) -> int:
         print(text("wiring_page", language))
         return 0
 
-    page = html_of(plan)
-    if options.output == "-":
-        sys.stdout.write(page)
+    if not outputs.put(options.output, html_of(plan).encode()):
         return 0
-    outputs.write(Path(options.output), page.encode(), "unwritable")
     print(text("wiring", language).format(
         file=inputs.shown(options.output), robot=inputs.shown(plan.robot)
     ))  # fmt: skip

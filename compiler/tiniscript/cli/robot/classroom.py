@@ -16,7 +16,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.paths import CLASS_ROWS
 from tiniscript.cli.robot import broker_options
-from tiniscript.cli.robot.connect import Connection, port_failure
+from tiniscript.cli.robot.connect import Connection, opening_port
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
@@ -52,17 +52,13 @@ class Classroom:
         self.broker = self._connected(options)
 
     def _connected(self, options: Namespace) -> Broker:
-        port = f"mqtt://{self.place}"
-        try:
-            from tiniscript.link.transports import broker
-        except ImportError as missing:
-            failure = PortError(NOT_INSTALLED, missing.name or "")
-            raise port_failure(port, failure) from None
-        try:
+        with opening_port(f"mqtt://{self.place}"):
+            try:
+                from tiniscript.link.transports import broker
+            except ImportError as missing:
+                raise PortError(NOT_INSTALLED, missing.name or "") from None
             broker.sign_in(*self.place, self._access(options))
             return broker.connected(*self.place)
-        except PortError as why:
-            raise port_failure(port, why) from None
 
     def _access(self, options: Namespace) -> Access:
         from tiniscript.link.transports.broker import Access
@@ -73,10 +69,8 @@ class Classroom:
 
     def present(self) -> list[Present]:
         """Return the robots that the broker knows, those that have gone, too."""
-        try:
+        with opening_port(f"mqtt://{self.place}"):
             found = self.broker.present(self.group)
-        except PortError as why:
-            raise port_failure(f"mqtt://{self.place}", why) from None
         if not any(each.is_here for each in found):
             raise CommandError(3, "class_empty", group=self.group, host=str(self.place))
         return found

@@ -18,6 +18,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
+from tiniscript.cli.terminal import asking
 from tiniscript.cli.terminal.progress import waiting
 from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import virtual_names
@@ -189,6 +190,17 @@ class Connection(Client):
             raise self.failure(reply)
         return reply
 
+    def ask_or(
+        self, make: Callable[[Requester], PendingRequest[T]], key: str, *statuses: str
+    ) -> Reply[T]:
+        """Make a request, of which these refusals have the sentence `key`. Raises CommandError."""
+        reply = self.wait(self.do(make))
+        if reply.status in [STATUSES[each] for each in statuses]:
+            raise CommandError(3, key, robot=self.name)
+        if reply.status:
+            raise self.failure(reply)
+        return reply
+
     def watch(self, end_s: float | None) -> Iterator[tuple[int, Event] | None]:
         """Yield what happens until `end_s`, of whoever drives; None now and then.
 
@@ -260,6 +272,15 @@ def port_failure(port: str, failure: PortError) -> CommandError:
     return CommandError(3, error.key, **error.values)
 
 
+@contextmanager
+def opening_port(port: str) -> Iterator[None]:
+    """Raise CommandError where a port does not open."""
+    try:
+        yield
+    except PortError as failure:
+        raise port_failure(port, failure) from None
+
+
 def _remember_profile(options: Namespace, robot: Robot, kit: int) -> None:
     """Remember the profile of a file for the robots with this kit."""
     name = getattr(options, "robot", None)
@@ -293,7 +314,7 @@ def _chosen(options: Namespace, language: str) -> str:
     virtual = directory.for_all() if can_bring else directory.running()
     if len(virtual) == 1:
         return virtual[0].address
-    if not (sys.stdin.isatty() and sys.stderr.isatty()) or getattr(options, "asks_nothing", False):
+    if not asking.can_ask() or getattr(options, "asks_nothing", False):
         if last is not None:
             raise CommandError(3, "last_port_missing", port=shown(last))
         if virtual:
@@ -342,11 +363,10 @@ def _asked(language: str, can_bring: bool, virtual: list[directory.Running]) -> 
         choices.append(VIRTUAL)
         print(f"  {len(choices)}  {text('choice_virtual', language)}", file=sys.stderr)
     while True:
-        print(text("choose_number", language), end="", file=sys.stderr, flush=True)
-        answer = sys.stdin.readline()
-        if not answer:
+        typed = asking.answer(text("choose_number", language))
+        if not typed:
             raise CommandError(3, "which_port")
-        answer = answer.strip()
+        answer = typed.strip()
         if answer and answer in choices:
             return answer
         if answer.isascii() and answer.isdigit() and 1 <= int(answer[:9]) <= len(choices):

@@ -199,12 +199,12 @@ class Fleet:
         if connection.stop():
             return Result(False, text("robot_stopped", self.language))
         failure = CommandError(3, "not_confirmed", port=shown(connection.port))
-        return Result(False, _plain(failure, self.language))
+        return Result(False, failure.plain(self.language))
 
     def _failed(self, member: Member, failure: CommandError) -> Result:
         target = member.target
         is_absent = failure.key in NOBODY or (failure.key in NO_ROBOT and not target.is_known)
-        said = _plain(failure, self.language)
+        said = failure.plain(self.language)
         return Result(False, said, {}, is_absent and not target.is_named)
 
     # -- what is printed --------------------------------------------------------------------------
@@ -259,7 +259,3 @@ def _is_stranger(member: Member) -> bool:
     connection = member.connection
     has_answered = connection is not None and connection.line.robot is not None
     return not (has_answered or member.target.is_named or member.target.is_known)
-
-
-def _plain(failure: CommandError, language: str) -> str:
-    return failure.sentence(language).removeprefix("tsc: ")

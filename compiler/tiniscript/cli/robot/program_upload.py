@@ -18,6 +18,7 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import DONE, RunMonitor, Saving, ended
 from tiniscript.cli.terminal.keys import Keys, is_in_front
 from tiniscript.cli.texts import text
+from tiniscript.library.compiling import compile_text, kit_of
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.names import cause_name, saved_name
 from tiniscript.link.outcomes import LOST, Event
@@ -102,6 +103,19 @@ def receipt(
         "is_detached": runs and bool(options.detach),
         "is_pushed": has_button(connection, ready, options),  # JSON output has no keys
     }
+
+
+def follow_line(
+    connection: Connection, line: str, printer: EventPrinter, hold: Callable[[Event], bool]
+) -> int:
+    """Let the robot do a right line now, and follow it; return the exit code.
+
+    Raises CommandError.
+    """
+    compiled = compile_text(f"SI|{line}", connection.profile.kit)
+    kit = kit_of(compiled, connection.profile)
+    run = connection.ask(lambda session: session.live(compiled.code, kit)).values.run
+    return RunMonitor(connection, printer, hold).follow(run)
 
 
 PUSH = "bB "  # the keys that `tsc robot` has, too

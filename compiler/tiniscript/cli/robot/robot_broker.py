@@ -20,7 +20,6 @@ from tiniscript.library.install_advice import quoted
 from tiniscript.link.messages import BROKER_NAME_BYTES, STATUSES, TRUST_BYTES
 from tiniscript.link.payloads import WifiReply
 from tiniscript.link.port_names import is_at_broker
-from tiniscript.link.requests import Reply
 from tiniscript.link.wifi import STATES, BrokerSettings, Tls, address
 
 READY_S = 20  # until the robot is in the network, or at the broker
@@ -91,10 +90,7 @@ def use(connection: Connection, broker: BrokerSettings | None, options: Namespac
         raise CommandError(2, "broker_over_it", robot=connection.name)
     if broker is not None and IPv4Address(broker.address).is_loopback:
         _refuse_itself(connection, IPv4Address(broker.address))
-    reply = connection.give(lambda session: session.use_broker(broker))
-    _refuse_old(connection, reply)
-    if reply.status:
-        raise connection.failure(reply)
+    connection.ask_or(lambda session: session.use_broker(broker), "broker_old", "BAD_VALUE")
     if broker is None:
         print(text("broker_off", connection.language).format(robot=connection.name))
         return
@@ -153,15 +149,7 @@ def _state(told: WifiReply) -> str:
 
 
 def _told(connection: Connection) -> WifiReply:
-    reply = connection.wait(connection.do(lambda session: session.broker()))
-    if reply.status:
-        raise connection.failure(reply)
-    return reply.values
-
-
-def _refuse_old(connection: Connection, reply: Reply[WifiReply]) -> None:
-    if reply.status == STATUSES["BAD_VALUE"]:
-        raise CommandError(3, "broker_old", robot=connection.name)
+    return connection.ask(lambda session: session.broker()).values
 
 
 def _refuse_itself(connection: Connection, broker: IPv4Address) -> None:

@@ -15,15 +15,14 @@ from time import perf_counter
 from typing import NamedTuple
 
 from tiniscript.base.kit import Device
-from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.cli.commands.trim import words
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.robot.run_monitor import RunMonitor
+from tiniscript.cli.robot.program_upload import follow_line
+from tiniscript.cli.terminal import asking
 from tiniscript.cli.texts import text
-from tiniscript.library.compiling import compile_text
 from tiniscript.library.known_kits import of_kit
 from tiniscript.link.messages import RESETS, SAVED
 from tiniscript.link.names import row_name
@@ -249,7 +248,6 @@ class SelfTest:
 
     def _shown_by(self, line: str) -> list[int]:
         """Let the robot do a line now; return what it showed. Raises CommandError."""
-        code = unpack(compile_text(f"SI|{line}", self.connection.profile.kit).image).code
         values: list[int] = []
         said: list[str] = []
 
@@ -258,10 +256,8 @@ class SelfTest:
                 values.append(event.value)
             return event.name in ("SHOW", "DONE")
 
-        kit = self.connection.profile.kit.fingerprint
-        run = self.connection.ask(lambda session: session.live(code, kit)).values.run
         printer = EventPrinter(self.language, out=said.append, err=said.append)
-        if RunMonitor(self.connection, printer, hold).follow(run):
+        if follow_line(self.connection, line, printer, hold):
             raise CommandError(3, "plain", said=" ".join(said))
         return values
 
@@ -269,8 +265,7 @@ class SelfTest:
         """Ask the person. Raises NoPerson where nobody answers."""
         if not self.is_asking:
             raise NoPerson
-        print(text(key, self.language).format(**values), end="", file=sys.stderr, flush=True)
-        answer = sys.stdin.readline()
+        answer = asking.answer(text(key, self.language).format(**values))
         if not answer:
             self.is_asking = False
             print(file=sys.stderr)

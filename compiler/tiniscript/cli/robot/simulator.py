@@ -17,7 +17,7 @@ from tiniscript.base.trace import Event
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import simulator_options
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
-from tiniscript.cli.terminal import FRAME_S
+from tiniscript.cli.terminal import FRAME_S, asking
 from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory
@@ -196,6 +196,5 @@ class CommandSimulator(SimulatorThread):
 
 def offered(language: str) -> bool:
     """Ask whether to use the virtual robot; an empty answer is yes."""
-    print(text("offer_virtual", language), end="", file=sys.stderr, flush=True)
-    answer = sys.stdin.readline()
+    answer = asking.answer(text("offer_virtual", language))
     return bool(answer) and answer.strip().lower()[:1] in ("", "y", "s")

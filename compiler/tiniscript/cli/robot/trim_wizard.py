@@ -8,13 +8,12 @@ from __future__ import annotations
 import re
 import sys
 
-from tiniscript.bytecode.image import unpack
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.robot.run_monitor import RunMonitor
+from tiniscript.cli.robot.program_upload import follow_line
+from tiniscript.cli.terminal import asking
 from tiniscript.cli.texts import text
-from tiniscript.library.compiling import compile_text
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.trim import MOST_PACE, Pace, Trim
 
@@ -160,10 +159,7 @@ class TrimWizard:
         self.connection.give(lambda session: session.trim(trim.data()))  # kept at the end
 
     def _drive(self, line: str) -> None:
-        code = unpack(compile_text(f"SI|{line}", self.connection.profile.kit).image).code
-        run = self.connection.ask(lambda session: session.live(code)).values.run
-        printer: EventPrinter = EventPrinter(self.language)
-        if RunMonitor(self.connection, printer, lambda event: True).follow(run):
+        if follow_line(self.connection, line, EventPrinter(self.language), lambda event: True):
             raise CommandError(3, "trim_ended")
 
     def _choice(self, key: str, high: int, **values: str) -> int:
@@ -174,8 +170,7 @@ class TrimWizard:
             print(text("trim_number", self.language).format(high=high), file=sys.stderr)
 
     def _ask_line(self, key: str, **values: str) -> str:
-        print(text(key, self.language).format(**values), end="", file=sys.stderr, flush=True)
-        answer = sys.stdin.readline()
+        answer = asking.answer(text(key, self.language).format(**values))
         if not answer:
             raise CommandError(3, "trim_no_answer")
         return answer

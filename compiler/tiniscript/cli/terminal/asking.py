@@ -18,10 +18,15 @@ def can_ask() -> bool:
     return sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty()
 
 
+def answer(question: str) -> str:
+    """Ask, and return the line that is typed; nothing where nobody answers."""
+    print(question, end="", file=sys.stderr, flush=True)
+    return sys.stdin.readline()
+
+
 def agreed(question: str) -> bool:
     """Ask, and return whether the answer is a yes: an empty one is none."""
-    print(question, end="", file=sys.stderr, flush=True)
-    return sys.stdin.readline().strip().lower() in YES
+    return answer(question).strip().lower() in YES
 
 
 LONGEST_LINE = 1024  # bytes of standard input that may be a password
