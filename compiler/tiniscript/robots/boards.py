@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import ONE
+from tiniscript.robots.ports import AVRS
 
 
 class Chip(NamedTuple):
@@ -82,14 +83,6 @@ def _pins(*parts: int | range) -> frozenset[int]:
     )
 
 
-# Data sheets of the ATmega328P and the ATmega2560. Timer 0 keeps the time and also does PWM.
-_PWM_328P = {3: 2, 5: 0, 6: 0, 9: 1, 10: 1, 11: 2}
-# fmt: off
-_PWM_2560 = {
-    2: 3, 3: 3, 4: 0, 5: 3, 6: 4, 7: 4, 8: 4, 9: 2, 10: 2, 11: 1, 12: 1, 13: 0,
-    44: 5, 45: 5, 46: 5,
-}
-# fmt: on
 # Pins of an ESP32 that are free: 6 to 11 carry its flash memory, 1 and 3 the link. 34 to 39 only
 # read. Of the analog pins those of ADC1: ADC2 (0, 2, 4, 12 to 15, 25 to 27) cannot measure while
 # WiFi is on. Data sheet, "Strapping Pins": 0, 2, 5, 12 and 15 are read at a reset; 12 held high
@@ -103,51 +96,33 @@ _ESP32C3 = _pins(range(11), 18, 19)
 # Bits of `needs`. A Nano's old bootloader leaves no room for tasks.
 _TASKS, _WAYS = 1, 2
 
+
+def _avr(name: str, digital: range, analog: range, program_bytes: int, has: int) -> Chip:
+    """Return a chip of which `ports` has the pins. Timer 0 keeps the time and also does PWM."""
+    avr = AVRS[name]
+    return Chip(
+        name,
+        program_bytes,
+        digital=_pins(digital),
+        analog=_pins(analog),
+        echo=frozenset(avr.interrupts),
+        pwm={pin: compare.timer for pin, compare in avr.compares.items()},
+        link_pins=_pins(0, 1),
+        first_analog=analog[0],
+        servo_timer=1,
+        tone_timer=2,
+        counting=frozenset(avr.external),
+        has=has,
+    )
+
+
 CHIPS = {
     chip.name: chip
     for chip in (
-        Chip(
-            "uno",
-            program_bytes=389,
-            digital=_pins(range(2, 20)),
-            analog=_pins(range(14, 20)),
-            echo=_pins(range(2, 20)),
-            pwm=_PWM_328P,
-            link_pins=_pins(0, 1),
-            first_analog=14,
-            servo_timer=1,
-            tone_timer=2,
-            counting=_pins(2, 3),
-            has=_TASKS | _WAYS,
-        ),
-        Chip(
-            "nano",
-            program_bytes=389,
-            digital=_pins(range(2, 20)),
-            analog=_pins(range(14, 22)),  # A6 and A7 are analog inputs only
-            echo=_pins(range(2, 20)),
-            pwm=_PWM_328P,
-            link_pins=_pins(0, 1),
-            first_analog=14,
-            servo_timer=1,
-            tone_timer=2,
-            counting=_pins(2, 3),
-            has=_WAYS,
-        ),
-        Chip(
-            "mega",
-            program_bytes=1900,
-            digital=_pins(range(2, 70)),
-            analog=_pins(range(54, 70)),
-            echo=_pins(2, 3, range(10, 16), range(18, 22), range(50, 54), range(62, 70)),
-            pwm=_PWM_2560,
-            link_pins=_pins(0, 1),
-            first_analog=54,
-            servo_timer=1,
-            tone_timer=2,
-            counting=_pins(2, 3, range(18, 22)),
-            has=_TASKS | _WAYS,
-        ),
+        _avr("uno", range(2, 20), range(14, 20), 389, _TASKS | _WAYS),
+        # A6 and A7 are analog inputs only
+        _avr("nano", range(2, 20), range(14, 22), 389, _WAYS),
+        _avr("mega", range(2, 70), range(54, 70), 1900, _TASKS | _WAYS),
         Chip(
             "esp32dev",
             program_bytes=8192,

@@ -62,41 +62,15 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
     return _simulation.state()
 
 
-def _go(fields: Answer, data: bytes) -> Answer:
-    assert _simulation is not None, "nothing is switched on"
-    _simulation.go(fields["duration_ms"])
-    return _simulation.state()
+def _driven(drive: Callable[[Simulation, Answer], object]) -> Callable[[Answer, bytes], Answer]:
+    """Return what does `drive` with the virtual robot, and answers how it stands then."""
 
+    def answer(fields: Answer, data: bytes) -> Answer:
+        assert _simulation is not None, "nothing is switched on"
+        drive(_simulation, fields)
+        return _simulation.state()
 
-def _step(fields: Answer, data: bytes) -> Answer:
-    assert _simulation is not None, "nothing is switched on"
-    _simulation.step(fields["limit_ms"])
-    return _simulation.state()
-
-
-def _go_on(fields: Answer, data: bytes) -> Answer:
-    """Let a held program go on, as soon as time does."""
-    assert _simulation is not None, "nothing is switched on"
-    _simulation.go_on()
-    return _simulation.state()
-
-
-def _breakpoints(fields: Answer, data: bytes) -> Answer:
-    assert _simulation is not None, "nothing is switched on"
-    _simulation.set_breakpoints(fields["breakpoints"])
-    return _simulation.state()
-
-
-def _stop(fields: Answer, data: bytes) -> Answer:
-    assert _simulation is not None, "nothing is switched on"
-    _simulation.stop()
-    return _simulation.state()
-
-
-def _push(fields: Answer, data: bytes) -> Answer:
-    assert _simulation is not None, "nothing is switched on"
-    _simulation.push()
-    return _simulation.state()
+    return answer
 
 
 def _open_world(fields: Answer, data: bytes) -> Answer:
@@ -144,14 +118,6 @@ def _lessons() -> Any:
     return import_module("tiniscript.studio.page_lessons")
 
 
-def _lesson_titles(fields: Answer, data: bytes) -> Answer:
-    return {"lessons": _lessons().titles(fields["language"])}
-
-
-def _lesson_steps(fields: Answer, data: bytes) -> Answer:
-    return {"steps": _lessons().steps(fields["number"], fields["language"])}
-
-
 def _lesson_world(fields: Answer, data: bytes) -> Answer:
     which = (fields["number"], fields["seed"])
     return {"world": _lessons().world_form(*which), "goals": _lessons().goals(*which)}
@@ -163,15 +129,22 @@ def _lesson_check(fields: Answer, data: bytes) -> Answer:
     return {}
 
 
-def _lesson_go(fields: Answer, data: bytes) -> Answer:
-    found: Answer = _check_of_lesson.go(fields["most_ms"])
-    return found
-
-
 ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
-    "power_on": _power_on, "go": _go, "step": _step, "go_on": _go_on, "breakpoints": _breakpoints,
-    "stop": _stop, "push": _push, "open_world": _open_world, "write_world": _write_world,
+    "power_on": _power_on,
+    "go": _driven(lambda robot, fields: robot.go(fields["duration_ms"])),
+    "step": _driven(lambda robot, fields: robot.step(fields["limit_ms"])),
+    "go_on": _driven(lambda robot, fields: robot.go_on()),
+    "breakpoints": _driven(lambda robot, fields: robot.set_breakpoints(fields["breakpoints"])),
+    "stop": _driven(lambda robot, fields: robot.stop()),
+    "push": _driven(lambda robot, fields: robot.push()),
+    "open_world": _open_world,
+    "write_world": _write_world,
     "replay": _replay,
-    "lesson_titles": _lesson_titles, "lesson_steps": _lesson_steps, "lesson_world": _lesson_world,
-    "lesson_check": _lesson_check, "lesson_go": _lesson_go,
-}  # fmt: skip
+    "lesson_titles": lambda fields, data: {"lessons": _lessons().titles(fields["language"])},
+    "lesson_steps": lambda fields, data: {
+        "steps": _lessons().steps(fields["number"], fields["language"])
+    },
+    "lesson_world": _lesson_world,
+    "lesson_check": _lesson_check,
+    "lesson_go": lambda fields, data: _check_of_lesson.go(fields["most_ms"]),
+}

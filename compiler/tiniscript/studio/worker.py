@@ -52,14 +52,14 @@ def _loose(fields: Answer, data: bytes) -> int:
 
 
 def _open(fields: Answer, data: bytes) -> Answer:
-    found = checking.opened(data, fields["robot"], fields["language"])
-    if isinstance(found, Message):
-        return {"message": found.message, "fix": found.fix}
-    return {"text": found}
+    return _told(checking.opened(data, fields["robot"], fields["language"]))
 
 
 def _line(fields: Answer, data: bytes) -> Answer:
-    found = checking.line(data, fields["robot"], fields["language"])
+    return _told(checking.line(data, fields["robot"], fields["language"]))
+
+
+def _told(found: str | Message) -> Answer:
     if isinstance(found, Message):
         return {"message": found.message, "fix": found.fix}
     return {"text": found}
