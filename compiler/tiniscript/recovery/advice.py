@@ -226,8 +226,9 @@ class _Gaps(dict[str, str]):
         self._match = match
 
     def __missing__(self, name: str) -> str:
-        found = _GAPS[name](self) if name in _GAPS else self.captured(name)
-        if not found and name[-1] != "?":
+        gap = name.rstrip("?")
+        found = _GAPS[gap](self) if gap in _GAPS else self.captured(gap)
+        if not found and gap == name:
             raise _NoGap
         return found
 
@@ -278,7 +279,7 @@ def _above(part: Behind) -> list[str] | None:
 def _all(gaps: _Gaps, times: str) -> str:
     """The loop that does so often all that stands before, nothing where that is long."""
     part, above = gaps.part, _above(gaps.part)
-    if part.before is None or above is None or part.is_in_block or times in ("0", "1"):
+    if part.before is None or above is None or part.is_in_block or times in ("", "0", "1"):
         return ""
     orders = [*above, *part.before, *([part.call] if part.call else [])]
     said = "".join(f"{each};" for each in orders)
@@ -321,13 +322,9 @@ def _alone(gaps: _Gaps) -> str:
 
 
 def _then(gaps: _Gaps) -> str:
-    """The instruction that a row captures, where it is right."""
-    return _rest(gaps, "w") if lines.is_right(gaps.from_on("w"), gaps.part.names) else ""
-
-
-def _done(gaps: _Gaps) -> str:
-    """The orders that the words from a capture on say."""
-    return written(orders(gaps.from_on("w"), gaps.part.names))
+    """What is done: the words from a capture on where they are right, else the orders they say."""
+    words, names = gaps.from_on("w"), gaps.part.names
+    return _rest(gaps, "w") if lines.is_right(words, names) else written(orders(words, names))
 
 
 def _free(gaps: _Gaps) -> str:
@@ -338,30 +335,23 @@ def _free(gaps: _Gaps) -> str:
     return "" if is_name or is_taken else name
 
 
-def _choices(gaps: _Gaps) -> list[str]:
-    """The orders of which one is done, where the words say two or more."""
-    part, found = gaps.part, [gaps.part.call] if gaps.part.call else []
-    for piece in re.split(r",(?![^(]*\))", gaps["l"]):
-        match = _CHOICE.fullmatch(piece)
-        order = part.means(plain(match[1])) if match else ""
-        if match is None or order not in WORDS or not WORDS[order].is_instruction:
-            return []
-        found.append(order + (match[2] or ""))
-    return found if len(found) > 1 else []
-
-
-def _choice(gaps: _Gaps, separator: str = "; ") -> str:
-    """An IF that asks RANDOM which of the orders is done."""
-    orders = [each if "(" in each else WORDS[each].example for each in _choices(gaps)]
-    if not orders:
-        return ""
-    name = for_a_number(gaps.part.text)
-    lines_of = ["IF(RANDOM(1, 2) = 1)", orders[0]]
-    if len(orders) > _ONE_IN_LOOP:
-        lines_of = [f"{name} = RANDOM(1, {len(orders)})", f"IF({name} = 1)", orders[0]]
-    for number, order in enumerate(orders[1:-1], 2):
-        lines_of += [f"ELSEIF({name} = {number})", order]
-    return separator.join([*lines_of, "ELSE", orders[-1], BLOCK_ENDS["IF"]])
+def _choice(gaps: _Gaps, is_exact: bool = False) -> str:
+    """An IF that asks RANDOM which of two orders or more is done; `is_exact`: by no example."""
+    said = f"{gaps.part.call},{gaps['l']}".lstrip(",")
+    orders = []
+    for match in map(_CHOICE.fullmatch, re.split(r",(?![^(]*\))", said)):
+        known = WORDS.get(gaps.part.means(plain(match[1]))) if match else None
+        if match is None or known is None or not known.is_instruction:
+            return ""
+        if is_exact and known.arguments and not match[2]:
+            return ""
+        orders.append(known.text + match[2] if match[2] else known.example)
+    name, count = for_a_number(gaps.part.text), len(orders)
+    drawn, asked = f"{name} = RANDOM(1, {count}); ", [f"{name} = {k}" for k in range(1, count)]
+    if count == 2:
+        drawn, asked = "", ["RANDOM(1, 2) = 1"]
+    arms = [f"ELSEIF({one}); {order}; " for one, order in zip(asked, orders, strict=False)]
+    return f"{drawn}{''.join(arms)[4:]}ELSE; {orders[-1]}; ENDIF" if arms else ""
 
 
 def _apart(gaps: _Gaps) -> str:
@@ -397,16 +387,6 @@ def _by_way(gaps: _Gaps) -> str:
     """The call by centimetres or degrees instead of seconds."""
     time = gaps.part.time
     return _with(gaps, time, f"{time[1]} {UNIT_OF[gaps.part.own]}") if time else ""
-
-
-def _previous(gaps: _Gaps) -> str:
-    """The instruction before the words, or before the call that has them behind it."""
-    found = [*(_above(gaps.part) or ()), *(gaps.part.before or ())]
-    return found[-1] if found else ""
-
-
-def _paused(gaps: _Gaps) -> str:
-    return f"{gaps.part.call};W({gaps['n']})" + ";S" * (gaps.part.own == "M")
 
 
 def _other(gaps: _Gaps) -> str:
@@ -470,33 +450,31 @@ def _note(gaps: _Gaps) -> str:
 
 
 _GAPS: dict[str, Callable[[_Gaps], str]] = {
-    "above?": lambda gaps: ["", *gaps.part.above, *(gaps.part.before or ())][-1] or "",
-    "all": lambda gaps: _all(gaps, gaps["n"]), "often?": lambda gaps: _all(gaps, "4"),
+    "above": lambda gaps: ["", *gaps.part.above, *(gaps.part.before or ())][-1] or "",
+    "all": lambda gaps: _all(gaps, gaps["n?"]), "often": lambda gaps: _all(gaps, "4"),
     "endless": lambda gaps: _all(gaps, "FOREVER"),
     "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)), "twice": _twice,
     "said": lambda gaps: gaps.part.words.strip(" ,:"),
     "head": lambda gaps: gaps.meant("h"), "called": lambda gaps: gaps.meant("w"),
     "usage": lambda gaps: WORDS[gaps.meant("w")].usage,
-    "choice": lambda gaps: _choice(gaps, ";") if all(
-        "(" in each or each == "S" for each in _choices(gaps)) else "",
+    "choice": lambda gaps: _choice(gaps, is_exact=True).replace("; ", ";"),
     "choices": _choice, "apart": _apart, "number": lambda gaps: for_a_number(gaps.part.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
     "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),
-    "alone": _alone, "then": _then, "done": _done, "free": _free,
+    "alone": _alone, "then": _then, "free": _free,
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
-    "previous": _previous, "loop": _loop, "paused": _paused,
+    "loop": _loop,
     "few": lambda gaps: gaps["n"] if gaps["n"] in _FEW else "",
     "end": lambda gaps: "" if _asked(gaps, "s") else BLOCK_ENDS[gaps.meant("g")],
     "block": lambda gaps: gaps.meant("g"),
-    "always": lambda gaps: laid_out(_asked(gaps, "c")), "shown": _shown,
-    "other": _other, "note": _note,
+    "shown": _shown, "other": _other, "note": _note,
     "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",
     "by_way": _by_way,
     "longer": lambda gaps: _with(gaps, gaps.part.time, gaps["n"]),
     "paced": _paced,
     "question": lambda gaps: laid_out(_asked(gaps)), "contrary": _contrary, "near": _near,
-    "example?": _example,
-    "until?": lambda gaps: f" {_rest(gaps, 't')}".rstrip(),
+    "made_up": _example,
+    "until": lambda gaps: f" {_rest(gaps, 't')}".rstrip(),
     "behind": lambda gaps: _rest(gaps, "w"), "distance": _distance, "orders": _orders,
 }  # fmt: skip
