@@ -13,6 +13,7 @@ from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.recovery import lines, rewrites
 from tiniscript.recovery.concepts import CALLED, Lexeme, Names, concept_of, made, said_of
 from tiniscript.recovery.slots import MOVES, Filled, filled
+from tiniscript.recovery.worded import worded
 from tiniscript.recovery.writing import laid_out
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
@@ -151,27 +152,27 @@ def _until(words: Sequence[Lexeme], names: Names) -> Order | None:
     call: Filled | None = filled(words[:k], names, has_until=True, is_order=True) if k else None
     if call is None or call.times or "DISTANCE" not in names.sensors:
         return None
-    rest = words[k + 1 :]
-    question, samples = laid_out(question_in(rest, names)), call.samples
-    if not question and call.tokens[0].text == "F":
-        question, sample = _near(rest, names, "<")
-        samples += sample
+    word = call.tokens[0].text
+    question, sample = _asked(words[k + 1 :], names, is_ahead=word == "F")
     text = f"{laid_out(call.tokens)} UNTIL({question})"
-    return Order(call.tokens[0].text, text, samples) if question else None
+    return Order(word, text, call.samples + sample) if question else None
 
 
-def _near(words: Sequence[Lexeme], names: Names, sign: str) -> tuple[str, tuple[str, ...]]:
-    """Return the question for something near that words ask, and what they do not say of it."""
-    numbers = [each.text for each in words if each.kind is NUMBER]
-    is_wall = any(said_of(each.text, "wall") for each in words)
-    is_other = any(
-        names.meant(it.text) in _ASIDE or said_of(it.text, "light") or said_of(it.text, "more")
-        for it in words
-    )
-    if not (numbers or is_wall) or is_other or len(numbers) > 1:
+def _asked(
+    words: Sequence[Lexeme], names: Names, is_ahead: bool = True
+) -> tuple[str, tuple[str, ...]]:
+    """Return the question that words ask, and what they do not say of it.
+
+    `is_ahead`: it may be one for something near, which DISTANCE sees.
+    """
+    if exact := laid_out(question_in(words, names)):
+        return exact, ()
+    said = (worded(words, names) if is_ahead else None) or {}
+    question = said.get("asked") or said.get("question", "")
+    is_other = any(names.meant(it.text) in _ASIDE or it.text in COMPARISONS for it in words)
+    if is_other or not question.startswith("DISTANCE"):
         return "", ()
-    far = numbers[0] if numbers else _NEAR_CM
-    return f"DISTANCE {sign} {far}", () if numbers else (f"{far} cm",)
+    return question, () if "asked" in said else (f"{_NEAR_CM} cm",)
 
 
 def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
@@ -214,10 +215,7 @@ def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:
     if word == "LOOP":
         number = next((each.text for each in words if each.kind is NUMBER), "")
         return f"LOOP({number})" if number and said_of(words[-1].text, "times") else ""
-    asked = laid_out(question_in(words, names))
-    if not asked and "DISTANCE" in names.sensors:
-        is_not = any(said_of(each.text, "no") for each in words)
-        asked = _near(words, names, ">" if is_not else "<")[0]
+    asked = _asked(words, names)[0]
     return f"{word}({asked})" if asked else ""
 
 

@@ -37,6 +37,8 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
         return {"question": "", "joint": joint}
     texts, number = _measured(row, names)
     said = _said(texts, names)
+    if [number] == texts != [row[-1].text]:
+        said.add("ahead")  # `20 cm`
     numbers = [text for text in texts if text[0].isdigit() or text[0] == "."]
     own = [text for text in texts if names.is_name(text) and text != number]
     is_alone = len(texts) == 1 and not (
@@ -61,8 +63,8 @@ def sensors_of(word: str, names: Names) -> list[str]:
 
 
 def _said(texts: Sequence[str], names: Names) -> set[str]:
-    own = {text for text in texts if names.is_name(text)}
-    return {kind for kind in _KINDS for text in texts if text not in own and said_of(text, kind)}
+    said = [text for text in texts if not names.is_name(text)]
+    return {kind for kind in _KINDS for text in said if said_of(text, kind)}
 
 
 def _joint(texts: Sequence[str], names: Names) -> str:
