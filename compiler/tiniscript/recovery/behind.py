@@ -11,18 +11,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from tiniscript.base.source import Span
-from tiniscript.base.words import OTHER_WAY, WAYS, WORDS, nearest
+from tiniscript.base.words import OTHER_WAY, WAYS, WORDS, concept_of, nearest, said_of
 from tiniscript.recovery import lines
-from tiniscript.recovery.concepts import (
-    ENDED,
-    KNOWN,
-    Lexeme,
-    Names,
-    closed,
-    concept_of,
-    lexemes,
-    said_of,
-)
+from tiniscript.recovery.concepts import ENDED, KNOWN, Lexeme, Names, closed, lexemes
 from tiniscript.recovery.slots import MOVES
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS

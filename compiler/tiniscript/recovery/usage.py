@@ -18,16 +18,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
-from tiniscript.recovery.concepts import (
-    CALLED,
-    Lexeme,
-    Names,
-    concept_of,
-    lexemes,
-    plain,
-    said_of,
-    words_of,
-)
+from tiniscript.recovery.concepts import Names, concept_of, lexemes, plain, said_of, words_of
 from tiniscript.recovery.orders import block, made_up, orders, written
 from tiniscript.recovery.writing import laid_out, shortened, tokens_of, without_note
 from tiniscript.syntax.free_names import in_place_of
@@ -59,16 +50,15 @@ _NO_ORDER = ("value", "operator", "function", "setup", "forever")
 
 def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is wrong with a text, in words that say how it is written."""
-    ends = [each.values["right"] for each in found if each.code is codes.NOT_OPEN]
-    text = _Text(source, kit, "LOOP" if ends == ["LOOP"] else "")
+    text = _Text(source, kit)
+    text.lacks_loop = [it.values["right"] for it in found if it.code is codes.NOT_OPEN] == ["LOOP"]
     if any(each.code is codes.NEVER_ENDS for each in found):
         top = [each for each in found if each.code in _NOT_TOP]
         text.at_top = [source.position(each.span.start)[0] - 1 for each in top]
         found = [each for each in found if each not in top]
     found = text.with_name(found)
     told = [_told(text, each) for each in found[:_MANY]]
-    near = {it.values.get("near", "").partition("(")[0] for it in told}
-    is_near = bool(text.unopened) and text.unopened in near
+    is_near = text.lacks_loop and any(it.values.get("near", "")[:4] == "LOOP" for it in told)
     has_no_ends = is_near or any(it.code in (codes.BRACES, codes.DOTS) for it in told)
     reserved = {each.values["word"] for each in told if each.code is codes.RESERVED}
     unknown = {text.piece(it.span) for it in told if it.code in _OF_ITS_WORD}
@@ -92,10 +82,10 @@ def _told(text: _Text, found: Diagnostic) -> Diagnostic:
 
 
 class _Text:
-    def __init__(self, source: Source, kit: Kit, unopened: str) -> None:
+    def __init__(self, source: Source, kit: Kit) -> None:
         self.source = source
         self.kit = kit
-        self.unopened = unopened  # a header that an end is left for
+        self.lacks_loop = False  # an END_LOOP is left for a header
         self.at_top: list[int] = []  # lines of headers behind a block that lacks its end
 
     @property
@@ -111,10 +101,8 @@ class _Text:
         """Return the instruction around a place: between the separators of its line."""
         row, column = self.source.position(span.start)
         body = without_note(self.source.line_text(row))[0]
-        at = min(column - 1, len(body))
-        own = next(each for each in _PIECE.finditer(body) if each.end() >= at)
-        end = span.start - column + 1 + own.end()
-        begin = end - len(own[0].lstrip())
+        own = next(it for it in _PIECE.finditer(body) if it.end() >= min(column - 1, len(body)))
+        begin = span.start - column + 1 + own.end() - len(own[0].lstrip())
         return Span(begin, begin + len(own[0].strip()))
 
     def with_name(self, found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
@@ -176,11 +164,11 @@ class _Usage:
                            takes=usage if is_longer else "")  # fmt: skip
         return told._replace(span=self.found.span)
 
-    def usage(self, word: str, tokens: Sequence[Lexeme]) -> str:
+    def usage(self, word: str) -> str:
         """Return how an instruction is written: a block with its end, where the text has none."""
         if word not in BLOCK_ENDS or _ENDS.search(plain(self.source.text)):
             return _usage(word)
-        found = lines.read(tokens, self.names) if word == "LOOP" else []  # else a guess
+        found = lines.read(self.tokens, self.names) if word == "LOOP" else []  # else a guess
         is_head = bool(found) and [each.kind for each in found[0].items or ()] == ["open"]
         head = laid_out(found[0].tokens).strip("; ") if is_head else _usage(word)
         return f"{head}; ...; {BLOCK_ENDS[word]}"
@@ -199,7 +187,7 @@ class _Usage:
         first, sign = self.signs[0], "".join(self.signs[1:2])
         if parts := _MEMBER.match(self.source.text, self.found.span.start):  # `Serial.begin`
             right = self.names.meant(plain(parts[0].rpartition(".")[2]))
-            values = {"right": right, "usage": _usage(right)} if right in CALLED else {}
+            values = {"right": right, "usage": _usage(right)} if self.names.takes(right) else {}
             code = codes.OTHER_LANGUAGE if values else codes.UNKNOWN_WORD
             return Diagnostic(code, Span(*parts.span()), {"found": parts[0], **values})
         if instead := said_instead(first):
@@ -223,20 +211,15 @@ class _Usage:
             return self.says(codes.SWITCH_WHAT)
         if any(map(self.is_button, words)) and self.signs[1:2] != ["("]:
             return self.no_button()
-        endless = next((each for each in words if self.names.meant(each) == "FOREVER"), "")
-        if endless and not meant:
-            return self.translated(endless, "LOOP(FOREVER)")
         if any(said_of(each, "turn", "lap") for each in words):
             return self.turn(said)
         concept = self.names.meant(words[0] if words else "") or self.names.meant(meant)
         is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
-        others = {self.names.meant(each) for each in words if self.is_order(each)} - {concept}
-        is_order = is_order and not (concept == "S" and others)  # `vaya para adelante`
         if is_order and concept not in words[:1]:
             named = words[0] if self.names.meant(words[0]) else meant or words[0]
             if len(self.tokens) == 1 and not WORDS[concept].arguments:
                 return self.translated(named, concept)
-            usage = self.usage(concept, self.tokens)
+            usage = self.usage(concept)
             return self.says(codes.OTHER_LANGUAGE, found=named, right=concept, usage=usage)
         text = self.source[self.piece]
         if len(words) < 2 or {*self.signs} & {*COMPARISONS, "(", "="} or len(text) > _LONGEST:
@@ -287,8 +270,8 @@ class _Usage:
         """A word of the program's own that nothing teaches."""
         name, *signs = self.signs
         if [each.kind is NUMBER for each in self.tokens[1:]] == [False, True, False]:
-            if self.text.unopened:
-                return self.adds(near=self.text.unopened)
+            if self.text.lacks_loop:
+                return self.adds(near="LOOP")
         if len(name) < 3 or self.names.meant(name) or (signs and signs[0] != "("):
             return None
         lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.source.text)
@@ -328,18 +311,14 @@ class _Usage:
         if said:
             told = self.adds(fix=said.values["fix"])
             return told._replace(place=self.piece, repair=said.repair)
-        known = WORDS.get(word)
-        if known is None:
-            return self.found
-        is_alone = len(self.tokens) == 1 and bool(known.arguments)
-        return self.adds(
-            example=known.example if is_alone else "", usage=self.usage(word, self.tokens)
-        )
+        is_alone = len(self.tokens) == 1 and word in WORDS and WORDS[word].arguments
+        example = WORDS[word].example if is_alone else ""
+        return self.adds(example=example, usage=self.usage(word))
 
     def question(self) -> Diagnostic | None:
         """A question in words, in the brackets of a header; or nothing in brackets."""
         if self.signs[1:] == ["("] and self.signs[0] in WORDS:
-            return self.adds(usage=self.usage(self.signs[0], self.tokens[:1]))
+            return self.adds(usage=self.usage(self.signs[0]))
         if (said := self.foreign() or self.amount()) is not None:
             return said
         if self.tokens and self.names.meant(self.signs[0]) == "SHOW":
