@@ -44,13 +44,7 @@ def drawing_of(plan: Plan) -> str:
     bottom = layout.height + 10
     legend = _legend(plan, bottom)
     height = bottom + LEGEND_STEP * (len(legend)) + 6
-    title = escape(text("title", plan.language).format(robot=plan.robot))
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {layout.width} {height}" '
-        f'width="{layout.width}" height="{height}" font-family="{escape(FONT)}" font-size="14" '
-        f'role="img" aria-label="{title}">',
-        f"<title>{title}</title>",
-        f'<rect width="{layout.width}" height="{height}" fill="#ffffff"/>',
         *_board(plan, layout),
         *(_wire(route) for route in layout.routes),
         *_squares(layout, plan),
@@ -59,9 +53,24 @@ def drawing_of(plan: Plan) -> str:
         *(line for box in layout.boxes for line in _box(box, plan.language)),
         *_circles(layout),
         *legend,
+    ]
+    return svg_of(plan, "title", (layout.width, height), parts)
+
+
+def svg_of(plan: Plan, title_key: str, size: tuple[int, int], parts: Iterable[str]) -> str:
+    """Return a drawing of a plan, on white."""
+    title = escape(text(title_key, plan.language).format(robot=plan.robot))
+    width, height = size
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" '
+        f'width="{width}" height="{height}" font-family="{escape(FONT)}" font-size="14" '
+        f'role="img" aria-label="{title}">',
+        f"<title>{title}</title>",
+        f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
+        *parts,
         "</svg>",
     ]
-    return "\n".join(parts) + "\n"
+    return "\n".join(lines) + "\n"
 
 
 # -- texts
@@ -158,7 +167,7 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
     lines.append(text_at(shown, edge + 10 * inward, pin.y + 4.5, 62, anchor, 14, style))
     if pin.name in set(BOARD_RAILS) & set(plan.rails) and pin == _first(pin.name, layout):
         near, far = edge - 5 * inward, edge - 12 * inward
-        lines.append(_line(near, pin.y, far, pin.y, RAIL_INKS[pin.name]))
+        lines.append(line_to(near, pin.y, far, pin.y, RAIL_INKS[pin.name]))
         lines.append(_tag(pin.name, edge - 29 * inward, pin.y))
     if pin.number in ROW_AT_THE_END and plan.chip.name == "mega":
         first = min(
@@ -208,10 +217,12 @@ def _number(wire: Wire, x: int, y: int) -> str:
     )
 
 
-def _line(x1: float, y1: float, x2: float, y2: float, ink: str, width: float = 2.5) -> str:
+def line_to(
+    x1: float, y1: float, x2: float, y2: float, ink: str, width: float = 2.5, more: str = "",
+) -> str:  # fmt: skip
     return (
         f'<line x1="{x1:g}" y1="{y1:g}" x2="{x2:g}" y2="{y2:g}" stroke="{ink}" '
-        f'stroke-width="{width}"/>'
+        f'stroke-width="{width:g}"{more}/>'
     )
 
 
@@ -272,12 +283,12 @@ def _end(end: End, y: int, box: Box) -> list[str]:
     anchor = "end" if box.side == LEFT else "start"
     if end.wire:
         ink = INKS[end.wire.colour]
-        lines.append(_line(at(ZONE - 19), y, at(0), y, ink))
+        lines.append(line_to(at(ZONE - 19), y, at(0), y, ink))
         if end.to_ground:
             below = y + STEP
             lines += [
-                _line(at(AT_DOT), y, at(AT_DOT), below, ink),
-                _line(at(AT_DOT + 1), below, at(AT_TAG), below, ink),
+                line_to(at(AT_DOT), y, at(AT_DOT), below, ink),
+                line_to(at(AT_DOT + 1), below, at(AT_TAG), below, ink),
                 f'<circle cx="{at(AT_DOT):g}" cy="{y}" r="4.5" fill="{ink}"/>',
                 _resistor(end.to_ground, at(AT_NEAR), below),
                 _tag(GROUND, at(AT_TAG), below),
@@ -287,7 +298,7 @@ def _end(end: End, y: int, box: Box) -> list[str]:
         if end.beyond:
             lines.append(_resistor(end.beyond, at(AT_NEAR), y))
     elif end.rail:
-        lines.append(_line(at(AT_TAG), y, at(0), y, RAIL_INKS[end.rail]))
+        lines.append(line_to(at(AT_TAG), y, at(0), y, RAIL_INKS[end.rail]))
         lines.append(_tag(end.rail, at(AT_TAG), y))
     if end.name in RAILS and end.wire:
         lines.append(_tag(end.name, at(-28), y))
@@ -318,7 +329,7 @@ def _motors(box: Box, language: str) -> list[str]:
                                              strict=True)):  # fmt: skip
         x, y = outer + outward * 62, top + k * step + 18
         for rise in (-8, 8):
-            lines.append(_line(outer, y + rise, x, y + rise, LINE))
+            lines.append(line_to(outer, y + rise, x, y + rise, LINE))
         lines += [
             f'<circle cx="{x}" cy="{y}" r="24" fill="#ffffff" stroke="{LINE}" stroke-width="2"/>',
             text_at("M", x, y + 6, 40, "middle", 17, BOLD),

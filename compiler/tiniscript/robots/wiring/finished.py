@@ -6,11 +6,10 @@ is a proposal. Knows a plan; what a plan's texts may hold is escaped by `drawing
 
 from __future__ import annotations
 
-from html import escape
 from math import cos, radians, sin
 
 from tiniscript.robots.profile import Place
-from tiniscript.robots.wiring.drawing import BOLD, FAINT, FONT, LINE, RAIL_INKS, text_at
+from tiniscript.robots.wiring.drawing import BOLD, FAINT, LINE, RAIL_INKS, line_to, svg_of, text_at
 from tiniscript.robots.wiring.headers import SIDES
 from tiniscript.robots.wiring.plan import Part, Plan
 from tiniscript.robots.wiring.texts import text
@@ -24,6 +23,7 @@ ARROW = 30
 JAW = 46  # how far the arm of a servo reaches ahead
 BETWEEN_CM = 3  # from the middle line: so far is between the jaws
 PLATE, PARTS = "#f4f4f4", "#ffffff"
+THIN = "#888888", 1  # the line from a label
 BELOW = ' stroke-dasharray="5 4"'  # what is under the plate
 
 
@@ -51,19 +51,9 @@ class _Finished:
         self.height = self.y + self.length / 2 + MARGIN
 
     def svg(self) -> str:
-        language = self.plan.language
-        title = escape(text("finished", language).format(robot=self.plan.robot))
-        width, height = round(self.width), round(self.height)
-        return "\n".join([
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" '
-            f'width="{width}" height="{height}" font-family="{escape(FONT)}" font-size="14" '
-            f'role="img" aria-label="{title}">',
-            f"<title>{title}</title>",
-            f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
-            *self._plate(), *self._wheels(), *self._rows(), *self._servos(), *self._sensors(),
-            *self._sizes(),
-            "</svg>",
-        ]) + "\n"  # fmt: skip
+        parts = (self._plate, self._wheels, self._rows, self._servos, self._sensors, self._sizes)
+        lines = [line for part in parts for line in part()]
+        return svg_of(self.plan, "finished", (round(self.width), round(self.height)), lines)
 
     def say(self, key: str) -> str:
         return text(key, self.plan.language)
@@ -89,7 +79,7 @@ class _Finished:
             inner = x - side * across * 0.62  # under the boxes on the plate, as is the motor's end
             rows = (self.y - diameter * 0.17, self.y + diameter * 0.17)
             lines += [
-                *(_line(x, row, inner, row, LINE, more=BELOW) for row in rows),
+                *(line_to(x, row, inner, row, LINE, 1, BELOW) for row in rows),
                 _box(x - width / 2, self.y - diameter / 2, width, diameter, "#333333", corner=8),
             ]  # fmt: skip
             outside = self.left - 10 if side < 0 else self.right + 10
@@ -101,7 +91,7 @@ class _Finished:
             f'<circle cx="{self.x:g}" cy="{caster:g}" r="{radius:g}" fill="none" '
             f'stroke="{LINE}"{BELOW}/>',
             text_at(self.say("caster"), self.right + 10, caster + 5, BESIDE - 20),
-            _line(self.x + radius, caster, self.right + 6, caster),
+            line_to(self.x + radius, caster, self.right + 6, caster, *THIN),
         ]  # fmt: skip
         return lines
 
@@ -165,10 +155,10 @@ class _Finished:
                         f'stroke-linecap="round"/>'
                     )
             else:
-                lines.append(_line(x, edge + 10, x, edge - JAW, LINE, 7))
+                lines.append(line_to(x, edge + 10, x, edge - JAW, LINE, 7))
             row = first_row + k * ROW_STEP
             lines += [
-                _line(self.left - 4, row - 5, x - 26, edge + 19),
+                line_to(self.left - 4, row - 5, x - 26, edge + 19, *THIN),
                 text_at(part.title, self.left - 10, row, BESIDE - 20, "end", style=BOLD),
                 text_at(part.label, self.left - 10, row + 17, BESIDE - 20, "end", 12, FAINT),
             ]
@@ -191,9 +181,9 @@ class _Finished:
             near = outside + (6 if side == "left" else -6)
             edge = self.y - self.length / 2
             if y < edge:  # it is held before the plate
-                lines.append(_line(x, y, x, edge, LINE, 4))
+                lines.append(line_to(x, y, x, edge, LINE, 4))
             lines += [
-                _line(near, row - 5, x, y), *self._looks(place, x, y),
+                line_to(near, row - 5, x, y, *THIN), *self._looks(place, x, y),
                 text_at(name, outside, row, BESIDE - 20, anchor, style=BOLD),
                 text_at(labels.get(name, ""), outside, row + 17, BESIDE - 20, anchor, 12, FAINT),
             ]  # fmt: skip
@@ -209,8 +199,7 @@ class _Finished:
         ]  # fmt: skip
         points = " ".join(f"{a:g},{b:g}" for a, b in ((tip_x, tip_y), *ends))
         return [
-            f'<line x1="{x:g}" y1="{y:g}" x2="{tip_x:g}" y2="{tip_y:g}" stroke="{LINE}" '
-            f'stroke-width="2.5"/>',
+            line_to(x, y, tip_x, tip_y, LINE),
             f'<polygon points="{points}" fill="{LINE}"/>',
             f'<circle cx="{x:g}" cy="{y:g}" r="9" fill="{PARTS}" stroke="{LINE}" '
             f'stroke-width="2"/>',
@@ -233,14 +222,4 @@ def _box(
     return (
         f'<rect x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" rx="{corner}" '
         f'fill="{fill}" stroke="{ink}" stroke-width="1.5"/>'
-    )
-
-
-def _line(
-    x1: float, y1: float, x2: float, y2: float, ink: str = "#888888", width: float = 1,
-    more: str = "",
-) -> str:  # fmt: skip
-    return (
-        f'<line x1="{x1:g}" y1="{y1:g}" x2="{x2:g}" y2="{y2:g}" stroke="{ink}" '
-        f'stroke-width="{width:g}"{more}/>'
     )
