@@ -7,7 +7,7 @@ Knows what the bytes mean. The robot applies the trim to its motors
 from __future__ import annotations
 
 import struct
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tiniscript.link.messages import EXCHANGED, LEFT_REVERSED, PACE_BYTES, RIGHT_REVERSED
 from tiniscript.link.payloads import TrimReply
@@ -59,6 +59,10 @@ class Trim(NamedTuple):
         )
         pace = b"" if self.pace is None else self.pace.data()
         return struct.pack("<BbB", wheels, self.balance, self.least) + pace
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the trim as data for JSON."""
+        return {**self._asdict(), "pace": None if self.pace is None else self.pace._asdict()}
 
 
 def told(reply: TrimReply) -> Trim:

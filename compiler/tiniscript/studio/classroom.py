@@ -18,23 +18,19 @@ from dataclasses import dataclass, field
 from threading import RLock
 from time import monotonic
 
-from tiniscript import robots
 from tiniscript.lessons import catalogue
 from tiniscript.link.port_names import same_for_all
 from tiniscript.studio.class_keeping import (
-    MOST_LESSONS,
     MOST_PUPILS,
     NOTHING,
-    TEXT_CHARACTERS,
     Work,
-    is_lesson,
     is_token,
     plain_name,
 )
 from tiniscript.studio.entrances import new_token
 from tiniscript.studio.hosted_robot import HostedRobot
-from tiniscript.studio.hosting import PORT_CHARACTERS, Hosting, listed
-from tiniscript.studio.robot_link import BadRequest, Json
+from tiniscript.studio.hosting import Hosting, listed, port_of
+from tiniscript.studio.robot_link import BadRequest, Json, robot_of, whole
 from tiniscript.studio.serving import REQUEST_BYTES
 
 MOST_NAMES = 1000  # who has not been seen for longest is forgotten
@@ -280,26 +276,18 @@ class Classroom:
 
     def _hear_work(self, pupil: Pupil, request: Json) -> None:
         """Take what a page tells of its work; what it does not tell stays. Raises BadRequest."""
-        text, lessons = request.get("text"), request.get("lessons")
-        robot, is_right = request.get("robot"), request.get("is_right")
-        work = pupil.work
-        if text is not None:
-            if not isinstance(text, str):
-                raise BadRequest
-            work = work._replace(text=text[:TEXT_CHARACTERS])
-        if lessons is not None:
-            if not isinstance(lessons, list) or not all(is_lesson(each) for each in lessons):
-                raise BadRequest
-            work = work._replace(lessons=tuple(lessons[:MOST_LESSONS]))
-        if robot is not None:
-            if robot not in robots.names():
-                raise BadRequest
-            work = work._replace(robot=str(robot))
+        told = {name: request[name] for name in Work._fields if request.get(name) is not None}
+        if "robot" in told:
+            robot_of(told)
+        kept = {**pupil.work._asdict(), "lessons": list(pupil.work.lessons)}
+        work = Work.of({**kept, **told})
+        if work is None:
+            raise BadRequest
         if work != pupil.work:
             pupil.work = work
             pupil.version += 1
-        if isinstance(is_right, bool):
-            pupil.is_right = is_right
+        if isinstance(request.get("is_right"), bool):
+            pupil.is_right = request["is_right"]
         if request.get("took") is True:
             pupil.given = None
 
@@ -393,9 +381,9 @@ class Classroom:
             if given is not None:
                 self._give(given, request.get("gives") is True)
             elif do == "class_turn":
-                self._turn_s = _whole(request, "seconds", SHORTEST_S, LONGEST_S)
+                self._turn_s = whole(request, "seconds", SHORTEST_S, LONGEST_S)
             elif do == "class_places":
-                self._places = _whole(request, "places", 1, MOST_PUPILS)
+                self._places = whole(request, "places", 1, MOST_PUPILS)
             elif do == "class_code":
                 self.code = _new_code()
             elif do == "class_over":
@@ -603,24 +591,13 @@ def _may(asked: object) -> bool:
 
 def _given(request: Json) -> ClassRobot:
     """Return the robot of a request, with the name that it had last. Raises BadRequest."""
-    port = request.get("port")
-    if not isinstance(port, str) or not port.isprintable() or not port.strip():
-        raise BadRequest
-    if len(port) > PORT_CHARACTERS:
-        raise BadRequest
-    return ClassRobot(port.strip(), _name_of(port) if request.get("gives") is True else "")
+    port = port_of(request)
+    return ClassRobot(port, _name_of(port) if request.get("gives") is True else "")
 
 
 def _rows(kept: Json, name: str) -> list[Json]:
     found = kept.get(name)
     return [each for each in found if isinstance(each, dict)] if isinstance(found, list) else []
-
-
-def _whole(request: Json, name: str, low: int, high: int) -> int:
-    found = request.get(name)
-    if type(found) is not int or not low <= found <= high:
-        raise BadRequest
-    return found
 
 
 def _new_code() -> str:

@@ -10,14 +10,13 @@ from threading import Lock
 from time import monotonic
 from typing import Any
 
-from tiniscript import robots
 from tiniscript.base.languages import languages
 from tiniscript.base.source import printable
 from tiniscript.link import known_ports, ports
 from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.studio.attending import LATCH_S
 from tiniscript.studio.hosted_robot import HostedRobot
-from tiniscript.studio.robot_link import BadRequest, Json
+from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, robot_of, whole
 from tiniscript.virtual import directory
 
 NAME_CHARACTERS = 64  # of a page
@@ -57,10 +56,11 @@ class Hosting:
         if robot is None:
             return {"news": [{"over": "left", "said": "", "number": 0}]}
         if do == "stop":
-            robot.attending.stop(_count(request, "stops"))
+            robot.attending.stop(whole(request, "stops", 0, MOST_COUNT, 0))
         elif do == "leave":
             robot.leave()
-        return {"news": robot.attending.hear(_requests(request), _count(request, "seen"))}
+        seen = whole(request, "seen", 0, MOST_COUNT, 0)
+        return {"news": robot.attending.hear(_requests(request), seen)}
 
     def robot_of(self, page: str) -> HostedRobot | None:
         """Return what a page drives, or has driven last."""
@@ -84,9 +84,8 @@ class Hosting:
             each.join(END_S)
 
     def _connect(self, page: str, request: Json) -> Json:
-        port = _text(request, "port", PORT_CHARACTERS).strip()
-        robot, language = request.get("robot"), request.get("language")
-        if robot not in robots.names() or language not in languages() or not port:
+        port, robot, language = port_of(request), robot_of(request), request.get("language")
+        if language not in languages():
             raise BadRequest
         with self._lock:
             self._forget_ended()
@@ -99,7 +98,7 @@ class Hosting:
                 return {"failure": "other_tab"}
             if len(taken) >= MOST_ROBOTS:
                 return {"failure": "too_many"}
-            made = HostedRobot(port, str(robot), str(language))
+            made = HostedRobot(port, robot, str(language))
             made.attending.latch(self._latched_until_s, stops=False)
             self._by_page[page] = made
         return {}
@@ -151,6 +150,14 @@ def listed() -> list[Json]:
     ]
 
 
+def port_of(request: Json) -> str:
+    """Return the port of a request. Raises BadRequest."""
+    port = _text(request, "port", PORT_CHARACTERS).strip()
+    if not port:
+        raise BadRequest
+    return port
+
+
 def _text(request: Json, name: str, most: int) -> str:
     found = request.get(name)
     if not isinstance(found, str) or not 1 <= len(found) <= most or not found.isprintable():
@@ -163,12 +170,5 @@ def _requests(request: Json) -> list[Json]:
     if not isinstance(found, list) or len(found) > MOST_ASKED:
         raise BadRequest
     if not all(isinstance(each, dict) for each in found):
-        raise BadRequest
-    return found
-
-
-def _count(request: Json, name: str) -> int:
-    found = request.get(name, 0)
-    if type(found) is not int:
         raise BadRequest
     return found

@@ -37,6 +37,7 @@ LONGEST_MS = 20_000
 MOST_WAITING = 8  # requests at a time
 TEXT_CHARACTERS = 200
 MOST_EVENTS = 200  # at a time
+MOST_COUNT = 2**31
 
 
 class BadRequest(Exception):
@@ -80,7 +81,7 @@ class RobotLink:
 
     def ask(self, request: Json) -> None:
         """Begin a request; its answer is among the news, with its `id`. Raises BadRequest, Gone."""
-        number, do = _number(request, "id", 0, 2**31), request.get("do")
+        number, do = whole(request, "id", 0, MOST_COUNT), request.get("do")
         if do == "stop":
             self.stop()
             self._answers.append({"id": number, "ok": True})
@@ -88,7 +89,7 @@ class RobotLink:
         if not isinstance(do, str) or do not in _MAKERS or len(self._asked) >= MOST_WAITING:
             raise BadRequest
         make = _MAKERS[do](request)
-        limit_ms = _number(request, "limit_ms", 1, LONGEST_MS, LIMIT_MS)
+        limit_ms = whole(request, "limit_ms", 1, LONGEST_MS, LIMIT_MS)
         refused = self._refused(request) if "image" in request else None
         if refused is not None:
             self._answers.append({"id": number, **self._failure(refused)})
@@ -153,7 +154,7 @@ class RobotLink:
         robot = self._connection.robot
         if robot is None:
             return None
-        return refusal(_image(request), robots.load(_robot(request)), robot)
+        return refusal(_image(request), robots.load(robot_of(request)), robot)
 
     def _answer(self, pending: PendingRequest[Any]) -> Json:
         reply = pending.outcome
@@ -171,9 +172,7 @@ class RobotLink:
                 "saved": saved_name(values.saved),
             }
         if isinstance(values, TrimReply):
-            trim = told(values)
-            pace = None if trim.pace is None else trim.pace._asdict()
-            return {"ok": True, "trim": {**trim._asdict(), "pace": pace}}
+            return {"ok": True, "trim": told(values).as_data()}
         robot = self._connection.robot
         if isinstance(values, HelloReply) and robot is not None:
             return {"ok": True, "robot": about(robot)}
@@ -231,13 +230,13 @@ _Make = Callable[[Requester], PendingRequest[Any]]
 
 
 def _upload(request: Json) -> _Make:
-    image, kit = _image(request), robots.load(_robot(request)).kit.fingerprint
+    image, kit = _image(request), robots.load(robot_of(request)).kit.fingerprint
     runs = request.get("runs") is True
     return lambda session: session.upload(image, runs, kit=kit)
 
 
 def _live(request: Json) -> _Make:
-    image, kit = _image(request), robots.load(_robot(request)).kit.fingerprint
+    image, kit = _image(request), robots.load(robot_of(request)).kit.fingerprint
     return lambda session: session.live(image.code, kit if image.devices else 0)
 
 
@@ -262,8 +261,8 @@ def _trim(request: Json) -> _Make:
         found.get("is_exchanged") is True,
         found.get("is_left_reversed") is True,
         found.get("is_right_reversed") is True,
-        _number(found, "balance", -MOST_BALANCE, MOST_BALANCE),
-        _number(found, "least", 0, MOST_LEAST),
+        whole(found, "balance", -MOST_BALANCE, MOST_BALANCE),
+        whole(found, "least", 0, MOST_LEAST),
     )
     return lambda session: session.trim(trim.data())
 
@@ -282,14 +281,16 @@ _MAKERS: dict[str, Callable[[Json], _Make]] = {
 }
 
 
-def _number(found: Json, name: str, low: int, high: int, usual: int | None = None) -> int:
+def whole(found: Json, name: str, low: int, high: int, usual: int | None = None) -> int:
+    """Return a number of a request. Raises BadRequest."""
     number = found.get(name, usual)
     if type(number) is not int or not low <= number <= high:
         raise BadRequest
     return number
 
 
-def _robot(request: Json) -> str:
+def robot_of(request: Json) -> str:
+    """Return the name of a shipped robot. Raises BadRequest."""
     robot = request.get("robot")
     if robot not in robots.names():
         raise BadRequest

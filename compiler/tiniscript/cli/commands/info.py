@@ -7,7 +7,7 @@ from argparse import Namespace
 from contextlib import suppress
 
 from tiniscript.cli import inputs
-from tiniscript.cli.commands.trim import as_data, words
+from tiniscript.cli.commands.trim import words
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
@@ -89,7 +89,7 @@ class Description:
             "slot": status.slot if status.saved == SAVED_STORED else None,
             "fault": fault,
             "reset": row_name(RESETS, self.hello.reset),
-            "trim": None if self.trim is None else as_data(self.trim),
+            "trim": None if self.trim is None else self.trim.as_data(),
             "damaged": status.damaged,
             "dropped": status.dropped,
             "framing": status.framing,

@@ -80,17 +80,12 @@ def _given(options: Namespace, language: str) -> dict[str, Any]:
 def _print(connection: Connection, key: str, trim: Trim, is_json: bool) -> None:
     if is_json:
         print(json.dumps({"robot": connection.device_info.name, "port": connection.port,
-                          **as_data(trim)}))  # fmt: skip
+                          **trim.as_data()}))  # fmt: skip
         return
     said = text(key, connection.language).format(
         robot=connection.name, port=shown(connection.port), trim=words(trim, connection.language)
     )
     print(said)
-
-
-def as_data(trim: Trim) -> dict[str, Any]:
-    pace = None if trim.pace is None else trim.pace._asdict()
-    return {**trim._asdict(), "pace": pace}
 
 
 def words(trim: Trim, language: str) -> str:
