@@ -59,8 +59,9 @@ fi
 # pytest rewrites each file's assertions and keeps that: once here, and not in each of its processes.
 "$PYTHON" -m pytest --collect-only "$@" >/dev/null 2>&1 &
 COLLECTS=$!
-# The page of tsc studio, of packages from npm; without it its tests are skipped and say so.
-run tools.builds.studio || [ -z "${CI:-}" ]
+# The page of tsc studio, of packages from npm, unless it is of these sources; without it its tests are
+# skipped and say so.
+"$PYTHON" -m tools.builds.studio --check 2>/dev/null || run tools.builds.studio || [ -z "${CI:-}" ]
 wait "$COLLECTS" || true # what is wrong the tests say
 # A test that fails beside others runs once more, alone: one that passes there depends on the load. It is
 # named, so that somebody mends it. Where more than three fail, none of them runs again.
