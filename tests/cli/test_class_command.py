@@ -303,6 +303,7 @@ def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
         name="Tini", do=lambda make: None, failure=AssertionError, port="/dev/ttyUSB0",
         wait=lambda request: Reply(STATUSES["BAD_VALUE"]),
     )  # fmt: skip
+    told.ask = partial(Connection.ask, cast(Connection, told))
     told.ask_or = partial(Connection.ask_or, cast(Connection, told))
     with pytest.raises(CommandError) as found:
         robot_broker.use(cast(Connection, told), None, Namespace())

@@ -204,7 +204,7 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
             given.append(data)
 
     class Connected:
-        def give(self, make: Callable[[Asked], None]) -> None:
+        def ask(self, make: Callable[[Asked], None], taken: object) -> None:
             if stops:
                 raise CommandError(3, stops.pop())
             make(Asked())

@@ -22,8 +22,6 @@ from tiniscript.library import install_advice
 from tiniscript.robots.ports import AVRS, ESP32S
 from tiniscript.robots.profile import ProfileRefused, Robot
 
-__all__ = ("BOARDS", "firmware", "on_boards", "print_list", "row")
-
 LOG = "build.log"  # the output of the last failed build, in the folder of the ready files
 MINUTES, MINUTES_ESP32 = (
     3,
@@ -57,11 +55,8 @@ def firmware(robot: Robot, options: Namespace, language: str) -> Ready:
         return found
     if sources is None:
         raise CommandError(2, "flash_no_sources")
-    values = {"robot": robot.name, "board": robot.board.chip}
-    _fetch(robot, options, language)
-    with _failures(values):
-        with _shown(robot, language) as look:
-            data = building.build(sources, robot, look)
+    with _built(robot, options, language) as look:
+        data = building.build(sources, robot, look)
         return ready.keep(ready.title_of(robot), robot.board.chip, sources.digest(robot), data)
 
 
@@ -87,49 +82,18 @@ def upload(robot: Robot, port: str | None, options: Namespace, language: str) ->
     sources = building.sources()
     if sources is None:
         raise CommandError(2, "flash_no_sources")
-    values = {"robot": robot.name, "board": robot.board.chip}
-    _fetch(robot, options, language)
-    with _failures({**values, "port": shown(port or "")}), _shown(robot, language) as look:
+    with _built(robot, options, language, port=shown(port or "")) as look:
         building.upload(sources, robot, port, look)
 
 
 @contextmanager
-def _failures(values: dict[str, str]) -> Iterator[None]:
-    """Raise CommandError for all that can fail while firmware is made."""
-    try:
-        yield
-    except building.CannotBuild as why:
-        raise _failure(why, values) from None
-    except OSError as why:
-        folder = shown(str(ready.cache()))
-        raise CommandError(2, "flash_no_room", why=why, folder=folder) from None
-
-
-def _fetch(robot: Robot, options: Namespace, language: str) -> None:
-    """Have what builds the firmware of a robot, if the person agrees. Raises CommandError.
-
-    PlatformIO fetches the compiler itself, when it builds.
-    """
-    values = {"robot": robot.name, "board": robot.board.chip}
-    has_platformio = building.platformio() is not None
-    if not has_platformio and install_advice.installing(install_advice.FIRMWARE) is None:
-        raise _failure(building.CannotBuild(building.CannotBuild.NO_PLATFORMIO), values)
-    platformio = Part("fetch_platformio", building.PLATFORMIO_MB)
-    compiler = Part("fetch_compiler", building.missing_mb(robot))
-    parts = [*([] if has_platformio else [platformio]), *([compiler] if compiler.mb else [])]
-    if not parts:
-        return
-    minutes = MINUTES_ESP32 if robot.board.chip in ESP32S else MINUTES
-    missing = text("flash_missing", language).format(**values)
-    fetching.agree(missing, parts, minutes, options, language)
-    if not has_platformio:
-        fetching.install(install_advice.FIRMWARE, platformio, language)
-
-
-@contextmanager
-def _shown(robot: Robot, language: str) -> Iterator[Callable[[Seen], None]]:
-    """Show the progress of a build."""
-    values = {"robot": robot.name, "board": robot.board.chip}
+def _built(
+    robot: Robot, options: Namespace, language: str, **more: str
+) -> Iterator[Callable[[Seen], None]]:
+    """Fetch what builds firmware, and show the progress. Raises CommandError for all that can fail
+    then."""
+    values = {"robot": robot.name, "board": robot.board.chip, **more}
+    _fetch(robot, values, options, language)
     print(text("flash_builds", language).format(**values), file=sys.stderr, flush=True)
     progress = Progress(language, 100)
     fetched = ""
@@ -150,8 +114,33 @@ def _shown(robot: Robot, language: str) -> Iterator[Callable[[Seen], None]]:
 
     try:
         yield look
+    except building.CannotBuild as why:
+        raise _failure(why, values) from None
+    except OSError as why:
+        folder = shown(str(ready.cache()))
+        raise CommandError(2, "flash_no_room", why=why, folder=folder) from None
     finally:
         progress.end()
+
+
+def _fetch(robot: Robot, values: dict[str, str], options: Namespace, language: str) -> None:
+    """Have what builds the firmware of a robot, if the person agrees. Raises CommandError.
+
+    PlatformIO fetches the compiler itself, when it builds.
+    """
+    has_platformio = building.platformio() is not None
+    if not has_platformio and install_advice.installing(install_advice.FIRMWARE) is None:
+        raise _failure(building.CannotBuild(building.CannotBuild.NO_PLATFORMIO), values)
+    platformio = Part("fetch_platformio", building.PLATFORMIO_MB)
+    compiler = Part("fetch_compiler", building.missing_mb(robot))
+    parts = [*([] if has_platformio else [platformio]), *([compiler] if compiler.mb else [])]
+    if not parts:
+        return
+    minutes = MINUTES_ESP32 if robot.board.chip in ESP32S else MINUTES
+    missing = text("flash_missing", language).format(**values)
+    fetching.agree(missing, parts, minutes, options, language)
+    if not has_platformio:
+        fetching.install(install_advice.FIRMWARE, platformio, language)
 
 
 def _failure(why: CannotBuild, values: dict[str, str]) -> CommandError:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from shutil import get_terminal_size
 from textwrap import wrap
 
@@ -21,22 +21,14 @@ NARROWEST = 40
 Row = tuple[str, str]  # the command, and its description
 
 
-def show_verb(verb: str, language: str) -> None:
-    pager.show(of(verb, language, _width()), language)
+def show(page: Callable[[str, int], str], language: str) -> None:
+    pager.show(page(language, _width()), language)
 
 
-def show_first(language: str) -> None:
-    pager.show(overview(language, _width()), language)
-
-
-def show_all(language: str) -> None:
-    pager.show(everything(language, _width()), language)
-
-
-def show_found(verbs: Iterable[str], language: str) -> None:
+def listed(verbs: Iterable[str], language: str, width: int = WIDTH) -> str:
+    """Return what verbs do, as a list."""
     rows = [_row(verb, language) for verb in verbs]
-    left = _left(rows, _width() * 4 // 10)
-    pager.show("\n".join(_columns(rows, left, _width())) + "\n", language)
+    return "\n".join(_columns(rows, _left(rows, width * 4 // 10), width)) + "\n"
 
 
 def of(verb: str, language: str, width: int = WIDTH) -> str:
@@ -53,10 +45,9 @@ def of(verb: str, language: str, width: int = WIDTH) -> str:
 
 def overview(language: str, width: int = WIDTH) -> str:
     """Return the help of `tsc`: the verbs that most people need, with an example each."""
-    rows = [_row(verb, language) for verb in FIRST]
     parts = [
         _paragraphs(said("title", language), width),
-        "\n".join(_columns(rows, _left(rows, width * 4 // 10), width)),
+        listed(FIRST, language, width).rstrip("\n"),
         "\n".join(_options(shown_of("tsc"), language, width)),
         _paragraphs(said("more", language), width),
     ]

@@ -6,6 +6,7 @@ import re
 import sys
 from argparse import ArgumentParser, HelpFormatter, Namespace
 from collections.abc import Sequence
+from functools import partial
 from typing import NoReturn
 
 from tiniscript import robots
@@ -62,9 +63,9 @@ class Options(ArgumentParser):
         """Return the options, or None after printing the help that the user has asked for."""
         own = arguments[: arguments.index("--")] if "--" in arguments else arguments
         if "-h" in own or "--help" in own:
-            from tiniscript.cli.help import show_verb
+            from tiniscript.cli.help import of, show
 
-            show_verb(self.verb, self.language)
+            show(partial(of, self.verb), self.language)
             return None
         options = self.parse_args(arguments, Namespace(verb=self.verb, language=self.language))
         for option in self.table:

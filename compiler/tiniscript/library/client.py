@@ -6,7 +6,7 @@ the command puts their reason and values into sentences of its own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager, suppress
 from time import monotonic, sleep
 from typing import TYPE_CHECKING, TypeVar
@@ -89,6 +89,12 @@ class Client:
         finally:
             self.line.close()
 
+    @property
+    def device_info(self) -> DeviceInfo:
+        """The robot's answer to HELLO; call `meet` first."""
+        assert self.line.robot is not None
+        return self.line.robot
+
     # -- requests: all raise RobotError where the connection has ended ----------------------------
 
     def meet(self, board: str = "", is_patient: Callable[[], bool] = lambda: True) -> DeviceInfo:
@@ -100,10 +106,9 @@ class Client:
         reply = self.hello(board)
         while reply.status == CANCELLED and is_patient():
             reply = self.wait(self.search())
-        robot = self.line.robot
-        if reply.status or robot is None:
+        if reply.status or self.line.robot is None:
             raise self.failure(reply)
-        return robot
+        return self.line.robot
 
     def hello(self, board: str = "") -> Reply[HelloReply]:
         """Send HELLO, but not so early that a board stays in its bootloader."""
@@ -146,10 +151,12 @@ class Client:
         with self._connected():
             return self.line.wait(request, watch)
 
-    def ask(self, make: Callable[[Requester], PendingRequest[T]]) -> Reply[T]:
-        """Make a request and return its reply, which is OK. Raises RobotError."""
+    def ask(
+        self, make: Callable[[Requester], PendingRequest[T]], taken: Collection[int] = ()
+    ) -> Reply[T]:
+        """Make a request and return its reply, which is OK or `taken`. Raises RobotError."""
         reply = self.wait(self.do(make))
-        if reply.status:
+        if reply.status and reply.status not in taken:
             raise self.failure(reply)
         return reply
 
@@ -169,9 +176,8 @@ class Client:
         It is refused before any byte is sent where the robot has another kit. `draw` gets the
         number of code bytes that have arrived.
         """
-        assert self.line.robot is not None
         profile = profile or self.profile
-        refused = refusal(image, profile, self.line.robot)
+        refused = refusal(image, profile, self.device_info)
         if refused is not None:
             return refused
         kit = profile.kit.fingerprint

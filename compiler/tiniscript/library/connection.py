@@ -99,8 +99,7 @@ class RobotConnection:
     @property
     def info(self) -> RobotInfo:
         """What the robot reports of itself."""
-        device_info = self._client.line.robot
-        assert device_info is not None
+        device_info = self._client.device_info
 
         profile = of_kit(device_info.kit)
         name = None if profile is None else profile.name
@@ -142,8 +141,7 @@ class RobotConnection:
                 "live_button" if ready.start == "SB" else "ping_program", self.language
             )
         image, kit = ready._image, ready._profile.kit.fingerprint
-        assert self._client.line.robot is not None
-        refused = refusal(image, ready._profile, self._client.line.robot)
+        refused = refusal(image, ready._profile, self._client.device_info)
         if refused is not None:
             raise self._client.failure(refused)
         reply = self._client.ask(
@@ -298,9 +296,6 @@ class RobotConnection:
         return Receipt(receipt.program, saved_name(receipt.saved), is_running)
 
 
-SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
-
-
 def connect(
     port: str | None = None, *, robot: str | os.PathLike[str] | None = None,
     baud: int | None = None, language: Language = "en",
@@ -314,7 +309,7 @@ def connect(
     """
     profile = profile_of(robots.DEFAULT if robot is None else robot, language)
     if baud is not None:
-        whole("baud", baud, SLOWEST_BAUD, FASTEST_BAUD, language)
+        whole("baud", baud, opening.SLOWEST_BAUD, opening.FASTEST_BAUD, language)
     if port is None:
         port = _usual_port(language)
     elif not isinstance(port, str) or not port.strip() or not port.isprintable():

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 BUSY_S = 3.0  # timeout for a busy port: its owner may be leaving, or be about to share it
 STOP_BUSY_S = 10.0  # the same for a stop: an owner with a silent robot gives up only slowly
 AGAIN_S = 0.05
+SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
 OPEN_S = 20.0  # timeout for opening a port
 SHOWN = 200  # characters of a name in a sentence
 

@@ -20,11 +20,6 @@ SPACE = "tiniscript"
 BOARDS = (*AVRS, *ESP32S)
 
 
-def fits(robot: Robot) -> bool:
-    """Return whether there is firmware for the robot's chip."""
-    return robot.board.chip in BOARDS
-
-
 def header(wired: Sequence[Robot], made_by: str) -> str:
     """Return the header of a robot. `wired` is one robot, repeated for each board that it fits."""
     parts: dict[str, list[Robot]] = {}

@@ -10,16 +10,13 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import text
 from tiniscript.robots import firmware
+from tiniscript.robots.profile import Robot
 
 SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the place in it
 
 
 def run(options: Namespace, language: str) -> int:
-    robot = inputs.robot(options, language).speaking(language)
-    if not firmware.fits(robot):
-        raise CommandError(
-            2, "no_firmware", chip=robot.board.chip, known=", ".join(firmware.BOARDS)
-        )
+    robot = wired(options, language).speaking(language)
     header = firmware.header([robot], "tsc board, from a robot profile.")
     if not outputs.put(options.output, header.encode()):
         return 0
@@ -28,6 +25,15 @@ def run(options: Namespace, language: str) -> int:
         file=inputs.shown(options.output), robot=robot.name, chip=robot.board.chip, now=now
     ))  # fmt: skip
     return 0
+
+
+def wired(options: Namespace, language: str) -> Robot:
+    """Return the robot of the options. Raises CommandError where no firmware fits its board."""
+    robot = inputs.robot(options, language)
+    if robot.board.chip not in firmware.BOARDS:
+        known = ", ".join(firmware.BOARDS)
+        raise CommandError(2, "no_firmware", chip=robot.board.chip, known=known)
+    return robot
 
 
 def _next(robot: str, output: Path, chip: str, language: str) -> str:

@@ -14,7 +14,7 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.robot.connect import FASTEST_BAUD, SLOWEST_BAUD, opening_port
+from tiniscript.cli.robot.connect import baud_of, opening_port
 from tiniscript.cli.texts import text
 from tiniscript.conformance import port_checks
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, Verdict, verdicts
@@ -63,8 +63,7 @@ def _port(options: Namespace, language: str) -> int:
     if options.timeout is not None:
         raise CommandError(2, "conform_timeout")
     port = inputs.port(options.port)
-    usual = robots.load(robots.DEFAULT).board.baud
-    baud = whole_number("--baud", options.baud, usual, SLOWEST_BAUD, FASTEST_BAUD, language)
+    baud = baud_of(options, robots.load(robots.DEFAULT), language)
     checks = port_checks.all_checks(link_kit())
     checks = [check for check in checks if (options.only or "") in check.name]
     if not checks:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from functools import partial
 
 from tiniscript.base.languages import languages
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.help import show_all, show_first, show_found, show_verb
+from tiniscript.cli.help import everything, listed, of, overview, show
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.verbs import VERBS, said
 from tiniscript.cli.verbless import meant, refuse, verbs_for
@@ -15,16 +16,16 @@ from tiniscript.cli.verbless import meant, refuse, verbs_for
 def run(options: Namespace, language: str) -> int:
     about = " ".join(options.about)
     if not about:
-        show_first(language)
+        show(overview, language)
     elif any(about in said("all", each).split() for each in languages()):
-        show_all(language)
+        show(everything, language)
     elif about in VERBS:
-        show_verb(about, language)
+        show(partial(of, about), language)
     else:
         found = [] if meant(about) else verbs_for(about)
         if not found and " " in about:
             raise CommandError(2, "none_does", found=shown(about))
         if not found:
             refuse(about)
-        show_found(found, language)
+        show(partial(listed, found), language)
     return 0

@@ -9,6 +9,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import connected
 from tiniscript.cli.texts import text
 from tiniscript.link.messages import NAME_BYTES
+from tiniscript.link.requests import TAKEN
 
 
 def run(options: Namespace, language: str) -> int:
@@ -18,7 +19,7 @@ def run(options: Namespace, language: str) -> int:
     data = name_bytes(name)
     with connected(options, language) as connection:
         connection.meet()
-        reply = connection.give(lambda session: session.name(data))
+        reply = connection.ask(lambda session: session.name(data), TAKEN)
         connection.remember(name)
         if reply.status:  # the name is set, but may not be saved
             raise connection.failure(reply)

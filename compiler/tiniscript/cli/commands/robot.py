@@ -24,7 +24,7 @@ from tiniscript.cli.terminal.keys import Keys, is_in_front
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.cli.terminal.world_drawing import WorldPicture
 from tiniscript.cli.texts import text
-from tiniscript.library import install_advice
+from tiniscript.library import install_advice, opening
 from tiniscript.link.keys import KeyFile
 from tiniscript.virtual import directory
 from tiniscript.virtual.computer import Computer
@@ -35,7 +35,6 @@ from tiniscript.virtual.transports import Transports, can_have_terminal
 if TYPE_CHECKING:
     from tiniscript.virtual.announcement import Announcement
 
-FASTEST_BAUD = 2_000_000
 MEMORY_BYTES = 1024  # of an Uno's EEPROM
 SAVE_S = 1.0  # between two looks at what the robot keeps
 QUIT = "qQ\x04"
@@ -44,7 +43,8 @@ QUIT = "qQ\x04"
 def run(options: Namespace, language: str) -> int:
     profile = inputs.robot(options, language)
     port = whole_number("--listen", options.listen, 0, 0, 65535, language)
-    baud = whole_number("--baud", options.baud, profile.board.baud, 0, FASTEST_BAUD, language)
+    usual, most = profile.board.baud, opening.FASTEST_BAUD
+    baud = whole_number("--baud", options.baud, usual, 0, most, language)
     pushes = sorted(
         [(time_ms, PUSH_MS) for time_ms in _pushes_ms("--button-at", options.button_at)]
         + [(time_ms, HOLD_MS) for time_ms in _pushes_ms("--hold-at", options.hold_at)]

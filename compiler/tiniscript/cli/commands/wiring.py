@@ -10,9 +10,8 @@ from textwrap import wrap
 from rich.cells import cell_len, set_cell_size
 
 from tiniscript.cli import inputs, outputs
-from tiniscript.cli.errors import CommandError
+from tiniscript.cli.commands.board import wired
 from tiniscript.cli.texts import text
-from tiniscript.robots import firmware
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.page import rail_rows, wire_rows
 from tiniscript.robots.wiring.plan import plan_of
@@ -22,12 +21,7 @@ NARROWEST = 16  # a column on a terminal that is too narrow for the table
 
 
 def run(options: Namespace, language: str) -> int:
-    robot = inputs.robot(options, language)
-    if not firmware.fits(robot):
-        raise CommandError(
-            2, "no_firmware", chip=robot.board.chip, known=", ".join(firmware.BOARDS)
-        )
-
+    robot = wired(options, language)
     plan = plan_of(robot, language)
     if options.output is None:
         _print_rows(wire_rows(plan))

@@ -32,7 +32,7 @@ from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
 from tiniscript.link.outcomes import Event, Gone
 from tiniscript.link.port_names import is_address
-from tiniscript.link.requests import TAKEN, DeviceInfo, Reply
+from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.statuses import sentence
 from tiniscript.robots import given
 from tiniscript.robots.profile import Robot
@@ -48,7 +48,6 @@ T = TypeVar("T")
 SHARED = ("doctor", "link", "live", "monitor", "start", "upload")
 STOP_S = 1.5  # timeout for a stop when the command ends and may have no reader
 VIRTUAL = ""  # no port: this command starts its own virtual robot
-SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
 
 
 def connected(options: Namespace, language: str) -> Connection:
@@ -57,7 +56,8 @@ def connected(options: Namespace, language: str) -> Connection:
 
 def baud_of(options: Namespace, robot: Robot, language: str) -> int:
     default = robot.board.baud
-    return whole_number("--baud", options.baud, default, SLOWEST_BAUD, FASTEST_BAUD, language)
+    low, high = opening.SLOWEST_BAUD, opening.FASTEST_BAUD
+    return whole_number("--baud", options.baud, default, low, high, language)
 
 
 class Connection(Client):
@@ -168,37 +168,19 @@ class Connection(Client):
         opening.remember(self.port, name)
 
     @property
-    def device_info(self) -> DeviceInfo:
-        """The robot's answer to HELLO; call `meet` first."""
-        assert self.line.robot is not None
-        return self.line.robot
-
-    @property
     def name(self) -> str:
         """The robot's name for messages: its own, else that of its profile, else its port."""
         if self.device_info.name:
             return shown(self.device_info.name)
         return shipped_of_kit(self.device_info.kit) or text("robot", self.language)
 
-    def give(self, make: Callable[[Requester], PendingRequest[T]]) -> Reply[T]:
-        """Send data for the robot to keep; raise CommandError if it refuses.
-
-        If the reply is not OK, the robot has not saved the data yet.
-        """
-        reply = self.wait(self.do(make))
-        if reply.status and reply.status not in TAKEN:
-            raise self.failure(reply)
-        return reply
-
     def ask_or(
         self, make: Callable[[Requester], PendingRequest[T]], key: str, *statuses: str
     ) -> Reply[T]:
         """Make a request, of which these refusals have the sentence `key`. Raises CommandError."""
-        reply = self.wait(self.do(make))
-        if reply.status in [STATUSES[each] for each in statuses]:
-            raise CommandError(3, key, robot=self.name)
+        reply = self.ask(make, [STATUSES[each] for each in statuses])
         if reply.status:
-            raise self.failure(reply)
+            raise CommandError(3, key, robot=self.name)
         return reply
 
     def watch(self, end_s: float | None) -> Iterator[tuple[int, Event] | None]:

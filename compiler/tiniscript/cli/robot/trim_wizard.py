@@ -15,6 +15,7 @@ from tiniscript.cli.robot.program_upload import follow_line
 from tiniscript.cli.terminal import asking
 from tiniscript.cli.texts import text
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
+from tiniscript.link.requests import TAKEN
 from tiniscript.link.trim import MOST_PACE, Pace, Trim
 
 TURNING = 60  # percent, while the user looks at a motor
@@ -53,13 +54,13 @@ def _give_back(connection: Connection, before: Trim) -> None:
     """Restore the robot's former trim, with retries: a stop may still be in progress."""
     for _ in range(TRIES - 1):
         try:
-            connection.give(lambda session: session.trim(before.data()))
+            connection.ask(lambda session: session.trim(before.data()), TAKEN)
         except CommandError as failure:
             if not _is_there(failure):
                 raise
         else:
             return
-    connection.give(lambda session: session.trim(before.data()))
+    connection.ask(lambda session: session.trim(before.data()), TAKEN)
 
 
 class TrimWizard:
@@ -156,7 +157,7 @@ class TrimWizard:
             self._set(found)
 
     def _set(self, trim: Trim) -> None:
-        self.connection.give(lambda session: session.trim(trim.data()))  # kept at the end
+        self.connection.ask(lambda session: session.trim(trim.data()), TAKEN)  # kept at the end
 
     def _drive(self, line: str) -> None:
         if follow_line(self.connection, line, EventPrinter(self.language), lambda event: True):

@@ -48,10 +48,6 @@ class FleetTable:
         self.screen.rest()
         self.screen.draw(self, time.monotonic() * 1000)
 
-    def _columns(self) -> tuple[list[str], list[str]]:
-        names = [shown(member.name or "?") for member in self.members]
-        return names, [shown(member.target.port) for member in self.members]
-
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
         """Return at most `height` lines: those that are not done first, where not all fit."""
         if not self.members:
@@ -65,15 +61,13 @@ class FleetTable:
             rows.sort(key=lambda member: member.mark == "ok")  # the others stay in their order
             hidden = len(rows) - max(0, height - 2)
             rows = rows[: len(rows) - hidden]
-        names = [shown(member.name or "?") for member in rows]
-        ports = [shown(member.target.port) for member in rows]
         # of hidden rows, too, so that no column jumps when another row is shown
         self.wide = [
             max(known, *map(cell_len, column))
-            for known, column in zip(self.wide, self._columns(), strict=True)
+            for known, column in zip(self.wide, _columns(self.members), strict=True)
         ]
         wide = self.wide
-        for member, name, port in zip(rows, names, ports, strict=True):
+        for member, name, port in zip(rows, *_columns(rows), strict=True):
             line = Text(f"{set_cell_size(name, wide[0])}  {set_cell_size(port, wide[1])}  ")
             line.append(member.said(self.language), style=STYLES[member.mark])
             lines.append(line)
@@ -83,3 +77,9 @@ class FleetTable:
         for line in lines:
             line.truncate(max(1, width), overflow="ellipsis")
         return lines[: max(1, height)]
+
+
+def _columns(members: Sequence[Member]) -> tuple[list[str], list[str]]:
+    """Return names and ports."""
+    names = [shown(member.name or "?") for member in members]
+    return names, [shown(member.target.port) for member in members]
