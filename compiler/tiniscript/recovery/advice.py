@@ -18,7 +18,7 @@ from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, nearest
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.recovery import advice_rows, lines, rewrites
-from tiniscript.recovery.behind import ASKING, Behind, Placed, placed, whole
+from tiniscript.recovery.behind import ASKING, Around, Behind, whole, width
 from tiniscript.recovery.concepts import ENDED, NEAR, Lexeme, Names, lexemes, made, plain, said_of
 from tiniscript.recovery.orders import Order, made_up, orders, question_in, written
 from tiniscript.recovery.slots import filled
@@ -89,7 +89,7 @@ def advised(text: str, kit: Kit) -> list[Advice]:
         words = lexemes(body)
         is_right = lines.is_right(words, names)
         if "~" not in body and not is_right:
-            for part in islice(_parts(body, start, text, names, depth, above), left):
+            for part in islice(_parts(body, start, Around(text, names, depth, above)), left):
                 left -= 1
                 each = _told(part)
                 if each and not (told and overlap([told[-1].passed], [each.passed])):
@@ -111,42 +111,33 @@ def _as_orders(line: str, is_right: bool) -> str | None:
     return "" if is_block or not is_right else line.strip().rstrip(" ;")
 
 
-def _parts(
-    body: str, start: int, text: str, names: Names, depth: int, above: list[str | None]
-) -> Iterator[Behind]:
+def _parts(body: str, start: int, around: Around) -> Iterator[Behind]:
     """Give each instruction of a line that has words behind it, and words without one."""
+    names = around.names
     before: list[str] | None = []
-
-    def behind(call: Sequence[Placed], row: Sequence[Placed], said: str = "") -> Behind:
-        return Behind(call, row, before, above, text, names, depth, said)
-
     for match in _PART.finditer(body):
-        part = placed(match[1], start + match.start())
-        if not part or match[2]:
+        tokens, at = lexemes(match[1]), start + match.start()
+        if not tokens or match[2]:
             continue
-        first = part[0].token.text
-        tokens = [each.token for each in part]
-        while 0 < len(part) <= lines.LONGEST:
+        is_block = tokens[0].text in (*_BEGIN_BODY, *ENDED)
+        while 0 < len(tokens) <= lines.LONGEST:
             size = whole(tokens, names)
-            rest = part[size:]
+            rest = tokens[size:]
             if not size and (found := _said_call(tokens, names)):
-                k, call = found
-                yield behind(part[:k], part[k:], call)
+                yield Behind(around, at, tokens, found[0], before, found[1])
                 break
             if not size or not rest:
-                yield behind([], part)
+                yield Behind(around, at, tokens, 0, before)
                 break
-            if any(each.token.text in ASKING for each in part[:size]):
-                is_ended = all(said_of(each.token.text, "do") for each in rest)  # by a THEN
-                yield behind([], part if is_ended else part[:size])
-            tokens = tokens[size:]
-            after = whole(tokens, names)
-            if not after or rest[0].token.text in ("IF", "WHILE"):
-                yield behind(part[:size], rest)
+            if any(each.text in ASKING for each in tokens[:size]):
+                is_ended = all(said_of(each.text, "do") for each in rest)  # by a THEN
+                yield Behind(around, at, tokens if is_ended else tokens[:size], 0, before)
+            if not whole(rest, names) or rest[0].text in ("IF", "WHILE"):
+                yield Behind(around, at, tokens, size, before)
                 break
-            part = rest
+            at += sum(map(width, tokens[:size]))
+            tokens = rest
         if before is not None:
-            is_block = first in (*_BEGIN_BODY, *ENDED)
             before = None if is_block else [*before, match[1].strip()]
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import accumulate
 from typing import NamedTuple
 
 from tiniscript.base.source import Span
@@ -34,19 +35,21 @@ _IN_NO_NOTE = frozenset((*COMPARISONS, "*", "+", "==", "!=", "{", "}"))
 _LONG_WORDS = tuple(word for word in WORDS if len(word) > 2)
 
 
-class Placed(NamedTuple):
-    token: Lexeme
-    span: Span
+class Around(NamedTuple):
+    """Where an instruction stands: `depth` blocks are open there.
+
+    `above` are the lines before it, "" for one of no orders, None for one that begins a block.
+    """
+
+    text: str
+    names: Names
+    depth: int
+    above: Sequence[str | None]
 
 
-def placed(line: str, start: int) -> list[Placed]:
-    """Return the tokens of a line that begins at `start`."""
-    found = []
-    for token in lexemes(line):
-        start += len(token.space or "")
-        found.append(Placed(token, Span(start, start + len(token.source or ""))))
-        start = found[-1].span.end
-    return found
+def width(token: Lexeme) -> int:
+    """Return how many characters a token of a text takes, with the space before it."""
+    return len(token.space or "") + len(token.source or "")
 
 
 def whole(tokens: Sequence[Lexeme], names: Names) -> int:
@@ -87,34 +90,35 @@ def _is_set(word: str, text: str) -> bool:
 
 
 class Behind:
-    """An instruction and the words behind it; or words without one, where `call` is empty.
+    """An instruction of `size` tokens and the words behind it; or words without one, where it is 0.
 
-    `before` are the other instructions of its line, None where a block is among them. `above` are
-    the lines before it, "" for one of no orders, None for one that begins a block. `own` is the
+    `before` are the other instructions of its line, None where a block is among them. `own` is the
     word of the language that it begins with, "" for none. `said` is the call where words say it.
     """
 
     def __init__(
-        self, call: Sequence[Placed], row: Sequence[Placed], before: Sequence[str] | None,
-        above: Sequence[str | None], text: str, names: Names, depth: int, said: str = "",
+        self, around: Around, start: int, tokens: Sequence[Lexeme], size: int,
+        before: Sequence[str] | None, said: str = "",
     ) -> None:  # fmt: skip
+        text, self.names, depth, self.above = around
         self.is_said = bool(said)
-        self.tokens = lexemes(said) if said else [each.token for each in call]
-        self.row = [each.token for each in row]
+        self.tokens = lexemes(said) if said else tokens[:size]
+        self.row = tokens[size:]
         self.before = before
-        self.above = above
-        self.is_later = bool(before) or (bool(above) and above[-1] is not None)
-        self.names = names
+        self.is_later = bool(before) or (bool(self.above) and self.above[-1] is not None)
         self.is_in_block = depth > 0
-        begin = (*call, *row)[0].span.start
-        self.place = Span(begin, row[-1].span.end)
-        self.behind = Span(row[0].span.start, row[-1].span.end)
-        end = call[-1].span.end if call else begin
-        self.call = said or text[begin:end]
+        ends = [*accumulate(map(width, tokens), initial=start)][1:]
+        spans = [
+            Span(end - len(it.source or ""), end) for it, end in zip(tokens, ends, strict=True)
+        ]
+        called = Span(spans[0].start, spans[size - 1].end if size else spans[0].start)
+        self.place = Span(called.start, ends[-1])
+        self.behind = Span(spans[size].start, ends[-1])
+        self.call = said or text[slice(*called)]
         self.words = text[slice(*self.behind)]
-        self.spans = [Span(begin, end), *(each.span for each in row)]
+        self.spans = [called, *spans[size:]]
         self.text = text
-        meant = _first_word(self.tokens[0], names) if call else ""
+        meant = _first_word(self.tokens[0], self.names) if size else ""
         known = WORDS.get(meant)
         self.is_arm = known is not None and known.role in ("block", "arm", "end")
         self.own = ENDED.get(meant, meant)

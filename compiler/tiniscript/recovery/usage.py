@@ -38,6 +38,7 @@ _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
 _PIECE = re.compile(r"[^;|{}]*")
+_OWN = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
 _MOST_TIMES = 20  # that a DEF is done
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
@@ -57,7 +58,10 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
         text.at_top = [source.position(each.span.start)[0] - 1 for each in top]
         found = [each for each in found if each not in top]
     found = text.with_name(found)
-    told = [_told(text, each) for each in found[:_MANY]]
+    told: list[Diagnostic] = []
+    for each in found[:_MANY]:
+        say = _SAYS.get(each.code) if each.repair is None else None
+        told.append((say(_Usage(text, each)) if say else None) or each)
     is_near = text.lacks_loop and any(it.values.get("near", "")[:4] == "LOOP" for it in told)
     has_no_ends = is_near or any(it.code in (codes.BRACES, codes.DOTS) for it in told)
     reserved = {each.values["word"] for each in told if each.code is codes.RESERVED}
@@ -73,12 +77,6 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
         and (each.code is not codes.UNIT_PLACE or text.piece(each.span) not in unknown)
     ]
     return [each for each in kept if not (has_no_ends and each.code in _OF_ENDS)]
-
-
-def _told(text: _Text, found: Diagnostic) -> Diagnostic:
-    say = _SAYS.get(found.code)
-    said = say(_Usage(text, found)) if say and found.repair is None else None
-    return said or found
 
 
 class _Text:
@@ -239,7 +237,8 @@ class _Usage:
         if others - {"L", "R", "B", "S"}:
             return Diagnostic(codes.SEVERAL_ORDERS, self.piece)  # a turn alone would lose them
         way = next((each for each in meant.values() if each in ("L", "R")), "")
-        angle = next((its for its in map(_angle, said) if its), "")
+        degrees = {"half": 180, "whole": 360}
+        angle = next((degrees[it] for it in degrees if any(said_of(each, it) for each in said)), 0)
         is_timed = any(said_of(each, "unit") for each in self.words)
         turns = orders(self.tokens, self.names)
         if angle and not way and not is_timed:
@@ -268,19 +267,18 @@ class _Usage:
 
     def own_word(self) -> Diagnostic | None:
         """A word of the program's own that nothing teaches."""
-        name, *signs = self.signs
-        if [each.kind is NUMBER for each in self.tokens[1:]] == [False, True, False]:
-            if self.text.lacks_loop:
-                return self.adds(near="LOOP")
-        if len(name) < 3 or self.names.meant(name) or (signs and signs[0] != "("):
+        match = _OWN.fullmatch(plain(self.source[self.piece]))
+        if match is None:
             return None
-        lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.source.text)
-        is_counted = len(signs) == 3 and signs[1].isdecimal() and len(signs[1]) < 4
-        times = signs[1] if is_counted else str(len(lone))
-        if signs not in ([], ["(", ")"]) and not (is_counted and 1 < int(times) <= _MOST_TIMES):
+        name, is_call, number = match.groups()
+        if number and self.text.lacks_loop:
+            return self.adds(near="LOOP")
+        if self.names.meant(name) or (number and not 1 < int(number) <= _MOST_TIMES):
             return None  # a function of another language
-        if signs or len(lone) > 1 or self.names.defs or said_of(name, "taught"):
-            often = f"LOOP({times});{name};END_LOOP" if int(times) > 1 else ""
+        lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.source.text)
+        times = int(number or len(lone))
+        if is_call or len(lone) > 1 or self.names.defs or said_of(name, "taught"):
+            often = f"LOOP({times});{name};END_LOOP" if times > 1 else ""
             return self.says(codes.UNTAUGHT, name=name, often=often)
         return self.adds(own="" if said_of(name, *_NO_NAMES) else name)
 
@@ -321,9 +319,8 @@ class _Usage:
             return self.adds(usage=self.usage(self.signs[0]))
         if (said := self.foreign() or self.amount()) is not None:
             return said
-        if self.tokens and self.names.meant(self.signs[0]) == "SHOW":
-            if any(each.kind is WORD for each in self.tokens[1:]):
-                return self.says(codes.WORDS_SHOWN)
+        if self.words[1:] and self.names.meant(self.signs[0]) == "SHOW":
+            return self.says(codes.WORDS_SHOWN)
         start, place = self.piece.start, self.found.span
         head = _LAST_HEAD.search(self.source[Span(start, place.end)])
         if head is None:
@@ -341,11 +338,9 @@ class _Usage:
 
     def foreign(self) -> Diagnostic | None:
         """The values of a word that this robot does not have: whoever writes it wants the word."""
-        known = self.names.known
-        if self.signs[1:2] != ["("] or self.tokens[0].kind is not WORD:
-            return None
-        word, start = self.signs[0], self.piece.start
-        if self.names.meant(word) or word in known.instructions | known.actuators:
+        word, start = "".join(self.words[:1]), self.piece.start
+        is_call = self.signs[:2] == [word, "("]
+        if not is_call or self.names.meant(word) or self.names.is_name(word):
             return None
         told = Diagnostic(codes.UNKNOWN_WORD, Span(start, start + len(word)), {"found": word})
         return _Usage(self.text, told).unknown() or told
@@ -389,7 +384,8 @@ class _Usage:
         if top := [n for n in self.text.at_top if n > k]:  # which no block is around
             inside = [n for n in below if n < min(top)]
         else:
-            inside = [*takewhile(lambda n: _depth(rows[n]) > _depth(rows[k]), below)]
+            depth = [len(row) - len(row.lstrip()) for row in rows]
+            inside = [*takewhile(lambda n: depth[n] > depth[k], below)]
         if not inside:
             return self.found
         last = without_note(rows[inside[-1]])[0].strip(" \t;")
@@ -511,15 +507,6 @@ def _row(text: str) -> list[str]:
     found = [each.strip() for row in rows for each in row if each.strip()]
     is_long = len(found) > _MANY_BELOW or any(map(_IS_BLOCK.match, found))
     return [] if is_long else found
-
-
-def _depth(line: str) -> int:
-    return len(line) - len(line.lstrip())
-
-
-def _angle(word: str) -> str:
-    """Return the degrees of a half turn, or of a whole one."""
-    return "180" if said_of(word, "half") else "360" if said_of(word, "whole") else ""
 
 
 def _usage(word: str) -> str:
