@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from functools import lru_cache
 from itertools import accumulate
 from typing import NamedTuple
 
 from tiniscript.base.source import Span
 from tiniscript.base.words import OTHER_WAY, WAYS, WORDS, concept_of, nearest, said_of
 from tiniscript.recovery import lines
-from tiniscript.recovery.concepts import ENDED, KNOWN, Lexeme, Names, closed, lexemes
+from tiniscript.recovery.concepts import ENDED, Lexeme, Names, closed, lexemes
 from tiniscript.recovery.slots import MOVES
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
@@ -83,12 +82,6 @@ def _first_word(token: Lexeme, names: Names) -> str:
     return next(filter(names.takes, meant), "")
 
 
-@lru_cache(32)
-def _is_set(word: str, text: str) -> bool:
-    """Whether a word is a variable of a text, which is told at its own line."""
-    return bool(re.search(rf"(?i)\b{word}\s*=", text))
-
-
 class Behind:
     """An instruction of `size` tokens and the words behind it; or words without one, where it is 0.
 
@@ -125,6 +118,8 @@ class Behind:
         self.is_asked = any(each.text == "UNTIL" for each in self.tokens)
         self.time = _TIME.match(self.call)
         self.power = _POWER.search(self.call)
+        said = [said_of(it.text, kind) for it in self.row for kind in ("value", "unit", "number")]
+        self.has_percent = any("%" in each or each == ("100",) for each in said)  # `por ciento`
         self.numbers = {each.text for each in self.tokens if each.kind is NUMBER}
 
     def is_aside(self) -> bool:
@@ -182,7 +177,7 @@ class Behind:
             is_often = is_multiplied or self.means(before) == "LOOP"
             if is_counted or (is_often and not said_of(after, "unit")):
                 found.append("@often")
-            found += ["@percent"] if any(_is_percent(each.text) for each in self.row) else []
+            found += ["@percent"] if self.has_percent else []
         unit_of = said_of(text, "unit")
         found += ["@in_s"] if unit_of and unit_of[0] == "s" else []
         is_other = text not in WORDS and self.means(text) == OTHER_WAY.get(self.own)
@@ -193,7 +188,8 @@ class Behind:
         is_of_kit = concept is None or concept in WORDS or self.names.has(concept)
         found += [] if is_of_kit else [f"@no{concept}"]
         known = None if token.source == "l" else WORDS.get(text)
-        if known is not None and known.is_instruction and not _is_set(text, self.text):
+        is_set = known is not None and re.search(rf"(?i)\b{text}\s*=", self.text)
+        if known is not None and known.is_instruction and not is_set:  # told at its own line
             found += ["@call", "@order"] if known.is_call else ["@order"]
         found += ["@ask"] if self.means(text) in ASKING else []
         found += ["@quote"] if text in QUOTES and text != "`" else []
@@ -286,18 +282,9 @@ class Behind:
         if said_of(text, "until"):
             return own != "SHOW" and self.row[0].text != "(" and not self.is_asked
         meant = self.means(text)
-        is_sure = text in WORDS or not meant or self.names.meanings(text)[0].cost <= KNOWN
-        if not (is_sure or is_last or self.row[k + 1].kind is NUMBER):
-            return False
         known = WORDS.get(meant)
         if known is None or known.role in ("value", "operator", "function", "start"):
             return False
         if meant == own or (meant == "S" and self.is_asked):
             return False
         return own not in ("LOOP", "DEF", "S", "STOP") or meant not in ("S", "LOOP", "DEF")
-
-
-def _is_percent(text: str) -> bool:
-    """Whether a word says that a number is one of a power: POTENCIA, and CIENTO behind POR."""
-    is_hundred = said_of(text, "number") == ("100",)
-    return is_hundred or "%" in said_of(text, "value") + said_of(text, "unit")

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.recovery import lines, rewrites
-from tiniscript.recovery.concepts import CALLED, Lexeme, Names, concept_of, made, said_of
+from tiniscript.recovery.concepts import CALLED, ENDED, Lexeme, Names, made, said_of
 from tiniscript.recovery.slots import MOVES, Filled, filled
 from tiniscript.recovery.worded import worded
 from tiniscript.recovery.writing import laid_out
@@ -51,8 +51,7 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     found: list[Order] = []
     if len(words) > LONGEST:
         return []
-    while joined := rewrites.one_word(words, names):
-        words = joined[0]  # `para adelante`
+    words = _joined(words, names)
     words = [one for one, after in pairwise([*words, made(";")]) if not _is_the(one, after)]
     asks = next((k for k, each in enumerate(words) if k and names.meant(each.text) == "IF"), 0)
     if asks:
@@ -76,10 +75,11 @@ def _is_the(token: Lexeme, after: Lexeme) -> bool:
     return bool(said_of(token.text, "the") and is_noun)
 
 
-def _begins_else(texts: Sequence[str]) -> int:
-    """Return how many of the first two words say ELSE: `si no`."""
-    said = (count for count in (1, 2) if concept_of("_".join(texts[:count])) == "ELSE")
-    return 1 if texts[:1] == ["ELSE"] else next(said, 0)
+def _joined(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
+    """Return words in which those that are one are one: `para adelante`, `si no`."""
+    while joined := rewrites.one_word(words, names):
+        words = joined[0]
+    return words
 
 
 def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
@@ -183,11 +183,12 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     word = names.meant(tokens[0].text)
     if word not in ("IF", "WHILE", "LOOP") or len(tokens) > LONGEST:
         return ""
-    while any(said_of(each.text, "end") for each in tokens[-2:]):
-        tokens = tokens[:-1]  # `fin si`
+    tokens = _joined(tokens, names)
+    while tokens[-1].text in ENDED or said_of(tokens[-1].text, "end"):
+        tokens = tokens[:-1]
     texts = [each.text for each in tokens]
-    arm = next((k for k in range(1, len(texts)) if _begins_else(texts[k:])), len(texts))
-    other = orders(tokens[arm + _begins_else(texts[arm:]) :], names)
+    arm = next((k for k, each in enumerate(texts) if names.meant(each) == "ELSE"), len(texts))
+    other = orders(tokens[arm + 1 :], names)
     comma = next((k for k in range(2, arm) if texts[k] == "," and word != "LOOP"), 0)
     for k in [comma] if comma else range(2, arm):
         header = _head(word, tokens[1:k], names)
@@ -199,8 +200,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
         if word != "LOOP" and names.meant(texts[k]) in _SIDES:
             return ""  # where the wall is, or where to go
         place = next((j for j in range(k, arm) if not said_of(texts[j], "filler")), k)
-        pair = "_".join(texts[place - 1 : place + 1])  # `pra frente`
-        if said_of(texts[place], "front") and place + 1 < arm and not concept_of(pair):
+        if said_of(texts[place], "front") and place + 1 < arm:
             continue  # `uma parede na frente, para`
         is_mixed = any(said_of(each, "then") and not said_of(each, "and") for each in texts[k:])
         if (word == "LOOP" and is_mixed) or (arm < len(texts) and not other):

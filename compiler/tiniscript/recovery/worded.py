@@ -119,8 +119,7 @@ def _lights(names: Names) -> list[str]:
 def _sign(name: str, texts: Sequence[str], said: set[str]) -> str:
     is_below = "little" in said or (name == "DISTANCE" and "much" not in said)
     sign = "<" if is_below != bool(said & {"no", "without", "none"}) else ">"
-    pairs = pairwise(texts)  # `distancia no menor 20`
-    return sign + "=" * any(said_of(a, "no") and said_of(b, "less", "more") for a, b in pairs)
+    return sign
 
 
 def _example(device: Device | None, name: str) -> int:
