@@ -227,11 +227,11 @@ class _Gaps(dict[str, str]):
         """Return where a capture stands: from which token on, and before which."""
         return self._line.span(self._match, name)
 
-    def tokens(self, name: str) -> list[Lexeme]:
+    def tokens(self, name: str) -> Sequence[Lexeme]:
         start, end = self.span(name)
         return self.part.row[start - 1 : end - 1]
 
-    def from_on(self, name: str) -> list[Lexeme]:
+    def from_on(self, name: str) -> Sequence[Lexeme]:
         """Return the words from a capture on."""
         return self.part.row[self.span(name)[0] - 1 :]
 

@@ -39,6 +39,7 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
         return {}
     place = call[2].count(",")
     values = f"{call[2]}{amount}{after[0][:-1]}".split(",")
+    amount = values[place].strip()
     if not any(is_amount(*each.split()) for each in values):
         return {}
     for k, (value, its) in enumerate(zip(values, word.arguments, strict=False)):

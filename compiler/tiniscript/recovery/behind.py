@@ -118,8 +118,8 @@ class Behind:
         self.is_asked = any(each.text == "UNTIL" for each in self.tokens)
         self.time = _TIME.match(self.call)
         self.power = _POWER.search(self.call)
-        said = [said_of(it.text, kind) for it in self.row for kind in ("value", "unit", "number")]
-        self.has_percent = any("%" in each or each == ("100",) for each in said)  # `por ciento`
+        kinds = [said_of(it.text, kind) for it in self.row for kind in ("value", "unit", "number")]
+        self.has_percent = any("%" in each or each == ("100",) for each in kinds)  # `por ciento`
         self.numbers = {each.text for each in self.tokens if each.kind is NUMBER}
 
     def is_aside(self) -> bool:

@@ -27,6 +27,7 @@ from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
 _LAST_HEAD = re.compile(r"(?is)\b(IF|ELSEIF|WHILE|UNTIL)[ \t]*\((?!.*\b(?:IF|WHILE|UNTIL)\()")
+_NO_SIGN = re.compile(r"(?i)\b(?:IF|WHILE|UNTIL)[ \t]*\(\s*([^\W\d]\w*)\s+(?P<here>[\d.]+)\s*\)")
 _DOTS = re.compile(
     r"(?i)\b(?P<head>(?P<word>IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|DEF[ \t]+(?P<name>\w+))[\s;]*"
     r"(?P<here>(?:\.[ \t]*){2,}|\u2026)[ \t]*\n?[ \t]*(?P<end>END_?\w+|ELSE\w*)?"
@@ -106,16 +107,14 @@ class _Text:
     def with_name(self, found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
         """Return diagnostics in which the one DEF without a name has that of an unknown call."""
         nameless = [each for each in found if each.code is codes.DEF_NEEDS_NAME]
-        lone = (each.values["found"] for each in found if each.code is codes.UNKNOWN_WORD
-                and len(lexemes(self.source[self.piece(each.span)])) == 1)  # fmt: skip
-        if len(nameless) != 1 or not (name := next(lone, "")):
+        called = [each.values["found"] for each in found if each.code is codes.UNKNOWN_WORD
+                  and len(lexemes(self.source[self.piece(each.span)])) == 1]  # fmt: skip
+        if len(nameless) != 1 or not called:
             return found
-        end = nameless[0].span.end
+        (own,), name, end = nameless, called[0], nameless[0].span.end
         repair = Repair((Edit(Span(end, end), f" {name}"),), False)
-        said = nameless[0]._replace(values={"name": name}, repair=repair)
-        called = (codes.UNKNOWN_WORD, name)
-        left = (each for each in found if (each.code, each.values.get("found")) != called)
-        return [said if each is nameless[0] else each for each in left]
+        said = own._replace(values={"name": name}, repair=repair)
+        return [said if each is own else each for each in found if each.values.get("found") != name]
 
 
 class _Usage:
@@ -291,8 +290,7 @@ class _Usage:
         return self.says(codes.NO_BUTTON, begun="SB|" if self.text.begun == "SB" else "")
 
     def is_button(self, word: str) -> bool:
-        is_missing = "BUTTON" not in self.names.sensors
-        return is_missing and concept_of(word) == "BUTTON"
+        return "BUTTON" not in self.names.sensors and concept_of(word) == "BUTTON"
 
     def is_order(self, word: str) -> bool:
         known = WORDS.get(self.names.meant(word))
@@ -321,17 +319,11 @@ class _Usage:
             return said
         if self.words[1:] and self.names.meant(self.signs[0]) == "SHOW":
             return self.says(codes.WORDS_SHOWN)
-        start, place = self.piece.start, self.found.span
-        head = _LAST_HEAD.search(self.source[Span(start, place.end)])
-        if head is None:
-            return None
-        start += head.end()
-        end = self.source.text.find(")", place.start)
-        inner = lexemes(self.source[Span(start, max(start, end))])
-        if [each.kind for each in inner] == [WORD, NUMBER]:
-            return self.says(codes.MISSING_SIGN, before=inner[0].text, found=inner[1].text)
-        own = {*WORDS, *self.names.known.values}
-        if all(each.kind is not WORD or each.text in own for each in inner):
+        if match := self.around(_NO_SIGN):
+            return self.says(codes.MISSING_SIGN, before=match[1].upper(), found=match["here"])
+        head = _LAST_HEAD.search(self.source[Span(self.piece.start, self.found.span.start)])
+        odd = self.source[self.found.span].upper()
+        if head is None or not odd.isidentifier() or odd in {*WORDS, *self.names.known.values}:
             return None
         word = head[1].upper()
         return self.says(codes.IN_WORDS, word=word, question=WORDS[word].arguments[0].sample)
@@ -467,13 +459,12 @@ class _Usage:
 
     def amount(self) -> Diagnostic | None:
         """Words that say how much, in the place of a number."""
-        text, place = self.source.text, self.found.span
-        start = 1 + max(text.rfind(sign, self.piece.start, place.start) for sign in "(,")
-        ends = (text.find(sign, place.start, self.piece.end) for sign in ",)")
-        end = min((each for each in ends if each >= 0), default=0)
-        value = Span(start + text[start:end].startswith(" "), end)
-        values = with_number(text, value)
-        return Diagnostic(codes.UNKNOWN_NAME, value, values) if values else None
+        values = with_number(self.source.text, self.found.span)
+        if not values or not self.source[self.found.span][:1].isalnum():
+            return None
+        start = self.source.text.index(values["amount"], self.piece.start)
+        value = Span(start, start + len(values["amount"]))
+        return Diagnostic(codes.UNKNOWN_NAME, value, values)
 
     def behind(self) -> Diagnostic | None:
         """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
@@ -519,9 +510,9 @@ _SAYS: dict[Code, Callable[[_Usage], Diagnostic | None]] = {
     codes.UNKNOWN_WORD: _Usage.unknown,
     codes.MISSING_OPEN: _Usage.brackets,
     codes.MISSING_SEPARATOR: _Usage.behind,
-    codes.MISSING_COMMA: _Usage.question,
-    codes.MISSING_CLOSE: _Usage.question,
-    codes.MISSING_VALUE: _Usage.question,
+    **dict.fromkeys(
+        (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE), _Usage.question
+    ),
     codes.SETUP_UNKNOWN: _Usage.setup,
     codes.SETUP_TWICE: _Usage.begins,
     codes.NEVER_ENDS: _Usage.unended,
