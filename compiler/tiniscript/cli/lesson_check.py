@@ -84,7 +84,7 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
         if options.plot is not None:
             check_picture(options)
         given = inputs.program(options)
-        compiled = marker.compiled(given, "check")
+        compiled = marker.compiled(given)
         if not options.json:
             outputs.print_diagnostics(compiled, language)
         marks = [marker.mark(given, compiled)]
@@ -118,17 +118,16 @@ class _Marker:
         try:
             if found.problem is not None:
                 raise found.problem
-            compiled = self.compiled(given, "check")
+            compiled = self.compiled(given)
         except CommandError as failure:
             said = failure.plain(self.language)
             said = said.replace(inputs.shown(found.name), inputs.shown(name))
             return Mark(name, UNREADABLE, 0, (("", said),))
         return self.mark(given, compiled)
 
-    def compiled(self, given: inputs.Input, verb: str) -> Compiled:
+    def compiled(self, given: inputs.Input) -> Compiled:
         if given.is_image:
-            file = inputs.shown(given.name)
-            raise CommandError(2, "needs_text", file=file, verb=f"lesson {verb}")
+            raise CommandError(2, "needs_text", file=inputs.shown(given.name), verb="lesson check")
         found = compiling.compiled(given, self.robot, is_strict=True, names_robots=False)
         return for_robot(found, self.robot)
 

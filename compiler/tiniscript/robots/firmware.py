@@ -6,10 +6,10 @@ Knows the names that `vm_arduino/src/boards` uses. Opens no files. All numbers a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from tiniscript.base.kit import Device, Kit
-from tiniscript.robots.driver import SIDES, Part, PinTexts
+from tiniscript.robots.driver import SIDES, ActuatorDriver, Part, PinTexts, SensorDriver
 from tiniscript.robots.drivers import actuator_of, discs_of, motors_of, sensor_of
 from tiniscript.robots.kit_words import kit_words
 from tiniscript.robots.ledc import channels_of
@@ -62,18 +62,8 @@ class Header(Part):
     def text(self) -> str:
         kit, board = self.robot.kit, self.robot.board
         motors = motors_of(board.motors).firmware(self, board.motors)
-        sensors = [
-            line
-            for number, (device, wiring) in enumerate(zip(kit.sensors, board.sensors, strict=True))
-            for line in (f"    case {number}:  // {device.name}", *self._read(device, wiring))
-        ]
-        actuators = [
-            line
-            for number, (device, wiring) in enumerate(
-                zip(kit.actuators, board.actuators, strict=True)
-            )
-            for line in (f"    case {number}:  // {device.name}", *self._set(device, wiring))
-        ]
+        sensors = self._cases(kit.sensors, board.sensors, sensor_of)
+        actuators = self._cases(kit.actuators, board.actuators, actuator_of)
         discs = []
         if board.discs:
             base_cm = self.robot.body.wheel_base_cm
@@ -145,11 +135,16 @@ class Header(Part):
             names.append(f"ultrasonic_vectors(each) {each}")
         return names
 
-    def _read(self, device: Device, wiring: Wiring) -> list[str]:
-        return sensor_of(device.kind, wiring).firmware(self, device, wiring)
-
-    def _set(self, device: Device, wiring: Wiring) -> list[str]:
-        return actuator_of(device.kind, wiring).firmware(self, device, wiring)
+    def _cases(
+        self, devices: Sequence[Device], wirings: Sequence[Wiring],
+        driver_of: Callable[[str, Wiring], SensorDriver | ActuatorDriver],
+    ) -> list[str]:  # fmt: skip
+        """Return what reads sensors or sets actuators, by their numbers."""
+        lines = []
+        for number, (device, wiring) in enumerate(zip(devices, wirings, strict=True)):
+            lines.append(f"    case {number}:  // {device.name}")
+            lines += driver_of(device.kind, wiring).firmware(self, device, wiring)
+        return lines
 
     def _ultrasonics(self) -> list[str]:
         """Return the number of ultrasonic sensors and their wiring; a single one uses constants."""

@@ -39,13 +39,9 @@ def announce(running: Running) -> Path | None:
     """Let others find a robot. Return the file, or None where it cannot be written."""
     port = running.address.removeprefix(PREFIX)
     path = _folder() / f"{port}.json"
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+    with contextlib.suppress(OSError):  # there may be no folder yet
         files.remove_abandoned(path.parent, [each.name for each in path.parent.iterdir()])
-        files.replace(path, json.dumps(running._asdict()).encode())
-    except (OSError, ValueError):
-        return None
-    return path
+    return path if files.keep(path, json.dumps(running._asdict()).encode()) else None
 
 
 def withdraw(path: Path | None) -> None:

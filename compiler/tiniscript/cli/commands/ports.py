@@ -12,7 +12,7 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import about_virtual, baud_of, opened_client
-from tiniscript.cli.robot.in_reach import InReach, found
+from tiniscript.cli.robot.in_reach import AT_ONCE, InReach, alive, found
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
@@ -21,13 +21,10 @@ from tiniscript.link import known_ports, ports
 from tiniscript.link.authority import whose
 from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.link.requests import OK
-from tiniscript.link.sharing.registry import all_found
-from tiniscript.link.sharing.shared_line import is_alive
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory
 
 OPEN_S = 12.0
-AT_ONCE = 16  # ports that are asked at the same time
 
 
 def run(options: Namespace, language: str) -> int:
@@ -71,11 +68,7 @@ def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str
     virtual = {each.address: each for each in directory.running()}
     about = {each.port: each.description for each in ports.listed()}
     about |= in_reach.about
-    held = {
-        registration.port: registration.verb
-        for registration in all_found()
-        if is_alive(registration)
-    }
+    held = {registration.port: registration.verb for registration in alive()}
     names = [options.port] if options.port is not None else list(about)
     if options.port is None:
         names += [port for port in known.names if port not in about and is_there(port)

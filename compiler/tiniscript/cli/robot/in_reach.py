@@ -6,7 +6,9 @@ search is impossible, says why.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
+from itertools import compress
 from typing import NamedTuple
 
 from tiniscript.cli.robot.connect import port_failure
@@ -103,26 +105,22 @@ AT_ONCE = 16  # servers that are checked at the same time
 
 def in_use(is_virtual: bool = False) -> list[str]:
     """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
-    held = _alive(all_found())
+    held = [registration.port for registration in alive()]
     found = [] if is_virtual else held[:]
     for robot in directory.running():
         names = [robot.address, *([robot.terminal] if robot.terminal else [])]
         through = [port for port in names if same_for_all(port) in held]
         found.append(through[0] if through else robot.address)  # one robot, one port
-    return list({same_for_all(port): port for port in found}.values())
+    return _once(found)
 
 
-def _alive(registrations: list[Registration]) -> list[str]:
-    """Return the ports of the servers that still run; a hanging server delays no other check."""
-    if len(registrations) < 2:  # importing threads takes longer than one answer
-        return [registration.port for registration in registrations if is_alive(registration)]
+def alive() -> list[Registration]:
+    """Return the servers that still run; a hanging one delays no other check."""
+    registrations = all_found()
+    if len(registrations) < 2:  # starting threads takes longer than one answer
+        return list(filter(is_alive, registrations))
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        alive = list(pool.map(is_alive, registrations))
-    return [
-        registration.port
-        for registration, is_there in zip(registrations, alive, strict=True)
-        if is_there
-    ]
+        return list(compress(registrations, pool.map(is_alive, registrations)))
 
 
 def to_stop(is_virtual: bool = False) -> list[str]:
@@ -132,5 +130,8 @@ def to_stop(is_virtual: bool = False) -> list[str]:
     """
     found = in_use(is_virtual)
     last = None if is_virtual else opening.last_port()
-    found += [last] if last is not None else []
-    return list({same_for_all(port): port for port in found}.values())
+    return _once([*found, *([last] if last is not None else [])])
+
+
+def _once(ports: Iterable[str]) -> list[str]:
+    return list({same_for_all(port): port for port in ports}.values())
