@@ -43,18 +43,6 @@ class Edit(NamedTuple):
     new: list[Lexeme]
 
 
-class Matched(NamedTuple):
-    """What each line needs so that all blocks end: edits, ends behind its text, and on new lines.
-
-    `is_sure`: no end is a guess.
-    """
-
-    edits: dict[int, list[Edit]]
-    tails: dict[int, list[str]]
-    behind: dict[int, list[str]]
-    is_sure: bool
-
-
 _UNREAD = [Item("do", "", 0, 0)]  # what a line that cannot be read is taken for
 
 
@@ -77,7 +65,11 @@ class _Block:
 
 
 class Matching:
-    """Takes item after item of all lines; `after` is the next one, of no kind at the end."""
+    """What each line needs so that all blocks end: edits, ends behind its text, and on new lines.
+
+    `run` takes item after item of all lines; `after` is the next one, of no kind at the end.
+    `is_sure`: no end is a guess.
+    """
 
     def __init__(self, lines: Sequence[Line]) -> None:
         self.lines = lines
@@ -93,8 +85,8 @@ class Matching:
         self.behind: dict[int, list[str]] = {}
         self.is_sure = True
 
-    def run(self) -> Matched | None:
-        """Return what is missing for all blocks to end, or None where no reading fits."""
+    def run(self) -> bool:
+        """Find what is missing for all blocks to end; return whether they fit."""
         last = -1
         for place, (k, item) in enumerate(self.flat[:-1]):
             self.place, self.k, self.line, self.item = place, k, self.lines[k], item
@@ -103,19 +95,19 @@ class Matching:
                 self.begin_line(last)
                 last = k
             if not self.read():
-                return None
+                return False
             if below != k:
                 self.end_line(self.lines[below].indent if below < len(self.lines) else 0)
         while self.open:
             block = self.open.pop()
             if not block.word or self.item.kind in ("open", "{"):
-                return None  # nothing is in it
+                return False  # nothing is in it
             if block.has_brace and block.line == last:
                 self.tails.setdefault(last, []).append(block.end)
                 continue
             self.is_sure = self.is_sure and bool(block.body) and block.is_begun
             self.close_behind(last if block.last is None else block.last, block)
-        return Matched(self.edits, self.tails, self.behind, self.is_sure)
+        return True
 
     def edit(self, old: int, *new: str) -> None:
         self.edit_tokens(self.item.start, old, [made(each) for each in new])

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
-from itertools import accumulate, groupby, pairwise
+from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Span
@@ -117,9 +117,6 @@ class _Teller:
         self.changes = found.changes
         self.lines = program.split("\n")
         self.starts = [0, *accumulate(len(line) + 1 for line in self.lines)]
-        self.steps = {
-            k: [step for _, step in own] for k, own in groupby(found.steps, key=lambda it: it[0])
-        }
         self.out: list[Explanation] = []
         self.open: list[_Block] = []
 
@@ -150,7 +147,7 @@ class _Teller:
             words = {word for each in texts_of for word in re.findall(r"\w+|[{}]", each.upper())}
             if words & _OF_BLOCKS:
                 return False
-        return not touched & self.found.unsure
+        return all(self.changes[k].is_sure for k in touched)
 
     def change_at(self, place: int) -> int:
         line = self.program.count("\n", 0, place)
@@ -183,7 +180,7 @@ class _Teller:
         if own != old and not parts:
             place = Span(self.starts[change.first], self.starts[change.first] + len(old))
             edit = trimmed(place.start, old, own)
-            part = _Change(place, edit, self.steps.get(k, []), before, after)
+            part = _Change(place, edit, self.changes[k].steps, before, after)
             code, step = _code(part)
             is_brace = code == _BRACES and before[0].text in BRACES
             is_arm = bool(after) and after[0].text in _ARMS
@@ -207,7 +204,7 @@ class _Teller:
     ) -> list[_Change]:
         """Return the instructions of a line that change; nothing for one, or for others."""
         steps: dict[int, list[Step]] = {}
-        for step in self.steps.get(k, []):
+        for step in self.changes[k].steps:
             one, other = (_parts(each) for each in step[1:])
             if len(one) != len(other) or step.code == rows.DO_CODE:
                 return []
@@ -283,7 +280,7 @@ class _Teller:
                 last = laid_out(tokens_of(above.text.split("\n")[0]))
                 values |= {"line": str(above.last + 1), "last": last}
         if code in _SAID_ONCE:
-            same = [it for it in self.steps.get(k, []) if it.code == code]
+            same = [it for it in self.changes[k].steps if it.code == code]
             names = dict.fromkeys(
                 w for it in same for w in texts(it.after) if w not in texts(it.before)
             )

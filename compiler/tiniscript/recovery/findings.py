@@ -145,7 +145,8 @@ def _meant(
         misplaced = [each for each in found if each.code.number in rows.MISPLACED]
         said_of_it = misplaced or [each for each in found if each.is_mistake]
         return [_moved(each, written, meant) for each in said_of_it][:1]
-    said_with = {each.code for each in told} | {step.code for _, step in meant.steps}
+    said_with = {each.code for each in told}
+    said_with |= {step.code for each in meant.changes for step in each.steps}
     if not told or not _keeps(text, meant.text, said_with, is_sure):
         return []
     if not (meant.is_whole or meant.is_applied or _keeps(text, meant.text, set(), is_sure=False)):

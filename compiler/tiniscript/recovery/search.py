@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.recovery import lines, rewrites, rows
-from tiniscript.recovery.blocks import Edit, Line, Matched, Matching
+from tiniscript.recovery.blocks import Edit, Line, Matching
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, texts, words_of
-from tiniscript.recovery.lines import MARGIN, Reading, Step
+from tiniscript.recovery.lines import MARGIN, Reading, Step, is_right
 from tiniscript.recovery.moved import Moved, ordered
 from tiniscript.recovery.writing import as_written, laid_out, without_note
 from tiniscript.syntax.outline import Failure
@@ -35,26 +35,26 @@ Mistakes = Callable[[str], Sequence[str]]  # the codes of a program's mistakes
 
 
 class Change(NamedTuple):
-    """What lines become, `first` to `last`, from 0: `text`; most stay as they are."""
+    """What lines become by their rewrites, `first` to `last`, from 0: `text`; most stay as is."""
 
     first: int
     last: int
     text: str
+    steps: Sequence[Step]
+    is_sure: bool  # else it is a guess
 
 
 class Candidate(NamedTuple):
     """A program that may have been meant. `is_applied`: it may be made without asking.
 
-    `is_whole`: it has no mistakes; else fewer than the text. `steps` are all rewrites, with
-    the change that has them. `changes` are of all lines, none where a DEF is moved: `move`.
+    `is_whole`: it has no mistakes; else fewer than the text. `changes` are of all lines, none
+    where a DEF is moved: `move`.
     """
 
     text: str
     is_applied: bool
     is_whole: bool
-    steps: tuple[tuple[int, Step], ...]
-    changes: tuple[Change, ...] = ()
-    unsure: frozenset[int] = frozenset()  # changes that are a guess
+    changes: Sequence[Change]
     has_sure_blocks: bool = True
     move: Moved | None = None
 
@@ -130,8 +130,7 @@ class Recovery:
         defs = names.defs
         for line in self.lines:
             body = line.body.translate(_QUOTES)
-            is_right = not isinstance(lines.right(lexemes(body), names), Failure)
-            if is_right and body == line.body:
+            if body == line.body and is_right(lexemes(body), names):
                 continue
             for row in rewrites.of_signs():
                 for _ in row.pattern.findall(body):  # a step each, which is told at its place
@@ -147,8 +146,7 @@ class Recovery:
         """Whether rewrites of signs alone make the line right that a place is in."""
         at = self.program.count("\n", 0, start)
         near = (each for each in self.lines if each.steps and each.first <= at <= each.last)
-        read = (lines.right(lexemes(each.body), self.names) for each in near)
-        return any(not isinstance(each, Failure) for each in read)
+        return any(is_right(lexemes(each.body), self.names) for each in near)
 
     def drop_setups(self) -> None:
         """Drop a `SI|` below the first line."""
@@ -204,7 +202,7 @@ class Recovery:
         ends = [k for k, each in enumerate([*tokens, made(";")]) if each.text == ";"]
         for start, end in [*pairwise((-1, *ends))][::-1]:
             head, part, tail = tokens[: start + 1], tokens[start + 1 : end], tokens[end:]
-            if not isinstance(lines.right(part, names), Failure):
+            if is_right(part, names):
                 continue
             found = lines.read(part, names, is_quick=True)[:1]
             for each in found if found and found[0].is_sure else ():
@@ -224,31 +222,24 @@ class Recovery:
                 break
             if best is not None and has_blocks and all(it.items is not None for it in readings):
                 continue
-            made_of = self.written(readings, has_blocks)
-            if made_of is None:
+            blocks = self.matched(readings if has_blocks else ())
+            if blocks is None:
                 continue
-            out, unsure, has_sure_blocks = made_of
-            is_sure = not unsure and has_sure_blocks
-            text, move = "\n".join(out), None
-            pairs = [*zip(self.lines, readings, out, strict=True)]
-            changes = tuple(Change(line.first, line.last, own) for line, _, own in pairs)
+            changes = self.changes(readings, blocks)
+            has_sure_blocks, move = blocks.is_sure, None
+            is_sure = has_sure_blocks and all(each.is_sure for each in changes)
+            text = "\n".join(each.text for each in changes)
             left = self.mistakes(text)
             if left and set(left) & rows.MISPLACED:
                 for moved in ordered(text):
                     if left and not self.mistakes(moved.text):
-                        text, left, changes, move = moved.text, [], (), moved
+                        text, left, changes, move = moved.text, [], [], moved
             is_alone = has_sure_blocks and _ends(text) == self.ends
             if left and not ((is_sure or is_alone) and len(left) < self.count):
                 continue
             is_applied = is_sure and bool(text.strip(" ;\n")) and not (move and move.is_guess)
             if best is None or (not left, is_applied) > (best.is_whole, best.is_applied):
-                steps = (
-                    (k, step)
-                    for k, (line, reading, _) in enumerate(pairs)
-                    for step in (*line.steps, *reading.steps)
-                )
-                best = Candidate(text, is_applied, not left, tuple(steps), changes, unsure,
-                                 has_sure_blocks, move)  # fmt: skip
+                best = Candidate(text, is_applied, not left, changes, has_sure_blocks, move)
         return best
 
     def choices(self) -> Iterator[tuple[list[Reading], bool]]:
@@ -268,33 +259,27 @@ class Recovery:
         if alone != sure:
             yield alone, False
 
-    def written(
-        self, readings: Sequence[Reading], has_blocks: bool
-    ) -> tuple[list[str], frozenset[int], bool] | None:
-        """Return what lines become, which are a guess, and whether the blocks are none.
+    def matched(self, readings: Sequence[Reading]) -> Matching | None:
+        """Return what all blocks of the lines need, or None where they fit in no way."""
+        found = Matching([
+            Line(line.indent, each.tokens, each.items, bool(each.steps), each.is_new_line,
+                 any(step.code == rows.DO_CODE for step in each.steps),
+                 _WHEN.match(line.source.upper()) is not None)
+            for line, each in zip(self.lines, readings, strict=False)
+        ])  # fmt: skip
+        return found if found.run() else None
 
-        None where no block fits.
-        """
-        pairs = [*zip(self.lines, readings, strict=True)]
-        found: Matched | None = Matched({}, {}, {}, True)
-        if has_blocks:
-            found = Matching([
-                Line(line.indent, each.tokens, each.items, bool(each.steps), each.is_new_line,
-                     any(step.code == rows.DO_CODE for step in each.steps),
-                     _WHEN.match(line.source.upper()) is not None)
-                for line, each in pairs
-            ]).run()  # fmt: skip
-        if found is None:
-            return None
-        out = []
-        for k, (line, reading) in enumerate(pairs):
+    def changes(self, readings: Sequence[Reading], blocks: Matching) -> list[Change]:
+        found = []
+        for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True)):
             text = line.source
             if reading is not _UNREAD:
-                text = _line(line, reading, found.edits.get(k, []), found.tails.get(k, []))
-                text += line.note
-            out.append("\n".join((text, *found.behind.get(k, []))))
-        guesses = (k for k, (line, it) in enumerate(pairs) if not (line.is_sure and it.is_sure))
-        return out, frozenset(guesses), found.is_sure
+                edits, tails = blocks.edits.get(k, []), blocks.tails.get(k, [])
+                text = _line(line, reading, edits, tails) + line.note
+            text = "\n".join((text, *blocks.behind.get(k, [])))
+            steps, is_sure = (*line.steps, *reading.steps), line.is_sure and reading.is_sure
+            found.append(Change(line.first, line.last, text, steps, is_sure))
+        return found
 
 
 def _is_alone(reading: Reading) -> bool:
