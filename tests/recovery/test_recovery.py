@@ -103,7 +103,6 @@ def test_a_line_is_searched_once_for_the_same_names() -> None:
     found = lines.read(line, one)
     assert lines.read(line, same) is found
     assert lines.read(line, other) is not found
-    assert lines.read(line, one.joined(other)) is lines.read(line, other)
 
 
 def test_the_parser_says_where_it_cannot_go_on() -> None:

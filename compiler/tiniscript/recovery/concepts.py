@@ -5,7 +5,6 @@ Knows the lexicons, spelling, and the names that a program has. Knows no order o
 
 from __future__ import annotations
 
-import copy
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Sequence
@@ -259,14 +258,11 @@ class Names:
         self.begun = {word: block for each in told for word, block in each.begun.items()}
         if sum(each.left for each in told) < 0:
             self.begun |= {word: "LOOP" for each in told for word in each.counted}
-        defs = {name for each in told for name in each.defs} - {row[0] for row in self.rows}
-        self._name({name for each in told for name in each.variables}, defs)
-
-    def _name(self, variables: set[str], defs: set[str]) -> None:
-        self.variables, self.defs = variables, defs
-        values, instructions = self.sensors | variables, self.sensors | defs
+        self.variables = {name for each in told for name in each.variables}
+        self.defs = {name for each in told for name in each.defs} - {row[0] for row in self.rows}
+        values, instructions = self.sensors | self.variables, self.sensors | self.defs
         self.known = Known(values, instructions, frozenset(self.actuators))
-        words = (frozenset(each) for each in (defs, self.in_brackets, self.rows))
+        words = (frozenset(each) for each in (self.defs, self.in_brackets, self.rows))
         kit = frozenset(self.actuators.values())
         self._content = (self.known, *words, frozenset(self.begun.items()), kit)
         self._labels: dict[tuple[str, str, bool], str] = {}
@@ -276,12 +272,6 @@ class Names:
 
     def __hash__(self) -> int:
         return hash(self._content)
-
-    def joined(self, other: Names) -> Names:
-        """Return the names of two readings of one program."""
-        found = copy.copy(self)
-        found._name(self.variables | other.variables, self.defs | other.defs)
-        return found
 
     def is_name(self, word: str) -> bool:
         return word in self.known.values or word in self.defs or word in self.actuators

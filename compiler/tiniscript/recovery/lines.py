@@ -250,7 +250,6 @@ class _Search:
                 if len(words) < len(tokens):
                     continue
                 new = [*lexemes(f"LOOP({call.times});"), *new, *lexemes(";END_LOOP")]
-                new = [each._replace(source=None, space=None) for each in new]
             is_sure = call.is_sure and not call.times
             line = [*tokens[:start], *new, *tokens[end:]]
             code = _code_of_call(words)

@@ -222,8 +222,6 @@ class Encoded:
         start, end = self.span(match)
         if row.code == _SET and start and self.tokens[start - 1].text in _BEFORE_VALUE:
             return None
-        if new and new[-1].text == ";" and end < len(self.tokens) and self.tokens[end].text == ";":
-            new.pop()
         old = self.tokens[start:end]
         if texts(new) == texts(old):
             return None
@@ -395,9 +393,6 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
         if len(row) < count or any(each.kind is not WORD for each in tokens[k : k + count]):
             continue
         text = "_".join(row)
-        after = tokens[k + count].text if k + count < len(tokens) else ""
-        if concept_of(text) == "ELSE" and (said_of(after, "is") or said_of(after, "there")):
-            continue
         if concept_of(text) or (text in WORDS and row[0] == "END"):
             meant = names.meanings(text)  # `END IF` ends any block
             word = made(meant[0].concept if meant else text)._replace(space=tokens[k].space)

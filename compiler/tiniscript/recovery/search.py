@@ -113,16 +113,16 @@ class Recovery:
 
     def _read_lines(self) -> Iterator[bool]:
         """Read each line, and give whether it is read surely."""
-        names = self.names
         for line in self.lines:
-            self.read_line(line, names)
+            self.read_line(line)
             yield line.reading.items is not None and line.reading.is_sure
-        told = Names([each.reading.tokens for each in self.lines], self.kit)
-        if told.variables | told.defs > names.variables | names.defs:
-            self.names = names.joined(told)
+        readings = (each.reading.tokens for each in self.lines)
+        told = Names([*(lexemes(each.body) for each in self.lines), *readings], self.kit)
+        if told.known != self.names.known:
+            self.names = told
             for line in self.lines:
                 if line.reading.items is None:
-                    self.read_line(line, self.names)
+                    self.read_line(line)
 
     def read_signs(self) -> None:
         """Make the rewrites of signs, in the lines that have them."""
@@ -176,8 +176,8 @@ class Recovery:
             is_do = is_do or _DO_ALONE.match(plain(line.body)) is not None
         self.lines = kept
 
-    def read_line(self, line: _Text, names: Names) -> None:
-        tokens = lexemes(line.body)
+    def read_line(self, line: _Text) -> None:
+        tokens, names = lexemes(line.body), self.names
         items = lines.right(tokens, names)
         if not isinstance(items, Failure):
             line.reading = Reading(0, tokens, (), True, False, items)

@@ -5,7 +5,6 @@ Every number of the words is in the call, or there is no call. Knows no separato
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from itertools import pairwise
 from math import nan
@@ -208,8 +207,6 @@ class _Reader:
         word, after = self.text(k), self.text(k + 1)
         names, marked = self.names, said_of(word, "value")
         meant = self._command_of(word)
-        if k and self.words[k].space == "" and self._is_number(k - 1):
-            self.is_sure = False  # `1velocidad`
         is_before_number = self._is_number(k + 1) or after in ("=", ":")
         if self.command in MOVES and word in _LETTERS and is_before_number:
             self.mark = _LETTERS[word]
@@ -325,8 +322,6 @@ class _Reader:
             return values
         if count == 1 and values[0].text != "0":
             return None
-        if any(re.fullmatch("0[0-9]+", each.text) for each in self.words):
-            return None  # `W(0, 05)`: a zero may not be lost
         pairs = zip(values[::2], values[1::2], strict=True)
         return [_Value(_told(float(f"{a.text}.{b.text}")), b.unit) for a, b in pairs]
 
