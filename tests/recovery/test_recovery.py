@@ -13,6 +13,7 @@ from tests.support.rows import each_row
 from tiniscript import robots
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span
+from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.lessons import catalogue
 from tiniscript.library.compiling import analyzed
 from tiniscript.recovery import lines, rewrites, rows
@@ -35,8 +36,8 @@ def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.Row | rewrites.Si
     assert any(each is not None and each.text == right for each in found)
 
 
-def mistakes(kit: Kit, text: str) -> list[str]:
-    return [each.code.number for each in analyzed(text, kit).diagnostics if each.is_mistake]
+def mistakes(kit: Kit, text: str) -> list[Code]:
+    return [each.code for each in analyzed(text, kit).diagnostics if each.is_mistake]
 
 
 def right_programs() -> list[str]:
@@ -93,7 +94,7 @@ def test_an_explanation_has_a_slip_and_its_edits(
     found = marks.meant(wrong)
     assert found is not None
     (said,) = explained(wrong, found)
-    assert (said.code, said.edits) == (code, [edit])
+    assert (said.code, said.edits) == (CODES[code], [edit])
     assert values.items() <= said.values.items()
 
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from tests.pupils.corpus import Entry, check
 from tiniscript import compile_text, robots
 from tiniscript.base.source import applied
+from tiniscript.diagnostics.codes import Code
 from tiniscript.diagnostics.fixing import fixed, offers
 from tiniscript.library.compiling import analyzed
 from tiniscript.recovery.advice import advised
@@ -32,8 +33,8 @@ def is_aside(program: str) -> bool:
 
 
 @cache
-def mistakes(program: str) -> tuple[str, ...]:
-    return tuple(each.code.number for each in analyzed(program, KIT).diagnostics if each.is_mistake)
+def mistakes(program: str) -> tuple[Code, ...]:
+    return tuple(each.code for each in analyzed(program, KIT).diagnostics if each.is_mistake)
 
 
 @cache

@@ -263,8 +263,7 @@ class Names:
         values, instructions = self.sensors | self.variables, self.sensors | self.defs
         self.known = Known(values, instructions, frozenset(self.actuators))
         words = (frozenset(each) for each in (self.defs, self.in_brackets, self.rows))
-        kit = frozenset(self.actuators.values())
-        self._content = (self.known, *words, frozenset(self.begun.items()), kit)
+        self._content = (self.known, *words, frozenset(self.begun.items()), kit.actuators)
         self._labels: dict[tuple[str, str, bool], str] = {}
 
     def __eq__(self, other: object) -> bool:

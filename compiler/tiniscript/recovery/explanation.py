@@ -16,7 +16,7 @@ from typing import NamedTuple
 from tiniscript.base.source import Edit, Span
 from tiniscript.base.words import BLOCK_ENDS, WORDS
 from tiniscript.diagnostics import codes
-from tiniscript.recovery import rows
+from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery.blocks import BRACES
 from tiniscript.recovery.concepts import ENDED, SOME_END, Lexeme, lexemes, meant_by, said_of, texts
 from tiniscript.recovery.lines import Step
@@ -24,18 +24,16 @@ from tiniscript.recovery.search import Candidate, Change
 from tiniscript.recovery.writing import in_one_line, laid_out, tokens_of, without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-_WORD_CODE = rows.OTHER_WORD
-_BRACES, _UNENDED = codes.BRACES.number, codes.NEVER_ENDS.number
-_SAID_ONCE = (codes.BAD_NAME.number, codes.EMPTY_BRACKETS.number, codes.NAME_WITH_SPACE.number)
+_SAID_ONCE = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)
 # Codes of what belongs to the beginning of its block, where something is wrong with that, too.
-_OF_BLOCK = (_UNENDED, codes.END_ALONE.number, codes.END_SPLIT.number, _BRACES,
-             rows.DO_CODE, _WORD_CODE)  # fmt: skip
-_SHOW_WHOLE = frozenset(each.number for each in (
+_OF_BLOCK = (codes.NEVER_ENDS, codes.END_ALONE, codes.END_SPLIT, codes.BRACES,
+             codes.ASKED_BEHIND, codes.OTHER_LANGUAGE)  # fmt: skip
+_SHOW_WHOLE = frozenset((
     codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.MISSING_OPEN, codes.MISSING_CLOSE,
     codes.END_SPLIT, codes.END_ALONE, codes.FOREVER_NOT_HERE, codes.SPANISH_IF,
     codes.BRACES, codes.OTHER_ASSIGNMENT, codes.ASKED_BEHIND, codes.GROUPED, codes.OTHER_LANGUAGE,
 ))  # fmt: skip
-_OF_ARM = (_BRACES, _WORD_CODE, codes.HEADER_SEPARATOR.number)
+_OF_ARM = (codes.BRACES, codes.OTHER_LANGUAGE, codes.HEADER_SEPARATOR)
 _OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
 _WORD, _WORD_BEFORE = re.compile(r"\w+"), re.compile(r"\w+\Z")
 _BEHIND = re.compile(r"\W*(\w+)[\s;]+(\w+)")
@@ -64,7 +62,7 @@ class Explanation:
     the changes in which blocks begin that it ends.
     """
 
-    code: str
+    code: Code
     place: Span
     span: Span
     values: dict[str, str]
@@ -128,7 +126,7 @@ class _Teller:
         return self.out
 
     def complete(self, told: Explanation) -> None:
-        if told.code != _UNENDED:
+        if told.code is not codes.NEVER_ENDS:
             is_shown = self.found.is_whole and told.last > (told.first, 1)
             told.values["whole"] = self.whole(told.first, told.last) if is_shown else ""
         start, end = self.words(told.edits[0].span)
@@ -182,13 +180,13 @@ class _Teller:
             edit = trimmed(place.start, old, own)
             part = _Change(place, edit, self.changes[k].steps, before, after)
             code, step = _code(part)
-            is_brace = code == _BRACES and before[0].text in BRACES
+            is_brace = code is codes.BRACES and before[0].text in BRACES
             is_arm = bool(after) and after[0].text in _ARMS
             is_more = code in (_OF_ARM if is_arm else _OF_BLOCK) and (closed or is_brace or is_arm)
             told = self.added(closed or around, edit, (k, 1), after) if is_more else None
             told = told or self.new(k, part, code, step)
             told.opened |= {closed.first} if closed else set()
-            if code == codes.WRONG_END.number:
+            if code is codes.WRONG_END:
                 right = told.values["right"]
                 line = str(self.changes[closed.first if closed else k].first + 1)
                 told.values |= {"word": ENDED.get(right, ""), "line": line, "fix": right}
@@ -206,7 +204,7 @@ class _Teller:
         steps: dict[int, list[Step]] = {}
         for step in self.changes[k].steps:
             one, other = (_parts(each) for each in step[1:])
-            if len(one) != len(other) or step.code == rows.DO_CODE:
+            if len(one) != len(other) or step.code is codes.ASKED_BEHIND:
                 return []
             pairs = enumerate(zip(one, other, strict=True))
             n = next((n for n, (a, b) in pairs if texts(a) != texts(b)), len(one) - 1)
@@ -258,18 +256,18 @@ class _Teller:
         told.values["ends"] = told.values["ends"] or ends
         return told
 
-    def new(self, k: int, part: _Change, code: str, step: Step | None) -> Explanation:
+    def new(self, k: int, part: _Change, code: Code, step: Step | None) -> Explanation:
         place, edit, _, before, after = part
         values = _slip(code, step, before, after)
-        if code == codes.OTHER_NOTE.number:
+        if code is codes.OTHER_NOTE:
             values["right"] = self.changes[k].text.strip()
-        if code == codes.EXTRA_WORD.number:
+        if code is codes.EXTRA_WORD:
             behind = _BEHIND.match(self.program, self.words(edit.span).start)
             end, arm = (each.upper() for each in behind.groups()) if behind else ("", "")
             is_end = {end, meant_by(end)} & {*ENDED} or said_of(end, "end")
             if is_end and {arm, meant_by(arm)} & {"ELSE", "ELSEIF"}:
                 values["early"] = values["found"]
-        if code == _UNENDED:
+        if code is codes.NEVER_ENDS:
             word = next((each.text for each in after if each.text in BLOCK_ENDS), "")
             added = [each.text for each in after if each.text not in texts(before)]
             end = BLOCK_ENDS.get(word) or next((each for each in added if each in ENDED), "")
@@ -306,7 +304,8 @@ class _Teller:
         values = {"word": word, "right": end, "line": line, "last": behind_this, "whole": whole}
         if self.may_end_earlier(word, first, last[0]):
             values |= {"several": behind_this, "last": "", "whole": ""}
-        self.out.append(Explanation(_UNENDED, place, place, values, [edit], first, (first, 1)))
+        told = Explanation(codes.NEVER_ENDS, place, place, values, [edit], first, (first, 1))
+        self.out.append(told)
 
     def may_end_earlier(self, word: str, first: int, last: int) -> bool:
         """Whether nothing says that the last instruction of a block is in it.
@@ -346,73 +345,73 @@ def _alike(old: Sequence[object], new: Sequence[object]) -> tuple[int, int]:
     return head, next((k for k in range(most) if old[-1 - k] != new[-1 - k]), most)
 
 
-def _code(part: _Change) -> tuple[str, Step | None]:
+def _code(part: _Change) -> tuple[Code, Step | None]:
     """Return with which code a change is told, and the rewrite that it is told of."""
     _, _, steps, before, after = part
     words, new = set(texts(before)), set(texts(after))
     fewer = Counter(texts(before)) - Counter(texts(after))
     if "SI" in fewer and "IF" in new - words:
-        return codes.SPANISH_IF.number, None
+        return codes.SPANISH_IF, None
     dropped = {each for each in fewer if {each, meant_by(each)} & {*ENDED}}
     if dropped and not new - words and fewer.keys() <= dropped | {";"}:
-        return codes.EXTRA_WORD.number, None
+        return codes.EXTRA_WORD, None
     if steps:
-        own = [step for step in steps if step.code != _WORD_CODE]
-        own.sort(key=lambda it: (it.code != rows.DO_CODE, it.code == codes.OTHER_SIGN.number))
-        if own and own[0].code == rows.DO_CODE:
-            return rows.DO_CODE, own[0]
+        own = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
+        own.sort(key=lambda it: (it.code is not codes.ASKED_BEHIND, it.code is codes.OTHER_SIGN))
+        if own and own[0].code is codes.ASKED_BEHIND:
+            return codes.ASKED_BEHIND, own[0]
         foreign = next(
             (each.text for each in before
              if each.kind is WORD and each.text not in new and meant_by(each.text) in new - words),
             "",
         )  # fmt: skip
-        translated = next((step for step in steps if step.code == _WORD_CODE), None)
+        translated = next((step for step in steps if step.code is codes.OTHER_LANGUAGE), None)
         if translated and (foreign or not own):
             is_said = foreign or "(" in words or "(" not in new or before[0].text not in new
-            return _WORD_CODE if is_said else rows.NO_BRACKETS, translated
+            return codes.OTHER_LANGUAGE if is_said else codes.MISSING_OPEN, translated
         if foreign:
             changed = (
                 it for it in steps if foreign in texts(it.before) and foreign not in texts(it.after)
             )
-            return _WORD_CODE, next(changed, own[0])
+            return codes.OTHER_LANGUAGE, next(changed, own[0])
         right = _first_difference(own[0].before, own[0].after)[2]
-        is_comma = own[0].code == codes.OTHER_CALL.number and texts(right) == (",",)
-        return codes.MISSING_COMMA.number if is_comma else own[0].code, own[0]
+        is_comma = own[0].code is codes.OTHER_CALL and texts(right) == (",",)
+        return codes.MISSING_COMMA if is_comma else own[0].code, own[0]
     if words & {*BRACES}:
-        return _BRACES, None
+        return codes.BRACES, None
     source = "".join(each.source or "" for each in before)
     if not source.isascii():
         has_word = any(each.kind is WORD and not (each.source or "").isascii() for each in before)
-        return (codes.BAD_NAME if has_word else codes.OTHER_SIGN).number, None
+        return codes.BAD_NAME if has_word else codes.OTHER_SIGN, None
     _, found, right = _first_difference(before, after)
     if len(found) == len(right) == 1 and {*texts(found), *texts(right)} <= {*ENDED}:
-        return codes.WRONG_END.number, None
+        return codes.WRONG_END, None
     ends = [each.text for each in before if said_of(each.text, "end")]
     if ends and ends[-1] not in new:
         is_end = bool(new & {*BLOCK_ENDS.values()})
-        return (codes.END_ALONE if is_end else codes.EXTRA_WORD).number, None
-    return _UNENDED, None
+        return codes.END_ALONE if is_end else codes.EXTRA_WORD, None
+    return codes.NEVER_ENDS, None
 
 
 def _slip(
-    code: str, step: Step | None, before: Sequence[Lexeme], after: Sequence[Lexeme]
+    code: Code, step: Step | None, before: Sequence[Lexeme], after: Sequence[Lexeme]
 ) -> dict[str, str]:
-    is_note = code == codes.OTHER_NOTE.number
+    is_note = code is codes.OTHER_NOTE
     old, new = (step.before, step.after) if step and not is_note else (before, after)
     if "WHEN" in texts(after):  # what the steps took for an IF
         old, new = _with_when(old), _with_when(new)
     start, found, right = _first_difference(old, new)
-    if code == _WORD_CODE and texts(found[:1]) == (";",):
+    if code is codes.OTHER_LANGUAGE and texts(found[:1]) == (";",):
         found = found[1:]
-    if code == codes.EXTRA_WORD.number and texts(found[1:]) == (";",):
+    if code is codes.EXTRA_WORD and texts(found[1:]) == (";",):
         found = found[:1]
-    if not right and code == _WORD_CODE and start and old[start - 1].text != "|":
+    if not right and code is codes.OTHER_LANGUAGE and start and old[start - 1].text != "|":
         found, right = [old[start - 1], *found], [old[start - 1]]
-    elif code == _WORD_CODE and texts(found[-1:]) == (".",):  # `bot.forward`
+    elif code is codes.OTHER_LANGUAGE and texts(found[-1:]) == (".",):  # `bot.forward`
         found = old[start : start + len(found) + 1]
-    elif not right and code == codes.BAD_NUMBER.number:
+    elif not right and code is codes.BAD_NUMBER:
         found = old[start + len(found) - 1 : start + len(found) + 1]
-    elif code == rows.WITH_UNIT:
+    elif code is codes.UNIT:
         found = _with_unit(old) or found
     told, fix = _parted(before), _parted(after)
     head, tail = _alike([*map(texts, told)], [*map(texts, fix)])
@@ -421,33 +420,33 @@ def _slip(
     has_end = bool(head) and any(each.text in ENDED for each in other)
     shown = ";".join(laid_out(part) for part in fix[0 if has_end else head : len(fix) - tail])
     shown = shown or laid_out(after)
-    if code == _WORD_CODE:  # `FOR I = 1 TO`: FOR alone
+    if code is codes.OTHER_LANGUAGE:  # `FOR I = 1 TO`: FOR alone
         cut = next((k for k, it in enumerate(found) if it.text in ("=", "(")), len(found))
         is_set = cut < len(found) and found[cut].text == "="
         found = found[: cut - is_set] or found
-    if code == codes.QUESTION_BEHIND.number:
+    if code is codes.QUESTION_BEHIND:
         found = [each for each in (*old, *new) if each.text in BLOCK_ENDS][:1] or found
-    is_all = code == codes.REPEATED.number or (code == codes.OTHER_SIGN.number and not right)
-    is_found = bool(found) or code == codes.OTHER_ASSIGNMENT.number  # else a sign is missing
+    is_all = code is codes.REPEATED or (code is codes.OTHER_SIGN and not right)
+    is_found = bool(found) or code is codes.OTHER_ASSIGNMENT  # else a sign is missing
     is_aside = bool(found) and all(said_of(each.text, "filler") for each in found)
-    if code == _WORD_CODE and right and is_aside:  # `oi robô, anda`
+    if code is codes.OTHER_LANGUAGE and right and is_aside:  # `oi robô, anda`
         found = [each for each in old if meant_by(each.text) == right[0].text][:1] or found
     was = _written(one if is_all or not is_found else found)
     if is_note:
         was = re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
     now = laid_out(right) or shown
     now = shown if now == SOME_END and shown in ENDED else now  # of a block, whose end is known
-    now = re.split("[()]", now, maxsplit=1)[0] if code == _WORD_CODE else now
+    now = re.split("[()]", now, maxsplit=1)[0] if code is codes.OTHER_LANGUAGE else now
     now = f"{now} )" if now.endswith("(") else now
     word = _word(code, old, new, start, other)
     usage = WORDS[word].usage if word in WORDS else ""
     until = len(fix[head]) if len(told) < len(fix) else None  # one instruction became two
     kept = _written(one[: _alike(texts(one), texts(other[:until]))[0]])
-    if code in (codes.MISSING_VALUE.number, codes.MISSING_SIGN.number) and not found and start:
+    if code in (codes.MISSING_VALUE, codes.MISSING_SIGN) and not found and start:
         was, kept = _written(old[start : start + 1]), _written(old[start - 1 : start])
-    if code == codes.HEADER_SEPARATOR.number and not kept:
+    if code is codes.HEADER_SEPARATOR and not kept:
         kept = other[0].text  # `CADA VEZ QUE DISTANCE < 15 S`
-    letter = _letter(was, now) if code == codes.BAD_NUMBER.number else ""
+    letter = _letter(was, now) if code is codes.BAD_NUMBER else ""
     given, needed = (sum(each.kind is NUMBER for each in it) for it in (one, other))
     takes = usage if needed > given else ""
     return {"found": was, "right": now, "before": kept, "word": word, "usage": usage, "fix": shown,
@@ -465,21 +464,21 @@ def _letter(found: str, right: str) -> str:
 
 
 def _word(
-    code: str, old: Sequence[Lexeme], new: Sequence[Lexeme], start: int, part: Sequence[Lexeme]
+    code: Code, old: Sequence[Lexeme], new: Sequence[Lexeme], start: int, part: Sequence[Lexeme]
 ) -> str:
     """Return the word that is told of: the one before its brackets, else the first one."""
-    if code == codes.EMPTY_BRACKETS.number and "(" in (behind := texts(old[start:]))[start == 0 :]:
+    if code is codes.EMPTY_BRACKETS and "(" in (behind := texts(old[start:]))[start == 0 :]:
         return old[start + behind.index("(") - 1].text
-    if code == codes.GROUPED.number:
+    if code is codes.GROUPED:
         if start and old[start - 1].text == ";":
             return ""
         return next((each.text for each in new if each.text in ("LOOP", "WHILE", "IF")), "")
-    if code == codes.BAD_NAME.number:
+    if code is codes.BAD_NAME:
         is_accent = start < len(old) and not (old[start].source or "").isascii()
         return old[start].text if is_accent and old[start].text in WORDS else ""
-    if code in (codes.NO_VALUE.number, codes.NO_BRACKETS_HERE.number):
+    if code in (codes.NO_VALUE, codes.NO_BRACKETS_HERE):
         part = old[start:]
-    elif code == rows.NO_BRACKETS:
+    elif code is codes.MISSING_OPEN:
         for word, sign in pairwise(new):
             if sign.text == "(" and sign.source is None and word.kind is WORD:
                 return word.text

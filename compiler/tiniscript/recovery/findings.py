@@ -15,7 +15,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, applied, overlap
 from tiniscript.base.words import lexicon, nearest, said_of
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import CODES, Diagnostic, Repair
+from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import is_better
 from tiniscript.recovery import lines, rows
 from tiniscript.recovery.advice import advised
@@ -142,7 +142,7 @@ def _meant(
     written = source.text if len(source.text) > len(text) else text  # with the \r of its lines
     told = explained(written, meant)
     if not told and meant.is_whole:
-        misplaced = [each for each in found if each.code.number in rows.MISPLACED]
+        misplaced = [each for each in found if each.code in rows.MISPLACED]
         said_of_it = misplaced or [each for each in found if each.is_mistake]
         return [_moved(each, written, meant) for each in said_of_it][:1]
     said_with = {each.code for each in told}
@@ -158,10 +158,10 @@ def _meant(
 def _diagnostic(
     told: Explanation, meant: Candidate, is_exact: bool, found: Sequence[Diagnostic]
 ) -> Diagnostic:
-    code, values = CODES[told.code], told.values
-    is_said = told.code != rows.DO_CODE or re.search(r"(?i)\bBREAK\b", meant.text)  # how often
+    code, values = told.code, told.values
+    is_said = code is not codes.ASKED_BEHIND or "BREAK" in meant.text.upper()  # how often
     is_sure = meant.is_applied or (meant.is_whole and told.is_sure)
-    repair = Repair(tuple(told.edits), is_exact and bool(is_said) and is_sure)
+    repair = Repair(tuple(told.edits), is_exact and is_said and is_sure)
     if not meant.has_sure_blocks and "FOREVER" not in values.get("fix", ""):
         values |= {"whole": ""}  # where it ends is a guess
     if code in _WITH_RIGHT and not values["right"]:
@@ -196,7 +196,7 @@ def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
     return found._replace(values=values, repair=repair)
 
 
-def _keeps(text: str, new: str, said_with: set[str], is_sure: bool) -> bool:
+def _keeps(text: str, new: str, said_with: set[Code], is_sure: bool) -> bool:
     """Whether all numbers of a text are used, and all names that it gives to variables and DEFs.
 
     `is_sure`: and no others.
@@ -216,8 +216,8 @@ def _bare(text: str) -> str:
     return "\n".join(without_note(line)[0] for line in text.split("\n"))
 
 
-def _mistakes(found: Sequence[Diagnostic]) -> list[str]:
-    return [each.code.number for each in found if each.is_mistake]
+def _mistakes(found: Sequence[Diagnostic]) -> list[Code]:
+    return [each.code for each in found if each.is_mistake]
 
 
 def moved_back(found: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:

@@ -14,6 +14,8 @@ from typing import NamedTuple
 from unicodedata import category
 
 from tiniscript.base.words import FUNCTIONS, WAYS, WORDS, concept_of, nearest, said_of
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import concepts, rewrites, rows
 from tiniscript.recovery.blocks import ANY_END, BRACES
 from tiniscript.recovery.concepts import CALLED, LONG_S, NEAR, Lexeme, Names, lexemes, made, texts
@@ -41,7 +43,7 @@ _AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
 class Step(NamedTuple):
     """A rewrite that was made: what it was for, and the line before and behind it."""
 
-    code: str
+    code: Code
     before: Sequence[Lexeme]
     after: Sequence[Lexeme]
 
@@ -58,7 +60,7 @@ class Reading(NamedTuple):
     failure: Failure = Failure(0, 0)
 
     def changed(
-        self, tokens: list[Lexeme], cost: float, code: str, is_sure: bool = True,
+        self, tokens: list[Lexeme], cost: float, code: Code, is_sure: bool = True,
         is_new_line: bool = False,
     ) -> Reading:  # fmt: skip
         steps = (*self.steps, Step(code, self.tokens, tokens))
@@ -194,8 +196,8 @@ class _Search:
             one = rewrites.one_word(reading.tokens, self.names)
             if one is not None:
                 tokens, is_name = one
-                cost, code = (1.0, rows.NAME_IN_WORDS) if is_name else (0.5, rows.OTHER_WORD)
-                reading = reading.changed(tokens, cost, code)
+                code = codes.NAME_WITH_SPACE if is_name else codes.OTHER_LANGUAGE
+                reading = reading.changed(tokens, 1.0 if is_name else 0.5, code)
                 continue
             after = next(self._by_rows(reading, is_first=True), self._with_function(reading))
             if after is None:
@@ -216,7 +218,7 @@ class _Search:
             if near and token.text not in WORDS and not concept_of(token.text):
                 line = [*reading.tokens]
                 line[k] = made(near)._replace(space=token.space)
-                return reading.changed(line, 1.0, rows.OTHER_WORD)
+                return reading.changed(line, 1.0, codes.OTHER_LANGUAGE)
         return None
 
     def _by_rows(self, reading: Reading, is_first: bool) -> Iterator[Reading]:
@@ -270,7 +272,7 @@ class _Search:
                     continue
                 is_sure = cost < 2 and concept != "TIME"
                 line = [*tokens[:k], made(concept)._replace(space=token.space), *tokens[k + 1 :]]
-                yield reading.changed(line, cost, rows.OTHER_WORD, is_sure)
+                yield reading.changed(line, cost, codes.OTHER_LANGUAGE, is_sure)
             if meanings:
                 break
 
@@ -279,24 +281,25 @@ class _Search:
         tokens, (start, at) = reading.tokens, reading.failure
         for k in reversed(range(max(0, start - 1), min(len(tokens) + 1, at + 2))):
             head, rest = tokens[:k], tokens[k + 1 :]
-            for sign, cost, code in rows.MISSING:
-                yield reading.changed([*head, made(sign), *tokens[k:]], cost, code)
+            for sign, code in rows.MISSING.items():
+                yield reading.changed([*head, made(sign), *tokens[k:]], rows.MISSING_COST, code)
             if k == len(tokens):
                 continue
             token = tokens[k]
             is_sign, is_bracket = token.kind not in (WORD, NUMBER), token.text in ("(", ")")
             around = texts((*head[-1:], *rest[:1]))
             for sign in rows.CONFUSED.get(token.text, ""):
-                code = rows.OF_INSTRUCTIONS if sign == ";" else rows.OF_VALUES
+                code = codes.MISSING_SEPARATOR if sign == ";" else codes.OTHER_CALL
                 line = [*head, made(sign), *rest]
                 yield reading.changed(line, rows.CONFUSED_COST, code, sign not in around)
             is_kept = _CALCULATES & {token.text, *texts(rest[:1])} or _is_group(tokens, k)
             if is_sign and not is_kept and category(token.text[0]) != "Sm":
-                code = rows.EXTRA.get(token.text, rows.OF_VALUES)
+                code = codes.EXTRA_CLOSE if token.text == ")" else codes.OTHER_CALL
                 yield reading.changed([*head, *rest], rows.EXTRA_COST, code, is_bracket)
             if rest and (is_bracket or rest[0].text in ("(", ")")):
                 if not is_sign or rest[0].kind in (WORD, NUMBER):
-                    yield reading.changed([*head, rest[0], token, *rest[1:]], *rows.SWAPPED)
+                    line = [*head, rest[0], token, *rest[1:]]
+                    yield reading.changed(line, rows.SWAPPED_COST, codes.MISSING_OPEN)
 
 
 def _is_group(tokens: Sequence[Lexeme], k: int) -> bool:
@@ -306,19 +309,19 @@ def _is_group(tokens: Sequence[Lexeme], k: int) -> bool:
     return tokens[k].text == "(" and before in ("=", *SIGNS) and bool(_CALCULATES & {*rest})
 
 
-def _code_of_call(words: Sequence[Lexeme]) -> str:
+def _code_of_call(words: Sequence[Lexeme]) -> Code:
     """Return with which code it is told that these words are no call as it is written."""
     signs = texts(words)
     if signs[0] not in WORDS:
-        return rows.OTHER_WORD
+        return codes.OTHER_LANGUAGE
     if "(" not in signs:
-        return rows.NO_BRACKETS
+        return codes.MISSING_OPEN
     if "=" in signs:
-        return rows.NAMED_VALUE
+        return codes.NAMED_ARGUMENT
     inside = words[signs.index("(") :]
     if any(said_of(it.text, "unit") and it.text not in (*WAYS, "°", "º") for it in inside):
-        return rows.WITH_UNIT
-    return rows.OTHER_CALL
+        return codes.UNIT
+    return codes.OTHER_CALL
 
 
 def _touches(failure: Failure, start: int, end: int) -> bool:

@@ -13,6 +13,8 @@ from itertools import chain, product
 from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of, said_of
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import (
     ANY,
@@ -32,7 +34,6 @@ _ATOM = re.compile(r"'[^']*'|@\w+|[a-z]{2,}|[A-Z_0-9]+|\$|[^\w|'@\s$]+")
 _CAPTURE = re.compile(r"([a-z])=(?=.)")
 _PART = re.compile(r"<(\w+)>")
 _OF_NUMBERS = re.compile(r"@(?:dec|cat|cm|mmss|xn|same)\b|(?<![\w@])\d")
-_SET = "TS050"  # of a variable that gets its value: in brackets that would be a question
 _BEFORE_VALUE = COMPARISONS | frozenset("(,+-*/%")
 _HEADER_OF = {"FOREVER": "LOOP", "ELSEIF": "IF"}
 
@@ -46,7 +47,7 @@ class Row(NamedTuple):
     pattern: Pattern
     becomes: tuple[str, ...]
     cost: float
-    code: str
+    code: Code
     is_first: bool
     is_offered: bool
     may_lose_numbers: bool
@@ -58,7 +59,7 @@ class SignRow(NamedTuple):
 
     pattern: re.Pattern[str]
     becomes: str
-    code: str
+    code: Code
     is_offered: bool
     example: tuple[str, str]
 
@@ -79,12 +80,11 @@ def of_tokens() -> tuple[Row, ...]:
     found = []
     for pattern, becomes, cost, code, how, example in cells(rows.TOKENS):
         parts = tuple(_whole(becomes, rows.PARTS).split())
-        is_first, is_offered = "first" in how, "offered" in how
+        is_offered = "offered" in how
         may_lose = is_offered or bool(_OF_NUMBERS.search(f"{pattern} {becomes}"))
-        found.append(
-            Row(compiled(pattern, rows.PARTS), parts, float(cost), code, is_first, is_offered,
-                may_lose, _texts(example))
-        )  # fmt: skip
+        row = Row(compiled(pattern, rows.PARTS), parts, float(cost), CODES[code], "first" in how,
+                  is_offered, may_lose, _texts(example))  # fmt: skip
+        found.append(row)
     return tuple(found)
 
 
@@ -101,10 +101,9 @@ def tried(line: Encoded, is_first: bool) -> Iterator[Row]:
 @cache
 def of_signs() -> tuple[SignRow, ...]:
     return tuple(
-        SignRow(re.compile(pattern, re.IGNORECASE), becomes.strip("`"), code, how == "offered",
-                _texts(example))
-        for pattern, becomes, code, how, example in cells(rows.SIGNS)
-    )  # fmt: skip
+        SignRow(re.compile(pattern, re.I), becomes[1:-1], CODES[code], how == "offered", _texts(it))
+        for pattern, becomes, code, how, it in cells(rows.SIGNS)
+    )
 
 
 def _texts(example: str) -> tuple[str, str]:
@@ -220,8 +219,9 @@ class Encoded:
             new += made_of
         new = _without_double_brackets(new)
         start, end = self.span(match)
-        if row.code == _SET and start and self.tokens[start - 1].text in _BEFORE_VALUE:
-            return None
+        is_set = row.code is codes.OTHER_ASSIGNMENT
+        if is_set and start and self.tokens[start - 1].text in _BEFORE_VALUE:
+            return None  # in brackets it would be a question
         old = self.tokens[start:end]
         if texts(new) == texts(old):
             return None

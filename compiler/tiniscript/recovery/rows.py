@@ -28,6 +28,8 @@ with `more` and `>`. Each has its own example.
 in the same columns but for the cost. Rows are sorted by what they are about.
 """
 
+from tiniscript.diagnostics import codes
+
 # Pieces of patterns that several rows have.
 PARTS = {
     "body": "b=@start r=@all*",
@@ -39,26 +41,21 @@ PARTS = {
     "end": "BREAK ; ENDIF ; END_LOOP",
 }
 
-# Codes of what no row says: a name of several words, a word of another language, `SI|`, an UNTIL on
-# a line of its own, and the one mistake of a program that has a DEF behind its call.
-NAME_IN_WORDS, OTHER_WORD, SETUP_CODE, UNTIL_ALONE = "TS056", "TS102", "TS036", "TS029"
-DO_CODE, SETUP_TWICE = "TS064", "TS033"
-MISPLACED = frozenset(("TS112", "TS113", "TS114", "TS026"))  # of a DEF or an end
-# Codes of calls whose values are told in another way, by what is odd in them.
-NO_BRACKETS, NAMED_VALUE, WITH_UNIT, OTHER_CALL = "TS015", "TS052", "TS049", "TS076"
+# Of a DEF or an end that stands where it may not.
+MISPLACED = {codes.CALL_BEFORE_DEF, codes.CALLS_ITSELF, codes.DEF_NOT_TOP, codes.WRONG_END}
 
 # Those that write a number in another way: `500 ms`, `8O`, `X++`, `1) F(2, 80)`, `tres segundos`,
 # or drop one: `TASK(1)`, `LOOP(1 TO 5)`.
-OTHER_NUMBERS = frozenset(
-    ("TS008", "TS065", "TS010", "TS049", "TS050", "TS054", "TS063", "TS102", "TS137", "TS039")
-)
+OTHER_NUMBERS = {
+    codes.BAD_NUMBER, codes.NEEDLESS_FRAME, codes.OTHER_SIGN, codes.UNIT, codes.OTHER_ASSIGNMENT,
+    codes.LINE_NUMBER, codes.LOOP_COUNTS, codes.OTHER_LANGUAGE, codes.SET_TOGETHER,
+    codes.NO_BRACKETS_HERE,
+}  # fmt: skip
 
-# Slips of one sign, tried where no row reads a line: cost and code of one that is missing, of one
-# that is taken for another, of one too many, and of one behind its neighbour.
-MISSING = (("(", 1.6, "TS015"), (")", 1.6, "TS016"), (",", 1.6, "TS017"))
-CONFUSED_COST, OF_VALUES, OF_INSTRUCTIONS = 1.1, "TS076", "TS013"  # `F(2;80)`, `S: F(2, 80)`
-EXTRA_COST, EXTRA = 1.5, {")": "TS041"}  # others as `OF_VALUES`
-SWAPPED = (1.7, "TS015")
+# Slips of one sign, tried where no row reads a line: of one that is missing, of one that is taken
+# for another, of one too many, and of one behind its neighbour.
+MISSING = {"(": codes.MISSING_OPEN, ")": codes.MISSING_CLOSE, ",": codes.MISSING_COMMA}
+MISSING_COST, CONFUSED_COST, EXTRA_COST, SWAPPED_COST = 1.6, 1.1, 1.5, 1.7
 CONFUSED = {
     "(": ")", ")": "(", "[": "(", "]": ")", "{": "(", "}": ")", ".": ",;", ";": ",)", ":": ",;",
     ",": ";", "'": ",", "|": ";", "!": "|",

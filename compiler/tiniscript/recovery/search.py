@@ -13,6 +13,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matching
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, texts, words_of
@@ -31,7 +33,7 @@ _WHEN = re.compile(rf"\s*(S[IB]\s*\|)?\s*{words_of('whenever')}\b")
 _QUOTES = str.maketrans("“”„‘’", '"""\'\'')
 _QUOTES |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese keyboards
 
-Mistakes = Callable[[str], Sequence[str]]  # the codes of a program's mistakes
+Mistakes = Callable[[str], Sequence[Code]]  # the codes of a program's mistakes
 
 
 class Change(NamedTuple):
@@ -153,7 +155,7 @@ class Recovery:
         for line in [each for each in self.lines if each.body.strip()][1:]:
             body = _SETUP.sub("", line.body)
             if body != line.body:
-                line.steps.append(Step(rows.SETUP_TWICE, lexemes(line.body), lexemes(body)))
+                line.steps.append(Step(codes.SETUP_TWICE, lexemes(line.body), lexemes(body)))
                 line.body = body
 
     def join_until(self) -> None:
@@ -170,7 +172,7 @@ class Recovery:
             if above and body.endswith(")") and not is_do and until.match(plain(line.body)):
                 above.body, above.note = f"{body} {line.body.strip()}", line.note
                 above.last = line.last
-                above.steps.append(Step(rows.UNTIL_ALONE, lexemes(line.body), lexemes(above.body)))
+                above.steps.append(Step(codes.UNTIL_ALONE, lexemes(line.body), lexemes(above.body)))
             else:
                 kept.append(line)
             is_do = is_do or _DO_ALONE.match(plain(line.body)) is not None
@@ -263,7 +265,7 @@ class Recovery:
         """Return what all blocks of the lines need, or None where they fit in no way."""
         found = Matching([
             Line(line.indent, each.tokens, each.items, bool(each.steps), each.is_new_line,
-                 any(step.code == rows.DO_CODE for step in each.steps),
+                 any(step.code is codes.ASKED_BEHIND for step in each.steps),
                  _WHEN.match(line.source.upper()) is not None)
             for line, each in zip(self.lines, readings, strict=False)
         ])  # fmt: skip

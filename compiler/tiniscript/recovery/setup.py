@@ -6,7 +6,8 @@ import re
 
 from tiniscript.base.source import Edit, Span
 from tiniscript.base.words import WORDS
-from tiniscript.diagnostics.codes import CODES, Diagnostic, Repair
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import plain
 from tiniscript.recovery.writing import without_note
@@ -40,7 +41,7 @@ def setup(text: str) -> Diagnostic | None:
         fix += text[span.end : close]
     said = {"found": head_meant, "letter" if sign.isalpha() else "sign": sign, "fix": fix}
     is_sure = not any(each.isdecimal() for each in head + sign)
-    return Diagnostic(CODES[rows.SETUP_CODE], span, said, None, Repair(tuple(edits), is_sure))
+    return Diagnostic(codes.SETUP_NEEDS_BAR, span, said, None, Repair(tuple(edits), is_sure))
 
 
 def _begins(rest: str, sign: str, is_apart: bool) -> bool:
