@@ -36,7 +36,7 @@ _SHOW_WHOLE = frozenset((
 _OF_ARM = (codes.BRACES, codes.OTHER_LANGUAGE, codes.HEADER_SEPARATOR)
 _OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
 _WORD, _WORD_BEFORE = re.compile(r"\w+"), re.compile(r"\w+\Z")
-_BEHIND = re.compile(r"\W*(\w+)[\s;]+(\w+)")
+_BEHIND = re.compile(r"\W*\w+[\s;]+(\w+)")
 _ARMS = ("ELSE", "ELSEIF")
 _SIGNS = ("BEEP", "SHOW", "S", "STOP")
 LONGEST_BLOCK = 160  # characters of one that a message shows
@@ -261,11 +261,9 @@ class _Teller:
         values = _slip(code, step, before, after)
         if code is codes.OTHER_NOTE:
             values["right"] = self.changes[k].text.strip()
-        if code is codes.EXTRA_WORD:
-            behind = _BEHIND.match(self.program, self.words(edit.span).start)
-            end, arm = (each.upper() for each in behind.groups()) if behind else ("", "")
-            is_end = {end, meant_by(end)} & {*ENDED} or said_of(end, "end")
-            if is_end and {arm, meant_by(arm)} & {"ELSE", "ELSEIF"}:
+        if code is codes.EXTRA_WORD and not step:
+            behind = _BEHIND.match(self.program.upper(), self.words(edit.span).start)
+            if behind and {behind[1], meant_by(behind[1])} & {*_ARMS}:
                 values["early"] = values["found"]
         if code is codes.NEVER_ENDS:
             word = next((each.text for each in after if each.text in BLOCK_ENDS), "")
@@ -360,19 +358,14 @@ def _code(part: _Change) -> tuple[Code, Step | None]:
         own.sort(key=lambda it: (it.code is not codes.ASKED_BEHIND, it.code is codes.OTHER_SIGN))
         if own and own[0].code is codes.ASKED_BEHIND:
             return codes.ASKED_BEHIND, own[0]
-        foreign = next(
-            (each.text for each in before
-             if each.kind is WORD and each.text not in new and meant_by(each.text) in new - words),
-            "",
-        )  # fmt: skip
-        translated = next((step for step in steps if step.code is codes.OTHER_LANGUAGE), None)
+        lost = (each.text for each in before if each.kind is WORD and each.text not in new)
+        foreign = next((each for each in lost if meant_by(each) in new - words), "")
+        translated = next((step for step in steps if step not in own), None)
         if translated and (foreign or not own):
             is_said = foreign or "(" in words or "(" not in new or before[0].text not in new
             return codes.OTHER_LANGUAGE if is_said else codes.MISSING_OPEN, translated
         if foreign:
-            changed = (
-                it for it in steps if foreign in texts(it.before) and foreign not in texts(it.after)
-            )
+            changed = (it for it in own if foreign in {*texts(it.before)} - {*texts(it.after)})
             return codes.OTHER_LANGUAGE, next(changed, own[0])
         right = _first_difference(own[0].before, own[0].after)[2]
         is_comma = own[0].code is codes.OTHER_CALL and texts(right) == (",",)
@@ -401,10 +394,6 @@ def _slip(
     if "WHEN" in texts(after):  # what the steps took for an IF
         old, new = _with_when(old), _with_when(new)
     start, found, right = _first_difference(old, new)
-    if code is codes.OTHER_LANGUAGE and texts(found[:1]) == (";",):
-        found = found[1:]
-    if code is codes.EXTRA_WORD and texts(found[1:]) == (";",):
-        found = found[:1]
     if not right and code is codes.OTHER_LANGUAGE and start and old[start - 1].text != "|":
         found, right = [old[start - 1], *found], [old[start - 1]]
     elif code is codes.OTHER_LANGUAGE and texts(found[-1:]) == (".",):  # `bot.forward`
@@ -432,6 +421,7 @@ def _slip(
     if code is codes.OTHER_LANGUAGE and right and is_aside:  # `oi robô, anda`
         found = [each for each in old if meant_by(each.text) == right[0].text][:1] or found
     was = _written(one if is_all or not is_found else found)
+    was = was.strip("; ") if code in (codes.OTHER_LANGUAGE, codes.EXTRA_WORD) else was
     if is_note:
         was = re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
     now = laid_out(right) or shown
@@ -446,7 +436,8 @@ def _slip(
         was, kept = _written(old[start : start + 1]), _written(old[start - 1 : start])
     if code is codes.HEADER_SEPARATOR and not kept:
         kept = other[0].text  # `CADA VEZ QUE DISTANCE < 15 S`
-    letter = _letter(was, now) if code is codes.BAD_NUMBER else ""
+    letters = {each for each in was if each.isalpha()} - {*now} if len(was) == len(now) else set()
+    letter = letters.pop() if len(letters) == 1 and code is codes.BAD_NUMBER else ""
     given, needed = (sum(each.kind is NUMBER for each in it) for it in (one, other))
     takes = usage if needed > given else ""
     return {"found": was, "right": now, "before": kept, "word": word, "usage": usage, "fix": shown,
@@ -455,12 +446,6 @@ def _slip(
 
 def _with_when(tokens: Sequence[Lexeme]) -> list[Lexeme]:
     return [each._replace(text="WHEN") if each.text == "IF" else each for each in tokens]
-
-
-def _letter(found: str, right: str) -> str:
-    """Return the letter that stands for a digit of a number, nothing where there is another."""
-    letters = {each for each in found if each.isalpha()} - {*right}
-    return letters.pop() if len(found) == len(right) and len(letters) == 1 else ""
 
 
 def _word(

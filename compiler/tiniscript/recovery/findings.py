@@ -62,7 +62,11 @@ def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
     is_sealed = "~" in source.text  # what has a checksum is copied again
     if begun and not (is_sealed or (first and first[0].text in ("SI", "SB"))):  # another word
         return Findings(with_usage([begun], source, kit), [Edit(begun.span, "SI")])
-    recovery = _recovery(source, found, check, kit)
+    text = source.text.replace("\r\n", "\n")
+    text = source.text.replace("\r", "\n") if "\r" in text else text  # a line ends with one alone
+    recovery = None
+    if len(text) <= LONGEST and not is_sealed:
+        recovery = Recovery(text, kit, lambda to: _mistakes(found if to == text else check(to)))
     if recovery and (repaired := _meant(source, found, recovery, is_sure=True)):
         return _with_edits(repaired)
     told = advised(source.text, kit)
@@ -114,18 +118,6 @@ def _numbers(source: Source) -> list[Diagnostic]:
                    Repair((Edit(Span(*each.span()), ""),), True))
         for each in numbers
     ]  # fmt: skip
-
-
-def _recovery(
-    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
-) -> Recovery | None:
-    """Return what reads a text, unless it is long or has a checksum."""
-    text = source.text.replace("\r\n", "\n")
-    if "\r" in text:  # each line ends with one alone
-        text = source.text.replace("\r", "\n")
-    if len(text) > LONGEST or "~" in text:
-        return None
-    return Recovery(text, kit, lambda new: _mistakes(found if new == text else check(new)))
 
 
 def _meant(

@@ -240,9 +240,6 @@ class _Search:
             words = tokens[start:end]
             if not _touches(reading.failure, start, end):
                 continue
-            items = right(words, self.names)
-            if not isinstance(items, Failure) and items:
-                continue
             has_until = end < len(tokens) and tokens[end].text == "UNTIL"
             call = filled(words, self.names, has_until)
             if call is None or texts(call.tokens) == texts(words):

@@ -222,6 +222,8 @@ class Encoded:
         is_set = row.code is codes.OTHER_ASSIGNMENT
         if is_set and start and self.tokens[start - 1].text in _BEFORE_VALUE:
             return None  # in brackets it would be a question
+        if new and new[-1].text == ";" and end < len(self.tokens) and self.tokens[end].text == ";":
+            new.pop()
         old = self.tokens[start:end]
         if texts(new) == texts(old):
             return None

@@ -122,7 +122,7 @@ SIGNS = r"""
 (?:^\s*\.|(?<=;)\s*[:.,])\s*(?=;|$)  |  ``  |  TS005  |  applied  |  F(2,80)⏎.⏎.⏎. => F(2,80)⏎⏎⏎
 ^\s*(?:(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z])|-(?=[A-Z]\w*\()|>+\s*|(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\())  |  ``  |  TS054  |  applied  |  ⟨*¦>¦✅⟩ F(2,80) => F(2,80)
 ⟨⬆¦⬇¦⬅¦➡⟩\ufe0f?  |  `⟨F¦B¦L¦R⟩ `  |  TS005  |  offered  |  ⟨⬆️¦⬇️¦⬅️¦➡️⟩ 2 => ⟨F¦B¦L¦R⟩(2, 80)
-(?<=\d) 1/2(?!\d)  |  `.5`  |  TS049  |  applied  |  F(1 1/2, 80) => F(1.5, 80)
+⟨(?<=\d) 1/2(?!\d)¦(?<!\d)1/2(?!\d)(?=\s*(?:s|seg|min|h))⟩  |  `⟨¦0⟩.5`  |  TS049  |  applied  |  F(⟨1 1/2¦1/2 minuto⟩, 80) => F(⟨1.5¦30⟩, 80)
 (?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))|(?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  TS005  |  applied  |  F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
 \(([FBLRWM])(\d)  |  `\1(\2`  |  TS015  |  applied  |  (F2, 80) => F(2, 80)
 \bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$)))  |  `W(\1)`  |  TS015  |  applied  |  S; W2.5) => S; W(2.5)
@@ -131,7 +131,6 @@ SIGNS = r"""
 \b⟨[O0]\.S\b¦[oO]\.(\d+)⟩  |  `0.⟨5¦\1⟩`  |  TS008  |  applied  |  F(O.⟨S, 6O¦5, 60⟩) => F(0.5, 60)
 \b(\d)[oO](\d)\b  |  `\g<1>0\2`  |  TS008  |  applied  |  BEEP(1, 4O4) => BEEP(1, 404)
 (?<=\d)\.(?=\s*[,);])  |  ``  |  TS008  |  offered  |  F(2, 80.) => F(2, 80)
-(?<!\d)1/2(?!\d)(?=\s*(?:s|seg|min|h))  |  `0.5`  |  TS049  |  applied  |  F(1/2 minuto, 80) => F(30, 80)
 (?<=\d)(?:'(?=\d+\s*(?:[,;]|$))|,(?=\d+\s*(?:s|segs?|segundos?|sec|seconds?|minutos?)\b))  |  `.`  |  TS012  |  applied  |  F(1'5, 80) => F(1.5, 80)
 (?<=[\w)])(?:\s*(?:[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)|\.{2,})\s*$  |  ``  |  TS005  |  applied  |  STOP! => STOP
 \b4WARDS?\b(?=\s*\()  |  `F`  |  TS102  |  offered  |  4WARD(2, 80) => F(2, 80)
@@ -139,8 +138,7 @@ SIGNS = r"""
 (?:^|(?<=[;|]))(\s*)M(-?\d+)[\s,;]+(-?\d+)\s*\)?\s*(?=;|$)  |  `\1M(\2, \3)`  |  TS015  |  applied  |  M50 -50 => M(50, -50)
 (?<=\d)(?:\)\((?=\d)|['·_=&<]\s*(?=\d+\)))  |  `,`  |  TS076  |  applied  |  F(3)(70) => F(3,70)
 (?<=\w)\.(?=\()  |  ``  |  TS005  |  applied  |  F.(2, 80) => F(2, 80)
-(?<=[\w)])\s*\.\s*$  |  `;`  |  TS010  |  applied  |  S. => S;
-(?<=\))\s*\.\s+(?=\w)  |  `; `  |  TS010  |  applied  |  F(2,80). R(1,60). S. => F(2,80); R(1,60); S;
+⟨(?<=[\w)])\s*\.\s*$¦(?<=\))\s*\.\s+(?=\w)⟩  |  `;⟨¦ ⟩`  |  TS010  |  applied  |  ⟨S.¦F(2,80). R(1,60). S.⟩ => ⟨S;¦F(2,80); R(1,60); S;⟩
 ⟨/\*¦<!--⟩\s*(.*?)\s*⟨\*/¦-->⟩\s*$  |  `// \1`  |  TS007  |  applied  |  F(2,80) ⟨/* hola */¦<!-- hola -->⟩ => F(2,80) // hola
 ⟨(?:^|(?<=\s))(?:#+|--+>?|<!--|^REM\b)\s*(?=[^\W\d])¦^\s*/\s*(?=(?-i:[a-z]+)(?! ?\())⟩  |  `// `  |  TS007  |  applied  |  SI|F(2, 60)⟨ # gira¦⏎/ gira⟩⏎R(1, 50) => SI|F(2, 60)⟨ // gira¦⏎// gira⟩⏎R(1, 50)
 \b([A-Za-z]+)\.read\(\)  |  `\1`  |  TS102  |  applied  |  IF(DISTANCE.read()<10);S;ENDIF => IF(DISTANCE<10);S;ENDIF
@@ -158,8 +156,7 @@ TOKENS = r"""
 ⟨==¦!=|=!¦=>¦=<⟩ | ⟨=¦<>¦>=¦<=⟩ | 0 | TS010 | first | IF(DISTANCE ⟨==¦!=¦=>¦=<⟩ 10);S;ENDIF => IF(DISTANCE ⟨=¦<>¦>=¦<=⟩ 10);S;ENDIF
 ⟨= <¦= >¦< or? =¦> or? =¦= / =⟩ | ⟨<=¦>=¦<=¦>=¦<>⟩ | 0 | TS010 | first | IF(DISTANCE ⟨= <¦= >¦< =¦> =¦=/=⟩ 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=¦<=¦>=¦<>⟩ 10);S;ENDIF
 !|no ⟨<¦>⟩ | ⟨>=¦<=⟩ | 0 | TS010 | first | IF(DISTANCE !⟨<¦>⟩ 10)⏎S⏎ENDIF => IF(DISTANCE ⟨>=¦<=⟩ 10)⏎S⏎ENDIF
-&& | AND | 0 | TS010 | first | SI|IF(DISTANCE<10 && LIGHT_L>50);S;ENDIF => SI|IF(DISTANCE<10 AND LIGHT_L>50);S;ENDIF
-:= | = | 0 | TS050 | first | v := 50⏎F(2, v) => v = 50⏎F(2, v)
+⟨&&¦:=⟩ | ⟨AND¦=⟩ | 0 | ⟨TS010¦TS050⟩ | first | ⟨SI|IF(DISTANCE<10 && LIGHT_L>50);S;ENDIF¦v := 50⏎F(2, v)⟩ => ⟨SI|IF(DISTANCE<10 AND LIGHT_L>50);S;ENDIF¦v = 50⏎F(2, v)⟩
 ] | ) | 1 | TS010 | applied | F(2, 80] => F(2, 80)
 v=@val [ n=@num ) | $v < $n ) | 1 | TS010 | offered | IF(DISTANCE[30)⏎S⏎ENDIF => IF(DISTANCE < 30)⏎S⏎ENDIF
 ! v=@val|( | NOT $v | 1 | TS010 | first | X = TRUE⏎IF(!X);S;ENDIF => X = TRUE⏎IF(NOT X);S;ENDIF
@@ -192,8 +189,7 @@ SHOW ( a=@val &|then|and then? b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 
 a=@num|@val ⟨then|&¦or⟩ b=@val|less|more|NOT⟨|<¦⟩ | $a ⟨AND¦OR⟩ $b | 1 | TS010 | first | IF(DISTANCE < 10 ⟨y¦o⟩ LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 ⟨AND¦OR⟩ LIGHT_L > 100);S;ENDIF
 l=@val is|equal equal? to|than? r=@num|@val | $l = $r | 1 | TS010 | first | si distancia es 10 para => IF(DISTANCE = 10);S;ENDIF
 o=AND|OR IF | &o | 1 | TS010 | first | IF(DISTANCE > 5 AND IF DISTANCE < 9);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 9);S;ENDIF
-TRUE = c=@any+ ) | $c ) | 1 | TS037 | applied | IF(TRUE = DISTANCE < 10);S;ENDIF => IF( DISTANCE < 10);S;ENDIF
-s=<|> n=@num = TRUE | $s $n | 1 | TS037 | applied | IF(DISTANCE < 10 = TRUE);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
+⟨TRUE = c=@any+ )¦s=<|> n=@num = TRUE⟩ | ⟨$c )¦$s $n⟩ | 1 | TS037 | applied | IF(⟨TRUE = ¦⟩DISTANCE < 10⟨¦ = TRUE⟩);S;ENDIF => IF(⟨ ¦⟩DISTANCE < 10);S;ENDIF
 a=@num|@val '|' b=@val | $a OR $b | 1 | TS010 | applied | IF(DISTANCE<10 | LIGHT_R>50)⏎S⏎ENDIF => IF(DISTANCE<10 OR LIGHT_R>50)⏎S⏎ENDIF
 # numbers, units, values
 a=@num b=0 | @cat:a:b | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
@@ -210,7 +206,7 @@ v=@val CM|in? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 ^ v=@val '->' SHOW $ | SHOW ( $v ) | 1 | TS015 | offered | DISTANCE -> SHOW => SHOW(DISTANCE)
-the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
+⟨the v=@val¦v=@val to the? wall⟩ | ⟨$v¦&v⟩ | 1 | TS102 | first | ⟨lee la distancia¦IF(distancia a la pared < 10)⏎S⏎ENDIF⟩ => ⟨DISTANCE¦IF(DISTANCE < 10)⏎S⏎ENDIF⟩
 # variables
 v=@name = a=@num|@val ⟨¦s=<|>|<=|>= n=@num⟩ b=@start | $v = $a ⟨¦$s $n⟩ ; $b | 1 | TS013 | applied | X = DISTANCE⟨¦ > 30⟩ F(1, 50) => X = DISTANCE⟨¦ > 30⟩;F(1, 50)
 v=@name ⟨++¦- - $⟩ | $v = $v ⟨+¦-⟩ 1 | 1 | TS050 | applied | v = 0⏎v⟨++¦--⟩ => v = 0⏎v = v ⟨+ 1¦-1⟩
@@ -221,11 +217,9 @@ v=@name ⟨+=¦-=¦*=⟩ e=@any+ | $v = $v ⟨+¦-¦*⟩ $e | 1 | TS050 | applie
 ^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
 ^ n=@newname = ⟨'{'¦b=@callw|LOOP r=@any+ $⟩ | DEF $n ; ⟨{¦$b $r⟩ | ⟨1¦2⟩ | TS051 | ⟨offered¦applied⟩ | BAILE = ⟨{ ¦⟩L(1,60)⟨; R(1,60) }¦⟩⏎BAILE => DEF BAILE;L(1, 60);⟨R(1, 60);¦⟩END_DEF⟨;¦⟩⏎BAILE
 ^ declare ⟨v=@newname ;? $¦declare? v=@name =⟩ | $v = ⟨0¦⟩ | 1 | TS044 | ⟨offered¦applied⟩ | var vel⟨¦ = 50⟩⏎F(2, vel) => vel = ⟨0¦50⟩⏎F(2, vel)
-^ set|declare the? v=@word =|to|is? e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
-^ v=@newname is|equal|: to|equal? one? e=@num $ | $v = $e | 2 | TS050 | applied | velocidad es 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
+^ ⟨set|declare the? v=@word =|to|is?¦v=@newname is|equal|: to|equal? one?⟩ e=@num $ | $v = $e | ⟨1¦2⟩ | TS050 | applied | ⟨set x to 5¦velocidad es 60⏎F(2, velocidad)⟩ => ⟨x = 5¦velocidad = 60⏎F(2, velocidad)⟩
 ⟨^¦;⟩ v=@usedname e=@num f=;|$ | ⟨¦;⟩ $v = $e $f | 3 | TS050 | applied | ⟨¦S;⟩X 17⏎SHOW(X) => ⟨¦S;⟩X = 17⏎SHOW(X)
-^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | potencia <- 80⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
-^ e=@num|@val ->|=> v=@newname $ | $v = $e | 1 | TS050 | offered | 5 -> X⏎F(X, 60) => X = 5⏎F(X, 60)
+^ ⟨v=@name <- e=@any+¦e=@num|@val ->|=> v=@newname⟩ $ | $v = $e | 1 | TS050 | ⟨applied¦offered⟩ | ⟨potencia <- 80⏎F(2, potencia)¦5 -> X⏎F(X, 60)⟩ => ⟨potencia = 80⏎F(2, potencia)¦X = 5⏎F(X, 60)⟩
 ^ v=⟨@of_power ( n=@num )¦@of_time n=@num⟩ $ | $v = $n | 1 | TS050 | ⟨offered¦applied⟩ | ⟨SPEED(60)⏎F(2, SPEED)¦tiempo 2⏎F(tiempo,80)⟩ => ⟨SPEED = 60⏎F(2, SPEED)¦tiempo = 2⏎F(tiempo,80)⟩
 = SI|TRUE $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
 a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
@@ -281,18 +275,15 @@ ELSE ( a=@val s=<|<=|>|>= b=@num|@val ) | ELSEIF ( $a $s $b ) | 1 | TS039 | offe
 h=IF|WHILE ( c=@noparen+ ) ( d=@noparen+ ) | &h ( $c AND $d ) | 1.5 | TS010 | applied | IF(DISTANCE < 10)(LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
 c=IF|WHILE|ELSEIF|UNTIL ( ( a=@noparen* b=@num|@word ) e=;|$ | $c ( ( $a $b ) ) $e | 1 | TS016 | applied | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 h=IF|WHILE|LOOP|UNTIL|ELSEIF ⟨[¦:|.|->|, (⟩ | &h ( | 1 | ⟨TS010¦TS015⟩ | applied | IF⟨[¦:(⟩DISTANCE < 10⟨]¦)⟩⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-^ unless <question> | IF ( @not:c ) ; | 1 | TS102 | applied | unless(DISTANCE < 10)⏎F(2, 70)⏎end => IF(DISTANCE >= 10)⏎F(2, 70)⏎ENDIF
-^ unless that? c=@noparen+ ⟨:|,|;¦b=@start⟩ | IF ( @not:c ) ; ⟨¦$b⟩ | 1.2 | TS102 | applied | unless distance < 10⟨:⏎¦ ⟩F(1,50)⟨⏎ENDIF¦⟩ => IF(DISTANCE >= 10)⟨⏎F(1,50)⏎¦;F(1, 50);⟩ENDIF
+^ unless ⟨<question>¦that? c=@noparen+ :|,|;¦that? c=@noparen+ b=@start⟩ | IF ( @not:c ) ; ⟨¦¦$b⟩ | ⟨1¦1.2¦1.2⟩ | TS102 | applied | unless⟨(distance < 10)⏎¦ distance < 10:⏎¦ distance < 10 ⟩F(1,50)⟨⏎end¦⏎ENDIF¦⟩ => IF(DISTANCE >= 10)⟨⏎F(1,50)⏎¦⏎F(1,50)⏎¦;F(1, 50);⟩ENDIF
 <asks> ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ ) | &h ( ( $c ) ⟨AND¦OR⟩ ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) ⟨y¦o⟩ (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) ⟨AND¦OR⟩(LIGHT_R > 9));S;ENDIF
 h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@any+ '}' | &h ( $c ) | 1 | TS015 | applied | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 <asks> ( c=@noparen+ b=@start | &h ( $c ) ; $b | 1 | TS016 | offered | si DISTANCE < 10 S si DISTANCE > 10 F(1,50) => IF(DISTANCE < 10);S;IF(DISTANCE > 10);F(1, 50);ENDIF;ENDIF
-<asks> c=@cond+ ⟨'{'¦do|:|,|'|'|;|$⟩ | &h ( $c ) ; ⟨{¦⟩ | 1.3 | TS015 | applied | SI DISTANCE < 10⟨ {⏎S⏎}¦ | S⟩ => IF(DISTANCE < 10);⟨⏎S⏎END¦S;END⟩IF
-<asks> c=@cond+ b=@start | &h ( $c ) ; $b | 2 | TS014 | applied | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
+<asks> c=@cond+ ⟨'{'¦do|:|,|'|'|;|$¦b=@start⟩ | &h ( $c ) ; ⟨{¦¦$b⟩ | ⟨1.3¦1.3¦2⟩ | ⟨TS015¦TS015¦TS014⟩ | applied | SI DISTANCE < 10⟨ {⏎S⏎}¦ | S¦ S⟩ => IF(DISTANCE < 10);⟨⏎S⏎END¦S;END¦S;END⟩IF
 h=IF|WHILE|LOOP|WHEN ( c=@any+ , <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
 ^ '='⟨?¦⟩ IF ( c=@any+ ⟨,¦;⟩ <body> ⟨,¦;⟩ d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | ⟨.9¦.8⟩ | TS080 | offered | ⟨IF(DISTANCE < 10, B(1, 60), ¦=SI(DISTANCE<10;B(1;60);⟩F(1, 60)) => IF(DISTANCE < 10);B(1, 60);ELSE;F(1, 60);ENDIF
 h=IF|WHILE ( c=@any+ , b=@start | &h ( $c ) ; $b | 2 | TS080 | applied | IF(DISTANCE < 10, S) ELSE F(1, 60) ENDIF => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
-<block> <question> ⟨do|times¦:|,|=|?|'|'|-⟩ ':'? | &h ( $c ) ; | 1 | ⟨TS044¦TS014⟩ | applied | LOOP(3)⟨ TIMES¦:⟩⏎F(1,50)⏎END_LOOP => LOOP(3)⏎F(1,50)⏎END_LOOP
-<block> <question> b=@start|'{' | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(3) F(1,50) => LOOP(3);F(1, 50);END_LOOP
+<block> <question> ⟨do|times ':'?¦:|,|=|?|'|'|- ':'?¦b=@start|'{'⟩ | &h ( $c ) ; ⟨¦¦$b⟩ | 1 | ⟨TS044¦TS014¦TS014⟩ | applied | LOOP(3)⟨ TIMES⏎¦:⏎¦ ⟩F(1,50)⟨⏎END_LOOP¦⏎END_LOOP¦⟩ => LOOP(3)⟨⏎¦⏎¦;⟩F(1,⟨¦¦ ⟩50)⟨⏎¦⏎¦;⟩END_LOOP
 <block> <question> ⟨;? (¦[⟩ <body> ⟨)¦]⟩ $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4) ⟨(¦[⟩F(1,60); R(1,50)⟨)¦]⟩ => LOOP(4);F(1, 60);R(1, 50);END_LOOP
 # ELSE and ELSEIF
 a=@any ELSE b=@name = | $a ; ELSE ; $b = | 1 | TS014 | applied | X = 5⏎IF(X = 5) X = 6 ELSE X = 7 => X = 5⏎IF(X = 5);X = 6;ELSE;X = 7;ENDIF
@@ -300,8 +291,7 @@ h=IF|ELSEIF <question> ( <body> ) e=ELSEIF|ELSE | &h ( $c ) ; $b $r ; $e | .9 | 
 ELSE ⟨¦,⟩ IF | ELSEIF | 1 | TS022 | ⟨first¦applied⟩ | IF(DISTANCE < 5);S;ELSE⟨¦,⟩ IF(DISTANCE < 9);F(1, 50);ENDIF => IF(DISTANCE < 5);S; ELSEIF(DISTANCE < 9);F(1, 50);ENDIF
 IF <question> ? a=@any+ : b=@any+ $ | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | TS014 | applied | IF(DISTANCE < 10) ? S : F(1,50) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 ELSE ( <body> ) $ | ELSE ; $b $r | 1 | TS014 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
-h=ELSE|TASK :|,|-|do|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
-h=ELSE|TASK b=@start|'{' | &h ; $b | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
+h=ELSE|TASK ⟨:|,|-|do|=|'|'¦b=@start|'{'⟩ | &h ; ⟨¦$b⟩ | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE⟨:¦⟩ F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
 ⟨a=@any|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF|END_WHEN|END_TASK¦a=@close h=end $⟩ | $a ; &h | 1 | TS013 | applied | LOOP(3); F(2,80) ⟨END_LOOP¦fin⟩ => LOOP(3);F(2, 80);END_LOOP
 # LOOP
 ^ ⟨LOOP FOREVER :|,?¦FOREVER :|;?⟩ b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | ⟨TS015¦TS032⟩ | applied | ⟨LOOP FOREVER¦forever:⟩ F(1,50) => LOOP(FOREVER);F(1, 50);END_LOOP
@@ -337,13 +327,11 @@ LOOP ( ⟨@name =¦⟩ 1 to|until⟨¦|,⟩ n=@num ) | LOOP ( $n ) | 1 | TS063 |
 ^ a=F|B|L|R ( b=@num⟨|FOREVER ,? c=@num ,? UNTIL (? q=@noparen+ )?¦ , c=@num , d=@val e=<|> f=@num⟩ ) $ | $a ( $b , $c ) UNTIL ( ⟨$q¦$d $e $f⟩ ) | 2 | ⟨TS029¦TS020⟩ | offered | F(5, 60, ⟨UNTIL ¦⟩DISTANCE < 10) => F(5, 60) UNTIL(DISTANCE < 10)
 h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num ) | &h ( $a $s $b AND $c $t $d ) | 2 | TS020 | offered | IF(DISTANCE < 10, LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
 ^ h=IF|WHILE ( c=@noparen+ , b=@start r=@noparen* ) $ | &h ( $c ) ; $b $r | 2 | TS080 | applied | IF(DISTANCE < 10, S)⏎ELSE⏎F(1,50)⏎ENDIF => IF(DISTANCE < 10);S⏎ELSE⏎F(1,50)⏎ENDIF
-LOOP ( n=@num , <body> ) | LOOP ( $n ) ; $b $r | 2 | TS080 | applied | LOOP(4, F(1,50))⏎END_LOOP => LOOP(4);F(1, 50)⏎END_LOOP
-LOOP ( ⟨<body> , n=@num¦n=@num <body>⟩ ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied | LOOP(⟨F(1,50), 4¦4 F(1,50)⟩) => LOOP(4);F(1, 50);END_LOOP
+LOOP ( ⟨n=@num , <body> )¦<body> , n=@num ) $¦n=@num <body> ) $⟩ | LOOP ( $n ) ; $b $r ⟨¦; END_LOOP¦; END_LOOP⟩ | 2 | TS080 | applied | LOOP(⟨4, F(1,50))⏎END_LOOP¦F(1,50), 4)¦4 F(1,50))⟩ => LOOP(4);F(1, 50)⟨⏎¦;¦;⟩END_LOOP
 <for> v=@usedname in range ( n=@num ) :? | $v = - 1 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | for i in range(4):⏎  F(i, 60) => I = -1;LOOP(4);I = I + 1;⏎  F(i, 60)⏎END_LOOP
 LOOP|count v=@usedname =|from 1 to|until n=@num do|:? | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | para n desde 1 hasta 4⏎F(n, 60)⏎fin para => N = 0;LOOP(4);N = N + 1;⏎F(n, 60)⏎END_LOOP
 LOOP ( v=@usedname , 1 , n=@num ) | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 | .5 | TS063 | offered | LOOP(N, 1, 5)⏎F(N, 60)⏎END_LOOP => N = 0;LOOP(5);N = N + 1⏎F(N, 60)⏎END_LOOP
-<for> @name in range ( 1 , n=@num ) :? | LOOP ( $n - 1 ) ; | 1 | TS102 | offered | for side in range(1, 5):⏎F(1, 50)⏎END_LOOP => LOOP(5 - 1)⏎F(1, 50)⏎END_LOOP
-<for> @name in range ( ⟨¦0 ,⟩ n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(⟨¦0, ⟩4): F(1,60); R(0.5,60) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
+<for> @name in range ( ⟨1 ,¦¦0 ,⟩ n=@num ) :? | LOOP ( $n ⟨- 1¦¦⟩ ) ; | 1 | TS102 | ⟨offered¦applied¦applied⟩ | for i in range(⟨1, 5¦4¦0, 4⟩): F(1,60) => LOOP(⟨5 - 1¦4¦4⟩);F(1, 60);END_LOOP
 ⟨LOOP|count @name =|from¦^ @name =⟩ 1 to|until n=@num do|:? ⟨¦$⟩ | LOOP ( $n ) ⟨;¦⟩ | 1 | TS102 | offered | ⟨para i de¦veces =⟩ 1 a 4⏎F(1,50)⏎fin ⟨para¦⟩ => LOOP(4)⏎F(1,50)⏎END_LOOP
 ⟨LOOP¦<for>⟩ ( declare? @name = ⟨0¦1⟩ ; @name ⟨<¦<=⟩ n=@num ; @name ++ ) | LOOP ( $n ) ⟨¦;⟩ | 1 | ⟨TS063¦TS102⟩ | offered | ⟨LOOP(I = 0; I < 4¦for(I = 1; I <= 4⟩; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
 ^ v=@name = c=@cond+ ? a=@num|@val : b=@num|@val $ | IF ( $c ) ; $v = $a ; ELSE ; $v = $b ; ENDIF | 1 | TS069 | applied | V = DISTANCE > 20 ? 80 : 30⏎F(1, V) => IF(DISTANCE > 20);V = 80;ELSE;V = 30;ENDIF⏎F(1, V)
@@ -361,8 +349,7 @@ a=@num ( c=@noparen+ ) | $a * ( $c ) | 1 | TS048 | offered | X = 2(20 + 10)⏎F(
 ^ do '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
 # how often something is done, said behind it or before it
 ⟨^ n=@num b=@def $¦^ b=@def *|X? n=@num times? $¦call b=@def n=@num⟩ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎⟨3 SALTO¦SALTO*3¦CALL SALTO 3⟩ => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
-^ ⟨n=@num times|X|* :|,|of? <body>¦( <body> ) *|X|LOOP|by? n=@num times?⟩ $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | ⟨3 * F(1,50)¦(F(1,50)) x 3⟩ => LOOP(3);F(1, 50);END_LOOP
-^ n=@num *|X|times|LOOP? ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | SI|4*(F(2,80);R(1,50)) => SI|LOOP(4);F(2, 80);R(1, 50);END_LOOP
+^ ⟨n=@num times|X|* :|,|of? <body>¦( <body> ) *|X|LOOP|by? n=@num times?¦n=@num *|X|times|LOOP? ( <body> )⟩ $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | ⟨TS062¦TS062¦TS080⟩ | applied | ⟨3 * F(1,50)¦(F(1,50)) x 3¦SI|3*(F(1,50))⟩ => ⟨¦¦SI|⟩LOOP(3);F(1, 50);END_LOOP
 ^ <body> ,|;? then* LOOP all n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | .9 | TS062 | offered | F(2, 80) y B(2, 80) y repetir todo 3 veces => LOOP(3);F(2, 80);B(2, 80);END_LOOP
 ^ every n=@num seconds ,|:|do? <body> $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
 ^ b=@def n=X2|X3|X4|X5|X6 $ | LOOP ( @xn:n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO x3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
@@ -380,7 +367,6 @@ d=@device ( ⟨lit¦dark¦most¦least⟩ ) | &d ( ⟨TRUE¦FALSE¦@most:d¦@leas
 ^ n=@def ( a=@num|@val ⟨¦, b=@num|@val⟩ ) $ | @given:n = $a ; ⟨¦@also:n = $b ;⟩ $n | .5 | TS039 | offered | DEF IR(T⟨¦, P⟩)⏎F(T, ⟨80¦P⟩)⏎END_DEF⏎IR(2⟨¦, 80⟩) => T = 0;⟨¦P = 0;⟩DEF IR;⏎F(T, ⟨80¦P⟩)⏎END_DEF⏎T = 2;⟨¦P = 80;⟩IR
 ^ DEF n=@word ( <body> ) $ | DEF $n ; $b $r ; END_DEF | 1 | TS080 | applied | DEF SALUDO(BEEP(1,440))⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ ( a=@callw ( c=@noparen+ ) ) ( <body> ) $ | $a ( $c ) ; $b $r | 1 | TS080 | applied | (F(2,80))(R(1,60)) => F(2, 80);R(1, 60)
-v=@val to the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS061 | applied | LOOP(2);F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
 ^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
 DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩ | DEF $n ; ⟨¦$b⟩ | 1 | TS014 | applied | DEF SALUDO⟨ = ¦ ⟩BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
@@ -389,17 +375,13 @@ DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩ | DEF $n ; ⟨¦$b⟩ | 1 | TS
 ^ ⟨end¦END_DEF⟩ @def $ | END_DEF | 1 | ⟨TS022¦TS044⟩ | ⟨applied¦first⟩ | DEF SALTO⏎F(1, 50)⏎⟨FIN¦END_DEF⟩ SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
 h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS039 | first offered | LOOP(3)⏎F(2, 80)⏎END_LOOP(3) => LOOP(3)⏎F(2, 80)⏎END_LOOP
 ; LOOP $ | ; END_LOOP | 4 | TS014 | applied | LOOP(4) F(1,50) R(0.5,50) LOOP => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
-^ ⟨program @word¦then ,?⟩ $ |  | 1 | TS044 | applied | ⟨programa baile¦luego,⟩⏎F(1, 50) => ⏎F(1, 50)
-^ leaves 0 ;? $ |  | 1 | TS065 | applied | return 0;⏎F(1, 50) => ⏎F(1, 50)
-^ import @any+ ;? $ |  | 1 | TS072 | applied | import robot⏎F(1, 50) => ⏎F(1, 50)
-^ idles $ |  | 1 | TS044 | offered | NADA⏎F(1, 50) => ⏎F(1, 50)
+^ ⟨program @word¦then ,?¦leaves 0 ;?¦import @any+ ;?¦idles⟩ $ |  | 1 | ⟨TS044¦TS044¦TS065¦TS072¦TS044⟩ | ⟨applied¦applied¦applied¦applied¦offered⟩ | ⟨programa baile¦luego,¦return 0;¦import robot¦NADA⟩⏎F(1, 50) => ⏎F(1, 50)
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
-^ please|first ,? b=@start | $b | 1 | TS044 | applied | please F(2, 80) => F(2, 80)
+^ ⟨please|first ,?¦@newname :⟩ b=@start | $b | ⟨1¦2.5⟩ | ⟨TS044¦TS054⟩ | applied | ⟨please F(2, 80)¦square: F(1,50); R(1,50)⟩ => ⟨F(2, 80)¦F(1,50); R(1,50)⟩
 ^ = <body> $ | $b $r | 1 | TS054 | applied | =F(2,80)+R(1,60) => F(2, 80);R(1, 60)
 a=@close please|CM|@in_cm|@in_secs+ $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
-^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
 ^ a=⟨F|B¦L|R⟩ ( n=@num , p=@num ) ⟨CM|@in_cm¦DEG|@in_deg|°⟩ $ | $a ( $n ⟨CM¦DEG⟩ , $p ) | .5 | TS076 | offered | ⟨F(20, 60) CM¦R(90, 60) DEG⟩ => ⟨F(20 CM, 60)¦R(90 DEG, 60)⟩
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ⟨,? then|soon+ ,? b=@start¦,|.|:? b=@start¦&|+|AND b=@startm¦->|=>|/|>|>>|_|*|'|' b=@start⟩ | $a ; $b | 1 | ⟨TS044¦TS013¦TS061¦TS061⟩ | applied | F(1, 75)⟨ y¦,¦&¦->⟩ R(1, 75) => F(1, 75);R(1, 75)
@@ -409,14 +391,10 @@ a=@close ⟨+|&|AND|->|'|'¦,⟩ $ | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | a
 ; first+ ,? b=@start | ; $b | 1 | TS044 | applied | F(2, 80); y despues B(1, 80) => F(2, 80);B(1, 80)
 ^ ⟨(¦[⟩ <body> ⟨)¦]⟩ $ | $b $r | 1 | TS080 | applied | ⟨(¦[⟩F(2,80), R(1,60)⟨)¦]⟩ => F(2, 80);R(1, 60)
 # words of other languages around a program
-W8 | W | 1 | TS102 | offered | W8(1) => W(1)
-brake | BREAK | 1 | TS102 | offered | LOOP(3)⏎S⏎BRAKE⏎END_LOOP => LOOP(3)⏎S⏎BREAK⏎END_LOOP
-eff | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
+⟨W8¦brake¦eff⟩ | ⟨W¦BREAK¦F⟩ | 1 | TS102 | ⟨offered¦offered¦first offered⟩ | ⟨W8(1)¦LOOP(3)⏎S⏎BRAKE⏎END_LOOP¦efe dos coma ochenta⟩ => ⟨W(1)¦LOOP(3)⏎S⏎BREAK⏎END_LOOP¦F(2, 80)⟩
 ⟨read ( v=@val )¦^ read the? v=@val $⟩ | $v | 1 | TS102 | applied | ⟨X = leer(DISTANCE)¦leer DISTANCE⟩ => ⟨X =DISTANCE¦DISTANCE⟩
-^ ⟨no F|B|L|R|M extra?¦cease of F⟩ $ | S | .5 | TS102 | first | ⟨no avanzar mas¦para de avanzar⟩ => S
-^ off|S the? engine $ | S | 1 | TS102 | applied | apaga motores => S
-^ b=@start r=@all* '|' s=SI|SB $ | $s '|' $b $r | 1 | TS034 | offered | F(2, 80)|SI => SI |F(2, 80)
-^ START '|' | SI '|' | 1 | TS034 | offered | start|F(2,80) => SI |F(2,80)
+^ ⟨no F|B|L|R|M extra?¦cease of F¦off|S the? engine⟩ $ | S | ⟨.5¦.5¦1⟩ | TS102 | ⟨first¦first¦applied⟩ | ⟨no avanzar mas¦para de avanzar¦apaga motores⟩ => S
+^ ⟨START '|'¦b=@start r=@all* '|' s=SI|SB $⟩ | ⟨SI '|'¦$s '|' $b $r⟩ | 1 | TS034 | offered | ⟨start|F(2,80)¦F(2, 80)|SI⟩ => SI |F(2⟨,¦, ⟩80)
 IF ⟨c=@noparen+¦<question>⟩ BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | ⟨TS015¦TS014⟩ | applied | LOOP(3)⏎S⏎IF⟨ DISTANCE < 10¦(DISTANCE < 10)⟩ BREAK⏎END_LOOP => LOOP(3)⏎S⏎IF(DISTANCE < 10);BREAK;ENDIF⟨;¦⟩⏎END_LOOP
 ^ declare|DEF? main ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
 """

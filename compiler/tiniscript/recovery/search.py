@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
@@ -118,9 +118,9 @@ class Recovery:
         for line in self.lines:
             self.read_line(line)
             yield line.reading.items is not None and line.reading.is_sure
-        readings = (each.reading.tokens for each in self.lines)
-        told = Names([*(lexemes(each.body) for each in self.lines), *readings], self.kit)
-        if told.known != self.names.known:
+        rows_of = ([lexemes(each.body), each.reading.tokens] for each in self.lines)
+        told, names = Names([*chain(*rows_of)], self.kit), self.names
+        if told.variables | told.defs > names.variables | names.defs:
             self.names = told
             for line in self.lines:
                 if line.reading.items is None:
@@ -204,8 +204,6 @@ class Recovery:
         ends = [k for k, each in enumerate([*tokens, made(";")]) if each.text == ";"]
         for start, end in [*pairwise((-1, *ends))][::-1]:
             head, part, tail = tokens[: start + 1], tokens[start + 1 : end], tokens[end:]
-            if is_right(part, names):
-                continue
             found = lines.read(part, names, is_quick=True)[:1]
             for each in found if found and found[0].is_sure else ():
                 tokens = [*head, *each.tokens, *tail]

@@ -125,7 +125,6 @@ class _Reader:
         if said and self.command and not is_one:
             number, k = self._sum(float(said[0]), k + 1)
             self.is_sure = self.is_sure and said != ("1",)
-            self.cost += 0.5
             return number, k
         is_first = self.text(k - 1) == "(" and after == "," and self.command != "M"
         unit = k + 1 + (after == "A")  # `half a second`
@@ -154,8 +153,6 @@ class _Reader:
         number, k = found
         if self._is_and_a_half(k):
             number, k, self.is_sure = number + 0.5, k + 2, False
-        if self.text(k) == "/" and k + 1 < len(self.words):
-            return None
         unit, thousandths = self.mark, 1000.0
         if said_of(self.text(k), "by") and said_of(self.text(k + 1), "number") == ("100",):
             unit, k = "%", k + 2
@@ -250,9 +247,7 @@ class _Reader:
         self.mark = None
 
     def _command_of(self, word: str) -> str | None:
-        if self.names.is_name(word):
-            return word if word in self.names.actuators else None
-        if word in DONE and word != "BREAK":
+        if word in self.names.actuators or (word in DONE and word != "BREAK"):
             return word
         found = [each.concept for each in self.names.meanings(word)]
         return next((each for each in found if each in CALLED or each == "S"), None)

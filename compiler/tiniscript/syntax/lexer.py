@@ -56,6 +56,8 @@ _PATTERN = re.compile(
     """,
     re.VERBOSE | re.DOTALL,
 )
+# What is always written so.
+_MADE = {"newline": (NEWLINE, "\n"), "degrees": (WORD, "DEG"), "dash": ("-", "-")}
 
 
 def scan(text: str) -> Scan:
@@ -81,15 +83,10 @@ def scan(text: str) -> Scan:
             add(new(Token, (sign, sign, start, end)))
         elif group == "number":
             add(new(Token, (NUMBER, match.group(), start, end)))
-        elif group == "newline":
-            add(new(Token, (NEWLINE, "\n", start, end)))
         elif group == "comment":
             comments.append(Token("comment", match.group(), start, end))
-        elif group == "degrees":
-            add(Token(WORD, "DEG", start, end))
-        elif group == "dash":
-            add(Token("-", "-", start, end))
         else:
-            add(Token(ODD, match.group(), start, end))
+            kind, text_of = _MADE.get(group or "", (ODD, match.group()))
+            add(new(Token, (kind, text_of, start, end)))
     add(Token(END, "", len(text), len(text)))
     return Scan(tokens, comments, wrong)

@@ -41,6 +41,11 @@ from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, sca
 from tiniscript.syntax.reporter import Failed, Reporter
 
 ENOUGH = 100  # diagnostics after which reading on helps nobody
+# The rule of an instruction, by its first word; of all others `command`.
+_RULES = {
+    **dict.fromkeys(HEADERS, "header"), **dict.fromkeys(ENDS, "block_end"),
+    "DEF": "definition", "TASK": "task", "BREAK": "leave", "ELSE": "arm", "ELSEIF": "arm",
+}  # fmt: skip
 
 
 class Parsed(NamedTuple):
@@ -114,24 +119,8 @@ class Parser:
             self.reporter.report(codes.SETUP_TWICE, token.span, word=text, found=text)
             cursor.i += 2
             return
-        if following.kind == "=":
-            self.assignment(token)
-        elif text in HEADERS:
-            self.header(token)
-        elif text == "DEF":
-            self.definition(token)
-        elif text == "TASK":
-            self.task(token)
-        elif text in ("ELSE", "ELSEIF"):
-            self.arm(token)
-        elif text in ENDS:
-            self.block_end(token)
-        elif text == "BREAK":
-            cursor.i += 1
-            self.no_arguments(token)
-            self.blocks.here.append(Break(token.span))
-        else:
-            self.command(token)
+        rule = "assignment" if following.kind == "=" else _RULES.get(text, "command")
+        getattr(self, rule)(token)
         if tokens[cursor.i].kind not in AT_END:
             self.no_separator(token)
 
@@ -168,6 +157,11 @@ class Parser:
             until = self.until()
         span = cursor.span_from(word)
         self.blocks.here.append(Command(word.text, word.span, arguments, until, span))
+
+    def leave(self, word: Token) -> None:
+        self.cursor.i += 1
+        self.no_arguments(word)
+        self.blocks.here.append(Break(word.span))
 
     def own_name(self, word: Token, following: Token) -> None:
         """A word that may stand for a device or a DEF of the program, if no other follows it."""
