@@ -25,12 +25,11 @@ from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.live_state import Known
+from tiniscript.library.other_robots import named_among
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import Event, MissedEvent
 from tiniscript.link.payloads import DoneEvent, ShowEvent
-from tiniscript.recovery.concepts import concept_of
 from tiniscript.robots import given
-from tiniscript.semantics.other_kits import naming_robots
 from tiniscript.virtual import directory
 from tiniscript.virtual.directory import Running
 from tiniscript.virtual.simulator import Simulator
@@ -231,10 +230,10 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
 
 def test_up_to_three_robots_are_named() -> None:
     kit = robots.load("liner").kit
-    own = "tinibot", robots.load("tinibot").kit
-    found = compile_text("LED(TRUE)", own[1])
+    own = robots.load("tinibot").kit
+    found = compile_text("LED(TRUE)", own)
     others = {f"R{k}": kit for k in range(5)}
-    (named,) = naming_robots(found.diagnostics, found.source.text, own, others, concept_of)
+    (named,) = named_among(others, found.diagnostics, "LED(TRUE)", "tinibot", own)
     assert named.values == {
         "found": "LED", "own": "tinibot", "first": "R0", "second": "R1", "third": "R2",
     }  # fmt: skip

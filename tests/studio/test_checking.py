@@ -106,7 +106,7 @@ def test_the_page_knows_every_robot_and_its_words() -> None:
     for each in found["robots"]:
         kit = robots.load(each["name"]).kit
         names = [device["text"] for device in each["devices"]]
-        assert names == [device.name for device in (*kit.sensors, *kit.actuators)]
+        assert names == list(kit.names)
         assert set(each["labels"]) == set(LANGUAGES)
     words = {each["text"] for each in found["words"]}
     assert {"F", "IF", "END_LOOP", "UNTIL"} <= words and not words & {"SEND", "ENDLOOP"}

@@ -69,6 +69,11 @@ class Kit(NamedTuple):
         return in_range(divided(way * 100_000, per_second))
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Return the words of the sensors, then those of the actuators."""
+        return tuple(device.name for device in (*self.sensors, *self.actuators))
+
+    @property
     def fingerprint(self) -> int:
         """Return 16 bits, never 0, that change with everything that a program can see."""
         return _hash_of("".join(self.lines()))

@@ -1,36 +1,67 @@
-"""Words that another robot has: which known robots have them, for the messages of a program."""
+"""Words of a program that its robot's kit lacks, but those of other known robots have."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping, Sequence
 
 from tiniscript import robots
 from tiniscript.base.kit import Kit
-from tiniscript.diagnostics.codes import OTHER_ROBOT, Diagnostic
+from tiniscript.base.words import said_of
+from tiniscript.diagnostics.codes import OTHER_ROBOT, UNKNOWN_NAME, UNKNOWN_WORD, Diagnostic
 from tiniscript.recovery.concepts import concept_of
 from tiniscript.robots import given
 from tiniscript.robots.profile import Robot
-from tiniscript.semantics import other_kits
+from tiniscript.syntax.lexer import WORD, scan
 
 SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copied
+_UNKNOWN = (UNKNOWN_NAME, UNKNOWN_WORD)
+_NUMBERS = ("first", "second", "third")
 
 
 def naming_robots(diagnostics: list[Diagnostic], text: str, robot: Robot) -> list[Diagnostic]:
     """Return diagnostics with hints to the robots that have a word that `robot` lacks."""
-    if not any(map(other_kits.is_unknown, diagnostics)):
+    if not any(each.code in (*_UNKNOWN, OTHER_ROBOT) for each in diagnostics):
         return diagnostics
-    own = robot.name, robot.kit
-    return other_kits.naming_robots(diagnostics, text, own, _others(), concept_of)
+    return named_among(_others(), diagnostics, text, robot.name, robot.kit)
+
+
+def named_among(
+    others: Mapping[str, Kit], found: Sequence[Diagnostic], text: str, name: str, kit: Kit
+) -> list[Diagnostic]:
+    """Return diagnostics that name the robots that have an unknown word; at most three of them.
+
+    Where a robot has all kit words of the program, those that lack one are not named.
+    """
+    own = set(kit.names)
+    known = {robot: set(its.names) for robot, its in others.items() if robot != name}
+    of_kits = own.union(*known.values())
+    said = {token.text for token in scan(text).tokens if token.kind is WORD}
+    used = {word if word in of_kits else concept_of(word) for word in said} & of_kits
+    whole = [robot for robot, its in known.items() if used <= its]
+    named = []
+    for diagnostic in found:
+        word = diagnostic.values.get("found", "").upper()
+        word = word if word in of_kits else concept_of(word) or word
+        side = f"{''.join(said_of(word, 'stem')) or word}_L"  # `LINEA`, where others have LINE_L
+        word = side if side in of_kits - own else word
+        having = [robot for robot, its in known.items() if word in its - own]
+        if diagnostic.code in _UNKNOWN and having:
+            numbered = zip(_NUMBERS, [each for each in having if each in whole] or having,
+                           strict=False)  # fmt: skip
+            values = {"found": word, "own": name, **dict(numbered)}
+            diagnostic = Diagnostic(OTHER_ROBOT, diagnostic.span, values)
+        named.append(diagnostic)
+    return named
 
 
 def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
     """Whether a program has words of another robot: they have been through `naming_robots`."""
-    unknown = [each for each in diagnostics if other_kits.is_unknown(each)]
-    if any(diagnostic.code is OTHER_ROBOT for diagnostic in unknown):
+    if any(diagnostic.code is OTHER_ROBOT for diagnostic in diagnostics):
         return True
-    words = {diagnostic.values.get("found") for diagnostic in unknown}
+    words = {each.values.get("found") for each in diagnostics if each.code in _UNKNOWN}
     # of profiles with paths that are too long for a message
-    return bool(words) and any(words & other_kits.words(robot.kit) for _, robot in given.profiles())
+    return bool(words) and any(words & set(robot.kit.names) for _, robot in given.profiles())
 
 
 def _others() -> dict[str, Kit]:

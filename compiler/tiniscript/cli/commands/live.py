@@ -176,7 +176,7 @@ class Repl:
 
     def _help(self) -> str:
         kit = self.known.kit
-        names = ", ".join(device.name for device in (*kit.sensors, *kit.actuators))
+        names = ", ".join(kit.names)
         return text("live_help", self.language).format(
             show=f"SHOW({kit.sensors[0].name if kit.sensors else 'TIME'})",
             names=names or text("live_nothing", self.language),
@@ -243,8 +243,7 @@ def wished(line: str, known: Known) -> str:
     A name of the kit or of the user's program is no such command.
     """
     word = re.sub(r"\s*(\(\s*\))?[\s;]*$", "", line.lstrip()).upper()
-    devices = (device.name for device in (*known.kit.sensors, *known.kit.actuators))
-    if word in (*known.defs, *devices):
+    if word in (*known.defs, *known.kit.names):
         return ""
     return HELP_ME if word == "?" else "".join(said_of(word, LEAVE) or said_of(word, HELP_ME))
 
@@ -311,8 +310,7 @@ def _history(known: Known) -> Iterator[None]:
     kit = known.kit
 
     def complete(begun: str, number: int) -> str | None:
-        devices = [device.name for device in (*kit.sensors, *kit.actuators)]
-        words = sorted({*WORDS, *devices, *known.names()})
+        words = sorted({*WORDS, *kit.names, *known.names()})
         fitting = [word for word in words if word.startswith(begun.upper())]
         return fitting[number] if number < len(fitting) else None
 
