@@ -32,7 +32,6 @@ LONGEST = 24  # words behind an instruction that are read
 MOST = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
 _ASIDE = (codes.REPEATED.number, codes.WORDS_BEHIND.number)
-_FEW = frozenset(map(str, range(2, 20)))  # times: more behind a turn are rather an angle
 _MOST_BEFORE = 8  # instructions that an example repeats
 _FARTHEST = 40  # lines of a text that are looked at for what is done again
 _ONE_IN_LOOP = 2  # separators of a loop of one instruction
@@ -358,7 +357,8 @@ def _apart(gaps: _Gaps) -> str:
 
 def _loop(gaps: _Gaps) -> str:
     number = gaps["n"]
-    return "" if number in ("0", "1") else f"LOOP({number});{gaps.part.call};{BLOCK_ENDS['LOOP']}"
+    is_often = number.isdecimal() and number not in ("0", "1")
+    return f"LOOP({number});{gaps.part.call};{BLOCK_ENDS['LOOP']}" if is_often else ""
 
 
 def _with(gaps: _Gaps, value: re.Match[str] | None, new: str) -> str:
@@ -378,10 +378,6 @@ def _by_way(gaps: _Gaps) -> str:
     """The call by centimetres or degrees instead of seconds."""
     time = gaps.part.time
     return _with(gaps, time, f"{time[1]} {UNIT_OF[gaps.part.own]}") if time else ""
-
-
-def _other(gaps: _Gaps) -> str:
-    return OTHER_WAY[gaps.part.own] + gaps.part.call[len(gaps.part.tokens[0].text) :]
 
 
 def _asked(gaps: _Gaps, name: str = "q") -> list[Lexeme]:
@@ -413,10 +409,6 @@ def _rest(gaps: _Gaps, name: str) -> str:
     return gaps.part.text[gaps.part.spans[start].start : gaps.part.place.end] if start < end else ""
 
 
-def _example(gaps: _Gaps) -> str:
-    return made_up(_calls(gaps.part))
-
-
 def _calls(part: Behind) -> list[Order]:
     """The orders that the words say, nothing where a turn of them says no way."""
     found = orders(part.row, part.names)
@@ -427,10 +419,6 @@ def _orders(gaps: _Gaps) -> str:
     """The instruction, and those that the words behind it say."""
     found = _calls(gaps.part)
     return f"{gaps.part.call};{written(found)}" if found else ""
-
-
-def _distance(gaps: _Gaps) -> str:
-    return "DISTANCE" if "DISTANCE" in gaps.part.names.sensors else ""
 
 
 def _note(gaps: _Gaps) -> str:
@@ -447,25 +435,22 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)), "twice": _twice,
     "said": lambda gaps: gaps.part.words.strip(" ,:"),
     "head": lambda gaps: gaps.meant("h"), "called": lambda gaps: gaps.meant("w"),
-    "usage": lambda gaps: WORDS[gaps.meant("w")].usage,
+    "block": lambda gaps: gaps.meant("g"), "usage": lambda gaps: WORDS[gaps.meant("w")].usage,
     "choice": lambda gaps: _choice(gaps, is_exact=True).replace("; ", ";"),
     "choices": _choice, "apart": _apart, "number": lambda gaps: for_a_number(gaps.part.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
     "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),
-    "alone": _alone, "then": _then, "free": _free,
+    "alone": _alone, "then": _then, "free": _free, "loop": _loop, "by_way": _by_way,
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
-    "loop": _loop,
-    "few": lambda gaps: gaps["n"] if gaps["n"] in _FEW else "",
     "end": lambda gaps: "" if _asked(gaps, "s") else BLOCK_ENDS[gaps.meant("g")],
-    "block": lambda gaps: gaps.meant("g"),
-    "shown": _shown, "other": _other, "note": _note,
+    "shown": _shown, "note": _note,
+    "other": lambda gaps: re.sub(r"^\w+", OTHER_WAY[gaps.part.own], gaps.part.call),
     "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",
-    "by_way": _by_way,
-    "longer": lambda gaps: _with(gaps, gaps.part.time, gaps["n"]),
-    "paced": _paced,
+    "longer": lambda gaps: _with(gaps, gaps.part.time, gaps["n"]), "paced": _paced,
     "question": lambda gaps: laid_out(_asked(gaps)), "contrary": _contrary, "near": _near,
-    "made_up": _example,
+    "made_up": lambda gaps: made_up(_calls(gaps.part)),
     "until": lambda gaps: f" {_rest(gaps, 't')}".rstrip(),
-    "behind": lambda gaps: _rest(gaps, "w"), "distance": _distance, "orders": _orders,
+    "behind": lambda gaps: _rest(gaps, "w"), "orders": _orders,
+    "distance": lambda gaps: "DISTANCE" if "DISTANCE" in gaps.part.names.sensors else "",
 }  # fmt: skip

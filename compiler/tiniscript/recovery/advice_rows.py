@@ -99,7 +99,7 @@ ADVICE = """
 ^ c=@cmd n=@often times @any+ $ | TS085 | times={n}; often={loop} | F(1,50) 3 veces mas => times=3
 ^ c=M , n=@num $ | TS085 | seconds={n}; waiting={c};W({n});S | M(50,50), 2 => waiting=M(50,50);W(2);S
 ^ c=S|STOP n=@num $ | TS013 | fix={c};W({n}) | STOP 2 => fix=STOP;W(2)
-^ c=@cmd (? n=@num )? $ | TS085 | times={few}; often={loop} | F(2,80)(3) => often=LOOP(3);F(2,80);END_LOOP
+^ c=@cmd (? n=@time )? $ | TS085 | times={n}; often={loop} | F(2,80)(3) => often=LOOP(3);F(2,80);END_LOOP
 ^ ⟨<does> anew|over then anew|over¦<does> one then anew times¦c=@cmd count? FOREVER¦c=@cmd @any* without|all endless|the @any*⟩ $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) ⟨over and over¦una y otra vez¦siempre¦sin parar⟩ => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ @none do|LOOP|make w=⟨@callw ( v=@noparen+ )¦@def⟩ @word* FOREVER|anew|over @word* $ | TS064 | fix=LOOP(FOREVER);{w}⟨({v})¦⟩;END_LOOP | ⟨repeat F(1, 80)¦DEF A1;S;END_DEF⏎do A1⟩ again and again => fix=LOOP(FOREVER);⟨F(1, 80)¦A1⟩;END_LOOP
 ^ <does> @any* anew @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) again => again=LOOP(2);F(1, 80);END_LOOP

@@ -51,8 +51,13 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     found: list[Order] = []
     if len(words) > LONGEST:
         return []
-    words = _joined(words, names)
-    words = [one for one, after in pairwise([*words, made(";")]) if not _is_the(one, after)]
+    words = [
+        one
+        for one, after in pairwise([*_joined(words, names), made(";")])
+        if not said_of(one.text, "the")
+        or said_of(after.text, "the")
+        or not said_of(after.text, "idle")
+    ]  # `o robô` is no OR
     asks = next((k for k, each in enumerate(words) if k and names.meant(each.text) == "IF"), 0)
     if asks:
         return _asked_between(orders(words[:asks], names), words[asks:], names)
@@ -67,12 +72,6 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
             return []  # nobody knows how much of it is done so often
         found += own
     return found
-
-
-def _is_the(token: Lexeme, after: Lexeme) -> bool:
-    """Whether a word stands for no OR, but before who does it: `o robô`."""
-    is_noun = said_of(after.text, "idle") and not said_of(after.text, "the")
-    return bool(said_of(token.text, "the") and is_noun)
 
 
 def _joined(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:

@@ -71,26 +71,22 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     if part and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
         told = [it._replace(values={**it.values, "part": part}) for it in told
                 if not it.values.get("part")]  # fmt: skip
-    kept = [
+    return [
         each
         for each in (*told, *found[_MANY:])
         if (each.code is not codes.NO_VALUE or each.values.get("word") not in reserved)
         and (each.code is not codes.UNIT_PLACE or text.piece(each.span) not in unknown)
+        and not (has_no_ends and each.code in _OF_ENDS)
     ]
-    return [each for each in kept if not (has_no_ends and each.code in _OF_ENDS)]
 
 
 class _Text:
     def __init__(self, source: Source, kit: Kit) -> None:
         self.source = source
         self.kit = kit
+        self.begun = "".join(re.findall(r"\A\s*(S[IB])\s*\|", source.text.upper()))
         self.lacks_loop = False  # an END_LOOP is left for a header
         self.at_top: list[int] = []  # lines of headers behind a block that lacks its end
-
-    @property
-    def begun(self) -> str:
-        begun = re.match(r"\s*(S[IB])\s*\|", self.source.text.upper())
-        return begun[1] if begun else ""
 
     @cached_property
     def names(self) -> Names:
@@ -131,8 +127,7 @@ class _Usage:
         self.tokens = lexemes(self.source[self.piece])
         self.words = [each.text for each in self.tokens if each.kind is WORD]
         self.signs = [each.text for each in self.tokens]
-        numbers = (each.text for each in self.tokens[1:] if each.kind is NUMBER)
-        self.number = next(numbers, "1")
+        self.number = next((it.text for it in self.tokens[1:] if it.kind is NUMBER), "1")
 
     def around(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return the match of a pattern whose part `here` begins at the place."""
@@ -153,12 +148,10 @@ class _Usage:
         return Diagnostic(code, self.piece, {"fix": fix, **values}, self.piece, repair)
 
     def translated(self, found: str, fix: str, is_longer: bool = False) -> Diagnostic:
-        right = fix.partition("(")[0].partition(";")[0]
-        same = (each for each in self.signs if self.names.meant(each) == right != each)
-        found = next(same, found)
-        usage = _usage(right)
-        told = self.offers(codes.OTHER_LANGUAGE, fix, found=found, right=right, usage=usage,
-                           takes=usage if is_longer else "")  # fmt: skip
+        right = re.split("[(;]", fix)[0]
+        found = next((it for it in self.signs if self.names.meant(it) == right != it), found)
+        values = {"right": right, "usage": _usage(right), "takes": _usage(right) * is_longer}
+        told = self.offers(codes.OTHER_LANGUAGE, fix, found=found, **values)
         return told._replace(span=self.found.span)
 
     def usage(self, word: str) -> str:
@@ -213,11 +206,12 @@ class _Usage:
         concept = self.names.meant(words[0] if words else "") or self.names.meant(meant)
         is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
         if is_order and concept not in words[:1]:
-            named = words[0] if self.names.meant(words[0]) else meant or words[0]
+            word = words[0] if self.names.meant(words[0]) else meant or words[0]
             if len(self.tokens) == 1 and not WORDS[concept].arguments:
-                return self.translated(named, concept)
-            usage = self.usage(concept)
-            return self.says(codes.OTHER_LANGUAGE, found=named, right=concept, usage=usage)
+                return self.translated(word, concept)
+            return self.says(
+                codes.OTHER_LANGUAGE, found=word, right=concept, usage=self.usage(concept)
+            )
         text = self.source[self.piece]
         if len(words) < 2 or {*self.signs} & {*COMPARISONS, "(", "="} or len(text) > _LONGEST:
             return None
@@ -442,8 +436,8 @@ class _Usage:
         if is_set is None or word != "TIME":
             near = nearest(word, self.names.variables - {word}) if is_set else None
             return self.adds(right=near or right)  # `ROUND = ROUNDS + 1`
-        used = [str(self.source.position(each.start())[0])
-                for each in re.finditer(r"(?i)\bTIME\b", text)][1:]  # fmt: skip
+        places = [each.start() for each in re.finditer(r"(?i)\bTIME\b", text)][1:]
+        used = [str(self.source.position(place)[0]) for place in places]
         values = {"line" if len(used) == 1 else "lines": ", ".join(used)}
         return self.adds(**{"right" if is_set[1] else "clock": right}, **values)
 
@@ -483,8 +477,9 @@ class _Usage:
         right = re.sub(r"^[^A-Za-z]+|\W", "", plain(word))
         concept = self.names.meant(right)
         if concept in WORDS:
-            usage = _usage(concept)
-            return self.says(codes.OTHER_LANGUAGE, found=right, right=concept, usage=usage)
+            return self.says(
+                codes.OTHER_LANGUAGE, found=right, right=concept, usage=_usage(concept)
+            )
         if self.behind_it.lstrip(" ").startswith("("):
             return self.says(codes.UNKNOWN_WORD, found=word.upper(), near="")
         if self.is_first and (said_of(right, "filler") or self.is_button(right)):
