@@ -67,15 +67,13 @@ ADVICE = """
 ^ @none IF <either> do? w=@start @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n});{then};ENDIF; another=IF({two} {r} {n});{then};ENDIF | si luz > 50 apita => another=IF(LIGHT_R > 50);BEEP(1, 440);ENDIF
 ^ @none h=SI <either> <body> $ | TS045 | one=IF({one} {r} {n}); two=IF({two} {r} {n}) | si luz > 50⏎S⏎fin => two=IF(LIGHT_R > 50)
 ^ @none <either> @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n})⟨; another=IF({two} {r} {n})¦⟩ | ⟨luz¦pared⟩ > 50: F(2, 80) => one=IF(⟨LIGHT_L¦DISTANCE⟩ > 50)
-^ @none s=@cond+ ⟨:? w=@start @any* ¦⟩$ | TS042 | found={s}; asked={s}; fix=IF({alone})⟨;{then};ENDIF¦⟩ | DISTANCE < 10⟨: S¦⟩ => fix=IF(DISTANCE < 10)⟨;S;ENDIF¦⟩
-^ @none s=@cond+ ¿|¡ @any* $ | TS042 | found={s}; asked={s}; one=IF({alone}) | DISTANCE < 20 ¿si? S => one=IF(DISTANCE < 20)
+^ @none s=@cond+ ⟨:? w=@start @any* ¦¦¿|¡ @any* ⟩$ | TS042 | found={s}; asked={s}; ⟨fix¦fix¦one⟩=IF({alone})⟨;{then};ENDIF¦¦⟩ | DISTANCE < 10⟨: S¦¦ ¿si? S⟩ => ⟨fix¦fix¦one⟩=IF(DISTANCE < 10)⟨;S;ENDIF¦¦⟩
 ^ @none v=@word|@num|+|-|*|/|%|(|)+ = x=@name $ | TS042 | found={x}; turned={x}; fix={free} = {v} | DISTANCE - 5 = FALTA => fix=FALTA = DISTANCE - 5
 ^ @none F ( s=UNTIL @word+ , n=@num ) $ | TS102 | found={s}; right=UNTIL; usage=F(FOREVER, {n}) UNTIL({distance} < 10) | F(hasta la pared, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)
 ^ @none c=F|B|L|R ( s=⟨FOREVER¦@word+ t=endless⟩ , n=@num ) $ | TS102 | found={s}⟨¦ {t}⟩; right=FOREVER; usage={c}(FOREVER, {n}) UNTIL({distance} < 10) | F(⟨siempre¦sin fin⟩, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)
 ^ @none W ( s=FOREVER ) $ | TS102 | found={s}; right=FOREVER; usage=W(FOREVER) UNTIL({distance} < 10) | W(siempre) => usage=W(FOREVER) UNTIL(DISTANCE < 10)
 ^ @none v=@name ⟨[ @num ] =¦= s=[⟩ @any* $ | TS067 | found={v} | NOTAS⟨[1] = 5¦ = [50, 60]⟩ => found=NOTAS
-^ @none s=cases ( v=@word @any* $ | TS066 | found={s}; first=IF({v} = 1); second=ELSEIF({v} = 2) | SWITCH(X) => second=ELSEIF(X = 2)
-^ @none s=cases @any* $ | TS066 | found={s}; first=IF(X = 1) | CASE 1: F(1, 50) => first=IF(X = 1)
+^ @none s=cases ⟨( v=@word ¦⟩@any* $ | TS066 | found={s}; first=IF(⟨{v}¦X⟩ = 1)⟨; second=ELSEIF({v} = 2)¦⟩ | ⟨SWITCH(X)¦CASE 1: F(1, 50)⟩ => first=IF(X = 1)
 ^ @none most|least|on|off the|one? s=@noGRIPPER|@noLED $ | TS101 | found={s}; near= | OPEN GRIPPER => found=GRIPPER
 ^ @none w=⟨F|B|L|R ( @num s=@in_steps|times¦BEEP|W ( @num s=@in_steps|times|@in_cm|@in_deg⟩ @any* $ | TS053 | word={called}; name=⟨time¦seconds⟩; wanted=seconds; unit={s}; usage={usage} | ⟨F(3 pasos, 60)¦BEEP(3 veces)⟩ => usage=⟨F(time, power)¦BEEP(seconds, hertz)⟩
 ^ @none s=@num @call @any* $ | TS054 | found={s} | 2 F(1, 50) => found=2
@@ -123,16 +121,14 @@ ADVICE = """
 ^ c=@unasked h=UNTIL s=light $ | TS135 | word={head} | F(2, 60) UNTIL dark => another=LIGHT_R < 500
 ^ c=@unasked s=UNTIL ⟨@word* n=@num CM|@in_cm?¦@word+⟩ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < ⟨{n}¦10⟩) | F(2, 80) hasta ⟨30 cm¦la pared⟩ => usage=F(2, 80) UNTIL(DISTANCE < ⟨30¦10⟩)
 # which way, and what comes next
-^ c=@move to reversed $ | TS085 | other={other} | F(1, 80) al reves => other=B(1, 80)
 ^ ⟨c=@cmd then|+|&|,|beside? <call> <moment>¦c=@cmd <moment> <call>¦@after <moment> <call>⟩ $ | TS061 | found={s} {k} {t}; together=TASK;{w}({v});END_TASK;⟨{c}¦{c}¦{above}⟩ | F(2, 80)⟨ y BEEP(1, 440) al mismo tiempo¦ at the same time BEEP(1, 440)¦; a la vez BEEP(1, 440)⟩ => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
 ^ c=@more|@later ⟨@word* together¦@word+ same|the moment⟩ $ | TS061 | found={words}; together=TASK;{c};END_TASK;{above} | F(2, 80); BEEP(1, 440) ⟨juntos¦a la vez⟩ => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
 ^ @none <moment> ,|:? <call> then|+|&|, x=@call ( u=@noparen+ ) $ | TS061 | found={s} {k} {t}; together=TASK;{x}({u});END_TASK;{w}({v}) | al mismo tiempo F(2, 80) y BEEP(1, 440) => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
 ^ @after <moment> :? $ | TS061 | found={s} {k} {t}; together=TASK;...;END_TASK;{above} | F(2, 80)⏎al mismo tiempo => together=TASK;...;END_TASK;F(2, 80)
 ^ c=@move s=+|&|AND|then|beside w=BEEP ( v=@noparen+ ) @word* $ | TS061 | found={s}; both=TASK;{w}({v});END_TASK;{c} | F(2, 80) con BEEP(1, 440) => both=TASK;BEEP(1, 440);END_TASK;F(2, 80)
 ^ c=@cmd then @word+ $ | TS074 | fix={orders}; example={made_up?} | F(1, 80) y luego retrocede => fix=F(1, 80);B(2, 80)
-^ c=@move <lead> @told* @other @told* <close> $ | TS085 | other={other} | F(1, 80) atras => other=B(1, 80)
-^ c=@cmd act|most|least w=@told* $ | TS085 | order={words} | F(1, 80) abre la pinza => order=abre la pinza
-^ ⟨c=@cmd with w=@start|act¦c=@asked or w=@start⟩ @any* $ | TS085 | order={behind} | ⟨F(2,80) con¦F(1,50) UNTIL(DISTANCE<10) o⟩ SHOW(1) => order=SHOW(1)
+^ c=@move ⟨to reversed¦<lead> @told* @other @told* <close>⟩ $ | TS085 | other={other} | F(1, 80) ⟨al reves¦atras⟩ => other=B(1, 80)
+^ ⟨c=@cmd w=act|most|least @told*¦c=@cmd with w=@start|act @any*¦c=@asked or w=@start @any*⟩ $ | TS085 | order={behind} | ⟨F(1, 80) abre la pinza¦F(2,80) con SHOW(1)¦F(1,50) UNTIL(DISTANCE<10) o SHOW(1)⟩ => order=⟨abre la pinza¦SHOW(1)¦SHOW(1)⟩
 ^ c=@cmd or l=@any+ $ | TS136 | fix={choice}; example={choices} | L(1, 60) o R(2, 60) => fix=IF(RANDOM(1, 2) = 1);L(1, 60);ELSE;R(2, 60);ENDIF
 # notes
 ^ @none SHOW s=@newname @word* $ | TS070 | words={shown} | SHOW Hola => words=Hola

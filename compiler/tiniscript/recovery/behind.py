@@ -6,7 +6,7 @@ Knows which words begin an order, and which numbers and words only repeat. Knows
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -133,7 +133,7 @@ class Behind:
 
     def labels(self) -> list[str]:
         """Return the classes of the instruction and of each word, as patterns match them."""
-        return [self._label_of_call(), *(self._label(k) for k in range(len(self.row)))]
+        return [self._label_of_call(), *(self._label_of(k) for k in range(len(self.row)))]
 
     def _label_of_call(self) -> str:
         own, known = self.own, WORDS.get(self.own)
@@ -151,7 +151,7 @@ class Behind:
                 "@asked": self.is_asked,
                 "@unasked": is_timed and not self.is_asked,
                 "@outer": not self.is_in_block,
-                "@more": is_order and bool(self.before),
+                "@more": is_order and self.before,
                 "@later": self.is_later and not self.is_arm,
             }
         else:
@@ -162,40 +162,37 @@ class Behind:
                 "@last": self.is_later and is_end,
                 "@unbegun": not _BEGUN.match(self.text),
             }
-        return "|".join(("\x01", *(label for label, is_so in labels.items() if is_so), "\x02"))
+        return _label("\x01", labels)
 
-    def _label(self, k: int) -> str:
+    def _label_of(self, k: int) -> str:
         token = self.row[k]
-        text = token.text
-        before, after = self._text(k - 1), self._text(k + 1)
-        found = []
-        number = self.number(k)
-        if number is not None:
-            found.append("@number")
-            is_counted = said_of(after, "times") or said_of(text, "often") or text[0] == "X"
-            is_multiplied = said_of(before, "multiplied") or before in ("X", "*")
-            is_often = is_multiplied or self.means(before) == "LOOP"
-            if is_counted or (is_often and not said_of(after, "unit")):
-                found.append("@often")
-            found += ["@percent"] if self.has_percent else []
-        unit_of = said_of(text, "unit")
-        found += ["@in_s"] if unit_of and unit_of[0] == "s" else []
-        is_other = text not in WORDS and self.means(text) == OTHER_WAY.get(self.own)
-        found += ["@other"] if is_other else []
-        found += ["@paced"] if self._is_paced(k) else []
-        found += ["@told"] if self.tokens and self._is_told(k) else []
+        text, before, after = token.text, self._text(k - 1), self._text(k + 1)
+        is_number = self.number(k) is not None
+        is_counted = said_of(after, "times") or said_of(text, "often") or text[0] == "X"
+        is_many = said_of(before, "multiplied") or before in ("X", "*")
+        is_many = is_many or self.means(before) == "LOOP"
         concept = concept_of(text) if token.kind is WORD and not self.names.is_name(text) else None
         is_of_kit = concept is None or concept in WORDS or self.names.has(concept)
-        found += [] if is_of_kit else [f"@no{concept}"]
         known = None if token.source == "l" else WORDS.get(text)
         is_set = known is not None and re.search(rf"(?i)\b{text}\s*=", self.text)
-        if known is not None and known.is_instruction and not is_set:  # told at its own line
-            found += ["@call", "@order"] if known.is_call else ["@order"]
-        found += ["@ask"] if self.means(text) in ASKING else []
-        found += ["@quote"] if text in QUOTES and text != "`" else []
-        found += ["@mark"] if text in MARKS else []
-        found += ["@dots"] if text == "…" or (text == "." and "." in (before, after)) else []
-        return "|".join((self.names.label(token)[:-2], *found, "\x02"))
+        is_order = known is not None and known.is_instruction and not is_set  # told at its own line
+        labels = {
+            "@number": is_number,
+            "@often": is_number and (is_counted or (is_many and not said_of(after, "unit"))),
+            "@percent": is_number and self.has_percent,
+            "@in_s": said_of(text, "unit")[:1] == ("s",),
+            "@other": text not in WORDS and self.means(text) == OTHER_WAY.get(self.own),
+            "@paced": self._is_paced(k),
+            "@told": self.tokens and self._is_told(k),
+            f"@no{concept}": not is_of_kit,
+            "@call": is_order and known and known.is_call,
+            "@order": is_order,
+            "@ask": self.means(text) in ASKING,
+            "@quote": text in QUOTES and text != "`",
+            "@mark": text in MARKS,
+            "@dots": text == "…" or (text == "." and "." in (before, after)),
+        }
+        return _label(self.names.label(token)[:-2], labels)
 
     def _text(self, k: int) -> str:
         return self.row[k].text if 0 <= k < len(self.row) else ""
@@ -288,3 +285,7 @@ class Behind:
         if meant == own or (meant == "S" and self.is_asked):
             return False
         return own not in ("LOOP", "DEF", "S", "STOP") or meant not in ("S", "LOOP", "DEF")
+
+
+def _label(first: str, labels: Mapping[str, object]) -> str:
+    return "|".join((first, *(label for label, is_so in labels.items() if is_so), "\x02"))
