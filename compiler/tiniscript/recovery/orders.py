@@ -125,17 +125,16 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
     first = names.meant(words[0].text)
     rest = [each.text for each in words[1:]]
     if first in ("S", "STOP") and rest:
-        if all(any(said_of(each, it) for it in ("the", "engine", "filler")) for each in rest):
+        if all(said_of(each, "the", "engine", "filler") for each in rest):
             return Order("S", "S", ())
         if any(each.kind is NUMBER for each in words):
             pause = filled([made("W"), *words[1:]], names, has_until=False)
             return Order("S", f"{first};{laid_out(pause.tokens)}", ()) if pause else None
-    is_free = False
     call = filled(words, names, has_until=False, is_order=True)
-    unturned = [each for each in words if not said_of(each.text, "turn")]
-    if call is None and len(unturned) < len(words):
+    is_free = call is None and any(said_of(each.text, "turn") for each in words)
+    if is_free:
+        unturned = [each for each in words if not said_of(each.text, "turn")]
         call = filled([made("R"), *unturned], names, has_until=False, is_order=True)
-        is_free = True
     if call is None:
         return None
     text, word = laid_out(call.tokens), call.tokens[0].text

@@ -36,6 +36,7 @@ _MANY_BELOW = 6  # instructions that an example takes into a block
 _ENDS = re.compile(rf"\b{words_of('end')}")
 _BREAK = re.compile(r"(?i)\b(IF[ \t]*\([^\n;]*\))[\s;]*(?P<here>BREAK)[\s;]*END_?IF\b")
 _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
+_TOP = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
 _PIECE = re.compile(r"[^;|{}]*")
@@ -55,9 +56,7 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     text = _Text(source, kit)
     text.lacks_loop = [it.values["right"] for it in found if it.code is codes.NOT_OPEN] == ["LOOP"]
     if any(each.code is codes.NEVER_ENDS for each in found):
-        top = [each for each in found if each.code in _NOT_TOP]
-        text.at_top = [source.position(each.span.start)[0] - 1 for each in top]
-        found = [each for each in found if each not in top]
+        found = [each for each in found if each.code not in _NOT_TOP]
     found = text.with_name(found)
     told: list[Diagnostic] = []
     for each in found[:_MANY]:
@@ -86,7 +85,6 @@ class _Text:
         self.kit = kit
         self.begun = "".join(re.findall(r"\A\s*(S[IB])\s*\|", source.text.upper()))
         self.lacks_loop = False  # an END_LOOP is left for a header
-        self.at_top: list[int] = []  # lines of headers behind a block that lacks its end
 
     @cached_property
     def names(self) -> Names:
@@ -203,10 +201,9 @@ class _Usage:
             return self.no_button()
         if any(said_of(each, "turn", "lap") for each in words):
             return self.turn(said)
-        concept = self.names.meant(words[0] if words else "") or self.names.meant(meant)
-        is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
-        if is_order and concept not in words[:1]:
-            word = words[0] if self.names.meant(words[0]) else meant or words[0]
+        word = next(filter(self.names.meant, (*words[:1], meant)), "")
+        concept = self.names.meant(word)
+        if concept != word and concept in WORDS and WORDS[concept].role not in _NO_ORDER:
             if len(self.tokens) == 1 and not WORDS[concept].arguments:
                 return self.translated(word, concept)
             return self.says(
@@ -299,8 +296,7 @@ class _Usage:
         if said and said.code is codes.SEVERAL_ORDERS:
             return said
         if said:
-            told = self.adds(fix=said.values["fix"])
-            return told._replace(place=self.piece, repair=said.repair)
+            return self.adds(fix=said.values["fix"])._replace(place=self.piece, repair=said.repair)
         is_alone = len(self.tokens) == 1 and word in WORDS and WORDS[word].arguments
         example = WORDS[word].example if is_alone else ""
         return self.adds(example=example, usage=self.usage(word))
@@ -367,7 +363,7 @@ class _Usage:
             return self.adds(behind=rest[-1])
         if not below:
             return self.adds(head=self.source[self.found.span])
-        if top := [n for n in self.text.at_top if n > k]:  # which no block is around
+        if top := [n for n in below if _TOP.match(rows[n])]:  # which no block is around
             inside = [n for n in below if n < min(top)]
         else:
             depth = [len(row) - len(row.lstrip()) for row in rows]
