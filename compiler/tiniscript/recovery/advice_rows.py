@@ -53,7 +53,6 @@ ADVICE = """
 ^ @none n=@number times :? $ | TS062 | found={words}; fix=LOOP({n}) | 4 veces:⏎S => fix=LOOP(4)
 ^ @last repeat (? n=@num? )? times? $ | TS062 | found={words}; all={all?} | F(1, 50)⏎repetir 3 => all=LOOP(3);F(1, 50);END_LOOP
 ^ @last @word s=FOREVER $ | TS062 | found={words}; all={endless} | F(1, 50)⏎por siempre => all=LOOP(FOREVER);F(1, 50);END_LOOP
-^ @none s=FOREVER $ | TS102 | found={s}; right=LOOP; usage=LOOP(n); fix=LOOP(FOREVER) | siempre => fix=LOOP(FOREVER)
 # questions in words
 ^ ⟨@unbegun¦@none⟩ when|at @word* flag @word* $ | TS102 | found={words}; right=⟨SI|¦START⟩; usage=⟨SI|¦START⟩; fix=⟨¦START⟩ | ⟨¦SI|⟩when green flag clicked => right=⟨SI|¦START⟩
 ^ ⟨@unbegun¦@none⟩ when|at @word? @word? beginning :? $ | TS102 | found={words}; right=⟨SI|¦START⟩; usage=⟨SI|¦START⟩; fix=⟨¦START⟩ | ⟨¦SI|⟩on start => right=⟨SI|¦START⟩

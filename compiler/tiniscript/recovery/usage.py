@@ -199,11 +199,16 @@ class _Usage:
             return self.says(codes.SWITCH_WHAT)
         if any(map(self.is_button, words)) and self.signs[1:2] != ["("]:
             return self.no_button()
+        endless = next((each for each in words if self.names.meant(each) == "FOREVER"), "")
+        if endless and not meant:
+            return self.translated(endless, "LOOP(FOREVER)")
         if any(said_of(each, "turn", "lap") for each in words):
             return self.turn(said)
         word = next(filter(self.names.meant, (*words[:1], meant)), "")
         concept = self.names.meant(word)
-        if concept != word and concept in WORDS and WORDS[concept].role not in _NO_ORDER:
+        is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
+        others = {self.names.meant(each) for each in words if self.is_order(each)} - {concept}
+        if is_order and concept != word and not (concept == "S" and others):  # `ve para adelante`
             if len(self.tokens) == 1 and not WORDS[concept].arguments:
                 return self.translated(word, concept)
             return self.says(
@@ -311,9 +316,11 @@ class _Usage:
             return self.says(codes.WORDS_SHOWN)
         if match := self.around(_NO_SIGN):
             return self.says(codes.MISSING_SIGN, before=match[1].upper(), found=match["here"])
-        head = _LAST_HEAD.search(self.source[Span(self.piece.start, self.found.span.start)])
-        odd = self.source[self.found.span].upper()
-        if head is None or not odd.isidentifier() or odd in {*WORDS, *self.names.known.values}:
+        text, own = self.source.text, {*WORDS, *self.names.known.values}
+        head = _LAST_HEAD.search(text, self.piece.start, self.found.span.end)
+        end = text.find(")", self.found.span.start)
+        inner = lexemes(text[head.end() : end]) if head and end > 0 else []
+        if head is None or all(each.kind is not WORD or each.text in own for each in inner):
             return None
         word = head[1].upper()
         return self.says(codes.IN_WORDS, word=word, question=WORDS[word].arguments[0].sample)
