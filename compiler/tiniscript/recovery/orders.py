@@ -181,7 +181,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     word = names.meant(tokens[0].text)
     if word not in ("IF", "WHILE", "LOOP") or len(tokens) > LONGEST:
         return ""
-    tokens = _joined(tokens, names)
+    tokens = [tokens[0], *_joined(tokens[1:], names)]  # `si no hay` is no ELSE
     while tokens[-1].text in ENDED or said_of(tokens[-1].text, "end"):
         tokens = tokens[:-1]
     texts = [each.text for each in tokens]
