@@ -48,6 +48,7 @@ ADVICE = """
 ^ @after goback to the|one? beginning $ | TS131 | found={said}; endless={endless} | F(1, 80)⏎GO TO START => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 # notes
 ^ @none this @word @word+ $ | TS073 | fix=// {said} | this makes it turn to the light => fix=// this makes it turn to the light
+^ @none TSC @any* $ | TS073 | command={said}; words= | SI|F(1, 80)⏎tsc upload => command=tsc upload
 # how often, before what is repeated, and a loop behind it
 ^ @none 1|@one times :? $ | TS062 | found={words}; line={said} | 1 vez:⏎S => line=1 vez
 ^ @none n=@number times :? $ | TS062 | found={words}; fix=LOOP({n}) | 4 veces:⏎S => fix=LOOP(4)
@@ -59,6 +60,7 @@ ADVICE = """
 ^ @none @any* h=IF|ELSEIF|WHILE|UNTIL (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
 ^ @none @any* <asks> ( s=light|ahead =|is f=FALSE|0 ) $ | TS135 | word={head} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
 ^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
+^ @none @any* <asks> ( v=@word s=@num ) <body> $ | TS048 | before={v}; found={s}; words= | IF(DISTANCE 10)⏎S⏎ENDIF => found=10
 ^ @none g=IF|WHILE ( s=@any+ , w=@start @any* ) $ | TS080 | word={block}; head={block}({s}); right={end} | IF(distancia < poca, S) => head=IF(distancia < poca)
 ^ @none s=FOREVER t=that q=@cond+ @startm $ | TS102 | found={s} {t}; right=WHILE; usage=WHILE({question}) | siempre que distancia > 20 avanza => usage=WHILE(DISTANCE > 20)
 ^ ⟨@none s=ELSEIF¦@none ELSE s=IF¦c=ELSE s=IF⟩ :? $ | TS015 | word=ELSEIF; words=; usage=ELSEIF; example=ELSEIF({distance} < 10); bare=ELSE | IF(DISTANCE < 10)⏎S⏎⟨ELIF¦SINO SI¦ELSE IF⟩⏎F(1, 60)⏎ENDIF => bare=ELSE

@@ -27,7 +27,6 @@ from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
 _LAST_HEAD = re.compile(r"(?is)\b(IF|ELSEIF|WHILE|UNTIL)[ \t]*\((?!.*\b(?:IF|WHILE|UNTIL)\()")
-_NO_SIGN = re.compile(r"(?i)\b(?:IF|WHILE|UNTIL)[ \t]*\(\s*([^\W\d]\w*)\s+(?P<here>[\d.]+)\s*\)")
 _DOTS = re.compile(
     r"(?i)\b(?P<head>(?P<word>IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|DEF[ \t]+(?P<name>\w+))[\s;]*"
     r"(?P<here>(?:\.[ \t]*){2,}|\u2026)[ \t]*\n?[ \t]*(?P<end>END_?\w+|ELSE\w*)?"
@@ -191,7 +190,8 @@ class _Usage:
     def sentence(self) -> Diagnostic | None:
         """Words that say an instruction, or several, or none."""
         words = self.words
-        meant = next(filter(self.is_order, words), "")
+        ordered = self.ordered()
+        meant = next(iter(ordered), "")
         if told := self.orders(meant):
             return told
         said = (*words, "_".join(words[:2]))  # `turn on the led`, `u turn`
@@ -203,12 +203,12 @@ class _Usage:
         if endless and not meant:
             return self.translated(endless, "LOOP(FOREVER)")
         if any(said_of(each, "turn", "lap") for each in words):
-            return self.turn(said)
+            return self.turn(said, ordered)
         word = next(filter(self.names.meant, (*words[:1], meant)), "")
         concept = self.names.meant(word)
         is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
-        others = {self.names.meant(each) for each in words if self.is_order(each)} - {concept}
-        if is_order and concept != word and not (concept == "S" and others):  # `ve para adelante`
+        is_among = concept == "S" and {*ordered.values()} != {"S"}  # `ve para adelante`
+        if is_order and concept != word and not is_among:
             if len(self.tokens) == 1 and not WORDS[concept].arguments:
                 return self.translated(word, concept)
             return self.says(
@@ -217,21 +217,18 @@ class _Usage:
         text = self.source[self.piece]
         if len(words) < 2 or {*self.signs} & {*COMPARISONS, "(", "="} or len(text) > _LONGEST:
             return None
-        if words[0] == "TSC":
-            return Diagnostic(codes.PROSE, self.piece, {"command": text, "fix": ""})
         if name := next((each for each in words if each in self.names.variables), ""):
             example = f"{name} = {name} + {self.number}"
             values = {"name": name, "example": example, "fix": ""}
             return Diagnostic(codes.PROSE, self.piece, values)
         return self.offers(codes.PROSE, f"// {text}")
 
-    def turn(self, said: Sequence[str]) -> Diagnostic:
+    def turn(self, said: Sequence[str], ordered: dict[str, str]) -> Diagnostic:
         """A turn that says no way, or no number."""
-        meant = {each: self.names.meant(each) for each in self.words}
-        others = {meant[it] for it in meant if self.is_order(it) and not said_of(it, "right")}
+        others = {its for word, its in ordered.items() if not said_of(word, "right")}
         if others - {"L", "R", "B", "S"}:
             return Diagnostic(codes.SEVERAL_ORDERS, self.piece)  # a turn alone would lose them
-        way = next((each for each in meant.values() if each in ("L", "R")), "")
+        way = next((it for it in map(self.names.meant, self.words) if it in ("L", "R")), "")
         degrees = {"half": 180, "whole": 360}
         angle = next((degrees[it] for it in degrees if any(said_of(each, it) for each in said)), 0)
         is_timed = any(said_of(each, "unit") for each in self.words)
@@ -288,9 +285,10 @@ class _Usage:
     def is_button(self, word: str) -> bool:
         return "BUTTON" not in self.names.sensors and concept_of(word) == "BUTTON"
 
-    def is_order(self, word: str) -> bool:
-        known = WORDS.get(self.names.meant(word))
-        return known is not None and known.is_instruction and word not in WORDS
+    def ordered(self) -> dict[str, str]:
+        """Return the words of no program that mean an order, and which."""
+        meant = {each: self.names.meant(each) for each in self.words if each not in WORDS}
+        return {it: its for it, its in meant.items() if its in WORDS and WORDS[its].is_instruction}
 
     def brackets(self) -> Diagnostic:
         """A word without its values; alone it gets an example of them."""
@@ -314,8 +312,6 @@ class _Usage:
             return said
         if self.words[1:] and self.names.meant(self.signs[0]) == "SHOW":
             return self.says(codes.WORDS_SHOWN)
-        if match := self.around(_NO_SIGN):
-            return self.says(codes.MISSING_SIGN, before=match[1].upper(), found=match["here"])
         text, own = self.source.text, {*WORDS, *self.names.known.values}
         head = _LAST_HEAD.search(text, self.piece.start, self.found.span.end)
         end = text.find(")", self.found.span.start)
@@ -391,8 +387,7 @@ class _Usage:
     def unopened_part(self) -> Diagnostic | None:
         """An ELSE in a WHEN."""
         before = self.source.text[: self.found.span.start]
-        whens = re.findall(r"(?i)\b(?:END_?)?WHEN\b", before)
-        is_open = bool(whens) and not whens[-1].upper().startswith("END")
+        is_open = re.search(r"(?is)\bWHEN\b(?!.*\bEND_?WHEN\b)", before)
         return self.adds(part=self.found.values["found"]) if is_open else None
 
     def sign(self) -> Diagnostic | None:
