@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from argparse import Namespace
+from functools import partial
 
 from tiniscript.cli.commands.ping import COUNT, one_of_many
 from tiniscript.cli.images import Ready
@@ -22,58 +23,48 @@ def upload_to_many(
     options: Namespace, robot: Robot, language: str, ready: Ready, name: str
 ) -> int:  # fmt: skip
     """Send a program to many robots; return the exit code."""
-    if ready.image.start == "PING":  # a program that asks who is there
-        return together(options, robot, language, one_of_many(COUNT))
-    return together(options, robot, language, Upload(options, ready, name).one_of_many)
+    is_ping = ready.image.start == "PING"  # a program that asks who is there
+    work = one_of_many(COUNT) if is_ping else partial(_upload, options, ready, name)
+    return together(options, robot, language, work)
 
 
-class Upload:
-    """A program for many robots."""
+def _upload(
+    options: Namespace, ready: Ready, name: str, connection: Connection, member: Member
+) -> Result:
+    language = connection.language
+    whole = max(1, len(ready.image.code))
+    member.meet(connection)
 
-    def __init__(self, options: Namespace, ready: Ready, name: str) -> None:
-        self.options = options
-        self.ready = ready
-        self.name = name
-        self.has_table = sys.stderr.isatty() and not options.json
+    def draw(done: int) -> None:
+        member.tell("crew_sending", percent=100 * done // whole)
 
-    def one_of_many(self, connection: Connection, member: Member) -> Result:
-        options, ready, language = self.options, self.ready, connection.language
-        whole = max(1, len(ready.image.code))
-        member.meet(connection)
-
-        def draw(done: int) -> None:
-            member.tell("crew_sending", percent=100 * done // whole)
-
-        draw(0)
-        values = program_upload.send_program(connection, ready, options, draw)
-        receipt = program_upload.receipt(connection, ready, self.name, values, options)
-        if options.json:
-            member.print(json.dumps(receipt))
-        runs = program_upload.is_running(ready, options)
-        member.tell("crew_running" if runs and not options.detach else "crew_saving")
-        printer = MemberPrinter(connection, ready, member, options.json, self.has_table)
-        saving = Saving(connection, printer, values)
-        code = program_upload.follow_run(connection, ready, saving, options, printer)
-        if not runs or options.detach:
-            key = "how_waits" if not runs else "how_detached"
-            printer.end = text(key, language).format(start=ready.image.start)
-        said = text("crew_uploaded", language).format(
-            checksum=receipt["checksum"], code=receipt["code_bytes"], how=printer.end
-        )
-        return Result(code == 0, said, {"checksum": receipt["checksum"]})
+    draw(0)
+    values = program_upload.send_program(connection, ready, options, draw)
+    receipt = program_upload.receipt(connection, ready, name, values, options)
+    if options.json:
+        member.print(json.dumps(receipt))
+    runs = program_upload.is_running(ready, options)
+    member.tell("crew_running" if runs and not options.detach else "crew_saving")
+    printer = MemberPrinter(connection, ready, member, options.json)
+    saving = Saving(connection, printer, values)
+    code = program_upload.follow_run(connection, ready, saving, options, printer)
+    if not runs or options.detach:
+        key = "how_waits" if not runs else "how_detached"
+        printer.end = text(key, language).format(start=ready.image.start)
+    said = text("crew_uploaded", language).format(
+        checksum=receipt["checksum"], code=receipt["code_bytes"], how=printer.end
+    )
+    return Result(code == 0, said, {"checksum": receipt["checksum"]})
 
 
 class MemberPrinter(EventPrinter):
     """Prints the events of one of many robots. `end` is the end of its program, in one line."""
 
-    def __init__(
-        self, connection: Connection, ready: Ready, member: Member, is_json: bool, has_table: bool
-    ) -> None:
+    def __init__(self, connection: Connection, ready: Ready, member: Member, is_json: bool) -> None:
         about = {"port": connection.port}
         super().__init__(connection.language, is_json, places=ready.places, about=about,
                          out=member.print)  # fmt: skip
         self.member = member
-        self.has_table = has_table
         self.end = ""
 
     def say(
@@ -87,5 +78,5 @@ class MemberPrinter(EventPrinter):
             self.end = "  ".join(each.strip() for each in line.splitlines())
         if self.is_json:
             super().say(since_ms, name, what, said, is_bad=is_bad, **fields)
-        elif name == "SHOW" and not self.has_table:
+        elif name == "SHOW" and not sys.stderr.isatty():  # there is no table
             self.out(f"{self.member.name} ({self.member.target.port}): {line}")
