@@ -176,6 +176,29 @@ def test_what_is_said_of_bytes_names_no_robot_that_is_not_there(
     assert set(REFUSALS) <= set(all_said("en", "library"))
 
 
+# What the library says of a robot as the command does: its catalogue alone has the sentences.
+SHARED = (
+    "link_echo", "not_confirmed", "not_saved", "port_broken", "port_forbidden",
+    "port_forbidden_linux", "port_missing", "port_no_multicast", "port_not_announced",
+    "port_not_found", "port_not_found_but", "port_not_installed", "port_radio_broken",
+    "port_radio_forbidden", "port_radio_off", "port_radio_service", "port_several", "port_slow",
+    "port_unreachable",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("language", ["en", "es", "pt"])
+def test_a_sentence_of_the_command_in_the_library_names_nothing_of_the_command(
+    language: str,
+) -> None:
+    values = {"port": "COM5", "why": "broken", "how": "pip"}
+    for reason in SHARED:
+        said = str(tiniscript.RobotError(reason, language, values))
+        assert "tsc" not in said, said
+        assert "--" not in said, said
+        assert said[0].isupper() or said.startswith("COM5"), said
+    assert not set(SHARED) & set(all_said("en", "library"))
+
+
 # -- wrong use -------------------------------------------------------------------------------------
 
 MISUSES: dict[str, Callable[[], object]] = {

@@ -18,9 +18,13 @@ if TYPE_CHECKING:
 def sentence(reason: str, language: str, values: Mapping[str, str]) -> str:
     """Return the sentence for a reason, with its gaps filled.
 
-    The command has sentences of its own, which name its options.
+    The command has sentences of its own, which name its options; where they do not, they are those
+    of the library, too.
     """
-    return languages.text("library", reason, language).format(**values)
+    if languages.found("library", reason, languages.SOURCE) is not None:
+        return languages.text("library", reason, language).format(**values)
+    said = languages.text("command", reason, language).removeprefix("tsc: ")
+    return f"{said[:1].upper()}{said[1:]}".format(**values)
 
 
 _SAME = {
