@@ -94,11 +94,12 @@ def offers(text: str, found: list[Diagnostic], check: Check) -> list[list[Edit]]
     source, tried = Source(text), 0
     offered: list[list[Edit]] = []
     for diagnostic in found:
-        edits = edits_of(diagnostic) if diagnostic.is_mistake and tried < OFFERS else None
-        if edits and not any(_is_sealed(edit, source) for edit in edits):
+        edits = edits_of(diagnostic) or [] if diagnostic.is_mistake and tried < OFFERS else []
+        lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
+        if edits and not any("~" in line for line in lines):  # with a checksum it is copied again
             tried += 1
-            after = check(applied(text, edits))
-            offered.append(edits if is_better(after, found, edits) else [])
+            is_chosen = is_better(check(applied(text, edits)), found, edits)
+            offered.append(edits if is_chosen else [])
         else:
             offered.append([])
     return offered
@@ -122,11 +123,6 @@ def is_better(
         if any(each.is_mistake and start <= each.span.start < end for each in after):
             return False
     return True
-
-
-def _is_sealed(edit: Edit, source: Source) -> bool:
-    """Whether a change is in a line that has a checksum: it is to be copied again."""
-    return "~" in source.line_text(source.position(edit.span.start)[0])
 
 
 def _mistakes(found: Sequence[Diagnostic]) -> int:

@@ -39,7 +39,6 @@ _WORD, _WORD_BEFORE = re.compile(r"\w+"), re.compile(r"\w+\Z")
 _BEHIND = re.compile(r"\W*\w+[\s;]+(\w+)")
 _ARMS = ("ELSE", "ELSEIF")
 _SIGNS = ("BEEP", "SHOW", "S", "STOP")
-LONGEST_BLOCK = 160  # characters of one that a message shows
 
 
 @dataclass
@@ -155,14 +154,15 @@ class _Teller:
         """Return a span with all of the words that it begins and ends in."""
         start, end = span
         if start < end:
-            before = _WORD_BEFORE.search(self.program, max(0, start - LONGEST_BLOCK), start + 1)
+            line = self.program.rfind("\n", 0, start) + 1
+            before = _WORD_BEFORE.search(self.program, line, start + 1)
             behind = _WORD.match(self.program, end - 1)
             start -= len(before[0]) - 1 if before else 0
             end += len(behind[0]) - 1 if behind else 0
         return Span(start, end)
 
     def whole(self, first: int, last: tuple[int, int]) -> str:
-        """Return what changes become, as one line."""
+        """Return what changes become, as one line, nothing where that is long."""
         *others, text = (each.text for each in self.changes[first : last[0] + 1])
         return in_one_line("\n".join((*others, *text.split("\n")[: last[1]])))
 
@@ -248,7 +248,7 @@ class _Teller:
         if block is None or told is None or told.code not in _SHOW_WHOLE:
             return None
         first = min(told.first, block.first)
-        if len(self.whole(first, last)) > LONGEST_BLOCK:
+        if not self.whole(first, last):
             return None
         told.edits.append(edit)
         told.first, told.last = first, max(told.last, last)
@@ -262,26 +262,25 @@ class _Teller:
         if code is codes.OTHER_NOTE:
             values["right"] = self.changes[k].text.strip()
         if code is codes.EXTRA_WORD and not step:
-            behind = _BEHIND.match(self.program.upper(), self.words(edit.span).start)
-            if behind and {behind[1], meant_by(behind[1])} & {*_ARMS}:
+            behind = _BEHIND.match(self.program, self.words(edit.span).start)
+            arm = behind[1].upper() if behind else ""
+            if {arm, meant_by(arm)} & {*_ARMS}:
                 values["early"] = values["found"]
         if code is codes.NEVER_ENDS:
-            word = next((each.text for each in after if each.text in BLOCK_ENDS), "")
-            added = [each.text for each in after if each.text not in texts(before)]
-            end = BLOCK_ENDS.get(word) or next((each for each in added if each in ENDED), "")
+            word = next((each for each in texts(after) if each in BLOCK_ENDS), "")
+            end = BLOCK_ENDS.get(word) or next((it for it in texts(after) if it in ENDED), "")
             last = laid_out(_parted(before)[-1]) if word and _parted(before) else ""
             values = {"word": word or ENDED.get(end, ""), "right": end, "behind": last}
             above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
             if not word and k and above:  # its indentation says where it ends
                 last = laid_out(tokens_of(above.text.split("\n")[0]))
                 values |= {"line": str(above.last + 1), "last": last}
-        if code in _SAID_ONCE:
-            same = [it for it in self.changes[k].steps if it.code == code]
-            names = dict.fromkeys(
-                w for it in same for w in texts(it.after) if w not in texts(it.before)
-            )
+        if code in _SAID_ONCE:  # LIGHT_L and LIGHT_R
+            same = (it for it in self.changes[k].steps if it.code is code)
+            pairs = ((texts(it.before), texts(it.after)) for it in same)
+            names = [each for was, now in pairs for each in now if each not in was]
             if values["right"] in names:
-                values["right"] = ", ".join(names)  # LIGHT_L and LIGHT_R
+                values["right"] = ", ".join(dict.fromkeys(names))
         self.out.append(Explanation(code, place, place, values, [edit], k, (k, 1)))
         return self.out[-1]
 
@@ -292,14 +291,11 @@ class _Teller:
         edit = Edit(Span(behind, behind), text)
         if self.added(block, edit, last, lexemes(end)):
             return
-        first = block.first if block else last[0]
-        whole = self.whole(first, last)
-        whole = whole if len(whole) <= LONGEST_BLOCK else ""
+        first, word = (block.first, block.word) if block else (last[0], "")
         behind_this = laid_out(tokens_of(change.text.split("\n")[0]))
         place = Span(self.starts[self.changes[first].first], behind)
-        line = str(change.last + 1)
-        word = block.word if block else ""
-        values = {"word": word, "right": end, "line": line, "last": behind_this, "whole": whole}
+        values = {"word": word, "right": end, "line": str(change.last + 1), "last": behind_this,
+                  "whole": self.whole(first, last)}  # fmt: skip
         if self.may_end_earlier(word, first, last[0]):
             values |= {"several": behind_this, "last": "", "whole": ""}
         told = Explanation(codes.NEVER_ENDS, place, place, values, [edit], first, (first, 1))
@@ -400,8 +396,10 @@ def _slip(
         found = old[start : start + len(found) + 1]
     elif not right and code is codes.BAD_NUMBER:
         found = old[start + len(found) - 1 : start + len(found) + 1]
-    elif code is codes.UNIT:
-        found = _with_unit(old) or found
+    elif code is codes.UNIT:  # the first number that has one
+        pairs = ([*pair] for pair in pairwise(old) if pair[0].kind is NUMBER)
+        units = (it for it in pairs if said_of(it[1].text, "unit") or it[1].text == "%")
+        found = next(units, found)
     told, fix = _parted(before), _parted(after)
     head, tail = _alike([*map(texts, told)], [*map(texts, fix)])
     one = [each for part in told[head : len(told) - tail] for each in part]
@@ -469,16 +467,6 @@ def _word(
                 return word.text
     words = [each.text for each in part if each.kind is WORD]
     return next((each for each in words if each in WORDS), "".join(words[:1]))
-
-
-def _with_unit(tokens: Sequence[Lexeme]) -> list[Lexeme]:
-    """Return the first number that has a unit, and its unit."""
-    found = (
-        [number, unit]
-        for number, unit in pairwise(tokens)
-        if number.kind is NUMBER and (said_of(unit.text, "unit") or unit.text == "%")
-    )
-    return next(found, [])
 
 
 def _first_difference(

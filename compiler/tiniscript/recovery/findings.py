@@ -20,7 +20,7 @@ from tiniscript.diagnostics.fixing import is_better
 from tiniscript.recovery import lines, rows
 from tiniscript.recovery.advice import advised
 from tiniscript.recovery.concepts import Names, lexemes, texts, words_of
-from tiniscript.recovery.explanation import LONGEST_BLOCK, Explanation, explained, trimmed
+from tiniscript.recovery.explanation import Explanation, explained, trimmed
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.setup import setup
 from tiniscript.recovery.usage import with_usage
@@ -31,6 +31,7 @@ LONGEST = 4_000  # characters of a text that is read as a whole
 _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OTHER_ASSIGNMENT)
 _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
 _FIRST_NUMBERS = (1, 10, 100)
+_BEGUN, _ROW = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
 _NUMBER = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
 _NOTES = "|".join(word for word in lexicon() if said_of(word, "note"))
 _NOTE = re.compile(rf"(?i)\b(?:{_NOTES})\b")  # its 4 is no number: C4
@@ -83,25 +84,18 @@ def _with_edits(told: list[Diagnostic]) -> Findings:
 
 def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
     """Return lines before `SI|` that are none of a program: its title, who wrote it."""
-    rows_ = source.text.split("\n")
-    begun = next((k for k, row in enumerate(rows_) if re.match(r"\s*S[IB]\s*\|", row, re.I)), 0)
-    names = Names([], kit)
+    begun = _BEGUN.search(source.text)
     told: list[Diagnostic] = []
-    start = 0
-    for row in rows_[:begun]:
-        title = without_note(row)[0].strip()
-        at = start + len(row) - len(row.lstrip())
-        start += len(row) + 1
-        if not title:
-            continue
+    for row in _ROW.finditer(source.text[: begun.start() if begun else 0]):
+        title = without_note(row[0])[0].strip()
         words = lexemes(title)
+        if not words:
+            continue
         is_set = said_of(words[0].text, "set")  # `set SPEED to 70`
-        is_right = lines.is_right(words, names)
-        if is_set or is_right or "(" in title or "{" in title:
+        if is_set or lines.is_right(words, Names([], kit)) or "(" in title or "{" in title:
             return []
-        span, fix = Span(at, at + len(title)), f"// {title}"
-        is_command = words[0].text == "TSC"
-        values = {"command": title} if is_command else {"fix": fix}
+        span, fix = Span(row.start(), row.start() + len(title)), f"// {title}"
+        values = {"command": title} if words[0].text == "TSC" else {"fix": fix}
         told.append(Diagnostic(codes.PROSE, span, values, span, Repair((Edit(span, fix),), False)))
     return told
 
@@ -174,8 +168,7 @@ def _diagnostic(
 
 def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
     """Return a mistake that goes when lines change their places."""
-    whole = in_one_line(meant.text)
-    values = {**found.values, "whole": whole if len(whole) <= LONGEST_BLOCK else ""}
+    values = {**found.values, "whole": in_one_line(meant.text)}
     if found.code is codes.WRONG_END:
         values["swapped"] = found.values["right"]
     elif (move := meant.move) is not None:

@@ -18,7 +18,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import concepts, rewrites, rows
 from tiniscript.recovery.blocks import ANY_END, BRACES
-from tiniscript.recovery.concepts import CALLED, LONG_S, NEAR, Lexeme, Names, lexemes, made, texts
+from tiniscript.recovery.concepts import CALLED, LONG_S, NEAR, Lexeme, Names, made, texts
 from tiniscript.recovery.slots import MILLISECONDS_FROM, MOVES, filled
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
@@ -199,7 +199,7 @@ class _Search:
                 code = codes.NAME_WITH_SPACE if is_name else codes.OTHER_LANGUAGE
                 reading = reading.changed(tokens, 1.0 if is_name else 0.5, code)
                 continue
-            after = next(self._by_rows(reading, is_first=True), self._with_function(reading))
+            after = next(self._by_rows(reading, is_first=True), None)
             if after is None:
                 break
             reading = after
@@ -208,18 +208,6 @@ class _Search:
     def rewritten(self, reading: Reading) -> Iterator[Reading]:
         found = (self._by_rows(reading, is_first=False), self._by_slots(reading))
         return map(self.at_once, chain(*found, self._by_words(reading)))
-
-    def _with_function(self, reading: Reading) -> Reading | None:
-        """Mend the first word before a bracket in the place of a value: it can be no other."""
-        around = ("", *reading.text, "")
-        for k, token in enumerate(reading.tokens):
-            is_value = around[k] in ("(", ",", *SIGNS) and around[k + 2] == "("
-            near = nearest(token.text, FUNCTIONS) if is_value and token.kind is WORD else None
-            if near and token.text not in WORDS and not concept_of(token.text):
-                line = [*reading.tokens]
-                line[k] = made(near)._replace(space=token.space)
-                return reading.changed(line, 1.0, codes.OTHER_LANGUAGE)
-        return None
 
     def _by_rows(self, reading: Reading, is_first: bool) -> Iterator[Reading]:
         line = rewrites.Encoded(reading.tokens, self.names)
@@ -242,25 +230,22 @@ class _Search:
                 continue
             has_until = end < len(tokens) and tokens[end].text == "UNTIL"
             call = filled(words, self.names, has_until)
-            if call is None or texts(call.tokens) == texts(words):
+            if call is None or call.times or texts(call.tokens) == texts(words):
                 continue
-            new = call.tokens
-            if call.times:
-                if len(words) < len(tokens):
-                    continue
-                new = [*lexemes(f"LOOP({call.times});"), *new, *lexemes(";END_LOOP")]
-            is_sure = call.is_sure and not call.times
-            line = [*tokens[:start], *new, *tokens[end:]]
-            code = _code_of_call(words)
-            yield reading.changed(line, call.cost, code, is_sure, bool(call.times))
+            line = [*tokens[:start], *call.tokens, *tokens[end:]]
+            yield reading.changed(line, call.cost, _code_of_call(words), call.is_sure)
 
     def _by_words(self, reading: Reading) -> Iterator[Reading]:
         """Translate the first word that is none of the language."""
-        tokens = reading.tokens
+        tokens, around = reading.tokens, ("", *reading.text, "")
         for k, token in enumerate(tokens[: reading.failure.at + 2]):
             if token.kind is not WORD or (token.text in WORDS and token.text != "SI"):
                 continue
-            meanings = self.names.meanings(token.text)
+            is_function = around[k] in ("(", ",", *SIGNS) and around[k + 2] == "("
+            is_misspelt = is_function and not concept_of(token.text)
+            near = nearest(token.text, FUNCTIONS) if is_misspelt else None
+            guess = (concepts.Meaning(near, concepts.KNOWN),) if near else ()
+            meanings = guess or self.names.meanings(token.text)
             if _is_long(tokens, k, meanings[0].concept if meanings else ""):
                 continue
             for concept, cost in meanings:

@@ -63,7 +63,7 @@ def _ordered(text: str, is_at_start: bool) -> Moved | None:
         if move is None:
             return first and first._replace(text=_joined(pieces), is_guess=is_guess)
         begin, end, to = move
-        name = pieces[_header(pieces, begin)].name
+        name = next((it.name for it in pieces[begin::-1] if it.word == "DEF"), pieces[0].name)
         is_called = bool([*_calls(pieces, name, 0, len(pieces))])
         is_guess = is_guess or bool(late and not swap) or not (swap or is_called)
         if first is None:
@@ -104,10 +104,6 @@ def _outermost(pieces: list[_Piece], k: int, start: int = 0) -> int:
             depth -= 1
         found = k if not depth else found
     return found
-
-
-def _header(pieces: list[_Piece], end: int) -> int:
-    return next((k for k in range(end, -1, -1) if pieces[k].word == "DEF"), 0)
 
 
 def _defs(pieces: list[_Piece]) -> Iterator[tuple[int, int]]:

@@ -9,6 +9,7 @@ from tiniscript.recovery.concepts import Lexeme, lexemes, made, plain
 from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 
+LONGEST_BLOCK = 160  # characters of one that a message shows
 _NOTE = re.compile(r"(?i)(?<!\bSI)(?<!\bSB)//")
 
 
@@ -57,9 +58,10 @@ def tokens_of(line: str) -> list[Lexeme]:
 
 
 def in_one_line(text: str) -> str:
-    """Return the instructions of a text, laid out."""
+    """Return the instructions of a text, laid out; nothing where they are long for a message."""
     parts = (laid_out(tokens_of(line)).strip("; ") for line in text.split("\n"))
-    return "; ".join(each for each in parts if each)
+    whole = "; ".join(each for each in parts if each)
+    return whole if len(whole) <= LONGEST_BLOCK else ""
 
 
 def shortened(text: str) -> str:

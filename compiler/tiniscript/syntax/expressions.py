@@ -28,7 +28,7 @@ class ExpressionParser:
 
     def arguments(self) -> tuple[Argument, ...]:
         cursor = self.cursor
-        bracket = cursor.tokens[cursor.i]
+        bracket = cursor.i
         cursor.i += 1
         if cursor.take_inner(")"):
             return ()
@@ -181,7 +181,7 @@ class ExpressionParser:
                 bracket.arguments += 1
                 cursor.take_inner(",")
                 return True
-            self.no_close(tokens[bracket.index])
+            self.no_close(bracket.index)
 
     def binary(self, token: Token, precedence: int, name: str, read: Postfix) -> None:
         waiting = read.waiting
@@ -248,14 +248,14 @@ class ExpressionParser:
             codes.UNIT_PLACE, span, found=unit, first=first, second=second, example=example
         )
 
-    def no_close(self, bracket: Token) -> NoReturn:
+    def no_close(self, bracket: int) -> NoReturn:
         """In brackets a comma or their end is expected."""
         token, before = self.cursor.inner(), self.cursor.last
         self.no_unit(token if before.text not in WAYS else before)
         self.no_odd(token)
         if token.kind in (NUMBER, WORD, "("):
-            word = self.cursor.source[Span(0, bracket.start)].rpartition("\n")[2].split("(")[-1]
-            word = word.split(";")[-1].split("|")[-1].strip().upper()
+            word = self.cursor.tokens[bracket - 1].text
             usage = {"usage": WORDS[word].usage} if word in WORDS else {}
             self.reporter.fail(codes.MISSING_COMMA, token.span, **usage)
-        self.reporter.fail(codes.MISSING_CLOSE, bracket.span, before=before.text)
+        span = self.cursor.tokens[bracket].span
+        self.reporter.fail(codes.MISSING_CLOSE, span, before=before.text)
