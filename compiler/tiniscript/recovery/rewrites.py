@@ -395,6 +395,9 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
         if len(row) < count or any(each.kind is not WORD for each in tokens[k : k + count]):
             continue
         text = "_".join(row)
+        after = tokens[k + count].text if k + count < len(tokens) else ""
+        if concept_of(text) == "ELSE" and (said_of(after, "is") or said_of(after, "there")):
+            continue  # `si no hay pared`
         if concept_of(text) or (text in WORDS and row[0] == "END"):
             meant = names.meanings(text)  # `END IF` ends any block
             word = made(meant[0].concept if meant else text)._replace(space=tokens[k].space)
