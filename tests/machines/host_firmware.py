@@ -25,6 +25,7 @@ __all__ = ("EMPTY", "HostFirmware", "Seen")
 EMPTY = bytes(1024).replace(b"\0", b"\xff")  # what a new EEPROM holds
 TICKS = 20  # in a millisecond
 POWER_ON, RESET_BUTTON = 1, 2
+SPREAD, UNTIL_SENT = 1, 2  # how time passes
 T = TypeVar("T")
 
 
@@ -94,13 +95,16 @@ class HostFirmware(Process):
 
         Bytes that are spread arrive one in each.
         """
-        head = pack("<IIHBI", self.now_ms + 1, milliseconds, TICKS, is_spread, len(data))
-        self.now_ms += milliseconds
+        return self._pass(milliseconds, data, SPREAD if is_spread else 0)
+
+    def _pass(self, milliseconds: int, data: bytes, how: int) -> tuple[bytes, list[bool]]:
+        head = pack("<IIHBI", self.now_ms + 1, milliseconds, TICKS, how, len(data))
         sent, rest = _text(self.ask(b"W", head + data))
         did, rest = _text(rest)
         self.did += did.decode().splitlines()
         self.is_lit = bool(rest[0])
         latched = [bool(each) for each in _text(rest[1:])[0]]
+        self.now_ms += len(latched)
         self.is_latched = latched[-1]
         return sent, latched
 
@@ -140,15 +144,29 @@ class HostFirmware(Process):
 
     def talk(self, session: Session, milliseconds: int, flags: int = 0) -> None:
         """Let a computer talk with the robot for a while."""
-        for _ in range(milliseconds):
-            session.receive(self.step(session.poll(self.now_ms), flags), self.now_ms)
+        end_ms = self.now_ms + milliseconds
+        while self.now_ms < end_ms:
+            data = session.poll(self.now_ms)
+            self._turn(session, data, end_ms - self.now_ms, flags)
+
+    def _turn(self, session: Session, data: bytes, most_ms: int, flags: int = 0) -> None:
+        """Let a millisecond pass, or more while neither has anything to say."""
+        wakes_ms = session.wakes_at()
+        quiet_ms = most_ms if wakes_ms is None else min(most_ms, wakes_ms - self.now_ms)
+        if data or flags or quiet_ms < 2:
+            sent = self.step(data, flags)
+        else:
+            sent, _ = self._pass(quiet_ms, b"", UNTIL_SENT)
+        session.receive(sent, self.now_ms)
 
     def until(self, session: Session, request: PendingRequest[Any], limit_ms: int = 30_000) -> int:
         """Let a computer talk until its request is over; return how that ended."""
-        for _ in range(limit_ms):
+        end_ms = self.now_ms + limit_ms
+        while self.now_ms < end_ms:
             if request.outcome is not None:
                 return request.outcome.status
-            self.talk(session, 1)
+            data = session.poll(self.now_ms)  # which can end it
+            self._turn(session, data, 1 if request.outcome else end_ms - self.now_ms)
         raise AssertionError(f"the request is not over after {limit_ms} ms: {self.did[-5:]}")
 
     def done(self, session: Session, request: PendingRequest[T]) -> T:

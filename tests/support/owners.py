@@ -112,11 +112,15 @@ class Owned:
         self.pass_time(session, 1, RELEASED)
 
     def pass_time(self, session: Session | None, milliseconds: int, flags: int = 0) -> None:
-        for k in range(milliseconds):
-            if session is None:
-                self.robot.step(flags=flags if k == 0 else 0)
-            else:
-                self.robot.talk(session, 1, flags if k == 0 else 0)
+        if milliseconds <= 0:
+            return
+        if session is not None:
+            self.robot.talk(session, 1, flags)
+            self.robot.talk(session, milliseconds - 1)
+            return
+        self.robot.step(flags=flags)
+        if milliseconds > 1:
+            self.robot.wait(milliseconds - 1)
 
     def claim(self, session: Session, which: int = 0) -> str:
         request = session.claim(which)

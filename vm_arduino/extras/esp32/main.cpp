@@ -116,13 +116,14 @@ void answer_step(RequestReader* request, Writer* answer) {
 }
 
 // W: so many milliseconds from a time on, so many turns each. Bytes arrive in the first, or one
-// in each. Says what the robot sends, what it does and when, its light, and after each of the
-// milliseconds whether its motors are stopped.
+// in each (1); it ends early once the robot has sent something (2). Says what the robot sends, what it
+// does and when, its light, and after each of the milliseconds whether its motors are stopped.
 void answer_wait(RequestReader* request, Writer* answer) {
   const uint32_t first_ms = request->u32();
   const uint32_t many = request->u32();
   const uint16_t count = request->u16();
-  const bool is_spread = request->u8() != 0;
+  const uint8_t how = request->u8();
+  const bool is_spread = how == 1;
   const Bytes heard = request->bytes();
   std::string did;
   std::string stopped;
@@ -134,6 +135,7 @@ void answer_wait(RequestReader* request, Writer* answer) {
     did += timed(first_ms + k, log_of_robot);
     log_of_robot.clear();
     stopped += static_cast<char>(motors_are_stopped());
+    if (how == 2 && !chip.sent.empty()) break;
   }
   answer->text(chip.sent);
   answer->text(did);

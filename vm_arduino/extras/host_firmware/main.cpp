@@ -161,13 +161,14 @@ void answer_step(RequestReader* request, Writer* answer) {
 }
 
 // W: so many milliseconds from a time on, so many ticks each. Bytes arrive in the first of them, or one
-// in each. Says what the robot sends, what it does and when, its light, and after each of the
-// milliseconds whether it is latched.
+// in each (1); it ends early once the robot has sent something (2). Says what the robot sends, what it
+// does and when, its light, and after each of the milliseconds whether it is latched.
 void answer_wait(RequestReader* request, Writer* answer) {
   const uint32_t first_ms = request->u32();
   const uint32_t count = request->u32();
   const uint16_t ticks = request->u16();
-  const bool is_spread = request->u8() != 0;
+  const uint8_t how = request->u8();
+  const bool is_spread = how == 1;
   const Bytes heard = request->bytes();
   table.has_stalled = false;
   std::string sent;
@@ -181,6 +182,7 @@ void answer_wait(RequestReader* request, Writer* answer) {
     sent += pass(first_ms + k, ticks, heard.data.get() + begin, length);
     did += timed(first_ms + k, table.log);
     latched += static_cast<char>(table.is_latched);
+    if (how == 2 && !sent.empty()) break;
   }
   answer->text(sent);
   answer->text(did);
