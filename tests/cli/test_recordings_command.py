@@ -302,5 +302,5 @@ def test_a_place_without_room_says_so(tmp_path: Path) -> None:
         Recorder(str(tmp_path / "no" / "run.jsonl"), CHECKSUM, "tinibot", began_s=monotonic())
     assert "with --record" in refused.value.sentence("en")
     if Path("/dev/full").exists():
-        with pytest.raises(CommandError, match="unwritable_recording"):
+        with pytest.raises(CommandError, match="unwritable_more"):
             Recorder("/dev/full", CHECKSUM, "tinibot", began_s=monotonic())

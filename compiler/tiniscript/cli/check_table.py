@@ -53,7 +53,7 @@ def check(options: Namespace, robot: Robot, language: str) -> int:
     else:
         print("\n" + "\n".join(_table(rows, language)))
     if options.csv is not None:
-        outputs.write(Path(options.csv), _as_csv(rows, language), "unwritable_rows")
+        outputs.write(Path(options.csv), _as_csv(rows, language), "unwritable_more --csv")
     if any(row.problem for row in rows):
         return 2
     return 1 if any(row.mistakes for row in rows) else 0

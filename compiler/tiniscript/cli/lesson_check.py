@@ -89,7 +89,7 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
             outputs.print_diagnostics(compiled, language)
         marks = [marker.mark(given, compiled)]
     if options.csv is not None:
-        outputs.write(Path(options.csv), _rows(marks, language), "unwritable_rows")
+        outputs.write(Path(options.csv), _rows(marks, language), "unwritable_more --csv")
     if options.plot is not None and marks[0].run is not None:
         draw_picture(options, marks[0].run.robot, language)
     if options.json:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from tiniscript.cli.errors import CommandError
+from tiniscript.cli.errors import unwritable
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.streams import has_colors
 from tiniscript.cli.texts import Said, text
@@ -14,11 +14,11 @@ from tiniscript.library.compiling import Compiled
 SHOWN = 20  # diagnostics that are printed; a person mends the first ones first
 
 
-def write(path: Path, data: bytes, key: str, mode: int | None = None) -> None:
+def write(path: Path, data: bytes, how: str, mode: int | None = None) -> None:
     """Write a file, all of it or nothing: the old file stays until the new one is whole.
 
-    `mode` is what its permissions become. Raises CommandError with the sentence `key` where that
-    is not possible.
+    `mode` is what its permissions become. Raises CommandError, which says `how`, where that is
+    not possible.
     """
     from tiniscript.base import files
 
@@ -27,7 +27,7 @@ def write(path: Path, data: bytes, key: str, mode: int | None = None) -> None:
     except (OSError, ValueError, RuntimeError) as why:  # RuntimeError: a link to itself
         if isinstance(why, BrokenPipeError):
             raise
-        raise CommandError(2, key, file=shown(str(path)), why=why) from None
+        raise unwritable(how, shown(str(path)), why) from None
 
 
 def put(name: str | None, data: bytes) -> bool:

@@ -25,7 +25,7 @@ from typing import NamedTuple
 from tiniscript import robots
 from tiniscript.base.source import PROGRAM_ENDS
 from tiniscript.bytecode.image import MAGIC
-from tiniscript.cli.errors import CommandError
+from tiniscript.cli.errors import CommandError, unwritable
 from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import OPTIONS
 
@@ -179,14 +179,14 @@ def _refuse_foreign(output: Named) -> None:
             raise CommandError(2, "over_foreign", option=output.label, file=output.path)
 
 
-def _refuse_unwritable(path: str, key: str, language: str) -> None:
+def _refuse_unwritable(path: str, how: str, language: str) -> None:
     """Report early that a file cannot be written. Raises CommandError."""
     number = 0
     if sys.platform == "win32":
         from tiniscript.cli.windows_names import has_no_file
 
         if path and has_no_file(path):
-            raise CommandError(2, key, file=path, why=text("no_windows_name", language))
+            raise unwritable(how, path, text("no_windows_name", language))
     try:
         try:
             found = os.stat(path)  # noqa: PTH116 - a name that no file can have gets no Path
@@ -194,7 +194,7 @@ def _refuse_unwritable(path: str, key: str, language: str) -> None:
                 number = errno.EISDIR
             elif not os.access(path, os.W_OK):
                 number = errno.EACCES
-            is_replaced = stat.S_ISREG(found.st_mode) and key != "unwritable_rows"
+            is_replaced = stat.S_ISREG(found.st_mode) and not how.endswith("--csv")
         except FileNotFoundError:
             is_replaced = True
         folder = os.path.dirname(os.path.realpath(path))  # noqa: PTH120
@@ -203,9 +203,9 @@ def _refuse_unwritable(path: str, key: str, language: str) -> None:
             if sys.platform != "win32" and not os.access(folder, os.W_OK | os.X_OK):
                 number = errno.EACCES
     except (OSError, ValueError) as why:
-        raise CommandError(2, key, file=path, why=why) from None
+        raise unwritable(how, path, why) from None
     if number or not path:
-        raise CommandError(2, key, file=path or "''", why=os.strerror(number or errno.ENOENT))
+        raise unwritable(how, path or "''", os.strerror(number or errno.ENOENT))
 
 
 HEAD_BYTES = 4096  # of a file, which tell what it is

@@ -37,7 +37,7 @@ def run(options: Namespace, language: str) -> int:
     outputs.put(target, compiled.image)
     if options.map is not None:
         data = (source_map.as_json(places) + "\n").encode(errors="backslashreplace")
-        outputs.write(Path(options.map), data, "unwritable_map")
+        outputs.write(Path(options.map), data, "unwritable_at --map")
     source_map.remember(compiled.image, places)
     said = text("compiled", language).format(
         source=inputs.shown(given.name),

@@ -57,7 +57,7 @@ def run(options: Namespace, language: str) -> int:
         print(Said("\n".join(_lines(diagnosis, language))), flush=True)
     if options.report is not None:
         data = "\n".join(_report(diagnosis, told, language)) + "\n"
-        outputs.write(Path(options.report), data.encode(), "unwritable_report")
+        outputs.write(Path(options.report), data.encode(), "unwritable_at --report")
         said = text("doctor_report", language).format(file=shown(options.report))
         print(said, file=sys.stderr if options.json else sys.stdout)
     is_fine = not any(finding.is_wrong for finding in diagnosis.findings)

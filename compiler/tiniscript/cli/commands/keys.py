@@ -47,7 +47,7 @@ def _export(found: list[RobotKey], name: str, language: str) -> None:
     if path.exists():
         raise CommandError(2, "export_there", file=shown(name))
     taken = [key._replace(is_stale=False) for key in found if not key.is_pending]
-    outputs.write(path, keys.written(taken), "unwritable_keys", keys.MODE)
+    outputs.write(path, keys.written(taken), "unwritable_more --export", keys.MODE)
     print(text("keys_exported", language).format(n=len(taken), file=shown(name)))
 
 

@@ -199,7 +199,7 @@ class _Stage:
         self._look_s = monotonic()
         memory = self.simulator.robot.memory
         if memory != self._kept or is_due:
-            outputs.write(Path(self.options.memory), memory, "unwritable_memory")
+            outputs.write(Path(self.options.memory), memory, "unwritable_at --memory")
             self._kept = memory
 
 

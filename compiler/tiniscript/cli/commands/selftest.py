@@ -43,7 +43,9 @@ def run(options: Namespace, language: str) -> int:
     _print(found, name, port, options.json, language)
     if options.report is not None:
         rows = _report(found, name, port or "", language)
-        outputs.write(Path(options.report), ("\n".join(rows) + "\n").encode(), "unwritable_report")
+        outputs.write(
+            Path(options.report), ("\n".join(rows) + "\n").encode(), "unwritable_at --report"
+        )
         if not options.json:
             print(text("selftest_report", language).format(file=shown(options.report)))
     return 3 if any(each.verdict == WRONG for each in found) else 0

@@ -15,7 +15,7 @@ from threading import Lock
 from time import monotonic
 
 from tiniscript.base import files
-from tiniscript.cli.errors import CommandError
+from tiniscript.cli.errors import CommandError, unwritable
 from tiniscript.cli.inputs import shown
 from tiniscript.studio.recordings import MOST_MS, VERSION
 
@@ -27,9 +27,9 @@ class Rows:
     the sentence `failure`.
     """
 
-    def __init__(self, name: str, first: bytes, failure: str = "unwritable_rows") -> None:
+    def __init__(self, name: str, first: bytes, failure: str = "unwritable_more --csv") -> None:
         self._name = name
-        self._key = failure
+        self._how = failure
         self._lock = Lock()
         try:
             path = Path(name)
@@ -64,7 +64,7 @@ class Rows:
             self._file.close()
 
     def _failure(self, why: Exception) -> CommandError:
-        return CommandError(2, self._key, file=shown(self._name), why=why)
+        return unwritable(self._how, shown(self._name), why)
 
 
 MOST = 10_000  # events; then it is over
@@ -92,7 +92,7 @@ class Recorder:
         self._robot_ms = robot_ms
         self._count = 0
         self._is_over = False
-        self._rows = Rows(name, (json.dumps(head) + "\n").encode(), "unwritable_recording")
+        self._rows = Rows(name, (json.dumps(head) + "\n").encode(), "unwritable_more --record")
 
     def add(self, _: int, name: str, what: str) -> None:
         """Add an event as `EventPrinter` tells it, at the time at which it came here."""

@@ -101,7 +101,7 @@ def draw_picture(options: Namespace, robot: VirtualRobot, language: str) -> None
     label = robot.profile.labels[language]["robot"]
     title = f"{label} - {robot.world.labels[language]}"
     image = png(robot.world, driving.hull, driving.corners, robot.pose, title)
-    outputs.write(Path(options.plot), image, "unwritable_picture")
+    outputs.write(Path(options.plot), image, "unwritable_at --plot")
 
 
 def summary(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tiniscript.robots.driver import GROUND, PULL_DOWN
+from tiniscript.robots.driver import BOARD_3V3, BOARD_5V, FIVE_VOLTS, GROUND, PULL_DOWN
 from tiniscript.robots.wiring.headers import SIDES
 from tiniscript.robots.wiring.parts import BOARD_RAILS
 from tiniscript.robots.wiring.plan import LAMP_PIN, End, Part, Plan
@@ -171,9 +171,11 @@ class _Page:
         said = []
         if self._pull_downs():
             said.append(self.say("mind_floating", ends=self._pull_downs()))
+        is_5v = self.plan.chip.pin_volts == FIVE_VOLTS
+        board = {"rail": BOARD_5V, "volts": "5"} if is_5v else {"rail": BOARD_3V3, "volts": "3.3"}
         for part in self.plan.parts:
             for key in part.shape.notes:
-                sentence = self.say(key, part=part.title)
+                sentence = self.say(key, part=part.title, **board)
                 if sentence not in said:
                     said.append(sentence)
         return said
