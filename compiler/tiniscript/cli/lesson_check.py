@@ -229,7 +229,7 @@ def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: s
             again = text("lesson_again", language)
             print(again.format(number=number, file=file, seed=mark.seed))
     if options.plot is not None:
-        print(text("lesson_picture", language).format(file=inputs.shown(options.plot)))
+        print(text("picture", language).format(file=inputs.shown(options.plot)))
 
 
 def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> None:

@@ -250,7 +250,8 @@ def _announcement(name: str, number: int) -> Announcement:
         from tiniscript.virtual.announcement import Announcement, NameTaken
     except ImportError as missing:
         how = install_advice.command(install_advice.RADIO)
-        raise CommandError(2, "announce_needs", why=missing.name or "", how=how) from None
+        why = missing.name or ""
+        raise CommandError(2, "port_not_installed", port="--announce", why=why, how=how) from None
     try:
         return Announcement(name, number)
     except NameTaken:

@@ -115,7 +115,7 @@ def summary(
         cm=round(driving.driven_cm), seconds=f"{passed_ms / 1000:.1f}", n=driving.bumps
     )
     if options.plot is not None:
-        said += " " + text("drove_picture", language).format(file=shown(options.plot))
+        said += " " + text("picture", language).format(file=shown(options.plot))
     return said
 
 

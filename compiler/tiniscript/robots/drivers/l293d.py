@@ -32,7 +32,7 @@ class L293D(Bridge):
         "L293D",
         ("OUT (3), (6)", "OUT (11), (14)"),
         ("mind_l293d",),
-        power="power_volts_l293d",
+        power="power_volts_bridge",
         needs_5v=True,
     )
 

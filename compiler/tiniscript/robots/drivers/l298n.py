@@ -25,7 +25,7 @@ class L298N(Bridge):
         ("OUT1, OUT2", "OUT3, OUT4"),
         ("mind_l298n_enable", "mind_l298n_5v"),
         ("check_jumpers",),
-        "power_volts_l298n",
+        "power_volts_bridge",
     )
 
 

@@ -160,7 +160,8 @@ class _Page:
             self.say("power_common"),
             self.say("power_not_5v" if self.plan.has_radio else "power_not_3v3"),
         ]
-        said += [self.say(part.shape.power) for part in self.plan.parts if part.shape.power]
+        shapes = [part.shape for part in self.plan.parts if part.shape.power]
+        said += [self.say(shape.power, model=shape.model) for shape in shapes]
         return said
 
     def _pull_downs(self) -> str:
