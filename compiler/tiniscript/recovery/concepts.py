@@ -319,10 +319,9 @@ class Names:
             fitting = (name for name, fits in _MAY_BE.items() if fits(float(text)))
             return [text, "@num", *ANY, *fitting]
         if token.kind is not WORD:
-            found = [f"s{text}"]
-            found += [name for name, without in _BUT.items() if text not in without]
-            found += ["@close"] if text == ")" else ["@unit"] if text in "%°" else []
-            return found
+            fitting = (name for name, without in _BUT.items() if text not in without)
+            own = ["@close"] if text == ")" else ["@unit"] if text in "%°" else []
+            return [f"s{text}", *fitting, *own]
         return [text, "@word", *self._classes_of_word(text)]
 
     def _classes_of_word(self, text: str) -> list[str]:

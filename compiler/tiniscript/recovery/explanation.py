@@ -136,19 +136,14 @@ class _Teller:
 
     def is_sure(self, told: Explanation) -> bool:
         """Whether nothing that an explanation changes is a guess."""
-        places = [place for each in told.edits for place in each.span]
-        touched = {told.first, *told.opened, *map(self.change_at, places)}
-        if not self.found.has_sure_blocks:
-            changes = [self.changes[k] for k in touched]
-            texts_of = [text for each in changes for text in (each.text, self.lines[each.first])]
-            words = {word for each in texts_of for word in re.findall(r"\w+|[{}]", each.upper())}
-            if words & _OF_BLOCKS:
-                return False
-        return all(self.changes[k].is_sure for k in touched)
-
-    def change_at(self, place: int) -> int:
-        line = self.program.count("\n", 0, place)
-        return next((k for k, each in enumerate(self.changes) if each.last >= line), 0)
+        places = (place for each in told.edits for place in each.span)
+        lines = {self.program.count("\n", 0, place) for place in places}
+        touched = [each for each in self.changes if lines & {*range(each.first, each.last + 1)}]
+        touched += [self.changes[k] for k in (told.first, *told.opened)]
+        text = " ".join(f"{each.text} {self.lines[each.first]}" for each in touched)
+        has_blocks = bool({*re.findall(r"\w+|[{}]", text.upper())} & _OF_BLOCKS)
+        is_block_sure = self.found.has_sure_blocks or not has_blocks
+        return is_block_sure and all(each.is_sure for each in touched)
 
     def words(self, span: Span) -> Span:
         """Return a span with all of the words that it begins and ends in."""
@@ -411,13 +406,13 @@ def _slip(
         cut = next((k for k, it in enumerate(found) if it.text in ("=", "(")), len(found))
         is_set = cut < len(found) and found[cut].text == "="
         found = found[: cut - is_set] or found
+        if right and found and all(said_of(each.text, "filler") for each in found):
+            named = [each for each in old if meant_by(each.text) == right[0].text]
+            found = named[:1] or found  # `oi robô, anda`
     if code is codes.QUESTION_BEHIND:
         found = [each for each in (*old, *new) if each.text in BLOCK_ENDS][:1] or found
     is_all = code is codes.REPEATED or (code is codes.OTHER_SIGN and not right)
     is_found = bool(found) or code is codes.OTHER_ASSIGNMENT  # else a sign is missing
-    is_aside = bool(found) and all(said_of(each.text, "filler") for each in found)
-    if code is codes.OTHER_LANGUAGE and right and is_aside:  # `oi robô, anda`
-        found = [each for each in old if meant_by(each.text) == right[0].text][:1] or found
     was = _written(one if is_all or not is_found else found)
     was = was.strip("; ") if code in (codes.OTHER_LANGUAGE, codes.EXTRA_WORD) else was
     if is_note:
@@ -457,8 +452,7 @@ def _word(
             return ""
         return next((each.text for each in new if each.text in ("LOOP", "WHILE", "IF")), "")
     if code is codes.BAD_NAME:
-        is_accent = start < len(old) and not (old[start].source or "").isascii()
-        return old[start].text if is_accent and old[start].text in WORDS else ""
+        return old[start].text if start < len(old) and old[start].text in WORDS else ""
     if code in (codes.NO_VALUE, codes.NO_BRACKETS_HERE):
         part = old[start:]
     elif code is codes.MISSING_OPEN:

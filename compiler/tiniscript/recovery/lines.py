@@ -250,8 +250,8 @@ class _Search:
                 continue
             for concept, cost in meanings:
                 cost = NEAR if token.text[-1].isdigit() else cost
-                if _is_duration(tokens, k, concept):
-                    continue
+                if concept == "TIME" and k > 1 and around[k] == "(" and around[k - 1] in CALLED:
+                    continue  # for the first value of a call: `F(tiempo, 80)`
                 is_sure = cost < 2 and concept != "TIME"
                 line = [*tokens[:k], made(concept)._replace(space=token.space), *tokens[k + 1 :]]
                 yield reading.changed(line, cost, codes.OTHER_LANGUAGE, is_sure)
@@ -316,12 +316,6 @@ def _is_long(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
     least = LONG_S if concept in (*MOVES, "BEEP") else MILLISECONDS_FROM
     is_timed = concept in (*MOVES, "BEEP", "W")
     return is_timed and bool(numbers) and float(numbers[0].text) >= least
-
-
-def _is_duration(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
-    """Whether a word for the time stands for the first value of a call: `F(tiempo, 80)`."""
-    before = [each.text for each in tokens[max(0, k - 2) : k]]
-    return concept == "TIME" and len(before) > 1 and before[0] in CALLED and before[1] == "("
 
 
 def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:

@@ -127,9 +127,8 @@ class Recovery:
                     self.read_line(line)
 
     def read_signs(self) -> None:
-        """Make the rewrites of signs, in the lines that have them."""
+        """Make the rewrites of signs, in the lines that have them, but none that loses a DEF."""
         names = Names([lexemes(each.body) for each in self.lines], self.kit)
-        defs = names.defs
         for line in self.lines:
             body = line.body.translate(_QUOTES)
             if body == line.body and is_right(lexemes(body), names):
@@ -137,8 +136,9 @@ class Recovery:
             for row in rewrites.of_signs():
                 for _ in row.pattern.findall(body):  # a step each, which is told at its place
                     new = row.pattern.sub(row.becomes, body, count=1)
-                    if new != body and not (defs and defs & _words(body) - _words(new)):
-                        line.steps.append(Step(row.code, lexemes(body), lexemes(new)))
+                    before, after = lexemes(body), lexemes(new)
+                    if new != body and not names.defs & ({*texts(before)} - {*texts(after)}):
+                        line.steps.append(Step(row.code, before, after))
                         line.is_sure = line.is_sure and not row.is_offered
                         body = new
             line.body, note = without_note(body)
@@ -255,7 +255,8 @@ class Recovery:
             yield [*cheapest[:k], rival, *cheapest[k + 1 :]], True
         sure = [each if each.is_sure else _UNREAD for each in cheapest]
         yield sure, False
-        alone = [each if _is_alone(each) else _UNREAD for each in sure]
+        has_blocks = [any(it.kind != "do" for it in each.items or ()) for each in sure]
+        alone = [_UNREAD if has else each for each, has in zip(sure, has_blocks, strict=True)]
         if alone != sure:
             yield alone, False
 
@@ -282,11 +283,6 @@ class Recovery:
         return found
 
 
-def _is_alone(reading: Reading) -> bool:
-    """Whether a line has no part of a block."""
-    return all(each.kind == "do" for each in reading.items or ())
-
-
 def _is_key(old: Sequence[Lexeme], new: Sequence[Lexeme]) -> bool:
     """Whether a digit may be meant for the bracket that is missing behind it: `DISTANCE < 209`."""
     written = texts(old)
@@ -298,10 +294,6 @@ def _is_key(old: Sequence[Lexeme], new: Sequence[Lexeme]) -> bool:
 
 def _ends(text: str) -> int:
     return sum(each.text in ENDED for each in lexemes(text))
-
-
-def _words(text: str) -> set[str]:
-    return {*texts(lexemes(text))}
 
 
 def _kept(reading: Reading) -> int:
