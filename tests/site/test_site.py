@@ -100,7 +100,11 @@ def clone(tmp_path: Path) -> Path:
     return tmp_path / "clone"
 
 
-def test_a_link_that_leads_nowhere_ends_the_build(clone: Path, tmp_path: Path) -> None:
+def test_a_link_that_leads_nowhere_ends_the_build(
+    clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few = [each for each in documents(ROOT) if each.name in ("index", "link", "store")]
+    monkeypatch.setattr(site, "documents", lambda root: few)
     store = clone / "docs" / "store.md"
     text = "# A title\n"
     for path in clone.rglob("*.md"):

@@ -115,8 +115,8 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
         assert page.locator("#stop").is_visible()
         if screen not in ("teacher", "programs"):  # one is scrolled, one in front of all
             for end in (0,) if size in SCREENS else (0, 10_000):
-                page.evaluate("(end) => scrollTo(0, end)", end)
-                found = page.evaluate(LOOK if size in SCREENS else SCROLLED)
+                look = LOOK if size in SCREENS else SCROLLED
+                found = page.evaluate(f"(end) => {{ scrollTo(0, end); return ({look})(); }}", end)
                 assert found == [], (screen, size, end)
         if size in SCREENS:
             assert page.evaluate(CUT) == [], (screen, size)

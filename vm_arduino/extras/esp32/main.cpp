@@ -116,8 +116,8 @@ void answer_step(RequestReader* request, Writer* answer) {
 }
 
 // W: so many milliseconds from a time on, so many turns each. Bytes arrive in the first, or one
-// in each (1); it ends early once the robot has sent something (2). Says what the robot sends, what it
-// does and when, its light, and after each of the milliseconds whether its motors are stopped.
+// in each (1); it ends early once the robot has sent something (2). Says what the robot sends, what
+// it does and when, its light, and after each of the milliseconds whether its motors are stopped.
 void answer_wait(RequestReader* request, Writer* answer) {
   const uint32_t first_ms = request->u32();
   const uint32_t many = request->u32();

@@ -160,8 +160,8 @@ void answer_step(RequestReader* request, Writer* answer) {
   answer->u8(table.is_latched);
 }
 
-// W: so many milliseconds from a time on, so many ticks each. Bytes arrive in the first of them, or one
-// in each (1); it ends early once the robot has sent something (2). Says what the robot sends, what it
+// W: so many milliseconds from a time on, so many ticks each. Bytes arrive in the first, or one in
+// each (1); it ends early once the robot has sent something (2). Says what the robot sends, what it
 // does and when, its light, and after each of the milliseconds whether it is latched.
 void answer_wait(RequestReader* request, Writer* answer) {
   const uint32_t first_ms = request->u32();
