@@ -19,7 +19,7 @@ def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
     name, _, value = told.partition("=")
     (found,) = advised(wrong, KIT)
     assert (found.diagnostic.code.number, found.diagnostic.values[name]) == (row.code, value)
-    assert {each for each, _ in row.values} <= {*found.diagnostic.values}
+    assert {*row.values} <= {*found.diagnostic.values}
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from functools import cache
 from itertools import islice
 from typing import NamedTuple
@@ -47,7 +48,7 @@ _BARE = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
 class Row(NamedTuple):
     pattern: rewrites.Pattern
     code: str
-    values: tuple[tuple[str, str], ...]
+    values: dict[str, str]
     example: tuple[str, str]
 
 
@@ -62,11 +63,10 @@ class Advice(NamedTuple):
 def rows() -> tuple[Row, ...]:
     found = []
     for pattern, code, values, example in rewrites.cells(advice_rows.ADVICE):
-        told = (each.partition("=") for each in values.split("; ") if each)
+        named = dict(each.split("=", 1) for each in values.split("; ") if each)
+        wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
         compiled = rewrites.compiled(pattern, advice_rows.PARTS)
-        wrong, _, right = example.rpartition(" => ")
-        named = tuple((name, text) for name, _, text in told)
-        found.append(Row(compiled, code, named, (wrong.replace("⏎", "\n"), right)))
+        found.append(Row(compiled, code, named, (wrong, right)))
     return tuple(found)
 
 
@@ -103,11 +103,11 @@ def advised(text: str, kit: Kit) -> list[Advice]:
 
 def _as_orders(line: str, is_right: bool) -> str | None:
     """Return a line of orders, "" for another one, None for one that begins a block."""
-    parts = [each for each in map(lexemes, line.split(";")) if each]
-    if parts and parts[-1][0].text in _BEGIN_BODY:
+    heads = [each[0].text for each in map(lexemes, line.split(";")) if each]
+    if heads and heads[-1] in _BEGIN_BODY:
         return None
-    is_block = any(each.text in (*_BEGIN_BODY, *ENDED) for part in parts for each in part)
-    return "" if is_block or not is_right else line.strip().rstrip(" ;")
+    is_right = is_right and not {*heads} & {*_BEGIN_BODY, *ENDED}
+    return line.strip().rstrip(" ;") if is_right else ""
 
 
 def _parts(body: str, start: int, around: Around) -> Iterator[Behind]:
@@ -146,15 +146,11 @@ def _told(part: Behind) -> Advice | None:
     line = rewrites.Encoded([made(";"), *part.row], part.names, part.labels())
     for k in line.tried(_places()):
         row = rows()[k]
-        match = next(line.matches(row.pattern), None)
-        if match is None:
-            continue
-        try:
-            found = _advice(row, _Gaps(part, line, match))
-        except _NoGap:
-            continue
-        is_aside = row.code in _ASIDE and bool(part.tokens) and _is_read_surely(part)
-        return None if is_aside else found
+        if match := next(line.matches(row.pattern), None):
+            with suppress(_NoGap):
+                found = _advice(row, _Gaps(part, line, match))
+                is_aside = row.code in _ASIDE and part.tokens and _is_read_surely(part)
+                return None if is_aside else found
     return None
 
 
@@ -169,7 +165,7 @@ def _is_read_surely(part: Behind) -> bool:
 def _advice(row: Row, gaps: _Gaps) -> Advice:
     part, named = gaps.part, row.pattern.of_labels.groupindex
     values = {"before": shortened(part.call), "words": shortened(part.words), "fix": ""}
-    values |= {name: template.format_map(gaps) for name, template in row.values}
+    values |= {name: template.format_map(gaps) for name, template in row.values.items()}
     if row.code == codes.IN_WORDS.number:
         values |= _worded(gaps, is_not="f" in named)
     place = part.place if values["fix"] else None
