@@ -91,12 +91,7 @@ class Table:
         self.talks = None
 
     def talk(self, milliseconds: int, flags: int = 0) -> None:
-        for k in range(milliseconds):
-            flag = flags if k == 0 else 0
-            if self.talks is None:
-                self.robot.step(flags=flag)
-            else:
-                self.robot.talk(self.talks, 1, flag)
+        self.robot.pass_time(self.talks, milliseconds, flags)
 
 
 def empty(table: Table) -> None:

@@ -149,6 +149,16 @@ class HostFirmware(Process):
             data = session.poll(self.now_ms)
             self._turn(session, data, end_ms - self.now_ms, flags)
 
+    def pass_time(self, session: Session | None, milliseconds: int, flags: int = 0) -> None:
+        """Let time pass, at whose beginning something happens, while a computer talks or none."""
+        if session is not None:
+            self.talk(session, min(1, milliseconds), flags)
+            self.talk(session, milliseconds - 1)
+        elif milliseconds > 0:
+            self.step(flags=flags)
+            if milliseconds > 1:
+                self.wait(milliseconds - 1)
+
     def _turn(self, session: Session, data: bytes, most_ms: int, flags: int = 0) -> None:
         """Let a millisecond pass, or more while neither has anything to say."""
         wakes_ms = session.wakes_at()

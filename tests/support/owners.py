@@ -112,15 +112,7 @@ class Owned:
         self.pass_time(session, 1, RELEASED)
 
     def pass_time(self, session: Session | None, milliseconds: int, flags: int = 0) -> None:
-        if milliseconds <= 0:
-            return
-        if session is not None:
-            self.robot.talk(session, 1, flags)
-            self.robot.talk(session, milliseconds - 1)
-            return
-        self.robot.step(flags=flags)
-        if milliseconds > 1:
-            self.robot.wait(milliseconds - 1)
+        self.robot.pass_time(session, milliseconds, flags)
 
     def claim(self, session: Session, which: int = 0) -> str:
         request = session.claim(which)
