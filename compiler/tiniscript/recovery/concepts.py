@@ -309,8 +309,7 @@ class Names:
         key = (token.kind, token.text, bool(is_unit))
         if key not in self._labels:
             classes = [*self._classes(token), *(["@unit"] if is_unit else [])]
-            labels = "|".join(dict.fromkeys(classes))
-            self._labels[key] = f"\x01|{labels}|\x02"
+            self._labels[key] = f"\x01|{'|'.join(dict.fromkeys(classes))}|\x02"
         return self._labels[key]
 
     def _classes(self, token: Lexeme) -> list[str]:

@@ -383,7 +383,10 @@ def _slip(
     is_note = code is codes.OTHER_NOTE
     old, new = (step.before, step.after) if step and not is_note else (before, after)
     if "WHEN" in texts(after):  # what the steps took for an IF
-        old, new = _with_when(old), _with_when(new)
+        old, new = (
+            [it._replace(text="WHEN") if it.text == "IF" else it for it in line]
+            for line in (old, new)
+        )
     start, found, right = _first_difference(old, new)
     if not right and code is codes.OTHER_LANGUAGE and start and old[start - 1].text != "|":
         found, right = [old[start - 1], *found], [old[start - 1]]
@@ -435,10 +438,6 @@ def _slip(
     takes = usage if needed > given else ""
     return {"found": was, "right": now, "before": kept, "word": word, "usage": usage, "fix": shown,
             "ends": "", "letter": letter, "takes": takes}  # fmt: skip
-
-
-def _with_when(tokens: Sequence[Lexeme]) -> list[Lexeme]:
-    return [each._replace(text="WHEN") if each.text == "IF" else each for each in tokens]
 
 
 def _word(

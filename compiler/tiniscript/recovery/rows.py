@@ -214,7 +214,7 @@ v=@name ⟨++¦- - $⟩ | $v = $v ⟨+¦-⟩ 1 | 1 | TS050 | applied | v = 0⏎v
 ^ c=@callw ( v=@name ⟨++¦+= e=@num⟩ r=@any* $ | $v = $v + ⟨1¦$e⟩ ; $c ( $v $r | 1 | TS050 | offered | X = 1⏎SHOW(X⟨++¦ += 2⟩) => X = 1⏎X = X + ⟨1¦2⟩;SHOW(X)
 v=@name ⟨+=¦-=¦*=⟩ e=@any+ | $v = $v ⟨+¦-¦*⟩ $e | 1 | TS050 | applied | X = 1⏎X ⟨+=¦-=¦*=⟩ 2 => X = 1⏎X = X ⟨+¦-¦*⟩ 2
 ^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
-^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
+^ ⟨v=@name , w=@name = e=@num ,¦v=@name = e=@num ,? w=@name =⟩ f=@num $ | $v = $e ; $w = $f | 1 | ⟨TS050¦TS013⟩ | applied | ⟨X, Y = 5, 6⏎F(X, Y)¦x = 5, y = 80⏎F(x, y)⟩ => ⟨X = 5;Y = 6⏎F(X, Y)¦X = 5;Y = 80⏎F(x, y)⟩
 ^ n=@newname = ⟨'{'¦b=@callw|LOOP r=@any+ $⟩ | DEF $n ; ⟨{¦$b $r⟩ | ⟨1¦2⟩ | TS051 | ⟨offered¦applied⟩ | BAILE = ⟨{ ¦⟩L(1,60)⟨; R(1,60) }¦⟩⏎BAILE => DEF BAILE;L(1, 60);⟨R(1, 60);¦⟩END_DEF⟨;¦⟩⏎BAILE
 ^ declare ⟨v=@newname ;? $¦declare? v=@name =⟩ | $v = ⟨0¦⟩ | 1 | TS044 | ⟨offered¦applied⟩ | var vel⟨¦ = 50⟩⏎F(2, vel) => vel = ⟨0¦50⟩⏎F(2, vel)
 ^ ⟨set|declare the? v=@word =|to|is?¦v=@newname is|equal|: to|equal? one?⟩ e=@num $ | $v = $e | ⟨1¦2⟩ | TS050 | applied | ⟨set x to 5¦velocidad es 60⏎F(2, velocidad)⟩ => ⟨x = 5¦velocidad = 60⏎F(2, velocidad)⟩
@@ -227,7 +227,6 @@ a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => 
 ^ ⟨add¦subtract⟩ n=@num|@val from|to the? v=@name $ | $v = $v ⟨+¦-⟩ $n | 1 | TS050 | offered | X = 40⏎⟨suma¦resta⟩ 5 a X⏎F(1, X) => X = 40⏎X = X ⟨+¦-⟩ 5⏎F(1, X)
 ^ ⟨multiply¦divide¦increase¦decrease⟩ the? v=@name by|over n=@num|@val $ | $v = $v ⟨*¦/¦+¦-⟩ $n | 1 | TS050 | offered | X = 40⏎⟨multiply¦divide¦increase¦decrease⟩ X by 2 => X = 40⏎X = X ⟨*¦/¦+¦-⟩ 2
 ^ keep the? e=@val|@num to v=@word $ | $v = $e | 1.5 | TS050 | applied | guardar 80 en potencia⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
-^ a=@name = b=@num ,? c=@name = d=@num $ | $a = $b ; $c = $d | 1 | TS013 | applied | x = 5, y = 80⏎F(x, y) => X = 5;Y = 80⏎F(x, y)
 ^ v=@name = ( a=@num $ | $v = ( $a ) | 1 | TS016 | applied | vel = (50⏎F(1, vel) => vel =(50)⏎F(1, vel)
 a=@word b=@word|@num | @known:a:b | 1 | TS056 | first | MI_BANDERA = TRUE⏎IF(mi bandera)⏎S⏎ENDIF => MI_BANDERA = TRUE⏎IF(MI_BANDERA)⏎S⏎ENDIF
 # calls and their brackets
@@ -252,8 +251,7 @@ SHOW ( a=@val ⟨,¦,¦&|+|, " " &|+|,⟩ b=@val ⟨¦, c=@val¦⟩ ) | SHOW ( $
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
 c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|UNTIL|@start¦⟩ | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80⟨¦) UNTIL(DISTANCE<10⟩ => F(2,80)⟨¦ UNTIL(DISTANCE<10)⟩
 ⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
-a=F|B|L|R ( u=CM|DEG (? n=@num )? , p=@num ) | $a ( $n $u , $p ) | 1 | TS076 | offered | B(CM(20), 60) => B(20 CM, 60)
-a=F|B|L|R ( p=@power , n=@num u=CM|DEG ) | $a ( $n $u , $p ) | 1 | TS076 | offered | R(60, 90 DEG) => R(90 DEG, 60)
+a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦p=@power , n=@num u=CM|DEG⟩ ) | $a ( $n $u , $p ) | 1 | TS076 | offered | ⟨B(CM(20), 60)¦R(60, 90 DEG)⟩ => ⟨B(20 CM, 60)¦R(90 DEG, 60)⟩
 ⟨^ c=F|B|L|R two ,? n=@num $¦c=F|B|L|R ( two ,⟩ | $c ( 2 , ⟨$n )¦⟩ | ⟨.5¦1⟩ | ⟨TS015¦TS102⟩ | offered | ⟨f to 80¦F(too, 80)⟩ => ⟨f¦F⟩(2, 80)
 BEEP ( a=<note> , b=<note> ⟨¦, c=<note>⟩ ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $b ) ⟨¦; BEEP ( 1 , $c )⟩ | 1 | TS020 | offered | BEEP(DO, RE⟨¦, MI⟩) => BEEP(1, 262);BEEP(1, 294)⟨¦;BEEP(1, 330)⟩
 @newname . c=F|B|L|R|W|BEEP ( | $c ( | 1 | TS102 | applied | bot.F(2, 80) => F(2, 80)
@@ -380,7 +378,7 @@ h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
 ^ ⟨please|first ,?¦@newname :⟩ b=@start | $b | ⟨1¦2.5⟩ | ⟨TS044¦TS054⟩ | applied | ⟨please F(2, 80)¦square: F(1,50); R(1,50)⟩ => ⟨F(2, 80)¦F(1,50); R(1,50)⟩
-^ = <body> $ | $b $r | 1 | TS054 | applied | =F(2,80)+R(1,60) => F(2, 80);R(1, 60)
+^ ⟨=¦(¦[⟩ <body> ⟨¦)¦]⟩ $ | $b $r | 1 | ⟨TS054¦TS080¦TS080⟩ | applied | ⟨=F(2,80)+R(1,60)¦(F(2,80), R(1,60))¦[F(2,80), R(1,60)]⟩ => F(2, 80);R(1, 60)
 a=@close please|CM|@in_cm|@in_secs+ $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
 ^ a=⟨F|B¦L|R⟩ ( n=@num , p=@num ) ⟨CM|@in_cm¦DEG|@in_deg|°⟩ $ | $a ( $n ⟨CM¦DEG⟩ , $p ) | .5 | TS076 | offered | ⟨F(20, 60) CM¦R(90, 60) DEG⟩ => ⟨F(20 CM, 60)¦R(90 DEG, 60)⟩
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
@@ -389,7 +387,6 @@ W n=@num seconds? then+ b=@start | W ( $n ) ; $b | 1 | TS015 | applied | F(2, 80
 a=@close ⟨+|&|AND|->|'|'¦,⟩ $ | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | applied | F(2, 80)⟨ +¦,⟩⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 ; ( b=@start r=@all* e=@close ) ; | ; $b $r $e ; | 1 | TS080 | applied | LOOP(4);(F(1, 60);R(1, 50));END_LOOP => LOOP(4);F(1, 60);R(1, 50);END_LOOP
 ; first+ ,? b=@start | ; $b | 1 | TS044 | applied | F(2, 80); y despues B(1, 80) => F(2, 80);B(1, 80)
-^ ⟨(¦[⟩ <body> ⟨)¦]⟩ $ | $b $r | 1 | TS080 | applied | ⟨(¦[⟩F(2,80), R(1,60)⟨)¦]⟩ => F(2, 80);R(1, 60)
 # words of other languages around a program
 ⟨W8¦brake¦eff⟩ | ⟨W¦BREAK¦F⟩ | 1 | TS102 | ⟨offered¦offered¦first offered⟩ | ⟨W8(1)¦LOOP(3)⏎S⏎BRAKE⏎END_LOOP¦efe dos coma ochenta⟩ => ⟨W(1)¦LOOP(3)⏎S⏎BREAK⏎END_LOOP¦F(2, 80)⟩
 ⟨read ( v=@val )¦^ read the? v=@val $⟩ | $v | 1 | TS102 | applied | ⟨X = leer(DISTANCE)¦leer DISTANCE⟩ => ⟨X =DISTANCE¦DISTANCE⟩
