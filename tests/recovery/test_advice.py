@@ -107,6 +107,7 @@ def test_a_number_of_another_unit_is_converted() -> None:
         ("se nao tiver parede pra frente 2 segundos",
          {"fix": "IF(DISTANCE > 10);F(2, 80);ENDIF"}),  # where to go, and not where the wall is
         ("L(1,60) (45)", {"extra": "(45)"}),  # rather degrees than how often
+        ("avanza hasta menos de 10", {"fix": "F(FOREVER, 80) UNTIL(DISTANCE < 10)"}),
     ],
 )  # fmt: skip
 def test_values_of_a_row_are_filled(wrong: str, values: dict[str, str]) -> None:

@@ -37,10 +37,10 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
         return {"question": "", "joint": joint}
     texts, number = _measured(row, names)
     said = _said(texts, names)
-    if [number] == texts != [row[-1].text]:
-        said.add("ahead")  # `20 cm`
     numbers = [text for text in texts if text[0].isdigit() or text[0] == "."]
     own = [text for text in texts if names.is_name(text) and text != number]
+    if [number] == texts != [row[-1].text] or (number and not own and said == {"little"}):
+        said.add("ahead")  # `20 cm`, `less than 10`
     is_alone = len(texts) == 1 and not (
         said & {"light", "ahead"} and not said_of(texts[0], "sensor")
     )
