@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import pytest
 
@@ -71,6 +71,28 @@ def holding(text: str = "SB|F(0.2, 80)") -> tuple[HostFirmware, Session]:
     send(robot, session, text)
     stored(robot, session)
     return robot, session
+
+
+def test_a_computer_hears_in_the_millisecond_in_which_the_robot_speaks(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """However many pass in one request."""
+    found = []
+    for step_ms in (1, 1000):
+        robot, session = switched_on(), computer()
+        heard: list[tuple[int, bytes]] = []
+        receive = session.receive
+
+        def listen(data: bytes, now_ms: int, heard: Any = heard, receive: Any = receive) -> None:
+            heard += [(now_ms, data)] if data else []
+            receive(data, now_ms)
+
+        monkeypatch.setattr(session, "receive", listen)
+        session.upload(image_of("SI|F(0.1, 80);SHOW(1)"), saves=False)
+        for _ in range(0, 1000, step_ms):
+            robot.talk(session, step_ms)
+        found.append(heard)
+    assert found[0] == found[1]
 
 
 def driving(milliseconds: int) -> tuple[HostFirmware, Session]:
