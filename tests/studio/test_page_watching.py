@@ -25,6 +25,7 @@ NOTING = """() => {
   window.AudioContext = class {
     destination = {};
     resume() {}
+    suspend() {}
     get currentTime() { return performance.now() / 1000; }
     createGain() {
       return {...node(), gain: {setValueAtTime() {}, linearRampToValueAtTime() {}}};
