@@ -195,7 +195,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
             return ""  # another order than the words behind it say
         if not body or any(each.is_side_free for each in (*body, *other)):
             continue
-        if word != "LOOP" and names.meant(texts[k]) in _SIDES:
+        if word != "LOOP" and tokens[k].source and names.meant(texts[k]) in _SIDES:
             return ""  # where the wall is, or where to go
         place = next((j for j in range(k, arm) if not said_of(texts[j], "filler")), k)
         if said_of(texts[place], "front") and place + 1 < arm:

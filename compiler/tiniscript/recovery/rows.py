@@ -118,7 +118,7 @@ SIGNS = r"""
 ⟨∞¦[，、]¦\\n⟩  |  `⟨FOREVER¦,¦;⟩`  |  TS010  |  applied  |  ⟨F(∞,50) UNTIL(DISTANCE<10)¦F(2、80)¦SI|F(2,80)\nR(1,60)⟩ => ⟨F(FOREVER,50) UNTIL(DISTANCE<10)¦F(2,80)¦SI|F(2,80);R(1,60)⟩
 [→➜⇒]|[–—]>  |  `;`  |  TS061  |  applied  |  →F(2, 80) => ;F(2, 80)
 </?[a-z]+/?>|^\s*(?:[$>] tsc\b.*|```\w*\s*)$  |  ``  |  TS072  |  applied  |  <b>F(2, 80)</b> => F(2, 80)
-^\s*tsc(?: run)? (?=S[IB]\|)  |  ``  |  TS044  |  applied  |  tsc SI|F(2, 80) => SI|F(2, 80)
+^\s*tsc(?: \w+)? (?:(["'])(S[IB]\|.*)\1$|(?=S[IB]\|))  |  `\2`  |  TS044  |  applied  |  tsc live "SI|F(2, 80)" => SI|F(2, 80)
 (?:^\s*\.|(?<=;)\s*[:.,])\s*(?=;|$)  |  ``  |  TS005  |  applied  |  F(2,80)⏎.⏎.⏎. => F(2,80)⏎⏎⏎
 ^\s*(?:(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z])|-(?=[A-Z]\w*\()|>+\s*|(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\())  |  ``  |  TS054  |  applied  |  ⟨*¦>¦✅⟩ F(2,80) => F(2,80)
 ⟨⬆¦⬇¦⬅¦➡⟩\ufe0f?  |  `⟨F¦B¦L¦R⟩ `  |  TS005  |  offered  |  ⟨⬆️¦⬇️¦⬅️¦➡️⟩ 2 => ⟨F¦B¦L¦R⟩(2, 80)
@@ -179,6 +179,7 @@ a=@num v=@val | @by:a:v | 1 | TS048 | offered | VEL = 30⏎F(2, 2VEL) => VEL = 3
 a=@num|@val ⟨modulo¦plus⟩ b=@num|@val | $a ⟨%¦+⟩ $b | 1 | TS010 | first | X = 7⏎X = X ⟨MOD¦mas⟩ 2 => X = 7⏎X = X ⟨%¦+⟩ 2
 no l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
 l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
+( s=<|<= n=@num ) | ( DISTANCE $s $n ) | 1 | TS018 | offered | IF(< 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 l=@val = a=@num or b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ c=@cond+ ? <body> : d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
