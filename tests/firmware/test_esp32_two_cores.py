@@ -37,7 +37,6 @@ def program(sources: Path = SOURCES) -> Path:
     headers = [path.read_bytes() for path in sorted((sources / "src").rglob("*.h"))]
     headers += [path.read_bytes() for path in sorted(STAND_INS.rglob("*.h"))]
     objects = []
-    BUILDS.mkdir(mode=0o700, exist_ok=True)
     for path in code:
         texts = [*headers, path.name.encode(), path.read_bytes()]
         objects.append(str(made(CLANG, BUILDS, ".o", FLAGS, texts, ["-c", str(path)])))

@@ -160,7 +160,6 @@ def built(header: str, chip: str, major: int) -> Path:
 
     Only what knows the robot's pins is compiled for each robot.
     """
-    BUILDS.mkdir(mode=0o700, exist_ok=True)
     own = BUILDS / f"own-{sha256(header.encode()).hexdigest()[:16]}.h"
     if not own.exists():  # another worker may look for it, too
         draft = own.with_suffix(f".{os.getpid()}")

@@ -36,8 +36,21 @@ FLAGS = ("-std=c++11", "-O1", "-g1", "-fsanitize=address,undefined", "-fno-sanit
 
 FOLDER = re.compile(rb'^(# \d+ ")[^"\n]*/', re.M)  # of a line that says where the next are from
 # Whose builds are used: root's tests in CI compile nothing that the user's have compiled.
-USER = os.environ.get("TINISCRIPT_BUILDS_OF") or (os.getuid() if hasattr(os, "getuid") else "")
-BUILDS = Path(tempfile.gettempdir()) / f"tiniscript-host-{USER}"
+USER = os.getuid() if hasattr(os, "getuid") else None
+if USER == 0:
+    USER = int(os.environ.get("TINISCRIPT_BUILDS_OF", 0))
+
+
+def of_builds(folder: Path) -> Path:
+    """Return a folder, which is made. Raises PermissionError if somebody else can write into it."""
+    folder.mkdir(mode=0o700, exist_ok=True)
+    found = folder.lstat()
+    if USER is not None and (found.st_uid not in (USER, os.getuid()) or found.st_mode & 0o022):
+        raise PermissionError(f"{folder}: somebody else may have put programs into it")
+    return folder
+
+
+BUILDS = of_builds(Path(tempfile.gettempdir()) / f"tiniscript-host-{USER}")
 
 RULE_NAMES = {number: name for name, (number, _) in RULES.items()}
 REFUSAL_NAMES = {number: name for name, (number, _) in REFUSALS.items()}

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
+from tests.machines import host
 from tests.machines.host import SOURCES, WARNINGS, missing
 from tests.support.rows import each_row
 
@@ -92,3 +95,23 @@ needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a
 def test_compiles_alone_without_a_warning(path: Path) -> None:
     done = compiled("g++", path, "-x", "c++")
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there a folder has no such owner")
+def test_no_program_is_run_that_another_user_can_have_built(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The folder of builds is where all may make folders, and its name is no secret."""
+    folder = tmp_path / "builds"
+    assert host.of_builds(folder).stat().st_mode & 0o777 == 0o700
+    folder.chmod(0o770)
+    with pytest.raises(PermissionError):
+        host.of_builds(folder)
+    folder.chmod(0o700)
+    link = tmp_path / "link"
+    link.symlink_to(folder)
+    monkeypatch.setattr(host, "USER", 12345)
+    monkeypatch.setattr(os, "getuid", lambda: 12345)
+    for other in (folder, link):
+        with pytest.raises(PermissionError):
+            host.of_builds(other)
