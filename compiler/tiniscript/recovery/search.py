@@ -120,10 +120,10 @@ class Recovery:
             yield line.reading.items is not None and line.reading.is_sure
         rows_of = ([lexemes(each.body), each.reading.tokens] for each in self.lines)
         told, names = Names([*chain(*rows_of)], self.kit), self.names
-        if told.variables | told.defs > names.variables | names.defs:
+        if new := (told.variables | told.defs) - names.variables - names.defs:
             self.names = told
             for line in self.lines:
-                if line.reading.items is None:
+                if line.reading.items is None and new & {*texts(lexemes(line.body))}:
                     self.read_line(line)
 
     def read_signs(self) -> None:
