@@ -96,12 +96,10 @@ def offers(text: str, found: list[Diagnostic], check: Check) -> list[list[Edit]]
     for diagnostic in found:
         edits = edits_of(diagnostic) or [] if diagnostic.is_mistake and tried < OFFERS else []
         lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
-        if edits and not any("~" in line for line in lines):  # with a checksum it is copied again
-            tried += 1
-            is_chosen = is_better(check(applied(text, edits)), found, edits)
-            offered.append(edits if is_chosen else [])
-        else:
-            offered.append([])
+        is_tried = bool(edits) and not any("~" in line for line in lines)  # else it is copied again
+        tried += is_tried
+        is_chosen = is_tried and is_better(check(applied(text, edits)), found, edits)
+        offered.append(edits if is_chosen else [])
     return offered
 
 

@@ -74,16 +74,25 @@ class Explanation:
 
 def explained(program: str, found: Candidate) -> list[Explanation]:
     """Return what is wrong with each line that a candidate changes, in the order of the text."""
-    return _Teller(program, found).told()
+    teller = _Teller(program, found)
+    for k, change in enumerate(found.changes):
+        teller.tell(k, change)
+    for each in teller.out:
+        teller.complete(each)
+    return teller.out
 
 
 @dataclass
 class _Block:
-    """A block that is open: what is told of its beginning, which is in change `first`."""
+    """A block that is open: what is told of its beginning, which is in change `first`.
+
+    `inside` is the first word of each line of its last arm.
+    """
 
     word: str
     first: int
     told: Explanation | None = None
+    inside: list[str] = field(default_factory=list)
 
 
 def _parts(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
@@ -116,13 +125,6 @@ class _Teller:
         self.starts = [0, *accumulate(len(line) + 1 for line in self.lines)]
         self.out: list[Explanation] = []
         self.open: list[_Block] = []
-
-    def told(self) -> list[Explanation]:
-        for k, change in enumerate(self.changes):
-            self.tell(k, change)
-        for each in self.out:
-            self.complete(each)
-        return self.out
 
     def complete(self, told: Explanation) -> None:
         if told.code is not codes.NEVER_ENDS:
@@ -225,6 +227,9 @@ class _Teller:
     def walk(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
         """Open and close blocks; return the first one that began in an earlier change."""
         closed = None
+        if self.open and tokens:
+            inside, head = self.open[-1].inside, tokens[0].text
+            inside[:] = [] if head in _ARMS else [*inside, head]
         for token in tokens:
             if token.text in BLOCK_ENDS:
                 self.open.append(_Block(token.text, k))
@@ -291,33 +296,24 @@ class _Teller:
         place = Span(self.starts[self.changes[first].first], behind)
         values = {"word": word, "right": end, "line": str(change.last + 1), "last": behind_this,
                   "whole": self.whole(first, last)}  # fmt: skip
-        if self.may_end_earlier(word, first, last[0]):
+        if block and self.may_end_earlier(block, last[0]):
             values |= {"several": behind_this, "last": "", "whole": ""}
         told = Explanation(codes.NEVER_ENDS, place, place, values, [edit], first, (first, 1))
         self.out.append(told)
 
-    def may_end_earlier(self, word: str, first: int, last: int) -> bool:
+    def may_end_earlier(self, block: _Block, last: int) -> bool:
         """Whether nothing says that the last instruction of a block is in it.
 
         A sign or a stop behind others may as well come when a LOOP or a DEF is over.
         """
-        inside: list[str] = []  # the first word of each instruction of the last arm
-        depth = 0
-        header, *body = (self.changes[k].text.split("\n")[0] for k in range(first, last + 1))
-        for line in body:
-            head = next(iter(texts(tokens_of(line))), "")
-            depth -= head in ENDED
-            if depth == 0 and head in _ARMS:
-                inside.clear()
-            elif depth == 0 and head and head not in ENDED:
-                inside.append(head)
-            depth += head in BLOCK_ENDS
-        is_deeper = bool(body) and body[-1][:1].isspace() > header[:1].isspace()
+        inside = block.inside
+        header, end = (self.changes[k].text.split("\n")[0] for k in (block.first, last))
+        is_deeper = end[:1].isspace() > header[:1].isspace()
         is_endless = {*texts(lexemes(header))} & {"FOREVER", "TRUE"}
         if len(inside) < 2 or self.found.has_sure_blocks or is_deeper or is_endless:
             return False
         is_sign = inside[-1] in _SIGNS and inside[-1] not in inside[:-1]
-        return is_sign or word not in ("LOOP", "DEF")
+        return is_sign or block.word not in ("LOOP", "DEF")
 
 
 def trimmed(start: int, old: str, new: str) -> Edit:

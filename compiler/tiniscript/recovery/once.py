@@ -10,18 +10,17 @@ from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 
 MANY = 6  # calls that an example has
 _OF_CASES = (codes.BRACES, codes.BREAK_OUTSIDE)  # which go with them
-# What is said once for the same values, these or all of them.
-_ONCE: dict[Code, tuple[str, ...] | None] = {
-    codes.BRACES: (),
-    codes.CASES: (),
+# What is said once for the same values, these or all of them: with the lines of the others, and
+# their repairs, or without.
+_WITH_LINES: dict[Code, tuple[str, ...] | None] = {
     codes.EMPTY_BRACKETS: ("word",),
     **dict.fromkeys((codes.BAD_NAME, codes.NAME_WITH_SPACE), ("found", "right")),
-    **dict.fromkeys((codes.RESERVED, codes.SAME_AGAIN, codes.DOTS, codes.UNTAUGHT,
-                     codes.CALLS_ITSELF, codes.UNKNOWN_NAME)),
-}  # fmt: skip
-# One message has the lines of the others, and their repairs.
-_WITH_LINES = (codes.RESERVED, codes.SAME_AGAIN, codes.BAD_NAME, codes.EMPTY_BRACKETS,
-               codes.NAME_WITH_SPACE)  # fmt: skip
+    **dict.fromkeys((codes.RESERVED, codes.SAME_AGAIN)),
+}
+_ONCE = _WITH_LINES | {
+    **dict.fromkeys((codes.BRACES, codes.CASES), ()),
+    **dict.fromkeys((codes.DOTS, codes.UNTAUGHT, codes.CALLS_ITSELF, codes.UNKNOWN_NAME)),
+}
 
 
 def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:

@@ -234,7 +234,12 @@ class _Reader:
             self.is_sure = self.is_sure and not is_in_place  # it may be a unit: `F(8 in, 60)`
             self.cost += 0.1
         else:
-            return k + 1 if self._take_value(word) else None
+            for concept, cost in names.meanings(word):
+                self.is_sure = self.is_sure and cost < 2 and not word[-1].isdigit()
+                if self.command and (concept in names.sensors or concept in ("TRUE", "FALSE")):
+                    self.values.append(_Value(concept, None))
+                    return k + 1
+            return None
         return k + 1
 
     def _is_mark(self, word: str, marked: tuple[str, ...]) -> bool:
@@ -267,14 +272,6 @@ class _Reader:
             return False
         self.cost += cost * 0.3
         return True
-
-    def _take_value(self, word: str) -> bool:
-        for concept, cost in self.names.meanings(word):
-            self.is_sure = self.is_sure and cost < 2 and not word[-1].isdigit()
-            if self.command and (concept in self.names.sensors or concept in ("TRUE", "FALSE")):
-                self.values.append(_Value(concept, None))
-                return True
-        return False
 
     def call(self, has_until: bool, is_order: bool) -> Filled | None:
         assert self.command is not None

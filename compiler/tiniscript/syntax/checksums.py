@@ -12,8 +12,6 @@ from tiniscript.base.source import SPACES, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 
-_BYTE_ORDER_MARK = "\ufeff"
-
 # a line, and the checksum at its first ~
 _CHECKED = re.compile(
     rf"(?:\A|(?<=[\r\n]))([^~\r\n]*)~([0-9A-Fa-f]{{8}})(?=[{SPACES}]*(?:[\r\n]|\Z))"
@@ -22,7 +20,7 @@ _CHECKED = re.compile(
 
 def checksum_of(line: str) -> int:
     """Return the CRC-32 (zlib) of a line, byte order marks at its beginning left out."""
-    return crc32(line.lstrip(_BYTE_ORDER_MARK).encode("utf-8", "surrogatepass"))
+    return crc32(line.lstrip("\ufeff").encode("utf-8", "surrogatepass"))
 
 
 def with_checksum(line: str) -> str:

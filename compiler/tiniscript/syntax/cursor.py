@@ -55,13 +55,11 @@ class Cursor:
 
     def take_inner(self, kind: str) -> bool:
         """Go past the next token that is no line end if it is a `kind`; return whether it is."""
-        tokens, k = self.tokens, self.i
-        while tokens[k].kind is NEWLINE:
-            k += 1
-        if tokens[k].kind != kind:
-            return False
-        self.i = k + 1
-        return True
+        is_next = self.inner().kind == kind
+        if is_next:
+            self.to_inner()
+            self.i += 1
+        return is_next
 
     def before(self, k: int) -> int:
         """Return the place of the last token before `k` that is no line end."""

@@ -15,7 +15,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.syntax.ast import Argument, Part
 from tiniscript.syntax.cursor import AFTER_VALUE, Cursor
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, WORD, Token
-from tiniscript.syntax.operators import AND, BINARY, COMPARISON, MINUS, NOT, OPEN, Operator, Postfix
+from tiniscript.syntax.operators import AND, BINARY, COMPARISON, MINUS, NOT, OPEN, Postfix
 from tiniscript.syntax.reporter import Failed, Reporter
 
 
@@ -175,7 +175,11 @@ class ExpressionParser:
                 read.brackets -= 1
                 read.waiting.pop()
                 if bracket.name != "(":
-                    self.end_call(bracket, read)
+                    function, count = WORDS[bracket.name], bracket.arguments + 1
+                    span = cursor.span_from(bracket.token)
+                    if count != len(function.arguments):
+                        self.wrong_count(function, count, span)
+                    read.parts.append(Part(bracket.name, 0, *span))
                 continue
             if token.kind == "," and bracket.name != "(":
                 bracket.arguments += 1
@@ -192,13 +196,6 @@ class ExpressionParser:
         if precedence <= AND:  # AND and OR: the left side may decide
             read.parts.append(Part(name + "_LEFT", 0, token.start, token.end))
         read.wait(precedence, name, token, self.cursor.i)
-
-    def end_call(self, call: Operator, read: Postfix) -> None:
-        span = self.cursor.span_from(call.token)
-        function = WORDS[call.name]
-        if call.arguments + 1 != len(function.arguments):
-            self.wrong_count(function, call.arguments + 1, span)
-        read.parts.append(Part(call.name, 0, *span))
 
     # -- what is wrong ------------------------------------------------------------------------
 

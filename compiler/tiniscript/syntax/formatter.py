@@ -21,6 +21,7 @@ _ARMS = frozenset(("ELSE", "ELSEIF"))
 _OPENS = frozenset(BLOCK_ENDS) | _ARMS  # what follows stands further right
 _CLOSES = frozenset(BLOCK_ENDS.values()) | _ARMS  # stands further left than what is before
 _WORD_OPERATORS = frozenset(("AND", "OR", "NOT"))
+_BEFORE_VALUE = _WORD_OPERATORS | SIGNS | {"(", ","}
 
 
 def formatted(source: Source) -> str:
@@ -200,7 +201,7 @@ def instruction_text(tokens: list[Token]) -> str:
             parts.append(" ")
         is_decimal = token.kind is NUMBER and token.text.startswith(".")
         parts.append("0" + token.text if is_decimal else token.text)
-        is_sign = token.kind == "-" and not _ends_value(before)
+        is_sign = token.kind == "-" and before.text in _BEFORE_VALUE
         before = token
     return "".join(parts)
 
@@ -212,10 +213,3 @@ def _space_between(before: Token, is_sign: bool, token: Token) -> bool:
     if token.kind == "(":
         return before.kind is not WORD or before.text in _WORD_OPERATORS
     return True
-
-
-def _ends_value(token: Token) -> bool:
-    """Whether a minus right after this token takes away from a value."""
-    if token.kind is WORD:
-        return token.text not in _WORD_OPERATORS
-    return token.kind not in SIGNS and token.kind not in ("(", ",")
