@@ -1,7 +1,7 @@
 """Blocks: which end belongs to which header, over all lines of a program.
 
-Names bare ends, puts words for braces, and closes what a line or its indentation closes. Knows the
-items of each line, not how they were read.
+Names bare ends, puts words for braces, and closes what a line or its indentation closes. Takes each
+line as it is read.
 """
 
 from __future__ import annotations
@@ -10,29 +10,26 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS
+from tiniscript.diagnostics import codes
 from tiniscript.recovery.concepts import ENDED, Lexeme, made
+from tiniscript.recovery.lines import ANY_END, Reading
 from tiniscript.recovery.rewrites import negated
 from tiniscript.syntax.outline import Item
 
-ANY_END = "?"  # the word of an end that names no block: END, FIN
-BRACES = ("{", "}")
 LONGEST = 200  # items behind an ELSE whose ends are counted
 
 
 class Line(NamedTuple):
-    """A line whose items are known; `items` is None where it cannot be read.
-
-    `is_rewritten`: by a row; `has_body`: by one that begins a body. `is_do`: it begins a block
-    whose question comes at its end; `is_when`: it begins with a word for both IF and WHEN.
-    """
+    """A line as it is read. `is_when`: it begins with a word for both IF and WHEN."""
 
     indent: int
-    tokens: list[Lexeme]
-    items: Sequence[Item] | None
-    is_rewritten: bool
-    has_body: bool
-    is_do: bool
     is_when: bool
+    reading: Reading
+
+    @property
+    def is_do(self) -> bool:
+        """Whether it begins a block whose question comes at its end."""
+        return any(step.code is codes.ASKED_BEHIND for step in self.reading.steps)
 
 
 class Edit(NamedTuple):
@@ -55,11 +52,11 @@ class _Block:
         self.indent = line.indent
         self.body: int | None = None  # its lines' indentation, 0 where that is not deeper
         self.has_brace = not self.word
-        self.is_begun = is_header and line.has_body  # a row says that its body begins
+        self.is_begun = is_header and line.reading.is_new_line  # a row says that its body begins
         self.is_do = is_header and line.is_do
-        self.is_translated = line.tokens[item.start].source is None
-        self.name = line.tokens[item.start + 1].text if self.word == "DEF" else ""
-        head = [each.text for each in line.tokens[item.start + 1 : item.end]]
+        self.is_translated = line.reading.tokens[item.start].source is None
+        self.name = line.reading.tokens[item.start + 1].text if self.word == "DEF" else ""
+        head = [each.text for each in line.reading.tokens[item.start + 1 : item.end]]
         self.is_endless = head in (["(", "FOREVER", ")"], ["(", "TRUE", ")"])
         self.last: int | None = None  # its last line that is ever done
 
@@ -76,7 +73,7 @@ class Matching:
         self.flat = [
             (k, item)
             for k, line in enumerate(lines)
-            for item in (_UNREAD if line.items is None else line.items)
+            for item in (_UNREAD if line.reading.items is None else line.reading.items)
         ]
         self.flat.append((len(lines), Item("", "", 0, 0)))
         self.open: list[_Block] = []
@@ -168,7 +165,7 @@ class Matching:
         item = self.item
         if item.word != "WHILE" or not self.open or not self.open[-1].is_do:
             return False
-        question = self.line.tokens[item.start + 2 : item.end - 1]
+        question = self.line.reading.tokens[item.start + 2 : item.end - 1]
         new = [made("IF"), made("("), *negated(question), made(")")]
         new += map(made, (";", "BREAK", ";", BLOCK_ENDS["IF"], ";", BLOCK_ENDS["LOOP"]))
         self.edit_tokens(item.start, item.end - item.start, new)
@@ -177,7 +174,7 @@ class Matching:
 
     def brace(self) -> bool:
         if not self.open:
-            is_first = self.item.start == 0 or self.line.tokens[0].text == "START"
+            is_first = self.item.start == 0 or self.line.reading.tokens[0].text == "START"
             self.is_sure = self.is_sure and is_first
             self.edit(1)
             self.open.append(_Block(self.item, self.k, self.line))
@@ -215,18 +212,18 @@ class Matching:
         ends = sum(it.kind == "end" and it.word in (ANY_END, "ENDIF", "END_IF") for it in rest)
         is_early = ends - sum(it.kind == "open" and it.word == "IF" for it in rest) > outer
         if is_early:
-            is_parted = item.start > 0 and self.line.tokens[item.start - 1].text == ";"
+            is_parted = item.start > 0 and self.line.reading.tokens[item.start - 1].text == ";"
             self.edit_tokens(item.start - is_parted, 1 + is_parted, [])
         return is_early
 
     def bare_end(self) -> bool:
         """`FIN` ends the innermost block; one too many is dropped."""
         if not self.open:
-            if any(line.items is None for line in self.lines):
+            if any(line.reading.items is None for line in self.lines):
                 return False
-            before = self.line.tokens[self.item.start - 1]
+            before = self.line.reading.tokens[self.item.start - 1]
             is_behind = not self.after.kind and before.text == ";" and before.source is not None
-            is_alone = len(self.line.items or ()) == 1 or is_behind
+            is_alone = len(self.line.reading.items or ()) == 1 or is_behind
             self.is_sure = self.is_sure and is_alone and len(self.flat) > 2
             self.edit(1)
         elif self.open[-1].word:
@@ -243,7 +240,8 @@ class Matching:
             is_inside = (len(words) > 1 and block.line == k) or bool(block.body)
             if want not in words:
                 self.edit(1, self.open.pop().end)
-                self.is_sure = self.is_sure and (self.line.is_rewritten or block.is_translated)
+                is_told = bool(self.line.reading.steps) or block.is_translated
+                self.is_sure = self.is_sure and is_told
                 return True
             if is_inside:
                 self.open.pop()
@@ -272,19 +270,18 @@ class Matching:
             if is_closed and (len(self.open) == 1 or is_arm):
                 break
             self.open.pop()
-            is_sure = block.is_begun
-            items = self.line.items or []
+            self.is_sure = self.is_sure and block.is_begun
+            items = self.line.reading.items or []
             if block.word in ("IF", "WHILE") and not any(each.kind == "arm" for each in items):
-                is_sure = is_sure and not self.is_parted(items)
+                self.is_sure = self.is_sure and not self.is_parted(items)
             elif block.word == "DEF" and after.kind == "do":
-                is_sure = is_sure and after.word == block.name
-            self.is_sure = self.is_sure and is_sure
+                self.is_sure = self.is_sure and after.word == block.name
             self.tails.setdefault(self.k, []).append(block.end)
 
     def is_parted(self, items: Sequence[Item]) -> bool:
         """Whether a block may end before its line: at a `;` of the text, or at another block."""
         told = [each for each in items if each.kind == "do"]
-        between = self.line.tokens[told[0].end : told[-1].start] if told else []
+        between = self.line.reading.tokens[told[0].end : told[-1].start] if told else []
         headers = sum(each.kind == "open" and each.word == "IF" for each in items)
         return headers > 1 or any(each.text == ";" and each.source is not None for each in between)
 

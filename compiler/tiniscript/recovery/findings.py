@@ -186,19 +186,18 @@ def _keeps(text: str, new: str, said_with: set[Code], is_sure: bool) -> bool:
 
     `is_sure`: and no others.
     """
-    before, after = (Counter(texts(lexemes(_bare(it)))) for it in (text, new))
+    text, new = (
+        "\n".join(without_note(line)[0] for line in each.split("\n")) for each in (text, new)
+    )
+    before, after = (Counter(texts(lexemes(it))) for it in (text, new))
     names = {each.upper() for each in re.findall(r"(?i)(?<=\bDEF )\w+|\w+(?=\s*=)", new)}
-    closed = Counter(re.findall(rf"\b(?:END_?DEF|{words_of('end')}) +(\w+)", _bare(text).upper()))
+    closed = Counter(re.findall(rf"\b(?:END_?DEF|{words_of('end')}) +(\w+)", text.upper()))
     before -= Counter({name: n for name, n in closed.items() if after[name] > 1})
-    before -= Counter(X=len(_TIMES.findall(_bare(text))))
+    before -= Counter(X=len(_TIMES.findall(text)))
     is_kept = all(after[name] >= before[name] for name in names)
-    old, kept = (Counter(re.findall("[0-9]", _NOTE.sub("", _bare(it)))) for it in (text, new))
+    old, kept = (Counter(re.findall("[0-9]", _NOTE.sub("", it))) for it in (text, new))
     has_all = old == kept if is_sure else not old - kept
     return is_kept and (has_all or bool(said_with & rows.OTHER_NUMBERS))
-
-
-def _bare(text: str) -> str:
-    return "\n".join(without_note(line)[0] for line in text.split("\n"))
 
 
 def _mistakes(found: Sequence[Diagnostic]) -> list[Code]:

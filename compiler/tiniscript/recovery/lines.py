@@ -17,7 +17,6 @@ from tiniscript.base.words import FUNCTIONS, WAYS, WORDS, concept_of, nearest, s
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import concepts, rewrites, rows
-from tiniscript.recovery.blocks import ANY_END, BRACES
 from tiniscript.recovery.concepts import CALLED, LONG_S, NEAR, Lexeme, Names, made, texts
 from tiniscript.recovery.slots import MILLISECONDS_FROM, MOVES, filled
 from tiniscript.syntax.lexer import NUMBER, WORD
@@ -32,6 +31,8 @@ MARGIN = 0.15  # what it has to cost more, for the cheapest to be sure
 SLIP_MARGIN = 0.3
 RIVALS = 4
 LONGEST = 300  # tokens of a line
+ANY_END = "?"  # the word of an end that names no block: END, FIN
+BRACES = ("{", "}")
 LONGEST_WITH_SLIPS = 80
 _FIRST_STEPS = 30
 _CALCULATES = SIGNS | {"°"}  # without it another number would be meant
@@ -49,7 +50,7 @@ class Step(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """What a line may mean. `items` is None while it is not right yet, and `failure` says where."""
+    """What a line may mean. `items` is None while it is not right yet."""
 
     cost: float
     tokens: list[Lexeme]
@@ -57,7 +58,6 @@ class Reading(NamedTuple):
     is_sure: bool
     is_new_line: bool
     items: Sequence[Item] | None = None
-    failure: Failure = Failure(0, 0)
 
     def changed(
         self, tokens: list[Lexeme], cost: float, code: Code, is_sure: bool = True,
@@ -134,7 +134,7 @@ def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Read
     return [each._replace(items=its) for each, its in told if not isinstance(its, Failure)]
 
 
-_Successors = Callable[[Reading], Iterator[Reading]]
+_Successors = Callable[[Reading, Failure], Iterator[Reading]]
 
 
 class _Search:
@@ -172,8 +172,7 @@ class _Search:
                 if not self.says_twice(reading, items, first):
                     found.append(reading._replace(items=items))
                 continue
-            reading = reading._replace(failure=items)
-            for after in successors(reading):
+            for after in successors(reading, items):
                 if len(after.tokens) < LONGEST:
                     heapq.heappush(heap, (after.cost, next(order), after))
         return found
@@ -199,22 +198,23 @@ class _Search:
                 code = codes.NAME_WITH_SPACE if is_name else codes.OTHER_LANGUAGE
                 reading = reading.changed(tokens, 1.0 if is_name else 0.5, code)
                 continue
-            after = next(self._by_rows(reading, is_first=True), None)
+            after = next(self._by_rows(reading, None), None)
             if after is None:
                 break
             reading = after
         return reading
 
-    def rewritten(self, reading: Reading) -> Iterator[Reading]:
-        found = (self._by_rows(reading, is_first=False), self._by_slots(reading))
-        return map(self.at_once, chain(*found, self._by_words(reading)))
+    def rewritten(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
+        ways = (self._by_rows, self._by_slots, self._by_words)
+        return map(self.at_once, chain(*(way(reading, failure) for way in ways)))
 
-    def _by_rows(self, reading: Reading, is_first: bool) -> Iterator[Reading]:
+    def _by_rows(self, reading: Reading, failure: Failure | None) -> Iterator[Reading]:
+        """Make the rows that touch a place; for none those that come before all others."""
         line = rewrites.Encoded(reading.tokens, self.names)
-        for row in rewrites.tried(line, is_first):
+        for row in rewrites.tried(line, is_first=failure is None):
             for match in line.matches(row.pattern):
                 start, end = line.span(match)
-                if not is_first and not _touches(reading.failure, start, end):
+                if failure and not _touches(failure, start, end):
                     continue
                 tokens = line.rewritten(row, match)
                 if tokens is not None:
@@ -222,11 +222,11 @@ class _Search:
                     yield reading.changed(tokens, row.cost, row.code, not row.is_offered, is_new)
                     break
 
-    def _by_slots(self, reading: Reading) -> Iterator[Reading]:
+    def _by_slots(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
         tokens = reading.tokens
         for start, end in _calls(tokens):
             words = tokens[start:end]
-            if not _touches(reading.failure, start, end):
+            if not _touches(failure, start, end):
                 continue
             has_until = end < len(tokens) and tokens[end].text == "UNTIL"
             call = filled(words, self.names, has_until)
@@ -235,10 +235,10 @@ class _Search:
             line = [*tokens[:start], *call.tokens, *tokens[end:]]
             yield reading.changed(line, call.cost, _code_of_call(words), call.is_sure)
 
-    def _by_words(self, reading: Reading) -> Iterator[Reading]:
+    def _by_words(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
         """Translate the first word that is none of the language."""
         tokens, around = reading.tokens, ("", *reading.text, "")
-        for k, token in enumerate(tokens[: reading.failure.at + 2]):
+        for k, token in enumerate(tokens[: failure.at + 2]):
             if token.kind is not WORD or (token.text in WORDS and token.text != "SI"):
                 continue
             is_function = around[k] in ("(", ",", *SIGNS) and around[k + 2] == "("
@@ -258,9 +258,9 @@ class _Search:
             if meanings:
                 break
 
-    def with_slips(self, reading: Reading) -> Iterator[Reading]:
+    def with_slips(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
         """One sign wrong, missing, too much or behind its neighbour, where the line fails."""
-        tokens, (start, at) = reading.tokens, reading.failure
+        tokens, (start, at) = reading.tokens, failure
         for k in reversed(range(max(0, start - 1), min(len(tokens) + 1, at + 2))):
             head, rest = tokens[:k], tokens[k + 1 :]
             for sign, code in rows.MISSING.items():

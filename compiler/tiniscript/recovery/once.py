@@ -34,8 +34,9 @@ def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     for each in found:
         code, values = each.code, each.values
         key: object = each.span
-        if code is codes.MISSING_OPEN and _is_bare(each, source):
-            key = ""
+        is_alone = source[each.span].upper() == values.get("word")
+        if code is codes.MISSING_OPEN and is_alone and (values.get("fix") or values.get("example")):
+            key = ""  # a word that has values
         elif code in _ONCE and not (code is codes.UNKNOWN_NAME and values.get("found") in meant):
             names = _ONCE[code]
             key = tuple(
@@ -43,12 +44,6 @@ def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
             )
         groups.setdefault((code, key), []).append(each)
     return codes.in_order([_together(same, source) for same in groups.values()])
-
-
-def _is_bare(found: Diagnostic, source: Source) -> bool:
-    """Whether a word stands alone that has values."""
-    is_word = source[found.span].upper() == found.values["word"]
-    return is_word and bool(found.values.get("fix") or found.values.get("example"))
 
 
 def _together(same: Sequence[Diagnostic], source: Source) -> Diagnostic:

@@ -114,8 +114,7 @@ SIGNS = r"""
 (?<=\d)\.\.(?=\d)  |  `, `  |  TS020  |  offered  |  X = RANDOM(1..6) => X = RANDOM(1, 6)
 (?<=\d)\s*([×✕])\s*(?=\d)  |  `*`  |  TS010  |  applied  |  SHOW(3 × 4) => SHOW(3*4)
 ⟨≤¦≥¦≠¦¡=¦(?<= )><⟩  |  `⟨<=¦>=¦<>¦<>¦<>⟩`  |  TS010  |  applied  |  IF(DISTANCE ⟨≤¦≥¦≠¦¡=¦><⟩ 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=¦<>¦<>¦<>⟩ 10);S;ENDIF
-⟨×¦÷¦−⟩  |  `⟨*¦/¦-⟩`  |  TS010  |  applied  |  ⟨SHOW(TIME × 2)¦SHOW(TIME ÷ 2)¦M(−50 50)⟩ => ⟨SHOW(TIME * 2)¦SHOW(TIME / 2)¦M(-50, 50)⟩
-⟨∞¦[，、]¦\\n⟩  |  `⟨FOREVER¦,¦;⟩`  |  TS010  |  applied  |  ⟨F(∞,50) UNTIL(DISTANCE<10)¦F(2、80)¦SI|F(2,80)\nR(1,60)⟩ => ⟨F(FOREVER,50) UNTIL(DISTANCE<10)¦F(2,80)¦SI|F(2,80);R(1,60)⟩
+⟨×¦÷¦−¦∞¦[，、]¦\\n⟩  |  `⟨*¦/¦-¦FOREVER¦,¦;⟩`  |  TS010  |  applied  |  ⟨SHOW(TIME × 2)¦SHOW(TIME ÷ 2)¦M(−50 50)¦F(∞,50) UNTIL(DISTANCE<10)¦F(2、80)¦SI|F(2,80)\nR(1,60)⟩ => ⟨SHOW(TIME * 2)¦SHOW(TIME / 2)¦M(-50, 50)¦F(FOREVER,50) UNTIL(DISTANCE<10)¦F(2,80)¦SI|F(2,80);R(1,60)⟩
 [→➜⇒]|[–—]>  |  `;`  |  TS061  |  applied  |  →F(2, 80) => ;F(2, 80)
 </?[a-z]+/?>|^\s*(?:[$>] tsc\b.*|```\w*\s*)$  |  ``  |  TS072  |  applied  |  <b>F(2, 80)</b> => F(2, 80)
 ^\s*tsc(?: \w+)? (?:(["'])(S[IB]\|.*)\1$|(?=S[IB]\|))  |  `\2`  |  TS044  |  applied  |  tsc live "SI|F(2, 80)" => SI|F(2, 80)
@@ -153,9 +152,7 @@ SIGNS = r"""
 TOKENS = r"""
 # signs that other languages have
 ^ v=⟨@usedname¦@name⟩ == e=@any+ $ | $v = $e | ⟨0¦1⟩ | ⟨TS010¦TS050⟩ | ⟨first¦first offered⟩ | X == 5⟨⏎F(X, 80)¦⟩ => X = 5⟨⏎F(X, 80)¦⟩
-⟨==¦!=|=!¦=>¦=<⟩ | ⟨=¦<>¦>=¦<=⟩ | 0 | TS010 | first | IF(DISTANCE ⟨==¦!=¦=>¦=<⟩ 10);S;ENDIF => IF(DISTANCE ⟨=¦<>¦>=¦<=⟩ 10);S;ENDIF
-⟨= <¦= >¦< or? =¦> or? =¦= / =⟩ | ⟨<=¦>=¦<=¦>=¦<>⟩ | 0 | TS010 | first | IF(DISTANCE ⟨= <¦= >¦< =¦> =¦=/=⟩ 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=¦<=¦>=¦<>⟩ 10);S;ENDIF
-!|no ⟨<¦>⟩ | ⟨>=¦<=⟩ | 0 | TS010 | first | IF(DISTANCE !⟨<¦>⟩ 10)⏎S⏎ENDIF => IF(DISTANCE ⟨>=¦<=⟩ 10)⏎S⏎ENDIF
+⟨==¦!=|=!¦=>¦=<¦= <¦= >¦< or? =¦> or? =¦= / =¦!|no <¦!|no >⟩ | ⟨=¦<>¦>=¦<=¦<=¦>=¦<=¦>=¦<>¦>=¦<=⟩ | 0 | TS010 | first | IF(DISTANCE ⟨==¦!=¦=>¦=<¦= <¦= >¦< =¦> =¦=/=¦!<¦!>⟩ 10);S;ENDIF => IF(DISTANCE ⟨=¦<>¦>=¦<=¦<=¦>=¦<=¦>=¦<>¦>=¦<=⟩ 10);S;ENDIF
 ⟨&&¦:=⟩ | ⟨AND¦=⟩ | 0 | ⟨TS010¦TS050⟩ | first | ⟨SI|IF(DISTANCE<10 && LIGHT_L>50);S;ENDIF¦v := 50⏎F(2, v)⟩ => ⟨SI|IF(DISTANCE<10 AND LIGHT_L>50);S;ENDIF¦v = 50⏎F(2, v)⟩
 ] | ) | 1 | TS010 | applied | F(2, 80] => F(2, 80)
 v=@val [ n=@num ) | $v < $n ) | 1 | TS010 | offered | IF(DISTANCE[30)⏎S⏎ENDIF => IF(DISTANCE < 30)⏎S⏎ENDIF
@@ -167,8 +164,7 @@ o==|( the? ⟨largest¦smallest⟩ of|between? a=@num|@val ,|then b=@num|@val e=
 o==|( a=@num|@val ,|then|or b=@num|@val the? ⟨largest¦smallest⟩ e=)|,|$ | $o ⟨MAX¦MIN⟩ ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(LIGHT_L or LIGHT_R the ⟨bigger¦smaller⟩) => SHOW(⟨MAX¦MIN⟩(LIGHT_L, LIGHT_R))
 # comparisons in words: a row for each sense, and a sign
 is? ⟨less than?¦more⟩ or? equal to|than? | ⟨<=¦>=⟩ | 1 | TS010 | first | IF(DISTANCE es ⟨menor¦mayor⟩ o igual que 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=⟩ 10);S;ENDIF
-is? one? ⟨less¦more⟩ than? | ⟨<¦>⟩ | 1 | TS010 | first | IF(DISTANCE ⟨menor¦mayor⟩ 10);S;ENDIF => IF(DISTANCE ⟨<¦>⟩ 10);S;ENDIF
-is? extra than | > | 1 | TS010 | first | IF(DISTANCE es mas de 10);S;ENDIF => IF(DISTANCE > 10);S;ENDIF
+is? ⟨one? less than?¦one? more than?¦extra than⟩ | ⟨<¦>¦>⟩ | 1 | TS010 | first | IF(DISTANCE ⟨menor¦mayor¦es mas de⟩ 10);S;ENDIF => IF(DISTANCE ⟨<¦>¦>⟩ 10);S;ENDIF
 ⟨is? different than?¦no is|equal to|equal? one?⟩ | <> | 1 | TS010 | first | IF(DISTANCE ⟨distinto de¦NO ES⟩ 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
 = @word* RANDOM between|from? a=@num to|and|until|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS037 | offered | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
@@ -178,9 +174,8 @@ o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val ⟨¦, c=@num|@val⟩ ) | 
 a=@num v=@val | @by:a:v | 1 | TS048 | offered | VEL = 30⏎F(2, 2VEL) => VEL = 30⏎F(2, 2 * VEL)
 a=@num|@val ⟨modulo¦plus⟩ b=@num|@val | $a ⟨%¦+⟩ $b | 1 | TS010 | first | X = 7⏎X = X ⟨MOD¦mas⟩ 2 => X = 7⏎X = X ⟨%¦+⟩ 2
 no l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
-l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
+l=@val s=⟨<|>|<=|>=¦=⟩ a=@num ⟨o=AND|OR t=<|>|<=|>=¦or⟩ b=@num | $l $s $a ⟨&o $l $t¦OR $l =⟩ $b | 1 | TS018 | offered | IF(DISTANCE ⟨< 10 OR <¦= 10 O⟩ 5);S;ENDIF => IF(DISTANCE ⟨< 10 OR DISTANCE <¦= 10 OR DISTANCE =⟩ 5);S;ENDIF
 ( s=<|<= n=@num ) | ( DISTANCE $s $n ) | 1 | TS018 | offered | IF(< 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-l=@val = a=@num or b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ c=@cond+ ? <body> : d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
 = ABS s='-'? n=@num|@val $ | = ABS ( $s $n ) | 1 | TS015 | applied | X = ABS -5⏎SHOW(X) => X = ABS(-5)⏎SHOW(X)
@@ -265,8 +260,7 @@ a=@close ⟨'|'|,|.|; UNTIL¦UNTIL that?⟩ ( | $a UNTIL ( | 1 | ⟨TS029¦TS102
 ^ W ⟨UNTIL that? c=@cond+¦( UNTIL (? c=@noparen+ )? )⟩ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | ⟨TS102¦TS029⟩ | ⟨applied¦offered⟩ | ⟨WAIT UNTIL DISTANCE < 10¦W(UNTIL DISTANCE < 10)⟩ => W(FOREVER) UNTIL(DISTANCE < 10)
 a=@close UNTIL that? ⟨c=@cond+ then+ ,? b=@start¦c=@noparen+ $⟩ | $a UNTIL ( $c ) ⟨; $b¦⟩ | 1 | TS015 | applied | F(2, 80) hasta DISTANCE < 10⟨ luego S¦⟩ => F(2, 80) UNTIL(DISTANCE < 10)⟨;S¦⟩
 ^ ⟨UNTIL <question> ':'|'{'?¦LOOP ( FOREVER ) UNTIL <question>⟩ $ | WHILE ( @not:c ) | ⟨3¦1⟩ | ⟨TS029¦TS102⟩ | offered | ⟨¦LOOP(FOREVER) ⟩UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_⟨WHILE¦LOOP⟩ => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
-^ a=F|B|L|R ( UNTIL (? c=@cond+ )? , b=@num ) $ | $a ( FOREVER , $b ) UNTIL ( $c ) | 2 | TS029 | offered | F(UNTIL(DISTANCE < 20), 60) => F(FOREVER, 60) UNTIL(DISTANCE < 20)
-^ UNTIL (? c=@cond+ )? a=F|B|L|R|W ( b=@noparen+ ) $ | $a ( $b ) UNTIL ( $c ) | 2 | TS029 | offered | UNTIL DISTANCE < 10 F(2, 60) => F(2, 60) UNTIL(DISTANCE < 10)
+^ ⟨a=F|B|L|R ( UNTIL (? c=@cond+ )? , b=@num¦UNTIL (? c=@cond+ )? a=F|B|L|R|W ( b=@noparen+⟩ ) $ | $a ( ⟨FOREVER ,¦⟩ $b ) UNTIL ( $c ) | 2 | TS029 | offered | ⟨F(UNTIL(DISTANCE < 10),¦UNTIL DISTANCE < 10 F(2,⟩ 60) => F(⟨FOREVER¦2⟩, 60) UNTIL(DISTANCE < 10)
 c=@callw ( a=@noparen+ UNTIL ( d=@any+ ) ) | $c ( $a ) UNTIL ( $d ) | 1 | TS016 | applied | F(5, 60 UNTIL(DISTANCE < 15)) => F(5, 60) UNTIL(DISTANCE < 15)
 # IF and WHILE
 ELSE ( a=@val s=<|<=|>|>= b=@num|@val ) | ELSEIF ( $a $s $b ) | 1 | TS039 | offered | IF(DISTANCE < 10)⏎S⏎ELSE(DISTANCE < 30)⏎B(1, 50)⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ELSEIF(DISTANCE < 30)⏎B(1, 50)⏎ENDIF

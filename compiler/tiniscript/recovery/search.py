@@ -262,12 +262,11 @@ class Recovery:
 
     def matched(self, readings: Sequence[Reading]) -> Matching | None:
         """Return what all blocks of the lines need, or None where they fit in no way."""
-        found = Matching([
-            Line(line.indent, each.tokens, each.items, bool(each.steps), each.is_new_line,
-                 any(step.code is codes.ASKED_BEHIND for step in each.steps),
-                 _WHEN.match(line.source.upper()) is not None)
+        read = [
+            Line(line.indent, _WHEN.match(line.source.upper()) is not None, each)
             for line, each in zip(self.lines, readings, strict=False)
-        ])  # fmt: skip
+        ]
+        found = Matching(read)
         return found if found.run() else None
 
     def changes(self, readings: Sequence[Reading], blocks: Matching) -> list[Change]:

@@ -122,10 +122,8 @@ class ExpressionParser:
             cursor.i += 1
             if cursor.tokens[cursor.i].kind == "(":
                 self.reporter.fail(codes.NO_FUNCTION, token.span, found=token.text)
-            if known is None:
-                read.parts.append(Part("NAME", token.text, token.start, token.end))
-            else:
-                read.parts.append(Part(token.text, 0, token.start, token.end))
+            op, value = ("NAME", token.text) if known is None else (token.text, 0)
+            read.parts.append(Part(op, value, token.start, token.end))
             return True
         if token.text == "NOT":
             if read.waiting and read.waiting[-1].precedence > NOT:

@@ -7,6 +7,7 @@ made for texts whose shape `parser` finds nothing wrong with.
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 from tiniscript.base.source import Source
@@ -16,6 +17,8 @@ from tiniscript.syntax.operators import SIGNS
 
 INDENT = "  "
 BEFORE_COMMENT = "  "
+# `//comment` becomes `// comment`. More spaces stay, and so do rulers like `/////`.
+_CLOSED_UP = re.compile(r"\A//(?=[^/\s])")
 
 _ARMS = frozenset(("ELSE", "ELSEIF"))
 _OPENS = frozenset(BLOCK_ENDS) | _ARMS  # what follows stands further right
@@ -84,7 +87,7 @@ def pieces_of(scanned: Scan) -> list[Piece]:
             is_open, brackets, after_blank = not is_comment, 0, False
         piece = pieces[-1]
         if is_comment:
-            piece.comments.append(comment_text(token.text))
+            piece.comments.append(_CLOSED_UP.sub("// ", token.text.rstrip()))
             continue
         piece.tokens.append(token._replace(text=ALIASES.get(token.text, token.text)))
         piece.last_line = line
@@ -92,13 +95,6 @@ def pieces_of(scanned: Scan) -> list[Piece]:
         if kind == "|":
             is_open = False
     return pieces
-
-
-def comment_text(text: str) -> str:
-    """Return `// comment` for `//comment`. More spaces stay, and so do rulers like `/////`."""
-    inner = text[2:].rstrip()
-    apart = not inner or inner[0] == "/" or inner[0].isspace()
-    return "//" + inner if apart else "// " + inner
 
 
 # -- where it goes -------------------------------------------------------------------------------

@@ -46,6 +46,9 @@ _RULES = {
     **dict.fromkeys(HEADERS, "header"), **dict.fromkeys(ENDS, "block_end"),
     "DEF": "definition", "TASK": "task", "BREAK": "leave", "ELSE": "arm", "ELSEIF": "arm",
 }  # fmt: skip
+# What is said of a word of the language that is no command, by its role.
+_NO_COMMANDS = {"until": codes.UNTIL_ALONE, "forever": codes.FOREVER_NOT_HERE,
+                "later": codes.LATER_WORD, "setup": codes.SETUP_TWICE}  # fmt: skip
 
 
 class Parsed(NamedTuple):
@@ -87,7 +90,11 @@ class Parser:
                 self.instruction()
             except Failed:
                 cursor.skip_instruction()
-        self.never_ended()
+        while self.blocks.open:  # that never end
+            block = self.blocks.open[-1]
+            right = BLOCK_ENDS[block.word]
+            self.reporter.report(codes.NEVER_ENDS, block.header, word=block.word, right=right)
+            self.blocks.end(cursor.last.span)
         return Program(start, tuple(self.blocks.program))
 
     def setup(self) -> str:
@@ -112,7 +119,9 @@ class Parser:
         tokens = cursor.tokens
         token = tokens[cursor.i]
         if token.kind is not WORD:
-            self.no_word(token)
+            self.expressions.no_odd(token)
+            code = codes.EXTRA_CLOSE if token.kind == ")" else codes.NOT_AN_INSTRUCTION
+            self.reporter.fail(code, token.span, found=token.text)
         following = tokens[cursor.i + 1]
         text = token.text
         if following.kind == "|" and text in ("SI", "SB"):
@@ -146,7 +155,8 @@ class Parser:
         if known is None:
             self.own_name(word, following)
         elif not known.is_instruction and known.role != "start":
-            self.no_command(word, known)
+            code = _NO_COMMANDS.get(known.role, codes.NOT_AN_INSTRUCTION)
+            self.reporter.fail(code, word.span, word=word.text, found=word.text)
         cursor.i += 1
         arguments = until = None
         if following.kind == "(":
@@ -259,14 +269,6 @@ class Parser:
             blocks.end(word.span)
         blocks.end(word.span)
 
-    def never_ended(self) -> None:
-        """Close the blocks that are open at the end of the text."""
-        while self.blocks.open:
-            block = self.blocks.open[-1]
-            right = BLOCK_ENDS[block.word]
-            self.reporter.report(codes.NEVER_ENDS, block.header, word=block.word, right=right)
-            self.blocks.end(self.cursor.last.span)
-
     def argument_of(self, word: Token) -> Argument:
         """Read the `(argument)` of a header, an ELSEIF or an UNTIL."""
         cursor, known = self.cursor, WORDS[word.text]
@@ -291,19 +293,6 @@ class Parser:
                                right=before + word.text)  # fmt: skip
 
     # -- what is wrong ------------------------------------------------------------------------
-
-    def no_word(self, token: Token) -> None:
-        """An instruction begins with a sign or a number."""
-        self.expressions.no_odd(token)
-        code = codes.EXTRA_CLOSE if token.kind == ")" else codes.NOT_AN_INSTRUCTION
-        self.reporter.fail(code, token.span, found=token.text)
-
-    def no_command(self, word: Token, known: Word) -> None:
-        """A word of the language that is no command begins an instruction."""
-        by_role = {"until": codes.UNTIL_ALONE, "forever": codes.FOREVER_NOT_HERE,
-                   "later": codes.LATER_WORD, "setup": codes.SETUP_TWICE}  # fmt: skip
-        code = by_role.get(known.role, codes.NOT_AN_INSTRUCTION)
-        self.reporter.fail(code, word.span, word=word.text, found=word.text)
 
     def no_bracket(self, known: Word) -> None:
         """After a word its values are expected, in brackets."""
