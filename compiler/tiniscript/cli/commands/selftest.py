@@ -42,10 +42,8 @@ def run(options: Namespace, language: str) -> int:
                 name = connection.name
     _print(found, name, port, options.json, language)
     if options.report is not None:
-        rows = _report(found, name, port or "", language)
-        outputs.write(
-            Path(options.report), ("\n".join(rows) + "\n").encode(), "unwritable_at --report"
-        )
+        data = ("\n".join(_report(found, name, port or "", language)) + "\n").encode()
+        outputs.write(Path(options.report), data, "unwritable_at --report")
         if not options.json:
             print(text("selftest_report", language).format(file=shown(options.report)))
     return 3 if any(each.verdict == WRONG for each in found) else 0
