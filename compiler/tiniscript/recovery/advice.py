@@ -340,17 +340,6 @@ def _choice(gaps: _Gaps, is_exact: bool = False) -> str:
     return f"{drawn}{''.join(arms)[4:]}ELSE; {orders[-1]}; ENDIF" if arms else ""
 
 
-def _apart(gaps: _Gaps) -> str:
-    """A call without the order among its values, and that order."""
-    owner, order = (WORDS[plain(gaps[name])] for name in ("w", "s"))
-    values = [each.strip() for each in gaps["v"].split(",")]
-    if len(values) != len(owner.arguments):
-        return ""
-    fits = order.arguments == owner.arguments
-    behind = f"{order.text}({', '.join(values)})" if fits else order.example
-    return f"{owner.text}({', '.join(values)}); {behind}"
-
-
 def _loop(gaps: _Gaps) -> str:
     number = gaps["n"]
     is_often = number.isdecimal() and number not in ("0", "1")
@@ -433,8 +422,9 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "head": lambda gaps: gaps.meant("h"), "called": lambda gaps: gaps.meant("w"),
     "block": lambda gaps: gaps.meant("g"), "usage": lambda gaps: WORDS[gaps.meant("w")].usage,
     "choice": lambda gaps: _choice(gaps, is_exact=True).replace("; ", ";"),
-    "choices": _choice, "apart": _apart, "number": lambda gaps: for_a_number(gaps.part.text),
+    "choices": _choice, "number": lambda gaps: for_a_number(gaps.part.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
+    "next": lambda gaps: WORDS[plain(gaps["s"])].example,
     "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),
     "alone": _alone, "then": _then, "free": _free, "loop": _loop, "by_way": _by_way,
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),

@@ -85,7 +85,8 @@ ADVICE = """
 ^ @none RANDOM ( l=@any+ ) $ | TS136 | fix={choice}; example={choices} | RANDOM(L(1, 60), S) => fix=IF(RANDOM(1, 2) = 1);L(1, 60);ELSE;S;ENDIF
 ^ @none @any* RANDOM ( l=@any+ ) $ | TS136 | example={choices} | giro = RANDOM(L, R) => example=IF(RANDOM(1, 2) = 1); L(2, 80); ELSE; R(2, 80); ENDIF
 ^ @none RANDOM ( n=@num to|, m=@num ) $ | TS042 | found=RANDOM; given={words}; number={number} = RANDOM({n}, {m}) | RANDOM(440 a 880) => number=N = RANDOM(440, 880)
-^ @none w=@call ( v=@noparen+ , s=@order ) $ | TS051 | word={s}; apart={apart} | F(1, 60, R) => apart=F(1, 60); R(1, 60)
+^ @none w=F|B|L|R ( u=@num|@val , v=@num|@val , s=F|B|L|R ) $ | TS051 | word={s}; apart={w}({u}, {v});{s}({u}, {v}) | F(1, 60, R) => apart=F(1, 60);R(1, 60)
+^ @none w=⟨F|B|L|R|M|BEEP ( u=-|@num|@val+ ,¦W|SHOW (⟩ v=-|@num|@val+ , s=@order ) $ | TS051 | word={s}; apart={w}(⟨{u}, ¦⟩{v});{next} | ⟨F(1, 60¦W(2⟩, S) => apart=⟨F(1, 60)¦W(2)⟩;S
 ^ @none w=@call @any* (|, s=@order ) $ | TS051 | word={s}; example={example} | F(2, R) => example=F(2, 80)
 ^ @none <asks> ( s=@order @any* ) $ | TS105 | word={s}; right= | IF(L > 5)⏎S⏎ENDIF => word=L
 # words for nothing, and those that are no words behind it

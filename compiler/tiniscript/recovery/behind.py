@@ -13,7 +13,7 @@ from typing import NamedTuple
 from tiniscript.base.source import Span
 from tiniscript.base.words import OTHER_WAY, WAYS, WORDS, concept_of, nearest, said_of
 from tiniscript.recovery import lines
-from tiniscript.recovery.concepts import ENDED, Lexeme, Names, closed, lexemes
+from tiniscript.recovery.concepts import ENDED, NEAR, Lexeme, Names, closed, lexemes
 from tiniscript.recovery.slots import MOVES
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
@@ -54,14 +54,13 @@ def width(token: Lexeme) -> int:
 def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     """Return how many tokens begin a line as a whole instruction."""
     first, sign = tokens[0].text, tokens[1].text if len(tokens) > 1 else ";"
-    word = _first_word(tokens[0], names)
     if first in names.defs or (sign == "=" and first not in WORDS):
         found = lines.right(tokens, names)
         size = found.at if isinstance(found, Failure) else 0
         is_right = lines.is_right(tokens[:size], names)
         return size if is_right and tokens[size].space else 0
-    known = WORDS.get(word)
-    if known is None and not names.takes(word):
+    known = WORDS.get(first)
+    if known is None and not names.takes(names.meant(first, NEAR)):
         return 0
     if first == "DEF":
         return 2 if len(tokens) > 1 and tokens[1].kind is WORD else 0
@@ -72,14 +71,6 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     if end and end < len(tokens) and tokens[end].text == "UNTIL":
         return closed(tokens, end + 1) or end
     return end
-
-
-def _first_word(token: Lexeme, names: Names) -> str:
-    """Return the word of the language, or else what an instruction of another one means, or ""."""
-    if token.text in WORDS:
-        return token.text
-    meant = (each.concept for each in names.meanings(token.text))
-    return next(filter(names.takes, meant), "")
 
 
 class Behind:
@@ -111,7 +102,7 @@ class Behind:
         self.words = text[slice(*self.behind)]
         self.spans = [called, *spans[size:]]
         self.text = text
-        meant = _first_word(self.tokens[0], self.names) if size else ""
+        meant = self.names.meant(self.tokens[0].text, NEAR) if size else ""
         known = WORDS.get(meant)
         self.is_arm = known is not None and known.role in ("block", "arm", "end")
         self.own = ENDED.get(meant, meant)

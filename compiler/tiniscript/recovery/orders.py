@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.recovery import lines, rewrites
-from tiniscript.recovery.concepts import CALLED, ENDED, Lexeme, Names, made, said_of
+from tiniscript.recovery.concepts import CALLED, ENDED, Lexeme, Names, closed, made, said_of
 from tiniscript.recovery.slots import MOVES, Filled, filled
 from tiniscript.recovery.worded import worded
 from tiniscript.recovery.writing import laid_out
@@ -90,8 +90,6 @@ def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) ->
     number = any(each.kind is NUMBER for each in words)
     samples = () if number else (f"{_NEAR_CM} cm",)
     if stop in ("S", "STOP") and first[-1].word in MOVES and "UNTIL" not in first[-1].text:
-        if "ELSE" in rest:
-            return []
         move, made_of = first[-1], first[-1].samples + samples
         stopped = move._replace(text=f"{move.text} UNTIL{header[2:]}", samples=made_of)
         left = [Order("IF", ";".join((header, *rest)), ())] if len(rest) > 1 else []
@@ -219,10 +217,9 @@ def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:
 
 def question_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
     """Return the comparison that words ask, in words of the language; nothing for none."""
+    words = words[1:-1] if closed(words, 0) == len(words) else words
     found = lines.read([made("IF"), made("("), *words, made(")")], names, is_quick=True)
     tokens = found[0].tokens if found else []
     end = next((k for k, each in enumerate(tokens) if each.text == ";"), len(tokens)) - 1
     asked = tokens[2:end]
-    if [each.text for each in asked if each.text in "()"] == ["(", ")"] and asked[-1].text == ")":
-        asked = asked[1:-1] if asked[0].text == "(" else asked
     return asked if any(each.text in COMPARISONS for each in asked) else []

@@ -174,7 +174,7 @@ o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val ⟨¦, c=@num|@val⟩ ) | 
 a=@num v=@val | @by:a:v | 1 | TS048 | offered | VEL = 30⏎F(2, 2VEL) => VEL = 30⏎F(2, 2 * VEL)
 a=@num|@val ⟨modulo¦plus⟩ b=@num|@val | $a ⟨%¦+⟩ $b | 1 | TS010 | first | X = 7⏎X = X ⟨MOD¦mas⟩ 2 => X = 7⏎X = X ⟨%¦+⟩ 2
 no l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
-l=@val s=⟨<|>|<=|>=¦=⟩ a=@num ⟨o=AND|OR t=<|>|<=|>=¦or⟩ b=@num | $l $s $a ⟨&o $l $t¦OR $l =⟩ $b | 1 | TS018 | offered | IF(DISTANCE ⟨< 10 OR <¦= 10 O⟩ 5);S;ENDIF => IF(DISTANCE ⟨< 10 OR DISTANCE <¦= 10 OR DISTANCE =⟩ 5);S;ENDIF
+⟨l=@val¦l=@val¦l=MIN|MAX ( c=@noparen+ )⟩ s=⟨<|>|<=|>=¦=¦<|>|<=|>=⟩ a=@num ⟨o=AND|OR t=<|>|<=|>=¦or¦o=AND|OR t=<|>|<=|>=⟩ b=@num | $l ⟨¦¦( $c )⟩ $s $a ⟨&o $l $t¦OR $l =¦&o $l ( $c ) $t⟩ $b | 1 | TS018 | offered | IF(⟨DISTANCE < 10 OR <¦DISTANCE = 10 O¦MIN(2, DISTANCE) < 10 OR <⟩ 5);S;ENDIF => IF(⟨DISTANCE < 10 OR DISTANCE <¦DISTANCE = 10 OR DISTANCE =¦MIN(2, DISTANCE) < 10 OR MIN(2, DISTANCE) <⟩ 5);S;ENDIF
 ( s=<|<= n=@num ) | ( DISTANCE $s $n ) | 1 | TS018 | offered | IF(< 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ c=@cond+ ? <body> : d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF

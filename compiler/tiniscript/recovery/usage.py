@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from itertools import takewhile
+from itertools import pairwise, takewhile
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
@@ -18,6 +18,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
+from tiniscript.recovery.behind import ASKING
 from tiniscript.recovery.concepts import Names, concept_of, lexemes, plain, said_of, words_of
 from tiniscript.recovery.orders import block, made_up, orders, written
 from tiniscript.recovery.writing import laid_out, shortened, tokens_of, without_note
@@ -26,7 +27,6 @@ from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
-_LAST_HEAD = re.compile(r"(?is)\b(IF|ELSEIF|WHILE|UNTIL)[ \t]*\((?!.*\b(?:IF|WHILE|UNTIL)\()")
 _DOTS = re.compile(
     r"(?i)\b(?P<head>(?P<word>IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|DEF[ \t]+(?P<name>\w+))[\s;]*"
     r"(?P<here>(?:\.[ \t]*){2,}|\u2026)[ \t]*\n?[ \t]*(?P<end>END_?\w+|ELSE\w*)?"
@@ -296,8 +296,6 @@ class _Usage:
         if any(map(self.is_button, self.signs)):
             return self.no_button()
         said = self.orders(word) if self.is_first else None
-        if said and said.code is codes.SEVERAL_ORDERS:
-            return said
         if said:
             return self.adds(fix=said.values["fix"])._replace(place=self.piece, repair=said.repair)
         is_alone = len(self.tokens) == 1 and word in WORDS and WORDS[word].arguments
@@ -312,14 +310,13 @@ class _Usage:
             return said
         if self.words[1:] and self.names.meant(self.signs[0]) == "SHOW":
             return self.says(codes.WORDS_SHOWN)
-        text, own = self.source.text, {*WORDS, *self.names.known.values}
-        head = _LAST_HEAD.search(text, self.piece.start, self.found.span.end)
-        end = text.find(")", self.found.span.start)
-        inner = lexemes(text[head.end() : end]) if head and end > 0 else []
-        if head is None or all(each.kind is not WORD or each.text in own for each in inner):
+        before = lexemes(self.source[Span(self.piece.start, self.found.span.start)])
+        heads = [one.text for one, after in pairwise(before) if after.text == "("]
+        own = {*WORDS, *self.names.known.values} - {"SI"}
+        if not heads or heads[-1] not in ASKING or {*self.words} <= own:
             return None
-        word = head[1].upper()
-        return self.says(codes.IN_WORDS, word=word, question=WORDS[word].arguments[0].sample)
+        sample = WORDS[heads[-1]].arguments[0].sample
+        return self.says(codes.IN_WORDS, word=heads[-1], question=sample)
 
     def foreign(self) -> Diagnostic | None:
         """The values of a word that this robot does not have: whoever writes it wants the word."""
