@@ -34,7 +34,7 @@ MOST = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
 _ASIDE = (codes.REPEATED.number, codes.WORDS_BEHIND.number)
 _MOST_BEFORE = 8  # instructions that an example repeats
-_FARTHEST = 40  # lines of a text that are looked at for what is done again
+_FARTHEST = 40  # lines and instructions that are looked at for what is done again
 _ONE_IN_LOOP = 2  # separators of a loop of one instruction
 _BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
 # An instruction of a line, and the bar of a `SI|`.
@@ -113,7 +113,7 @@ def _as_orders(line: str, is_right: bool) -> str | None:
 def _parts(body: str, start: int, around: Around) -> Iterator[Behind]:
     """Give each instruction of a line that has words behind it, and words without one."""
     names = around.names
-    before: list[str] | None = []
+    before: list[str | None] = []
     for match in _PART.finditer(body):
         tokens, at = lexemes(match[1]), start + match.start()
         if not tokens or match[2]:
@@ -136,8 +136,7 @@ def _parts(body: str, start: int, around: Around) -> Iterator[Behind]:
                 break
             at += sum(map(width, tokens[:size]))
             tokens = rest
-        if before is not None:
-            before = None if is_block else [*before, match[1].strip()]
+        before = [*before, None if is_block else match[1].strip()]
 
 
 def _told(part: Behind) -> Advice | None:
@@ -254,20 +253,14 @@ class _Gaps(dict[str, str]):
         return number
 
 
-def _above(part: Behind) -> list[str] | None:
-    """The orders above a line, None where anything else is among them."""
-    if len(part.above) > _FARTHEST or not all(part.above):
-        return None
-    orders = (each.strip() for line in part.above if line for each in line.split(";"))
-    return [each for each in orders if each.upper() not in ("", "START")]
-
-
 def _all(gaps: _Gaps, times: str) -> str:
     """The loop that does so often all that stands before, nothing where that is long."""
-    part, above = gaps.part, _above(gaps.part)
-    if part.before is None or above is None or part.is_in_block or times in ("", "0", "1"):
+    part, before = gaps.part, [each for each in gaps.part.before if each]
+    is_known = len(before) == len(part.before) <= _FARTHEST
+    if not is_known or part.is_in_block or times in ("", "0", "1"):
         return ""
-    orders = [*above, *part.before, *([part.call] if part.call else [])]
+    told = [each.strip() for line in (*before, part.call) for each in line.split(";")]
+    orders = [each for each in told if each.upper() not in ("", "START")]
     said = "".join(f"{each};" for each in orders)
     if once := _ONCE.fullmatch("".join(said.split()).upper()):  # F and L of `F; L; F; L`
         orders = orders[: once[1].count(";")]
@@ -414,7 +407,7 @@ def _note(gaps: _Gaps) -> str:
 
 
 _GAPS: dict[str, Callable[[_Gaps], str]] = {
-    "above": lambda gaps: ["", *gaps.part.above, *(gaps.part.before or ())][-1] or "",
+    "above": lambda gaps: ["", *gaps.part.before][-1] or "",
     "all": lambda gaps: _all(gaps, gaps["n?"]), "often": lambda gaps: _all(gaps, "4"),
     "endless": lambda gaps: _all(gaps, "FOREVER"),
     "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)), "twice": _twice,

@@ -76,20 +76,20 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
 class Behind:
     """An instruction of `size` tokens and the words behind it; or words without one, where it is 0.
 
-    `before` are the other instructions of its line, None where a block is among them. `own` is the
-    word of the language that it begins with, "" for none. `said` is the call where words say it.
+    `before` are the other instructions of its line, None for one of a block. `own` is the word of
+    the language that it begins with, "" for none. `said` is the call where words say it.
     """
 
     def __init__(
         self, around: Around, start: int, tokens: Sequence[Lexeme], size: int,
-        before: Sequence[str] | None, said: str = "",
+        before: Sequence[str | None], said: str = "",
     ) -> None:  # fmt: skip
-        text, self.names, depth, self.above = around
+        text, self.names, depth, above = around
         self.is_said = bool(said)
         self.tokens = lexemes(said) if said else tokens[:size]
         self.row = tokens[size:]
-        self.before = before
-        self.is_later = bool(before) or (bool(self.above) and self.above[-1] is not None)
+        self.before, self.is_more = [*above, *before], bool(before)
+        self.is_later = self.before[-1:] not in ([], [None])
         self.is_in_block = depth > 0
         ends = [*accumulate(map(width, tokens), initial=start)][1:]
         spans = [
@@ -142,7 +142,7 @@ class Behind:
                 "@asked": self.is_asked,
                 "@unasked": is_timed and not self.is_asked,
                 "@outer": not self.is_in_block,
-                "@more": is_order and self.before,
+                "@more": is_order and self.is_more,
                 "@later": self.is_later and not self.is_arm,
             }
         else:
