@@ -100,11 +100,12 @@ class _Text:
     def with_name(self, found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
         """Return diagnostics in which the one DEF without a name has that of an unknown call."""
         nameless = [each for each in found if each.code is codes.DEF_NEEDS_NAME]
-        called = [each.values["found"] for each in found if each.code is codes.UNKNOWN_WORD
-                  and len(lexemes(self.source[self.piece(each.span)])) == 1]  # fmt: skip
-        if len(nameless) != 1 or not called:
+        called = (each.values["found"] for each in found if each.code is codes.UNKNOWN_WORD
+                  and len(lexemes(self.source[self.piece(each.span)])) == 1)  # fmt: skip
+        name = next(called, "") if len(nameless) == 1 else ""
+        if not name:
             return found
-        (own,), name, end = nameless, called[0], nameless[0].span.end
+        own, end = nameless[0], nameless[0].span.end
         repair = Repair((Edit(Span(end, end), f" {name}"),), False)
         said = own._replace(values={"name": name}, repair=repair)
         return [said if each is own else each for each in found if each.values.get("found") != name]
