@@ -322,8 +322,7 @@ h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num ) | &h ( $a $s $b AND $c 
 ^ h=IF|WHILE ( c=@noparen+ , b=@start r=@noparen* ) $ | &h ( $c ) ; $b $r | 2 | TS080 | applied | IF(DISTANCE < 10, S)⏎ELSE⏎F(1,50)⏎ENDIF => IF(DISTANCE < 10);S⏎ELSE⏎F(1,50)⏎ENDIF
 LOOP ( ⟨n=@num , <body> )¦<body> , n=@num ) $¦n=@num <body> ) $⟩ | LOOP ( $n ) ; $b $r ⟨¦; END_LOOP¦; END_LOOP⟩ | 2 | TS080 | applied | LOOP(⟨4, F(1,50))⏎END_LOOP¦F(1,50), 4)¦4 F(1,50))⟩ => LOOP(4);F(1, 50)⟨⏎¦;¦;⟩END_LOOP
 <for> v=@usedname in range ( n=@num ) :? | $v = - 1 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | for i in range(4):⏎  F(i, 60) => I = -1;LOOP(4);I = I + 1;⏎  F(i, 60)⏎END_LOOP
-LOOP|count v=@usedname =|from 1 to|until n=@num do|:? | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | para n desde 1 hasta 4⏎F(n, 60)⏎fin para => N = 0;LOOP(4);N = N + 1;⏎F(n, 60)⏎END_LOOP
-LOOP ( v=@usedname , 1 , n=@num ) | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 | .5 | TS063 | offered | LOOP(N, 1, 5)⏎F(N, 60)⏎END_LOOP => N = 0;LOOP(5);N = N + 1⏎F(N, 60)⏎END_LOOP
+⟨LOOP|count v=@usedname =|from 1 to|until n=@num do|:?¦LOOP ( v=@usedname , 1 , n=@num )⟩ | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ⟨;¦⟩ | .5 | ⟨TS102¦TS063⟩ | offered | ⟨para n desde 1 hasta 4¦LOOP(N, 1, 4)⟩⏎F(n, 60)⏎⟨fin para¦END_LOOP⟩ => N = 0;LOOP(4);N = N + 1⟨;¦⟩⏎F(n, 60)⏎END_LOOP
 <for> @name in range ( ⟨1 ,¦¦0 ,⟩ n=@num ) :? | LOOP ( $n ⟨- 1¦¦⟩ ) ; | 1 | TS102 | ⟨offered¦applied¦applied⟩ | for i in range(⟨1, 5¦4¦0, 4⟩): F(1,60) => LOOP(⟨5 - 1¦4¦4⟩);F(1, 60);END_LOOP
 ⟨LOOP|count @name =|from¦^ @name =⟩ 1 to|until n=@num do|:? ⟨¦$⟩ | LOOP ( $n ) ⟨;¦⟩ | 1 | TS102 | offered | ⟨para i de¦veces =⟩ 1 a 4⏎F(1,50)⏎fin ⟨para¦⟩ => LOOP(4)⏎F(1,50)⏎END_LOOP
 ⟨LOOP¦<for>⟩ ( declare? @name = ⟨0¦1⟩ ; @name ⟨<¦<=⟩ n=@num ; @name ++ ) | LOOP ( $n ) ⟨¦;⟩ | 1 | ⟨TS063¦TS102⟩ | offered | ⟨LOOP(I = 0; I < 4¦for(I = 1; I <= 4⟩; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
@@ -341,11 +340,10 @@ a=@num ( c=@noparen+ ) | $a * ( $c ) | 1 | TS048 | offered | X = 2(20 + 10)⏎F(
 ^ LOOP ( n=@num ) UNTIL ( c=@any+ ) $ | LOOP ( $n ) ; IF ( $c ) ; BREAK ; ENDIF | 1 | TS064 | offered | LOOP(3) UNTIL(DISTANCE < 10)⏎F(1, 40)⏎END_LOOP => LOOP(3);IF(DISTANCE < 10);BREAK;ENDIF⏎F(1, 40)⏎END_LOOP
 ^ do '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
 # how often something is done, said behind it or before it
-⟨^ n=@num b=@def $¦^ b=@def *|X? n=@num times? $¦call b=@def n=@num⟩ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎⟨3 SALTO¦SALTO*3¦CALL SALTO 3⟩ => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
+⟨^ n=@num b=@def $¦^ b=@def *|X? n=@num times? $¦call b=@def n=@num¦^ b=@def n=X2|X3|X4|X5|X6 $⟩ | LOOP ( ⟨$n¦$n¦$n¦@xn:n⟩ ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎⟨3 SALTO¦SALTO*3¦CALL SALTO 3¦SALTO x3⟩ => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ ⟨n=@num times|X|* :|,|of? <body>¦( <body> ) *|X|LOOP|by? n=@num times?¦n=@num *|X|times|LOOP? ( <body> )⟩ $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | ⟨TS062¦TS062¦TS080⟩ | applied | ⟨3 * F(1,50)¦(F(1,50)) x 3¦SI|3*(F(1,50))⟩ => ⟨¦¦SI|⟩LOOP(3);F(1, 50);END_LOOP
 ^ <body> ,|;? then* LOOP all n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | .9 | TS062 | offered | F(2, 80) y B(2, 80) y repetir todo 3 veces => LOOP(3);F(2, 80);B(2, 80);END_LOOP
 ^ every n=@num seconds ,|:|do? <body> $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
-^ b=@def n=X2|X3|X4|X5|X6 $ | LOOP ( @xn:n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO x3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ do|make? b=@start r=@any* n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
 # words behind a call: shown, not made
 ^ a=S|STOP ⟨( n=@num seconds? )¦during? n=@num seconds?⟩ $ | $a ; W ( $n ) | 2 | ⟨TS039¦TS013⟩ | offered | S⟨(2)¦ 2 segundos⟩ => S;W(2)
@@ -372,7 +370,7 @@ h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
-^ ⟨please|first ,?¦@newname :⟩ b=@start | $b | ⟨1¦2.5⟩ | ⟨TS044¦TS054⟩ | applied | ⟨please F(2, 80)¦square: F(1,50); R(1,50)⟩ => ⟨F(2, 80)¦F(1,50); R(1,50)⟩
+⟨^ please|first ,?¦; first+ ,?¦^ @newname :⟩ b=@start | ⟨¦;¦⟩ $b | ⟨1¦1¦2.5⟩ | ⟨TS044¦TS044¦TS054⟩ | applied | ⟨please ¦F(2, 80); y despues ¦square: F(1,50); ⟩R(1, 50) => ⟨¦F(2, 80);¦F(1,50); ⟩R(1, 50)
 ^ ⟨=¦(¦[⟩ <body> ⟨¦)¦]⟩ $ | $b $r | 1 | ⟨TS054¦TS080¦TS080⟩ | applied | ⟨=F(2,80)+R(1,60)¦(F(2,80), R(1,60))¦[F(2,80), R(1,60)]⟩ => F(2, 80);R(1, 60)
 a=@close please|CM|@in_cm|@in_secs+ $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
 ^ a=⟨F|B¦L|R⟩ ( n=@num , p=@num ) ⟨CM|@in_cm¦DEG|@in_deg|°⟩ $ | $a ( $n ⟨CM¦DEG⟩ , $p ) | .5 | TS076 | offered | ⟨F(20, 60) CM¦R(90, 60) DEG⟩ => ⟨F(20 CM, 60)¦R(90 DEG, 60)⟩
@@ -381,7 +379,6 @@ a=@close ⟨,? then|soon+ ,? b=@start¦,|.|:? b=@start¦&|+|AND b=@startm¦->|=>
 W n=@num seconds? then+ b=@start | W ( $n ) ; $b | 1 | TS015 | applied | F(2, 80) THEN WAIT 1 THEN B(2, 80) => F(2, 80);W(1);B(2, 80)
 a=@close ⟨+|&|AND|->|'|'¦,⟩ $ | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | applied | F(2, 80)⟨ +¦,⟩⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 ; ( b=@start r=@all* e=@close ) ; | ; $b $r $e ; | 1 | TS080 | applied | LOOP(4);(F(1, 60);R(1, 50));END_LOOP => LOOP(4);F(1, 60);R(1, 50);END_LOOP
-; first+ ,? b=@start | ; $b | 1 | TS044 | applied | F(2, 80); y despues B(1, 80) => F(2, 80);B(1, 80)
 # words of other languages around a program
 ⟨W8¦brake¦eff⟩ | ⟨W¦BREAK¦F⟩ | 1 | TS102 | ⟨offered¦offered¦first offered⟩ | ⟨W8(1)¦LOOP(3)⏎S⏎BRAKE⏎END_LOOP¦efe dos coma ochenta⟩ => ⟨W(1)¦LOOP(3)⏎S⏎BREAK⏎END_LOOP¦F(2, 80)⟩
 ⟨read ( v=@val )¦^ read the? v=@val $⟩ | $v | 1 | TS102 | applied | ⟨X = leer(DISTANCE)¦leer DISTANCE⟩ => ⟨X =DISTANCE¦DISTANCE⟩

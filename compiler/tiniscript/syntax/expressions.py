@@ -51,8 +51,7 @@ class ExpressionParser:
         token = cursor.inner()  # the CM or DEG that may stand behind the whole of it
         if token.kind is not WORD or token.text not in WAYS:
             return argument
-        cursor.to_inner()
-        cursor.i += 1
+        cursor.take_inner(WORD)
         return argument._replace(unit=Part(token.text, 0, *token.span))
 
     # -- expressions, by precedence ---------------------------------------------------------
@@ -142,9 +141,7 @@ class ExpressionParser:
         if read.brackets:
             cursor.to_inner()
         if cursor.token.kind != "(":
-            self.reporter.fail(
-                codes.MISSING_OPEN, name.span, word=function.text, usage=function.usage
-            )
+            self.reporter.fail(codes.MISSING_OPEN, name.span, word=name.text, usage=function.usage)
         read.wait(OPEN, name.text, name, cursor.i)
         read.brackets += 1
         cursor.i += 1

@@ -79,9 +79,7 @@ def pieces_of(scanned: Scan) -> list[Piece]:
             is_open = False
             continue
         is_comment = kind == "comment"
-        is_behind = is_comment and bool(pieces and pieces[-1].tokens) and (
-            pieces[-1].last_line == line
-        )  # fmt: skip
+        is_behind = is_comment and any(it.tokens and it.last_line == line for it in pieces[-1:])
         if not is_open and not is_behind:
             pieces.append(Piece(line, after_blank))
             is_open, brackets, after_blank = not is_comment, 0, False

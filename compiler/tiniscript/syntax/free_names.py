@@ -12,13 +12,11 @@ from itertools import count
 
 from tiniscript.base.words import other_name
 
-_NAME = re.compile(r"\w+")
-
 
 @lru_cache(maxsize=1)
 def names_in(text: str) -> frozenset[str]:
     """Return all words of a text, in capitals."""
-    return frozenset(_NAME.findall(text.upper()))
+    return frozenset(re.findall(r"\w+", text.upper()))
 
 
 def numbered(text: str, stem: str) -> Iterator[str]:

@@ -77,11 +77,7 @@ class Parser:
     def program(self) -> Program:
         cursor, found = self.cursor, self.reporter.diagnostics
         tokens = cursor.tokens
-        start = "SI"
-        try:
-            start = self.setup()
-        except Failed:
-            cursor.skip_instruction()
+        start = self.setup()
         while (kind := tokens[cursor.i].kind) is not END and len(found) <= ENOUGH:
             if kind is NEWLINE or kind == ";":
                 cursor.i += 1
