@@ -297,6 +297,8 @@ class _Usage:
         if any(map(self.is_button, self.signs)):
             return self.no_button()
         said = self.orders(word) if self.is_first else None
+        if said and said.code is codes.SEVERAL_ORDERS:
+            return said
         if said:
             return self.adds(fix=said.values["fix"])._replace(place=self.piece, repair=said.repair)
         is_alone = len(self.tokens) == 1 and word in WORDS and WORDS[word].arguments
