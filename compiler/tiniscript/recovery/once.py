@@ -9,7 +9,6 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 
 MANY = 6  # calls that an example has
-_OF_CASES = (codes.BRACES, codes.BREAK_OUTSIDE)  # which go with them
 # What is said once for the same values, these or all of them: with the lines of the others, and
 # their repairs, or without.
 _WITH_LINES: dict[Code, tuple[str, ...] | None] = {
@@ -25,8 +24,8 @@ _ONCE = _WITH_LINES | {
 
 def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     """Return diagnostics without those that say the same as one before."""
-    if any(each.code is codes.CASES for each in found):
-        found = [each for each in found if each.code not in _OF_CASES]
+    if any(each.code is codes.CASES for each in found):  # braces and breaks go with them
+        found = [each for each in found if each.code not in (codes.BRACES, codes.BREAK_OUTSIDE)]
     meant = {
         it.values.get("found") for it in found if it.values.get("near") or it.values.get("first")
     }

@@ -203,7 +203,9 @@ class _Reader:
     def _word(self, k: int) -> int | None:
         word, after = self.text(k), self.text(k + 1)
         names, marked = self.names, said_of(word, "value")
-        meant = self._command_of(word)
+        is_command = word in names.actuators or (word in DONE and word != "BREAK")
+        said = [word] if is_command else [each.concept for each in names.meanings(word)]
+        meant = next((each for each in said if is_command or each in CALLED or each == "S"), None)
         is_before_number = self._is_number(k + 1) or after in ("=", ":")
         if self.command in MOVES and word in _LETTERS and is_before_number:
             self.mark = _LETTERS[word]
@@ -250,12 +252,6 @@ class _Reader:
     def _take(self, text: str, unit: str | None) -> None:
         self.values.append(_Value(text, unit))
         self.mark = None
-
-    def _command_of(self, word: str) -> str | None:
-        if word in self.names.actuators or (word in DONE and word != "BREAK"):
-            return word
-        found = [each.concept for each in self.names.meanings(word)]
-        return next((each for each in found if each in CALLED or each == "S"), None)
 
     def _take_command(self, word: str, meant: str) -> bool:
         meanings = () if word in DONE else self.names.meanings(word)
