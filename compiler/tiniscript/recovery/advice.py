@@ -269,12 +269,6 @@ def _all(gaps: _Gaps, times: str) -> str:
     return ";".join((f"LOOP({times})", *orders, BLOCK_ENDS["LOOP"]))
 
 
-def _twice(gaps: _Gaps) -> str:
-    """All that stands before, twice, where that is more than one instruction."""
-    found = _all(gaps, "2")
-    return found if found.count(";") > _ONE_IN_LOOP else ""
-
-
 def _worded(gaps: _Gaps, is_not: bool) -> dict[str, str]:
     """What the words of a question ask, or the opposite."""
     row, names = gaps.tokens("s"), gaps.part.names
@@ -290,8 +284,7 @@ def _worded(gaps: _Gaps, is_not: bool) -> dict[str, str]:
 
 def _sensor(gaps: _Gaps, k: int) -> str:
     """One of the sensors that a word may mean."""
-    found = sensors_of(plain(gaps["l"]), gaps.part.names)
-    return found[k] if k < len(found) else ""
+    return "".join(sensors_of(plain(gaps["l"]), gaps.part.names)[k : k + 1])
 
 
 def _alone(gaps: _Gaps) -> str:
@@ -340,7 +333,8 @@ def _loop(gaps: _Gaps) -> str:
 
 
 def _with(gaps: _Gaps, value: re.Match[str] | None, new: str) -> str:
-    """The call with another value, where it has one that differs."""
+    """The call with another value, of which the old one is a part; nothing where it is the same."""
+    new = value.expand(new) if value else ""
     if value is None or value[1] == new:
         return ""
     return f"{gaps.part.call[: value.start(1)]}{new}{gaps.part.call[value.end(1) :]}"
@@ -350,12 +344,6 @@ def _paced(gaps: _Gaps) -> str:
     """The call with another power."""
     number = gaps["n"]
     return _with(gaps, gaps.part.power, number) if 9 < float(number) <= 100 else ""
-
-
-def _by_way(gaps: _Gaps) -> str:
-    """The call by centimetres or degrees instead of seconds."""
-    time = gaps.part.time
-    return _with(gaps, time, f"{time[1]} {UNIT_OF[gaps.part.own]}") if time else ""
 
 
 def _asked(gaps: _Gaps, name: str = "q") -> list[Lexeme]:
@@ -373,12 +361,6 @@ def _shown(gaps: _Gaps) -> str:
 def _contrary(gaps: _Gaps) -> str:
     asked = _asked(gaps)
     return laid_out(rewrites.negated(asked)) if asked else ""
-
-
-def _near(gaps: _Gaps) -> str:
-    """A question for something near: up to there, rather than only if it is."""
-    asked = _asked(gaps)
-    return laid_out(asked) if any(each.text == "<" for each in asked) else ""
 
 
 def _rest(gaps: _Gaps, name: str) -> str:
@@ -410,7 +392,8 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "above": lambda gaps: ["", *gaps.part.before][-1] or "",
     "all": lambda gaps: _all(gaps, gaps["n?"]), "often": lambda gaps: _all(gaps, "4"),
     "endless": lambda gaps: _all(gaps, "FOREVER"),
-    "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)), "twice": _twice,
+    "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)),
+    "twice": lambda gaps: it if (it := _all(gaps, "2")).count(";") > _ONE_IN_LOOP else "",
     "said": lambda gaps: gaps.part.words.strip(" ,:"),
     "head": lambda gaps: gaps.meant("h"), "called": lambda gaps: gaps.meant("w"),
     "block": lambda gaps: gaps.meant("g"), "usage": lambda gaps: WORDS[gaps.meant("w")].usage,
@@ -419,7 +402,8 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
     "next": lambda gaps: WORDS[plain(gaps["s"])].example,
     "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),
-    "alone": _alone, "then": _then, "free": _free, "loop": _loop, "by_way": _by_way,
+    "alone": _alone, "then": _then, "free": _free, "loop": _loop,
+    "by_way": lambda gaps: _with(gaps, gaps.part.time, rf"\1 {UNIT_OF[gaps.part.own]}"),
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
     "end": lambda gaps: "" if _asked(gaps, "s") else BLOCK_ENDS[gaps.meant("g")],
@@ -427,7 +411,8 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "other": lambda gaps: re.sub(r"^\w+", OTHER_WAY[gaps.part.own], gaps.part.call),
     "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",
     "longer": lambda gaps: _with(gaps, gaps.part.time, gaps["n"]), "paced": _paced,
-    "question": lambda gaps: laid_out(_asked(gaps)), "contrary": _contrary, "near": _near,
+    "question": lambda gaps: laid_out(_asked(gaps)), "contrary": _contrary,
+    "near": lambda gaps: it if "<" in (it := laid_out(_asked(gaps))).split() else "",
     "made_up": lambda gaps: made_up(_calls(gaps.part)),
     "until": lambda gaps: f" {_rest(gaps, 't')}".rstrip(),
     "behind": lambda gaps: _rest(gaps, "w"), "orders": _orders,

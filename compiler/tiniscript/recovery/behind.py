@@ -242,9 +242,8 @@ class Behind:
             return len(words) == 1 or token.text in self.names.defs
         if len(words) == 1 and token.text in WORDS and not said_of(token.text, "note"):
             return True
-        if len(words) > 1 or self.means(token.text) or said_of(token.text, "power"):
-            return False
-        if self.own == "START":
+        is_told = self.means(token.text) or said_of(token.text, "power") or self.own == "START"
+        if is_told or len(words) > 1:
             return False
         source = token.source or ""
         is_name = len(source) > 1 and source.isupper()
@@ -259,10 +258,8 @@ class Behind:
         is_begun = k or len(text) == 1 or said_of(text, "count")
         if said_of(text, "small") and not is_last and is_begun:
             return False
-        if said_of(text, "lap"):
-            return own not in ("L", "R", "M", "B")
-        if said_of(text, "turn"):
-            return own not in ("L", "R", "M")
+        if said_of(text, "lap", "turn"):
+            return own not in ("L", "R", "M") and not (own == "B" and said_of(text, "lap"))
         if said_of(text, "on", "off", "act"):
             return True
         if said_of(text, "end") or text in ENDED:

@@ -366,11 +366,9 @@ class _Usage:
             return self.adds(behind=rest[-1])
         if not below:
             return self.adds(head=self.source[self.found.span])
-        if top := [n for n in below if _TOP.match(rows[n])]:  # which no block is around
-            inside = [n for n in below if n < min(top)]
-        else:
-            depth = [len(row) - len(row.lstrip()) for row in rows]
-            inside = [*takewhile(lambda n: depth[n] > depth[k], below)]
+        depth = [len(row) - len(row.lstrip()) for row in rows]
+        top = min((n for n in below if _TOP.match(rows[n])), default=0)  # which no block is around
+        inside = [*takewhile(lambda n: n < top if top else depth[n] > depth[k], below)]
         if not inside:
             return self.found
         last = without_note(rows[inside[-1]])[0].strip(" \t;")

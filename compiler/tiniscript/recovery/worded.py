@@ -48,7 +48,7 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     if is_alone or is_button or (numbers and not said & {"ahead", "light", "none"}):
         return None
     asked = [
-        f"{name} {_sign(name, texts, said)} {number or _example(names.asked.get(name), name)}"
+        f"{name} {_sign(name, said)} {number or _example(names.asked.get(name), name)}"
         for name in _subjects(own, texts, said, names)
     ]
     is_asking = bool(own or said & _ASKED)
@@ -116,10 +116,9 @@ def _lights(names: Names) -> list[str]:
     return sorted(name for name in names.asked if name.partition("_")[0] in ("LIGHT", "LINE"))
 
 
-def _sign(name: str, texts: Sequence[str], said: set[str]) -> str:
+def _sign(name: str, said: set[str]) -> str:
     is_below = "little" in said or (name == "DISTANCE" and "much" not in said)
-    sign = "<" if is_below != bool(said & {"no", "without", "none"}) else ">"
-    return sign
+    return "<" if is_below != bool(said & {"no", "without", "none"}) else ">"
 
 
 def _example(device: Device | None, name: str) -> int:
