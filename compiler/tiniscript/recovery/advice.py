@@ -190,12 +190,11 @@ def _advice(row: Row, gaps: _Gaps) -> Advice:
 
 def _said_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
     """Return the call that words before a question say, and how many they are."""
-    for k, token in enumerate(tokens):
-        meant = names.meant(token.text, NEAR)
-        if k and meant in ("IF", "WHILE"):
-            call = filled(tokens[:k], names, has_until=meant == "WHILE", is_order=True)
-            return (k, laid_out(call.tokens)) if call and not call.times else None
-    return None
+    meant = [names.meant(each.text, NEAR) for each in tokens]
+    asks = next((k for k in range(1, len(tokens)) if meant[k] in ("IF", "WHILE")), 0)
+    has_until = meant[asks] == "WHILE"
+    call = filled(tokens[:asks], names, has_until, is_order=True) if asks else None
+    return (asks, laid_out(call.tokens)) if call and not call.times else None
 
 
 class _NoGap(Exception):
@@ -358,11 +357,6 @@ def _shown(gaps: _Gaps) -> str:
     return "" if is_name else word
 
 
-def _contrary(gaps: _Gaps) -> str:
-    asked = _asked(gaps)
-    return laid_out(rewrites.negated(asked)) if asked else ""
-
-
 def _rest(gaps: _Gaps, name: str) -> str:
     """The words from a capture on."""
     start, end = gaps.span(name)
@@ -411,7 +405,8 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "other": lambda gaps: re.sub(r"^\w+", OTHER_WAY[gaps.part.own], gaps.part.call),
     "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",
     "longer": lambda gaps: _with(gaps, gaps.part.time, gaps["n"]), "paced": _paced,
-    "question": lambda gaps: laid_out(_asked(gaps)), "contrary": _contrary,
+    "question": lambda gaps: laid_out(_asked(gaps)),
+    "contrary": lambda gaps: laid_out(rewrites.negated(it)) if (it := _asked(gaps)) else "",
     "near": lambda gaps: it if "<" in (it := laid_out(_asked(gaps))).split() else "",
     "made_up": lambda gaps: made_up(_calls(gaps.part)),
     "until": lambda gaps: f" {_rest(gaps, 't')}".rstrip(),

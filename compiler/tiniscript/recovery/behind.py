@@ -252,11 +252,10 @@ class Behind:
     def _is_order(self, k: int) -> bool:
         """Whether the word at a place says what the instruction does not."""
         text, own = self.row[k].text, self.own
-        if own == "BEEP" and said_of(text, "note"):
-            return False
         is_last = not any(each.kind in (WORD, NUMBER) for each in self.row[k + 1 :])
         is_begun = k or len(text) == 1 or said_of(text, "count")
-        if said_of(text, "small") and not is_last and is_begun:
+        is_small = said_of(text, "small") and not is_last and is_begun
+        if is_small or (own == "BEEP" and said_of(text, "note")):
             return False
         if said_of(text, "lap", "turn"):
             return own not in ("L", "R", "M") and not (own == "B" and said_of(text, "lap"))
@@ -268,9 +267,8 @@ class Behind:
             return own != "SHOW" and self.row[0].text != "(" and not self.is_asked
         meant = self.means(text)
         known = WORDS.get(meant)
-        if known is None or known.role in ("value", "operator", "function", "start"):
-            return False
-        if meant == own or (meant == "S" and self.is_asked):
+        is_same = meant == own or (meant == "S" and self.is_asked)
+        if is_same or known is None or known.role in ("value", "operator", "function", "start"):
             return False
         return own not in ("LOOP", "DEF", "S", "STOP") or meant not in ("S", "LOOP", "DEF")
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from functools import cached_property
 from itertools import pairwise, takewhile
 
 from tiniscript.base.kit import Kit
@@ -65,10 +64,10 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     has_no_ends = is_near or any(it.code in (codes.BRACES, codes.DOTS) for it in told)
     reserved = {each.values["word"] for each in told if each.code is codes.RESERVED}
     unknown = {text.piece(it.span) for it in told if it.code in _OF_ITS_WORD}
-    part = next((it.values["part"] for it in told if it.values.get("part")), "")
-    if part and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
-        told = [it._replace(values={**it.values, "part": part}) for it in told
-                if not it.values.get("part")]  # fmt: skip
+    parts = [it for it in told if it.values.get("part")]
+    if parts and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
+        part = {"part": parts[0].values["part"]}
+        told = [it._replace(values={**it.values, **part}) for it in told if it not in parts]
     return [
         each
         for each in (*told, *found[_MANY:])
@@ -81,13 +80,9 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
 class _Text:
     def __init__(self, source: Source, kit: Kit) -> None:
         self.source = source
-        self.kit = kit
+        self.names = Names([*map(tokens_of, source.text.split("\n"))], kit)
         self.begun = "".join(re.findall(r"\A\s*(S[IB])\s*\|", source.text.upper()))
         self.lacks_loop = False  # an END_LOOP is left for a header
-
-    @cached_property
-    def names(self) -> Names:
-        return Names([*map(tokens_of, self.source.text.split("\n"))], self.kit)
 
     def piece(self, span: Span) -> Span:
         """Return the instruction around a place: between the separators of its line."""
@@ -296,10 +291,9 @@ class _Usage:
         word = self.found.values["word"]
         if any(map(self.is_button, self.signs)):
             return self.no_button()
-        said = self.orders(word) if self.is_first else None
-        if said and said.code is codes.SEVERAL_ORDERS:
-            return said
-        if said:
+        if self.is_first and (said := self.orders(word)):
+            if said.code is codes.SEVERAL_ORDERS:
+                return said
             return self.adds(fix=said.values["fix"])._replace(place=self.piece, repair=said.repair)
         is_alone = len(self.tokens) == 1 and word in WORDS and WORDS[word].arguments
         example = WORDS[word].example if is_alone else ""
