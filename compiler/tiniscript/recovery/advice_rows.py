@@ -68,7 +68,9 @@ ADVICE = """
 ^ @none IF <either> do? w=@start @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n});{then};ENDIF; another=IF({two} {r} {n});{then};ENDIF | si luz > 50 apita => another=IF(LIGHT_R > 50);BEEP(1, 440);ENDIF
 ^ @none h=SI <either> <body> $ | TS045 | one=IF({one} {r} {n}); two=IF({two} {r} {n}) | si luz > 50⏎S⏎fin => two=IF(LIGHT_R > 50)
 ^ @none <either> @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n})⟨; another=IF({two} {r} {n})¦⟩ | ⟨luz¦pared⟩ > 50: F(2, 80) => one=IF(⟨LIGHT_L¦DISTANCE⟩ > 50)
-^ @none s=@cond+ ⟨:? w=@start @any* ¦¦¿|¡ @any* ⟩$ | TS042 | found={s}; asked={s}; ⟨fix¦fix¦one⟩=IF({alone})⟨;{then};ENDIF¦¦⟩ | DISTANCE < 10⟨: S¦¦ ¿si? S⟩ => ⟨fix¦fix¦one⟩=IF(DISTANCE < 10)⟨;S;ENDIF¦¦⟩
+^ @none s=@cond+ :? w=@start @any* $ | TS042 | found={s}; asked={s}; fix=IF({alone});{then};ENDIF | DISTANCE < 10: S => fix=IF(DISTANCE < 10);S;ENDIF
+^ @none s=@cond+ $ | TS042 | found={s}; asked={s}; fix=IF({alone}) | DISTANCE < 20 => fix=IF(DISTANCE < 20)
+^ @none s=@cond+ ¿|¡ @any* $ | TS042 | found={s}; asked={s}; one=IF({alone}) | DISTANCE < 20 ¿si? S => one=IF(DISTANCE < 20)
 ^ @none v=@word|@num|+|-|*|/|%|(|)+ = x=@name $ | TS042 | found={x}; turned={x}; fix={free} = {v} | DISTANCE - 5 = FALTA => fix=FALTA = DISTANCE - 5
 ^ @none F ( s=UNTIL @word+ , n=@num ) $ | TS102 | found={s}; right=UNTIL; usage=F(FOREVER, {n}) UNTIL({distance} < 10) | F(hasta la pared, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)
 ^ @none c=F|B|L|R ( s=⟨FOREVER¦@word+ t=endless⟩ , n=@num ) $ | TS102 | found={s}⟨¦ {t}⟩; right=FOREVER; usage={c}(FOREVER, {n}) UNTIL({distance} < 10) | F(⟨siempre¦sin fin⟩, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)

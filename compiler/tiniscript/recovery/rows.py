@@ -174,7 +174,9 @@ o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val ⟨¦, c=@num|@val⟩ ) | 
 a=@num v=@val | @by:a:v | 1 | TS048 | offered | VEL = 30⏎F(2, 2VEL) => VEL = 30⏎F(2, 2 * VEL)
 a=@num|@val ⟨modulo¦plus⟩ b=@num|@val | $a ⟨%¦+⟩ $b | 1 | TS010 | first | X = 7⏎X = X ⟨MOD¦mas⟩ 2 => X = 7⏎X = X ⟨%¦+⟩ 2
 no l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
-⟨l=@val¦l=@val¦l=MIN|MAX ( c=@noparen+ )⟩ s=⟨<|>|<=|>=¦=¦<|>|<=|>=⟩ a=@num ⟨o=AND|OR t=<|>|<=|>=¦or¦o=AND|OR t=<|>|<=|>=⟩ b=@num | $l ⟨¦¦( $c )⟩ $s $a ⟨&o $l $t¦OR $l =¦&o $l ( $c ) $t⟩ $b | 1 | TS018 | offered | IF(⟨DISTANCE < 10 OR <¦DISTANCE = 10 O¦MIN(2, DISTANCE) < 10 OR <⟩ 5);S;ENDIF => IF(⟨DISTANCE < 10 OR DISTANCE <¦DISTANCE = 10 OR DISTANCE =¦MIN(2, DISTANCE) < 10 OR MIN(2, DISTANCE) <⟩ 5);S;ENDIF
+l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
+l=MIN|MAX ( c=@noparen+ ) s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l ( $c ) $s $a &o $l ( $c ) $t $b | 1 | TS018 | offered | IF(MIN(2, DISTANCE) < 10 OR < 5);S;ENDIF => IF(MIN(2, DISTANCE) < 10 OR MIN(2, DISTANCE) < 5);S;ENDIF
+l=@val = a=@num or b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
 ( s=<|<= n=@num ) | ( DISTANCE $s $n ) | 1 | TS018 | offered | IF(< 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ c=@cond+ ? <body> : d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
@@ -202,7 +204,8 @@ v=@val CM|in? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 ^ v=@val '->' SHOW $ | SHOW ( $v ) | 1 | TS015 | offered | DISTANCE -> SHOW => SHOW(DISTANCE)
-⟨the v=@val¦v=@val to the? wall⟩ | ⟨$v¦&v⟩ | 1 | TS102 | first | ⟨lee la distancia¦IF(distancia a la pared < 10)⏎S⏎ENDIF⟩ => ⟨DISTANCE¦IF(DISTANCE < 10)⏎S⏎ENDIF⟩
+the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
+v=@val to the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 # variables
 v=@name = a=@num|@val ⟨¦s=<|>|<=|>= n=@num⟩ b=@start | $v = $a ⟨¦$s $n⟩ ; $b | 1 | TS013 | applied | X = DISTANCE⟨¦ > 30⟩ F(1, 50) => X = DISTANCE⟨¦ > 30⟩;F(1, 50)
 v=@name ⟨++¦- - $⟩ | $v = $v ⟨+¦-⟩ 1 | 1 | TS050 | applied | v = 0⏎v⟨++¦--⟩ => v = 0⏎v = v ⟨+ 1¦-1⟩
@@ -210,7 +213,8 @@ v=@name ⟨++¦- - $⟩ | $v = $v ⟨+¦-⟩ 1 | 1 | TS050 | applied | v = 0⏎v
 ^ c=@callw ( v=@name ⟨++¦+= e=@num⟩ r=@any* $ | $v = $v + ⟨1¦$e⟩ ; $c ( $v $r | 1 | TS050 | offered | X = 1⏎SHOW(X⟨++¦ += 2⟩) => X = 1⏎X = X + ⟨1¦2⟩;SHOW(X)
 v=@name ⟨+=¦-=¦*=⟩ e=@any+ | $v = $v ⟨+¦-¦*⟩ $e | 1 | TS050 | applied | X = 1⏎X ⟨+=¦-=¦*=⟩ 2 => X = 1⏎X = X ⟨+¦-¦*⟩ 2
 ^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
-^ ⟨v=@name , w=@name = e=@num ,¦v=@name = e=@num ,? w=@name =⟩ f=@num $ | $v = $e ; $w = $f | 1 | ⟨TS050¦TS013⟩ | applied | ⟨X, Y = 5, 6⏎F(X, Y)¦x = 5, y = 80⏎F(x, y)⟩ => ⟨X = 5;Y = 6⏎F(X, Y)¦X = 5;Y = 80⏎F(x, y)⟩
+^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
+^ v=@name = e=@num ,? w=@name = f=@num $ | $v = $e ; $w = $f | 1 | TS013 | applied | x = 5, y = 80⏎F(x, y) => X = 5;Y = 80⏎F(x, y)
 ^ n=@newname = ⟨'{'¦b=@callw|LOOP r=@any+ $⟩ | DEF $n ; ⟨{¦$b $r⟩ | ⟨1¦2⟩ | TS051 | ⟨offered¦applied⟩ | BAILE = ⟨{ ¦⟩L(1,60)⟨; R(1,60) }¦⟩⏎BAILE => DEF BAILE;L(1, 60);⟨R(1, 60);¦⟩END_DEF⟨;¦⟩⏎BAILE
 ^ declare ⟨v=@newname ;? $¦declare? v=@name =⟩ | $v = ⟨0¦⟩ | 1 | TS044 | ⟨offered¦applied⟩ | var vel⟨¦ = 50⟩⏎F(2, vel) => vel = ⟨0¦50⟩⏎F(2, vel)
 ^ ⟨set|declare the? v=@word =|to|is?¦v=@newname is|equal|: to|equal? one?⟩ e=@num $ | $v = $e | ⟨1¦2⟩ | TS050 | applied | ⟨set x to 5¦velocidad es 60⏎F(2, velocidad)⟩ => ⟨x = 5¦velocidad = 60⏎F(2, velocidad)⟩
@@ -272,11 +276,13 @@ h=IF|WHILE|LOOP|UNTIL|ELSEIF ⟨[¦:|.|->|, (⟩ | &h ( | 1 | ⟨TS010¦TS015⟩
 <asks> ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ ) | &h ( ( $c ) ⟨AND¦OR⟩ ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) ⟨y¦o⟩ (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) ⟨AND¦OR⟩(LIGHT_R > 9));S;ENDIF
 h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@any+ '}' | &h ( $c ) | 1 | TS015 | applied | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 <asks> ( c=@noparen+ b=@start | &h ( $c ) ; $b | 1 | TS016 | offered | si DISTANCE < 10 S si DISTANCE > 10 F(1,50) => IF(DISTANCE < 10);S;IF(DISTANCE > 10);F(1, 50);ENDIF;ENDIF
-<asks> c=@cond+ ⟨'{'¦do|:|,|'|'|;|$¦b=@start⟩ | &h ( $c ) ; ⟨{¦¦$b⟩ | ⟨1.3¦1.3¦2⟩ | ⟨TS015¦TS015¦TS014⟩ | applied | SI DISTANCE < 10⟨ {⏎S⏎}¦ | S¦ S⟩ => IF(DISTANCE < 10);⟨⏎S⏎END¦S;END¦S;END⟩IF
+<asks> c=@cond+ ⟨'{'¦do|:|,|'|'|;|$⟩ | &h ( $c ) ; ⟨{¦⟩ | 1.3 | TS015 | applied | SI DISTANCE < 10⟨ {⏎S⏎}¦ | S⟩ => IF(DISTANCE < 10);⟨⏎S⏎END¦S;END⟩IF
+<asks> c=@cond+ b=@start | &h ( $c ) ; $b | 2 | TS014 | applied | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
 h=IF|WHILE|LOOP|WHEN ( c=@any+ , <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
 ^ '='⟨?¦⟩ IF ( c=@any+ ⟨,¦;⟩ <body> ⟨,¦;⟩ d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | ⟨.9¦.8⟩ | TS080 | offered | ⟨IF(DISTANCE < 10, B(1, 60), ¦=SI(DISTANCE<10;B(1;60);⟩F(1, 60)) => IF(DISTANCE < 10);B(1, 60);ELSE;F(1, 60);ENDIF
 h=IF|WHILE ( c=@any+ , b=@start | &h ( $c ) ; $b | 2 | TS080 | applied | IF(DISTANCE < 10, S) ELSE F(1, 60) ENDIF => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
-<block> <question> ⟨do|times ':'?¦:|,|=|?|'|'|- ':'?¦b=@start|'{'⟩ | &h ( $c ) ; ⟨¦¦$b⟩ | 1 | ⟨TS044¦TS014¦TS014⟩ | applied | LOOP(3)⟨ TIMES⏎¦:⏎¦ ⟩F(1,50)⟨⏎END_LOOP¦⏎END_LOOP¦⟩ => LOOP(3)⟨⏎¦⏎¦;⟩F(1,⟨¦¦ ⟩50)⟨⏎¦⏎¦;⟩END_LOOP
+<block> <question> ⟨do|times¦:|,|=|?|'|'|-⟩ ':'? | &h ( $c ) ; | 1 | ⟨TS044¦TS014⟩ | applied | LOOP(3)⟨ TIMES¦:⟩⏎F(1,50)⏎END_LOOP => LOOP(3)⏎F(1,50)⏎END_LOOP
+<block> <question> b=@start|'{' | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(3) F(1,50) => LOOP(3);F(1, 50);END_LOOP
 <block> <question> ⟨;? (¦[⟩ <body> ⟨)¦]⟩ $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4) ⟨(¦[⟩F(1,60); R(1,50)⟨)¦]⟩ => LOOP(4);F(1, 60);R(1, 50);END_LOOP
 # ELSE and ELSEIF
 a=@any ELSE b=@name = | $a ; ELSE ; $b = | 1 | TS014 | applied | X = 5⏎IF(X = 5) X = 6 ELSE X = 7 => X = 5⏎IF(X = 5);X = 6;ELSE;X = 7;ENDIF
@@ -322,7 +328,8 @@ h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num ) | &h ( $a $s $b AND $c 
 ^ h=IF|WHILE ( c=@noparen+ , b=@start r=@noparen* ) $ | &h ( $c ) ; $b $r | 2 | TS080 | applied | IF(DISTANCE < 10, S)⏎ELSE⏎F(1,50)⏎ENDIF => IF(DISTANCE < 10);S⏎ELSE⏎F(1,50)⏎ENDIF
 LOOP ( ⟨n=@num , <body> )¦<body> , n=@num ) $¦n=@num <body> ) $⟩ | LOOP ( $n ) ; $b $r ⟨¦; END_LOOP¦; END_LOOP⟩ | 2 | TS080 | applied | LOOP(⟨4, F(1,50))⏎END_LOOP¦F(1,50), 4)¦4 F(1,50))⟩ => LOOP(4);F(1, 50)⟨⏎¦;¦;⟩END_LOOP
 <for> v=@usedname in range ( n=@num ) :? | $v = - 1 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | for i in range(4):⏎  F(i, 60) => I = -1;LOOP(4);I = I + 1;⏎  F(i, 60)⏎END_LOOP
-⟨LOOP|count v=@usedname =|from 1 to|until n=@num do|:?¦LOOP ( v=@usedname , 1 , n=@num )⟩ | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ⟨;¦⟩ | .5 | ⟨TS102¦TS063⟩ | offered | ⟨para n desde 1 hasta 4¦LOOP(N, 1, 4)⟩⏎F(n, 60)⏎⟨fin para¦END_LOOP⟩ => N = 0;LOOP(4);N = N + 1⟨;¦⟩⏎F(n, 60)⏎END_LOOP
+LOOP|count v=@usedname =|from 1 to|until n=@num do|:? | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | para n desde 1 hasta 4⏎F(n, 60)⏎fin para => N = 0;LOOP(4);N = N + 1;⏎F(n, 60)⏎END_LOOP
+LOOP ( v=@usedname , 1 , n=@num ) | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 | .5 | TS063 | offered | LOOP(N, 1, 5)⏎F(N, 60)⏎END_LOOP => N = 0;LOOP(5);N = N + 1⏎F(N, 60)⏎END_LOOP
 <for> @name in range ( ⟨1 ,¦¦0 ,⟩ n=@num ) :? | LOOP ( $n ⟨- 1¦¦⟩ ) ; | 1 | TS102 | ⟨offered¦applied¦applied⟩ | for i in range(⟨1, 5¦4¦0, 4⟩): F(1,60) => LOOP(⟨5 - 1¦4¦4⟩);F(1, 60);END_LOOP
 ⟨LOOP|count @name =|from¦^ @name =⟩ 1 to|until n=@num do|:? ⟨¦$⟩ | LOOP ( $n ) ⟨;¦⟩ | 1 | TS102 | offered | ⟨para i de¦veces =⟩ 1 a 4⏎F(1,50)⏎fin ⟨para¦⟩ => LOOP(4)⏎F(1,50)⏎END_LOOP
 ⟨LOOP¦<for>⟩ ( declare? @name = ⟨0¦1⟩ ; @name ⟨<¦<=⟩ n=@num ; @name ++ ) | LOOP ( $n ) ⟨¦;⟩ | 1 | ⟨TS063¦TS102⟩ | offered | ⟨LOOP(I = 0; I < 4¦for(I = 1; I <= 4⟩; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
@@ -366,11 +373,14 @@ DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩ | DEF $n ; ⟨¦$b⟩ | 1 | TS
 ^ ⟨end¦END_DEF⟩ @def $ | END_DEF | 1 | ⟨TS022¦TS044⟩ | ⟨applied¦first⟩ | DEF SALTO⏎F(1, 50)⏎⟨FIN¦END_DEF⟩ SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
 h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS039 | first offered | LOOP(3)⏎F(2, 80)⏎END_LOOP(3) => LOOP(3)⏎F(2, 80)⏎END_LOOP
 ; LOOP $ | ; END_LOOP | 4 | TS014 | applied | LOOP(4) F(1,50) R(0.5,50) LOOP => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
-^ ⟨program @word¦then ,?¦leaves 0 ;?¦import @any+ ;?¦idles⟩ $ |  | 1 | ⟨TS044¦TS044¦TS065¦TS072¦TS044⟩ | ⟨applied¦applied¦applied¦applied¦offered⟩ | ⟨programa baile¦luego,¦return 0;¦import robot¦NADA⟩⏎F(1, 50) => ⏎F(1, 50)
+^ ⟨program @word¦then ,?⟩ $ |  | 1 | TS044 | applied | ⟨programa baile¦luego,⟩⏎F(1, 50) => ⏎F(1, 50)
+^ ⟨leaves 0¦import @any+⟩ ;? $ |  | 1 | ⟨TS065¦TS072⟩ | applied | ⟨return 0;¦import robot⟩⏎F(1, 50) => ⏎F(1, 50)
+^ idles $ |  | 1 | TS044 | offered | NADA⏎F(1, 50) => ⏎F(1, 50)
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
-⟨^ please|first ,?¦; first+ ,?¦^ @newname :⟩ b=@start | ⟨¦;¦⟩ $b | ⟨1¦1¦2.5⟩ | ⟨TS044¦TS044¦TS054⟩ | applied | ⟨please ¦F(2, 80); y despues ¦square: F(1,50); ⟩R(1, 50) => ⟨¦F(2, 80);¦F(1,50); ⟩R(1, 50)
+⟨^ please|first ,?¦; first+ ,?⟩ b=@start | ⟨¦;⟩ $b | 1 | TS044 | applied | ⟨please¦F(2, 80); y despues⟩ R(1, 50) => ⟨¦F(2, 80);⟩R(1, 50)
+^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
 ^ ⟨=¦(¦[⟩ <body> ⟨¦)¦]⟩ $ | $b $r | 1 | ⟨TS054¦TS080¦TS080⟩ | applied | ⟨=F(2,80)+R(1,60)¦(F(2,80), R(1,60))¦[F(2,80), R(1,60)]⟩ => F(2, 80);R(1, 60)
 a=@close please|CM|@in_cm|@in_secs+ $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
 ^ a=⟨F|B¦L|R⟩ ( n=@num , p=@num ) ⟨CM|@in_cm¦DEG|@in_deg|°⟩ $ | $a ( $n ⟨CM¦DEG⟩ , $p ) | .5 | TS076 | offered | ⟨F(20, 60) CM¦R(90, 60) DEG⟩ => ⟨F(20 CM, 60)¦R(90 DEG, 60)⟩
@@ -380,9 +390,12 @@ W n=@num seconds? then+ b=@start | W ( $n ) ; $b | 1 | TS015 | applied | F(2, 80
 a=@close ⟨+|&|AND|->|'|'¦,⟩ $ | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | applied | F(2, 80)⟨ +¦,⟩⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 ; ( b=@start r=@all* e=@close ) ; | ; $b $r $e ; | 1 | TS080 | applied | LOOP(4);(F(1, 60);R(1, 50));END_LOOP => LOOP(4);F(1, 60);R(1, 50);END_LOOP
 # words of other languages around a program
-⟨W8¦brake¦eff⟩ | ⟨W¦BREAK¦F⟩ | 1 | TS102 | ⟨offered¦offered¦first offered⟩ | ⟨W8(1)¦LOOP(3)⏎S⏎BRAKE⏎END_LOOP¦efe dos coma ochenta⟩ => ⟨W(1)¦LOOP(3)⏎S⏎BREAK⏎END_LOOP¦F(2, 80)⟩
+W8 | W | 1 | TS102 | offered | W8(1) => W(1)
+brake | BREAK | 1 | TS102 | offered | LOOP(3)⏎S⏎BRAKE⏎END_LOOP => LOOP(3)⏎S⏎BREAK⏎END_LOOP
+eff | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
 ⟨read ( v=@val )¦^ read the? v=@val $⟩ | $v | 1 | TS102 | applied | ⟨X = leer(DISTANCE)¦leer DISTANCE⟩ => ⟨X =DISTANCE¦DISTANCE⟩
-^ ⟨no F|B|L|R|M extra?¦cease of F¦off|S the? engine⟩ $ | S | ⟨.5¦.5¦1⟩ | TS102 | ⟨first¦first¦applied⟩ | ⟨no avanzar mas¦para de avanzar¦apaga motores⟩ => S
+^ ⟨no F|B|L|R|M extra?¦cease of F⟩ $ | S | .5 | TS102 | first | ⟨no avanzar mas¦para de avanzar⟩ => S
+^ off|S the? engine $ | S | 1 | TS102 | applied | apaga motores => S
 ^ ⟨START '|'¦b=@start r=@all* '|' s=SI|SB $⟩ | ⟨SI '|'¦$s '|' $b $r⟩ | 1 | TS034 | offered | ⟨start|F(2,80)¦F(2, 80)|SI⟩ => SI |F(2⟨,¦, ⟩80)
 IF ⟨c=@noparen+¦<question>⟩ BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | ⟨TS015¦TS014⟩ | applied | LOOP(3)⏎S⏎IF⟨ DISTANCE < 10¦(DISTANCE < 10)⟩ BREAK⏎END_LOOP => LOOP(3)⏎S⏎IF(DISTANCE < 10);BREAK;ENDIF⟨;¦⟩⏎END_LOOP
 ^ declare|DEF? main ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
