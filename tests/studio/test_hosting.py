@@ -191,6 +191,18 @@ def test_stop_stops_and_says_so(page: Page, robot: PtyRobot) -> None:
     assert not robot.moves
 
 
+@pytest.mark.parametrize("stops", [-1, 0.5, "1", 2**40])
+def test_a_stop_that_counts_wrongly_stops_before_it_is_refused(
+    hosting: Hosting, page: Page, robot: PtyRobot, stops: object
+) -> None:
+    page.upload(FOREVER)
+    robot.until(lambda: robot.moves, "it drives")
+    with pytest.raises(BadRequest):
+        hosting.answer({"do": "stop", "page": "page", "stops": stops})
+    page.until(lambda each: each.get("event") == "STOPPED")
+    assert not robot.moves
+
+
 def test_another_command_stops_it_meanwhile(page: Page, robot: PtyRobot) -> None:
     page.upload(FOREVER)
     robot.until(lambda: robot.moves, "it drives")

@@ -56,7 +56,11 @@ class Hosting:
         if robot is None:
             return {"news": [{"over": "left", "said": "", "number": 0}]}
         if do == "stop":
-            robot.attending.stop(whole(request, "stops", 0, MOST_COUNT, 0))
+            stops = 0
+            try:
+                stops = whole(request, "stops", 0, MOST_COUNT, 0)
+            finally:  # whatever it counts
+                robot.attending.stop(stops)
         elif do == "leave":
             robot.leave()
         seen = whole(request, "seen", 0, MOST_COUNT, 0)
