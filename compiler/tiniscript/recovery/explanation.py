@@ -430,7 +430,8 @@ def _slip(
     letters = {each for each in was if each.isalpha()} - {*now} if len(was) == len(now) else set()
     letter = letters.pop() if len(letters) == 1 and code is codes.BAD_NUMBER else ""
     given, needed = (sum(each.kind is NUMBER for each in it) for it in (one, other))
-    takes = usage if needed > given else ""
+    said = WORDS.get(now) if code is codes.OTHER_LANGUAGE else None  # `avanza 2 s 3 veces`: F
+    takes = (said.usage if said and said.arguments else usage) if needed > given else ""
     return {"found": was, "right": now, "before": kept, "word": word, "usage": usage, "fix": shown,
             "ends": "", "letter": letter, "takes": takes}  # fmt: skip
 
