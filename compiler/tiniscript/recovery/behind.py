@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -165,8 +166,7 @@ class Behind:
         concept = concept_of(text) if token.kind is WORD and not self.names.is_name(text) else None
         is_of_kit = concept is None or concept in WORDS or self.names.has(concept)
         known = None if token.source == "l" else WORDS.get(text)
-        is_set = known is not None and re.search(rf"(?i)\b{text}\s*=", self.text)
-        is_order = known is not None and known.is_instruction and not is_set  # told at its own line
+        is_order = known is not None and known.is_instruction and text not in _set_in(self.text)
         labels = {
             "@number": is_number,
             "@often": is_number and (is_counted or (is_many and not said_of(after, "unit"))),
@@ -271,6 +271,12 @@ class Behind:
         if is_same or known is None or known.role in ("value", "operator", "function", "start"):
             return False
         return own not in ("LOOP", "DEF", "S", "STOP") or meant not in ("S", "LOOP", "DEF")
+
+
+@lru_cache(maxsize=1)
+def _set_in(text: str) -> frozenset[str]:
+    """Return the words that a text sets, which is told at their own lines."""
+    return frozenset(re.findall(r"(\w+)\s*=", text.upper()))
 
 
 def _label(first: str, labels: Mapping[str, object]) -> str:

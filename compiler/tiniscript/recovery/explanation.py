@@ -333,11 +333,11 @@ def _code(part: _Change) -> tuple[Code, Step | None]:
     """Return with which code a change is told, and the rewrite that it is told of."""
     _, _, steps, before, after = part
     words, new = set(texts(before)), set(texts(after))
-    fewer = Counter(texts(before)) - Counter(texts(after))
-    if "SI" in fewer and "IF" in new - words:
+    fewer, more = Counter(texts(before)) - Counter(texts(after)), new - words
+    if "SI" in fewer and "IF" in more:
         return codes.SPANISH_IF, None
     dropped = {each for each in fewer if {each, meant_by(each)} & {*ENDED}}
-    if dropped and not new - words and fewer.keys() <= dropped | {";"}:
+    if dropped and not more and fewer.keys() <= dropped | {";"}:
         return codes.EXTRA_WORD, None
     if steps:
         own = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
@@ -345,8 +345,8 @@ def _code(part: _Change) -> tuple[Code, Step | None]:
         if own and own[0].code is codes.ASKED_BEHIND:
             return codes.ASKED_BEHIND, own[0]
         lost = (each.text for each in before if each.kind is WORD and each.text not in new)
-        foreign = next((each for each in lost if meant_by(each) in new - words), "")
-        translated = next((step for step in steps if step not in own), None)
+        foreign = next((each for each in lost if meant_by(each) in more), "")
+        translated = next((it for it in steps if it.code is codes.OTHER_LANGUAGE), None)
         if translated and (foreign or not own):
             is_said = foreign or "(" in words or "(" not in new or before[0].text not in new
             return codes.OTHER_LANGUAGE if is_said else codes.MISSING_OPEN, translated

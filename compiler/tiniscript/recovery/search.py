@@ -308,8 +308,7 @@ def _line(line: _Text, reading: Reading, edits: Sequence[Edit], tails: Sequence[
     if not reading.steps and not edits and not tails and line.body.isascii():
         return line.body
     for word in tails:
-        is_ended = tokens and tokens[-1].text == ";"
-        tokens += [made(word)] if is_ended else [made(";"), made(word)]
+        tokens += [made(";"), made(word)]
     if reading.is_new_line or tails or any(len(each.new) > 1 for each in edits):
         text = line.source[: line.indent] + laid_out(_without_empty(tokens))
         return text if tails or len(reading.items or ()) > 1 else text.rstrip("; ")

@@ -45,8 +45,7 @@ class ExpressionParser:
         token = cursor.tokens[cursor.i]
         if token.kind is WORD and token.text == "FOREVER":
             cursor.i += 1
-            part = Part("FOREVER", 0, token.start, token.end)
-            return Argument((part,), token.span, False)
+            return Argument((Part("FOREVER", 0, *token.span),), token.span, False)
         argument = self.expression(in_brackets=True)
         token = cursor.inner()  # the CM or DEG that may stand behind the whole of it
         if token.kind is not WORD or token.text not in WAYS:
@@ -100,19 +99,15 @@ class ExpressionParser:
         cursor.i += 1
         value, is_exact = read_literal(token.text)
         value = value if first is token else -value
-        if not (is_exact and LOWEST <= value <= HIGHEST):
-            value = self.literal(token, Span(first.start, token.end), value)
-        return Part("NUMBER", value, first.start, token.end)
-
-    def literal(self, number: Token, span: Span, value: int) -> int:
-        """Report a number that is out of range or too exact, and return what is read for it."""
-        if LOWEST <= value <= HIGHEST:
-            values = {"found": number.text[:20], "right": as_text(value)}
+        span = Span(first.start, token.end)
+        if not LOWEST <= value <= HIGHEST:
+            limit = as_text(HIGHEST if value > 0 else LOWEST)
+            self.reporter.report(codes.NUMBER_TOO_BIG, span, limit=limit)
+            value = 0
+        elif not is_exact:
+            values = {"found": token.text[:20], "right": as_text(value)}
             self.reporter.report(codes.ROUNDED, span, **values)
-            return value
-        limit = as_text(HIGHEST if value > 0 else LOWEST)
-        self.reporter.report(codes.NUMBER_TOO_BIG, span, limit=limit)
-        return 0
+        return Part("NUMBER", value, *span)
 
     def word(self, token: Token, read: Postfix) -> bool:
         cursor = self.cursor
