@@ -119,7 +119,7 @@ SIGNS = r"""
 </?[a-z]+/?>|^\s*(?:[$>] tsc\b.*|```\w*\s*)$  |  ``  |  TS072  |  applied  |  <b>F(2, 80)</b> => F(2, 80)
 ^\s*tsc(?: \w+)? (?:(["'])(S[IB]\|.*)\1$|(?=S[IB]\|))  |  `\2`  |  TS044  |  applied  |  tsc live "SI|F(2, 80)" => SI|F(2, 80)
 (?:^\s*\.|(?<=;)\s*[:.,])\s*(?=;|$)  |  ``  |  TS005  |  applied  |  F(2,80)⏎.⏎.⏎. => F(2,80)⏎⏎⏎
-^\s*(?:(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z])|-(?=[A-Z]\w*\()|>+\s*|(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\())  |  ``  |  TS054  |  applied  |  ⟨*¦>¦✅⟩ F(2,80) => F(2,80)
+^\s*(?:(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z])|-(?=[A-Z]\w*\()|[=-]?>+\s*|(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\())  |  ``  |  TS054  |  applied  |  ⟨*¦>¦=>¦->¦✅⟩ F(2,80) => F(2,80)
 ⟨⬆¦⬇¦⬅¦➡⟩\ufe0f?  |  `⟨F¦B¦L¦R⟩ `  |  TS005  |  offered  |  ⟨⬆️¦⬇️¦⬅️¦➡️⟩ 2 => ⟨F¦B¦L¦R⟩(2, 80)
 ⟨(?<=\d) 1/2(?!\d)¦(?<!\d)1/2(?!\d)(?=\s*(?:s|seg|min|h))⟩  |  `⟨¦0⟩.5`  |  TS049  |  applied  |  F(⟨1 1/2¦1/2 minuto⟩, 80) => F(⟨1.5¦30⟩, 80)
 (?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))|(?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  TS005  |  applied  |  F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
@@ -253,6 +253,7 @@ c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|U
 ⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
 a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦p=@power , n=@num u=CM|DEG⟩ ) | $a ( $n $u , $p ) | 1 | TS076 | offered | ⟨B(CM(20), 60)¦R(60, 90 DEG)⟩ => ⟨B(20 CM, 60)¦R(90 DEG, 60)⟩
 ⟨^ c=F|B|L|R two ,? n=@num $¦c=F|B|L|R ( two ,⟩ | $c ( 2 , ⟨$n )¦⟩ | ⟨.5¦1⟩ | ⟨TS015¦TS102⟩ | offered | ⟨f to 80¦F(too, 80)⟩ => ⟨f¦F⟩(2, 80)
+⟨^¦;⟩ BEEP BEEP e=;|$ | ⟨¦;⟩ BEEP ( 0.2 , 440 ) ; W ( 0.2 ) ; BEEP ( 0.2 , 440 ) $e | 1 | TS102 | offered | ⟨¦S;⟩bip bip => ⟨¦S;⟩BEEP(0.2, 440);W(0.2);BEEP(0.2, 440)
 BEEP ( a=<note> , b=<note> ⟨¦, c=<note>⟩ ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $b ) ⟨¦; BEEP ( 1 , $c )⟩ | 1 | TS020 | offered | BEEP(DO, RE⟨¦, MI⟩) => BEEP(1, 262);BEEP(1, 294)⟨¦;BEEP(1, 330)⟩
 @newname . c=F|B|L|R|W|BEEP ( | $c ( | 1 | TS102 | applied | bot.F(2, 80) => F(2, 80)
 # UNTIL
