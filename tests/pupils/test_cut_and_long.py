@@ -41,8 +41,10 @@ def test_all_cut_programs_end() -> None:
         "X=Y=5\n" * 4000,
         "X=5;X=TRUE\n" * 4000,
         "F(1,50). " * 16000,
+        "F(1,50). " * 433,
+        "F(1,60,R)\n" * 10000,
     ],
-    ids=["words", "notes", "again", "equal", "kinds", "stops"],
+    ids=["words", "notes", "again", "equal", "kinds", "stops", "steps", "values"],
 )
 def test_a_long_row_is_read_once(program: str) -> None:
     begin = time.process_time()

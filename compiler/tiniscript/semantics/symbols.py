@@ -43,7 +43,8 @@ class Scope:
         self.names = {device.name: Name("sensor", i) for i, device in enumerate(kit.sensors)}
         for i, device in enumerate(kit.actuators):
             self.names[device.name] = Name("actuator", i)
-        self.set_somewhere = {each.name for each in _assignments(parsed.body)}
+        self._first = {each.name: each for each in reversed(_assignments(parsed.body))}
+        self.set_somewhere = self._first.keys()
         self.parsed = parsed
         self.def_names = {each.name for each in parsed.body if isinstance(each, ast.Def)}
         self.wanted: dict[str, list[str]] = {}  # the names in a DEF that nothing gives a value
@@ -66,11 +67,8 @@ class Scope:
 
     def _first_number(self, name: str) -> str:
         """Return `V = 80`, what gives `name` its first value, where that is a plain number."""
-        for node in _assignments(self.parsed.body):
-            if node.name == name:
-                is_plain = node.value is not None and node.value.is_plain
-                return self.source[node.span] if is_plain else ""
-        return ""
+        node = self._first.get(name)
+        return self.source[node.span] if node and node.value and node.value.is_plain else ""
 
     def near(self, word: str, known: Iterable[str]) -> str:
         """Return the nearest known word for a message, for the first ENOUGH mistakes.
