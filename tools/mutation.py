@@ -361,7 +361,7 @@ class Copy:
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Make small mistakes; say which no test notices.")
-    parser.add_argument("count", nargs="?", type=int, default=30)
+    parser.add_argument("count", nargs="?", type=int, default=30, help="how many (30)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--file", default="*", help="only files like this one")
     parser.add_argument("--list", action="store_true", help="only list them")
