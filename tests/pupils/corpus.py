@@ -5,7 +5,7 @@ They are in the files `*.txt` here. Below a program stands a row for each messag
 `tsc check --fix` makes of the line, or of the part of it that is named: `>= 1 TS036 SI|  for  SI-`.
 `=3 F(1, 80)` is another line that it changes; where it changes how many lines there are, all that
 it makes stands there, each line behind a `=`. None has spaces at its end. A program of which
-nothing is said has a `>` alone below it.
+nothing is said has a `>` alone below it, and so has a new one until `--accept` writes what is said.
 """
 
 from __future__ import annotations

@@ -32,8 +32,13 @@ ROWS: list[rewrites.SignRow | rewrites.Row] = [*rewrites.of_signs(), *rewrites.o
 @each_row("row", [pytest.param(row, id=row.example[0][:50]) for row in ROWS])
 def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.Row | rewrites.SignRow) -> None:
     wrong, right = row.example
-    found = (Recovery(wrong, kit, partial(mistakes, kit)).best() for kit in KITS)
-    assert any(each is not None and each.text == right for each in found)
+    made = []
+    for kit in KITS:
+        found = Recovery(wrong, kit, partial(mistakes, kit)).best()
+        made.append(found and found.text)
+        if made[-1] == right:
+            return
+    assert made == [right]
 
 
 def mistakes(kit: Kit, text: str) -> list[Code]:

@@ -7,7 +7,8 @@
 A pattern is tokens with spaces between: a word of the language or one that means it (`LOOP`), a
 part of a sentence of the lexicon (`then`), a sign, or a class. `A|B` are alternatives, `'|'` is a
 sign that would be one of the signs here, `?`, `*` and `+` stand behind what may be missing or come
-more often, and `^` and `$` are the ends of a line. `c=` captures, and `<part>` is a piece of PARTS.
+more often. `^` is where a line begins, or goes on behind `SI|`, `$` where it ends, and no `;` is
+either. `c=` captures, and `<part>` is a piece of PARTS. The cheapest reading is told; 1 is usual.
 Classes: @num @word @val (a value with a name) @name @newname @usedname @def @callw (takes values)
 @device (an actuator) @start (begins an instruction) @close (ends one) @unit; a number that is
 @whole, or may be a @time, a @power or an @angle; any token but separators and braces: @any, nor `:`
@@ -380,10 +381,10 @@ h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
-⟨^ please|first ,?¦; first+ ,?⟩ b=@start | ⟨¦;⟩ $b | 1 | TS044 | applied | ⟨please¦F(2, 80); y despues⟩ R(1, 50) => ⟨¦F(2, 80);⟩R(1, 50)
+⟨^ by? please|first ,?¦; first+ ,?⟩ b=@start | ⟨¦;⟩ $b | 1 | TS044 | applied | ⟨please¦F(2, 80); y despues⟩ R(1, 50) => ⟨¦F(2, 80);⟩R(1, 50)
 ^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
 ^ ⟨=¦(¦[⟩ <body> ⟨¦)¦]⟩ $ | $b $r | 1 | ⟨TS054¦TS080¦TS080⟩ | applied | ⟨=F(2,80)+R(1,60)¦(F(2,80), R(1,60))¦[F(2,80), R(1,60)]⟩ => F(2, 80);R(1, 60)
-a=@close please|CM|@in_cm|@in_secs+ $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
+a=@close ⟨by? please+¦CM|@in_cm|@in_secs+⟩ $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) ⟨por favor¦cm⟩ => SHOW(DISTANCE)
 ^ a=⟨F|B¦L|R⟩ ( n=@num , p=@num ) ⟨CM|@in_cm¦DEG|@in_deg|°⟩ $ | $a ( $n ⟨CM¦DEG⟩ , $p ) | .5 | TS076 | offered | ⟨F(20, 60) CM¦R(90, 60) DEG⟩ => ⟨F(20 CM, 60)¦R(90 DEG, 60)⟩
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ⟨,? then|soon+ ,? b=@start¦,|.|:? b=@start¦&|+|AND b=@startm¦->|=>|/|>|>>|_|*|'|' b=@start⟩ | $a ; $b | 1 | ⟨TS044¦TS013¦TS061¦TS061⟩ | applied | F(1, 75)⟨ y¦,¦&¦->⟩ R(1, 75) => F(1, 75);R(1, 75)
