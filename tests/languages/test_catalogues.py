@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 from babel.messages.pofile import read_po
 
+from tests.pupils.corpus import check
 from tests.support.command import Tsc
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
@@ -23,7 +24,6 @@ from tiniscript.base import catalogue_compiler as compiling
 from tiniscript.base import catalogue_source, languages
 from tiniscript.base.catalogue_file import Catalogue, Entry, load, read, written
 from tiniscript.base.languages import FOLDER, SOURCE
-from tiniscript.base.words import lexicon
 from tiniscript.cli import main
 from tiniscript.cli.streams import wrapped
 from tiniscript.cli.texts import Said, language_of, text
@@ -401,7 +401,7 @@ def longer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
         assert load(made).problems == []
     for path in FOLDER.glob(f"{SOURCE}/*.toml"):
         (tmp_path / SOURCE / path.name).write_bytes(path.read_bytes())
-    lexicon()  # is read once, and of this folder would be empty for all later tests
+    check("avansar(2, 80)")  # what words mean is read once: of this folder all later tests had none
     monkeypatch.setattr(languages, "FOLDER", tmp_path)
     _forget()
     yield PSEUDO
