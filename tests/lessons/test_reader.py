@@ -89,6 +89,26 @@ def test_answers_are_read_strictly(folder: Path) -> None:
     assert any("right[1].says" in each for each in said)
 
 
+@pytest.mark.parametrize(
+    ("says", "said"),
+    [
+        ("", "wrong[1].says.key is missing"),
+        ("key = 'stil'", "wrong[1].says.key has stil, which is not a known word"),
+        ("key = 'touches/wall'", 'wrong[1].says.seconds is missing. Add it, for example: seconds = "…"'),
+        ("key = 'still', cm = 3", "wrong[1].says.cm is a number. Write a text in quotes there"),
+    ],
+)  # fmt: skip
+def test_what_is_said_of_a_wrong_answer_is_a_sentence_of_the_checker(
+    folder: Path, says: str, said: str
+) -> None:
+    rows = f"[[wrong]]\nen = 'a'\nprogram = 'S'\nsays = {{ {says} }}\n"
+    (folder / "answers.toml").write_text(rows, encoding="utf-8")
+    with pytest.raises(LessonRefused) as found:
+        catalogue.answers(folder)
+    (why,) = describe(found.value, "en")
+    assert said in why
+
+
 def test_a_page_names_the_numbers_of_its_lesson(folder: Path) -> None:
     pauses = '[[criteria]]\nkind = "pauses"\nat_least_seconds = 2.5\nat = [90, 80]\n'
     (folder / "lesson.toml").write_text(HEAD + pauses, encoding="utf-8")

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.lessons.lesson import Criterion
-from tiniscript.lessons.running import Run, Sample
 from tiniscript.lessons.variation import point_of
 from tiniscript.virtual.geometry import Point
+
+if TYPE_CHECKING:
+    from tiniscript.lessons.running import Run, Sample
 
 STILL_CM = 1.0  # less is no move
 

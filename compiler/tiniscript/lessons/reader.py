@@ -13,6 +13,7 @@ from tiniscript.base.fixed_point import ONE
 from tiniscript.base.languages import SOURCE, ByLanguage, languages
 from tiniscript.base.languages import text as said_in
 from tiniscript.base.words import WORDS, nearest
+from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.lesson import (
     ANY_VALUE,
     AREA,
@@ -30,6 +31,7 @@ from tiniscript.lessons.lesson import (
     Place,
     Variation,
 )
+from tiniscript.lessons.sentences import sentence
 from tiniscript.robots.profile import Reason, Robot
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
@@ -104,20 +106,32 @@ def _answer(table: Table, is_wrong: bool) -> Answer:
     if len(program) > PROGRAM_CHARACTERS:
         table.complain("label_bad", "program", most=str(PROGRAM_CHARACTERS))
     labels = _labels(table)
-    said = {}
-    if is_wrong:
-        says = table.table("says", "[wrong.says]")
-        said = _labels(says, most=400)
-        says.finish()
+    said = _said(table.table("says", 'says = { key = "still" }')) if is_wrong else {}
     table.finish()
     return Answer(program, labels, said)
 
 
-def _labels(table: Table, most: int = LABEL_CHARACTERS) -> dict[str, str]:
+def _said(says: Table) -> dict[str, str]:
+    """Return in each language the sentence of a finding: its key, its values, and its place."""
+    values = {each: says.text(each) or "" for each in says.written()}
+    key = says.text("key", 'key = "still"') or "still"
+    finding = Finding("", key, values, ByLanguage({SOURCE: values.get("place", "")}))
+    try:
+        return {each: sentence(finding, each) for each in languages()}
+    except KeyError as lacking:
+        name = str(lacking.args[0])
+        if name.startswith("said/"):
+            says.complain("unknown_word", "key", found=shown(key), near="")
+        else:
+            says.complain("missing", name, example=f'{name} = "…"')
+        return {}
+
+
+def _labels(table: Table) -> dict[str, str]:
     """Return a text in each language that it is there in; one must be."""
     found: ByLanguage[str] = ByLanguage()
     for language in [each for each in languages() if table.has(each)] or [SOURCE]:
-        found[language] = table.label(language, most, f'{language} = "…"') or ""
+        found[language] = table.label(language, LABEL_CHARACTERS, f'{language} = "…"') or ""
     return found
 
 
