@@ -35,7 +35,7 @@ def merged(source: Path, own: Path) -> tuple[str, dict[str, list[str]]]:
 
 
 def _forms(source: Entry, own: Catalogue) -> list[str]:
-    entry = own.entries.get(source.at)
+    entry = own.entries.get((source.like or source.key, source.english))
     if entry and entry.plural == source.plural and entry.is_translated:
         return entry.said
     if not source.plural:

@@ -23,7 +23,8 @@ class Entry:
     """A text. `said` has its translation, of a text with a plural each form; empty is none yet.
 
     `notes` are the comments for translators. A fuzzy entry is of an English text that has changed;
-    `is_same`: no language says it in another way.
+    `is_same`: no translator is asked for it, since no language says it in another way, or since its
+    words stand under the key `like`, too.
     """
 
     key: str = ""
@@ -33,6 +34,7 @@ class Entry:
     notes: list[str] = field(default_factory=list)
     is_fuzzy: bool = False
     is_same: bool = False
+    like: str = ""
     line: int = 0
 
     @property

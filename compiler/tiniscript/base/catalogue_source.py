@@ -2,8 +2,9 @@
 
 A row is a text by its key. A list has several texts with one key, of which a message says the first
 whose gaps all have values; `one` and `other` are a text with a plural; `same` is a program, which
-no language says in another way. The name of a table is the note that translators read beside each
-of its texts; rows above all tables need none.
+no language says in another way. A text under several keys is translated once, at the first of them:
+`own` is one that means something else there. The name of a table is the note that translators read
+beside each of its texts; rows above all tables need none.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from pathlib import Path
 from tiniscript.base.catalogue_file import Catalogue, Entry, gaps
 
 _GAP = re.compile(r"\{@?\w+\}")
-_FORMS = {"one", "other", "same"}
+_FORMS = {"one", "other", "own", "same"}
 HEAD = """\
 Project-Id-Version: TiniScript
 Language: en
@@ -44,15 +45,20 @@ def load(path: Path) -> Catalogue:
         at = re.search(r"at line (\d+)", str(error))
         found.problems.append((int(at[1]) if at else text.count("\n"), f"this is no TOML: {error}"))
         return found
-    heads = (row.partition(" = ")[0].removesuffix(".same") for row in text.split("\n"))
+    heads = (re.sub(r"(\.own|\.same)? = .*", "", row) for row in text.split("\n"))
     lines = {head.strip("\"'"): number for number, head in enumerate(heads, 1)}
-    keys = set[str]()
+    keys, firsts = set[str](), dict[tuple[str, str], Entry]()
     for key, value, notes in _rows(tables):
         line = lines.get(key, 1)
         entries = [Entry(key, *texts, [], notes, line=line) for texts in _texts(value)]
+        form = value if isinstance(value, dict) else {}
         for entry in entries:
-            is_gap = _GAP.fullmatch(entry.english) is not None
-            entry.is_same = is_gap or (isinstance(value, dict) and "same" in value)
+            entry.is_same = "same" in form or _GAP.fullmatch(entry.english) is not None
+            if not entry.is_same and "own" not in form:
+                first = firsts.setdefault((entry.english, entry.plural), entry)
+                if first is not entry:
+                    entry.is_same, entry.like = True, first.key
+                    first.notes = list(dict.fromkeys([*first.notes, *notes]))
         if why := "it is there twice" if key in keys else _problem(entries):
             found.problems.append((line, f"{key}: {why}"))
         keys.add(key)
@@ -77,8 +83,8 @@ def _texts(value: object) -> list[tuple[str, str]]:
             return [(value, "")]
         case {"one": str(one), "other": str(other), **more} if not more:
             return [(one, other)]
-        case {"same": str(same), **more} if not more:
-            return [(same, "")]
+        case {"same": str(said), **more} | {"own": str(said), **more} if not more:
+            return [(said, "")]
         case list() if all(isinstance(each, str) for each in value):
             return [(each, "") for each in value]
     return []

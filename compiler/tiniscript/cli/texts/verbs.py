@@ -72,7 +72,8 @@ def said(key: str, language: str) -> str:
 def of_verb(verb: str, what: str, language: str) -> str:
     """Return what is said of a verb.
 
-    `example` is a command with it, `summary` what that does, `says` what the verb does, `ends` what
-    else there is to know. Where it is used in several ways, `usage` has a line for each.
+    `example` is a command with it, the verb alone where it is not there, `summary` what that does,
+    `says` what the verb does, `ends` what else there is to know. Where it is used in several ways,
+    `usage` has a line for each.
     """
-    return said(f"verb/{verb}/{what}", language)
+    return said(f"verb/{verb}/{what}", language) or verb * (what == "example")
