@@ -39,12 +39,14 @@ ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")
 def sources() -> dict[str, Catalogue]:
     """Return the English catalogues by name.
 
-    Beside a message, and what to try, stands the wrong program of its code.
+    Beside a message, and what to try, stands the wrong program of its code: beside the last text,
+    which is the one without a special case.
     """
     found = {path.stem: catalogue_source.load(path) for path in (FOLDER / SOURCE).glob("*.toml")}
-    programs = {each.key: each.english.splitlines() for each in found["messages"].entries.values()}
-    for entry in found["messages"].entries.values():
-        code, _, part = entry.key.partition("/")
+    lasts = {each.key: each for each in found["messages"].entries.values()}
+    programs = {key: each.english.splitlines() for key, each in lasts.items()}
+    for key, entry in lasts.items():
+        code, _, part = key.partition("/")
         if code in CODES and part in ("message", "try"):
             entry.notes = [f"wrong: {row}" for row in programs.get(f"{code}/wrong", [])]
     return dict(sorted({**found, "names": names()}.items()))
