@@ -18,9 +18,12 @@ OF_COMMAND = {
         "same", "missed", "empty", "value", "time", "robot_more", "virtual_more", "end", "at",
     )},
     **{key: key for key in (
-        "fault_NO_POWER", "fault_STUCK", "fault_STUCK_LEFT", "fault_STUCK_RIGHT",
-        "stopped_NONE", "stopped_BUTTON", "stopped_TEXT",
+        "fault_DIVIDE_BY_ZERO", "fault_NO_POWER", "fault_STUCK", "fault_STUCK_LEFT",
+        "fault_STUCK_RIGHT", "stopped_NONE", "stopped_BUTTON", "stopped_TEXT", "stopped_CABLE",
     )},
+    "stopped_SEQUENCE": "robot_stopped", "stopped_MESSAGE": "robot_stopped",
+    "robot_stopped": "stopped", "say_done": "robot_done", "line": "replay_line",
+    "class_free": "whose_free",
 }  # fmt: skip
 PERIOD = 100  # after so many numbers a rule of plurals repeats itself, but for the first hundred
 
