@@ -50,9 +50,10 @@ def load(path: Path) -> Catalogue:
     keys, firsts = set[str](), dict[tuple[str, str], Entry]()
     for key, value, notes in _rows(tables):
         line = lines.get(key, 1)
-        entries = [Entry(key, *texts, [], notes, line=line) for texts in _texts(value)]
-        form = value if isinstance(value, dict) else {}
-        for entry in entries:
+        entries = []
+        for each in value if isinstance(value, list) else [value]:
+            form = each if isinstance(each, dict) else {"": each}
+            entries.append(entry := Entry(key, *_text(form), [], notes, line=line))
             entry.is_same = "same" in form or _GAP.fullmatch(entry.english) is not None
             if not entry.is_same and "own" not in form:
                 first = firsts.setdefault((entry.english, entry.plural), entry)
@@ -76,18 +77,14 @@ def _rows(tables: dict[str, object]) -> Iterator[tuple[str, object, list[str]]]:
             yield name, value, []
 
 
-def _texts(value: object) -> list[tuple[str, str]]:
-    """Return the texts of a row, each with its plural, empty without one."""
-    match value:
-        case str():
-            return [(value, "")]
+def _text(form: dict[str, object]) -> tuple[str, str]:
+    """Return a text and its plural, empty without one."""
+    match form:
         case {"one": str(one), "other": str(other), **more} if not more:
-            return [(one, other)]
-        case {"same": str(said), **more} | {"own": str(said), **more} if not more:
-            return [(said, "")]
-        case list() if all(isinstance(each, str) for each in value):
-            return [(each, "") for each in value]
-    return []
+            return one, other
+        case {"": str(said), **more} | {"own": str(said), **more} | {"same": str(said), **more}:
+            return "" if more else said, ""
+    return "", ""
 
 
 def _problem(entries: list[Entry]) -> str:
