@@ -1,4 +1,4 @@
-"""The table keeps its word: every stack picture is what the machine really does."""
+"""The table keeps its word: every stack effect is what the machine really does."""
 
 from __future__ import annotations
 
@@ -69,19 +69,19 @@ def left_by(op: Op, value: int) -> tuple[int, str]:
     code = code_with(op, value)
     machine = machine_for(op, code)
     task = machine.task
-    if op.role == "next" or op.role == "drop":
+    if op.control_role == "next" or op.control_role == "drop":
         task.counters.append(2)
-    if op.role == "return":
+    if op.control_role == "return":
         task.calls.append(0)
     machine.tick(0, op.pops + 1)
     return len(task.stack), machine.fault
 
 
-def test_stack_pictures() -> None:
+def test_stack_effects() -> None:
     for op in OPS:
         for value in (0, 1):
             left = op.pushes
-            if op.role == "join":  # what decides stays
+            if op.control_role == "join":  # what decides stays
                 left += value == ("OR" in op.name)
             divides = op.name in ("DIV", "MOD") and value == 0
             wanted = (1, "DIVIDE_BY_ZERO") if divides else (left, "")
@@ -135,7 +135,7 @@ def test_codes_and_numbers_are_used_once() -> None:
     assert len({op.code for op in OPS}) == len(OPS) == len({op.name for op in OPS})
     numbers = [number for number, _ in RULES.values()]
     assert len(set(numbers)) == len(numbers)
-    assert {op.role for op in OPS} == set(opcodes.ROLES)
+    assert {op.control_role for op in OPS} == set(opcodes.CONTROL_ROLES)
 
 
 def test_an_instruction_of_one_byte_has_its_operand_in_its_last_bits() -> None:
@@ -147,7 +147,7 @@ def test_an_instruction_of_one_byte_has_its_operand_in_its_last_bits() -> None:
         assert op.implied.value == op.code % SHORTS
         long = BY_NAME[op.family]
         assert [each.kind for each in long.operands] == [op.implied.kind]
-        assert (long.picture, long.role) == (op.picture, op.role)
+        assert (long.effect, long.control_role) == (op.effect, op.control_role)
 
 
 def test_the_last_bits_of_a_comparison_with_a_constant_are_the_comparator() -> None:
@@ -169,12 +169,16 @@ def test_a_byte_begins_the_codes_of_two() -> None:
 
 
 def test_a_way_has_the_code_of_a_time_behind_the_escape() -> None:
-    """So a machine's tables of shapes serve both."""
+    """So a machine's tables of decode forms serve both."""
     for code, op in ESCAPED.items():
         of_time = opcodes.BY_CODE[code]
         assert of_time is not None
         assert op.name == of_time.name.replace("MOVE_", "GO_").replace("WATCH_", "WATCH_GO_")
-        assert (op.role, op.pops, op.pushes) == (of_time.role, of_time.pops, of_time.pushes)
+        assert (op.control_role, op.pops, op.pushes) == (
+            of_time.control_role,
+            of_time.pops,
+            of_time.pushes,
+        )
 
 
 def test_numbers_of_one_byte_follow_one_another() -> None:

@@ -118,7 +118,7 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
     command.process.send_signal(signal.SIGSTOP)
     begun_ms = [robot.robot_ms for robot in room]
     for robot, began_ms in zip(room, begun_ms, strict=True):
-        assert robot.stands_after_ms(began_ms) < 2000, "the tether is a second"
+        assert robot.stands_after_ms(began_ms) < 2000, "the dead-man timer is a second"
     command.process.kill()
 
 

@@ -156,6 +156,6 @@ def test_over_a_bad_network(joined: Esp32PtyRobot, tmp_path: Path) -> None:
     joined.until(lambda: joined.moves, "it drives")
     began_ms = joined.robot_ms
     bad.cut()
-    assert joined.stands_after_ms(began_ms) < 2000, "the connection was its tether"
+    assert joined.stands_after_ms(began_ms) < 2000, "the connection was its dead-man timer"
     assert command.ended().code == 3
     bad.close()

@@ -26,7 +26,7 @@ from tiniscript.link.session import Session
 from tiniscript.link.transports.broker import ROOT, Access, Broker, Present
 
 ID = "12345678"
-TETHER_MS = 1050
+DEAD_MAN_MS = 1050
 AT_ONCE_MS = 300  # of a connection that has ended
 BROKER_KEY = b"broker"
 
@@ -365,7 +365,7 @@ def test_a_broker_that_is_gone_ends_the_run(tmp_path: Path, how: str) -> None:
         else:
             in_reach(robot, "", "")
         begun_ms = robot.now_ms
-        limit_ms = TETHER_MS if how == "stalls" else AT_ONCE_MS
+        limit_ms = DEAD_MAN_MS if how == "stalls" else AT_ONCE_MS
         while motors(robot) != "MOTORS 0 0":
             talk(robot, ends, 5)
             assert robot.now_ms < begun_ms + limit_ms

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.firmware.test_esp32_broker import ID, TETHER_MS, at, motors, present, told, until
+from tests.firmware.test_esp32_broker import DEAD_MAN_MS, ID, at, motors, present, told, until
 from tests.firmware.test_esp32_transports import Ends, ended, uploaded
 from tests.firmware.test_esp32_wifi import joined, remote
 from tests.machines.esp32 import HAS_TLS, Esp32Robot
@@ -218,7 +218,7 @@ def test_a_broker_that_dies_ends_the_run_over_tls(tmp_path: Path) -> None:
         begun_ms = robot.now_ms
         while motors(robot) != "MOTORS 0 0":
             talk(robot, ends, 5)
-            assert robot.now_ms < begun_ms + TETHER_MS
+            assert robot.now_ms < begun_ms + DEAD_MAN_MS
     finally:
         own.broker.kill()
 

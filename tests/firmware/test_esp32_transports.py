@@ -147,7 +147,9 @@ def test_the_next_one_drives_when_the_first_is_silent() -> None:
     talk(robot, only, AUTHORITY_MS + 50)
     assert uploaded(robot, only, second) == "OK"
     talk(robot, only, 1500)
-    assert happened(robot)[-1] == "MOTORS 80 80", "the tether of the first ends nothing of his"
+    assert happened(robot)[-1] == "MOTORS 80 80", (
+        "the dead-man timer of the first ends nothing of his"
+    )
     assert uploaded(robot, ends, first) == "OTHER_DRIVER"
 
 

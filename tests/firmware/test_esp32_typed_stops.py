@@ -18,7 +18,7 @@ from tests.support.owners import Keys
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.session import Session
-from tiniscript.virtual.first_bytes import is_for_robot
+from tiniscript.virtual.protocol_sniffer import is_for_robot
 
 ROOM = 1022  # bytes; one place is for who leaves
 LATE_MS = 3  # a turn of the radio's task, and what a network of this computer takes
@@ -94,7 +94,7 @@ def test_silence_ends_a_typed_stop_of_a_guest(word: bytes) -> None:
     other.leave()
 
 
-def test_a_guest_begins_a_line_behind_silence() -> None:
+def test_a_client_begins_a_line_behind_silence() -> None:
     robot, owner = joined(Keys())
     end = Network(robot)
     end.send(b"S")

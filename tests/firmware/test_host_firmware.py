@@ -199,7 +199,7 @@ def test_the_button_stops_and_the_next_push_starts() -> None:
     robot.push()
     assert happened(robot)[-1] == "MOTORS 80 80"
     robot.wait(5000)
-    assert happened(robot)[-1] == "MOTORS 80 80", "what the button starts has no tether"
+    assert happened(robot)[-1] == "MOTORS 80 80", "what the button starts has no dead-man timer"
 
 
 def test_the_stop_sequence_stops_and_latches() -> None:
@@ -263,7 +263,7 @@ def test_a_main_loop_that_stood_still_is_a_fault() -> None:
 
 @pytest.mark.parametrize("is_detached", [False, True])
 def test_nobody_is_connected_any_more(is_detached: bool) -> None:
-    """That ends a tethered run at once, and no other."""
+    """That ends an attached run at once, and no other."""
     robot, session = switched_on(), computer()
     send(robot, session, AWAY, is_detached=is_detached)
     robot.talk(session, 500)
@@ -275,8 +275,8 @@ def test_nobody_is_connected_any_more(is_detached: bool) -> None:
 
 
 @pytest.mark.parametrize("starts", [1, 256])
-def test_no_run_of_the_button_is_tethered(starts: int) -> None:
-    """However often it starts: runs are counted in one byte, and one of them was tethered."""
+def test_no_run_of_the_button_is_attached(starts: int) -> None:
+    """However often it starts: runs are counted in one byte, and one of them was attached."""
     robot, _ = driving(100)
     robot.push()
     assert happened(robot)[-1] == "MOTORS 0 0"

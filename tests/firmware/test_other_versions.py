@@ -9,7 +9,7 @@ from struct import pack as struct_pack
 import pytest
 
 from tests.firmware.test_host_firmware import KIT, computer, image_of, send, switched_on
-from tests.firmware.test_keeping import EACH, FIRST, SECOND, saved
+from tests.firmware.test_persistence import EACH, FIRST, SECOND, saved
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.owners import Keys
 from tiniscript.bytecode.image import REFUSALS, sealed
@@ -82,7 +82,7 @@ def test_the_next_program_replaces_it() -> None:
 
 
 def test_one_of_this_version_before_it_counts() -> None:
-    from tests.firmware.test_keeping import bytes_of
+    from tests.firmware.test_persistence import bytes_of
 
     mine = bytes_of("SB|F(0.1, 60)")
     robot, session = met(kept((FIRST, 3, mine), (SECOND, 4, OLD)))
@@ -93,7 +93,7 @@ def test_one_of_this_version_before_it_counts() -> None:
 
 
 def test_a_program_with_a_longer_header_is_run() -> None:
-    from tests.firmware.test_keeping import bytes_of
+    from tests.firmware.test_persistence import bytes_of
     from tiniscript.bytecode.image import pack, unpack
 
     image = unpack(bytes_of("SB|F(0.1, 60)"))

@@ -18,7 +18,8 @@ from tests.firmware.test_host_firmware import (
     stored,
     switched_on,
 )
-from tests.firmware.test_keeping import (
+from tests.firmware.test_other_versions import OLD, kept
+from tests.firmware.test_persistence import (
     DRIVES,
     FIRST,
     SECOND,
@@ -26,7 +27,6 @@ from tests.firmware.test_keeping import (
     program_after_power_off,
     saved,
 )
-from tests.firmware.test_other_versions import OLD, kept
 from tests.machines.host_firmware import HostFirmware
 from tiniscript.bytecode.image import sealed
 from tiniscript.bytecode.opcodes import ISA_MINOR

@@ -18,7 +18,7 @@ from tests.firmware.test_host_firmware import (
     stored,
     switched_on,
 )
-from tests.firmware.test_keeping import bytes_of
+from tests.firmware.test_persistence import bytes_of
 from tests.firmware.test_undo import undo
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.requests import OK

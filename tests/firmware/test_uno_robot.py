@@ -258,7 +258,7 @@ def test_a_radio_that_is_not_there_ends_nothing(uno: Uno) -> None:
 
 
 @pytest.mark.parametrize("starts", ["detached", "button"])
-def test_a_run_without_a_tether_needs_nobody(uno: Uno, starts: str) -> None:
+def test_a_run_without_a_dead_man_timer_needs_nobody(uno: Uno, starts: str) -> None:
     uno.drive("radio", True)
     wired = computer(uno)
     if starts == "detached":

@@ -155,7 +155,7 @@ def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
     command = uploading(ble)
     command.process.kill()
     command.process.communicate()
-    ble.robot.until(lambda: not ble.robot.moves, "the tether stops it")
+    ble.robot.until(lambda: not ble.robot.moves, "the dead-man timer stops it")
     assert bluez.devices[ADDRESS].is_connected
     for port in (NAME, PLACE):
         assert inside("upload", "-e", DRIVE, "--port", port).code == 0

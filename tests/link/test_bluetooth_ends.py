@@ -28,7 +28,7 @@ from tiniscript.link import errors, ports
 
 def moves_on_its_own(ble: BleRobot) -> None:
     """It stops by itself: nobody is there to stop it."""
-    ble.robot.until(lambda: not ble.robot.moves, "the tether stops it")
+    ble.robot.until(lambda: not ble.robot.moves, "the dead-man timer stops it")
 
 
 # -- in the middle ------------------------------------------------------------------------------

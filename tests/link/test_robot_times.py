@@ -1,4 +1,4 @@
-"""The robot's half of the link in C++: the tether, stops, echoes, and who is listened to."""
+"""The robot's half of the link in C++: dead-man timer, stops, echoes, and who is listened to."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.support.link_cases import KIT, items_of
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link import messages
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import AGAIN_MS, BY_NAME, LISTEN_MS, TETHER_MS
+from tiniscript.link.messages import AGAIN_MS, BY_NAME, DEAD_MAN_MS, LISTEN_MS
 
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
 ANSWERS = 17  # to mistakes, without a pause of five seconds: the last one says that these are all
@@ -45,7 +45,7 @@ def test_a_tethered_program_ends_a_second_after_the_last_valid_frame(start: int)
     cpp.step(start, encoded(Frame(8, 2, 10, live)))
     cpp.step(start + 700, encoded(Frame(2, 3, 10)))
     cpp.step(start + 900, encoded(Frame(2, 4, 10))[:-2] + b"\1\0")  # damaged: does not count
-    assert ends_at(cpp, start + 900, start + 2000) == start + 700 + TETHER_MS
+    assert ends_at(cpp, start + 900, start + 2000) == start + 700 + DEAD_MAN_MS
 
 
 @pytest.mark.parametrize("name", ["PROGRAM", "START"])

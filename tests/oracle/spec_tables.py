@@ -99,9 +99,9 @@ def instructions() -> dict[int, Instruction]:
     written = {
         int(code.replace(" ", ""), 16): (
             words.split(),
-            [len(side.split()) for side in picture.split("--")],
+            [len(side.split()) for side in effect.split("--")],
         )
-        for code, words, picture, *_ in rows("instructions")
+        for code, words, effect, *_ in rows("instructions")
     }
     kind_of = {words[0]: _halves(words[1])[1] for words, _ in written.values() if words[1:]}
     found = {}

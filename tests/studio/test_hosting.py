@@ -131,7 +131,7 @@ def test_a_fault_says_where(page: Page) -> None:
 
 
 @pytest.fixture
-def is_tethered(monkeypatch: pytest.MonkeyPatch) -> None:
+def is_attached(monkeypatch: pytest.MonkeyPatch) -> None:
     """The line attends to the robot whatever its page does: only a stop ends a run."""
     monkeypatch.setattr(hosted_robot.HostedRobot, "_ping_while_attended", lambda *_: None)
     monkeypatch.setattr(attending, "LEFT_S", 3600.0)
@@ -142,7 +142,7 @@ def is_stopped(robot: PtyRobot) -> None:
     assert "MOTORS 80 80" in robot.did
 
 
-@pytest.mark.usefixtures("is_tethered")
+@pytest.mark.usefixtures("is_attached")
 def test_a_page_that_falls_silent_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     page.upload(FOREVER)
     began_s = time.monotonic()
@@ -151,7 +151,7 @@ def test_a_page_that_falls_silent_stops_its_robot(page: Page, robot: PtyRobot) -
     assert time.monotonic() - began_s >= attending.HEARD_S
 
 
-@pytest.mark.usefixtures("is_tethered")
+@pytest.mark.usefixtures("is_attached")
 def test_a_silent_page_is_noticed_after_a_reset(page: Page, robot: PtyRobot) -> None:
     """The robot counts its runs anew: the next one has the number of one that is over."""
     page.upload("SHOW(1)")

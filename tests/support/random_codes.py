@@ -66,7 +66,7 @@ def likely_code(rng: random.Random) -> bytes:
             else:
                 code += simple("PUSH32") + any_number(rng).to_bytes(4, "little", signed=True)
             depth += 1
-        if depth > op.pops and op.role not in ("value", "join") and rng.random() < 0.9:
+        if depth > op.pops and op.control_role not in ("value", "join") and rng.random() < 0.9:
             continue
         code += bytes([op.code]) + operand_bytes(rng, op)
         depth += op.pushes - op.pops
@@ -209,7 +209,7 @@ def task_code(rng: random.Random) -> bytes:
 def expression(rng: random.Random) -> bytes:
     """Return code that shows a value calculated from numbers of all sizes."""
     code, depth = b"", 0
-    ops = [op for op in UNO_OPS if op.role == "value" and (op.pops or op.name == "TIME")]
+    ops = [op for op in UNO_OPS if op.control_role == "value" and (op.pops or op.name == "TIME")]
     for _ in range(rng.randrange(1, 12)):
         op = rng.choice(ops)
         while depth < op.pops:
@@ -225,7 +225,7 @@ def branches(rng: random.Random) -> bytes:
     code = b""
     body = simple("STOP")
     for _ in range(6):
-        op = rng.choice([op for op in UNO_OPS if op.role == "if"])
+        op = rng.choice([op for op in UNO_OPS if op.control_role == "if"])
         near = rng.choice((0, 1, 2, 9, 200))
         code += simple("PUSH16") + near.to_bytes(2, "little") + simple("SET_VAR") + b"\x01"
         *variable, compared, _ = [None, None, *(each.kind for each in op.operands)][-3:]

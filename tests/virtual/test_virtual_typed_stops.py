@@ -10,7 +10,7 @@ from tests.firmware.test_typed_stops import RUNS, SILENCE_MS
 from tests.support.virtual_robot import robot_in
 from tests.virtual.test_simulator import until, visit
 from tiniscript.link.messages import STOP_BYTES
-from tiniscript.virtual.first_bytes import is_at_stop, is_for_robot
+from tiniscript.virtual.protocol_sniffer import is_at_stop, is_for_robot
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.simulator import Simulator
 
@@ -40,8 +40,8 @@ def test_silence_ends_the_stop_of_who_may_be_a_web_page(simulator: Simulator, wo
     with visit(simulator) as client:
         client.sendall(RUNS)
         until(simulator, lambda: simulator.robot.is_running)
-    with visit(simulator) as guest:
-        guest.sendall(word)
+    with visit(simulator) as client:
+        client.sendall(word)
         until(simulator, lambda: not simulator.robot.is_running)
         assert simulator.transports.visits == 1, "it lets nobody in"
 

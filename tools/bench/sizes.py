@@ -93,8 +93,8 @@ const DeviceInfo& port_device_info() { return device_info; }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return sink; }
 Answer port_undo() { return (Answer)sink; }
-Answer port_make_way(bool) { return (Answer)sink; }
-bool port_may_prepare() { return sink; }
+Answer port_prepare_upload(bool) { return (Answer)sink; }
+bool port_may_write_ahead() { return sink; }
 uint8_t* port_memory(uint16_t length, bool) { return length > 400 ? nullptr : (uint8_t*)0x200; }
 void port_forget() { sink = 0; }
 void port_take(uint8_t mode, bool) { sink = mode; }
@@ -109,7 +109,7 @@ Answer port_image_byte(uint16_t offset, uint8_t* byte) { *byte = offset; return 
 uint8_t* port_text_memory(uint16_t*, bool* has_room) { *has_room = sink; return bytes; }
 uint8_t* port_text_room(uint16_t* room) { *room = sink; return (uint8_t*)0x300; }
 bool port_text_is_beside(bool) { return false; }
-bool port_may_make_way(bool) { return sink; }
+bool port_may_prepare_upload(bool) { return sink; }
 void port_take_text(uint8_t* image, bool) { sink = *image; }
 void port_end() { sink = 0; }
 const uint8_t words[] tini_progmem = {0};
@@ -124,7 +124,8 @@ void port_identify() { sink = 1; }
 PORT_USED = """port_identity(); port_status(); port_device_info(); sink = port_room();
   sink = port_line_errors().framing;
   port_tune(port_tuning(), sink);
-  port_may_prepare(); port_make_way(sink); port_memory(sink, 0); port_forget(); port_take(sink, 0);
+  port_may_write_ahead(); port_prepare_upload(sink); port_memory(sink, 0); port_forget();
+  port_take(sink, 0);
   port_undo();
   port_seal(bytes); port_start(sink); port_stop(sink);
   port_release(); sink = port_image_length(); port_image_byte(sink, bytes); port_rename(bytes, 1);

@@ -117,7 +117,7 @@ def instruction_table() -> str:
     for op in opcodes.OPS:
         words = [op.name, *(f"{each.name}:{each.kind.name}" for each in op.operands)]
         rows.append(
-            (f"`{op.opcode.hex(' ')}`", f"`{' '.join(words)}`", f"`{op.picture}`", op.meaning)
+            (f"`{op.opcode.hex(' ')}`", f"`{' '.join(words)}`", f"`{op.effect}`", op.meaning)
         )
     return table(("code", "instruction", "stack", "meaning"), rows)
 
@@ -137,8 +137,8 @@ def rule_table() -> str:
 
 def role_table() -> str:
     rows = []
-    for role, meaning in opcodes.ROLES.items():
-        names = [op.name for op in opcodes.OPS if op.role == role]
+    for role, meaning in opcodes.CONTROL_ROLES.items():
+        names = [op.name for op in opcodes.OPS if op.control_role == role]
         rows.append((role, ", ".join(f"`{name}`" for name in names), meaning))
     return table(("role", "instructions", "meaning"), rows)
 

@@ -28,7 +28,7 @@ ASKED = (
     "MOVE", "MOVE8", "WATCH", "WATCH_FOREVER",
     "WATCH_WAIT", "WATCH_FOREVER_WAIT", "WAIT", "WAIT8", "BEEP", "BEEP8", "LOOK", "END_WHEN",
 )  # fmt: skip
-FIRST_FOUR = 0x80  # from here on four codes in a row have the same shape,
+FIRST_FOUR = 0x80  # from here on four codes in a row have the same form,
 FIRST_SIX = 0xC8  # and from here on six of eight; the other two are no opcodes
 
 
@@ -92,7 +92,7 @@ def header(command: str) -> str:
         enumeration(
             "Op",
             [
-                *((op.name, op.code, op.picture) for op in in_order()),
+                *((op.name, op.code, op.effect) for op in in_order()),
                 ("ESCAPE", opcodes.ESCAPE, "a second byte says which instruction it is"),
             ],
         ),
@@ -105,10 +105,13 @@ def header(command: str) -> str:
         + enumeration("Fault", [("NONE", 0, "It runs."), *faults]),
         "// What an instruction is for the structure of a program.\n"
         + enumeration(
-            "Role",
+            "ControlRole",
             [
                 ("none", 0, "a byte that begins no instruction"),
-                *((role, k, what) for k, (role, what) in enumerate(opcodes.ROLES.items(), 1)),
+                *(
+                    (role, k, what)
+                    for k, (role, what) in enumerate(opcodes.CONTROL_ROLES.items(), 1)
+                ),
             ],
         ),
         "// What a byte of operands is.\n"
@@ -155,7 +158,11 @@ def ways() -> str:
     for code, op in opcodes.ESCAPED.items():
         base, _, direction = op.name.rpartition("_")
         twin = opcodes.BY_NAME[f"{same[base]}_{direction}"]
-        assert (twin.code, twin.role, twin.pops) == (code, op.role, op.pops) and not op.operands
+        assert (twin.code, twin.control_role, twin.pops) == (
+            code,
+            op.control_role,
+            op.pops,
+        ) and not op.operands
     mask, value = 0xF4, min(opcodes.ESCAPED)
     assert {code for code in range(256) if code & mask == value} == set(opcodes.ESCAPED)
     return (
@@ -165,7 +172,7 @@ def ways() -> str:
     )
 
 
-class Shape(NamedTuple):
+class DecodeForm(NamedTuple):
     """What the verifier and the machine must know of an opcode."""
 
     family: str
@@ -179,7 +186,7 @@ class Shape(NamedTuple):
     second: str
 
 
-NONE = Shape("NONE", "none", 0, 0, 1, False, False, "any", "any")
+NONE = DecodeForm("NONE", "none", 0, 0, 1, False, False, "any", "any")
 
 
 def byte_of(kind: opcodes.OperandKind) -> str:
@@ -188,7 +195,7 @@ def byte_of(kind: opcodes.OperandKind) -> str:
     return "any" if is_any and kind.name not in BYTES else kind.name
 
 
-def shape_of(op: opcodes.Op) -> Shape:
+def decode_form_of(op: opcodes.Op) -> DecodeForm:
     jumps = [each.kind.name.startswith(("fwd", "back")) for each in op.operands]
     assert not any(jumps[:-1]), "a jump is the last operand"
     kinds = [byte_of(each.kind) for each in op.operands]
@@ -202,14 +209,16 @@ def shape_of(op: opcodes.Op) -> Shape:
     family = op.family if op.family in ASKED else ""
     if family and op.implied:
         family += "_SHORT"
-    return Shape(family, op.role, op.pops, op.pushes, op.size, is_far, is_back, first, second)
+    return DecodeForm(
+        family, op.control_role, op.pops, op.pushes, op.size, is_far, is_back, first, second
+    )
 
 
-def shapes() -> dict[Shape, list[opcodes.Op]]:
-    """Return the opcodes of each shape: first what is no opcode, then those with a family."""
-    rows: dict[Shape, list[opcodes.Op]] = {NONE: []}
+def forms() -> dict[DecodeForm, list[opcodes.Op]]:
+    """Return the opcodes of each form: first what is no opcode, then those with a family."""
+    rows: dict[DecodeForm, list[opcodes.Op]] = {NONE: []}
     for op in sorted(in_order(), key=place_of):
-        rows.setdefault(shape_of(op), []).append(op)
+        rows.setdefault(decode_form_of(op), []).append(op)
     return rows
 
 
@@ -226,22 +235,22 @@ def in_order() -> tuple[opcodes.Op, ...]:
 def form_numbers() -> str:
     """Return the families and what is declared of the tables, for the header."""
     named = [
-        (shape.family, number, names(same) if len(same) > 1 else "")
-        for number, (shape, same) in enumerate(shapes().items())
-        if shape.family
+        (form.family, number, names(same) if len(same) > 1 else "")
+        for number, (form, same) in enumerate(forms().items())
+        if form.family
     ]
     return "\n".join(
         (
             "// What an instruction does, where the inner loop cannot do it alone: the number of\n"
-            "// its shape. The others have no names.\n" + enumeration("Family", named),
-            "// Bits of the size of a shape.\n" + constants(("kFar", FAR_BIT), ("kBack", BACK_BIT)),
-            "// The number of each opcode's shape; from kFirstFour on one for four of them. Of\n"
+            "// its form. The others have no names.\n" + enumeration("Family", named),
+            "// Bits of the size of a form.\n" + constants(("kFar", FAR_BIT), ("kBack", BACK_BIT)),
+            "// The number of each opcode's form; from kFirstFour on one for four of them. Of\n"
             "// eight from kFirstSix on the last two are no opcodes.\n"
             + constants(("kFirstFour", FIRST_FOUR), ("kFirstSix", FIRST_SIX)),
-            "extern const uint8_t kShapeOf[] tini_progmem;\n",
-            "// Of each shape: pops (2 bits), pushes (1) and role (5); the number of its\n"
+            "extern const uint8_t kFormOf[] tini_progmem;\n",
+            "// Of each form: pops (2 bits), pushes (1) and role (5); the number of its\n"
             "// operands (3), kBack, kFar and size (3).\n"
-            "extern const uint8_t kShapes[][2] tini_progmem;\n",
+            "extern const uint8_t kForms[][2] tini_progmem;\n",
             "// Of operands: what the second byte is (4 bits) and the first (4).\n"
             "extern const uint8_t kOperands[] tini_progmem;\n",
             "// The least value of a Byte, and how much more than that it may be.\n"
@@ -252,7 +261,7 @@ def form_numbers() -> str:
 
 def tables(command: str) -> str:
     """Return `bytecode.cpp`: the tables that the header declares."""
-    rows = shapes()
+    rows = forms()
     numbers = {op.code: number for number, same in enumerate(rows.values()) for op in same}
     numbered = [numbers.get(code, 0) for code in range(256)]
     found = [numbered[code - code % 4 if code >= FIRST_FOUR else code] for code in range(256)]
@@ -263,7 +272,7 @@ def tables(command: str) -> str:
     for op in TASK_OPS:
         assert op.code < FIRST_FOUR
         entries[op.code] = f"tini_task({entries[op.code]})"
-    with_tasks = {shape_of(op) for op in TASK_OPS}
+    with_tasks = {decode_form_of(op) for op in TASK_OPS}
     assert list(rows)[-len(with_tasks) :] == [each for each in rows if each in with_tasks]
     kinds = {byte_of(kind): kind for kind in opcodes.OPERAND_KINDS.values() if kind.size == 1}
     ranges = [(0, 255) if name == "any" else (kinds[name].low, kinds[name].high) for name in BYTES]
@@ -272,10 +281,10 @@ def tables(command: str) -> str:
             f"// Generated by {command} from the tables in compiler/tiniscript. Do not edit.\n",
             '#include "bytecode.h"\n',
             "// clang-format off\n",
-            only_with("tasks", "#define tini_task(shape) shape\n", "#define tini_task(shape) 0\n"),
+            only_with("tasks", "#define tini_task(form) form\n", "#define tini_task(form) 0\n"),
             "namespace tiniscript {\n",
             array(
-                "kShapeOf[]",
+                "kFormOf[]",
                 (
                     (
                         ", ".join(entries[at : at + 16]),
@@ -285,8 +294,8 @@ def tables(command: str) -> str:
                 ),
             ),
             array(
-                "kShapes[][2]",
-                ((packed(shape), names(same)) for shape, same in rows.items()),
+                "kForms[][2]",
+                ((packed(form), names(same)) for form, same in rows.items()),
                 tasks=len(with_tasks),
             ),
             array(
@@ -317,20 +326,20 @@ def names(same: Sequence[opcodes.Op]) -> str:
     return ", ".join(op.name for op in same[:4]) + (" ..." if len(same) > 4 else "")
 
 
-def packed(shape: Shape) -> str:
-    roles = ("none", *opcodes.ROLES)
-    assert shape.size < 8 and shape.pops < 4 and shape.pushes < 2 and roles.index(shape.role) < 32
-    effects = shape.pops << 6 | shape.pushes << 5 | roles.index(shape.role)
-    size = shape.size | FAR_BIT * shape.is_far | BACK_BIT * shape.is_back
-    number = list(operands()).index(operand_bytes(shape))
-    assert number < 8, "three bits say which operands a shape has"
+def packed(form: DecodeForm) -> str:
+    roles = ("none", *opcodes.CONTROL_ROLES)
+    assert form.size < 8 and form.pops < 4 and form.pushes < 2 and roles.index(form.role) < 32
+    effects = form.pops << 6 | form.pushes << 5 | roles.index(form.role)
+    size = form.size | FAR_BIT * form.is_far | BACK_BIT * form.is_back
+    number = list(operands()).index(operand_bytes(form))
+    assert number < 8, "three bits say which operands a form has"
     return f"{{0x{effects:02x}, 0x{number << 5 | size:02x}}}"
 
 
-def operand_bytes(shape: Shape) -> int:
-    return BYTES.index(shape.second) << 4 | BYTES.index(shape.first)
+def operand_bytes(form: DecodeForm) -> int:
+    return BYTES.index(form.second) << 4 | BYTES.index(form.first)
 
 
 def operands() -> dict[int, tuple[str, str]]:
     """Return what the first two bytes of operands may be, each once, by its packed number."""
-    return {operand_bytes(shape): (shape.first, shape.second) for shape in shapes()}
+    return {operand_bytes(form): (form.first, form.second) for form in forms()}

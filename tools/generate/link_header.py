@@ -57,7 +57,7 @@ def header(command: str) -> str:
             ("kStopRun", messages.STOP_RUN),
             ("kSilenceMs", messages.SILENCE_MS),
             ("kHeldMs", messages.HELD_MS),
-            ("kTetherMs", messages.TETHER_MS),
+            ("kDeadManMs", messages.DEAD_MAN_MS),
             ("kListenMs", messages.LISTEN_MS),
             ("kAgainMs", messages.AGAIN_MS),
             ("kKeyBytes", messages.KEY_BYTES),

@@ -8,7 +8,7 @@ A short instruction has its operand in its code: `PUSH_VAR_3` is `PUSH_VAR v3` i
 families are of eight, and the last three bits of the code are the operand. Families of comparators
 are of eight too, and the last three bits are the comparator.
 
-Knows numbers, operands, stack pictures and faults. Does not know what anything does.
+Knows numbers, operands, stack effects and faults. Does not know what anything does.
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
@@ -49,7 +49,7 @@ class Implied(NamedTuple):
 
 
 class Op(NamedTuple):
-    """One instruction. `picture` is a Forth stack picture, top of the stack on the right.
+    """One instruction. `effect` is a Forth stack effect, top of the stack on the right.
 
     A `code` of two bytes begins with ESCAPE, 0xFF40; `size` counts both.
     """
@@ -57,8 +57,8 @@ class Op(NamedTuple):
     code: int
     name: str
     operands: tuple[Operand, ...]
-    picture: str
-    role: str
+    effect: str
+    control_role: str
     meaning: str
     size: int
     pops: int
@@ -109,7 +109,7 @@ OPERAND_KINDS = {kind.name: kind for kind in (
 # What an instruction is for the structure of a program; `verify` has a rule for each role. Those
 # from `plain` on stand between expressions and checks. Those of loops come in pairs: one that does
 # not count, one that does. What opens a routine comes before what closes it.
-ROLES = {
+CONTROL_ROLES = {
     "end":       "ends the program",
     "value":     "part of an expression",
     "join":      "part of an expression; what the left side decides goes on at `to`",
@@ -138,28 +138,28 @@ ROLES = {
 }
 
 
-def _op(code: int, name: str, operands: str, picture: str, role: str, meaning: str) -> Op:
+def _op(code: int, name: str, operands: str, effect: str, role: str, meaning: str) -> Op:
     parts = []
     for text in operands.split():
         label, _, kind = text.partition(":")
         parts.append(Operand(label, OPERAND_KINDS[kind]))
-    taken, _, left = picture.partition("--")
+    taken, _, left = effect.partition("--")
     size = 1 + (code > 0xFF) + sum(operand.kind.size for operand in parts)
-    return Op(code, name, tuple(parts), picture, role, meaning,
+    return Op(code, name, tuple(parts), effect, role, meaning,
               size, len(taken.split()), len(left.split()))
 
 
-def _shorts(code: int, name: str, kind: str, picture: str, role: str, meaning: str) -> list[Op]:
+def _shorts(code: int, name: str, kind: str, effect: str, role: str, meaning: str) -> list[Op]:
     """Return the instructions of one byte that have `n` of 0 to 7 in their code."""
     assert code % SHORTS == 0
-    return [_op(code + n, f"{name}_{n}", "", picture, role, meaning.format(n))
+    return [_op(code + n, f"{name}_{n}", "", effect, role, meaning.format(n))
             ._replace(implied=Implied(OPERAND_KINDS[kind], n)) for n in range(SHORTS)]
 
 
-def _comparing(code: int, name: str, operands: str, picture: str, role: str, meaning: str) -> list[Op]:
+def _comparing(code: int, name: str, operands: str, effect: str, role: str, meaning: str) -> list[Op]:
     """Return the six instructions that differ in the comparator, the last three bits of the code."""
     assert code % 8 == 0
-    return [_op(code + i, f"{name}_{each}", operands, picture, role, meaning.format(sign))
+    return [_op(code + i, f"{name}_{each}", operands, effect, role, meaning.format(sign))
             for i, (each, sign) in enumerate(COMPARATORS)]
 
 
@@ -169,7 +169,7 @@ _MOVES = ("F", "forward"), ("B", "backward"), ("L", "left"), ("R", "right")
 PUSHED = (*range(11), *range(20, 101, 10))
 
 OPS = (
-    #    code  name              operands               stack picture      role     meaning
+    #    code  name              operands               stack effect      role     meaning
     _op(0x00, "END",             "",                    "--",              "end",   "The program is finished. No code holds it: a machine puts it behind."),
     # values
     _op(0x01, "PUSH8",           "n:u8",                "-- n",            "value", "Push the whole number `n`."),
@@ -300,7 +300,7 @@ FAULTS = (
     (255, "BAD_CODE",     "A check failed that verified code never fails: memory has changed."),
 )
 _GOES = tuple(op.name for op in OPS if op.needs == NEEDS_GO)
-_UNTILS = tuple(op.name for op in OPS if op.role == "until")
+_UNTILS = tuple(op.name for op in OPS if op.control_role == "until")
 _MEASURED = (*(f"GO_{d}" for d, _ in _MOVES), *_UNTILS)
 # Which instructions of verified code can fault.
 FAULTING = {

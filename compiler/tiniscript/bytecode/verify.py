@@ -25,9 +25,9 @@ from tiniscript.base.limits import (
 )
 from tiniscript.bytecode.image import EVERYTHING, Image, ImageRefused, unpack
 from tiniscript.bytecode.opcodes import (
+    CONTROL_ROLES,
     ESCAPE,
     NEEDS_GO,
-    ROLES,
     Op,
     OperandKind,
     op_at,
@@ -171,7 +171,7 @@ class _Verifier:
             self.operands(op)
             self.stack(op)
             self.place(op)
-            _STEP_OF[op.role](self)
+            _STEP_OF[op.control_role](self)
             self.at = self.after
         self.arrive()
         self.finish()
@@ -241,15 +241,15 @@ class _Verifier:
 
     def place(self, op: Op) -> None:
         """Whether it may stand here: what is no part of an expression leaves an empty stack."""
-        if op.role in _IN_EXPRESSIONS:
+        if op.control_role in _IN_EXPRESSIONS:
             if op.family == "PUSH_READ" and (self.depth > 1 or self.joins):
                 self.reads_inside = True
                 if len(self.tasks) > 1:  # it would end a turn with values on the stack
                     self.refuse("STACK_NOT_EMPTY")
             return
-        if self.depth or self.joins or (op.role in (_TASK, _WHEN) and self.reads_inside):
+        if self.depth or self.joins or (op.control_role in (_TASK, _WHEN) and self.reads_inside):
             self.refuse("STACK_NOT_EMPTY")
-        if self.check and op.role not in _IN_CHECKS:
+        if self.check and op.control_role not in _IN_CHECKS:
             self.refuse("INSIDE_CHECK")
 
     def finish(self) -> None:
@@ -447,7 +447,7 @@ class _Verifier:
 _IN_EXPRESSIONS = ("end", "value", "join")
 _IN_CHECKS = ("read", "until", "look")
 _STEP_OF = {
-    role: getattr(_Verifier, role, None) or getattr(_Verifier, role + "_") for role in ROLES
+    role: getattr(_Verifier, role, None) or getattr(_Verifier, role + "_") for role in CONTROL_ROLES
 }
 
 

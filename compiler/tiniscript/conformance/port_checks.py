@@ -37,7 +37,7 @@ NO_MESSAGE = 31  # a number that no message has
 EVENT_S = 3.0  # for an event behind what has caused it
 BUSY_TRIES, BUSY_S = 50, 0.1
 HEADER = 10  # bytes of an image before its checksum
-SILENCE_S = 5.0  # at most, until a tethered program ends without a frame: it does after 1 s
+SILENCE_S = 5.0  # at most, until an attached program ends without a frame: it does after 1 s
 ATTENDED_S = 3.0
 
 

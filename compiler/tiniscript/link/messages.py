@@ -105,7 +105,7 @@ STOP_BYTES = 8  # zeros that a computer sends to stop a robot
 STOP_RUN = 4  # zeros in a row that stop it
 SILENCE_MS = 1000  # after this silence the next byte begins an item
 HELD_MS = 100  # after this silence a typed stop acts in what began as a frame
-TETHER_MS = 1000  # dead-man timer: without a valid frame, a tethered program ends
+DEAD_MAN_MS = 1000  # dead-man timer: without a valid frame, an attached program ends
 LISTEN_MS = 3000  # without a valid frame, a robot sends no more events
 AGAIN_MS = 50  # between two STOPPED events of a stopped robot
 AUTHORITY_MS = 2000  # without a valid frame, a key has to be shown again
@@ -359,8 +359,8 @@ TEXT_LEVELS = (
 )
 # Faults that no instruction causes. The faults of instructions are in `opcodes.py`.
 LINK_FAULTS = (
-    (64, "LINK_LOST", "No valid frame for a second while a tethered program ran."),
-    (65, "MAX_RUN",   "A program without a tether ran longer than the robot allows."),
+    (64, "LINK_LOST", "No valid frame for a second while an attached program ran."),
+    (65, "MAX_RUN",   "A program without a dead-man timer ran longer than the robot allows."),
     (66, "STALL",     "The robot's own program did not go on."),
 )
 # fmt: on

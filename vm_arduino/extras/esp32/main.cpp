@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "../../src/boards/esp32/first_bytes.h"
+#include "../../src/boards/esp32/protocol_sniffer.h"
 #include "../../src/boards/motors.h"
 #include "../../src/firmware/board.h"
 #include "../host/wire.h"
@@ -249,10 +249,10 @@ void answer_radio(RequestReader* request, Writer* answer) {
 }
 
 // G: whether a connection that begins so is for a robot.
-void answer_guest(RequestReader* request, Writer* answer) {
+void answer_sniffed(RequestReader* request, Writer* answer) {
   const std::string bytes = request->text();
-  answer->u8(static_cast<uint8_t>(
-      guest_of(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())));
+  answer->u8(
+      static_cast<uint8_t>(sniffed(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())));
 }
 
 // M: how many turns of the main loop, and nanoseconds of this computer, the last step took until a
@@ -286,7 +286,7 @@ const Answers answers = {
     {'O', answer_output},
     {'R', answer_radio},
     {'X', answer_panic},
-    {'G', answer_guest},
+    {'G', answer_sniffed},
     {'M', answer_moved},
     {'L', [](RequestReader*, Writer*) { chip.is_ledc_stuck = true; }},
     {'F', [](RequestReader* request, Writer*) { chip.is_nvs_full = request->u8() != 0; }},

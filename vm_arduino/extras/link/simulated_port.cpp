@@ -72,7 +72,7 @@ const Tuning& port_tuning() { return port.tuning; }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return port.room; }
 
-Answer port_make_way(bool is_live) {
+Answer port_prepare_upload(bool is_live) {
   std::unique_ptr<uint8_t[]>& before = is_live ? port.live_before : port.image_before;
   if (port.is_busy) {
     if (before != nullptr) before.swap(is_live ? port.live : port.image);
@@ -88,7 +88,7 @@ Answer port_make_way(bool is_live) {
 }
 
 // What may not be lost is not lost by writing ahead: `port_memory` gives other memory each time.
-bool port_may_prepare() { return !port.is_busy; }
+bool port_may_write_ahead() { return !port.is_busy; }
 
 void port_forget() { hold(port.stored, Saved::kStored); }
 
@@ -142,15 +142,15 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 }
 
 uint8_t* port_text_room(uint16_t* room) {
-  if (!port_may_make_way(false)) return nullptr;
-  port_make_way(false);
+  if (!port_may_prepare_upload(false)) return nullptr;
+  port_prepare_upload(false);
   port_forget();
   *room = port.room;
   port.whole_text.reset(new uint8_t[static_cast<size_t>(kHeaderBytes + port.room + kEndBytes)]);
   return port.whole_text.get();
 }
 
-bool port_may_make_way(bool) { return !port.is_busy; }
+bool port_may_prepare_upload(bool) { return !port.is_busy; }
 
 bool port_text_is_beside(bool) { return false; }
 
@@ -176,7 +176,7 @@ Answer port_undo() {
 }
 
 void port_end() {
-  if (port.robot_status.state == State::kRunning) port_make_way(true);
+  if (port.robot_status.state == State::kRunning) port_prepare_upload(true);
 }
 
 const uint8_t* robot_words() { return port.words.data(); }

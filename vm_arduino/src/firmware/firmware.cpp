@@ -1,10 +1,10 @@
 #include "firmware.h"
 
 #include "../vm/small.h"
-#include "holding.h"
+#include "button_hold.h"
 #include "identify.h"
 #include "identity.h"
-#include "keeping.h"
+#include "persistence.h"
 #include "run.h"
 #include "state.h"
 
@@ -31,7 +31,7 @@ void firmware_begin(const Board& what) {
 }
 
 void firmware_on_time(uint32_t time_ms) {
-  pass_holding(static_cast<uint16_t>(time_ms - now_ms));
+  pass_button_hold(static_cast<uint16_t>(time_ms - now_ms));
   now_ms = time_ms;
   link.pass_time(static_cast<uint16_t>(time_ms));
 }
@@ -41,7 +41,7 @@ void firmware_turn() {
   tick_run();
   tick_identify();
   link.tell();
-  tick_keeping();
+  tick_persistence();
 }
 
 bool firmware_is_awaited() { return link.is_awaited(); }

@@ -1,7 +1,7 @@
 // The robot's firmware: connects button, link, store and program.
 //
 // Knows no pins. Time comes in as `now_ms`; nothing here blocks. There is only one robot, so these
-// are plain functions. Parts: `program` holds the images in memory, `run` runs one, `keeping`
+// are plain functions. Parts: `program` holds the images in memory, `run` runs one, `persistence`
 // saves, `identity` is id, name and trim, `port` answers the link, `state` is what they share.
 
 #ifndef TINISCRIPT_FIRMWARE_FIRMWARE_H_
@@ -38,7 +38,7 @@ void firmware_on_released();
 // The button has been down for a while: also stops what was started since its first edge.
 void firmware_on_held();
 
-// The radio module reports that the client has disconnected: ends a tethered run.
+// The radio module reports that the client has disconnected: ends an attached run.
 void firmware_on_disconnect();
 
 // Whether a program runs, in which image and where. Changes nothing, so it may be called from an
@@ -67,7 +67,7 @@ void firmware_wifi_rests(bool is_so);
 // Whether who is connected over a transport has shown a key of the robot.
 bool firmware_has_key(Transport transport);
 
-// Nobody is connected over a transport any more: ends a tethered run that it has started.
+// Nobody is connected over a transport any more: ends an attached run that it has started.
 void firmware_on_part(Transport transport);
 #else
 extern Receiver receiver;

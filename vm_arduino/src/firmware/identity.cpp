@@ -4,7 +4,7 @@
 #include "../link/text_level.h"
 #include "../store/layout.h"
 #include "firmware.h"
-#include "keeping.h"
+#include "persistence.h"
 #include "state.h"
 #include "trim.h"
 

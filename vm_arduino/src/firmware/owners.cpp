@@ -4,7 +4,7 @@
 #include "../link/has_seals.h"
 #include "../link/port.h"
 #include "../store/layout.h"
-#include "keeping.h"
+#include "persistence.h"
 #include "state.h"
 
 namespace tiniscript {

@@ -5,8 +5,8 @@
 #include "../link/frames.h"
 #include "../vm/image.h"
 #include "identity.h"
-#include "keeping.h"
 #include "pace.h"
+#include "persistence.h"
 #include "program.h"
 #include "run.h"
 #include "state.h"
@@ -20,7 +20,7 @@ LineErrors port_line_errors() { return board_line_errors(); }
 
 uint16_t port_room() { return kStoredCodeBytes; }
 
-Answer port_make_way(bool is_live) {
+Answer port_prepare_upload(bool is_live) {
   if (!has_booted()) return not_now();
   if (is_running()) end_run(State::kIdle);
   forget_start();
@@ -28,12 +28,12 @@ Answer port_make_way(bool is_live) {
   return give_up_program();
 }
 
-bool port_may_make_way(bool is_live) {
+bool port_may_prepare_upload(bool is_live) {
   if (!has_booted()) return false;
   return is_live ? has_program() || load_program() : give_up_program() == Answer::kOk;
 }
 
-bool port_may_prepare() {
+bool port_may_write_ahead() {
 #ifdef tiniscript_transports
   if (!link.is_driving()) return false;
 #endif
@@ -85,8 +85,8 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 }
 
 uint8_t* port_text_room(uint16_t* room) {
-  if (!port_may_make_way(false)) return nullptr;
-  port_make_way(false);
+  if (!port_may_prepare_upload(false)) return nullptr;
+  port_prepare_upload(false);
   port_forget();
   *room = kTextRoom;
   return program;
@@ -104,7 +104,7 @@ void port_take_text(uint8_t* image, bool is_for_button) {
 }
 
 Answer port_undo() {
-  const Answer way = port_make_way(false);
+  const Answer way = port_prepare_upload(false);
   if (way != Answer::kOk) return way;
   const bool is_stored = robot_status.slot != kNoSlot;
   if (!hold_previous()) return Answer::kNoPrevious;

@@ -6,10 +6,10 @@
 #include "../vm/flags.h"
 #include "../vm/image.h"
 #include "../vm/vm.h"
+#include "button_hold.h"
 #include "firmware.h"
-#include "holding.h"
-#include "keeping.h"
 #include "guide.h"
+#include "persistence.h"
 #include "program.h"
 #include "state.h"
 #include "trim.h"
@@ -51,7 +51,7 @@ void go_on() {
     end_run(State::kFaulted);
     fault(static_cast<uint8_t>(machine.fault()), machine.at());
     link.faulted();
-  } else if (!link.is_tethered() && now_ms - machine.task().started_ms >= board_max_run_ms()) {
+  } else if (!link.is_attached() && now_ms - machine.task().started_ms >= board_max_run_ms()) {
     abort_run(LinkFault::kMaxRun);
   }
 }
@@ -155,7 +155,7 @@ void firmware_on_released() {
 
 void firmware_on_disconnect() {
   link.lapse();
-  if (!is_running() || !link.is_tethered()) return;
+  if (!is_running() || !link.is_attached()) return;
   end_run(State::kStopped);
   link.stopped(Cause::kCable);
 }

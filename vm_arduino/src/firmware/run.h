@@ -1,7 +1,8 @@
 // The run of a program: how it begins and ends, and the record of a fault.
 //
-// Knows the machine, and how button and tether affect a run. Implements the firmware's events
-// (`firmware_on_pressed` ...) and the functions of `robot.h` that are the same on every board.
+// Knows the machine, and how button and dead-man timer affect a run. Implements the events of the
+// firmware (`firmware_on_pressed` ...) and the functions of `robot.h` that are the same on every
+// board.
 
 #ifndef TINISCRIPT_FIRMWARE_RUN_H_
 #define TINISCRIPT_FIRMWARE_RUN_H_

@@ -90,7 +90,7 @@ void Link::turn() {
   } else if (console_.is_due() || receiver_->has_text()) {
     talk();
   }
-  if (is_tethered_ && tether_ms() <= kListenMs - kTetherMs &&
+  if (is_attached_ && dead_man_ms() <= kListenMs - kDeadManMs &&
       port_status().state == State::kRunning) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
     faulted();
@@ -274,7 +274,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
         break;
       } else if (is_latched()) {
         found = Answer::kLatched;
-      } else if ((found = port_make_way(true)) == Answer::kOk) {
+      } else if ((found = port_prepare_upload(true)) == Answer::kOk) {
         image_ = nullptr;
         checksum_ = port_status().program;
         start(payload[kStartModeAt], false);

@@ -78,16 +78,16 @@ class Link {
   bool show(int32_t value, bool is_yes_no);
 
   // The button starts the program that the robot holds: cancels a program in transfer, which must
-  // not overwrite it. A run started by the button has no tether.
+  // not overwrite it. A run started by the button has no dead-man timer.
   void drop() {
     image_ = nullptr;
-    is_tethered_ = false;
+    is_attached_ = false;
     console_.drop();
     rights_ = 0;  // also what only the teacher may release
   }
 
   // Whether the run ends when no frame arrives.
-  bool is_tethered() const { return is_tethered_; }
+  bool is_attached() const { return is_attached_; }
 
   // Ends the authority of the session.
   void lapse();
@@ -121,7 +121,7 @@ class Link {
   // Another session drives: what this one has begun is over.
   void give_way() {
     image_ = nullptr;
-    is_tethered_ = is_ready_ = false;
+    is_attached_ = is_ready_ = false;
     console_.drop();
   }
 
@@ -244,7 +244,7 @@ class Link {
   void forget_answer() { sealed_last_.number = 0; }
   Said& last() { return is_sealed_ ? sealed_last_ : last_; }
   uint8_t& last_epoch() { return is_sealed_ ? sealed_last_epoch_ : last_epoch_; }
-  uint16_t tether_ms() const { return left_ms_[is_run_sealed_ ? kSealHeard : kListen]; }
+  uint16_t dead_man_ms() const { return left_ms_[is_run_sealed_ ? kSealHeard : kListen]; }
   void note_run() { is_run_sealed_ = is_sealed_; }
   uint8_t reply_mark() { return is_reply_sealed_ ? event_mark() : 0; }
   uint8_t event_mark();
@@ -262,7 +262,7 @@ class Link {
   static void forget_answer() {}
   Said& last() { return last_; }
   uint8_t& last_epoch() { return last_epoch_; }
-  uint16_t tether_ms() const { return left_ms_[kListen]; }
+  uint16_t dead_man_ms() const { return left_ms_[kListen]; }
   static void note_run() {}
   static constexpr uint8_t reply_mark() { return 0; }
   static constexpr uint8_t event_mark() { return 0; }
@@ -317,7 +317,7 @@ class Link {
   uint8_t isa_[2];     // of the client's programs, major and minor
   bool is_open_;       // there is a session
   bool is_other_kit_;  // the client's programs are for another kit
-  bool is_tethered_;   // of the current or last run
+  bool is_attached_;   // of the current or last run
   uint8_t ended_run_;
   Cause cause_;
   uint8_t event_seq_;

@@ -34,8 +34,8 @@ tini_noinline void Link::prepare() {
   const uint8_t end = check_.decode(bytes);  // below 0 it is very large
   const uint8_t begin = payload_at(end);
   if (end == ahead_ || end <= begin || end > kLargestFrame || bytes[kTypeAt] != kLiveByte ||
-      (is_large(end) && bytes[kPayloadAt] != 0) || due_ != 0 || !is_open_ || is_forbidden(kLiveByte) || console_.is_open() ||
-      !port_may_prepare()) {
+      (is_large(end) && bytes[kPayloadAt] != 0) || due_ != 0 || !is_open_ ||
+      is_forbidden(kLiveByte) || console_.is_open() || !port_may_write_ahead()) {
     return;
   }
   ahead_ = end;
@@ -47,7 +47,7 @@ tini_noinline void Link::prepare() {
 bool Link::go_live() {
   const uint8_t* const bytes = receiver_->bytes();
   if (!check_.is_whole() || !is_next(bytes[kSeqAt], bytes[kEpochAt]) || is_latched() ||
-      port_make_way(true) != Answer::kOk) {
+      port_prepare_upload(true) != Answer::kOk) {
     return false;
   }
   left_ms_[kListen] = kListenMs;
@@ -85,7 +85,7 @@ uint8_t Link::make_room(Use use, uint16_t length) {
   uint8_t* const image = port_memory(length, is_live);
   if (image == nullptr) return refuse(Answer::kTooLarge, port_room());
   if (use != Use::kAhead) {
-    const Answer way = port_make_way(is_live);
+    const Answer way = port_prepare_upload(is_live);
     if (way != Answer::kOk) return refuse(way, 0);
   }
   made_ = image;
@@ -210,7 +210,7 @@ void Link::finish(uint8_t mode, bool is_live) {
 
 void Link::start(uint8_t mode, bool is_live) {
   port_start(is_live);
-  is_tethered_ = (mode & kDetached) == 0;
+  is_attached_ = (mode & kDetached) == 0;
   note_run();
 }
 

@@ -52,7 +52,7 @@ Remark Link::start_text(const Console& console) {
     port_release();
   }
   const bool is_beside = port_text_is_beside(start != 0);
-  if (!port_may_make_way(is_beside)) return Remark::kSaving;
+  if (!port_may_prepare_upload(is_beside)) return Remark::kSaving;
   image_ = nullptr;
   seal();  // a frame's image of this turn, whose receipt is due
   if (make(is_beside ? Use::kLive : Use::kStored, start, console.image() + kHeaderBytes,
@@ -65,7 +65,7 @@ Remark Link::start_text(const Console& console) {
   port_take_text(image, start != 0);
   put_checksum(image);
   port_seal(image);
-  is_tethered_ = false;
+  is_attached_ = false;
   if (start != 0) return Remark::kOkButton;
   return console.has_lost() ? Remark::kOkLost : Remark::kOk;
 }

@@ -115,9 +115,9 @@ void Links::drop() {
   is_held_back_ = false;
 }
 
-bool Links::is_tethered() const {
+bool Links::is_attached() const {
   for (const Link& link : links_) {
-    if (link.is_tethered()) return true;
+    if (link.is_attached()) return true;
   }
   return false;
 }
@@ -166,7 +166,7 @@ bool Links::show(int32_t value, bool is_yes_no) {
 
 bool Links::part(Transport transport) {
   const uint8_t place = place_of(transport);
-  const bool ends_run = links_[place].is_tethered();
+  const bool ends_run = links_[place].is_attached();
   enter(place);
   links_[place].give_way();
   links_[place].lapse();

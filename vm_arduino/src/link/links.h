@@ -33,7 +33,7 @@ class Links {
   void faulted();
   void stopped(Cause cause);
   void drop();
-  bool is_tethered() const;
+  bool is_attached() const;
   void lapse();
   bool confirm_claim();
 

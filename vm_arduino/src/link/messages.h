@@ -31,7 +31,7 @@ constexpr uint8_t kMostLeast = 40;
 constexpr uint8_t kStopRun = 4;
 constexpr uint16_t kSilenceMs = 1000;
 constexpr uint8_t kHeldMs = 100;
-constexpr uint16_t kTetherMs = 1000;
+constexpr uint16_t kDeadManMs = 1000;
 constexpr uint16_t kListenMs = 3000;
 constexpr uint8_t kAgainMs = 50;
 constexpr uint8_t kKeyBytes = 16;
@@ -259,8 +259,8 @@ enum class WifiState : uint8_t {
 
 // Faults that no instruction makes. The others are `Fault`.
 enum class LinkFault : uint8_t {
-  kLinkLost = 64,  // No valid frame for a second while a tethered program ran.
-  kMaxRun = 65,  // A program without a tether ran longer than the robot allows.
+  kLinkLost = 64,  // No valid frame for a second while an attached program ran.
+  kMaxRun = 65,  // A program without a dead-man timer ran longer than the robot allows.
   kStall = 66,  // The robot's own program did not go on.
 };
 

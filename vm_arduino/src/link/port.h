@@ -98,15 +98,15 @@ uint16_t port_room();
 // Ends the running program, and has the one in memory saved if that was requested. kBusy if that is
 // not finished: the link reports this, and the client tries again. kLowSupply: it waits for enough
 // voltage. An image with is_live goes beside the program in memory.
-Answer port_make_way(bool is_live);
+Answer port_prepare_upload(bool is_live);
 
 // Returns room for an image of this length and kEndBytes after it, or nullptr if there is none. Its
-// old contents stay intact until port_make_way is called.
+// old contents stay intact until port_prepare_upload is called.
 uint8_t* port_memory(uint16_t length, bool is_live);
 
 // Whether the image beside the program may be written ahead: the old one does not run, and
-// `port_make_way` will not have to wait.
-bool port_may_prepare();
+// `port_prepare_upload` will not have to wait.
+bool port_may_write_ahead();
 
 // The image in memory is overwritten in parts from now on: the robot holds the stored one.
 void port_forget();
@@ -133,8 +133,8 @@ uint8_t* port_text_room(uint16_t* room);
 // Whether the image of a program that was read goes beside the program in memory.
 bool port_text_is_beside(bool is_for_button);
 
-// Whether port_make_way would make way now.
-bool port_may_make_way(bool is_live);
+// Whether port_prepare_upload would be done at once.
+bool port_may_prepare_upload(bool is_live);
 
 // The image that was read is verified and complete except for its checksum: it starts at once, or
 // the button starts it until power-off.

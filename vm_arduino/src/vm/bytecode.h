@@ -327,7 +327,7 @@ enum class Fault : uint8_t {
 };
 
 // What an instruction is for the structure of a program.
-enum class Role : uint8_t {
+enum class ControlRole : uint8_t {
   kNone = 0,  // a byte that begins no instruction
   kEnd = 1,  // ends the program
   kValue = 2,  // part of an expression
@@ -368,7 +368,7 @@ enum class Byte : uint8_t {
 };
 
 // What an instruction does, where the inner loop cannot do it alone: the number of
-// its shape. The others have no names.
+// its form. The others have no names.
 enum class Family : uint8_t {
   kNone = 0,
   kPushRead = 1,
@@ -396,20 +396,20 @@ enum class Family : uint8_t {
   kEndWhen = 73,
 };
 
-// Bits of the size of a shape.
+// Bits of the size of a form.
 constexpr uint8_t kFar = 8;
 constexpr uint8_t kBack = 16;
 
-// The number of each opcode's shape; from kFirstFour on one for four of them. Of
+// The number of each opcode's form; from kFirstFour on one for four of them. Of
 // eight from kFirstSix on the last two are no opcodes.
 constexpr uint8_t kFirstFour = 128;
 constexpr uint8_t kFirstSix = 200;
 
-extern const uint8_t kShapeOf[] tini_progmem;
+extern const uint8_t kFormOf[] tini_progmem;
 
-// Of each shape: pops (2 bits), pushes (1) and role (5); the number of its
+// Of each form: pops (2 bits), pushes (1) and role (5); the number of its
 // operands (3), kBack, kFar and size (3).
-extern const uint8_t kShapes[][2] tini_progmem;
+extern const uint8_t kForms[][2] tini_progmem;
 
 // Of operands: what the second byte is (4 bits) and the first (4).
 extern const uint8_t kOperands[] tini_progmem;

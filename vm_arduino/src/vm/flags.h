@@ -20,7 +20,7 @@ enum class Bit : uint8_t {
   kReleased,  // boards/motors.cpp
   kSpaced,    // boards/ultrasonic.cpp
   kWhole,     // firmware/program.cpp
-  kLow,       // firmware/keeping.cpp
+  kLow,       // firmware/persistence.cpp
   kPrepared,  // firmware/run.cpp
   kMayStart,  // firmware/run.cpp
   kStartDue,  // firmware/run.cpp
@@ -36,7 +36,7 @@ tini_always_inline volatile uint8_t& all_flags() {
   return *reinterpret_cast<volatile uint8_t*>(kFlagsAt);
 }
 
-// A variable of firmware/keeping.cpp.
+// A variable of firmware/persistence.cpp.
 template <uint16_t kAt>
 class QuickByte {
  public:

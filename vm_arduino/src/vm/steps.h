@@ -8,8 +8,8 @@
 #include <stdint.h>
 
 #include "arithmetic.h"
+#include "decode_form.h"
 #include "number.h"
-#include "shape.h"
 #include "small.h"
 #include "vm.h"
 
@@ -77,11 +77,11 @@ tini_always_inline bool Machine::stay(Running* run) {
 
 // Lets `act` and `until` see where the program is, and go elsewhere.
 tini_always_inline bool Machine::act(Running* run, uint8_t code) {
-  const Shape shape = shape_of(code);
+  const DecodeForm form = decode_form_of(code);
   int32_t* const top = run->top - 1;
-  if (!pop(run, shape.pops())) return false;
+  if (!pop(run, form.pops())) return false;
   at_ = offset(run->at);
-  task_.pc = static_cast<uint16_t>(at_ + shape.size());
+  task_.pc = static_cast<uint16_t>(at_ + form.size());
   const bool goes_on = act(code, run->at, top);
   run->next = code_ + task_.pc;
   return goes_on;

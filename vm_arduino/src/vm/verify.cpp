@@ -1,7 +1,7 @@
 #include "verify.h"
 
 #include "../robot.h"
-#include "shape.h"
+#include "decode_form.h"
 
 namespace tiniscript {
 
@@ -61,8 +61,9 @@ uint16_t with_device(uint16_t hash, uint16_t device) {
 }
 
 // The loop that a role opens, closes or leaves: they come in pairs.
-Kind loop_of(Role role) {
-  static_assert(static_cast<uint8_t>(Role::kForever) % 2 == 0, "the first one does not count");
+Kind loop_of(ControlRole role) {
+  static_assert(static_cast<uint8_t>(ControlRole::kForever) % 2 == 0,
+                "the first one does not count");
   return static_cast<uint8_t>(role) % 2 == 0 ? Kind::kRepeat : Kind::kCount;
 }
 
@@ -73,7 +74,8 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
                                        uint8_t actuators, Memory* memory, uint8_t may_need) {
   uint16_t at = 0;              // where the instruction that is looked at begins
   uint16_t after = 0;           // where the next one begins
-  Role checker = Role::kNone;   // what ends the check of an UNTIL or of a WHEN that is open
+  ControlRole checker =
+      ControlRole::kNone;       // what ends the check of an UNTIL or of a WHEN that is open
   uint8_t depth = 0;            // values on the stack
   uint8_t joins = 0;            // that are open
   Def* closed = memory->defs;   // behind the closed DEFs
@@ -87,7 +89,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
   Depth beside = 0;             // that others need which are open with this routine
   Block* top = memory->blocks;  // the innermost block that is open
   uint8_t tasks = 0;            // that have begun beside the main one
-  Role closer = Role::kNone;    // of the routine
+  ControlRole closer = ControlRole::kNone;  // of the routine
   uint8_t needed = 0;           // of `needs`, beside tasks
   bool reads_inside = false;    // a reading was pushed above other values, or in an open join
   join->target = kFarAway;
@@ -102,7 +104,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       if (join->depth != depth) return {Rule::kStackNotEmpty, at};
     }
     for (; top->kind == Kind::kIf && top->end <= at; top--) {
-      if (top->end != at || depth != 0 || joins != 0 || checker != Role::kNone) {
+      if (top->end != at || depth != 0 || joins != 0 || checker != ControlRole::kNone) {
         return {Rule::kMissedTarget, at};
       }
     }
@@ -117,18 +119,18 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       if (!is_way(*++operand)) return {Rule::kUnknownOpcode, at};
       needed = kNeedsWays;
     }
-    const Shape shape = shape_of(*operand);
-    if (kHasTasks && (may_need & kNeedsTasks) == 0 && shape.role() >= Role::kTask) {
+    const DecodeForm form = decode_form_of(*operand);
+    if (kHasTasks && (may_need & kNeedsTasks) == 0 && form.role() >= ControlRole::kTask) {
       return {Rule::kUnknownOpcode, at};
     }
-    after = static_cast<uint16_t>(after + shape.size());
+    after = static_cast<uint16_t>(after + form.size());
     if (after > length) return {Rule::kCutOperand, at};
 
     // operands
-    for (uint8_t kinds = shape.kinds; kinds != 0; kinds = static_cast<uint8_t>(kinds >> 4)) {
+    for (uint8_t kinds = form.kinds; kinds != 0; kinds = static_cast<uint8_t>(kinds >> 4)) {
       const Byte kind = static_cast<Byte>(kinds & 15);
       // a one-byte instruction holds its operand in its code
-      const uint8_t value = shape.size() == 1 ? code[at] % kShorts : *++operand;
+      const uint8_t value = form.size() == 1 ? code[at] % kShorts : *++operand;
       if (!in_range(kind, value)) return {Rule::kBadOperand, at};
       if (kind < Byte::kSensor) continue;
       if (value >= (kind == Byte::kSensor ? sensors : actuators)) {
@@ -139,31 +141,32 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     }
 
     // stack
-    if (depth < shape.pops()) return {Rule::kStackUnderflow, at};
-    depth = static_cast<uint8_t>(depth - shape.pops() + shape.pushes());
+    if (depth < form.pops()) return {Rule::kStackUnderflow, at};
+    depth = static_cast<uint8_t>(depth - form.pops() + form.pushes());
     if (depth > kStackValues) return {Rule::kStackOverflow, at};
 
     // the target of a jump comes from the last one or two bytes
     const uint8_t* last = code + after - 1;
     uint16_t distance = *last;
-    if (shape.is_far()) distance = static_cast<uint16_t>(distance << 8 | *--last);
+    if (form.is_far()) distance = static_cast<uint16_t>(distance << 8 | *--last);
     uint16_t target = static_cast<uint16_t>(after + distance);
     if (target < after) target = kFarAway;
     // a target before the code wraps to more than `after`, where nothing starts
-    if (shape.jumps_back()) target = static_cast<uint16_t>(after - distance);
+    if (form.jumps_back()) target = static_cast<uint16_t>(after - distance);
 
     // place
-    if (kHasTasks && is_push_read(shape.family) && (depth > 1 || joins != 0)) {
+    if (kHasTasks && is_push_read(form.family) && (depth > 1 || joins != 0)) {
       // there it would end a turn with values on the stack
       if (tasks != 0) return {Rule::kStackNotEmpty, at};
       reads_inside = true;
     }
-    const Role role = shape.role();
-    if (role >= Role::kRead) {
+    const ControlRole role = form.role();
+    if (role >= ControlRole::kRead) {
       if (depth != 0 || joins != 0) return {Rule::kStackNotEmpty, at};
-      const bool is_task = kHasTasks && (role == Role::kTask || role == Role::kWhen);
+      const bool is_task = kHasTasks && (role == ControlRole::kTask || role == ControlRole::kWhen);
       if (is_task && reads_inside) return {Rule::kStackNotEmpty, at};
-      if (role >= Role::kPlain && checker != Role::kNone && role != Role::kLook) {
+      if (role >= ControlRole::kPlain && checker != ControlRole::kNone &&
+          role != ControlRole::kLook) {
         return {Rule::kInsideCheck, at};
       }
     }
@@ -172,54 +175,54 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     Kind kind = loop_of(role);
     Depth needs = 0;
     switch (role) {
-      case Role::kNone:
+      case ControlRole::kNone:
         return {Rule::kUnknownOpcode, at};
-      case Role::kEnd:
+      case ControlRole::kEnd:
         return {Rule::kBadEnd, at};
-      case Role::kValue:
-      case Role::kRead:
-      case Role::kPlain:
+      case ControlRole::kValue:
+      case ControlRole::kRead:
+      case ControlRole::kPlain:
         continue;
 
-      case Role::kJoin:
+      case ControlRole::kJoin:
         if (joins == kJoins) return {Rule::kTooDeep, at};
         if (target >= length || target > join->target) return {Rule::kBadTarget, at};
         joins++;
         *++join = {target, static_cast<uint8_t>(depth + 1)};
         continue;
 
-      case Role::kWatch:
-        checker = Role::kUntil;
+      case ControlRole::kWatch:
+        checker = ControlRole::kUntil;
         continue;
-      case Role::kUntil:
-      case Role::kLook:
+      case ControlRole::kUntil:
+      case ControlRole::kLook:
         if (checker != role) return {Rule::kNotOpen, at};
-        checker = Role::kNone;
+        checker = ControlRole::kNone;
         continue;
 
       // those that open a block: see `open` below
-      case Role::kElse:
+      case ControlRole::kElse:
         if (top->kind != Kind::kIf || top->end != after) return {Rule::kNotOpen, at};
         top--;
         kind = Kind::kIf;
         break;
-      case Role::kIf:
+      case ControlRole::kIf:
         if (top->kind == Kind::kRepeat && top->end == target) continue;  // it leaves the loop
         kind = Kind::kIf;
         break;
-      case Role::kForever:
-      case Role::kCount:
+      case ControlRole::kForever:
+      case ControlRole::kCount:
         target = 0;
         break;
-      case Role::kWhile:
-      case Role::kLoop:
+      case ControlRole::kWhile:
+      case ControlRole::kLoop:
         break;
 
-      case Role::kAgain:
-      case Role::kNext:
-      case Role::kBreak:
-      case Role::kDrop: {  // close, leave
-        const bool closes = role <= Role::kNext;
+      case ControlRole::kAgain:
+      case ControlRole::kNext:
+      case ControlRole::kBreak:
+      case ControlRole::kDrop: {  // close, leave
+        const bool closes = role <= ControlRole::kNext;
         const uint16_t its_end = closes ? after : target;
         Block* loop = top;
         if (closes && loop->kind == Kind::kIf) return {Rule::kStillOpen, at};
@@ -236,32 +239,32 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
         continue;
       }
 
-      case Role::kDef:
-      case Role::kTask:
-      case Role::kWhen:
+      case ControlRole::kDef:
+      case ControlRole::kTask:
+      case ControlRole::kWhen:
         if (top->kind != Kind::kCode || end != 0) return {Rule::kBadDef, at};
         main = most;
         beside = 0;
-        if (role == Role::kDef) {
+        if (role == ControlRole::kDef) {
           if (closed == memory->defs + kDefs) return {Rule::kTooManyDefs, at};
         } else if (kHasTasks) {
           if (tasks++ == kTasks) return {Rule::kTooManyTasks, at};
           beside = static_cast<Depth>(ended + main);
-          if (role == Role::kWhen) checker = Role::kLook;
+          if (role == ControlRole::kWhen) checker = ControlRole::kLook;
         }
-        closer = static_cast<Role>(static_cast<uint8_t>(role) + 1);
+        closer = static_cast<ControlRole>(static_cast<uint8_t>(role) + 1);
         start = after;
         most = 0;
         end = target;
         continue;
-      case Role::kReturn:
-      case Role::kEndTask:
-      case Role::kEndWhen:
+      case ControlRole::kReturn:
+      case ControlRole::kEndTask:
+      case ControlRole::kEndWhen:
         if (end == 0 || closer != role) return {Rule::kNotOpen, at};
         if (top->kind != Kind::kCode) return {Rule::kStillOpen, at};
         if (end != after) return {Rule::kBadDef, at};
         end = 0;
-        if (role == Role::kReturn) {
+        if (role == ControlRole::kReturn) {
           *closed++ = {start, most};
         } else if (kHasTasks) {
           ended = static_cast<Depth>(ended + most);
@@ -269,7 +272,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
         most = main;
         beside = ended;
         continue;
-      case Role::kCall: {
+      case ControlRole::kCall: {
         const Def* called = closed;
         do {
           if (called == memory->defs) return {Rule::kBadCall, at};
@@ -280,7 +283,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       }
     }
 
-    if (role != Role::kCall) {
+    if (role != ControlRole::kCall) {
       // open: a block that ends at the target; an IF shares the one around it that ends there too
       if (target > length) return {Rule::kBadTarget, at};
       // where both are known: behind 0, less 1, nothing lies
@@ -304,7 +307,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
 
   // finish
   if (depth != 0 || joins != 0) return {Rule::kStackNotEmpty, at};
-  if (checker != Role::kNone) return {Rule::kInsideCheck, at};
+  if (checker != ControlRole::kNone) return {Rule::kInsideCheck, at};
   if (top->kind != Kind::kCode || end != 0) return {Rule::kStillOpen, at};
   if (tasks != 0) needed |= kNeedsTasks;
   return {Rule::kNone, needed};

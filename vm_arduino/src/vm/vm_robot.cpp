@@ -1,8 +1,8 @@
 // Instructions that use the robot, the clock or random numbers: the same on every chip.
 
 #include "../robot.h"
+#include "decode_form.h"
 #include "number.h"
-#include "shape.h"
 #include "small.h"
 #include "vm.h"
 
@@ -89,8 +89,8 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
     code = bytes[1];
     if (!go_ms(code, top)) return false;
   }
-  const Shape shape = shape_of(code);
-  const Family family = shape.family;
+  const DecodeForm form = decode_form_of(code);
+  const Family family = form.family;
   // The check of an UNTIL may contain these; its move is unchanged.
   if (family == Family::kTime) {
     *top = static_cast<int32_t>(now_ms_ - task_.started_ms);
@@ -104,10 +104,10 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
     if (family == Family::kLook) return look(*top != 0);
     if (family == Family::kEndWhen) return look_again();
   }
-  const bool takes = shape.pops() != 0;
-  const uint8_t first = shape.size() == 1 ? static_cast<uint8_t>(code % kShorts) : bytes[1];
-  const int8_t power = takes ? percent(*top) : signed8(bytes[shape.size() - 1]);
-  uint32_t time_ms = takes ? duration(shape.pops() == 1 ? *top : top[-1]) : time8(first);
+  const bool takes = form.pops() != 0;
+  const uint8_t first = form.size() == 1 ? static_cast<uint8_t>(code % kShorts) : bytes[1];
+  const int8_t power = takes ? percent(*top) : signed8(bytes[form.size() - 1]);
+  uint32_t time_ms = takes ? duration(form.pops() == 1 ? *top : top[-1]) : time8(first);
   // of a move; what is neither move nor wait leaves them to the next one
   task_.me->code = code;
   task_.me->power = power;

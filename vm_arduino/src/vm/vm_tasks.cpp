@@ -8,7 +8,7 @@
 
 #ifdef tiniscript_has_tasks
 
-#include "shape.h"
+#include "decode_form.h"
 #include "small.h"
 #include "vm.h"
 
@@ -18,20 +18,20 @@ namespace tiniscript {
 // none. All of it is 0.
 void Machine::find_tasks() {
   TaskRecord* me = task_.records;
-  Role kind = Role::kWhen;
+  ControlRole kind = ControlRole::kWhen;
   for (;;) {
     for (uint16_t at = 0; at < length_;) {
-      const Shape shape = shape_of(code_[at]);
-      at = static_cast<uint16_t>(at + shape.size());
-      if (shape.role() != kind || me == main_task()) continue;
+      const DecodeForm form = decode_form_of(code_[at]);
+      at = static_cast<uint16_t>(at + form.size());
+      if (form.role() != kind || me == main_task()) continue;
       me->state = kHasTime;
       me->pc = at;
-      if (kind == Role::kWhen) me->start = at;
+      if (kind == ControlRole::kWhen) me->start = at;
       me++;
       task_.others = static_cast<uint8_t>((task_.others + kOneOther) | kHasOthers);
     }
-    if (kind == Role::kTask) break;
-    kind = Role::kTask;
+    if (kind == ControlRole::kTask) break;
+    kind = ControlRole::kTask;
   }
   task_.me = task_.holder = main_task();
   task_.me->state = kHasTime;

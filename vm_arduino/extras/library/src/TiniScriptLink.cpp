@@ -81,7 +81,7 @@ uint16_t TiniLink::room() const {
   return static_cast<uint16_t>(player_->room() - kHeaderBytes - kEndBytes);
 }
 
-Answer TiniLink::make_way() {
+Answer TiniLink::prepare_upload() {
   if (is_running()) end(State::kIdle);
   return Answer::kOk;
 }
@@ -157,14 +157,14 @@ Identity& port_identity() { return only->identity(); }
 const RobotStatus& port_status() { return only->status(); }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return only->room(); }
-Answer port_make_way(bool) { return only->make_way(); }
+Answer port_prepare_upload(bool) { return only->prepare_upload(); }
 uint8_t* port_memory(uint16_t length, bool is_live) { return only->memory(length, is_live); }
-bool port_may_prepare() { return !only->is_running(); }
+bool port_may_write_ahead() { return !only->is_running(); }
 void port_forget() { only->forget(); }
 void port_take(uint8_t, bool is_live) { only->take(is_live); }
 void port_seal(const uint8_t* image) { only->seal(image); }
 void port_start(bool is_live) { only->start(is_live); }
-void port_end() { only->make_way(); }
+void port_end() { only->prepare_upload(); }
 void port_stop(uint8_t fault) { only->stop(fault); }
 void port_release() { only->release(); }
 uint16_t port_run_at() { return only->at(); }
@@ -210,7 +210,7 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 
 uint8_t* port_text_room(uint16_t*) { return nullptr; }
 bool port_text_is_beside(bool) { return false; }
-bool port_may_make_way(bool) { return true; }
+bool port_may_prepare_upload(bool) { return true; }
 void port_take_text(uint8_t*, bool) {}
 const uint8_t* robot_words() { return no_words; }
 uint16_t robot_language() { return 0; }

@@ -30,7 +30,7 @@ class TiniLink {
   bool next_byte(uint8_t* byte) { return link_.next_tx_byte(byte); }
 
   // For the link: `link/port.h`.
-  tiniscript::Answer make_way();
+  tiniscript::Answer prepare_upload();
   uint8_t* memory(uint16_t length, bool is_live);
   void forget();
   void take(bool is_live);

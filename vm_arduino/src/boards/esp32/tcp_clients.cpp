@@ -9,7 +9,7 @@
 
 #include <Arduino.h>
 
-#include "first_bytes.h"
+#include "protocol_sniffer.h"
 #include "radio.h"
 #include "sockets.h"
 #include "wifi_settings.h"
@@ -134,12 +134,12 @@ void look(Client* client, const uint8_t* bytes, size_t length) {
   const size_t more = length < room ? length : room;
   __builtin_memcpy(client->first + client->first_length, bytes, more);
   client->first_length += more;
-  const Guest guest = guest_of(client->first, client->first_length);
+  const Protocol protocol = sniffed(client->first, client->first_length);
   const bool is_full = client->first_length == kFirstBytes;
-  if (guest == Guest::kOther || (guest == Guest::kUnknownYet && is_full)) {
+  if (protocol == Protocol::kOther || (protocol == Protocol::kUnknownYet && is_full)) {
     return close_client(client);
   }
-  if (guest == Guest::kUnknownYet) return;
+  if (protocol == Protocol::kUnknownYet) return;
   if (!radio_pipe(client->transport).begin()) return close_client(client);
   client->is_admitted = true;
   pass_on(client, client->first, client->first_length);

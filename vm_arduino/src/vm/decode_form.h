@@ -1,9 +1,9 @@
-// The shape of an opcode from the tables: its stack, its size, its operands, its role.
+// The form of an opcode from the tables: its stack, its size, its operands, its role.
 //
 // Knows how the rows of `bytecode.h` are packed, and where they lie.
 
-#ifndef TINISCRIPT_VM_SHAPE_H_
-#define TINISCRIPT_VM_SHAPE_H_
+#ifndef TINISCRIPT_VM_DECODE_FORM_H_
+#define TINISCRIPT_VM_DECODE_FORM_H_
 
 #include <stdint.h>
 
@@ -11,8 +11,8 @@
 
 namespace tiniscript {
 
-// An invalid opcode has a shape too: one byte, no operands or values, role kNone.
-struct Shape {
+// An invalid opcode has a form too: one byte, no operands or values, role kNone.
+struct DecodeForm {
   uint8_t effects;
   uint8_t bytes;
   uint8_t kinds;  // of the operands: each a Byte of 4 bits, the first one below
@@ -20,14 +20,14 @@ struct Shape {
 
   uint8_t pops() const { return static_cast<uint8_t>(effects / 64); }
   uint8_t pushes() const { return (effects & 0x20) != 0; }
-  Role role() const { return static_cast<Role>(effects & 0x1f); }
+  ControlRole role() const { return static_cast<ControlRole>(effects & 0x1f); }
   uint8_t size() const { return bytes & 7; }
   bool is_far() const { return (bytes & kFar) != 0; }
   bool jumps_back() const { return (bytes & kBack) != 0; }
 };
 
-Shape shape_of(uint8_t code);
+DecodeForm decode_form_of(uint8_t code);
 
 }  // namespace tiniscript
 
-#endif  // TINISCRIPT_VM_SHAPE_H_
+#endif  // TINISCRIPT_VM_DECODE_FORM_H_

@@ -1,6 +1,6 @@
 #ifdef ARDUINO_ARCH_ESP32
 
-#include "first_bytes.h"
+#include "protocol_sniffer.h"
 
 #include "../../link/messages.h"
 
@@ -75,46 +75,46 @@ bool is_request(Text line, size_t target) {
   return at != target && behind != at && is_at(line, behind, "HTTP/");
 }
 
-Guest guest_of_text(const uint8_t* bytes, size_t length) {
+Protocol sniffed_text(const uint8_t* bytes, size_t length) {
   Text line = {bytes, 0};
   while (line.length < length && !is_end(bytes[line.length])) line.length++;
   size_t method_end = 0;
   while (line.has(method_end) && is_of_method(bytes[method_end])) method_end++;
-  if (method_end == 0) return Guest::kForRobot;
-  if (line.has(method_end) && !is_blank(bytes[method_end])) return Guest::kForRobot;  // `F(`
+  if (method_end == 0) return Protocol::kForRobot;
+  if (line.has(method_end) && !is_blank(bytes[method_end])) return Protocol::kForRobot;  // `F(`
   const size_t target = skip_blanks(line, method_end);
   if (target != method_end) {
     if (is_request(line, target) || is_known_request(line, method_end, target))
-      return Guest::kOther;
-    if (line.has(target) && bytes[target] == '=') return Guest::kForRobot;  // `X = 5`
+      return Protocol::kOther;
+    if (line.has(target) && bytes[target] == '=') return Protocol::kForRobot;  // `X = 5`
   }
-  if (line.length < length) return Guest::kForRobot;  // the line has ended, and is no request
-  return length <= kFirstBytes ? Guest::kUnknownYet : Guest::kOther;
+  if (line.length < length) return Protocol::kForRobot;  // the line has ended, and is no request
+  return length <= kFirstBytes ? Protocol::kUnknownYet : Protocol::kOther;
 }
 
 // A frame has eight bytes and more without a zero, and a type that is not 0: no 0x01 first.
-Guest guest_of_frame(const uint8_t* bytes, size_t length) {
+Protocol sniffed_frame(const uint8_t* bytes, size_t length) {
   for (size_t k = 0; k < length && k < 3; k++) {
-    if (bytes[k] == 0) return Guest::kOther;
+    if (bytes[k] == 0) return Protocol::kOther;
   }
-  if (bytes[0] == 1) return Guest::kOther;  // STUN
-  if (length < 3) return Guest::kUnknownYet;
+  if (bytes[0] == 1) return Protocol::kOther;  // STUN
+  if (length < 3) return Protocol::kUnknownYet;
   const bool is_tls = bytes[0] == 0x16 && bytes[1] == 0x03;
-  return is_tls ? Guest::kOther : Guest::kForRobot;
+  return is_tls ? Protocol::kOther : Protocol::kForRobot;
 }
 
 }  // namespace
 
-Guest guest_of(const uint8_t* bytes, size_t length) {
+Protocol sniffed(const uint8_t* bytes, size_t length) {
   size_t at = 0;
   while (at < length && bytes[at] == 0) at++;
-  if (at > 1) return Guest::kForRobot;  // the stop sequence: zeros alone do nothing else
+  if (at > 1) return Protocol::kForRobot;  // the stop sequence: zeros alone do nothing else
   size_t behind = at;
   while (behind < length && (bytes[behind] == '\r' || bytes[behind] == '\n')) behind++;
   if (behind == length || is_letter(bytes[behind])) at = behind;  // servers of HTTP skip these
-  if (at == length) return length <= kFirstBytes ? Guest::kUnknownYet : Guest::kOther;
-  return bytes[at] < kTextFrom ? guest_of_frame(bytes + at, length - at)
-                               : guest_of_text(bytes + at, length - at);
+  if (at == length) return length <= kFirstBytes ? Protocol::kUnknownYet : Protocol::kOther;
+  return bytes[at] < kTextFrom ? sniffed_frame(bytes + at, length - at)
+                               : sniffed_text(bytes + at, length - at);
 }
 
 }  // namespace tiniscript

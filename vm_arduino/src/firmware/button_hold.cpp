@@ -1,15 +1,15 @@
-#include "holding.h"
+#include "button_hold.h"
 
 #include "../link/has_owners.h"
 #include "../robot.h"
-#include "keeping.h"
+#include "persistence.h"
 #include "state.h"
 
 namespace tiniscript {
 
 namespace {
 
-constexpr uint16_t kMostMs = 60000;  // longer presses count as this
+constexpr uint16_t kMostMs = 60000;    // longer presses count as this
 constexpr uint16_t kSignHertz = 1568;  // says that the button may be let go
 constexpr uint8_t kSignMs = 250;
 
@@ -34,10 +34,11 @@ void confirm() {
 
 }  // namespace
 
-void pass_holding(uint16_t passed_ms) {
+void pass_button_hold(uint16_t passed_ms) {
   if (phase == Phase::kUp) return;
   const uint16_t before_ms = down_ms;
-  down_ms = passed_ms < kMostMs - before_ms ? static_cast<uint16_t>(before_ms + passed_ms) : kMostMs;
+  down_ms =
+      passed_ms < kMostMs - before_ms ? static_cast<uint16_t>(before_ms + passed_ms) : kMostMs;
   if (!kHasOwners) return;
   if (phase == Phase::kDown && before_ms < kClaimMs && down_ms >= kClaimMs) confirm();
   // Tried again until the store is free.

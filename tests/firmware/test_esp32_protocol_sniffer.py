@@ -10,9 +10,9 @@ from tests.firmware.test_esp32_wifi import joined
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Network
 from tests.support.owners import Keys
-from tests.virtual.test_first_bytes import NOT_FOR_ROBOTS
+from tests.virtual.test_protocol_sniffer import NOT_FOR_ROBOTS
 from tiniscript.link.messages import STOP_BYTES
-from tiniscript.virtual.first_bytes import is_for_robot
+from tiniscript.virtual.protocol_sniffer import is_for_robot
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def test_what_is_meant_for_a_robot_gets_there(knocked_at: Esp32Robot, data: byte
     knocked_at.wait(60)
 
 
-def guest_of(robot: Esp32Robot, data: bytes) -> bool | None:
+def sniffed(robot: Esp32Robot, data: bytes) -> bool | None:
     """Return what the robot's own code says of the first bytes of a connection."""
     return (None, True, False)[robot.ask(b"G", len(data).to_bytes(4, "little") + data)[0]]
 
@@ -63,7 +63,7 @@ def test_the_robot_tells_its_clients_as_a_virtual_one_does(knocked_at: Esp32Robo
         if chance.random() < 0.3 and data:
             at = chance.randrange(len(data))
             data = data[:at] + chance.randbytes(1) + data[at + 1 :]
-        assert guest_of(knocked_at, data) is is_for_robot(data), data
+        assert sniffed(knocked_at, data) is is_for_robot(data), data
     for data in NOT_FOR_ROBOTS.values():
         for k in range(min(len(data), 400)):
-            assert guest_of(knocked_at, data[:k]) is is_for_robot(data[:k]), data[:k]
+            assert sniffed(knocked_at, data[:k]) is is_for_robot(data[:k]), data[:k]

@@ -3,8 +3,8 @@
 // Knows the order of program, fault and identity, and that a commit needs motors off and enough
 // voltage. The store knows how bytes are written.
 
-#ifndef TINISCRIPT_FIRMWARE_KEEPING_H_
-#define TINISCRIPT_FIRMWARE_KEEPING_H_
+#ifndef TINISCRIPT_FIRMWARE_PERSISTENCE_H_
+#define TINISCRIPT_FIRMWARE_PERSISTENCE_H_
 
 #include <stdint.h>
 
@@ -13,7 +13,7 @@
 namespace tiniscript {
 
 // Continues reading or saving: at most one byte.
-void tick_keeping();
+void tick_persistence();
 
 // Whether everything has been read since the reset. Until then nothing may be changed.
 bool has_booted();
@@ -48,4 +48,4 @@ Answer not_now();
 
 }  // namespace tiniscript
 
-#endif  // TINISCRIPT_FIRMWARE_KEEPING_H_
+#endif  // TINISCRIPT_FIRMWARE_PERSISTENCE_H_

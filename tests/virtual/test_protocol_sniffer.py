@@ -18,7 +18,7 @@ from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, PAYLOAD_BYTES, RUN, written
 from tiniscript.link.session import Session
 from tiniscript.virtual import transports as limits
-from tiniscript.virtual.first_bytes import LONGEST, is_for_robot
+from tiniscript.virtual.protocol_sniffer import LONGEST, is_for_robot
 from tiniscript.virtual.simulator import Simulator
 from tiniscript.virtual.transports import CALLERS
 

@@ -1,4 +1,4 @@
-#include "keeping.h"
+#include "persistence.h"
 
 #include "../link/frames.h"
 #include "../store/nvm.h"
@@ -130,7 +130,7 @@ void keep_keys() {
 
 }  // namespace
 
-void tick_keeping() {
+void tick_persistence() {
   if (boot == Boot::kOver && (to_keep | keeping) == 0) return;  // nothing to save
   if (link.is_awaited()) return;
   store.tick(may_commit());

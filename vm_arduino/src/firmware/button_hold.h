@@ -3,15 +3,15 @@
 // 1 s or more starts nothing; 2 s confirm a claim, or let text drive a robot with an owner; 10 s
 // from the reset on take the robot's keys away. A spike on the wire is no press.
 
-#ifndef TINISCRIPT_FIRMWARE_HOLDING_H_
-#define TINISCRIPT_FIRMWARE_HOLDING_H_
+#ifndef TINISCRIPT_FIRMWARE_BUTTON_HOLD_H_
+#define TINISCRIPT_FIRMWARE_BUTTON_HOLD_H_
 
 #include <stdint.h>
 
 namespace tiniscript {
 
 // Passes the time.
-void pass_holding(uint16_t passed_ms);
+void pass_button_hold(uint16_t passed_ms);
 
 // The button has an edge down; it is surely down; it is up.
 void begin_press();
@@ -23,4 +23,4 @@ bool is_long_press();
 
 }  // namespace tiniscript
 
-#endif  // TINISCRIPT_FIRMWARE_HOLDING_H_
+#endif  // TINISCRIPT_FIRMWARE_BUTTON_HOLD_H_

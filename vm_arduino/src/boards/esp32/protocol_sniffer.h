@@ -1,0 +1,20 @@
+// Decides by the first bytes of a connection whether its client may be meant for a robot, as
+// `virtual/protocol_sniffer.py` does: what begins like HTTP, TLS or STUN may be a web page's.
+
+#ifndef TINISCRIPT_ESP32_PROTOCOL_SNIFFER_H_
+#define TINISCRIPT_ESP32_PROTOCOL_SNIFFER_H_
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace tiniscript {
+
+enum class Protocol : uint8_t { kUnknownYet, kForRobot, kOther };
+
+constexpr size_t kFirstBytes = 512;  // of a first line that is still open, at most
+
+Protocol sniffed(const uint8_t* bytes, size_t length);
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_ESP32_PROTOCOL_SNIFFER_H_
