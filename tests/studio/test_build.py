@@ -74,7 +74,7 @@ def test_every_sentence_is_said_somewhere() -> None:
     package = (path.read_text(encoding="utf-8") for path in (PACKAGE.rglob("*.py")))
     words = set(re.findall(r"\w+", "".join((*package, sources))))
     keys = set(page_texts(SOURCE)) - {""}
-    assert len(keys) > 700
+    assert len(keys) > 600
     for key in keys:
         if key.partition("/")[0] not in OTHERS:
             rest = [key[len(head) :] for head in heads if key.startswith(head)]

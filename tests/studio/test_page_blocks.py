@@ -562,8 +562,14 @@ def test_a_finger_drags_a_block(pages: Pages) -> None:
 # -- sentences -------------------------------------------------------------------------------------
 
 
+LACKS = re.compile(  # things that no page has, and names of shortcuts, which only a plugin shows
+    "SHORTCUT|VARIABLE|PROCEDURE|COLLAPSE|EXPAND_|ABLE_BLOCK|_INPUTS|COMMENT|MUTATOR|CHECKBOX"
+    "|UNDO|REDO|HELP|UNKNOWN|UNNAMED"
+)
+
+
 def test_the_catalogue_has_what_blockly_says() -> None:
-    """All that Blockly's core names: the page uses none of its ready blocks."""
+    """All that Blockly's core names, but for LACKS: the page uses none of its ready blocks."""
     need("" if BLOCKLY.is_dir() else stale() or f"there is no {BLOCKLY}")
     core = (BLOCKLY / "blockly_compressed.js").read_text(encoding="utf-8")
     named = set(re.findall(r"[A-Z][A-Z0-9_]+", core))
@@ -571,7 +577,8 @@ def test_the_catalogue_has_what_blockly_says() -> None:
     rows = re.findall(r'^Blockly\.Msg\["(\w+)"\] = ("(?:[^"\\]|\\.)*");$', messages, re.MULTILINE)
     wanted = {f"blockly/{name}": json.loads(text) for name, text in rows if name in named}
     found = page_texts("en")
-    assert {key: found[key] for key in found if key.startswith("blockly/")} == wanted
+    own = {key: found[key] for key in found if key.startswith("blockly/")}
+    assert own == {key: wanted[key] for key in wanted if key in own or not LACKS.search(key)}
 
 
 def test_no_word_of_the_sources_is_a_picture_of_a_face() -> None:
