@@ -28,9 +28,9 @@ from tiniscript.cli.robot import robot_broker
 from tiniscript.cli.robot.classroom import Classroom, Listener
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import Member
-from tiniscript.link.line import now_ms
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.payloads import ShowEvent
+from tiniscript.link.port_connection import now_ms
 from tiniscript.link.requests import Reply
 from tiniscript.link.transports.broker import ROOT, Present
 

@@ -13,7 +13,7 @@ from tests.support.pty_robot import PtyRobot, on, uploading
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
-from tiniscript.link.line import Line
+from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.transmission import CONFIRM_MS
 
 
@@ -82,9 +82,9 @@ def test_a_stop_waits_for_a_port_longer_than_others(
     now_s = [0.0]
     monkeypatch.setattr(opening, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(opening, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))
-    line = cast(Line, object())
+    line = cast(PortConnection, object())
 
-    def open_line(*_: object) -> Line:
+    def open_line(*_: object) -> PortConnection:
         if now_s[0] < 8.5:
             raise RobotError("port_busy", "en", {"port": "/dev/ttyUSB7", "why": ""})
         return line

@@ -23,10 +23,10 @@ from tiniscript.link import errors
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import STATUSES
-from tiniscript.link.outcomes import CANCELLED, LOST, Gone
+from tiniscript.link.outcomes import CANCELLED, LOST, ConnectionLost
 from tiniscript.link.requests import Reply
 from tiniscript.link.sharing.registry import Registration
-from tiniscript.link.sharing.shared_line import OtherVersion
+from tiniscript.link.sharing.shared_connection import OtherVersion
 from tiniscript.link.wire import Wire
 
 CABLE, RADIO = "/dev/ttyUSB0", "/dev/rfcomm0"
@@ -49,7 +49,7 @@ class Shared:
     def wait(self, request: Namespace) -> Reply[Any]:
         assert request.name in ("hello", "status", "ping") and request.limit_ms > 0
         if not self.replies:
-            raise Gone("")
+            raise ConnectionLost("")
         return self.replies.pop(0)
 
     def event(self, limit_s: float) -> None:
@@ -297,11 +297,11 @@ def test_the_only_port_of_each_system(
     [(RADIO, "port_gone", True), ("socket://robot:7000", "other_host", False)],
 )
 def test_a_port_that_vanishes(case: Case, port: str, cause: str, is_sure: bool) -> None:
-    class Gone(Nobody):
+    class ConnectionLost(Nobody):
         def answer(self, data: bytes) -> bytes:
             raise OSError("gone")
 
-    case.end, case.says_yes = Gone(), True
+    case.end, case.says_yes = ConnectionLost(), True
     assert case.cause(port) == (cause, is_sure)
 
 

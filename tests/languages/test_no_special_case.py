@@ -11,7 +11,7 @@ import pytest
 from tests.support.casefile import ROOT
 from tiniscript.base.languages import SOURCE, about, languages, table
 from tiniscript.base.words import WORDS
-from tiniscript.recovery import advice_rows, rows
+from tiniscript.recovery import rows, suggestion_rows
 from tiniscript.recovery.rewrites import cells
 
 SPECIAL = re.compile(r"""(?:==|===|!=) ?["'](?:es|en|pt)["']|["'](?:es|en|pt)["'] (?:==|===)""")
@@ -63,8 +63,10 @@ WRITTEN = {"X", "TONE", "A", "FL", "LF", "FR", "RF", "UN", "TIL", "TSC"}
 
 
 def test_rows_name_no_word_of_a_language() -> None:
-    pieces = [*rows.PARTS.values(), *advice_rows.PARTS.values()]
-    patterns = [row[0] for table in (rows.TOKENS, advice_rows.ADVICE) for row in cells(table)]
+    pieces = [*rows.PARTS.values(), *suggestion_rows.PARTS.values()]
+    patterns = [
+        row[0] for table in (rows.TOKENS, suggestion_rows.SUGGESTIONS) for row in cells(table)
+    ]
     words = re.findall(r"(?<![@\w])[A-Z][A-Z_]*\b", " ".join([*pieces, *patterns]))
     assert {*words} - {*WORDS} <= WRITTEN
 

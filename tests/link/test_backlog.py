@@ -8,9 +8,9 @@ import tracemalloc
 import pytest
 
 from tests.support.waiting import until
-from tiniscript.link.line import Line
 from tiniscript.link.outcomes import KEPT, Backlog, MissedEvent, StartedEvent, Told
 from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent
+from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.session import Session
 
 CHATTER = b"debug: the battery has 7.4 V and all is well\r\n" * 20
@@ -54,7 +54,7 @@ def test_a_line_that_nobody_looks_at_keeps_little() -> None:
     port = Chatterbox()
     tracemalloc.start()
     try:
-        line = Line(port, Session(1))
+        line = PortConnection(port, Session(1))
         assert port.is_over.wait(120)
         kept_bytes, _ = tracemalloc.get_traced_memory()
     finally:
@@ -93,7 +93,7 @@ def test_what_a_socket_has_is_heard_in_one_piece(monkeypatch: pytest.MonkeyPatch
     pieces: list[bytes] = []
     session = Session(1)
     monkeypatch.setattr(session, "receive", lambda data, now_ms: pieces.append(data))
-    with Line(Socket(), session) as line:
+    with PortConnection(Socket(), session) as line:
         until(lambda: line.has_ended, "the socket is at its end")
     assert (pieces, line.gone) == ([CHATTER], "socket disconnected")
 

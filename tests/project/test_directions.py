@@ -238,10 +238,10 @@ def test_the_end_of_a_process_looks_for_no_garbage(arguments: str, is_frozen: bo
 def test_the_link_has_no_port_and_no_clock() -> None:
     """Bytes and times are arguments: so a second takes no time in a test.
 
-    Around it are real ports in `transports/`, the line with its clock, and the file of keys.
+    Around it are real ports in `transports/`, the connection with its clock, and the file of keys.
     """
     for path in sorted((PACKAGE / "link").glob("*.py")):
-        if path.stem in ("line", "keys"):
+        if path.stem in ("port_connection", "keys"):
             continue
         names = set()
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

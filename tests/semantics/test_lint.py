@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tests.support.rows import each_row
 from tiniscript import check_text, robots
-from tiniscript.semantics.lint import advice
+from tiniscript.semantics.lint import lint
 
 KIT = robots.load("tinibot").kit
 
@@ -196,4 +196,4 @@ def test_advice_is_for_right_programs_alone() -> None:
     wrong = check_text("X = 5;S = 5", KIT)
     assert [diagnostic.is_mistake for diagnostic in wrong.diagnostics] == [True]
     assert wrong.program is not None
-    assert advice(wrong.program, KIT, wrong.source)
+    assert lint(wrong.program, KIT, wrong.source)

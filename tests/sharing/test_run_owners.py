@@ -14,14 +14,14 @@ from tiniscript import robots
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.line import Line
 from tiniscript.link.outcomes import Event, Told
 from tiniscript.link.payloads import DoneEvent, ReceiptReply
+from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.requests import OK, Reply
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.requests import ClientRequests
 from tiniscript.link.sharing.server import Server
-from tiniscript.link.sharing.shared_line import SharedLine, joined
+from tiniscript.link.sharing.shared_connection import SharedConnection, joined
 
 PORT = "/dev/ttyUSB0"
 
@@ -74,12 +74,12 @@ def line() -> FakeLine:
 
 @pytest.fixture
 def server(line: FakeLine) -> Iterator[Server]:
-    with closing(Server(cast(Line, line), PORT, 9600, "monitor")) as found:
+    with closing(Server(cast(PortConnection, line), PORT, 9600, "monitor")) as found:
         yield found
 
 
 @pytest.fixture
-def command(server: Server) -> Iterator[SharedLine]:
+def command(server: Server) -> Iterator[SharedConnection]:
     """Another command, which shares the port."""
     found = joined(PORT, "upload")
     assert found is not None
@@ -87,18 +87,18 @@ def command(server: Server) -> Iterator[SharedLine]:
         yield found
 
 
-def heard(command: SharedLine, name: str) -> None:
+def heard(command: SharedConnection, name: str) -> None:
     until(lambda: (found := command.event(0.1)) is not None and found[1].name == name, name)
 
 
-def asks(command: SharedLine, line: FakeLine, is_detached: bool = False) -> None:
+def asks(command: SharedConnection, line: FakeLine, is_detached: bool = False) -> None:
     command.do(lambda requests: requests.start(is_detached))
     until(lambda: bool(line.asked), "the request arrives")
 
 
 def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
     line.address = "socket://127.0.0.1:7007"
-    with closing(Server(cast(Line, line), PORT, 9600, "link")) as server:
+    with closing(Server(cast(PortConnection, line), PORT, 9600, "link")) as server:
         own = server.registration
         assert [each for each in registry.all_found() if each.token == own.token] == [own]
         other = registry.found(line.address)
@@ -107,7 +107,7 @@ def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
 
 @pytest.mark.parametrize("end", ["STOPPED", "DONE"])
 def test_an_end_that_is_told_late_takes_no_owner_from_the_next_run(
-    end: str, line: FakeLine, server: Server, command: SharedLine
+    end: str, line: FakeLine, server: Server, command: SharedConnection
 ) -> None:
     """A stop, and an upload right after it: the server's thread may see both at once."""
     asks(command, line)
@@ -132,7 +132,7 @@ def test_a_run_that_begins_while_its_server_leaves_is_stopped(
     """Two uploads at once: the first is replaced by its own client, and leaves."""
     monkeypatch.setattr(opening, "connection_to", lambda *_: line)
     client = Client(PORT, "monitor", robots.load("tinibot"), is_shared=False)
-    client.server = Server(cast(Line, line), PORT, 9600, "monitor")
+    client.server = Server(cast(PortConnection, line), PORT, 9600, "monitor")
     command = joined(PORT, "upload")
     assert command is not None
     with closing(command):

@@ -11,7 +11,7 @@ from tiniscript.link.connection import LinkConnection
 from tiniscript.link.outcomes import KEPT, Backlog, Event, PlaceEvent
 from tiniscript.link.payloads import ShowEvent
 from tiniscript.link.requests import OK
-from tiniscript.link.sharing.shared_line import joined
+from tiniscript.link.sharing.shared_connection import joined
 
 
 def until_done(connection: LinkConnection) -> list[Event]:

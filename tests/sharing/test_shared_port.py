@@ -20,7 +20,7 @@ from tiniscript.bytecode.image import unpack
 from tiniscript.link.frames import decoded
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
-from tiniscript.link.sharing.shared_line import joined
+from tiniscript.link.sharing.shared_connection import joined
 
 TRIES = 8  # of a command that is told that another one has left
 # On a busy computer it takes whoever has opened a port a while to share it.

@@ -16,10 +16,10 @@ from tiniscript.base.source import applied
 from tiniscript.diagnostics.codes import Code
 from tiniscript.diagnostics.fixing import fixed, offers
 from tiniscript.library.compiling import analyzed
-from tiniscript.recovery.advice import advised
 from tiniscript.recovery.concepts import plain
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.setup import setup
+from tiniscript.recovery.suggestions import suggested
 
 SAME, EQUIVALENT, QUESTION, USAGE, WORSE = "same", "equivalent", "question", "usage", "worse"
 OFFERS = 6  # of today's messages that are followed, one after the other
@@ -70,7 +70,7 @@ def answer(entry: Entry) -> Answer:
     """
     found = meant(entry.program)
     if Recovery(entry.program, KIT, mistakes).sure() is None:
-        if advised(entry.program, KIT) or setup(entry.program):
+        if suggested(entry.program, KIT) or setup(entry.program):
             text = fixed(entry.program, check).text
             found = Candidate(text, True, False, ()) if text != entry.program else None
         elif found and entry.mended is None:

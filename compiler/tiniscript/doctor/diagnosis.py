@@ -30,9 +30,9 @@ from tiniscript.doctor.system import System
 from tiniscript.link import errors
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
-from tiniscript.link.outcomes import Gone
+from tiniscript.link.outcomes import ConnectionLost
 from tiniscript.link.port_names import is_address, same_for_all
-from tiniscript.link.sharing.shared_line import OtherVersion
+from tiniscript.link.sharing.shared_connection import OtherVersion
 from tiniscript.link.wire import Wire
 
 
@@ -183,7 +183,7 @@ def _shared(client: LinkConnection, doors: Doors, question: Question) -> tuple[F
         if reply is None:
             return (probably("falls_silent"),)
         return tuple(examined(robot, reply, question.expected, question.watch_ms, doors.tell))
-    except Gone:
+    except ConnectionLost:
         return (sure("port_gone"),)
 
 

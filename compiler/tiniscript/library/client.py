@@ -18,7 +18,7 @@ from tiniscript.library.refusing import refusal
 from tiniscript.link import errors
 from tiniscript.link.connection import PendingRequest, Requester, reason_of
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
-from tiniscript.link.outcomes import CANCELLED, LOOK_S, Event, Gone
+from tiniscript.link.outcomes import CANCELLED, LOOK_S, ConnectionLost, Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply
 from tiniscript.link.port_names import is_at_broker, is_bluetooth
 from tiniscript.link.requests import DeviceInfo, Reply
@@ -69,10 +69,10 @@ class Client:
 
     def _shared(self, baud: int, verb: str, is_latched: Callable[[], bool]) -> Server | None:
         """Share the port with other commands, so that `tsc stop` works meanwhile."""
-        from tiniscript.link.line import Line
+        from tiniscript.link.port_connection import PortConnection
         from tiniscript.link.sharing.server import Server
 
-        assert isinstance(self.line, Line)
+        assert isinstance(self.line, PortConnection)
         with suppress(OSError):
             return Server(self.line, self.port, baud, verb, is_latched)
         return None
@@ -198,7 +198,7 @@ class Client:
                     continue
                 if found[1].name in ("STOPPED", "LOST"):
                     return found[1].name == "STOPPED"
-        except (Gone, KeyboardInterrupt):
+        except (ConnectionLost, KeyboardInterrupt):
             pass
         return False
 
@@ -206,21 +206,21 @@ class Client:
     def _connected(self) -> Iterator[None]:
         try:
             yield
-        except Gone as gone:
+        except ConnectionLost as gone:
             raise self.gone(gone) from None
 
     # -- failures ---------------------------------------------------------------------------------
 
-    def gone(self, gone: Gone) -> Exception:
+    def gone(self, gone: ConnectionLost) -> Exception:
         """Return the error for a connection that has ended."""
         return self.lost(gone)
 
-    def lost(self, gone: Gone) -> RobotError:
+    def lost(self, gone: ConnectionLost) -> RobotError:
         reason = self._reason_of_end(gone)
         values = {"port": opening.shown(self.port), "verb": self.line.held_by}
         return RobotError(reason, self.language, values)
 
-    def _reason_of_end(self, gone: Gone) -> str:
+    def _reason_of_end(self, gone: ConnectionLost) -> str:
         if gone.is_server:
             return "holder_ended"
         if is_bluetooth(self.port):

@@ -22,7 +22,7 @@ from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
 from tiniscript.semantics.empty_blocks import empty_blocks
-from tiniscript.semantics.lint import advice
+from tiniscript.semantics.lint import lint
 from tiniscript.semantics.optimizer import optimized
 from tiniscript.syntax.parser import ENOUGH, parse
 
@@ -60,8 +60,8 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
 
 def _with_findings(found: Compiled, kit: Kit) -> Compiled:
     """Return a wrong program with what is told of it."""
+    from tiniscript.recovery.dedupe import dedupe
     from tiniscript.recovery.findings import findings, moved_back
-    from tiniscript.recovery.once import said_once
     from tiniscript.recovery.usage import with_usage
 
     read = cache(lambda text: analyzed(text, kit))  # a repair that was tried is read on
@@ -77,7 +77,7 @@ def _with_findings(found: Compiled, kit: Kit) -> Compiled:
             # The warnings of what is left come when it is repaired.
             left = [] if rest.is_right else told_of(rest, rounds - 1).diagnostics
             told = [*told, *(moved_back(each, edits, it.source) for each in left)]
-        return it._replace(diagnostics=said_once(told, it.source))
+        return it._replace(diagnostics=dedupe(told, it.source))
 
     return told_of(found, ROUNDS)
 
@@ -89,7 +89,7 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
     checked = check(source, parsed.program, kit)
     found = [*parsed.diagnostics, *checked.diagnostics]
     if not any(diagnostic.is_mistake for diagnostic in found):
-        found += advice(checked.program, kit, source)
+        found += lint(checked.program, kit, source)
         found += empty_blocks(checked.program, source)
         if parsed.scan.comments:
             from tiniscript.semantics.notes import in_notes

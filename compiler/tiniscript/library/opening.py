@@ -20,11 +20,11 @@ from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import is_address, is_at_broker, is_name
 from tiniscript.link.sharing import registry
-from tiniscript.link.sharing.shared_line import OtherVersion, SharedLine, joined
+from tiniscript.link.sharing.shared_connection import OtherVersion, SharedConnection, joined
 from tiniscript.virtual import directory
 
 if TYPE_CHECKING:
-    from tiniscript.link.line import Line
+    from tiniscript.link.port_connection import PortConnection
 
 BUSY_S = 3.0  # timeout for a busy port: its owner may be leaving, or be about to share it
 STOP_BUSY_S = 10.0  # the same for a stop: an owner with a silent robot gives up only slowly
@@ -78,13 +78,13 @@ def connection_to(
 def _opened_line(
     address: str, baud: int, kit: int, limit_s: float, lock: IO[bytes] | None, language: str,
     port: str,
-) -> Line:  # fmt: skip
+) -> PortConnection:  # fmt: skip
     """Open a port and begin a session for this kit. Raises RobotError.
 
     `port` is the port's name in sentences. The line closes the lock.
     """
     from tiniscript.link.keys import KeyFile
-    from tiniscript.link.line import Line
+    from tiniscript.link.port_connection import PortConnection
     from tiniscript.link.ports import opened
     from tiniscript.link.session import Session
 
@@ -98,7 +98,7 @@ def _opened_line(
         raise
     keys = KeyFile(is_for_virtual=_is_virtual(address))
     session = Session(int.from_bytes(os.urandom(4), "little"), baud, kit, keys=keys)
-    return Line(device, session, lock, address)
+    return PortConnection(device, session, lock, address)
 
 
 def port_error(port: str, failure: PortError, language: str = "en") -> RobotError:
@@ -150,7 +150,7 @@ def shown(name: str) -> str:
     return printable(name, SHOWN)
 
 
-def _joined(port: str, verb: str, baud: int | None, language: str) -> SharedLine | None:
+def _joined(port: str, verb: str, baud: int | None, language: str) -> SharedConnection | None:
     try:
         client = joined(port, verb)
     except OtherVersion as other:

@@ -1,6 +1,7 @@
 """The interface of a connection to a robot, as commands use it; the requests on it.
 
-A `Line` of this process has it, and a `SharedLine` of another process: a command works with either.
+A `PortConnection` of this process has it, and a `SharedConnection` of another process: a command
+works with either.
 """
 
 from __future__ import annotations
@@ -142,7 +143,7 @@ class Requester:
 
 
 class LinkConnection:
-    """A connection to a robot. All methods but `close` and `stop` raise Gone once it has ended.
+    """A connection to a robot. All but `close` and `stop` raise ConnectionLost once it has ended.
 
     `held_by` is the verb of the command that holds the port, if that is another command. `heard`
     counts received bytes; `is_echoed`: the line returns what is sent.

@@ -102,7 +102,7 @@ Event = (
 EVENTS: dict[str, type[Event]] = {each._field_defaults["name"]: each for each in get_args(Event)}
 
 
-class Gone(Exception):
+class ConnectionLost(Exception):
     """The connection to the robot has ended; `why` is what the system says.
 
     `is_server`: the command that held the port has ended. Otherwise the port is gone.

@@ -193,7 +193,7 @@ class Session(Requester):
         assert self._pending
         seal = self._transmission.seal
         if seal is not None and seal.is_spent:
-            self._show_again(now_ms)
+            self._authenticate_again(now_ms)
             return b""
         if self._transmission.tries >= TRIES or now_ms >= self._pending.deadline_ms:
             self._lose()
@@ -269,7 +269,7 @@ class Session(Requester):
         self._transmission = Transmission(self._baud, largest)
         self._transmission.begin(frame, now_ms + request.pause_ms, seal)
         if seal is None and request.name in SEALED_ALONE:
-            self._show_again(now_ms)  # before a byte of it is sent
+            self._authenticate_again(now_ms)  # before a byte of it is sent
 
     def _number(self, is_sealed: bool) -> int:
         """Return the number of the next frame."""
@@ -278,7 +278,7 @@ class Session(Requester):
             self._seq = self._sealing.numbered(self._seq)
         return self._seq
 
-    def _show_again(self, now_ms: int) -> None:
+    def _authenticate_again(self, now_ms: int) -> None:
         """The robot no longer knows our seal: show a key, then go on with the same request.
 
         It has the same number, so the robot does nothing twice.
@@ -303,7 +303,7 @@ class Session(Requester):
         seal = self._sealing.seal
         if shown.status == NOT_OWNER or (shown.status == OK and seal is None):
             self._transmission = transmission
-            self._show_again(now_ms)
+            self._authenticate_again(now_ms)
         elif shown.status == OK and transmission.epoch == self._epoch:
             self._transmission = transmission
             self._transmission.begin_again(now_ms, seal)
@@ -325,7 +325,7 @@ class Session(Requester):
     def _lose_seal(self, frame: Frame, now_ms: int) -> None:
         """The robot does not know our seal. Anybody may say so: nothing is done twice for that."""
         if frame.epoch == self._epoch:
-            self._show_again(now_ms)
+            self._authenticate_again(now_ms)
             return
         self._epoch = frame.epoch  # it was stopped or restarted, or another session has begun
         self._sealing.seal = None

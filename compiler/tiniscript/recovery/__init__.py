@@ -2,5 +2,5 @@
 
 Six concepts, a module each: concept tokens (`concepts`, with a lexicon for each language),
 rewrites (`rewrites`, with the table `rows`), slots, blocks, candidates (`search`), explanations.
-`findings` says what people are told; `advice` and `usage` of what no repair reads.
+`findings` says what people are told; `suggestions` and `usage` of what no repair reads.
 """

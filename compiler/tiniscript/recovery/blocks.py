@@ -28,7 +28,7 @@ class Line(NamedTuple):
 
     @property
     def is_do(self) -> bool:
-        """Whether it begins a block whose question comes at its end."""
+        """Whether it begins a block whose condition comes at its end."""
         return any(step.code is codes.ASKED_BEHIND for step in self.reading.steps)
 
 
@@ -165,8 +165,8 @@ class Matching:
         item = self.item
         if item.word != "WHILE" or not self.open or not self.open[-1].is_do:
             return False
-        question = self.line.reading.tokens[item.start + 2 : item.end - 1]
-        new = [made("IF"), made("("), *negated(question), made(")")]
+        condition = self.line.reading.tokens[item.start + 2 : item.end - 1]
+        new = [made("IF"), made("("), *negated(condition), made(")")]
         new += map(made, (";", "BREAK", ";", BLOCK_ENDS["IF"], ";", BLOCK_ENDS["LOOP"]))
         self.edit_tokens(item.start, item.end - item.start, new)
         self.open.pop()

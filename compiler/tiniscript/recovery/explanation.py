@@ -23,7 +23,7 @@ from tiniscript.recovery.search import Candidate, Change
 from tiniscript.recovery.writing import in_one_line, laid_out, tokens_of, without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-_SAID_ONCE = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)
+_DEDUPED = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)
 # Codes of what belongs to the beginning of its block, where something is wrong with that, too.
 _OF_BLOCK = (codes.NEVER_ENDS, codes.END_ALONE, codes.END_SPLIT, codes.BRACES,
              codes.ASKED_BEHIND, codes.OTHER_LANGUAGE)  # fmt: skip
@@ -73,12 +73,12 @@ class Explanation:
 
 def explained(program: str, found: Candidate) -> list[Explanation]:
     """Return what is wrong with each line that a candidate changes, in the order of the text."""
-    teller = _Teller(program, found)
+    explainer = _Explainer(program, found)
     for k, change in enumerate(found.changes):
-        teller.tell(k, change)
-    for each in teller.out:
-        teller.complete(each)
-    return teller.out
+        explainer.tell(k, change)
+    for each in explainer.out:
+        explainer.complete(each)
+    return explainer.out
 
 
 @dataclass
@@ -115,7 +115,7 @@ class _Change(NamedTuple):
     after: Sequence[Lexeme]
 
 
-class _Teller:
+class _Explainer:
     def __init__(self, program: str, found: Candidate) -> None:
         self.program = program
         self.found = found
@@ -274,7 +274,7 @@ class _Teller:
             if not word and k and above:  # its indentation says where it ends
                 last = laid_out(tokens_of(above.text.split("\n")[0]))
                 values |= {"line": str(above.last + 1), "last": last}
-        if code in _SAID_ONCE:  # LIGHT_L and LIGHT_R
+        if code in _DEDUPED:  # LIGHT_L and LIGHT_R
             same = (it for it in self.changes[k].steps if it.code is code)
             pairs = ((texts(it.before), texts(it.after)) for it in same)
             names = [each for was, now in pairs for each in now if each not in was]

@@ -18,11 +18,11 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import is_better
 from tiniscript.recovery import lines, rows
-from tiniscript.recovery.advice import advised
 from tiniscript.recovery.concepts import Names, lexemes, texts, words_of
 from tiniscript.recovery.explanation import Explanation, explained, trimmed
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.setup import setup
+from tiniscript.recovery.suggestions import suggested
 from tiniscript.recovery.usage import with_usage
 from tiniscript.recovery.writing import in_one_line, without_note
 
@@ -70,7 +70,7 @@ def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
         recovery = Recovery(text, kit, lambda to: _mistakes(found if to == text else check(to)))
     if recovery and (repaired := _meant(source, found, recovery, is_sure=True)):
         return _with_edits(repaired)
-    told = advised(source.text, kit)
+    told = suggested(source.text, kit)
     if recovery:  # what is behind an instruction belongs to it by its sign: `X = 20 x 3`
         told = [each for each in told if not recovery.has_signs(each.passed.span.start)]
     if told:
@@ -207,7 +207,7 @@ def _mistakes(found: Sequence[Diagnostic]) -> list[Code]:
 def moved_back(found: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
     """Return a diagnostic of the text with these edits, as one of the text without them.
 
-    A question that nobody can read is shown as it is written, and not what it was passed over for.
+    A condition that nobody can read is shown as it is written, and not what it was passed over for.
     """
     values = dict(found.values)
     for each in edits:

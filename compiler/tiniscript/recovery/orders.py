@@ -82,7 +82,7 @@ def _joined(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
 
 
 def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
-    """Return orders and the question behind them; a move that it stops is watched meanwhile."""
+    """Return orders and the condition behind them; a move that it stops is watched meanwhile."""
     asked = block(words, names, is_open=False)
     if not first or not asked:
         return []
@@ -143,32 +143,32 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
 
 
 def _until(words: Sequence[Lexeme], names: Names) -> Order | None:
-    """Return the move that words say up to a question."""
+    """Return the move that words say up to a condition."""
     k = next((k for k, each in enumerate(words) if names.meant(each.text) == "UNTIL"), 0)
     call: Filled | None = filled(words[:k], names, has_until=True, is_order=True) if k else None
     if call is None or call.times or "DISTANCE" not in names.sensors:
         return None
     word = call.tokens[0].text
-    question, sample = _asked(words[k + 1 :], names, is_ahead=word == "F")
-    text = f"{laid_out(call.tokens)} UNTIL({question})"
-    return Order(word, text, call.samples + sample) if question else None
+    condition, sample = _asked(words[k + 1 :], names, is_ahead=word == "F")
+    text = f"{laid_out(call.tokens)} UNTIL({condition})"
+    return Order(word, text, call.samples + sample) if condition else None
 
 
 def _asked(
     words: Sequence[Lexeme], names: Names, is_ahead: bool = True
 ) -> tuple[str, tuple[str, ...]]:
-    """Return the question that words ask, and what they do not say of it.
+    """Return the condition that words ask, and what they do not say of it.
 
     `is_ahead`: it may be one for something near, which DISTANCE sees.
     """
-    if exact := laid_out(question_in(words, names)):
+    if exact := laid_out(condition_in(words, names)):
         return exact, ()
     said = (worded(words, names) if is_ahead else None) or {}
-    question = said.get("asked") or said.get("question", "")
+    condition = said.get("asked") or said.get("question", "")
     is_other = any(names.meant(it.text) in _ASIDE or it.text in COMPARISONS for it in words)
-    if is_other or not question.startswith("DISTANCE"):
+    if is_other or not condition.startswith("DISTANCE"):
         return "", ()
-    return question, () if "asked" in said else (f"{_NEAR_CM} cm",)
+    return condition, () if "asked" in said else (f"{_NEAR_CM} cm",)
 
 
 def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
@@ -215,7 +215,7 @@ def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:
     return f"{word}({asked})" if asked else ""
 
 
-def question_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
+def condition_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
     """Return the comparison that words ask, in words of the language; nothing for none."""
     words = words[1:-1] if closed(words, 0) == len(words) else words
     found = lines.read([made("IF"), made("("), *words, made(")")], names, is_quick=True)

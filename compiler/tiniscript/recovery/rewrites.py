@@ -221,7 +221,7 @@ class Encoded:
         start, end = self.span(match)
         is_set = row.code is codes.OTHER_ASSIGNMENT
         if is_set and start and self.tokens[start - 1].text in _BEFORE_VALUE:
-            return None  # in brackets it would be a question
+            return None  # in brackets it would be a condition
         if new and new[-1].text == ";" and end < len(self.tokens) and self.tokens[end].text == ";":
             new.pop()
         old = self.tokens[start:end]
@@ -267,13 +267,13 @@ class _Place(NamedTuple):
 _Made = list[Lexeme] | None
 
 
-def negated(question: Sequence[Lexeme]) -> list[Lexeme]:
-    """Return the question that is TRUE where `question` is not."""
-    signs = [k for k, each in enumerate(question) if each.text in COMPARISONS]
-    if len(signs) == 1 and not any(each.text in ("AND", "OR", "NOT") for each in question):
+def negated(condition: Sequence[Lexeme]) -> list[Lexeme]:
+    """Return the condition that is TRUE where `condition` is not."""
+    signs = [k for k, each in enumerate(condition) if each.text in COMPARISONS]
+    if len(signs) == 1 and not any(each.text in ("AND", "OR", "NOT") for each in condition):
         k = signs[0]
-        return [*question[:k], made(OPPOSITES[question[k].text]), *question[k + 1 :]]
-    return [made("NOT"), made("("), *question, made(")")]
+        return [*condition[:k], made(OPPOSITES[condition[k].text]), *condition[k + 1 :]]
+    return [made("NOT"), made("("), *condition, made(")")]
 
 
 def _end_of(place: _Place) -> _Made:

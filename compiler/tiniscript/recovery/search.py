@@ -25,7 +25,7 @@ from tiniscript.syntax.outline import Failure
 
 UNREAD = 5  # lines that nobody can read, after which others are read quickly
 ALTERNATIVES = 12  # readings of a line that are tried beside the cheapest ones
-# A line that begins a block whose question comes at its end, and its last line.
+# A line that begins a block whose condition comes at its end, and its last line.
 _DO_ALONE = re.compile(rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make')})\b\s*\{{?\s*$")
 _END_UNTIL = re.compile(rf"\b{words_of('end')}[ _]?{words_of('until')}\b")
 _SETUP = re.compile(r"^\s*SI\s*\|\s*(?=\w)", re.IGNORECASE)

@@ -45,7 +45,7 @@ def setup(text: str) -> Diagnostic | None:
 
 
 def _begins(rest: str, sign: str, is_apart: bool) -> bool:
-    """Whether an instruction begins, and no question; a sign before it says that by itself."""
+    """Whether an instruction begins, and no condition; a sign before it says that by itself."""
     match = re.match(r"([^\W\d]\w*)\s*(\(|=|;|$)?", rest)
     if match is None:
         return False

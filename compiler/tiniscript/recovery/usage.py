@@ -1,7 +1,7 @@
 """Usage: how the instruction is written that nobody can read, where no row says more.
 
 Takes what the grammar expected at a place, and adds what its words are about: the command that one
-of them means, a sentence, a question in words. A function for each code. Knows no row.
+of them means, a sentence, a condition in words. A function for each code. Knows no row.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
-from tiniscript.recovery.behind import ASKING
 from tiniscript.recovery.concepts import Names, concept_of, lexemes, plain, said_of, words_of
 from tiniscript.recovery.orders import block, made_up, orders, written
+from tiniscript.recovery.trailing_tokens import ASKING
 from tiniscript.recovery.writing import laid_out, shortened, tokens_of, without_note
 from tiniscript.syntax.free_names import in_place_of
 from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
@@ -299,8 +299,8 @@ class _Usage:
         example = WORDS[word].example if is_alone else ""
         return self.adds(example=example, usage=self.usage(word))
 
-    def question(self) -> Diagnostic | None:
-        """A question in words, in the brackets of a header; or nothing in brackets."""
+    def condition(self) -> Diagnostic | None:
+        """A condition in words, in the brackets of a header; or nothing in brackets."""
         if self.signs[1:] == ["("] and self.signs[0] in WORDS:
             return self.adds(usage=self.usage(self.signs[0]))
         if (said := self.foreign() or self.amount()) is not None:
@@ -330,7 +330,7 @@ class _Usage:
         return self.adds(right="SB|") if word == "S8" or concept_of(word) == "BUTTON" else None
 
     def begins(self) -> Diagnostic:
-        """`SI` in the midst of a program begins a question, or the program once more."""
+        """`SI` in the midst of a program begins a condition, or the program once more."""
         word = self.source[self.found.span].upper()
         if word == "CHECK_CONNECTION":
             return self.says(codes.PING_ALONE)
@@ -496,7 +496,7 @@ _SAYS: dict[Code, Callable[[_Usage], Diagnostic | None]] = {
     codes.MISSING_OPEN: _Usage.brackets,
     codes.MISSING_SEPARATOR: _Usage.behind,
     **dict.fromkeys(
-        (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE), _Usage.question
+        (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE), _Usage.condition
     ),
     codes.SETUP_UNKNOWN: _Usage.setup,
     codes.SETUP_TWICE: _Usage.begins,

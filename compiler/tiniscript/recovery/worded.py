@@ -1,4 +1,4 @@
-"""A question in words: `luz mucha`, `hay una pared`, `pared a medio metro`. Knows no row.
+"""A condition in words: `luz mucha`, `hay una pared`, `pared a medio metro`. Knows no row.
 
 Finds which sensor and which sign they mean, as far as they say it. Where the number is not in them
 it is an example.
@@ -22,7 +22,7 @@ _EVEN = 100  # above it an example is a round number
 
 
 def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
-    """Return what a question in words asks, None where it is none or cannot be understood.
+    """Return what a condition in words asks, None where it is none or cannot be understood.
 
     It is `asked` where it has its number, a `question` where a word says what, and else an
     `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several.
@@ -30,8 +30,8 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     is_compared = any(each.text == "=" for each in row)  # `DISTANCE = NEAR`
     row = [each for each in row if each.text != "="]
     texts = [each.text for each in row]
-    is_question = any(text in ("AND", "OR") for text in texts)  # of the language itself
-    if is_question or (is_compared and not _said(texts, names) & _ASKED):
+    is_condition = any(text in ("AND", "OR") for text in texts)  # of the language itself
+    if is_condition or (is_compared and not _said(texts, names) & _ASKED):
         return None
     if joint := _joint(texts, names):
         return {"question": "", "joint": joint}
@@ -68,7 +68,7 @@ def _said(texts: Sequence[str], names: Names) -> set[str]:
 
 
 def _joint(texts: Sequence[str], names: Names) -> str:
-    """Return AND or OR, if two questions are joined and each is in words."""
+    """Return AND or OR, if two conditions are joined and each is in words."""
     joints = [said_of(text, "and") or said_of(text, "or") for text in texts]
     places = [k for k, text in enumerate(texts) if joints[k] and not names.is_name(text)]
     pieces = [texts[a + 1 : b] for a, b in pairwise((-1, *places, len(texts)))]

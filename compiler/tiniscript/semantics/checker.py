@@ -236,7 +236,7 @@ class _Checker(Scope):
 
     def wants_condition(self, argument: ast.Argument, by: str) -> None:
         found = self.source[argument.span]
-        values = self.kinds.wrong.question(found)
+        values = self.kinds.wrong.condition(found)
         self.report(codes.WANTS_CONDITION, argument.span, None, by=by, found=found, **values)
 
     def stack_fits(self, values: Sequence[Value], span: Span) -> None:

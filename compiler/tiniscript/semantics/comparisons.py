@@ -1,4 +1,4 @@
-"""Knows comparisons of a sensor, and which questions can come true behind UNTIL of a move.
+"""Knows comparisons of a sensor, and which conditions can come true behind UNTIL of a move.
 
 Going forward a distance gets smaller, going back it gets bigger.
 """
@@ -33,7 +33,7 @@ class Comparison(NamedTuple):
 
 
 def comparison(condition: Expression, kit: Kit) -> Comparison | None:
-    """Return `DISTANCE < 10` for a question that is just that, whichever side is first."""
+    """Return `DISTANCE < 10` for a condition that is just that, whichever side is first."""
     if len(condition) != 3 or condition[2].op not in _MIRRORED:
         return None
     first, second, sign = condition[0], condition[1], condition[2].op
@@ -116,7 +116,7 @@ def answer_of_both(condition: Expression, kit: Kit) -> tuple[str, str]:
 
 
 def comes_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
-    """Return whether a question is one for the UNTIL of a move; None where that is not known.
+    """Return whether a condition is one for the UNTIL of a move; None where that is not known.
 
     It is none where a distance changes the other way, where it asks for exactly one of very many
     numbers, and where its answer is always the same.
@@ -135,12 +135,12 @@ def comes_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
 
 
 def asks_if_near(condition: Expression, kit: Kit) -> bool:
-    """Whether a part of a question is `DISTANCE < 20`, of a sensor that looks ahead."""
+    """Whether a part of a condition is `DISTANCE < 20`, of a sensor that looks ahead."""
     return any(looks_ahead(each.device) and each.op in _LESS for each in _parts(condition, kit))
 
 
 def _parts(condition: Expression, kit: Kit) -> Iterator[Comparison]:
-    """Yield the comparisons within a question; a variable is taken for a number amid the range."""
+    """Yield the comparisons within a condition; a variable is taken for a number amid the range."""
     for k in range(len(condition) - 2):
         part = condition[k : k + 3]
         middle = next(((device.low + device.high) // 2 for device in _devices(part, kit)), 0)

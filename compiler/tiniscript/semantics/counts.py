@@ -18,7 +18,7 @@ LOWEST_HERTZ = 30
 _MOST_POWER = 100
 _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
-_UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its question
+_UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
 
 
 def count_diagnostic(

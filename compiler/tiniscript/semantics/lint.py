@@ -1,4 +1,4 @@
-"""The lint: advice about a program that has no mistakes.
+"""The lint: warnings about a program that has no mistakes.
 
 Knows the IR, before it is optimised. Gives warnings, never mistakes.
 """
@@ -14,7 +14,7 @@ from tiniscript.base.source import Source, Span
 from tiniscript.base.words import said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.semantics.frozen_questions import FrozenQuestions
+from tiniscript.semantics.invariant_conditions import InvariantConditions
 from tiniscript.semantics.ir import (
     Assign,
     Beep,
@@ -38,10 +38,10 @@ from tiniscript.semantics.ir import (
     walk,
 )
 from tiniscript.semantics.kept_motors import kept_motors
-from tiniscript.semantics.late_questions import LateQuestions
+from tiniscript.semantics.late_conditions import LateConditions
 from tiniscript.semantics.named_values import use_of
 from tiniscript.semantics.optimizer import constant, fold, sure_fault
-from tiniscript.semantics.unlikely_values import (
+from tiniscript.semantics.suspicious_values import (
     of_beep,
     of_ended_move,
     of_move,
@@ -57,7 +57,7 @@ class _Around(NamedTuple):
     loop: Loop | While | None = None
     is_repeated: bool = False  # by a loop, or in a DEF
     is_last: bool = False
-    asked: frozenset[int] = frozenset()  # sensors of the questions around it
+    asked: frozenset[int] = frozenset()  # sensors of the conditions around it
     outermost: Loop | While | None = None  # of the loops around it
 
 
@@ -68,8 +68,8 @@ class _Look:
         self.program = program
         self.kit = kit
         self.source = source
-        self.late = LateQuestions(program, kit, source)
-        self.frozen = FrozenQuestions(program, kit, source)
+        self.late = LateConditions(program, kit, source)
+        self.frozen = InvariantConditions(program, kit, source)
         self.found: list[Diagnostic] = []
 
     @property
@@ -77,7 +77,7 @@ class _Look:
         return [*self.found, *self.late.found, *self.frozen.found]
 
 
-def advice(program: Program, kit: Kit, source: Source) -> list[Diagnostic]:
+def lint(program: Program, kit: Kit, source: Source) -> list[Diagnostic]:
     """Return the warnings for a program that has no mistakes."""
     look = _Look(program, kit, source)
     for procedure in program.procedures:

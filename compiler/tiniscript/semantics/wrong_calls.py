@@ -136,13 +136,13 @@ _NEXT_QUESTION = re.compile(r"(?i)[\s;]{0,200}IF[ \t]*\(([^()\r\n;]{0,60}[<>=][^
 
 
 def asked_next(source: Source, span: Span) -> str:
-    """Return the question of an IF that follows what is at `span`; an example where none does."""
+    """Return the condition of an IF that follows what is at `span`; an example where none does."""
     found = _NEXT_QUESTION.match(source.text, span.end)
     return found[1].strip() if found else "DISTANCE < 10"
 
 
 def ended_by(call: str, asked: str, word: Word | None) -> str:
-    """Return how something is ended by a question: `M(5, 5);W(FOREVER) UNTIL(c);S`.
+    """Return how something is ended by a condition: `M(5, 5);W(FOREVER) UNTIL(c);S`.
 
     `call` is what the UNTIL of `asked` stands behind.
     """

@@ -123,7 +123,7 @@ class WrongValues:
         """
         span = Span(operand.start, operand.end)
         found = self.scope.source[span]
-        values = self.question(found)
+        values = self.condition(found)
         if other is not None and other.end - other.start <= 80:
             asked = self.scope.source[Span(other.start, other.end)]
             before, behind = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
@@ -134,8 +134,8 @@ class WrongValues:
                 values = {"fix": f"{found} {behind[1]}"}
         self.scope.report(codes.WANTS_CONDITION, span, None, by=by, found=found, **values)
 
-    def question(self, found: str) -> dict[str, str]:
-        """Return the yes or no that a number alone means, or an example of a question with it."""
+    def condition(self, found: str) -> dict[str, str]:
+        """Return the yes or no that a number alone means, or an example of a condition with it."""
         word = found.upper()
         name = self.scope.names.get(word)
         if name is not None:

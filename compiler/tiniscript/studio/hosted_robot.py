@@ -15,9 +15,9 @@ from tiniscript import robots
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import RobotError, TiniScriptError
-from tiniscript.link.line import Line
 from tiniscript.link.messages import STATUSES
-from tiniscript.link.outcomes import Gone
+from tiniscript.link.outcomes import ConnectionLost
+from tiniscript.link.port_connection import PortConnection
 from tiniscript.studio.attending import Attending
 from tiniscript.studio.robot_link import RobotLink, about
 
@@ -82,7 +82,7 @@ class HostedRobot:
                 while not self.was_left:
                     self.attending.attend(link)
                 self._end(self._why)
-        except Gone as gone:
+        except ConnectionLost as gone:
             lost = client.lost(gone)
             self._end(lost.key, str(lost))
         except RobotError as lost:
@@ -98,7 +98,7 @@ class HostedRobot:
         """What another command has started is for that command to attend to."""
         if client.line.held_by:
             return
-        assert isinstance(client.line, Line)
+        assert isinstance(client.line, PortConnection)
         session = client.line.session
         session.may_beat = lambda: self.is_attended or (session.is_running and not link.has_run)
 

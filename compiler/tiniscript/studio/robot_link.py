@@ -80,7 +80,10 @@ class RobotLink:
         return self._run is not None or any(each.pending.starts for each in self._asked)
 
     def ask(self, request: Json) -> None:
-        """Begin a request; its answer is among the news, with its `id`. Raises BadRequest, Gone."""
+        """Begin a request; its answer is among the news, with its `id`.
+
+        Raises BadRequest, ConnectionLost.
+        """
         number, do = whole(request, "id", 0, MOST_COUNT), request.get("do")
         if do == "stop":
             self.stop()
@@ -108,7 +111,10 @@ class RobotLink:
         self._connection.stop()
 
     def news(self, limit_s: float = 0) -> list[Json]:
-        """Return answers and events since the last call; wait that long for one. Raises Gone."""
+        """Return answers and events since the last call; wait that long for one.
+
+        Raises ConnectionLost.
+        """
         found, self._answers = self._answers, []
         found += self._outcomes()
         for _ in range(MOST_EVENTS):

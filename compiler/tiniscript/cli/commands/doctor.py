@@ -32,7 +32,7 @@ from tiniscript.link import ports
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import RESETS
-from tiniscript.link.sharing.shared_line import joined
+from tiniscript.link.sharing.shared_connection import joined
 from tiniscript.link.wire import Wire
 from tiniscript.virtual import directory
 

@@ -24,7 +24,7 @@ from tiniscript.cli.robot.recorder import Rows
 from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.cli.texts import text
 from tiniscript.link.errors import NOT_INSTALLED, PortError
-from tiniscript.link.line import now_ms
+from tiniscript.link.port_connection import now_ms
 
 if TYPE_CHECKING:
     from tiniscript.link.transports.broker import Access, Broker, Present

@@ -30,7 +30,7 @@ from tiniscript.link import known_ports
 from tiniscript.link.connection import PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
-from tiniscript.link.outcomes import Event, Gone
+from tiniscript.link.outcomes import ConnectionLost, Event
 from tiniscript.link.port_names import is_address
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.statuses import sentence
@@ -222,7 +222,7 @@ class Connection(Client):
                 advice = text("choose_kit", self.language).format(robot=name)
         return f"{said} {advice}".strip()
 
-    def gone(self, gone: Gone) -> CommandError:
+    def gone(self, gone: ConnectionLost) -> CommandError:
         """Return the sentence for a connection that has ended."""
         lost = self.lost(gone)
         return CommandError(3, lost.key, **lost.values)

@@ -26,7 +26,7 @@ from tiniscript.link.port_names import (
     same_for_all,
 )
 from tiniscript.link.sharing.registry import Registration, all_found
-from tiniscript.link.sharing.shared_line import is_alive
+from tiniscript.link.sharing.shared_connection import is_alive
 from tiniscript.virtual import directory
 
 

@@ -22,9 +22,9 @@ from typing import Any, NamedTuple
 
 from tiniscript.base.version import __version__
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.line import Line
 from tiniscript.link.outcomes import CANCELLED, Event, JoinedEvent, LeftEvent, MissedEvent, Told
 from tiniscript.link.payloads import ReceiptReply
+from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.port_names import same_for_all
 from tiniscript.link.requests import OK, Reply
 from tiniscript.link.sharing import protocol, registry
@@ -70,7 +70,7 @@ class Server:
     """Shares a line until `close`. Raises OSError where the line cannot be shared."""
 
     def __init__(
-        self, line: Line, port: str, baud: int, verb: str,
+        self, line: PortConnection, port: str, baud: int, verb: str,
         is_latched: Callable[[], bool] = lambda: False,
     ) -> None:  # fmt: skip
         """`is_latched`: somebody has just stopped the robot, and no client starts anything."""

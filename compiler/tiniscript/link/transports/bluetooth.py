@@ -1,7 +1,7 @@
 """A robot's port over Bluetooth LE: the Nordic UART service, or that of an HM-10.
 
-`BluetoothPort` has what a `Line` uses of a serial port. Knows bleak; importing this fails without
-it. What is seen in a scan is in `bluetooth_search`. Knows no robot and no sentences.
+`BluetoothPort` has what a `PortConnection` uses of a serial port. Knows bleak; importing this fails
+without it. What is seen in a scan is in `bluetooth_search`. Knows no robot and no sentences.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The reading half of a port whose bytes another thread brings: of a radio, of a broker.
 
-Knows what a `Line` uses of a serial port to read, and no way by which bytes come.
+Knows what a `PortConnection` uses of a serial port to read, and no way by which bytes come.
 """
 
 from __future__ import annotations

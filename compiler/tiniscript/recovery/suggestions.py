@@ -1,7 +1,7 @@
-"""Advice: what is told of words that no repair reads surely.
+"""Suggestions: what is told of words that no repair reads surely.
 
 Reads each instruction of a line with the words behind it, and words without one, by the rows of
-`advice_rows`. Knows no row and no sentence of any language.
+`suggestion_rows`. Knows no row and no sentence of any language.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from tiniscript.base.source import Edit, Span, overlap
 from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, nearest
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
-from tiniscript.recovery import advice_rows, lines, rewrites
-from tiniscript.recovery.behind import ASKING, Around, Behind, whole, width
+from tiniscript.recovery import lines, rewrites, suggestion_rows
 from tiniscript.recovery.concepts import ENDED, NEAR, Lexeme, Names, lexemes, made, plain, said_of
-from tiniscript.recovery.orders import Order, made_up, orders, question_in, written
+from tiniscript.recovery.orders import Order, condition_in, made_up, orders, written
 from tiniscript.recovery.slots import filled
+from tiniscript.recovery.trailing_tokens import ASKING, Around, Trailing, whole, width
 from tiniscript.recovery.worded import sensors_of, worded
 from tiniscript.recovery.writing import laid_out, shortened, without_note
 from tiniscript.syntax.free_names import for_a_number
@@ -52,7 +52,7 @@ class Row(NamedTuple):
     example: tuple[str, str]
 
 
-class Advice(NamedTuple):
+class Suggestion(NamedTuple):
     """What is told, and the words that are passed over so that the rest can be read."""
 
     diagnostic: Diagnostic
@@ -62,10 +62,10 @@ class Advice(NamedTuple):
 @cache
 def rows() -> tuple[Row, ...]:
     found = []
-    for pattern, code, values, example in rewrites.cells(advice_rows.ADVICE):
+    for pattern, code, values, example in rewrites.cells(suggestion_rows.SUGGESTIONS):
         named = dict(each.split("=", 1) for each in values.split("; ") if each)
         wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
-        compiled = rewrites.compiled(pattern, advice_rows.PARTS)
+        compiled = rewrites.compiled(pattern, suggestion_rows.PARTS)
         found.append(Row(compiled, code, named, (wrong, right)))
     return tuple(found)
 
@@ -75,16 +75,16 @@ def _places() -> rewrites.Places:
     return rewrites.places({k: row.pattern for k, row in enumerate(rows())})
 
 
-def advised(text: str, kit: Kit) -> list[Advice]:
+def suggested(text: str, kit: Kit) -> list[Suggestion]:
     """Return what is told of words behind each instruction of a text, or in place of one."""
     bodies = [without_note(line)[0] for line in text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
-    found: list[Advice] = []
+    found: list[Suggestion] = []
     above: list[str | None] = []
     start = depth = 0
     left = MOST
     for body, line in zip(bodies, text.split("\n"), strict=True):
-        told: list[Advice] = []
+        told: list[Suggestion] = []
         words = lexemes(body)
         is_right = lines.is_right(words, names)
         if "~" not in body and not is_right:
@@ -110,7 +110,7 @@ def _as_orders(line: str, is_right: bool) -> str | None:
     return line.strip().rstrip(" ;") if is_right else ""
 
 
-def _parts(body: str, start: int, around: Around) -> Iterator[Behind]:
+def _parts(body: str, start: int, around: Around) -> Iterator[Trailing]:
     """Give each instruction of a line that has words behind it, and words without one."""
     names = around.names
     before: list[str | None] = []
@@ -123,23 +123,23 @@ def _parts(body: str, start: int, around: Around) -> Iterator[Behind]:
             size = whole(tokens, names)
             rest = tokens[size:]
             if not size and (found := _said_call(tokens, names)):
-                yield Behind(around, at, tokens, found[0], before, found[1])
+                yield Trailing(around, at, tokens, found[0], before, found[1])
                 break
             if not size or not rest:
-                yield Behind(around, at, tokens, 0, before)
+                yield Trailing(around, at, tokens, 0, before)
                 break
             if any(each.text in ASKING for each in tokens[:size]):
                 is_ended = all(said_of(each.text, "do") for each in rest)  # by a THEN
-                yield Behind(around, at, tokens if is_ended else tokens[:size], 0, before)
+                yield Trailing(around, at, tokens if is_ended else tokens[:size], 0, before)
             if not whole(rest, names) or rest[0].text in ("IF", "WHILE"):
-                yield Behind(around, at, tokens, size, before)
+                yield Trailing(around, at, tokens, size, before)
                 break
             at += sum(map(width, tokens[:size]))
             tokens = rest
         before = [*before, None if is_block else match[1].strip()]
 
 
-def _told(part: Behind) -> Advice | None:
+def _told(part: Trailing) -> Suggestion | None:
     if len(part.row) > LONGEST or not part.is_aside():
         return None
     line = rewrites.Encoded([made(";"), *part.row], part.names, part.labels())
@@ -147,13 +147,13 @@ def _told(part: Behind) -> Advice | None:
         row = rows()[k]
         if match := next(line.matches(row.pattern), None):
             with suppress(_NoGap):
-                found = _advice(row, _Gaps(part, line, match))
+                found = _suggestion(row, _Gaps(part, line, match))
                 is_aside = row.code in _ASIDE and part.tokens and _is_read_surely(part)
                 return None if is_aside else found
     return None
 
 
-def _is_read_surely(part: Behind) -> bool:
+def _is_read_surely(part: Trailing) -> bool:
     """Whether a repair of the whole instruction can mean nothing else."""
     if part.own == "DEF":
         return False  # it may be called by its first word
@@ -161,7 +161,7 @@ def _is_read_surely(part: Behind) -> bool:
     return bool(found) and found[0].is_sure and len(found[0].items or ()) == 1
 
 
-def _advice(row: Row, gaps: _Gaps) -> Advice:
+def _suggestion(row: Row, gaps: _Gaps) -> Suggestion:
     part, named = gaps.part, row.pattern.of_labels.groupindex
     values = {"before": shortened(part.call), "words": shortened(part.words), "fix": ""}
     values |= {name: template.format_map(gaps) for name, template in row.values.items()}
@@ -180,16 +180,16 @@ def _advice(row: Row, gaps: _Gaps) -> Advice:
     found = Diagnostic(code, span, values, place)
     if "h" in named:
         place = Span(part.spans[gaps.span("h")[0]].start, part.behind.end)
-        question = values.get("asked") or values.get("question") or "TRUE"
-        return Advice(found, Edit(place, f"{gaps['head']}({question})"))
+        condition = values.get("asked") or values.get("question") or "TRUE"
+        return Suggestion(found, Edit(place, f"{gaps['head']}({condition})"))
     if part.is_said:
-        return Advice(found, Edit(part.place, values["fix"] or part.call))
+        return Suggestion(found, Edit(part.place, values["fix"] or part.call))
     fix = "" if part.tokens else values["fix"]
-    return Advice(found, Edit(part.behind, fix or " " * (part.behind.end - part.behind.start)))
+    return Suggestion(found, Edit(part.behind, fix or " " * (part.behind.end - part.behind.start)))
 
 
 def _said_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
-    """Return the call that words before a question say, and how many they are."""
+    """Return the call that words before a condition say, and how many they are."""
     meant = [names.meant(each.text, NEAR) for each in tokens]
     asks = next((k for k in range(1, len(tokens)) if meant[k] in ("IF", "WHILE")), 0)
     has_until = meant[asks] == "WHILE"
@@ -204,7 +204,7 @@ class _NoGap(Exception):
 class _Gaps(dict[str, str]):
     """Fills the gaps of a row: captures, and the functions of `_GAPS`."""
 
-    def __init__(self, part: Behind, line: rewrites.Encoded, match: re.Match[str]) -> None:
+    def __init__(self, part: Trailing, line: rewrites.Encoded, match: re.Match[str]) -> None:
         self.part = part
         self._line = line
         self._match = match
@@ -269,7 +269,7 @@ def _all(gaps: _Gaps, times: str) -> str:
 
 
 def _worded(gaps: _Gaps, is_not: bool) -> dict[str, str]:
-    """What the words of a question ask, or the opposite."""
+    """What the words of a condition ask, or the opposite."""
     row, names = gaps.tokens("s"), gaps.part.names
     is_bare = [each.text for each in gaps.from_on("s")[len(row) :][:1]] != [")"]
     is_order = is_bare and gaps["head"] == "UNTIL" and not gaps.part.tokens
@@ -287,7 +287,7 @@ def _sensor(gaps: _Gaps, k: int) -> str:
 
 
 def _alone(gaps: _Gaps) -> str:
-    """A question that stands alone, and sets nothing."""
+    """A condition that stands alone, and sets nothing."""
     signs = {each.text for each in gaps.tokens("s")}
     return laid_out(_asked(gaps, "s")) if signs & {*COMPARISONS} - {"="} else ""
 
@@ -346,8 +346,8 @@ def _paced(gaps: _Gaps) -> str:
 
 
 def _asked(gaps: _Gaps, name: str = "q") -> list[Lexeme]:
-    """The question that words ask, in words of the language; nothing where they ask none."""
-    return [] if gaps.part.is_asked else question_in(gaps.tokens(name), gaps.part.names)
+    """The condition that words ask, in words of the language; nothing where they ask none."""
+    return [] if gaps.part.is_asked else condition_in(gaps.tokens(name), gaps.part.names)
 
 
 def _shown(gaps: _Gaps) -> str:
@@ -363,7 +363,7 @@ def _rest(gaps: _Gaps, name: str) -> str:
     return gaps.part.text[gaps.part.spans[start].start : gaps.part.place.end] if start < end else ""
 
 
-def _calls(part: Behind) -> list[Order]:
+def _calls(part: Trailing) -> list[Order]:
     """The orders that the words say, nothing where a turn of them says no way."""
     found = orders(part.row, part.names)
     return [] if any(each.is_side_free or each.is_repeated for each in found) else found

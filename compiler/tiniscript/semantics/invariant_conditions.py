@@ -1,8 +1,8 @@
-"""Warns of questions whose answer does not come: nothing changes it, or it never comes exactly.
+"""Warns of conditions whose answer does not come: nothing changes it, or it never comes exactly.
 
 `D = DISTANCE; F(5, 60) UNTIL(D < 20)`, `N = 0; WHILE(N < 3)` without `N = N + 1`,
 `F(5, 60) UNTIL(DISTANCE > 20)`, `UNTIL(DISTANCE = 20)`. Knows the IR, before it is optimised, and
-the text of the questions.
+the text of the conditions.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from tiniscript.semantics.ir import (
     walk,
 )
 from tiniscript.semantics.optimizer import constant, fold
-from tiniscript.semantics.written_questions import question_of
+from tiniscript.semantics.written_conditions import written_condition
 from tiniscript.syntax.operators import SIGN_OF
 
 SHORT = 1000  # ms: a loop looks again after so long
@@ -54,7 +54,7 @@ _CHANGING = frozenset(("SENSOR", "TIME", "RANDOM"))
 # By the way that the robot goes, what is true where the robot stands, and what comes true.
 _TURNED = {"F": {"GT": "LT", "GE": "LE"}, "B": {"LT": "GT", "LE": "GE"}}
 _WAYS = {"LT": "below", "LE": "below", "GT": "above", "GE": "above"}
-_MOST_ARMS = 50  # of an IF whose questions are compared
+_MOST_ARMS = 50  # of an IF whose conditions are compared
 _REACHED = {"F": "LE", "B": "GE"}  # what is sure to come true, by the way that the robot goes
 
 
@@ -63,7 +63,7 @@ def _is_endless(loop: Loop | While) -> bool:
     return not isinstance(loop, Loop) or loop.times is None
 
 
-class FrozenQuestions:
+class InvariantConditions:
     """Looks at the statements of one program; `found` are its warnings."""
 
     def __init__(self, program: Program, kit: Kit, source: Source) -> None:
@@ -92,7 +92,7 @@ class FrozenQuestions:
         """Look at one statement.
 
         It is in a loop or a DEF where `is_repeated`; `outermost` is the loop around all others. The
-        questions around it ask the sensors `asked`: an answer may be known there.
+        conditions around it ask the sensors `asked`: an answer may be known there.
         """
         if isinstance(statement, Move) and statement.until is not None:
             self._until(statement, statement.until.condition, is_repeated, asked)
@@ -141,9 +141,9 @@ class FrozenQuestions:
             self.found.append(Diagnostic(codes.TURNED_ROUND, move.span, values))
         elif op == "EQ" and is_between(device, number):
             reached = "GE" if device is TIME else _REACHED.get(move.direction, "")
-            question = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
+            written = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
             is_sure = bool(reached) and (is_ahead or device is TIME)
-            fix = self._with(move, question) if is_sure else ""
+            fix = self._with(move, written) if is_sure else ""
             self._report(codes.EXACT, move.span, sensor=device.name, number=as_text(number),
                          word="UNTIL", fix=fix)  # fmt: skip
 
@@ -155,15 +155,15 @@ class FrozenQuestions:
         if held:
             values["sensor"] = held[name]
             if self._is_good(condition, held, move.direction):
-                question = _replaced(question_of(self._source, move.span, "UNTIL"), held)
-                values["fix"] = self._with(move, question) if question else ""
+                written = _replaced(written_condition(self._source, move.span, "UNTIL"), held)
+                values["fix"] = self._with(move, written) if written else ""
         self.found.append(Diagnostic(codes.FROZEN_UNTIL, move.span, values))
 
-    def _with(self, move: Move, question: str) -> str:
-        """Return a move as it is written, with another question behind UNTIL."""
+    def _with(self, move: Move, written: str) -> str:
+        """Return a move as it is written, with another condition behind UNTIL."""
         text = self._source[move.span]
         end = max((each.start() for each in re.finditer(r"(?i)\bUNTIL\b", text)), default=0)
-        return f"{text[:end].rstrip()} UNTIL({question})" if end else ""
+        return f"{text[:end].rstrip()} UNTIL({written})" if end else ""
 
     # -- WHILE and IF -------------------------------------------------------------------------
 
@@ -181,10 +181,10 @@ class FrozenQuestions:
         head = Span(loop.span.start, loop.span.start + len("WHILE"))
         values = {"name": name, "fix": ""}
         if held:
-            question = _replaced(question_of(self._source, loop.span, "WHILE"), held)
+            written = _replaced(written_condition(self._source, loop.span, "WHILE"), held)
             values["sensor"] = held[name]
-            is_good = question and self._is_good(condition, held)
-            values["fix"] = f"WHILE({question})" if is_good else ""
+            is_good = written and self._is_good(condition, held)
+            values["fix"] = f"WHILE({written})" if is_good else ""
         elif [term.op for term in condition[:-1]] == ["VARIABLE", "NUMBER"]:
             is_down = condition[-1].op in ("GT", "GE")
             values["step"] = f"{name} = {name} {'-' if is_down else '+'} 1"
@@ -211,9 +211,9 @@ class FrozenQuestions:
             return
         name = self._program.variables[variables[0]]
         word = "IF" if self._source[arm.span][:1].upper() == "I" else "ELSEIF"
-        question = _replaced(question_of(self._source, arm.span, word), held)
-        is_good = question and self._is_good(arm.condition, held)
-        fix = f"{word}({question})" if is_good else ""
+        written = _replaced(written_condition(self._source, arm.span, word), held)
+        is_good = written and self._is_good(arm.condition, held)
+        fix = f"{word}({written})" if is_good else ""
         self._report(codes.FROZEN_WHILE, arm.span, name=name, sensor=held[name], fix=fix)
 
     def _frozen_show(self, show: Show, outermost: Loop | While) -> None:
@@ -344,7 +344,7 @@ class FrozenQuestions:
         return comparison(condition, self._kit)
 
     def _is_good(self, condition: Expression, held: Mapping[str, str], direction: str = "") -> bool:
-        """Whether a question is one to write where it asks the sensors themselves."""
+        """Whether a condition is one to write where it asks the sensors themselves."""
         numbers = {device.name: k for k, device in enumerate(self._kit.sensors)}
         asking = tuple(
             Term("SENSOR", numbers[held[self._program.variables[term.value]]])
@@ -403,6 +403,6 @@ def _is_within(narrow: Comparison, wide: Comparison) -> bool:
     return (narrow.number < wide.number) == (_WAYS[wide.op] == "below")
 
 
-def _replaced(question: str, held: Mapping[str, str]) -> str:
-    """Return a question that asks the sensors themselves."""
-    return re.sub(r"[A-Za-z_]\w*", lambda each: held.get(each[0].upper(), each[0]), question)
+def _replaced(written: str, held: Mapping[str, str]) -> str:
+    """Return a condition that asks the sensors themselves."""
+    return re.sub(r"[A-Za-z_]\w*", lambda each: held.get(each[0].upper(), each[0]), written)

@@ -15,7 +15,7 @@ from typing import IO, Any, TypeVar
 import serial
 
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
-from tiniscript.link.outcomes import LOOK_S, Backlog, Event, Gone, Told
+from tiniscript.link.outcomes import LOOK_S, Backlog, ConnectionLost, Event, Told
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.session import Session
 from tiniscript.link.transports import Port
@@ -29,7 +29,7 @@ def now_ms() -> int:
     return int(monotonic() * 1000)
 
 
-class Line(LinkConnection):
+class PortConnection(LinkConnection):
     """An open port and the session on it.
 
     Call `event` and `close` only from the thread that made it; any thread may call the rest.
@@ -91,7 +91,7 @@ class Line(LinkConnection):
                 if request.outcome is not None:
                     return request.outcome
                 if self._gone is not None:
-                    raise self._bug or Gone(self._gone)
+                    raise self._bug or ConnectionLost(self._gone)
             if look is not None:
                 look()
 
@@ -102,7 +102,7 @@ class Line(LinkConnection):
             if self._events:
                 return self._events.take()
             if self._gone is not None:
-                raise self._bug or Gone(self._gone)
+                raise self._bug or ConnectionLost(self._gone)
         return None
 
     def stop(self) -> int:
@@ -149,7 +149,7 @@ class Line(LinkConnection):
         if self._lock is not None:
             self._lock.close()
 
-    def __enter__(self) -> Line:
+    def __enter__(self) -> PortConnection:
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -1,7 +1,7 @@
 """Warns where a program looks at a sensor when a move is over, and meant: while the robot moves.
 
 `F(5, 60)`, then `IF(DISTANCE < 20); S; ENDIF`. Knows the IR, before it is optimised, and the text
-of the questions. The repair is the move with that question behind UNTIL.
+of the conditions. The repair is the move with that condition behind UNTIL.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from tiniscript.semantics.ir import (
     every,
 )
 from tiniscript.semantics.optimizer import constant, fold
-from tiniscript.semantics.written_questions import question_of
+from tiniscript.semantics.written_conditions import written_condition
 from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
 
 LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
@@ -39,7 +39,7 @@ _PASSED_OVER = (Read, Assign, Show, Beep)  # they leave the robot where it is
 _GREATER = ("GT", "GE")
 
 
-class LateQuestions:
+class LateConditions:
     """Looks at the bodies of one program; `found` are its warnings."""
 
     def __init__(self, program: Program, kit: Kit, source: Source) -> None:
@@ -61,7 +61,7 @@ class LateQuestions:
     def _in_loop(self, body: Body) -> set[int]:
         """Find a long move, then a look at a distance: the robot drives blind in between.
 
-        Return the places of the questions.
+        Return the places of the conditions.
         """
         late = set()
         for k, statement in enumerate(body):
@@ -69,14 +69,14 @@ class LateQuestions:
                 continue
             after = range(k + 1, len(body))
             place = next((at for at in after if not isinstance(body[at], Read)), k)
-            question = body[place]
-            if not isinstance(question, If):
+            branch = body[place]
+            if not isinstance(branch, If):
                 continue
-            condition = question.arms[0].condition
+            condition = branch.arms[0].condition
             sensor = self._distance_in(condition)
             comes = comes_true(condition, statement.direction, self._kit)
             if sensor is not None and comes:
-                asked = question_of(self._source, question.arms[0].span, "IF")
+                asked = written_condition(self._source, branch.arms[0].span, "IF")
                 self._late(statement, sensor, asked)
                 late.add(place)
         return late
@@ -109,15 +109,15 @@ class LateQuestions:
         }
         self.found.append(Diagnostic(codes.LATE_CHECK, move.span, values))
 
-    def _idle_stop(self, body: Body, k: int, question: If, loop: Loop | While | None) -> None:
+    def _idle_stop(self, body: Body, k: int, branch: If, loop: Loop | While | None) -> None:
         """`F(5, 60); IF(DISTANCE < 20); S; ENDIF`: its S stops what stands."""
-        stop = _only_stop(question)
-        condition = question.arms[0].condition
+        stop = _only_stop(branch)
+        condition = branch.arms[0].condition
         if stop is None or not self._stands or not _can_change(condition):
             return
         before = _nearest(body, range(k - 1, -1, -1))
         after = _nearest(body, range(k + 1, len(body)))
-        stands = [each for each in question.arms[0].body if isinstance(each, (Move, Beep))]
+        stands = [each for each in branch.arms[0].body if isinstance(each, (Move, Beep))]
         if any(isinstance(each, Move) and each.direction == "W" for each in stands):
             return  # S with its wait is a pause
         pauses = bool(stands)
@@ -131,9 +131,9 @@ class LateQuestions:
                     if place == "move":
                         break
                     return  # it drives away from what is near
-                values = self._idle(stop, move, place, question)
+                values = self._idle(stop, move, place, branch)
                 if values["fix"]:
-                    values |= self._instead(body, move, question)
+                    values |= self._instead(body, move, branch)
                 if place == "move" or not pauses:
                     self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
                 return
@@ -143,30 +143,30 @@ class LateQuestions:
             values["again"] = self._source[again.span]
             self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
 
-    def _idle(self, stop: Stop, move: Move, place: str, question: If) -> dict[str, str]:
+    def _idle(self, stop: Stop, move: Move, place: str, branch: If) -> dict[str, str]:
         """Return the words for an S before or after a move, with a repair where one is sure."""
         found, written = self._source[stop.span], self._source[move.span]
-        condition = question.arms[0].condition
+        condition = branch.arms[0].condition
         comes = comes_true(condition, move.direction, self._kit)
         if move.direction == "B" and self._distance_in(condition) is not None:
             comes = False  # what is behind the robot is not seen
-        asked = question_of(self._source, question.arms[0].span, "IF") if comes else ""
+        asked = written_condition(self._source, branch.arms[0].span, "IF") if comes else ""
         values = {"found": found, "move": "", "next": "", place: written}
         values["fix"] = f"{written} UNTIL({asked})" if asked else ""
         if not comes:
             values["needless" if place == "move" else "behind"] = written
         return values
 
-    def _instead(self, body: Body, move: Move, question: If) -> dict[str, str]:
+    def _instead(self, body: Body, move: Move, branch: If) -> dict[str, str]:
         """Return what the move with its UNTIL takes the place of: all of it, or the move alone."""
-        first, last = sorted((move.span, question.span))
+        first, last = sorted((move.span, branch.span))
         begin, there, end = (
             str(self._source.position(at)[0])
-            for at in (first.start, question.span.start, last.end - 1)
+            for at in (first.start, branch.span.start, last.end - 1)
         )
         between = [each for each in body if first.end <= each.span.start < last.start]
         of = self._source[move.span]
-        if len(question.arms[0].body) > 1:
+        if len(branch.arms[0].body) > 1:
             return {"of": of, "rest": there}
         text = self._source.text
         beside = text[: first.start].rpartition("\n")[2] + text[last.end :].partition("\n")[0]
@@ -185,7 +185,7 @@ class LateQuestions:
         return time is not None and time >= least
 
     def _distance_in(self, condition: Expression) -> int | None:
-        """Return the first sensor of a distance that a question looks at."""
+        """Return the first sensor of a distance that a condition looks at."""
         for op, value in condition:
             if op == "SENSOR" and is_distance(self._kit.sensors[value]):
                 return value
@@ -207,12 +207,12 @@ def _can_change(condition: Expression) -> bool:
     return "SENSOR" in ops and "VARIABLE" not in ops and "RANDOM" not in ops
 
 
-def _only_stop(question: If) -> Stop | None:
+def _only_stop(branch: If) -> Stop | None:
     """Return the S of an IF that does nothing else with the motors, and has no ELSE."""
-    if len(question.arms) != 1 or question.has_else:
+    if len(branch.arms) != 1 or branch.has_else:
         return None
     stop: Stop | None = None
-    for statement in question.arms[0].body:
+    for statement in branch.arms[0].body:
         if isinstance(statement, Stop):
             stop = stop or statement
         elif not _is_talk(statement):

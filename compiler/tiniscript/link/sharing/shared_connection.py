@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 from tiniscript.base.version import __version__
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
-from tiniscript.link.outcomes import LOOK_S, Event, Gone
+from tiniscript.link.outcomes import LOOK_S, ConnectionLost, Event
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import OK, DeviceInfo, Reply, described
 from tiniscript.link.sharing import protocol, registry
@@ -40,7 +40,7 @@ class OtherVersion(Exception):
         self.version = version
 
 
-class SharedLine(LinkConnection):
+class SharedConnection(LinkConnection):
     """The connection through a server that has sent its greeting."""
 
     def __init__(
@@ -56,7 +56,7 @@ class SharedLine(LinkConnection):
         self._pending: dict[int, ClientRequest[Any]] = {}
         self._count = 0
         self._events: deque[tuple[int, Event]] = deque()
-        self._over: Gone | None = None
+        self._over: ConnectionLost | None = None
         self._heartbeat_s = 0.0  # when the last heartbeat was sent
         self._unanswered_s: float | None = None  # since when a heartbeat is
 
@@ -113,7 +113,7 @@ class SharedLine(LinkConnection):
             self._peer.sendall(protocol.written(message))
         except OSError as why:
             # messages that arrived earlier may give a better reason
-            self._over = self._over or Gone(str(why), is_server=True)
+            self._over = self._over or ConnectionLost(str(why), is_server=True)
 
     def _listen(self, limit_s: float) -> None:
         """Read and handle messages until some arrive or the time is over."""
@@ -133,14 +133,14 @@ class SharedLine(LinkConnection):
                 self._take(message)
         except TimeoutError:
             if self._unanswered_s is not None and now_s - self._unanswered_s > DEAF_S:
-                self._over = Gone("", is_server=True)
+                self._over = ConnectionLost("", is_server=True)
         except (OSError, BadMessage) as why:
-            self._over = self._over or Gone(str(why), is_server=True)
+            self._over = self._over or ConnectionLost(str(why), is_server=True)
 
     def _take(self, message: JsonMessage) -> None:
         if "over" in message:
             is_server = message["over"] != "gone"
-            self._over = Gone(protocol.word(message, "why"), is_server)
+            self._over = ConnectionLost(protocol.word(message, "why"), is_server)
         elif "event" in message:
             self._events.append(protocol.event(message))
         elif "id" in message:
@@ -172,7 +172,7 @@ class SharedLine(LinkConnection):
             self._robot = described(self.robot.values._replace(name=name))
 
 
-def joined(port: str, verb: str) -> SharedLine | None:
+def joined(port: str, verb: str) -> SharedConnection | None:
     """Return the connection through the command that holds a port; None if no command does.
 
     Raises OtherVersion where the server is another version of tsc; `stop` works there, too.
@@ -192,7 +192,7 @@ def is_alive(registration: Registration) -> bool:
     return client is not None
 
 
-def _joined(registration: Registration, verb: str) -> SharedLine | None:
+def _joined(registration: Registration, verb: str) -> SharedConnection | None:
     peer = None
     try:
         peer = socket.create_connection((protocol.HOST, registration.number), ANSWER_S)
@@ -207,7 +207,7 @@ def _joined(registration: Registration, verb: str) -> SharedLine | None:
         version = protocol.word(found[0], "tsc")
         if version != __version__ and verb != "stop":
             raise OtherVersion(registration, version)
-        client = SharedLine(peer, registration, rest)
+        client = SharedConnection(peer, registration, rest)
         for message in found[1:]:
             client._take(message)
         return client

@@ -74,7 +74,7 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     return end
 
 
-class Behind:
+class Trailing:
     """An instruction of `size` tokens and the words behind it; or words without one, where it is 0.
 
     `before` are the other instructions of its line, None for one of a block. `own` is the word of

@@ -1,4 +1,4 @@
-"""The rows of advice: what is told of words behind an instruction, and what is read then."""
+"""The rows of suggestions: what is told of words behind an instruction, and what is read then."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tests.pupils.corpus import check
 from tests.support.rows import each_row
 from tiniscript import robots
 from tiniscript.diagnostics.fixing import fixed
-from tiniscript.recovery.advice import Row, advised, rows
+from tiniscript.recovery.suggestions import Row, rows, suggested
 
 KIT = robots.load(robots.DEFAULT).kit
 
@@ -17,7 +17,7 @@ KIT = robots.load(robots.DEFAULT).kit
 def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
     wrong, told = row.example
     name, _, value = told.partition("=")
-    (found,) = advised(wrong, KIT)
+    (found,) = suggested(wrong, KIT)
     assert (found.diagnostic.code.number, found.diagnostic.values[name]) == (row.code, value)
     assert {*row.values} <= {*found.diagnostic.values}
 
@@ -38,7 +38,7 @@ def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
     ],
 )
 def test_what_is_no_note_is_left_to_others(wrong: str) -> None:
-    found = {each.diagnostic.code.number for each in advised(wrong, KIT)}
+    found = {each.diagnostic.code.number for each in suggested(wrong, KIT)}
     assert not found & {"TS071", "TS085"}
 
 

@@ -22,7 +22,7 @@ _ONCE = _WITH_LINES | {
 }
 
 
-def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
+def dedupe(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     """Return diagnostics without those that say the same as one before."""
     if any(each.code is codes.CASES for each in found):  # braces and breaks go with them
         found = [each for each in found if each.code not in (codes.BRACES, codes.BREAK_OUTSIDE)]

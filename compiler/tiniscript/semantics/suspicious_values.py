@@ -34,7 +34,7 @@ _PART = 45 * SECOND  # turns of more than one round have such parts
 _LENGTHS = ("cm", "mm", "m")
 _ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing behind its 0
 _ZERO_OF_TURN = re.compile(r"(?i)[LR]\s*\(\s*(0[1-9])\s*,\s*[1-9]")  # `L(03, 60)`
-_UNTIL = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its question
+_UNTIL = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its condition
 LITTLE_POWER = 10_000  # thousandths of a percent
 
 

@@ -1,4 +1,4 @@
-"""Finds the text of a question in the brackets of IF, WHILE or UNTIL, to write it elsewhere."""
+"""Finds the text of a condition in the brackets of IF, WHILE or UNTIL, to write it elsewhere."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import re
 
 from tiniscript.base.source import Source, Span
 
-LONGEST = 120  # characters of a question that a message can hold
+LONGEST = 120  # characters of a condition that a message can hold
 
 
-def question_of(source: Source, span: Span, word: str) -> str:
+def written_condition(source: Source, span: Span, word: str) -> str:
     """Return what is in the brackets behind `word`, the last of that name in `span`.
 
     Nothing where it is long, or goes over several lines.
@@ -23,6 +23,6 @@ def question_of(source: Source, span: Span, word: str) -> str:
     for k in range(begin, min(len(text), begin + LONGEST)):
         depth += (text[k] == "(") - (text[k] == ")")
         if not depth:
-            question = text[begin:k].strip()
-            return "" if re.search(r"[\r\n]|//", question) else question
+            condition = text[begin:k].strip()
+            return "" if re.search(r"[\r\n]|//", condition) else condition
     return ""

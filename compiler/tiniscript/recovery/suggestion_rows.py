@@ -1,6 +1,6 @@
-"""The rows of advice: what is told of words that no repair reads surely.
+"""The rows of suggestions: what is told of words that no repair reads surely.
 
-`ADVICE` has these columns, and the first row that holds is told:
+`SUGGESTIONS` has these columns, and the first row that holds is told:
 
     pattern | code | values | example => one of the values
 
@@ -18,7 +18,7 @@ below a line that is meant again), @dots, @ask (a word of the language that asks
 word for BUTTON, which the kit lacks), @call and @order (of the language: with values, or without). What `s` captures is pointed at. `h` is a header: the rest is
 read with what is asked as its question, else with TRUE.
 
-Values are texts with gaps. A gap is a capture, or a function in `advice`; a row with a gap that
+Values are texts with gaps. A gap is a capture, or a function in `suggestions`; a row with a gap that
 cannot be filled does not hold, unless `?` stands behind its name. `⟨less¦more⟩` makes a row of
 each, as in `rows`. Rows are sorted by what is asked for.
 """
@@ -38,7 +38,7 @@ PARTS = {
     "moment": "s=@word+ k=same|the t=moment",
 }
 
-ADVICE = """
+SUGGESTIONS = """
 # what stands for what is above it, and for what follows
 ^ @after ⟨@mark* @quote @mark*¦, ,+⟩ $ | TS130 | right={above?} | F(2, 80)⏎⟨"¦,,⟩ => right=F(2, 80)
 ^ @after <again> $ | TS130 | right=; last={above?}; all={twice} | F(2, 80)⏎R(1, 60)⏎y lo mismo => last=R(1, 60)
