@@ -564,7 +564,7 @@ def test_a_finger_drags_a_block(pages: Pages) -> None:
 
 LACKS = re.compile(  # things that no page has, and names of shortcuts, which only a plugin shows
     "SHORTCUT|VARIABLE|PROCEDURE|COLLAPSE|EXPAND_|ABLE_BLOCK|_INPUTS|COMMENT|MUTATOR|CHECKBOX"
-    "|UNDO|REDO|HELP|UNKNOWN|UNNAMED"
+    "|UNDO|REDO|HELP|UNKNOWN|UNNAMED|PAUSE|CAPS_LOCK|INSERT"
 )
 
 
