@@ -8,7 +8,7 @@ from tiniscript import compile_text, robots
 from tiniscript.base.limits import VARIABLES
 from tiniscript.base.words import COMPARATORS
 from tiniscript.bytecode import opcodes
-from tiniscript.bytecode.disassembly import listing, read_listing, rows
+from tiniscript.bytecode.disassembly import assemble, disassemble, rows
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import (
     BY_NAME,
@@ -196,27 +196,27 @@ def test_a_time_of_one_byte_is_a_time_of_its_own() -> None:
     assert [time8(time_ms) for time_ms in (-10, 5, 1010, 10_950, 11_500, 67_000)] == [None] * 6
 
 
-def test_listing_of_every_instruction_reads_back() -> None:
+def test_disassembly_of_every_instruction_reads_back() -> None:
     code = b"".join(op.opcode + bytes(op.size - len(op.opcode)) for op in OPS)
-    assert read_listing(listing(code)) == code
+    assert assemble(disassemble(code)) == code
     assert [row.op for row in rows(code)] == list(OPS)
 
 
-def test_listing_of_anything_reads_back() -> None:
+def test_disassembly_of_anything_reads_back() -> None:
     code = bytes(range(256)) + b"\x44"
-    assert read_listing(listing(code)) == code
+    assert assemble(disassemble(code)) == code
 
 
-def test_a_listing_names_the_devices_that_the_kit_has() -> None:
+def test_a_disassembly_names_the_devices_that_the_kit_has() -> None:
     kit = robots.load("tinibot").kit
     names = [sensor.name for sensor in kit.sensors]
     code = unpack(compile_text("; ".join(f"SHOW({name})" for name in names), kit).image).code
-    remarks = (line.partition(" ; ")[2] for line in listing(code, kit=kit).splitlines())
+    remarks = (line.partition(" ; ")[2] for line in disassemble(code, kit=kit).splitlines())
     assert [each for each in remarks if each] == names
-    assert ";" not in listing(code)
+    assert ";" not in disassemble(code)
 
 
 @pytest.mark.parametrize("text", ["0001  58", "0000  5", "zzzz  58", "0000 58", "nonsense"])
-def test_what_is_no_listing_is_no_listing(text: str) -> None:
-    with pytest.raises(ValueError, match="no line of a listing"):
-        read_listing(text)
+def test_what_is_no_disassembly_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="no line of a disassembly"):
+        assemble(text)

@@ -1,4 +1,4 @@
-"""The verifier: every rule has a listing that breaks it, and what it accepts runs safely."""
+"""The verifier: every rule has a disassembly that breaks it, and what it accepts runs safely."""
 
 from __future__ import annotations
 

@@ -134,4 +134,4 @@ def test_each_goal_has_a_command_that_takes_its_words(
     assert not ended.value.code
     printed = capfd.readouterr().out
     assert all(word in printed for word in words if word.startswith("--"))
-    assert 0 < goal.piece <= goal.shall
+    assert 0 < goal.piece <= goal.target

@@ -111,7 +111,7 @@ def test_no_string_of_a_world_reaches_the_terminal_raw(tsc: Tsc) -> None:
 
 
 def test_a_line_of_a_program_is_shown_plainly_where_it_faults(tsc: Tsc, tmp_path: Path) -> None:
-    """The text of a program is data; a fault and a listing quote it."""
+    """The text of a program is data; a fault and a disassembly quote it."""
     program = tmp_path / "a.ts"
     program.write_text("X = 1/(TIME - TIME)  // \x1b[31m\u202e\x9b\tred", encoding="utf-8")
     assert tsc("compile", program).code == 0

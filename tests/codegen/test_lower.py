@@ -1,6 +1,6 @@
 """Lowering: the shortest instruction at the border of its operand, and jumps that just reach.
 
-What the instructions do, the cases show; `tests/cases/blocks.md` has whole listings.
+What the instructions do, the cases show; `tests/cases/blocks.md` has whole disassemblies.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def instructions(text: str) -> list[str]:
 @each_row(
     "text, expected",
     [
-        # a listing has numbers as they are in the code: whole ones, thousandths, tenths.
+        # a disassembly has numbers as they are in the code: whole ones, thousandths, tenths.
         # A pushed number: 0 to 10 and tens up to 100 in the opcode; 8 bits; tenths in 8 bits;
         # 16 bits; thousandths in 16 bits, thousandths in 32 bits
         ("SHOW(0)", ["PUSH_NUM_0", "SHOW"]),

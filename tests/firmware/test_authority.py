@@ -85,7 +85,7 @@ def test_every_request_has_a_side() -> None:
         assert status == wanted, message.name
 
 
-def test_authority_lapses_and_is_shown_again() -> None:
+def test_authority_expires_and_is_shown_again() -> None:
     table, keys = Owned(), Keys()
     session = table.claimed(keys)
     kept, session._handshake._keys = session._handshake._keys, None  # it cannot show a key now

@@ -84,7 +84,7 @@ def test_spikes_on_the_buttons_wire_confirm_nothing() -> None:
     assert table.outcome(session, request) == "HOLD_BUTTON"
 
 
-def test_a_claim_lapses_where_no_frame_comes() -> None:
+def test_a_claim_expires_where_no_frame_comes() -> None:
     table, keys = Owned(), Keys()
     session = table.session(keys)
     session.claim(KEY_OWNER)

@@ -244,7 +244,7 @@ def test_a_counter_at_its_end_begins_another_seal() -> None:
     assert session._sealing.seal and session._sealing.seal.sent < 10
 
 
-def test_a_seal_that_has_lapsed_is_made_again_for_the_same_request() -> None:
+def test_a_seal_that_has_expired_is_made_again_for_the_same_request() -> None:
     table, session, _ = opened()
     before = session._sealing.seal
     table.pass_time(None, 2100)
@@ -264,7 +264,7 @@ def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
     assert session._sealing.seal
 
 
-def test_more_requests_than_numbers_and_a_lapse() -> None:
+def test_more_requests_than_numbers_and_an_expiry() -> None:
     """AUTHENTICATE has a number after those of the sealed requests."""
     table, session, _ = opened()
     for _ in range(200):

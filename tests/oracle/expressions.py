@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import NoReturn
 
-from tests.oracle.tokens import Token, thousandths, tokens_of
-from tests.oracle.tree import Expression, Statement, Task, stack_need
+from tests.oracle.ast import Expression, Statement, Task, stack_need
+from tests.oracle.lexer import Token, thousandths, tokens_of
 from tests.oracle.words import COMPARATORS, FUNCTIONS, HIGHEST, LOWEST, MAX_STACK, Kit, Mistake
 
 

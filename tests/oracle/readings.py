@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from tests.oracle.tree import Do, Expression, Facts, If, Loop, Statement, sensors_in
+from tests.oracle.ast import Do, Expression, Facts, If, Loop, Statement, sensors_in
 
 
 def inner_blocks(statement: Statement) -> list[list[Statement]]:

@@ -20,7 +20,7 @@ from tests.oracle.arithmetic import (
     whole,
     within,
 )
-from tests.oracle.tree import Do, Expression, Program, Value
+from tests.oracle.ast import Do, Expression, Program, Value
 from tests.oracle.words import Kit
 
 # What the words and signs of the language calculate.

@@ -12,8 +12,8 @@ from collections.abc import Generator
 from dataclasses import dataclass, field
 
 from tests.oracle.arithmetic import whole, within
+from tests.oracle.ast import Do, If, Loop, Statement, Task, Value, While
 from tests.oracle.robot import Break, Ending, Robot
-from tests.oracle.tree import Do, If, Loop, Statement, Task, Value, While
 from tests.oracle.words import MOVES
 
 Turns = Generator[None, None, None]  # it gives its place away with `yield`

@@ -6,10 +6,10 @@ import random
 
 import pytest
 
+from tests.oracle.ast import Do, Statement
 from tests.oracle.interpreter import PAPER_KIT, Mistake, run
 from tests.oracle.programs import WIDE_KIT, broken, program, senses
 from tests.oracle.tasks import TaskRobot, Turns
-from tests.oracle.tree import Do, Statement
 
 
 def test_random_programs(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,7 +22,7 @@ from tests.support.cpp_checks import python_verdict
 from tests.support.random_codes import random_codes, task_codes
 from tests.support.rows import each_row
 from tiniscript import compile_text
-from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.disassembly import assemble
 from tiniscript.bytecode.opcodes import CONTROL_ROLES
 from tiniscript.bytecode.verify import RULES
 from tiniscript.robots import DEFAULT, load
@@ -87,14 +87,14 @@ def damaged(programs: list[bytes], seed: int, count: int) -> Iterator[bytes]:
         yield bytes(code)
 
 
-def listings() -> list[pytest.ParameterSet]:
+def disassemblies() -> list[pytest.ParameterSet]:
     found = [case for case in all_cases() if "bytecode" in case.parts]
     return [pytest.param(case, id=case.id) for case in found if "senses" not in case.parts]
 
 
-@each_row("case", listings())
-def test_listing_and_its_beginnings(case: Case) -> None:
-    code = read_listing(case.parts["bytecode"])
+@each_row("case", disassemblies())
+def test_disassembly_and_its_beginnings(case: Case) -> None:
+    code = assemble(case.parts["bytecode"])
     for actuators in (0, ACTUATORS):
         compare([code[:length] for length in range(len(code) + 1)], SENSORS, actuators)
 
@@ -147,8 +147,8 @@ def test_no_device_has_a_number_above_31() -> None:
 
 READS = (
     "words",
-    "tokens",
-    "tree",
+    "lexer",
+    "ast",
     "readings",
     "expressions",
     "text",

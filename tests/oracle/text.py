@@ -8,9 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from tests.oracle.expressions import ExpressionParser
-from tests.oracle.readings import calling, nesting, settle_readings
-from tests.oracle.tree import (
+from tests.oracle.ast import (
     Arm,
     Do,
     Expression,
@@ -23,6 +21,8 @@ from tests.oracle.tree import (
     While,
     sensors_in,
 )
+from tests.oracle.expressions import ExpressionParser
+from tests.oracle.readings import calling, nesting, settle_readings
 from tests.oracle.words import (
     ALIASES,
     BLOCK_WORDS,

@@ -182,7 +182,7 @@ def test_nothing_is_wider_than_the_screen(
     visitor: Page, address: str, size: tuple[int, int]
 ) -> None:
     visitor.set_viewport_size({"width": size[0], "height": size[1]})
-    for name in ("en/index", "es/index", "en/promises", "en/wiring/tinibot", "es/language"):
+    for name in ("en/index", "es/index", "en/guarantees", "en/wiring/tinibot", "es/language"):
         visitor.goto(f"{address}{name}.html")
         assert not _is_too_wide(visitor), name
 

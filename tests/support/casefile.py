@@ -2,12 +2,12 @@
 
 Each heading `## sentence` that has fences is a case; each fence states one thing about it. The
 language of the fence says which: `tiniscript` (the program), `senses` (readings and limits),
-`robot` (the trace), `bytecode` (the listing), `plain` (that of its plain code), `line` (what a
+`robot` (the trace), `bytecode` (the disassembly), `plain` (that of its plain code), `line` (what a
 robot that reads text gets), `mistake` and `warning` (what is said; without a program above, the
 line that it shows is the program). A fence `mistake` or `warning` may have many cases, each below a
-row that says what it is about. So has a fence `refused`, where the rule that a listing breaks is in
-that row; rows that begin with `//` are for people, and so are fences of other languages. A row of a
-listing that ends in `, 17 times` stands for so many.
+row that says what it is about. So has a fence `refused`, where the rule that a disassembly breaks
+is in that row; rows that begin with `//` are for people, and so are fences of other languages. A
+row of a disassembly that ends in `, 17 times` stands for so many.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ ABOUT = re.compile(r"(?m)^(\S.*)\n(?=(?:line|línea) \d+:  )")
 
 
 class Case(NamedTuple):
-    """`parts` maps a fence's language to its text, and `refused` to the rule of a listing."""
+    """`parts` maps a fence's language to its text, and `refused` to the rule of a disassembly."""
 
     path: Path
     line: int
@@ -65,7 +65,7 @@ def read(path: Path) -> list[Case]:
             else:
                 fence, lines = language or "text", []
                 if fence in PARTS:
-                    # a new program, or a listing that is not the program's, begins a new case
+                    # a new program, or a disassembly that is not the program's, begins a new case
                     starts = fence in ("tiniscript",) or not cases or fence in cases[-1].parts
                     if starts or cases[-1].title.split(" #")[0] != title:
                         count += 1
@@ -94,7 +94,7 @@ def _unfolded(row: str) -> list[str]:
 
 
 def _folded(text: str) -> str:
-    """Return a listing with one row for several that are alike."""
+    """Return a disassembly with one row for several that are alike."""
     found = []
     for _, group in groupby(text.splitlines(), lambda row: row[4:] if LISTED.match(row) else row):
         rows = list(group)

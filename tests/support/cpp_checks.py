@@ -28,7 +28,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.trace import Ending, TracedRobot
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.base.words import COMPARATORS
-from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.disassembly import assemble
 from tiniscript.bytecode.image import EVERYTHING, GO, TASKS, unpack
 from tiniscript.bytecode.opcodes import BY_NAME, FAULTS, NEEDS_GO, OPS
 from tiniscript.bytecode.verify import RULES, Refused, verify
@@ -82,10 +82,10 @@ def compare_runs(machine: Process, code: bytes, kit: Kit, senses: Senses) -> str
 # -- code ---------------------------------------------------------------------------------------
 
 
-def check_listing(machine: Host, case: Case) -> None:
-    """The listing of a case has the same verdict, and so has each beginning of it."""
+def check_disassembly(machine: Host, case: Case) -> None:
+    """The disassembly of a case has the same verdict, and so has each beginning of it."""
     kit = robot_and_senses(case)[0].kit
-    code = read_listing(case.parts["bytecode"])
+    code = assemble(case.parts["bytecode"])
     beginnings = [code[:length] for length in range(len(code) + 1)]
     for needs in (0, TASKS, GO, EVERYTHING):
         compare_verdicts(machine, beginnings, len(kit.sensors), len(kit.actuators), needs)

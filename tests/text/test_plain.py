@@ -17,7 +17,7 @@ from tests.vm.test_agreement import MAX_MS, MAX_STEPS, same
 from tests.vm.test_cases import CASES, compiled, having, robot_and_senses
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.base.kit import Kit
-from tiniscript.bytecode.disassembly import listing
+from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.bytecode.opcodes import BY_NAME, OPS, UNO_OPS
 from tiniscript.bytecode.verify import verify
 from tiniscript.codegen.text.line import PlainCode, plain_code
@@ -41,7 +41,7 @@ def plain_of(text: str, kit: Kit = TINIBOT) -> PlainCode:
 
 def names(text: str, kit: Kit = TINIBOT) -> str:
     """Return the instructions of the plain code, without offsets and operands."""
-    rows = listing(plain_of(text, kit).code).splitlines()
+    rows = disassemble(plain_of(text, kit).code).splitlines()
     return " ".join(row[25:].split()[0] for row in rows)
 
 
@@ -122,7 +122,7 @@ def test_operands_to_7_are_part_of_the_code() -> None:
 
 def test_variables_have_their_numbers_in_the_order_of_the_text() -> None:
     text = "IF(FALSE); C = 1; ENDIF; DEF D; A = 2; END_DEF; E = 3; SHOW(A); SHOW(C)"
-    last = listing(plain_of(text).code).splitlines()[-6:]
+    last = disassemble(plain_of(text).code).splitlines()[-6:]
     assert [row[25:] for row in last] == [
         "PUSH_NUM_3", "SET_VAR_2", "PUSH_VAR_1", "SHOW", "PUSH_VAR_0", "SHOW"
     ]  # fmt: skip
@@ -140,7 +140,7 @@ def test_the_length_is_that_with_short_jumps() -> None:
 def test_code_that_fits_a_level_has_no_far_jump() -> None:
     made = plain_of("IF(TRUE); " + "S; " * (CODE_BYTES - 3) + "ENDIF")
     assert len(made.code) == made.length == CODE_BYTES
-    assert "FAR" not in listing(made.code)
+    assert "FAR" not in disassemble(made.code)
 
 
 def test_the_page_names_every_instruction_of_plain_code_and_no_other() -> None:
@@ -162,10 +162,10 @@ def check_same(found: Compiled, kit: Kit, senses: Senses) -> None:
     assert found.program is not None
     made = plain_code(found.program)
     verify(made.code, len(kit.sensors), len(kit.actuators))
-    short = "_FAR" not in listing(made.code)
+    short = "_FAR" not in disassemble(made.code)
     assert (made.length == len(made.code)) == short
     if short:
-        used = {row[25:].split()[0] for row in listing(made.code).splitlines()}
+        used = {row[25:].split()[0] for row in disassemble(made.code).splitlines()}
         assert not [name for name in used if FUSED.match(name)], used
     trace = run_python(image_for(made.code, kit, found.program.start), kit, senses)
     assert same(run_python(found.image, kit, senses), trace), found.source.text

@@ -12,7 +12,7 @@ from tests.support.kits import KITS
 from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tiniscript import robots
-from tiniscript.bytecode.disassembly import listing
+from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.codegen.text.problems import LONGEST, PROBLEMS
 
 KIT = robots.load("tinibot").kit
@@ -31,7 +31,7 @@ def one(text: str | bytes) -> Answer:
 def code_of(text: str) -> list[str]:
     answer = one(text)
     assert answer.is_program, answer
-    return [row[25:] for row in listing(answer.code).splitlines()]
+    return [row[25:] for row in disassemble(answer.code).splitlines()]
 
 
 def checked(line: bytes) -> bytes:

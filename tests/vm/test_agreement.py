@@ -18,7 +18,7 @@ from tests.support.kits import KITS
 from tiniscript import Compiled, compile_text
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source
-from tiniscript.bytecode.disassembly import listing, read_listing
+from tiniscript.bytecode.disassembly import assemble, disassemble
 from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.bytecode.verify import verify
 from tiniscript.diagnostics.rendering import as_text, message
@@ -86,7 +86,7 @@ def check_program(seed: int) -> None:
             check_machine(program, name, machine)
     # a calculated constant of 32 bits may take more than the short ones that it is made of
     assert len(short.code) <= len(plain.code) + PUSH32_BYTES
-    assert read_listing(listing(short.code)) == short.code
+    assert assemble(disassemble(short.code)) == short.code
     laid_out = formatted(Source(text))
     assert compile_text(laid_out, kit).image == short.image, f"seed {seed}, formatted:\n{text}"
     assert formatted(Source(laid_out)) == laid_out

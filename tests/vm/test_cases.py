@@ -10,7 +10,7 @@ from tests.support.images import image_for
 from tests.support.rows import each_row
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.base.languages import SOURCE, languages
-from tiniscript.bytecode.disassembly import listing, read_listing
+from tiniscript.bytecode.disassembly import assemble, disassemble
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli.options import decimal
 from tiniscript.codegen.text.line import line_of, plain_code
@@ -50,12 +50,12 @@ def compiled(case: Case) -> Compiled:
 
 
 def trace_of(case: Case, machine: Machine) -> str:
-    """Return what a program or a listing that stands alone does on a machine."""
+    """Return what a program or a disassembly that stands alone does on a machine."""
     robot, senses = robot_and_senses(case)
     if "tiniscript" in case.parts:
         image = compiled(case).image
     else:
-        image = image_for(read_listing(case.parts["bytecode"]), robot.kit)
+        image = image_for(assemble(case.parts["bytecode"]), robot.kit)
     return machine(image, robot.kit, senses)
 
 
@@ -85,14 +85,14 @@ def test_robot(case: Case, machine: str, request: pytest.FixtureRequest) -> None
 
 @pytest.mark.parametrize("case", having("tiniscript", "bytecode"))
 def test_bytecode_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
-    expect(case, "bytecode", listing(compiled(case).code), request)
+    expect(case, "bytecode", disassemble(compiled(case).code), request)
 
 
 @pytest.mark.parametrize("case", having("tiniscript", "plain"))
 def test_plain_code_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
     program = compiled(case).program
     assert program is not None
-    expect(case, "plain", listing(plain_code(program).code), request)
+    expect(case, "plain", disassemble(plain_code(program).code), request)
 
 
 @pytest.mark.parametrize("case", having("tiniscript", "line"))
@@ -120,20 +120,20 @@ def test_formatted(case: Case, request: pytest.FixtureRequest) -> None:
     expect(case, "formatted", formatted(compiled(case).source), request)
 
 
-def listings_alone() -> list[pytest.ParameterSet]:
-    """Return the listings of no program."""
+def disassemblies_alone() -> list[pytest.ParameterSet]:
+    """Return the disassemblies of no program."""
     alone = [case for case in CASES if "tiniscript" not in case.parts and "bytecode" in case.parts]
     return [pytest.param(case, id=case.id) for case in alone]
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-@each_row("case", listings_alone())
-def test_listing_runs_or_is_refused(
+@each_row("case", disassemblies_alone())
+def test_disassembly_runs_or_is_refused(
     case: Case, machine: str, request: pytest.FixtureRequest
 ) -> None:
-    """A listing that stands alone is run as it is, or refused with the rule and the offset."""
-    code = read_listing(case.parts["bytecode"])
-    expect(case, "bytecode", listing(code), request)
+    """A disassembly that stands alone is run as it is, or refused with the rule and the offset."""
+    code = assemble(case.parts["bytecode"])
+    expect(case, "bytecode", disassemble(code), request)
     if "refused" in case.parts:
         robot, _ = robot_and_senses(case)
         with pytest.raises(Refused) as refused:

@@ -17,7 +17,7 @@ from tests.machines.host import host
 from tests.support import cpp_checks, cpp_edges, cpp_images, cpp_tasks, cpp_ways
 from tests.support.casefile import Case
 from tests.support.rows import each_row
-from tests.vm.test_cases import listings_alone
+from tests.vm.test_cases import disassemblies_alone
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.opcodes import BY_NAME
 
@@ -28,9 +28,9 @@ BATCHES = 80  # in the tests
 # -- code ---------------------------------------------------------------------------------------
 
 
-@each_row("case", listings_alone())
-def test_listing_has_the_same_verdict(case: Case) -> None:
-    cpp_checks.check_listing(host(), case)
+@each_row("case", disassemblies_alone())
+def test_disassembly_has_the_same_verdict(case: Case) -> None:
+    cpp_checks.check_disassembly(host(), case)
 
 
 @pytest.mark.parametrize("length", [0, 1, CODE_BYTES - 1, CODE_BYTES, CODE_BYTES + 1, 100_000])

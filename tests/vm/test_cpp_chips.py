@@ -27,10 +27,10 @@ from tests.support.casefile import Case
 from tests.support.images import image_for, needs_of
 from tests.support.kits import KITS
 from tests.support.random_codes import random_codes, simple
-from tests.vm.test_cases import compiled, having, listings_alone, robot_and_senses
+from tests.vm.test_cases import compiled, disassemblies_alone, having, robot_and_senses
 from tiniscript import compile_text
 from tiniscript.base.kit import Kit
-from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.disassembly import assemble
 from tiniscript.bytecode.image import EVERYTHING, TASKS, ImageRefused
 from tiniscript.bytecode.verify import Refused
 from tools.builds import chips
@@ -100,10 +100,10 @@ def test_robot(case: Case, chip: str) -> None:
 
 @one_chip
 @each_chip
-@pytest.mark.parametrize("case", listings_alone())
-def test_listing_runs_or_is_refused(case: Case, chip: str) -> None:
+@pytest.mark.parametrize("case", disassemblies_alone())
+def test_disassembly_runs_or_is_refused(case: Case, chip: str) -> None:
     robot, senses = robot_and_senses(case)
-    image = image_for(read_listing(case.parts["bytecode"]), robot.kit)
+    image = image_for(assemble(case.parts["bytecode"]), robot.kit)
     limited = senses._replace(max_ms=min(senses.max_ms, 5000), max_steps=5000)
     ending = same_on_the_chip(chip, image, robot.kit, limited)
     assert ("Refused" in ending) == ("refused" in case.parts)

@@ -137,7 +137,7 @@ LINK = """{ static Link link;
         link.tell(); link.seal();
         uint8_t byte; while (link.next_tx_byte(&byte)) sink = byte;
         link.done(); link.faulted(); link.stopped(Cause::kButton);
-        link.lapse(); sink = link.confirm_claim(); sink = link.show(sink, sink); }"""
+        link.expire(); sink = link.confirm_claim(); sink = link.show(sink, sink); }"""
 READER = """
 #include "text/kit_words.h"
 #include "text/reader.h"

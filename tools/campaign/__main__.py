@@ -1,9 +1,9 @@
-"""Runs what the project promises, many times: all goals, or those that are named.
+"""Tests what the project guarantees, many times: all goals, or those that are named.
 
 `python -m tools.campaign` goes on where the last one ended, until every goal is reached; Ctrl-C
 ends it at once, and all but the piece that was under way is kept. `--list` says what is reached,
 and when; `--minutes 30` ends it after a while. What committed code has reached is written into the
-table of `docs/promises.md`. Calls the campaigns of the tests; has none of its own.
+table of `docs/guarantees.md`. Calls the campaigns of the tests; has none of its own.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tools.campaign import results
 from tools.campaign.goals import BY_NAME, GOALS, Goal
-from tools.campaign.results import Result, reached
+from tools.campaign.results import Result, measured
 
 FIRST_SEED = 100_001  # others than those of the tests
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(description="Run what the project promises, many times.")
+    parser = argparse.ArgumentParser(description="Test what the project guarantees, many times.")
     parser.add_argument("goals", nargs="*", metavar="GOAL", help=", ".join(BY_NAME))
     parser.add_argument("--list", action="store_true", help="only say what is reached")
     parser.add_argument("--minutes", type=float, default=inf, help="end after so many minutes")
@@ -42,7 +42,7 @@ def main(arguments: list[str] | None = None) -> int:
     for goal in goals:
         result = done.get(goal.name)
         when = f"; {result.date}, code of {result.commit}" if result else ""
-        print(f"{goal.name:15} {goal.shall:>11,} {goal.unit}: {reached(goal, result)}{when}")
+        print(f"{goal.name:15} {goal.target:>11,} {goal.unit}: {measured(goal, result)}{when}")
     return code
 
 
@@ -77,7 +77,7 @@ def is_reached(goal: Goal, result: Result | None, commit: str) -> bool:
     """Whether nothing is left to do with this code."""
     if result is None or not results.is_same_code(result.commit, commit):
         return False
-    return not result.wrong and result.done >= goal.shall
+    return not result.wrong and result.done >= goal.target
 
 
 def piece(goal: Goal, before: Result | None, commit: str) -> Result:
@@ -88,9 +88,9 @@ def piece(goal: Goal, before: Result | None, commit: str) -> Result:
     if before is None or not results.is_same_code(before.commit, commit):
         before = Result(0, 0, FIRST_SEED, FIRST_SEED, "", commit)
     seed = before.next_seed
-    count = min(goal.piece, goal.shall - before.done)
+    count = min(goal.piece, goal.target - before.done)
     words = [sys.executable, "-m", *goal.command.format(count=count, seed=seed).split()]
-    print(f"{goal.name}: {before.done:,} of {goal.shall:,}; {' '.join(words[1:])}", flush=True)
+    print(f"{goal.name}: {before.done:,} of {goal.target:,}; {' '.join(words[1:])}", flush=True)
     begun = time.monotonic()
     ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, errors="replace")
     seconds = round(before.seconds + time.monotonic() - begun, 1)

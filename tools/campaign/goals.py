@@ -1,6 +1,6 @@
-"""What is promised, how it is tested, and how many times that shall have been done.
+"""The guarantees, how each is tested, and how many times that is to have been done.
 
-The one table of the campaign: `docs/promises.md` and `python -m tools.campaign` are made from it.
+The one table of the campaign: `docs/guarantees.md` and `python -m tools.campaign` are made from it.
 Knows commands, and no results.
 """
 
@@ -10,16 +10,16 @@ from typing import NamedTuple
 
 
 class Goal(NamedTuple):
-    """`shall` of `unit` be done, `piece` of them at a time, by `command`.
+    """`target` of `unit` are to be done, `piece` of them at a time, by `command`.
 
     In the command `{count}` and `{seed}` are those of a piece. A command that fails has found
     something. Seeds of pieces are `stride` apart.
     """
 
     name: str
-    promise: str
+    guarantee: str
     unit: str
-    shall: int
+    target: int
     piece: int
     command: str
     stride: int = 1

@@ -1,6 +1,6 @@
-"""What campaigns have reached: `results.json`, and from it the table of `docs/promises.md`.
+"""What campaigns have measured: `results.json`, and from it the table of `docs/guarantees.md`.
 
-A result belongs to the code with which it was reached: figures of other code are not added up.
+A result belongs to the code with which it was measured: figures of other code are not added up.
 """
 
 from __future__ import annotations
@@ -65,17 +65,17 @@ def git(*words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
 
 
-def reached(goal: Goal, result: Result | None) -> str:
+def measured(goal: Goal, result: Result | None) -> str:
     """Return the figure, and that it is less than the goal where it is."""
     if result is None:
         return "not run yet"
     if result.wrong:
         return f"**wrong**: {result.wrong}"
-    return f"{result.done:,}" + ("" if result.done >= goal.shall else ": less")
+    return f"{result.done:,}" + ("" if result.done >= goal.target else ": less")
 
 
 def rows() -> list[tuple[str, ...]]:
-    """Return the table of `docs/promises.md`."""
+    """Return the table of `docs/guarantees.md`."""
     results = read()
     found: list[tuple[str, ...]] = []
     for goal in GOALS:
@@ -85,6 +85,6 @@ def rows() -> list[tuple[str, ...]]:
             last = max(result.seed, result.next_seed - goal.stride)
             seeds = f"{result.seed}" if last == result.seed else f"{result.seed} to {last}"
             about = ("-" if "{seed}" not in goal.command else seeds, result.date, result.commit)
-        row = (f"`{goal.name}`", goal.promise, f"{goal.shall:,} {goal.unit}")
-        found.append((*row, reached(goal, result), *about))
+        row = (f"`{goal.name}`", goal.guarantee, f"{goal.target:,} {goal.unit}")
+        found.append((*row, measured(goal, result), *about))
     return found

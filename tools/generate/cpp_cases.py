@@ -18,7 +18,7 @@ from tests.support.images import image_for, needs_of
 from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import robots
 from tiniscript.base.kit import Device, Kit
-from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.disassembly import assemble
 
 CASES = ROOT / "tests" / "cases"
 GUARD = "TINISCRIPT_TEST_CASES_H_"
@@ -120,7 +120,7 @@ def devices(found: Sequence[Device], hashes: Sequence[int]) -> str:
 
 def refused_row(case: Case) -> str:
     _, name, _, offset = case.parts["refused"].split()
-    code = read_listing(case.parts["bytecode"])
+    code = assemble(case.parts["bytecode"])
     assert robot_and_senses(case)[0].name == robots.DEFAULT, case.id
     rule = f"Rule::{constant(name)}"
     title = f"{case.title}: {case.parts['refused'].strip()}"
@@ -133,7 +133,7 @@ def program_row(case: Case) -> str:
     if "tiniscript" in case.parts:
         image = compiled(case).image
     else:
-        image = image_for(read_listing(case.parts["bytecode"]), robot.kit)
+        image = image_for(assemble(case.parts["bytecode"]), robot.kit)
     readings = ", ".join(numbers(senses.readings.get(each.name, ())) for each in robot.kit.sensors)
     return (
         f"{text(case.id)}, {robot.name}(), {{{readings}}}, {senses.max_ms}, {senses.seed},\n"

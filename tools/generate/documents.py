@@ -52,11 +52,11 @@ def text_document() -> str:
     return spliced(_text("text.md"), "levels", made)
 
 
-def promises_document() -> str:
-    """Return `docs/promises.md` with the table of goals and figures."""
+def guarantees_document() -> str:
+    """Return `docs/guarantees.md` with the table of goals and figures."""
     from tools.campaign.results import HEAD, rows
 
-    return spliced(_text("promises.md"), "promises", table(HEAD, rows()))
+    return spliced(_text("guarantees.md"), "guarantees", table(HEAD, rows()))
 
 
 def lessons_document() -> str:
@@ -143,7 +143,7 @@ DOCUMENTS: dict[str, Callable[[], str]] = {
     "network.md": partial(link_document, "network.md"),
     "owners.md": partial(link_document, "owners.md"),
     "text.md": text_document,
-    "promises.md": promises_document,
+    "guarantees.md": guarantees_document,
     **{
         Path(path).name: partial(bring_up_document, Path(path).name, language)
         for language, path in sources(FOLDER.parent, "docs/bring-up.md").items()

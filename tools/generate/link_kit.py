@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 from tests.support.link_cases import LinkCase, has_session, link_cases
 from tiniscript.base.trace import TracedRobot
-from tiniscript.bytecode.disassembly import listing
+from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.bytecode.image import HEADER_BYTES, ImageRefused
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.bytecode.verify import Refused, loaded, verify
@@ -59,7 +59,7 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
         except (Refused, ImageRefused):
             continue
         code = image.code
-        words = listing(code).split()
+        words = disassemble(code).split()
         if image.devices or len(code) > MOST_BYTES or any(word in words for word in OTHERWISE):
             continue
         robot = TracedRobot(run.kit, int)

@@ -25,7 +25,7 @@ from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import compile_text, robots
 from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.base.trace import TracedRobot
-from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.disassembly import assemble
 from tiniscript.bytecode.image import GO, TASKS, ImageRefused, pack, sealed, unpack
 from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ISA_MAJOR, ISA_MINOR, SHORTS, Op
 from tiniscript.bytecode.verify import Refused, loaded
@@ -180,7 +180,7 @@ def stands_alone(case: Case) -> bool:
 
 def image_of(case: Case, kit: Kit) -> bytes:
     if stands_alone(case):
-        return image_for(read_listing(case.parts["bytecode"]), kit)
+        return image_for(assemble(case.parts["bytecode"]), kit)
     return compiled(case).image
 
 

@@ -98,7 +98,7 @@ def documents(root: Path) -> list[Document]:
         *_rows(root, "wiring", *_files(root, "docs/wiring/*.en.md"), folder="wiring/"),
         *_lessons(root),
         Document("index", "trust", sources(root, FRONT)),
-        *_rows(root, "trust", "docs/comparison.en.md", "docs/promises.md", "docs/figures.md",
+        *_rows(root, "trust", "docs/comparison.en.md", "docs/guarantees.md", "docs/figures.md",
                "docs/computer.md", "SECURITY.md", "CODE_OF_CONDUCT.md"),
         *_rows(root, "build", "CONTRIBUTING.md", "docs/first-change.md", "docs/translating.md",
                "docs/architecture.md", "bytecode_spec.md", "docs/conformance.md", "docs/link.md",

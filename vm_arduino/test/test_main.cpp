@@ -10,9 +10,9 @@
 
 namespace {
 
-class Teller : public doctest::IReporter {
+class Reporter : public doctest::IReporter {
  public:
-  explicit Teller(const doctest::ContextOptions&) {}
+  explicit Reporter(const doctest::ContextOptions&) {}
 
   void test_case_start(const doctest::TestCaseData& test_case) override {
     name_ = test_case.m_name;
@@ -36,7 +36,7 @@ class Teller : public doctest::IReporter {
   const char* name_ = "";
 };
 
-DOCTEST_REGISTER_LISTENER("teller", 1, Teller);
+DOCTEST_REGISTER_LISTENER("reporter", 1, Reporter);
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-"""The disassembly: code as a listing, and a listing as code.
+"""The disassembly: code as text, and that text as code.
 
 The text that `tsc show` prints and that cases compare: offset, bytes, instruction. Reading one
 takes the bytes; the words behind them are for people.
@@ -48,7 +48,9 @@ def rows(code: bytes) -> list[Row]:
     return made
 
 
-def listing(code: bytes, remarks: Mapping[int, str] | None = None, kit: Kit | None = None) -> str:
+def disassemble(
+    code: bytes, remarks: Mapping[int, str] | None = None, kit: Kit | None = None
+) -> str:
     """Return `code` as text, a line for each instruction.
 
     `remarks` stand behind the instruction at their offset; a kit gives devices their names.
@@ -78,8 +80,8 @@ def _names(row: Row, kit: Kit) -> list[str]:
     ]
 
 
-def read_listing(text: str) -> bytes:
-    """Return the bytes of a listing.
+def assemble(text: str) -> bytes:
+    """Return the bytes of a disassembly.
 
     Raises ValueError where a line is none, or its offset is not where it stands.
     """
@@ -89,6 +91,6 @@ def read_listing(text: str) -> bytes:
             continue
         match = _ROW.match(line.strip())
         if match is None or int(match[1], 16) != len(code):
-            raise ValueError(f"no line of a listing at offset {len(code):04x}: {line!r}")
+            raise ValueError(f"no line of a disassembly at offset {len(code):04x}: {line!r}")
         code += bytes.fromhex(match[2])
     return bytes(code)

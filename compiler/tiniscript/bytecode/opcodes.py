@@ -352,7 +352,7 @@ def time8(time_ms: int) -> int | None:
 
 
 def instruction_text(op: Op, operands: tuple[int, ...], next_offset: int) -> str:
-    """Return `IF_VAR8_LT v0 10 -> 0012`: an instruction as listings print it."""
+    """Return `IF_VAR8_LT v0 10 -> 0012`: an instruction as disassemblies print it."""
     words = [op.name]
     for operand, value in zip(op.operands, operands, strict=True):
         kind = operand.kind.name

@@ -343,7 +343,7 @@ def _stopped(stop: Callable[[WireRobot], object]) -> Callable[[WireRobot], tuple
 
 def _silence(robot: WireRobot) -> tuple[str, ...]:
     live(robot, WAIT_20)
-    robot.wait(SILENCE_S, "FAULT", beats=False)
+    robot.wait(SILENCE_S, "FAULT", heartbeats=False)
     status = robot.ask("STATUS")
     return (_state(status), f"fault {status.number('fault')}")
 

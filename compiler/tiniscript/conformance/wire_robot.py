@@ -75,7 +75,7 @@ class WireRobot:
         self.events: list[Event] = []
         self._seq = 0
         self._rest = b""
-        self._beat_s = 0.0
+        self._heartbeat_s = 0.0
 
     def hello(self, tries: int = TRIES) -> Answer:
         values = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR,
@@ -114,11 +114,11 @@ class WireRobot:
         raise Silent(message or str(number))
 
     def send(self, data: bytes) -> None:
-        self._beat_s = monotonic()
+        self._heartbeat_s = monotonic()
         self.wire.send(data)
 
-    def wait(self, seconds: float, name: str = "", beats: bool = True) -> Event | None:
-        """Return the first event of this name; with `beats` the robot hears a PING now and then."""
+    def wait(self, seconds: float, name: str = "", heartbeats: bool = True) -> Event | None:
+        """Return the first event of this name; `heartbeats`: it hears PINGs."""
         until_s = monotonic() + seconds
         while True:
             for event in self.events:
@@ -126,7 +126,7 @@ class WireRobot:
                     return event
             if monotonic() >= until_s:
                 return None
-            if beats and monotonic() - self._beat_s > HEARTBEAT_S:
+            if heartbeats and monotonic() - self._heartbeat_s > HEARTBEAT_S:
                 self.ask("PING")
             else:
                 self._replies()

@@ -10,7 +10,7 @@ from tiniscript.base.files import contents
 from tiniscript.base.languages import languages
 from tiniscript.base.source import PROGRAM_ENDS, printable
 from tiniscript.bytecode import verify
-from tiniscript.bytecode.disassembly import listing
+from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.verify import Refused
 from tiniscript.diagnostics.rendering import Message as Message
@@ -25,7 +25,7 @@ from tiniscript.robots.refusals import describe
 
 Language = str  # the code of one, such as "en"
 SHOWN = 200  # characters of a name or a value in a sentence
-REMARK = 60  # characters of a line in a listing
+REMARK = 60  # characters of a line in a disassembly
 MOST_BYTES = 1_000_000  # of a file
 FILES = (*PROGRAM_ENDS, ".bin")
 
@@ -72,7 +72,7 @@ class Program:
         """Return one line per instruction: offset, bytes, name, and the source line that it comes
         from."""
         kit = self._profile.kit if self._image.devices else None
-        return listing(self.code, remarks(self._map, _checked(language)), kit)
+        return disassemble(self.code, remarks(self._map, _checked(language)), kit)
 
     def __repr__(self) -> str:
         name = "image" if self.text is None else repr(self.text[:40])
@@ -86,7 +86,7 @@ def compile(
     """Compile a text for a robot: the name of a shipped one, or the path of a profile.
 
     Raises ProgramError with all diagnostics if the text has mistakes. `name` is the program's name
-    in messages and listings; `language` (en, es) is that of diagnostics.
+    in messages and disassemblies; `language` (en, es) is that of diagnostics.
     """
     if not isinstance(text, str):
         raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
@@ -110,7 +110,7 @@ def show(
     program: Program | str | bytes, robot: str | os.PathLike[str] | None = None, *,
     language: Language = "en",
 ) -> str:  # fmt: skip
-    """Return the listing of a program, a text or an image. Raises ProgramError."""
+    """Return the disassembly of a program, a text or an image. Raises ProgramError."""
     return program_of(program, robot, language).listing(language)
 
 
@@ -184,7 +184,7 @@ def diagnostics_of(compiled: Compiled, language: Language) -> list[Message]:
 
 
 def remarks(places: Map | None, language: Language) -> dict[int, str]:
-    """Return the source line for each instruction that begins one, as remarks in a listing."""
+    """Return the source line for each instruction that begins one, as remarks in a disassembly."""
     found: dict[int, str] = {}
     if places is None:
         return found

@@ -1,7 +1,7 @@
 """The source map: which instruction of a compiled program comes from which line.
 
 An image holds no text. Its map lies in the user's cache under the image's checksum, so that a
-fault can name its line and a listing can show it. Losing a map loses nothing else.
+fault can name its line and a disassembly can show it. Losing a map loses nothing else.
 """
 
 from __future__ import annotations

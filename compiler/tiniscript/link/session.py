@@ -111,7 +111,9 @@ class Session(Requester):
         self.tells_places = False  # PLACE events are wanted
         self.tells_starts = False  # STARTED events are wanted
         self.is_attached = True  # events are wanted, so the heartbeat goes on while nothing runs
-        self.may_beat: Callable[[], bool] = lambda: True  # False: nobody attends to the robot
+        self.sends_heartbeat: Callable[[], bool] = lambda: (
+            True
+        )  # False: nobody attends to the robot
         self.damaged = 0  # count of damaged frames
         self._receiver = Receiver()
         self._seq = nonce & 0xFF
@@ -228,12 +230,12 @@ class Session(Requester):
             heartbeat_ms = self._heartbeat_ms()
             if heartbeat_ms is None or now_ms < self._sent_ms + heartbeat_ms:
                 return
-            self._pending = PendingExchange(self._beat(), DEAF_MS, is_own=True)
+            self._pending = PendingExchange(self._heartbeat(), DEAF_MS, is_own=True)
         self._pending.deadline_ms = now_ms + self._pending.limit_ms
         self._advance(None, now_ms)
 
     def _heartbeat_ms(self) -> int | None:
-        if not self._handshake.is_open or not self.may_beat():
+        if not self._handshake.is_open or not self.sends_heartbeat():
             return None
         if self.is_running:
             return HEARTBEAT_MS
@@ -478,7 +480,7 @@ class Session(Requester):
         self._waiting.append(pending)
         return pending
 
-    def _beat(self) -> Exchange[PingReply]:
+    def _heartbeat(self) -> Exchange[PingReply]:
         """Ping, and ask where the program is, if that is wanted and the robot tells it."""
         asks = self.tells_places and self.robot and self.robot.values.features & PLACES
         return self._handshake.with_key(lambda: ping(b"\1" if asks else b""))

@@ -100,7 +100,9 @@ class HostedRobot:
             return
         assert isinstance(client.line, PortConnection)
         session = client.line.session
-        session.may_beat = lambda: self.is_attended or (session.is_running and not link.has_run)
+        session.sends_heartbeat = lambda: (
+            self.is_attended or (session.is_running and not link.has_run)
+        )
 
     def _meet(self, client: Client) -> bool:
         """Say hello to the robot; return whether it has answered."""

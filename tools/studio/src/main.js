@@ -14,7 +14,7 @@ import { pictured, robotPicture } from './page/pictures.js';
 import { so } from './page/so.js';
 import { bringsProgram } from './programs/links.js';
 import { called, currentLanguage, known, languageOf, LANGUAGES, setLanguage, text } from './page/texts.js';
-import { Driving } from './virtual/driving.js';
+import { SimulatorPanel } from './virtual/simulator_panel.js';
 import { Recorder } from './robot/recorder.js';
 import { whyOutside } from './robot/host.js';
 import { RobotPanel } from './robot/panel.js';
@@ -80,7 +80,7 @@ so.robot.say(work.robot);
 
 const editor = new Editor(element('editor', HTMLElement));
 const views = new Views(python, editor, work, remember);
-const driving = new Driving(python, work, () => checking.whenChecked(), remember);
+const driving = new SimulatorPanel(python, work, () => checking.whenChecked(), remember);
 const programs = new Programs(python, work, putProgram, () => views.picture());
 
 const recorder = new Recorder({ python, world: () => driving.world });

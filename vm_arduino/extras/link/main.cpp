@@ -114,7 +114,7 @@ void answer_robot(RequestReader* request, Writer* answer) {
       is_taken = link_half.confirm_claim();
       break;
     case 'l':
-      link_half.lapse();
+      link_half.expire();
       break;
     case 'o':
       port.identity.features = static_cast<uint8_t>(value);

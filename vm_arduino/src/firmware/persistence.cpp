@@ -197,7 +197,7 @@ Answer port_keep_key(uint8_t which, const uint8_t* key) {
   const bool was_worn = is_worn;
   keep_keys();
 #ifdef tiniscript_transports
-  link.lapse_others();
+  link.expire_others();
 #endif
   return was_worn ? Answer::kNotKept : Answer::kSaving;
 }

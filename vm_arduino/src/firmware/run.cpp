@@ -154,7 +154,7 @@ void firmware_on_released() {
 }
 
 void firmware_on_disconnect() {
-  link.lapse();
+  link.expire();
   if (!is_running() || !link.is_attached()) return;
   end_run(State::kStopped);
   link.stopped(Cause::kCable);

@@ -95,7 +95,7 @@ void Link::turn() {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
     faulted();
   }
-  if (kHasOwners && left_ms_[kListen] <= kListenMs - kAuthorityMs) lapse();
+  if (kHasOwners && left_ms_[kListen] <= kListenMs - kAuthorityMs) expire();
 }
 
 void Link::tell() {
@@ -334,7 +334,7 @@ Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
 uint8_t Link::hello(const uint8_t* payload) {
   const bool is_new = !is_open_ || !same_bytes(&nonce_, payload + kHelloNonceAt);
   if (is_new) renew();
-  if (is_new || may_seal()) lapse();
+  if (is_new || may_seal()) expire();
   if (is_new) forget_answer();
   is_open_ = true;
   note_client(payload[kHelloMinorAt]);

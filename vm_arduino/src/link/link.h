@@ -90,7 +90,7 @@ class Link {
   bool is_attached() const { return is_attached_; }
 
   // Ends the authority of the session.
-  void lapse();
+  void expire();
 
   // The button confirms a claim, if the session has asked for one. Returns whether it has.
   bool confirm_claim();

@@ -48,7 +48,7 @@ bool Link::is_forbidden(uint8_t type) const {
 // Whether who has sent the current frame has a right: with a seal only what is sealed has it.
 bool Link::may(bool has_right) const { return has_right && (!has_seal() || is_sealed()); }
 
-tini_noinline void Link::lapse() {
+tini_noinline void Link::expire() {
   Identity& its = port_identity();
   its.features &= static_cast<uint8_t>(~kYours);
   its.more_features = kHasSeals ? its.more_features & (kMoreSeals | kMoreWifiRests) : 0;
@@ -107,7 +107,7 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
   uint8_t text[kChallengeText];
   copy_bytes(challenge_, text, kChallengeBytes);
   if (length == kAuthenticateTagAt) {
-    if (may_seal()) lapse();  // a new seal replaces the one before
+    if (may_seal()) expire();  // a new seal replaces the one before
     copy_bytes(&port_identity().nonce, text + kChallengeBytes, sizeof(uint32_t));
     copy_bytes(&now_ms_, text + kChallengeBytes + sizeof(uint32_t), sizeof now_ms_);
     text[kChallengeText - 1] = kChallengeLabel;

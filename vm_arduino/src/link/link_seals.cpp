@@ -62,7 +62,7 @@ bool Link::keeps_answer(uint8_t type) const {
 uint8_t Link::event_mark() {
   if (!seal_.is_set()) return 0;
   if (seal_.may_close()) return kSealed;
-  lapse();
+  expire();
   return 0;
 }
 

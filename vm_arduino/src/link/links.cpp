@@ -122,21 +122,21 @@ bool Links::is_attached() const {
   return false;
 }
 
-void Links::lapse() {
+void Links::expire() {
   for (uint8_t place = 0; place < kTransports; place++) {
     enter(place);
-    links_[place].lapse();
+    links_[place].expire();
     leave();
   }
 }
 
-void Links::lapse_others() {
+void Links::expire_others() {
   const uint8_t current = current_;
   leave();
   for (uint8_t place = 0; place < kTransports; place++) {
     if (place == current) continue;
     enter(place);
-    links_[place].lapse();
+    links_[place].expire();
     leave();
   }
   enter(current);
@@ -169,7 +169,7 @@ bool Links::part(Transport transport) {
   const bool ends_run = links_[place].is_attached();
   enter(place);
   links_[place].give_way();
-  links_[place].lapse();
+  links_[place].expire();
   receivers_[place].put(0, now_ms_);  // cuts what has begun
   links_[place].forget_client();
   leave();

@@ -34,7 +34,7 @@ class Links {
   void stopped(Cause cause);
   void drop();
   bool is_attached() const;
-  void lapse();
+  void expire();
   bool confirm_claim();
 
   // To who drives; if nobody does, to the first that listens.
@@ -51,7 +51,7 @@ class Links {
   bool part(Transport transport);
 
   // The keys have changed: ends the authority of all sessions but the one that has asked.
-  void lapse_others();
+  void expire_others();
 
   // Whether the current request (its type, or 0 for a line of text) may be done; else why not. Its
   // session drives from now on, if it is a request of who drives and is not refused.

@@ -1,11 +1,11 @@
-"""`tsc show`: the listing of a program, or the program as an Arduino sketch."""
+"""`tsc show`: the disassembly of a program, or the program as an Arduino sketch."""
 
 from __future__ import annotations
 
 import json
 from argparse import Namespace
 
-from tiniscript.bytecode.disassembly import listing, rows
+from tiniscript.bytecode.disassembly import disassemble, rows
 from tiniscript.cli import compiling, images, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import text
@@ -73,7 +73,7 @@ def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -
         checksum=f"{image.checksum:08x}",
     ))  # fmt: skip
     found = remarks(ready.places, language)
-    print(listing(image.code, found, robot.kit if image.devices else None), end="")
+    print(disassemble(image.code, found, robot.kit if image.devices else None), end="")
 
 
 def print_json(ready: images.Ready, robot: Robot) -> None:

@@ -8,7 +8,7 @@ import { element } from '../page/elements.js';
 import { askAs, post } from '../robot/host.js';
 import { keepDone, lessonsDone } from '../lesson/progress.js';
 import { shown } from '../robot/said.js';
-import { Failed } from '../robot/way.js';
+import { Failed } from '../robot/transport.js';
 import { sign } from './signs.js';
 import { clock } from './wall.js';
 import { text } from '../page/texts.js';

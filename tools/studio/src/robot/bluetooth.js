@@ -1,6 +1,6 @@
 // A robot that the browser reaches by Bluetooth LE: the Nordic UART service, or an HM-10's.
 
-import { Failed } from './way.js';
+import { Failed } from './transport.js';
 
 const BLUETOOTH = /** @type {any} */ (navigator).bluetooth;
 const NORDIC = '6e400001-b5a3-f393-e0a9-e50e24dcca9e';

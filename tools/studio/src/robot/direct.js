@@ -4,12 +4,12 @@
 // The main thread owns the port and asks the session for every byte: when it hangs or the page
 // sleeps, nothing is sent, and the robot stops by itself.
 
-import { Failed, pause } from './way.js';
+import { Failed, pause } from './transport.js';
 import { LINK, ROBOTS } from '../page/words.js';
 
-/** @typedef {import('./way.js').Heard} Heard */
-/** @typedef {import('./way.js').Answer} Answer */
-/** @typedef {import('./way.js').About} About */
+/** @typedef {import('./transport.js').Heard} Heard */
+/** @typedef {import('./transport.js').Answer} Answer */
+/** @typedef {import('./transport.js').About} About */
 
 /**
  * What carries bytes. `write` keeps the order; `gone` comes once, when nothing is carried any more.

@@ -5,7 +5,7 @@ import { ESPLoader } from 'esptool-js/lib/esploader.js';
 import { Transport } from 'esptool-js/lib/webserial.js';
 
 import { md5 } from './md5.js';
-import { Failed, pause } from './way.js';
+import { Failed, pause } from './transport.js';
 
 /** What `esptool` calls its chip, the chip in the head of an image, and where that is in a whole firmware. */
 /** @type {Record<string, {name: string, number: number, head: number}>} */

@@ -4,7 +4,7 @@
 
 import { BadHex, readHex } from './intel_hex.js';
 import { SerialPort } from './serial.js';
-import { Failed } from './way.js';
+import { Failed } from './transport.js';
 import { BOARDS, flash } from './stk500.js';
 
 /** @typedef {{title: string, board: string, file: string}} Firmware */

@@ -3,7 +3,7 @@
 import { element } from '../page/elements.js';
 import { chosenPort, hasSerial } from './serial.js';
 import { shown } from './said.js';
-import { Failed } from './way.js';
+import { Failed } from './transport.js';
 import { so } from '../page/so.js';
 import { currentLanguage } from '../page/texts.js';
 

@@ -5,11 +5,11 @@
 // The main thread asks many times a second; when it hangs or the page sleeps, `tsc studio` hears
 // nothing, and stops the robot.
 
-/** @typedef {import('./way.js').Heard} Heard */
-/** @typedef {import('./way.js').Answer} Answer */
-/** @typedef {import('./way.js').About} About */
+/** @typedef {import('./transport.js').Heard} Heard */
+/** @typedef {import('./transport.js').Answer} Answer */
+/** @typedef {import('./transport.js').About} About */
 
-import { Failed } from './way.js';
+import { Failed } from './transport.js';
 
 /** @typedef {{port: string, name: string, description: string, virtual: string | null}} Port */
 

@@ -14,7 +14,7 @@ import { chosenPort, hasSerial, knownPorts, SerialPort } from './serial.js';
 import { refusal, shown } from './said.js';
 import { stopAll } from './stops.js';
 import { Speech } from './speech.js';
-import { Failed } from './way.js';
+import { Failed } from './transport.js';
 import { drawnPicture, offer, pictured } from '../page/pictures.js';
 import { so } from '../page/so.js';
 import { called, currentLanguage, known, text } from '../page/texts.js';
@@ -22,10 +22,10 @@ import { LINK, ROBOTS } from '../page/words.js';
 import { whole } from '../writing/messages.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
-/** @typedef {import('./way.js').About} About */
-/** @typedef {import('./way.js').Answer} Answer */
-/** @typedef {import('./way.js').RobotEvent} RobotEvent */
-/** @typedef {import('./way.js').Way} Way */
+/** @typedef {import('./transport.js').About} About */
+/** @typedef {import('./transport.js').Answer} Answer */
+/** @typedef {import('./transport.js').RobotEvent} RobotEvent */
+/** @typedef {import('./transport.js').Transport} Transport */
 /** @typedef {{label: string, drawn: string, connect: () => Promise<void>, serial?: any}} Choice */
 
 /**
@@ -38,7 +38,7 @@ import { whole } from '../writing/messages.js';
 
 export class RobotPanel {
   #page;
-  /** @type {Way | null} */
+  /** @type {Transport | null} */
   #way = null;
   /** @type {About | null} */
   #about = null;
@@ -185,19 +185,19 @@ export class RobotPanel {
     return ROBOTS.find((each) => each.name === so.robot.value)?.baud ?? 9600;
   }
 
-  /** @param {import('./direct.js').Port} port @param {import('./way.js').Heard} heard */
+  /** @param {import('./direct.js').Port} port @param {import('./transport.js').Heard} heard */
   #direct(port, heard) {
     const way = new DirectRobot(this.#page.python, port, heard, keepKeys);
     return { way, met: way.connect(so.robot.value, currentLanguage(), keptKeys()) };
   }
 
-  /** @param {(heard: import('./way.js').Heard) => Promise<{way: Way, met: Promise<About>}>} open */
+  /** @param {(heard: import('./transport.js').Heard) => Promise<{way: Transport, met: Promise<About>}>} open */
   async #connect(open) {
     if (this.#isBusy || this.#way) return;
     this.#isBusy = true;
     this.#speech.say('say_connecting');
     this.#show();
-    /** @type {Way | null} */
+    /** @type {Transport | null} */
     let way = null;
     const heard = {
       event: (/** @type {RobotEvent} */ event) => (this.#page.recorder.hear(event), this.#page.place.hear(event), this.#hear(event)),

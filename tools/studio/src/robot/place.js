@@ -3,7 +3,7 @@
 import { so } from '../page/so.js';
 import { rangeAt } from '../writing/parts.js';
 
-/** @typedef {import('./way.js').RobotEvent} RobotEvent */
+/** @typedef {import('./transport.js').RobotEvent} RobotEvent */
 
 const ENDS = ['STARTED', 'DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST'];
 

@@ -7,7 +7,7 @@ import { bytesOf, download } from '../page/files.js';
 import { so } from '../page/so.js';
 import { currentLanguage, known, text } from '../page/texts.js';
 
-/** @typedef {import('./way.js').RobotEvent} RobotEvent */
+/** @typedef {import('./transport.js').RobotEvent} RobotEvent */
 /** @typedef {{ms: number, event: string}} Recorded */
 
 const VERSION = 1;

@@ -2,7 +2,7 @@
 
 import { hasText, text } from '../page/texts.js';
 
-/** @typedef {import('./way.js').Answer} Answer */
+/** @typedef {import('./transport.js').Answer} Answer */
 
 const SHOWN_CHARACTERS = 200; // of a name or a text
 

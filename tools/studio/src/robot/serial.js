@@ -1,6 +1,6 @@
 // A serial port that the browser opens: a cable, or Bluetooth with a serial port.
 
-import { Failed, pause } from './way.js';
+import { Failed, pause } from './transport.js';
 
 const SERIAL = /** @type {any} */ (navigator).serial;
 const LOW_MS = 250; // so long a board's reset is held

@@ -5,7 +5,7 @@ import { shown } from './said.js';
 import { so } from '../page/so.js';
 import { hasText, known, text } from '../page/texts.js';
 
-/** @typedef {import('./way.js').Failed} Failed */
+/** @typedef {import('./transport.js').Failed} Failed */
 
 const SHOWN = 200; // lines of what the robot shows
 const SAID_CHARACTERS = 1000;

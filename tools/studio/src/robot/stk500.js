@@ -1,7 +1,7 @@
 // Writes a firmware through a board's bootloader, reads it back and compares. Optiboot and the old
 // Nano's bootloader speak the same: STK500, version 1. Knows no page and no browser.
 
-import { Failed } from './way.js';
+import { Failed } from './transport.js';
 
 /**
  * The cable. `open` opens it and `reset` restarts the board, whose bootloader then listens for a second.

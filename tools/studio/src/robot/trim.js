@@ -3,7 +3,7 @@
 import { element } from '../page/elements.js';
 import { text } from '../page/texts.js';
 
-/** @typedef {import('./way.js').Trim} Trim */
+/** @typedef {import('./transport.js').Trim} Trim */
 
 const balance = element('trim_balance', HTMLInputElement);
 const least = element('trim_least', HTMLInputElement);
@@ -22,7 +22,7 @@ export function showTrim(trim) {
   pace.textContent = trim.pace ? told(trim.pace) : '';
 }
 
-/** @param {import('./way.js').Pace} pace @returns {string} */
+/** @param {import('./transport.js').Pace} pace @returns {string} */
 function told({ speed_40, speed_80, turn_40, turn_80 }) {
   const said = [
     speed_80 ? text('trim_speed', { at_40: speed_40, at_80: speed_80 }) : '',

@@ -29,7 +29,7 @@ const PLAYED_MS = 6000; // at most for a run of a lesson
 /** What of a run is seen, by the button that shows it. */
 const SEEN = { seen_arena: 'arena', seen_plot: 'plot_place', seen_trace: 'trace_place' };
 
-export class Driving {
+export class SimulatorPanel {
   #work;
   #whenCompiled;
   #starts = 0; // one that STOP or a newer one has overtaken does nothing

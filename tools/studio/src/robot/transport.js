@@ -1,4 +1,4 @@
-// What all ways to a robot have in common: what they say, and how they fail.
+// What all transports to a robot have in common: what they say, and how they fail.
 
 /**
  * @typedef {object} About what a robot says of itself
@@ -55,7 +55,7 @@
  */
 
 /**
- * @typedef {object} Way a connected robot
+ * @typedef {object} Transport to a connected robot
  * @property {(request: Record<string, unknown>) => Promise<Answer>} ask
  * @property {() => void} stop
  * @property {() => void} leave
