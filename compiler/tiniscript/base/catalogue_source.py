@@ -4,7 +4,7 @@ A row is a text by its key. A list has several texts with one key, of which a me
 whose gaps all have values; `one` and `other` are a text with a plural; `same` is a program, which
 no language says in another way. A text under several keys is translated once, at the first of them:
 `own` is one that means something else there. The name of a table is the note that translators read
-beside each of its texts; rows above all tables need none.
+beside each of its texts, but where the key begins with it; rows above all tables need none.
 """
 
 from __future__ import annotations
@@ -72,7 +72,8 @@ def _rows(tables: dict[str, object]) -> Iterator[tuple[str, object, list[str]]]:
     """Yield each key, what stands behind it, and the notes for translators."""
     for name, value in tables.items():
         if isinstance(value, dict) and not _FORMS & value.keys():
-            yield from ((key, each, [name]) for key, each in value.items())
+            for key, each in value.items():
+                yield key, each, [name] * (not key.startswith(name))
         else:
             yield name, value, []
 
