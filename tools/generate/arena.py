@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import tiniscript
+from tiniscript.robots.wiring.drawing import FONT
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
@@ -99,7 +100,6 @@ DRIVES = (  # the world, the example, the robot, for so many seconds
     ("line", "line.ts", "liner", 20),
 )
 COLUMN, PAD = 400, 12
-SANS = "'DejaVu Sans', Verdana, Arial, sans-serif"
 
 
 def world_picture(command: str) -> str:
@@ -115,7 +115,7 @@ def world_picture(command: str) -> str:
         way = driven((EXAMPLES / example).read_text("utf-8"), robot, world, 1000 * seconds)
         parts += arena(world, way, left, PAD, scale)
         parts.append(
-            f'<text x="{left}" y="{foot:.0f}" font-family="{SANS}" font-size="15" fill="#37414b">'
+            f'<text x="{left}" y="{foot:.0f}" font-family="{FONT}" font-size="15" fill="#37414b">'
             f"{name}: examples/{example}, {seconds} s</text>"
         )
     width, height = len(DRIVES) * COLUMN, round(bottom) + PAD

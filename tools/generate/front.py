@@ -17,6 +17,7 @@ from pathlib import Path
 from tiniscript.base.languages import text
 from tiniscript.base.words import WORDS
 from tiniscript.cli import main as tsc
+from tiniscript.robots.wiring.drawing import FONT
 from tiniscript.virtual import worlds
 from tools.generate.arena import Way, arena, driven
 from tools.site.documents import sources
@@ -31,7 +32,6 @@ PAD, ROW, SMALL_ROW = 24, 22, 20
 LEFT_WIDTH = 700
 WORDS_AND_SIGNS = re.compile(r"([A-Z_]+|[0-9.]+)")
 MONO = "'DejaVu Sans Mono', Consolas, Menlo, monospace"
-SANS = "'DejaVu Sans', Verdana, Arial, sans-serif"
 INK, DIM, PAPER, SCREEN = "#e6edf3", "#9fb0c0", "#12202e", "#0a131b"
 NUMBER, SETUP, GRAMMAR, WORD = "#f5c86a", "#d2a8ff", "#ff9e80", "#7ee0c3"
 GRAMMAR_ROLES = ("block", "arm", "end", "until", "forever", "operator")
@@ -130,6 +130,6 @@ def _arena(language: str) -> list[str]:
     foot = PAD + world.height_cm * scale + 22
     return [
         *arena(world, _way(), left, PAD, scale),
-        f'<text x="{left:g}" y="{foot:.0f}" font-family="{SANS}" font-size="13" fill="{DIM}">'
+        f'<text x="{left:g}" y="{foot:.0f}" font-family="{FONT}" font-size="13" fill="{DIM}">'
         f"{escape(text('documents', 'front/caption', language))}</text>",
     ]

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.variation import varied
+from tiniscript.robots.wiring.drawing import FONT
 from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
 from tools.generate.arena import FLOOR, WALL, WAY, arena, driven
@@ -20,7 +21,6 @@ from tools.site.documents import sources
 
 DOCS = Path(__file__).resolve().parent.parent.parent / "docs"
 GUIDES = {each: Path(file).name for each, file in sources(DOCS.parent, "docs/monday.en.md").items()}
-SANS = "'DejaVu Sans', Verdana, Arial, sans-serif"
 PAD, PAPER, SKY = 10, "#ffffff", "#dcebfb"
 
 
@@ -124,7 +124,7 @@ def _box(x: float, y: float, width: float, height: float, colour: str) -> str:
 
 
 def _words(x: float, y: float, words: str) -> str:
-    return (f'<text x="{x:g}" y="{y:g}" font-family="{SANS}" font-size="15" fill="{WALL}">'
+    return (f'<text x="{x:g}" y="{y:g}" font-family="{FONT}" font-size="15" fill="{WALL}">'
             f"{escape(words)}</text>")  # fmt: skip
 
 

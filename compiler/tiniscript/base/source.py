@@ -16,7 +16,7 @@ PROGRAM_ENDS = (".ts", ".tini", ".ts.txt", ".tini.txt")  # of a name; editors of
 # of all keyboards and phones, as a set of a regular expression has them
 SPACES = r" \t\f\v\u00a0\u2000-\u200b\u202f\u3000\ufeff"
 
-_LINE_END = re.compile(r"\r\n|\n|\r")
+LINE_END = re.compile(r"\r\n|\n|\r")
 
 
 class Span(NamedTuple):
@@ -75,7 +75,7 @@ class Source:
 
     def _starts(self) -> list[int]:
         if self._line_starts is None:
-            self._line_starts = [0, *(match.end() for match in _LINE_END.finditer(self.text))]
+            self._line_starts = [0, *(match.end() for match in LINE_END.finditer(self.text))]
         return self._line_starts
 
 

@@ -31,7 +31,7 @@ from tiniscript.link import errors
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
 from tiniscript.link.outcomes import ConnectionLost
-from tiniscript.link.port_names import is_address, same_for_all
+from tiniscript.link.port_names import PSEUDO, is_address, same_for_all
 from tiniscript.link.sharing.shared_connection import OtherVersion
 from tiniscript.link.wire import Wire
 
@@ -53,7 +53,6 @@ def access(system: System, port: str) -> Access:
 
 
 REFUSED, IN_USE = os.strerror(errno.ECONNREFUSED), os.strerror(errno.EBUSY)
-PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals: nothing restarts there
 
 
 class Doors(NamedTuple):

@@ -18,7 +18,7 @@ from tiniscript.library.errors import RobotError
 from tiniscript.link import errors, known_ports, port_names
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
-from tiniscript.link.port_names import is_address, is_at_broker, is_name
+from tiniscript.link.port_names import PSEUDO, is_address, is_at_broker, is_name
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.shared_connection import OtherVersion, SharedConnection, joined
 from tiniscript.virtual import directory
@@ -41,7 +41,6 @@ CABLE_ANSWER_MS = 2000
 QUIET_S = {"mega": 1.2}  # by board
 LONG_QUIET_S = 4.5
 CONFIRM_S = 7.0  # timeout for the answer to a stop, a little longer than stops are sent
-PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals
 
 
 def connection_to(

@@ -13,6 +13,7 @@ import sys
 import unicodedata
 
 BLE, TCP, MQTT = "ble://", "tcp://", "mqtt://"
+PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals: nothing restarts there
 _LOCAL = ("localhost", "[::1]")
 
 

@@ -6,11 +6,9 @@ the others are read as if it were a comment. What the checker refuses is a block
 
 from __future__ import annotations
 
-import re
-
 from tiniscript.base.fixed_point import as_text
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Source, Span
+from tiniscript.base.source import LINE_END, Source, Span
 from tiniscript.base.words import WORDS
 from tiniscript.studio.block_form import Block, Form, Place, Stack, Value
 from tiniscript.studio.block_kinds import KINDS
@@ -34,13 +32,12 @@ LOOSE = "///"  # begins the lines of blocks that hang on nothing
 LOOSE_VALUE = "= "
 ROUNDS = 12  # of reading; then every line is grey
 
-_LINE_END = re.compile(r"\r\n|\n|\r")
 _LEFT_OUT = frozenset(("AND_LEFT", "OR_LEFT"))  # of parts: where the left side ends
 
 
 def read(text: str, kit: Kit) -> Form:
     """Return the blocks of any text. `kit` says which names are sensors."""
-    lines = _LINE_END.split(text)
+    lines = LINE_END.split(text)
     grey: set[int] = set()
     for _ in range(ROUNDS):
         source, parsed = _read_without(lines, grey)

@@ -15,6 +15,7 @@ from tiniscript.library import opening
 from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
+from tiniscript.studio import class_keeping
 from tiniscript.studio.world_form import form_of, limits
 from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
@@ -44,6 +45,10 @@ def description() -> dict[str, Any]:
             "long_quiet_ms": round(opening.LONG_QUIET_S * 1000),
             "confirm_ms": round(opening.CONFIRM_S * 1000),
             "name_bytes": NAME_BYTES,
+        },
+        "class": {
+            "text_characters": class_keeping.TEXT_CHARACTERS,
+            "most_lessons": class_keeping.MOST_LESSONS,
         },
         "worlds": [form_of(worlds.load(name)) for name in worlds.names()],
         "world_limits": limits(),

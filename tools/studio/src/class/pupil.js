@@ -12,14 +12,12 @@ import { Failed } from '../robot/transport.js';
 import { sign } from './signs.js';
 import { clock } from './wall.js';
 import { text } from '../page/texts.js';
-import { isRobot } from '../page/words.js';
+import { CLASS, isRobot } from '../page/words.js';
 import { forgetAll } from '../programs/work.js';
 
 const PLACE = 'tiniscript.pupil';
 const LOOK_MS = 1000;
 const SOON_MS = 300; // while the next turn may be one's own
-const MOST_LESSONS = 40;
-const TEXT_CHARACTERS = 20_000; // what the teacher sees of a program
 
 /** @typedef {{text: string, robot: string, lessons: string[]}} Given */
 /** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: Given, over?: string}} Here */
@@ -159,9 +157,9 @@ export class Pupil {
   #now() {
     const { state, image } = document.documentElement.dataset;
     return {
-      text: JSON.stringify(this.#work.text.slice(0, TEXT_CHARACTERS)),
+      text: JSON.stringify(this.#work.text.slice(0, CLASS.text_characters)),
       robot: JSON.stringify(this.#work.robot),
-      lessons: JSON.stringify([...lessonsDone()].slice(0, MOST_LESSONS)),
+      lessons: JSON.stringify([...lessonsDone()].slice(0, CLASS.most_lessons)),
       ...(state === 'checked' && { is_right: JSON.stringify(Boolean(image) || !this.#work.text.trim()) }),
     };
   }

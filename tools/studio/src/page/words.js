@@ -11,6 +11,7 @@ import { called, hasText, text } from './texts.js';
 /** Words that stand for an instruction with its values. */
 export const FIXED = description.words.filter((word) => word.role === 'fixed');
 export const ROBOTS = description.robots;
+export const CLASS = description.class;
 export const WORLDS = /** @type {import('../world/parts.js').World[]} */ (/** @type {unknown} */ (description.worlds));
 export const WORLD_LIMITS = description.world_limits;
 export const LINK = description.link;
