@@ -562,9 +562,10 @@ def test_a_finger_drags_a_block(pages: Pages) -> None:
 # -- sentences -------------------------------------------------------------------------------------
 
 
-LACKS = re.compile(  # things that no page has, and names of shortcuts, which only a plugin shows
+LACKS = re.compile(  # things that no page has; names of shortcuts, which only a plugin shows; keys
     "SHORTCUT|VARIABLE|PROCEDURE|COLLAPSE|EXPAND_|ABLE_BLOCK|_INPUTS|COMMENT|MUTATOR|CHECKBOX"
-    "|UNDO|REDO|HELP|UNKNOWN|UNNAMED|PAUSE|CAPS_LOCK|INSERT"
+    "|UNDO|REDO|HELP|UNKNOWN|UNNAMED"
+    "|/(PAUSE|CAPS_LOCK|INSERT|TAB|SHIFT|CONTEXT_MENU|SPACE|PAGE_UP|PAGE_DOWN|END|HOME)_KEY|ESCAPE"
 )
 
 
