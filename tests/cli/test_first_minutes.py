@@ -20,7 +20,7 @@ from tests.support.link_events import event
 from tests.support.virtual_robot import Talk, robot_in
 from tests.support.waiting import HANGS_S
 from tiniscript import compile_text, robots
-from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, Repl, wished
+from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, Repl, requested
 from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
@@ -286,13 +286,13 @@ def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
 def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
     known = Known(robots.load("tinibot").kit)
     for line in ("exit", "QUIT", " Salir ", "exit;", "exit()", "quit ( ) ;"):
-        assert wished(line, known) == LEAVE, line
+        assert requested(line, known) == LEAVE, line
     for line in ("help", "ayuda", "?", "HELP;"):
-        assert wished(line, known) == HELP_ME, line
+        assert requested(line, known) == HELP_ME, line
     for line in ("", "S", "EXIT = 5", "SHOW(EXIT)", "exit 5", "QUIT; S"):
-        assert wished(line, known) == "", line
+        assert requested(line, known) == "", line
     known.defs["EXIT"] = "DEF EXIT; S; END_DEF"
-    assert wished("exit", known) == ""  # it is the person's own
+    assert requested("exit", known) == ""  # it is the person's own
 
 
 def test_help_at_the_prompt_names_what_the_robot_has() -> None:

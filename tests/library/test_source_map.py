@@ -12,7 +12,7 @@ from tiniscript import Compiled, compile_text, robots
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import checksum
 from tiniscript.library import source_map
-from tiniscript.library.source_map import Map, MapPlace
+from tiniscript.library.source_map import Map, MapLocation
 
 KIT = robots.load("tinibot").kit
 
@@ -118,7 +118,7 @@ def test_an_offset_inside_an_instruction_is_the_instruction_s() -> None:
 
 def test_a_map_is_written_as_json_writes_it() -> None:
     text = "".join(map(chr, range(0x180))) + "\u2028\ud800 🤖"
-    places = (MapPlace(0, 1, 1, 1, 2), MapPlace(10, 2, 3, 40, 5))
+    places = (MapLocation(0, 1, 1, 1, 2), MapLocation(10, 2, 3, 40, 5))
     for found in (source_map.Map(text, (text, "", "S"), places), source_map.Map("", (), ())):
         fields = {"version": source_map.VERSION, **found._asdict()}
         assert source_map.as_json(found) == json.dumps(fields, ensure_ascii=False)

@@ -55,7 +55,7 @@ class Runner:
 class TaskRobot(Robot):
     """A robot that does several things at once."""
 
-    crew: list[Runner] = field(default_factory=list)
+    runners: list[Runner] = field(default_factory=list)
     who: Runner = field(default_factory=lambda: Runner(0, False))  # has its turn
     owner: Runner | None = None  # of the motors
     wheels: Powers = (0, 0)
@@ -67,17 +67,17 @@ class TaskRobot(Robot):
         for rank, task in enumerate([*whens, *others]):
             runner = Runner(rank, task.condition is not None)
             runner.turns = self.watching(task) if runner.is_when else self.body(task.body)
-            self.crew.append(runner)
-        main = Runner(len(self.crew), False)
+            self.runners.append(runner)
+        main = Runner(len(self.runners), False)
         main.turns = self.body(self.program.main)
-        self.crew.append(main)
+        self.runners.append(main)
         self.turn(main)
-        while any(runner.turns is not None for runner in self.crew):
+        while any(runner.turns is not None for runner in self.runners):
             self.round()
 
     def round(self) -> None:
         """Goes to the next time at which something is due, and gives each its turn."""
-        due = [each.due for each in self.crew if each.turns is not None and each.due is not None]
+        due = [each.due for each in self.runners if each.turns is not None and each.due is not None]
         next_time = min(due, default=self.max_time + 1)
         if next_time > self.max_time:
             self.now = self.max_time
@@ -85,7 +85,7 @@ class TaskRobot(Robot):
         if next_time > self.now:
             self.steps = 0
         self.now = max(self.now, next_time)
-        for runner in self.crew:
+        for runner in self.runners:
             if runner.turns is not None and runner.due is not None and runner.due <= self.now:
                 self.turn(runner)
         self.is_first_round = False
@@ -99,9 +99,9 @@ class TaskRobot(Robot):
         except StopIteration:
             runner.turns = None
             runner.m = None
-        if all(each.turns is None for each in self.crew):
+        if all(each.turns is None for each in self.runners):
             return
-        owner = next((each for each in self.crew if each.wants), None)
+        owner = next((each for each in self.runners if each.wants), None)
         if owner is not self.owner:
             self.owner = owner
             powers = (0, 0) if owner is None else owner.m or (0, 0)

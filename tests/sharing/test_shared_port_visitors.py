@@ -120,8 +120,8 @@ def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
         found = reader.put(peer.recv(65536))
         count = 50 * FULL_BYTES // 60
         for k in range(count):
-            shared.server._hear([(k, ShowEvent(k, 0))])
-        shared.server._hear([(count, DoneEvent(9))])
+            shared.server._on_events([(k, ShowEvent(k, 0))])
+        shared.server._on_events([(count, DoneEvent(9))])
         assert "SHOW 1" in on(pty_robot, "live", "SHOW(1)").out
         while not any(message.get("event") == "DONE" for message in found):
             data = peer.recv(65536)

@@ -376,7 +376,7 @@ def test_what_a_page_does_not_fetch_is_bounded() -> None:
     robot = hosted_robot.HostedRobot("socket://127.0.0.1:1", "tinibot", "en")
     robot.attending.tell([{"event": "SHOW", "value": str(k)} for k in range(3000)])
     robot.attending.tell([{"event": "DONE"}])
-    news = robot.attending.hear([], 0)
+    news = robot.attending.on_requests([], 0)
     assert len(news) == attending.KEPT and news[-1]["event"] == "DONE"
     robot.join(HANGS_S)
 

@@ -53,7 +53,7 @@ class Meeting:
             if arrived or now_ms >= self._beat_ms:
                 self._beat_ms = now_ms + BEAT_MS
                 seen = max((each["number"] for each in self.news), default=0)
-                new = self.attending.hear(arrived, seen)
+                new = self.attending.on_requests(arrived, seen)
                 self._stops = max([self._stops, *(each.get("stops", 0) for each in new)])
                 self.news += new
             if now_ms >= self._look_ms:
@@ -92,7 +92,7 @@ class Meeting:
 def race(count: int, seed: int) -> None:
     meeting = Meeting(seed)
     meeting.go(2000)
-    meeting.attending.hear([], 0)
+    meeting.attending.on_requests([], 0)
     for _ in range(count):
         meeting.races()
         meeting.go(round(1000 * LATCH_S), 10)

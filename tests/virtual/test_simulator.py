@@ -109,14 +109,14 @@ def test_only_this_computer_is_let_in(simulator: Simulator) -> None:
 def test_a_hurried_robot_hears_the_last_whole_frame_again() -> None:
     heart = Heartbeat()
     assert heart.due(10_000, 5.0) == b""  # there was none
-    heart.hear(b"\0" + PING[:3], 5.0)
+    heart.on_bytes(b"\0" + PING[:3], 5.0)
     assert heart.due(10_000, 5.0) == b""  # one is on its way
-    heart.hear(PING[3:], 5.0)
+    heart.on_bytes(PING[3:], 5.0)
     assert heart.due(10_000, 5.0) == PING
     assert heart.due(10_000 + HEARTBEAT_MS - 1, 5.0) == b""
     assert heart.due(10_000 + HEARTBEAT_MS, 5.0) == PING
     assert heart.due(20_000, 5.0 + SILENT_S + 0.1) == b""  # the computer itself is silent
-    heart.hear(b"\0\0\0", 7.0)
+    heart.on_bytes(b"\0\0\0", 7.0)
     assert heart.due(30_000, 7.0) == PING
     heart.forget()
     assert heart.due(40_000, 7.0) == b""
@@ -136,7 +136,7 @@ def test_a_new_client_does_not_speak_with_the_words_of_the_one_before(simulator:
 def test_the_heartbeat_keeps_nothing_endless() -> None:
     heart = Heartbeat()
     for _ in range(1000):
-        heart.hear(b"x" * 1000, 1.0)
+        heart.on_bytes(b"x" * 1000, 1.0)
     assert len(heart._open) < 200
-    heart.hear(b"\0", 1.0)
+    heart.on_bytes(b"\0", 1.0)
     assert heart.due(10_000, 1.0) == b""

@@ -50,7 +50,7 @@ from tiniscript.semantics.ir import (
 from tiniscript.semantics.optimizer import constant
 
 
-class Place(NamedTuple):
+class SourceLocation(NamedTuple):
     """The instruction at `offset` comes from the text at `span`."""
 
     offset: int
@@ -61,7 +61,7 @@ class Lowered(NamedTuple):
     """`code` may be longer than CODE_BYTES, the most that a machine takes."""
 
     code: bytes
-    places: tuple[Place, ...]
+    places: tuple[SourceLocation, ...]
 
 
 def lower(program: Program, plain: bool = False) -> Lowered:
@@ -344,10 +344,10 @@ def _assembled(out: Emitter) -> Lowered:
             break
         out.widen(short)
     code = bytearray()
-    places: list[Place] = []
+    places: list[SourceLocation] = []
     for item, start in zip(out.items, starts, strict=False):
         if not places or places[-1].span != item.span:
-            places.append(Place(start, item.span))
+            places.append(SourceLocation(start, item.span))
         _write(code, item, None if item.to is None else targets[item.to])
     return Lowered(bytes(code), tuple(places))
 

@@ -16,7 +16,7 @@ from tiniscript.base.limits import CODE_BYTES
 from tiniscript.base.source import Source, Span, Unreadable, applied, decode
 from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_of, pack
 from tiniscript.bytecode.verify import Verdict, verify
-from tiniscript.codegen.lower import Place, lower
+from tiniscript.codegen.lower import SourceLocation, lower
 from tiniscript.diagnostics import codes
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
@@ -39,7 +39,7 @@ class Compiled(NamedTuple):
     diagnostics: list[codes.Diagnostic]
     program: ir.Program | None = None
     code: bytes = b""
-    places: tuple[Place, ...] = ()
+    places: tuple[SourceLocation, ...] = ()
     verdict: Verdict | None = None
     image: bytes = b""
     lowered: ir.Program | None = None

@@ -94,7 +94,7 @@ class RobotConnection:
         self, kind: type[BaseException] | None, error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:  # fmt: skip
-        self._leave(is_calm=kind is None)
+        self._leave(is_clean=kind is None)
 
     @property
     def info(self) -> RobotInfo:
@@ -222,18 +222,18 @@ class RobotConnection:
     def close(self) -> None:
         """Stop the robot, unless its program is detached, and close the port. A second call does
         nothing. Raises StopNotConfirmed."""
-        self._leave(is_calm=True)
+        self._leave(is_clean=True)
 
     # -- leaving ----------------------------------------------------------------------------------
 
-    def _leave(self, is_calm: bool) -> None:
+    def _leave(self, is_clean: bool) -> None:
         if self._is_closed:
             return
         self._is_closed = True
         try:
-            if not (is_calm and self._is_detached):
+            if not (is_clean and self._is_detached):
                 self._stop()
-            if is_calm:
+            if is_clean:
                 self._await_saving()
         finally:
             self._part()

@@ -18,14 +18,14 @@ from tiniscript.base.files import contents
 from tiniscript.base.source import Source
 from tiniscript.base.words import TASKS
 from tiniscript.bytecode import image as images
-from tiniscript.codegen.lower import Place
+from tiniscript.codegen.lower import SourceLocation
 
 VERSION = 1
 FILE_BYTES = 32_000_000
 KEPT = 1000  # maps in the cache; the oldest go first
 
 
-class MapPlace(NamedTuple):
+class MapLocation(NamedTuple):
     """The instructions from `offset` on come from `line`, `column` (from 1) to the end."""
 
     offset: int
@@ -40,9 +40,9 @@ class Map(NamedTuple):
 
     name: str
     lines: tuple[str, ...]
-    places: tuple[MapPlace, ...]
+    places: tuple[MapLocation, ...]
 
-    def at(self, offset: int) -> MapPlace | None:
+    def at(self, offset: int) -> MapLocation | None:
         """Return where the instruction at `offset` comes from."""
         found = None
         for place in self.places:
@@ -51,7 +51,7 @@ class Map(NamedTuple):
             found = place
         return found
 
-    def task_of(self, place: MapPlace) -> tuple[str, int] | None:
+    def task_of(self, place: MapLocation) -> tuple[str, int] | None:
         """Return the word and the line of the TASK or WHEN around a place; "" and 0 outside.
 
         Returns None where there are no tasks, and in a DEF, which any of them may have called.
@@ -65,7 +65,7 @@ class Map(NamedTuple):
                 return None if word == "DEF" else (word, each.line)
         return "", 0
 
-    def _word(self, place: MapPlace) -> str:
+    def _word(self, place: MapLocation) -> str:
         rest = self.line(place.line)[place.column - 1 :]
         return "".join(takewhile(lambda sign: sign.isalnum() or sign == "_", rest)).upper()
 
@@ -73,10 +73,12 @@ class Map(NamedTuple):
         return self.lines[number - 1] if 1 <= number <= len(self.lines) else ""
 
 
-def made(source: Source, places: Iterable[Place]) -> Map:
+def made(source: Source, places: Iterable[SourceLocation]) -> Map:
     """Return the map of a program that has just been compiled."""
     found = tuple(
-        MapPlace(place.offset, *source.position(place.span.start), *source.position(place.span.end))
+        MapLocation(
+            place.offset, *source.position(place.span.start), *source.position(place.span.end)
+        )
         for place in places
     )
     last = source.position(len(source.text))[0]
@@ -115,7 +117,7 @@ def from_json(text: str) -> Map:
     try:
         if fields["version"] != VERSION:
             raise ValueError("another version")
-        places = tuple(MapPlace(*map(int, place)) for place in fields["places"])
+        places = tuple(MapLocation(*map(int, place)) for place in fields["places"])
         return Map(str(fields["name"]), tuple(map(str, fields["lines"])), places)
     except (KeyError, TypeError, AttributeError) as wrong:
         raise ValueError("no map") from wrong

@@ -41,7 +41,7 @@ class Attending:
 
     # -- the page ---------------------------------------------------------------------------------
 
-    def hear(self, requests: list[Json], seen: int) -> list[Json]:
+    def on_requests(self, requests: list[Json], seen: int) -> list[Json]:
         """The page is there: take its requests; return the news after number `seen`."""
         with self._lock:
             self._heard_s = self._clock()

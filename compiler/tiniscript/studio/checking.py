@@ -52,7 +52,7 @@ class Checked(NamedTuple):
     image: bytes
     code_bytes: int
     findings: tuple[Finding, ...]
-    places: tuple[source_map.MapPlace, ...]
+    places: tuple[source_map.MapLocation, ...]
     variables: tuple[Variable, ...] = ()
     start: str = ""
 

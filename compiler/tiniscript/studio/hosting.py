@@ -64,7 +64,7 @@ class Hosting:
         elif do == "leave":
             robot.leave()
         seen = whole(request, "seen", 0, MOST_COUNT, 0)
-        return {"news": robot.attending.hear(_requests(request), seen)}
+        return {"news": robot.attending.on_requests(_requests(request), seen)}
 
     def robot_of(self, page: str) -> HostedRobot | None:
         """Return what a page drives, or has driven last."""

@@ -122,9 +122,9 @@ class Simulation:
                 break
             self._computer.wait(1)
             self._score.look(self.robot)
-        self._hear()
+        self._take_events()
 
-    def _hear(self) -> None:
+    def _take_events(self) -> None:
         for event in self.session.events():
             self.is_stopped = self.is_stopped or event.name == "STOPPED"
             if event.name == "FAULT":
@@ -185,5 +185,5 @@ class Simulation:
             if is_over():
                 return
             self._computer.wait(1)
-            self._hear()
+            self._take_events()
         raise AssertionError("the virtual robot does not answer")

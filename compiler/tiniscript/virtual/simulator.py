@@ -28,7 +28,7 @@ class Heartbeat:
         self._heard_s = 0.0
         self._heartbeat_ms = 0
 
-    def hear(self, data: bytes, wall_s: float) -> None:
+    def on_bytes(self, data: bytes, wall_s: float) -> None:
         """Take bytes that the computer has sent."""
         self._heard_s = wall_s
         *whole, self._open = (self._open + data).split(b"\0")
@@ -53,7 +53,7 @@ class Heartbeat:
 BEHIND_S = 0.25  # a larger delay slows the robot's clock down
 BUSY_S = 0.002  # between two polls while bytes are in transit,
 NEAR_S = 0.02  # while a client is connected or a program runs,
-CALM_S = 0.25  # and otherwise
+IDLE_S = 0.25  # and otherwise
 TRAFFIC_S = 0.05  # after a byte, more bytes are expected for this time
 STRIDE_MS = 100  # robot time between two polls of the line while it runs faster
 TURN_S = 0.01  # real time that a fast run may take before the caller gets its turn
@@ -114,7 +114,7 @@ class Simulator:
         """How many bytes the robot has still to hear."""
         return self.robot.unheard + self.there.waiting
 
-    def turn(self, limit_s: float = CALM_S) -> None:
+    def turn(self, limit_s: float = IDLE_S) -> None:
         """Wait for bytes, at most `limit_s`; then advance the robot to the present."""
         is_full = self.waiting >= FULL_BYTES
         self.transports.wait(min(limit_s, self._pause_s()), is_full)
@@ -131,7 +131,7 @@ class Simulator:
             self.there.put(bytes(STOP_BYTES), self.robot.now_ms)
         if data:
             self._traffic_s = wall_s
-            self._heartbeat.hear(data, wall_s)
+            self._heartbeat.on_bytes(data, wall_s)
             self.there.put(data, self.robot.now_ms)
         self._go_on(passed_s)
         self.transports.send(b"")
@@ -143,7 +143,7 @@ class Simulator:
             return BUSY_S
         if self.robot.is_running or self.transports.is_connected or self._is_pushing:
             return NEAR_S
-        return CALM_S
+        return IDLE_S
 
     @property
     def _is_pushing(self) -> bool:

@@ -239,7 +239,7 @@ class _Caller:
             if self.may_enter and not self.is_told:
                 is_over = not self.peer.recv(1, socket.MSG_PEEK)
             else:
-                is_over = not self._hear(now_s)
+                is_over = not self._receive(now_s)
         except BlockingIOError:
             is_over = False
         except OSError:
@@ -249,7 +249,7 @@ class _Caller:
             return True
         return False
 
-    def _hear(self, now_s: float) -> bool:
+    def _receive(self, now_s: float) -> bool:
         """Take what has come; return whether more may come."""
         data = self.peer.recv(READ_BYTES)
         if not data or self.is_told:

@@ -91,7 +91,7 @@ void turns(uint32_t count) {
 }
 
 // A millisecond begins, in which bytes arrive.
-void hear(const Bytes& heard, size_t from, size_t count) {
+void receive(const Bytes& heard, size_t from, size_t count) {
   chip.received.append(reinterpret_cast<const char*>(heard.data.get()) + from, count);
   chip.sending = chip.sending > kBytesPerMs ? chip.sending - kBytesPerMs : 0;
 }
@@ -103,7 +103,7 @@ void answer_step(RequestReader* request, Writer* answer) {
   const uint8_t flags = request->u8();
   const uint16_t count = request->u16();
   const Bytes heard = request->bytes();
-  hear(heard, 0, heard.length);
+  receive(heard, 0, heard.length);
   if ((flags & 1) != 0) push_button(true);
   if ((flags & 2) != 0) push_button(false);
   turns(count);
@@ -130,7 +130,7 @@ void answer_wait(RequestReader* request, Writer* answer) {
   for (uint32_t k = 0; k < many; k++) {
     const size_t from = is_spread || k == 0 ? std::min<size_t>(k, heard.length) : heard.length;
     const size_t left = heard.length - from;
-    hear(heard, from, is_spread ? std::min<size_t>(1, left) : left);
+    receive(heard, from, is_spread ? std::min<size_t>(1, left) : left);
     turns(count);
     did += timed(first_ms + k, log_of_robot);
     log_of_robot.clear();

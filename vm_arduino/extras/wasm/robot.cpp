@@ -97,7 +97,7 @@ void note(What what, int32_t first = 0, int32_t second = 0) {
   notes[noted++] = {now_ms(), what, first, second};
 }
 
-void hear() {
+void receive() {
   while (heard < to_hear && hears_us <= now_us) {
     firmware_on_rx_byte(inbox[heard++], static_cast<uint16_t>(now_ms()));
     firmware_tick(now_ms());
@@ -290,7 +290,7 @@ tini_exported("run") uint32_t module_run(uint64_t until_us, uint32_t has_more) {
   while (now_us < until_us && said < kBoxBytes && !watched_has_held()) {
     if (has_more != 0 && heard == to_hear) break;
     now_us += kTickUs;
-    hear();
+    receive();
     firmware_tick(now_ms());
     say();
   }

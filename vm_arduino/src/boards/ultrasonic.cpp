@@ -83,9 +83,9 @@ void on_change() {
 
 #ifdef __AVR__
 // An interrupt.
-tini_always_inline void hear() {
+tini_always_inline void on_pin_change() {
   if (kUltrasonics == 1) {
-    hear_change<Sonar, Heard>(&sonar, ultrasonic_at(0).echo, kGlitchUs);
+    on_echo_edge<Sonar, Heard>(&sonar, ultrasonic_at(0).echo, kGlitchUs);
   } else {
     call_in_frame(on_change);
   }
@@ -212,7 +212,7 @@ void ultrasonic_forget() {
 
 #ifdef tiniscript_ultrasonic_vectors
 #define tiniscript_on(vector) \
-  ISR(vector, ISR_NAKED) { tiniscript::hear(); }
+  ISR(vector, ISR_NAKED) { tiniscript::on_pin_change(); }
 tiniscript_ultrasonic_vectors(tiniscript_on)
 #endif
 

@@ -86,7 +86,7 @@ void Link::turn() {
   // A reply that is due goes first, and text last. Before a stop that waits among text no frame
   // does anything.
   if (is_there && (due_ & kDueReply) == 0 && !receiver_->has_mark()) {
-    hear();
+    on_frame();
   } else if (console_.is_due() || receiver_->has_text()) {
     talk();
   }
@@ -147,7 +147,7 @@ inline void Link::check() {
 }
 
 // Answers a frame.
-tini_noinline void Link::hear() {
+tini_noinline void Link::on_frame() {
   begin_request();
   if (is_ready_ && ahead_ + kCrcBytes == receiver_->length() && go_live()) {
     due_ |= kDueReply;

@@ -186,7 +186,7 @@ class Link {
 
   void turn();
   void check();
-  void hear();
+  void on_frame();
   void prepare();
   bool go_live();
   void halt(Cause cause);

@@ -201,10 +201,10 @@ class Repl:
                 if self._says_time_over():
                     return 0
                 self._tell_meanwhile()
-                wish = wished(line, self.known)
-                if wish == LEAVE:
+                request = requested(line, self.known)
+                if request == LEAVE:
                     return 0
-                if wish == HELP_ME:
+                if request == HELP_ME:
                     print(self._help())
                 elif line.strip():
                     self._try(line)
@@ -237,7 +237,7 @@ class Repl:
                 printer.tell(*found)
 
 
-def wished(line: str, known: Known) -> str:
+def requested(line: str, known: Known) -> str:
     """Return the command to tsc, not to the robot, that a line consists of, or an empty text.
 
     A name of the kit or of the user's program is no such command.

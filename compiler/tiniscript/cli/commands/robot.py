@@ -29,7 +29,7 @@ from tiniscript.link.keys import KeyFile
 from tiniscript.virtual import directory
 from tiniscript.virtual.computer import Computer
 from tiniscript.virtual.robot import VirtualRobot
-from tiniscript.virtual.simulator import CALM_S, HOLD_MS, PUSH_MS, Simulator
+from tiniscript.virtual.simulator import HOLD_MS, IDLE_S, PUSH_MS, Simulator
 from tiniscript.virtual.transports import Transports, can_have_terminal
 
 if TYPE_CHECKING:
@@ -148,7 +148,7 @@ class _Stage:
 
     def _limit_s(self, pushes: list[tuple[int, int]], end_ms: int | None) -> float:
         """Return the time until the next action is due."""
-        limits = [FRAME_S if self.screen else CALM_S]
+        limits = [FRAME_S if self.screen else IDLE_S]
         for due_ms in (
             *(time_ms for time_ms, _ in pushes[:1]),
             *([end_ms] if end_ms is not None else []),

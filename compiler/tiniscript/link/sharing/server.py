@@ -103,7 +103,7 @@ class Server:
         except OSError:
             self._close_all()
             raise
-        line.listen(self._hear)
+        line.listen(self._on_events)
         self._thread = Thread(target=self._run, name="server", daemon=True)
         self._thread.start()
 
@@ -131,7 +131,7 @@ class Server:
 
     # -- from the thread of the line --------------------------------------------------------------
 
-    def _hear(self, told: list[Told]) -> None:
+    def _on_events(self, told: list[Told]) -> None:
         self._told += told
         self._ring()
 

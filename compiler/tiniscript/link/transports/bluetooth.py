@@ -22,7 +22,7 @@ from tiniscript.link.port_names import BLE, canonical, name_in
 from tiniscript.link.transports import WRITE_S
 from tiniscript.link.transports import bluetooth_search as search
 from tiniscript.link.transports.event_loop import EventLoop, shared
-from tiniscript.link.transports.pushed import ENDED, PushedPort
+from tiniscript.link.transports.pushed import ENDED, PushedTransport
 
 CONNECT_S = 15.0
 QUEUE_S = 60.0  # and of those that wait for the connections of others
@@ -97,7 +97,7 @@ def opened(port: str, baud: int, limit_s: float) -> BluetoothPort:
     return bluetooth_port
 
 
-class BluetoothPort(PushedPort):
+class BluetoothPort(PushedTransport):
     """A connection to a device. `read`, `write`, `in_waiting`, `cancel_read` and `close` are as in
     pyserial; where the connection has ended they raise OSError."""
 
@@ -149,7 +149,7 @@ class BluetoothPort(PushedPort):
             if writes is None or notifies is None or not _can(writes, "write"):
                 continue
             self._writes, self._is_paced = writes, module.is_paced
-            await client.start_notify(notifies, self._hear)
+            await client.start_notify(notifies, self._on_bytes)
             return
         raise PortError(errors.NO_ROBOT)
 
@@ -172,7 +172,7 @@ class BluetoothPort(PushedPort):
             if self._is_paced:
                 self._ready_s = time() + len(piece) * self._byte_s
 
-    def _hear(self, _: BleakGATTCharacteristic, data: bytearray) -> None:
+    def _on_bytes(self, _: BleakGATTCharacteristic, data: bytearray) -> None:
         self.bring(data)
 
     def _part(self, _: BleakClient) -> None:

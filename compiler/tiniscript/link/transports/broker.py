@@ -25,7 +25,7 @@ from tiniscript.link.errors import PortError
 from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
 from tiniscript.link.port_names import MQTT
 from tiniscript.link.transports import READ_S
-from tiniscript.link.transports.pushed import PushedPort
+from tiniscript.link.transports.pushed import PushedTransport
 from tiniscript.link.wifi import is_class
 
 PLAIN_PORT, TLS_PORT = 1883, 8883
@@ -290,7 +290,7 @@ class Broker:
         self._news.notify_all()
 
 
-class BrokerPort(PushedPort):
+class BrokerPort(PushedTransport):
     """A robot at a broker. `read`, `write`, `in_waiting`, `cancel_read` and `close` are as in
     pyserial; where the connection has ended they raise OSError."""
 

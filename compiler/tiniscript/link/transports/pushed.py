@@ -13,7 +13,7 @@ KEPT_BYTES = 65_536  # of somebody who sends more than is read; more is lost
 ENDED = "the connection has ended"
 
 
-class PushedPort:
+class PushedTransport:
     """`in_waiting`, `read`, `cancel_read` are as in pyserial; any thread may `bring` and `end`."""
 
     def __init__(self) -> None:

@@ -200,7 +200,7 @@ export class RobotPanel {
     /** @type {Transport | null} */
     let way = null;
     const heard = {
-      event: (/** @type {RobotEvent} */ event) => (this.#page.recorder.hear(event), this.#page.place.hear(event), this.#hear(event)),
+      event: (/** @type {RobotEvent} */ event) => (this.#page.recorder.onEvent(event), this.#page.place.onEvent(event), this.#onEvent(event)),
       over: (/** @type {Failed} */ why) => {
         if (this.#way && this.#way === way) this.#end(why);
       },
@@ -339,7 +339,7 @@ export class RobotPanel {
   // -- what the robot says ------------------------------------------------------------------------
 
   /** @param {RobotEvent} event */
-  #hear(event) {
+  #onEvent(event) {
     if (event.event === 'SHOW') this.#speech.add(String(event.value));
     else if (event.event === 'TEXT') this.#speech.add(text('say_text', { said: shown(String(event.text)) }));
     else if (event.event === 'MISSED') this.#speech.add(text('say_missed', { count: Number(event.count) }));

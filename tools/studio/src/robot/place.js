@@ -18,7 +18,7 @@ export class RobotPlace {
   }
 
   /** @param {RobotEvent} event */
-  hear(event) {
+  onEvent(event) {
     if (event.event === 'PLACE') this.#tell(event);
     else if (ENDS.includes(event.event)) this.#tell(null);
   }

@@ -73,7 +73,7 @@ export class Recorder {
   }
 
   /** @param {RobotEvent} event */
-  hear(event) {
+  onEvent(event) {
     if (event.event === 'STARTED') {
       if (event.is_program && event.program) this.#record(event.program, performance.now());
       else this.end('STOPPED');

@@ -21,7 +21,7 @@ namespace tiniscript {
 // `Record` has `heard` (of type `Heard`), `rose_us`, `fell_us` and `again_us`. Saves what it
 // changes and returns from the interrupt.
 template <class Record, class Heard>
-tini_always_inline void hear_change(Record* record, Echo echo, uint8_t glitch_us) {
+tini_always_inline void on_echo_edge(Record* record, Echo echo, uint8_t glitch_us) {
   asm volatile(
       "push r24\n\tin r24, __SREG__\n\tpush r24\n\tpush r25\n\t"
       "in r24, %[count]\n\tlds r25, %[clock] + %[turns]\n\t"

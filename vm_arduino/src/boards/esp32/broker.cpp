@@ -191,7 +191,7 @@ void pass_on(const uint8_t* bytes, size_t length) {
 
 // A message of a client. Who has the robot keeps it until it leaves or is silent; a stop of anybody
 // is a stop.
-void hear_peer(const char* who, const uint8_t* payload, size_t length) {
+void on_peer(const char* who, const uint8_t* payload, size_t length) {
   const bool is_taken = peer[0] != 0 && !is_same(who, peer) && now_ms() - peer_ms < kPeerMs;
   if (is_taken) {
     if (is_stop(payload, length) || has_typed_stop(payload, length)) return pipe().stop();
@@ -211,18 +211,18 @@ void hear_peer(const char* who, const uint8_t* payload, size_t length) {
   pass_on(payload, length);
 }
 
-void hear_message() {
+void on_message() {
   if (reader.is_retained()) return;
   if (is_same(reader.topic(), Topic().add("stop").text())) {
     if (is_stop(reader.payload(), reader.length())) pass_on(reader.payload(), reader.length());
     return;
   }
   const char* const who = rest_of(reader.topic(), Topic().of_robot().add("/in/").text());
-  if (who != nullptr && is_peer(who)) hear_peer(who, reader.payload(), reader.length());
+  if (who != nullptr && is_peer(who)) on_peer(who, reader.payload(), reader.length());
 }
 
 // Returns whether the connection is still there.
-bool hear_byte(uint8_t byte) {
+bool on_rx_byte(uint8_t byte) {
   switch (reader.take(byte)) {
     case MqttEvent::kNone:
       return true;
@@ -232,7 +232,7 @@ bool hear_byte(uint8_t byte) {
       return true;
     case MqttEvent::kMessage:
       if (phase != Phase::kReady) break;
-      hear_message();
+      on_message();
       return true;
     case MqttEvent::kRefused:
       hang_up(WifiState::kRefused);
@@ -244,14 +244,14 @@ bool hear_byte(uint8_t byte) {
   return false;
 }
 
-void hear() {
+void receive() {
   uint8_t bytes[kChunk];
   const int length = line_receive(bytes, sizeof bytes);
   if (length == kEnded) return hang_up();
   if (length == kNothingYet) return;
   heard_ms = now_ms();
   for (int k = 0; k < length; k++) {
-    if (!hear_byte(bytes[k])) return;
+    if (!on_rx_byte(bytes[k])) return;
   }
 }
 
@@ -303,7 +303,7 @@ void broker_turn() {
   const uint32_t limit_ms = settings.is_tls() ? kTlsMs : kConnectMs;
   if (phase != Phase::kReady && waits_ms >= limit_ms) return hang_up();
   if (phase == Phase::kConnecting) return connect();
-  hear();
+  receive();
   if (phase != Phase::kOff) say();
   if (phase == Phase::kReady && now_ms() - heard_ms >= kSilentMs) hang_up();
 }

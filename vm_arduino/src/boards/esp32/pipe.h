@@ -139,12 +139,12 @@ class Pipe {
   bool has_key() const { return __atomic_load_n(&has_key_, __ATOMIC_RELAXED); }
 
   // What has come: a byte, or kParted.
-  bool hear(uint16_t* item) {
+  bool take_rx(uint16_t* item) {
     Rings* const its = rings();
     return its != nullptr && its->in.take(item);
   }
   bool has_room() const { return rings()->out.room() != 0; }  // of somebody who is connected
-  void say(uint8_t byte) { rings()->out.put(byte); }
+  void put_tx(uint8_t byte) { rings()->out.put(byte); }
 
   // How many bytes were lost. It wraps around to 0.
   uint8_t lost() const { return lost_.count(); }

@@ -88,7 +88,7 @@ void rest() {
   vTaskDelay(1);
 }
 
-void hear(Transport transport, uint8_t byte) {
+void on_rx_byte(Transport transport, uint8_t byte) {
   firmware_on_rx_byte(transport, byte, static_cast<uint16_t>(millis()));
 }
 
@@ -116,14 +116,14 @@ void radio_attend() {
     Place running;
     const bool stops_run = pipe.take_silent_stop() && firmware_runs(&running);
     if (pipe.take_stop() || stops_run) {
-      for (uint8_t zeros = 0; zeros < kStopRun; zeros++) hear(transport, 0);
+      for (uint8_t zeros = 0; zeros < kStopRun; zeros++) on_rx_byte(transport, 0);
     }
     uint16_t item;
-    for (uint8_t left = kBytesATurn; left > 0 && pipe.hear(&item); left--) {
+    for (uint8_t left = kBytesATurn; left > 0 && pipe.take_rx(&item); left--) {
       if (item == Pipe::kParted) {
         firmware_on_part(transport);
       } else {
-        hear(transport, static_cast<uint8_t>(item));
+        on_rx_byte(transport, static_cast<uint8_t>(item));
       }
     }
   }
@@ -139,7 +139,7 @@ void radio_send() {
     pipe.note_key(firmware_has_key(transport));
     uint8_t byte;
     while ((!is_connected || pipe.has_room()) && firmware_next_tx_byte(transport, &byte)) {
-      if (is_connected) pipe.say(byte);
+      if (is_connected) pipe.put_tx(byte);
     }
   }
 }

@@ -154,7 +154,7 @@ void end_silence(Client* client) {
   client->first_line = client->first_length;
 }
 
-void hear(Client* client) {
+void receive(Client* client) {
   if (!client->is_admitted && now_ms() - client->accepted_ms >= kBeginMs) {
     return close_client(client);
   }
@@ -202,7 +202,7 @@ void network_turn() {
   if (listener == kNoSocket) return;
   accept_next();
   for (Client& client : clients) {
-    if (client.socket != kNoSocket) hear(&client);
+    if (client.socket != kNoSocket) receive(&client);
     say(&client);
   }
 }
