@@ -5,6 +5,7 @@ Four sizes, each language, light and dark. They show what is wrong; nobody keeps
 
 from __future__ import annotations
 
+import argparse
 import sys
 from pathlib import Path
 from typing import Literal
@@ -35,8 +36,9 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("python -m tools.builds.screens FOLDER")
+    parser = argparse.ArgumentParser(description="Take pictures of each screen of the studio.")
+    parser.add_argument("folder", type=Path)
+    options = parser.parse_args()
     if why := studio.missing():
         sys.exit(why)
-    main(Path(sys.argv[1]))
+    main(options.folder)
