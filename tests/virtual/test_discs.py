@@ -181,7 +181,7 @@ def test_a_disc_that_tells_nothing_is_the_fault_stuck(
     at = status.fault_at
     code = unpack(compile_text(text, TWO.kit).image).code
     found = BY_CODE[code[at]]
-    assert found.role == "until" if found else code[at] == ESCAPE, "the GO, or the UNTIL"
+    assert found.control_role == "until" if found else code[at] == ESCAPE, "the GO, or the UNTIL"
     assert (found is not None) == ("UNTIL" in text)
     talk.wait(300)
     assert is_still(robot)
