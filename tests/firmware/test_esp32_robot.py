@@ -162,7 +162,7 @@ def test_a_stop_needs_nothing_of_ledc(name: str) -> None:
     assert [robot.output(pin) for pin in pins] == [0] * len(pins)
 
 
-def test_a_bluetooth_module_that_nobody_is_connected_to_ends_a_tethered_run() -> None:
+def test_a_bluetooth_module_that_nobody_is_connected_to_ends_an_attached_run() -> None:
     """Its state pin tells that, beside the chip's own radios."""
     state = 22
     text = TEXTS["tinibot32"].replace("[board]\n", f"[board]\nbluetooth_state = {state}\n")

@@ -154,7 +154,7 @@ def test_the_next_one_drives_when_the_first_is_silent() -> None:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_who_leaves_ends_a_tethered_run_and_drives_no_more(make: Make) -> None:
+def test_who_leaves_ends_an_attached_run_and_drives_no_more(make: Make) -> None:
     robot = booted()
     driver, other = session(1, robot), session(2, robot)
     end = make(robot)

@@ -302,7 +302,7 @@ def test_a_line_is_silent_after_a_stop_when_nothing_at_all_arrives(noise: bytes)
     assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
 
 
-def test_it_has_no_tether_and_a_longest_time() -> None:
+def test_it_has_no_dead_man_timer_and_a_longest_time() -> None:
     robot = switched_on(max_run_ms=5000)
     typed(robot, "SI|F(30,50)\n", 4900)
     assert happened(robot) == ["MOTORS 50 50"]

@@ -202,7 +202,7 @@ def low_for(uno: Uno, ms: float) -> None:
     uno.drive("radio", True, at=at + round(ms * CYCLES_PER_MS))
 
 
-def test_a_radio_that_nobody_is_connected_to_any_more_ends_a_tethered_run(uno: Uno) -> None:
+def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: Uno) -> None:
     uno.drive("radio", True)
     wired = computer(uno)
     send(wired, AWAY)

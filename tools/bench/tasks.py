@@ -48,7 +48,7 @@ PARTS = {
     "who has the motors, and moves that stand still":
         r"tiniscript_moves|Machine::(take|want|sends|motors|set_motors|drive|end_move|watch|until|block|keep_move)"
         r"|robot_motors",
-    "verifier": r"::pass\(|kShape|to_the_end",
+    "verifier": r"::pass\(|kForm|to_the_end",
     "the start of a run, and all else": "",
 }  # fmt: skip
 SYMBOL = re.compile(r"\d+ (\d+) (\w) (.*)")

@@ -7,7 +7,7 @@ import { button, labelled, made } from './made.js';
 import { element } from '../page/elements.js';
 import { askAs, post } from '../robot/host.js';
 import { keepDone, lessonsDone } from '../lesson/progress.js';
-import { shown } from '../robot/said.js';
+import { shown } from '../robot/plain_text.js';
 import { Failed } from '../robot/transport.js';
 import { sign } from './signs.js';
 import { clock } from './wall.js';

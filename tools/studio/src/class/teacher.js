@@ -10,7 +10,7 @@ import { sign } from './signs.js';
 import { clock, put, Wall } from './wall.js';
 import { element } from '../page/elements.js';
 import { hostPorts, post } from '../robot/host.js';
-import { shown } from '../robot/said.js';
+import { shown } from '../robot/plain_text.js';
 import { so } from '../page/so.js';
 import { known, text } from '../page/texts.js';
 import { isSecond } from '../page/twice.js';

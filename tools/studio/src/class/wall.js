@@ -4,7 +4,7 @@
 
 import { made } from './made.js';
 import { sign } from './signs.js';
-import { shown } from '../robot/said.js';
+import { shown } from '../robot/plain_text.js';
 import { text } from '../page/texts.js';
 
 /** @typedef {import('./teacher.js').PupilRow} PupilRow */

@@ -1,6 +1,6 @@
 // What is said of a fault of a program, on the virtual robot and on a real one.
 
-import { shown } from '../robot/said.js';
+import { shown } from '../robot/plain_text.js';
 import { hasText, text } from './texts.js';
 
 /** @param {unknown} fault its name @returns {string} a sentence that stands behind its line */

@@ -2,7 +2,7 @@
 
 import { element } from '../page/elements.js';
 import { chosenPort, hasSerial } from './serial.js';
-import { shown } from './said.js';
+import { shown } from './plain_text.js';
 import { Failed } from './transport.js';
 import { so } from '../page/so.js';
 import { currentLanguage } from '../page/texts.js';

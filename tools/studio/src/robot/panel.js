@@ -11,7 +11,7 @@ import { keepKeys, keptKeys } from './keys.js';
 import { Flashing } from './flashing.js';
 import { readTrim, showTrim } from './trim.js';
 import { chosenPort, hasSerial, knownPorts, SerialPort } from './serial.js';
-import { refusal, shown } from './said.js';
+import { refusal, shown } from './plain_text.js';
 import { stopAll } from './stops.js';
 import { Speech } from './speech.js';
 import { Failed } from './transport.js';

@@ -1,7 +1,7 @@
 // What the panel of a real robot says, and what the robot shows: as text, never as markup.
 
 import { element } from '../page/elements.js';
-import { shown } from './said.js';
+import { shown } from './plain_text.js';
 import { so } from '../page/so.js';
 import { hasText, known, text } from '../page/texts.js';
 

@@ -3,7 +3,7 @@
 import { made } from '../class/made.js';
 import { element } from '../page/elements.js';
 import { isTeacher, post } from './host.js';
-import { shown } from './said.js';
+import { shown } from './plain_text.js';
 import { text } from '../page/texts.js';
 import { LINK } from '../page/words.js';
 

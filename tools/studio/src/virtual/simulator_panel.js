@@ -135,16 +135,16 @@ export class SimulatorPanel {
     });
     for (const each of Object.keys(SEEN)) element(each, HTMLButtonElement).addEventListener('click', () => this.#choose(each));
     const sound = element('sound', HTMLButtonElement);
-    const hear = () => {
+    const applySound = () => {
       this.#sounds.mute(!work.sound);
       sound.setAttribute('aria-pressed', String(work.sound));
     };
     sound.addEventListener('click', () => {
       work.sound = !work.sound;
-      hear();
+      applySound();
       remember();
     });
-    hear();
+    applySound();
     element('erase_ways', HTMLButtonElement).addEventListener('click', () => {
       this.#arena.eraseWays();
       this.#show();
