@@ -8,7 +8,6 @@ from typing import Any
 
 from tiniscript.base.catalogue_compiler import merged
 from tiniscript.base.languages import files
-from tiniscript.studio.block_kinds import FIXED
 
 # Of what the page's Python says; the sentences of lessons come with these.
 MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names")
@@ -40,7 +39,6 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
     form = c2py(rule[1] if rule else "0")
     return {
         "": "".join(str(form(number)) for number in range(2 * PERIOD)),
-        **{f"block/{word}": says for word, says in FIXED.items()},
         **{key: forms if len(forms) > 1 else forms[0] for key, forms in found.items()},
     }
 

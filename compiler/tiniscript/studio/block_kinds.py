@@ -19,8 +19,8 @@ class Kind(NamedTuple):
 
     `field` is what is written in it: `name`, `line`, `sensor` or `actuator`; `words` are the words
     to choose from instead, and `units` of those the units behind the first value, instead of
-    seconds. `gives` is what a block gives that is a value. `says` is what it says in all
-    languages, where there are no words.
+    seconds. `gives` is what a block gives that is a value, and `part` which part of an expression
+    it is, where its words are none. `says` is what it says in all languages.
     """
 
     name: str
@@ -28,6 +28,7 @@ class Kind(NamedTuple):
     values: tuple[str, ...] = ()
     bodies: int = 0
     gives: str = ""
+    part: str = ""
     field: str = ""
     words: tuple[str, ...] = ()
     units: Mapping[str, str] = {}
@@ -36,6 +37,8 @@ class Kind(NamedTuple):
 
 # fmt: off
 MOVES = tuple(UNIT_OF)
+SUMS = {"ADD": "+", "SUB": "−", "MUL": "×", "DIV": "÷", "MOD": "%"}
+COMPARISONS = {"EQ": "=", "NE": "≠", "LT": "<", "LE": "≤", "GT": ">", "GE": "≥"}
 # What a word with fixed values says where the catalogue has no `block/HORN`: `HORN = BEEP(0.5, 440)`.
 FIXED = {
     word.text: f"{{{word.text}}} {word.text} = {word.stands_for}"
@@ -67,26 +70,32 @@ KINDS = {kind.name: kind for kind in (
     Kind("when", "control", ("truth",), bodies=1),
     Kind("comment", "others", field="line"),
     Kind("grey", "grey", field="line", says="%1"),
-    Kind("number", "numbers", gives="number", says="%1"),
-    Kind("name", "names", gives="any", field="name", says="%1"),
-    Kind("sensor", "sensors", gives="any", field="sensor", says="%1"),
+    Kind("number", "numbers", gives="number", part="NUMBER", says="%1"),
+    Kind("name", "names", gives="any", part="NAME", field="name", says="%1"),
+    Kind("sensor", "sensors", gives="any", part="SENSOR", field="sensor", says="%1"),
     Kind("truth", "decide", gives="truth", words=("TRUE", "FALSE"), says="%1"),
-    Kind("time", "time", gives="number"),
-    Kind("endless", "time", gives="number"),
-    Kind("math", "numbers", ("number", "number"), gives="number", says="%1 %2 %3"),
-    Kind("compare", "decide", ("any", "any"), gives="truth", says="%1 %2 %3"),
-    Kind("logic", "decide", ("truth", "truth"), gives="truth", says="%1 %2 %3"),
-    Kind("not", "decide", ("truth",), gives="truth"),
-    Kind("negative", "numbers", ("number",), gives="number", says="− %1"),
-    Kind("brackets", "numbers", ("any",), gives="any", says="( %1 )"),
-    Kind("round", "numbers", ("number", "number"), gives="number"),
-    Kind("abs", "numbers", ("number",), gives="number"),
+    Kind("time", "time", gives="number", part="TIME"),
+    Kind("endless", "time", gives="number", part="FOREVER"),
+    Kind("math", "numbers", ("number", "number"), gives="number", words=tuple(SUMS), says="%2 %1 %3"),
+    Kind("compare", "decide", ("any", "any"), gives="truth", words=tuple(COMPARISONS), says="%2 %1 %3"),
+    Kind("logic", "decide", ("truth", "truth"), gives="truth", words=("AND", "OR"), says="%2 %1 %3"),
+    Kind("not", "decide", ("truth",), gives="truth", part="NOT"),
+    Kind("negative", "numbers", ("number",), gives="number", part="NEG", says="− %1"),
+    Kind("brackets", "numbers", ("any",), gives="any", part="BRACKETS", says="( %1 )"),
+    Kind("round", "numbers", ("number", "number"), gives="number", part="ROUND"),
+    Kind("abs", "numbers", ("number",), gives="number", part="ABS"),
     Kind("extreme", "numbers", ("number", "number"), gives="number", words=("MIN", "MAX")),
-    Kind("random", "numbers", ("number", "number"), gives="number"),
+    Kind("random", "numbers", ("number", "number"), gives="number", part="RANDOM"),
 )}
 # fmt: on
 
 
+SAYS = {**{kind.name: kind.says for kind in KINDS.values()}, **SUMS, **COMPARISONS, **FIXED}
+
+
 def data() -> dict[str, Any]:
-    """Return the table as data for JSON."""
-    return {"kinds": {name: kind._asdict() for name, kind in KINDS.items()}}
+    """Return the table as data for JSON: the kinds, and what is said in all languages."""
+    kinds = {name: kind._asdict() for name, kind in KINDS.items()}
+    for kind in kinds.values():
+        del kind["name"], kind["says"]
+    return {"kinds": kinds, "says": {name: says for name, says in SAYS.items() if says}}

@@ -13,4 +13,6 @@ export const COLOURS = {
   names: '#93185a',
   words: '#7a2e6e',
   others: '#57606a',
+  stop: '#a8200f',
+  grey: '#6b7078',
 };

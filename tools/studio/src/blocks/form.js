@@ -5,7 +5,8 @@
 import * as Blockly from 'blockly/core';
 import { WAY } from './fields.js';
 import { wordOf, wordOn } from './places.js';
-import { Checker, SHAPES } from './shapes.js';
+import { Checker } from './shapes.js';
+import { KINDS } from '../page/words.js';
 
 /** @typedef {[number, number, number, number]} Range line and column, from 1, and those of the end */
 /** @typedef {[string, string][]} Value */
@@ -21,13 +22,8 @@ import { Checker, SHAPES } from './shapes.js';
  */
 /** @typedef {{start: string, note: string, is_one_line: boolean, body: FormBlock[], loose: {body: FormBlock[], value: Value}[]}} Form */
 
-const SIGNS = { ADD: 'math', SUB: 'math', MUL: 'math', DIV: 'math', MOD: 'math', AND: 'logic', OR: 'logic',
-  EQ: 'compare', NE: 'compare', LT: 'compare', LE: 'compare', GT: 'compare', GE: 'compare' };
-/** Parts of an expression that have a kind of block of their own. @type {Record<string, string>} */
-const KIND_OF = { ...SIGNS, NEG: 'negative', NOT: 'not', BRACKETS: 'brackets', ROUND: 'round', ABS: 'abs', MIN: 'extreme',
-  MAX: 'extreme', RANDOM: 'random', TRUE: 'truth', FALSE: 'truth', TIME: 'time', FOREVER: 'endless',
-  NUMBER: 'number', NAME: 'name', SENSOR: 'sensor' };
-const PART_OF = { negative: 'NEG', not: 'NOT', brackets: 'BRACKETS', round: 'ROUND', abs: 'ABS', random: 'RANDOM', time: 'TIME', endless: 'FOREVER' };
+/** The kind of block of each part of an expression. */
+const KIND_OF = new Map(Object.entries(KINDS).flatMap(([kind, { part, words }]) => [part, ...words].map((each) => [each, kind])));
 const CORNER = 32; // where the program begins
 const DISTANCE = 64; // between stacks: Blockly pushes what is nearer than it would join
 
@@ -129,11 +125,10 @@ function valueOf(whole) {
 
 /** @param {Blockly.Block} block @returns {[string, string]} */
 function partOf(block) {
-  const word = String(block.getFieldValue('WORD') ?? '');
-  if (block.type === 'number') return ['NUMBER', /** @type {any} */ (block.getField('WORD')).written()];
-  if (block.type === 'name' || block.type === 'sensor') return [block.type.toUpperCase(), word];
-  const part = /** @type {Record<string, string>} */ (PART_OF)[block.type];
-  return [part ?? String(block.getFieldValue('SIGN') ?? word), ''];
+  const field = /** @type {any} */ (block.getField('WORD'));
+  const word = String(field?.written?.() ?? field?.getValue() ?? '');
+  const part = KINDS[block.type]?.part;
+  return part ? [part, word] : [word, ''];
 }
 
 // -- a form to blocks ------------------------------------------------------------------------------
@@ -253,7 +248,7 @@ function valueBlock(value, make) {
   const stack = [];
   value.forEach((part, k) => {
     const [op, text] = part;
-    const kind = KIND_OF[op];
+    const kind = KIND_OF.get(op);
     if (!kind) {
       stack.push(null);
       plain.push([]);
@@ -266,9 +261,8 @@ function valueBlock(value, make) {
       return;
     }
     const block = make(kind);
-    if (block.getField('SIGN')) block.setFieldValue(op, 'SIGN');
     if (block.getField('WORD')) block.setFieldValue(text || op, 'WORD');
-    const count = SHAPES[kind]?.values.length ?? 0;
+    const count = KINDS[kind]?.values.length ?? 0;
     for (let index = count - 1; index >= 0; index -= 1) {
       const inner = stack.pop() ?? null;
       const itself = plain.pop() ?? [];

@@ -10,10 +10,7 @@ const ANY = { low: -2147483.648, high: 2147483.647, sample: '1' };
 const ARGUMENTS = new Map(description.words.map((word) => [word.text, word.arguments]));
 /** Of each role of an instruction its first word: a kind of block is named like it. @type {Map<string, string>} */
 const FIRST_WORDS = new Map(description.words
-  .filter((word) => word.arguments.length || ['stop', 'start'].includes(word.role))
   .map((word) => /** @type {[string, string]} */ ([word.role, word.text])).reverse());
-/** Words with arguments whose kinds are no roles. */
-const OTHERS = /** @type {Record<string, string>} */ ({ loop: 'LOOP', round: 'ROUND', random: 'RANDOM' });
 /** @type {Map<string, Range>} */
 let actuators = new Map();
 
@@ -50,7 +47,7 @@ export function wordOn(block) {
  */
 export function rangeOf(kind, word, index) {
   if (kind === 'set') return actuators.get(word) ?? ANY;
-  const range = ARGUMENTS.get(word || OTHERS[kind] || wordOf(kind))?.[index] ?? ANY;
+  const range = ARGUMENTS.get(word || wordOf(kind) || kind.toUpperCase())?.[index] ?? ANY;
   return Number.isFinite(Number(range.sample)) ? range : { ...range, sample: '1' };
 }
 

@@ -2,19 +2,13 @@
 // order of their values are those of `studio/block_kinds.py`.
 
 import * as Blockly from 'blockly/core';
-import blocks from '../../made/blocks.json';
 import { LineField, NameField, NumberField, UnitField } from './fields.js';
 import { rangeOf } from './places.js';
 import { called } from '../page/texts.js';
-import { nameOf, onBlock, ROBOTS, tipOf } from '../page/words.js';
+import { KINDS, nameOf, onBlock, ROBOTS, tipOf } from '../page/words.js';
 
-/** @typedef {'number' | 'truth' | 'any'} Place what a value there is */
-/** @typedef {{colour: string, words: string[], values: Place[], units: Record<string, string>, bodies: number, gives: '' | Place, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Shape */
-
-const COMPARED = [['=', 'EQ'], ['≠', 'NE'], ['<', 'LT'], ['≤', 'LE'], ['>', 'GT'], ['≥', 'GE']];
-const RECKONED = [['+', 'ADD'], ['−', 'SUB'], ['×', 'MUL'], ['÷', 'DIV'], ['%', 'MOD']];
-
-export const SHAPES = /** @type {Record<string, Shape>} */ (blocks.kinds);
+/** @typedef {import('../page/words.js').Place} Place */
+/** @typedef {import('../page/words.js').Kind} Kind */
 
 const CHECKS = { number: 'Number', truth: 'Boolean', any: null };
 /** @type {string} */
@@ -43,7 +37,7 @@ export class Checker extends Blockly.ConnectionChecker {
 
 /**
  * @param {Blockly.Block} block
- * @param {Shape} shape
+ * @param {Kind} shape
  * @returns {Blockly.Field | null} what stands before its values
  */
 function firstField(block, shape) {
@@ -124,16 +118,14 @@ function named(field, name) {
   return field;
 }
 
-/** @param {Blockly.Block} block @param {string} kind @param {Shape} shape */
+/** @param {Blockly.Block} block @param {string} kind @param {Kind} shape */
 function build(block, kind, shape) {
   const first = firstField(block, shape);
-  const sign = { math: RECKONED, compare: COMPARED, logic: [[onBlock('AND'), 'AND'], [onBlock('OR'), 'OR']] }[kind];
   const unit = Object.keys(shape.units).length ? new UnitField(shape.units) : null;
   if (unit) first?.setValidator(() => unit.forceRerender());
   let value = 0;
   add(block, onBlock(kind), (number) => {
     if (first && number === 1) return named(first, 'WORD');
-    if (sign && number === 2) return named(options(sign), 'SIGN');
     if (unit && number === 3) return named(unit, 'UNIT');
     return `V${value++}`;
   }, (name) => shape.values[Number(name.slice(1))] ?? 'any');
@@ -264,7 +256,7 @@ export function defineBlocks() {
       this.setTooltip(tipOf('program'));
     },
   };
-  for (const [kind, shape] of Object.entries(SHAPES)) {
+  for (const [kind, shape] of Object.entries(KINDS)) {
     Blockly.Blocks[kind] = kind === 'if' ? IF : {
       /** @this {Blockly.Block} */
       init() {

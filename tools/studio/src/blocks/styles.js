@@ -63,8 +63,6 @@ function prepared() {
     blockStyles: {
       ...Object.fromEntries(styles),
       program: { colourPrimary: '#123b63', hat: 'cap' },
-      stop: { colourPrimary: '#a8200f' },
-      grey: { colourPrimary: '#6b7078' },
     },
     categoryStyles: Object.fromEntries(Object.entries(COLOURS).map(([name, colour]) => [name, { colour }])),
     fontStyle: { family: 'system-ui, "DejaVu Sans", sans-serif', weight: '600', size: 12 },

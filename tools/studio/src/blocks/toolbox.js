@@ -33,7 +33,7 @@ function question() {
   const sensor = devices('sensor')[0];
   if (!sensor) return {};
   const block = { type: 'sensor', fields: { WORD: sensor.text } };
-  return { V0: { block: sensor.is_yes_no ? block : { type: 'compare', fields: { SIGN: 'LT' }, inputs: { V0: { block }, V1: number(20) } } } };
+  return { V0: { block: sensor.is_yes_no ? block : { type: 'compare', fields: { WORD: 'LT' }, inputs: { V0: { block }, V1: number(20) } } } };
 }
 
 /** @param {string} type @param {object} [extraState] @returns {Item} */
@@ -77,7 +77,7 @@ function groups(used) {
       ...sensors.slice(0, 1).map((name) => /** @type {[Level, Item]} */ (['usual', item('read', [], name)])),
     ]],
     ['few', 'decide', [
-      ['few', { ...item('compare', [1, 1]), fields: { SIGN: 'LT' } }], ['usual', { ...item('logic'), fields: { SIGN: 'AND' } }],
+      ['few', { ...item('compare', [1, 1]), fields: { WORD: 'LT' } }], ['usual', { ...item('logic'), fields: { WORD: 'AND' } }],
       ['usual', item('not')], ['usual', item('truth')],
     ]],
     ['usual', 'numbers', [

@@ -36,13 +36,17 @@ export function nameOf(device) {
   return labelled(`{${device.text}} ${called(device.labels)}`);
 }
 
-/** @type {Record<string, {says: string}>} */
-const KINDS = blocks.kinds;
+/** @typedef {'number' | 'truth' | 'any'} Place what a value there is */
+/** @typedef {{colour: string, words: string[], values: Place[], units: Record<string, string>, bodies: number, gives: '' | Place, part: string, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Kind */
+
+export const KINDS = /** @type {Record<string, Kind>} */ (blocks.kinds);
+/** @type {Record<string, string>} */
+const SAYS = blocks.says;
 
 /** @param {string} name of a kind of block, or of what may be chosen @returns {string} its words; `%1` and so on are where values go */
 export function onBlock(name) {
   const key = `block/${name}`;
-  return labelled(hasText(key) ? text(key) : KINDS[name]?.says ?? '');
+  return labelled(hasText(key) ? text(key) : SAYS[name] ?? '');
 }
 
 /** @param {string} name of a kind of block @returns {string} what it does, said when a pointer rests on it, or nothing */

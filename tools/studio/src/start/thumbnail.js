@@ -2,14 +2,12 @@
 // text alone, so that it costs nothing and shows nothing that somebody else has written.
 
 import { COLOURS } from '../blocks/colours.js';
-import { wordsOf } from '../page/words.js';
+import { KINDS, wordsOf } from '../page/words.js';
 
 const SVG = 'http://www.w3.org/2000/svg';
 const MOST = 7; // bars
 const ROW = 9, HIGH = 7, STEP = 7, WIDEST = 60;
 const OPENS = /^(LOOP|REPEAT|WHILE|IF|DEF|TASK|WHEN)\b/i, TURNS = /^ELSE/i, CLOSES = /^END/i;
-/** @type {Record<string, string>} */
-const GROUPS = { move: 'move', motors: 'move', stop: 'move', beep: 'time', wait: 'time', show: 'time', sensor: 'sensors', actuator: 'sensors' };
 
 /**
  * @param {string} program
@@ -28,7 +26,7 @@ export function thumbnail(program, robot) {
     if (CLOSES.test(line) || TURNS.test(line)) depth = Math.max(0, depth - 1);
     if (!CLOSES.test(line)) {
       const role = words.get(/^\w*/.exec(line)?.[0].toUpperCase() ?? '')?.role ?? '';
-      const colour = OPENS.test(line) || TURNS.test(line) ? COLOURS['control'] : COLOURS[GROUPS[role] ?? 'names'];
+      const colour = OPENS.test(line) || TURNS.test(line) ? COLOURS['control'] : COLOURS[KINDS[role === 'actuator' ? 'set' : role]?.colour ?? 'names'];
       picture.append(bar(3 + depth * STEP, 3 + row * ROW, Math.min(WIDEST, 14 + 3 * line.length), colour ?? ''));
       row += 1;
     }
