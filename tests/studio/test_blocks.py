@@ -139,7 +139,7 @@ ROLES = {
 
 
 def of_word(word: str) -> str:
-    role = WORDS[word].role
+    role = WORDS[word].role.name
     if role == "until":
         return "W(1) UNTIL(DISTANCE < 10)"
     if role in ("value", "function"):
@@ -154,7 +154,7 @@ def test_every_node_of_the_grammar_has_a_block() -> None:
         assert kinds(text)[0] == kind
 
 
-@each_row("word", [name for name, word in WORDS.items() if word.role != "later"])
+@each_row("word", [name for name, word in WORDS.items() if word.role.name != "later"])
 def test_every_word_of_the_language_is_in_blocks(word: str) -> None:
     text = of_word(word)
     check(text, TINIBOT)
@@ -193,7 +193,7 @@ def test_every_word_of_a_kit_is_in_blocks() -> None:
 def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORDS, HORN.text, HORN)
     left_out = ("later", "setup", "alias")
-    text = ";".join(of_word(word) for word in WORDS if WORDS[word].role not in left_out)
+    text = ";".join(of_word(word) for word in WORDS if WORDS[word].role.name not in left_out)
     text += ";F(1, 2) UNTIL(TRUE)"
     text += ";X = 1;HOP;LED(TRUE);DISTANCE;LOOP(FOREVER);END_LOOP\n// note\nF("
     found = in_order(read(text, TINIBOT).body)

@@ -6,9 +6,9 @@ import shutil
 from pathlib import Path
 
 from tiniscript.base.languages import FOLDER
-from tiniscript.base.words import Word
+from tiniscript.base.words import ROLES, Word
 
-HORN = Word("HORN", "fixed", stands_for="BEEP(0.5, 440)")
+HORN = Word("HORN", ROLES["fixed"], stands_for="BEEP(0.5, 440)")
 SAID = {"en": "honks", "es": "toca la bocina"}
 
 

@@ -11,7 +11,7 @@ from tests.oracle import programs
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tiniscript import compile_text, robots
-from tiniscript.base.words import SECONDS, WORDS, Word
+from tiniscript.base.words import SECONDS, WORDS, Role, Word
 from tiniscript.codegen.text.line import plain_code
 from tiniscript.codegen.text.memory import Reader
 from tiniscript.diagnostics.codes import Diagnostic
@@ -214,6 +214,6 @@ def test_a_word_that_no_level_reads_is_kept_from_names_alone(
 
 def test_what_the_reader_needs_for_a_new_word_is_said() -> None:
     with pytest.raises(LookupError, match=r"ROLES of tools/generate/text_tables\.py.*or.*lacks"):
-        text_tables.role_of(Word("HONK", "honk", (SECONDS,)))
+        text_tables.role_of(Word("HONK", Role("honk"), (SECONDS,)))
     with pytest.raises(LookupError, match=r"OPCODES in tools/generate/text_tables\.py"):
-        text_tables.opcode_of(Word("HONK", "beep", (SECONDS,)))
+        text_tables.opcode_of(Word("HONK", Role("beep"), (SECONDS,)))

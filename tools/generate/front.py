@@ -35,6 +35,7 @@ MONO = "'DejaVu Sans Mono', Consolas, Menlo, monospace"
 INK, DIM, PAPER, SCREEN = "#e6edf3", "#9fb0c0", "#12202e", "#0a131b"
 NUMBER, SETUP, GRAMMAR, WORD = "#f5c86a", "#d2a8ff", "#ff9e80", "#7ee0c3"
 GRAMMAR_ROLES = ("block", "arm", "end", "until", "forever", "operator")
+COLOURS = {"setup": SETUP, **dict.fromkeys(GRAMMAR_ROLES, GRAMMAR)}
 
 
 def fronts(command: str) -> dict[str, partial[str]]:
@@ -89,7 +90,7 @@ def _colour(part: str) -> str:
     word = WORDS.get(part)
     if word is None:
         return WORD if part.isidentifier() else INK
-    return {"setup": SETUP}.get(word.role, GRAMMAR if word.role in GRAMMAR_ROLES else WORD)
+    return COLOURS.get(word.role.name, WORD)
 
 
 def _terminal(language: str) -> list[str]:

@@ -21,7 +21,6 @@ CODE_X, SAYS_X = 44.0, 252.0
 HEAD_PT, ROW_PT, LEAST_ROW_PT = 20.5, 15.4, 12.0
 CODE_SIZE, SAYS_SIZE = 9.8, 10.0
 CODE_SIGNS, SAYS_SIGNS = 34, 60  # that fit
-NOT_SHOWN = ("alias", "later")  # roles: other spellings, and words that do nothing yet
 BLACK, GREY, WHITE = (20, 20, 20), (90, 90, 90), (255, 255, 255)
 BLUE, PALE = (18, 92, 160), (238, 243, 248)
 # A heading, and the words below it: `{F}` is the example that the table has for F.
@@ -142,7 +141,7 @@ def page(language: str) -> Page:
             found.append(Line(SAYS_X, y + (row_pt + 8.2) / 2, SAYS_SIZE, SANS, BLACK, says))
             y += row_pt
         y += 2
-    missing = {word.text for word in WORDS.values() if word.role not in NOT_SHOWN} - set(shown)
+    missing = {word.text for word in WORDS.values() if word.role.is_offered} - set(shown)
     assert not missing, f"the poster lacks {sorted(missing)}"
     found.append(Line(LEFT, paper.HEIGHT - 16, 9, SANS, GREY, _said("foot", language)))
     return found

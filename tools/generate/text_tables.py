@@ -38,7 +38,7 @@ def role_of(word: Word) -> str:
     if word.text in ("LOOP", "DEF", "ELSE"):
         return word.text.lower()
     roles = {"block": "question", "arm": "question", "until": "question", "alias": "end"}
-    role = roles.get(word.role, word.role)
+    role = roles.get(word.role.name, word.role.name)
     if role not in ROLES:
         raise LookupError(
             f"{word.text} has a role of its own, {role}. A robot's reader of text needs it: a name "
@@ -102,14 +102,14 @@ def bytes_before(name: str) -> int:
     """Return how many letters the words have before this one, or before the first of this role."""
     words = words_in_order()
     (first, *_) = (
-        at for at, word in enumerate(words) if name in (word.text, word.role, role_of(word))
+        at for at, word in enumerate(words) if name in (word.text, word.role.name, role_of(word))
     )
     return sum(len(word.text) for word in words[:first])
 
 
 def bytes_of(role: str) -> int:
     """Return how many letters the words of this role have."""
-    return sum(len(word.text) for word in words_in_order() if word.role == role)
+    return sum(len(word.text) for word in words_in_order() if word.role.name == role)
 
 
 def words_header(command: str) -> str:

@@ -17,7 +17,7 @@ _GRAMMAR = ("block", "arm", "end", "break", "operator", "alias")
 
 
 def _with_role(*roles: str) -> tuple[str, ...]:
-    return tuple(word.text for word in WORDS.values() if word.role in roles)
+    return tuple(word.text for word in WORDS.values() if word.role.name in roles)
 
 
 class TiniScriptLexer(RegexLexer):  # type: ignore[misc] # Pygments has no types
@@ -33,12 +33,7 @@ class TiniScriptLexer(RegexLexer):  # type: ignore[misc] # Pygments has no types
             (r"~[0-9A-F]{8}", String),
             (r"\d+(?:\.\d+)?", Number),
             (words(_with_role("setup"), suffix=r"\b"), Keyword.Namespace),
-            (
-                words(
-                    _with_role("block", "arm", "end", "break", "operator", "alias"), suffix=r"\b"
-                ),
-                Keyword,
-            ),
+            (words(_with_role(*_GRAMMAR), suffix=r"\b"), Keyword),
             (words(tuple(WORDS), suffix=r"\b"), Name.Builtin),
             (r"[A-Z_]\w*", Name),
             (r"[-+*/%<>=!&|]+", Operator),

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import Fault, divided, in_range, value_text
-from tiniscript.base.words import Argument, Word
+from tiniscript.base.words import ROLES, Argument, Word
 
 NUMBER = "number"
 YES_NO = "yes/no"
@@ -38,7 +38,7 @@ class Device(NamedTuple):
         middle = self.low + (self.high - self.low) // 2000 * 1000
         sample = self.text(1 if self.is_yes_no else middle)
         value = Argument("value", self.unit, self.low, self.high, sample)
-        return Word(self.name, "actuator", (value,))
+        return Word(self.name, ROLES["actuator"], (value,))
 
     def text(self, value: int) -> str:
         """Return a reading or a setting as a run prints it."""

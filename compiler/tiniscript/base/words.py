@@ -16,11 +16,6 @@ from typing import NamedTuple
 from tiniscript.base.fixed_point import HIGHEST, LOWEST
 from tiniscript.base.languages import SOURCE, languages, table
 
-# Roles of instructions: these have values in brackets, and STOP does something, too. A new role of a
-# word that does something is a name here.
-CALLS = frozenset(("move", "wait", "motors", "beep", "show"))
-INSTRUCTIONS = CALLS | {"stop", "fixed"}
-
 
 class Argument(NamedTuple):
     """What an argument means, and what a plain number there may be."""
@@ -32,23 +27,27 @@ class Argument(NamedTuple):
     sample: str = "1"
 
 
+class Role(NamedTuple):
+    """What a word is for. Stages ask for these, or have a table by name of what they do with it."""
+
+    name: str
+    is_instruction: bool = False  # a robot does something at it
+    is_call: bool = False  # an instruction with values in brackets
+    lasts: bool = False  # for a time, or until something is so
+    is_move: bool = False  # with a power, and a time or a way
+    is_of_blocks: bool = False
+    is_of_values: bool = False
+    begins: bool = True  # something in a line
+    is_offered: bool = True  # no other spelling, and no word of later versions
+
+
 class Word(NamedTuple):
     """A word with the role `fixed` stands for an instruction with its values, `BEEP(0.5, 440)`."""
 
     text: str
-    role: str
+    role: Role
     arguments: tuple[Argument, ...] = ()
     stands_for: str = ""
-
-    @property
-    def is_call(self) -> bool:
-        """Whether it is an instruction with values in brackets."""
-        return self.role in CALLS
-
-    @property
-    def is_instruction(self) -> bool:
-        """Whether a robot does something at it."""
-        return self.role in INSTRUCTIONS
 
     @property
     def usage(self) -> str:
@@ -64,6 +63,17 @@ class Word(NamedTuple):
 
 
 # fmt: off
+ROLES = {role.name: role for role in (
+    Role("move", is_instruction=True, is_call=True, lasts=True, is_move=True),
+    Role("wait", is_instruction=True, is_call=True, lasts=True),
+    *(Role(name, is_instruction=True, is_call=True) for name in ("motors", "beep", "show")),
+    *(Role(name, is_instruction=True) for name in ("stop", "fixed")),
+    *(Role(name, is_of_blocks=True) for name in ("block", "arm", "end")),
+    *(Role(name, is_of_values=True, begins=False) for name in ("value", "operator", "function")),
+    *(Role(name, is_offered=False) for name in ("alias", "later")),
+    Role("setup", begins=False), *map(Role, ("start", "until", "forever", "break", "unit", "actuator")),
+)}
+
 SECONDS = Argument("seconds", "s", 0)
 TIME = Argument("time", "s", 0, sample="2")
 POWER = Argument("power", "%", 0, 100_000, "80")
@@ -78,36 +88,41 @@ QUESTION = Argument("c", "", sample="DISTANCE < 10")
 A, B = Argument("a", "", sample="5"), Argument("b", "", sample="DISTANCE")
 LOW, HIGH = Argument("low", "", sample="1"), Argument("high", "", sample="6")
 
+
+def _row(text: str, role: str, arguments: tuple[Argument, ...] = (), stands_for: str = "") -> Word:
+    return Word(text, ROLES[role], arguments, stands_for)
+
+
 WORDS = {word.text: word for word in (
-    Word("PING", "setup"), Word("SI", "setup"), Word("SB", "setup"), Word("CHECK_CONNECTION", "setup"),
-    Word("F", "move", (TIME, POWER)), Word("B", "move", (TIME, POWER)),
-    Word("L", "move", (TIME, POWER)), Word("R", "move", (TIME, POWER)),
-    Word("W", "wait", (SECONDS,)),
-    Word("M", "motors", (LEFT, RIGHT)),
-    Word("S", "stop"), Word("STOP", "stop"), Word("START", "start"),
-    Word("BEEP", "beep", (SECONDS, HERTZ)),
-    Word("SHOW", "show", (VALUE,)),
-    Word("UNTIL", "until", (QUESTION,)), Word("FOREVER", "forever"),
-    Word("IF", "block", (QUESTION,)), Word("ELSEIF", "arm", (QUESTION,)), Word("ELSE", "arm"),
-    Word("ENDIF", "end"),
-    Word("LOOP", "block", (Argument("n", "", sample="3"),)), Word("END_LOOP", "end"),
-    Word("WHILE", "block", (Argument("c", "", sample="DISTANCE > 10"),)), Word("END_WHILE", "end"),
-    Word("BREAK", "break"),
-    Word("DEF", "block"), Word("END_DEF", "end"),
-    Word("TASK", "block"), Word("END_TASK", "end"),
-    Word("WHEN", "block", (Argument("c", "", sample="DISTANCE < 15"),)), Word("END_WHEN", "end"),
-    Word("TRUE", "value"), Word("FALSE", "value"), Word("TIME", "value"),
-    Word("AND", "operator"), Word("OR", "operator"), Word("NOT", "operator"),
-    Word("ROUND", "function", (VALUE, Argument("decimals", ""))),
-    Word("ABS", "function", (A,)), Word("MIN", "function", (A, B)), Word("MAX", "function", (A, B)),
-    Word("RANDOM", "function", (LOW, HIGH)),
-    Word("END_IF", "alias"), Word("ENDLOOP", "alias"), Word("ENDWHILE", "alias"), Word("ENDDEF", "alias"),
-    Word("ENDTASK", "alias"), Word("ENDWHEN", "alias"),
-    Word("CM", "unit"), Word("DEG", "unit"),
-    Word("SEND", "later"),
+    _row("PING", "setup"), _row("SI", "setup"), _row("SB", "setup"), _row("CHECK_CONNECTION", "setup"),
+    _row("F", "move", (TIME, POWER)), _row("B", "move", (TIME, POWER)),
+    _row("L", "move", (TIME, POWER)), _row("R", "move", (TIME, POWER)),
+    _row("W", "wait", (SECONDS,)),
+    _row("M", "motors", (LEFT, RIGHT)),
+    _row("S", "stop"), _row("STOP", "stop"), _row("START", "start"),
+    _row("BEEP", "beep", (SECONDS, HERTZ)),
+    _row("SHOW", "show", (VALUE,)),
+    _row("UNTIL", "until", (QUESTION,)), _row("FOREVER", "forever"),
+    _row("IF", "block", (QUESTION,)), _row("ELSEIF", "arm", (QUESTION,)), _row("ELSE", "arm"),
+    _row("ENDIF", "end"),
+    _row("LOOP", "block", (Argument("n", "", sample="3"),)), _row("END_LOOP", "end"),
+    _row("WHILE", "block", (Argument("c", "", sample="DISTANCE > 10"),)), _row("END_WHILE", "end"),
+    _row("BREAK", "break"),
+    _row("DEF", "block"), _row("END_DEF", "end"),
+    _row("TASK", "block"), _row("END_TASK", "end"),
+    _row("WHEN", "block", (Argument("c", "", sample="DISTANCE < 15"),)), _row("END_WHEN", "end"),
+    _row("TRUE", "value"), _row("FALSE", "value"), _row("TIME", "value"),
+    _row("AND", "operator"), _row("OR", "operator"), _row("NOT", "operator"),
+    _row("ROUND", "function", (VALUE, Argument("decimals", ""))),
+    _row("ABS", "function", (A,)), _row("MIN", "function", (A, B)), _row("MAX", "function", (A, B)),
+    _row("RANDOM", "function", (LOW, HIGH)),
+    _row("END_IF", "alias"), _row("ENDLOOP", "alias"), _row("ENDWHILE", "alias"), _row("ENDDEF", "alias"),
+    _row("ENDTASK", "alias"), _row("ENDWHEN", "alias"),
+    _row("CM", "unit"), _row("DEG", "unit"),
+    _row("SEND", "later"),
 )}
 
-FUNCTIONS = tuple(word.text for word in WORDS.values() if word.role == "function")
+FUNCTIONS = tuple(word.text for word in WORDS.values() if word.role.name == "function")
 ALIASES = {
     "END_IF": "ENDIF", "ENDLOOP": "END_LOOP", "ENDWHILE": "END_WHILE", "ENDDEF": "END_DEF",
     "ENDTASK": "END_TASK", "ENDWHEN": "END_WHEN",

@@ -25,7 +25,7 @@ ENDED = ENDS
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
 STARTS = frozenset(BLOCK_ENDS) - {"DEF"}
 SOME_END = "FIN"  # of a block that its word does not name: what a row makes of each such end
-CALLED = frozenset(word.text for word in WORDS.values() if word.is_call)
+CALLED = frozenset(word.text for word in WORDS.values() if word.role.is_call)
 DONE = CALLED | {"S", "STOP", "BREAK"}
 
 _TOKEN = re.compile(

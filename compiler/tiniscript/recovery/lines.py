@@ -39,6 +39,7 @@ _CALCULATES = SIGNS | {"°"}  # without it another number would be meant
 _NEEDLESS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
 _PLAIN_DIGITS = 4
 _AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
+_EDGES = {each for each in WORDS if WORDS[each].role.is_of_blocks} | {";", "UNTIL", *BRACES}
 
 
 class Step(NamedTuple):
@@ -322,8 +323,7 @@ def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
     """Give the pieces of a line in which a call may be told: between separators and headers."""
     start = 0
     for k, token in enumerate([*tokens, made(";")]):
-        role = WORDS[token.text].role if token.text in WORDS else ""
-        is_edge = role in ("block", "arm", "end", "until") or token.text in (";", *BRACES)
+        is_edge = token.text in _EDGES
         is_next = k > 0 and tokens[k - 1].text == ")" and token.text in CALLED
         if (is_edge or is_next) and start < k:
             yield start, k

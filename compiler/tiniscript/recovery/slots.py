@@ -281,7 +281,7 @@ class _Reader:
         if values is None or not (values or is_order):
             return None
         slots = self._slots(values, word.arguments, has_until)
-        if not slots or (word.role == "motors" and len(values) == 1):
+        if not slots or (word.text == "M" and len(values) == 1):
             return None  # of which motor?
         texts: list[str] = []
         samples: list[str] = []

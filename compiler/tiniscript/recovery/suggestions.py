@@ -312,7 +312,7 @@ def _choice(gaps: _Gaps, is_exact: bool = False) -> str:
     orders = []
     for match in map(_CHOICE.fullmatch, re.split(r",(?![^(]*\))", said)):
         known = WORDS.get(gaps.part.means(plain(match[1]))) if match else None
-        if match is None or known is None or not known.is_instruction:
+        if match is None or known is None or not known.role.is_instruction:
             return ""
         if is_exact and known.arguments and not match[2]:
             return ""

@@ -66,7 +66,7 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     if first == "DEF":
         return 2 if len(tokens) > 1 and tokens[1].kind is WORD else 0
     if known is not None and not known.arguments:
-        is_done = known.role in ("stop", "start", "break", "end", "arm")
+        is_done = known.role.name in ("stop", "start", "break", "end", "arm")
         return int(is_done and sign not in ("(", "="))
     end = closed(tokens, 1)
     if end and end < len(tokens) and tokens[end].text == "UNTIL":
@@ -105,7 +105,7 @@ class Trailing:
         self.text = text
         meant = self.names.meant(self.tokens[0].text, NEAR) if size else ""
         known = WORDS.get(meant)
-        self.is_arm = known is not None and known.role in ("block", "arm", "end")
+        self.is_arm = known is not None and known.role.is_of_blocks
         self.own = ENDED.get(meant, meant)
         self.is_asked = any(each.text == "UNTIL" for each in self.tokens)
         self.time = _TIME.match(self.call)
@@ -131,7 +131,7 @@ class Trailing:
         own, known = self.own, WORDS.get(self.own)
         is_timed = own in (*MOVES, "W")
         if self.tokens:
-            is_order = known is not None and not self.is_arm and known.role != "start"
+            is_order = known is not None and not self.is_arm and own != "START"
             labels: dict[str, object] = {
                 own: True,
                 "@any": True,
@@ -165,8 +165,8 @@ class Trailing:
         is_many = is_many or self.means(before) == "LOOP"
         concept = concept_of(text) if token.kind is WORD and not self.names.is_name(text) else None
         is_of_kit = concept is None or concept in WORDS or self.names.has(concept)
-        known = None if token.source == "l" else WORDS.get(text)
-        is_order = known is not None and known.is_instruction and text not in _set_in(self.text)
+        is_own = token.source == "l" or text in _set_in(self.text)
+        known = None if is_own else WORDS.get(text)
         labels = {
             "@number": is_number,
             "@often": is_number and (is_counted or (is_many and not said_of(after, "unit"))),
@@ -176,8 +176,8 @@ class Trailing:
             "@paced": self._is_paced(k),
             "@told": self.tokens and self._is_told(k),
             f"@no{concept}": not is_of_kit,
-            "@call": is_order and known and known.is_call,
-            "@order": is_order,
+            "@call": known and known.role.is_call,
+            "@order": known and known.role.is_instruction,
             "@ask": self.means(text) in ASKING,
             "@quote": text in QUOTES and text != "`",
             "@mark": text in MARKS,
@@ -268,7 +268,7 @@ class Trailing:
         meant = self.means(text)
         known = WORDS.get(meant)
         is_same = meant == own or (meant == "S" and self.is_asked)
-        if is_same or known is None or known.role in ("value", "operator", "function", "start"):
+        if is_same or known is None or known.role.is_of_values or meant == "START":
             return False
         return own not in ("LOOP", "DEF", "S", "STOP") or meant not in ("S", "LOOP", "DEF")
 

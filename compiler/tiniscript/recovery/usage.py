@@ -46,7 +46,6 @@ _OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
 _NOT_TOP = (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP)
 _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
 _NO_NAMES = ("leaves", "again", "filler", "same", "etc", "end")
-_NO_ORDER = ("value", "operator", "function", "setup", "forever")
 
 
 def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
@@ -202,7 +201,7 @@ class _Usage:
             return self.turn(said, ordered)
         word = next(filter(self.names.meant, (*words[:1], meant)), "")
         concept = self.names.meant(word)
-        is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
+        is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
         is_among = concept == "S" and {*ordered.values()} != {"S"}  # `ve para adelante`
         if is_order and concept != word and not is_among:
             if len(self.tokens) == 1 and not WORDS[concept].arguments:
@@ -284,7 +283,9 @@ class _Usage:
     def ordered(self) -> dict[str, str]:
         """Return the words of no program that mean an order, and which."""
         meant = {each: self.names.meant(each) for each in self.words if each not in WORDS}
-        return {it: its for it, its in meant.items() if its in WORDS and WORDS[its].is_instruction}
+        return {
+            it: its for it, its in meant.items() if its in WORDS and WORDS[its].role.is_instruction
+        }
 
     def brackets(self) -> Diagnostic:
         """A word without its values; alone it gets an example of them."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from tiniscript.base.kit import Kit
 from tiniscript.base.limits import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
 from tiniscript.base.source import Source, Span
-from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Argument, Word
+from tiniscript.base.words import UNIT_OF, VALUE, WAYS, WORDS, Argument, Word
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics import ir
@@ -141,29 +141,24 @@ class _Checker(Scope):
 
     def command(self, node: ast.Command, made: list[Statement]) -> None:
         word = WORDS.get(node.word)
-        if node.until is not None and (word is None or word.role not in ("move", "wait")):
+        if node.until is not None and (word is None or not word.role.lasts):
             self.wrong.until_not_here(node, node.until, word)
             node = node._replace(until=None)
         if word is None:
             self.kit_or_def(node, made)
             return
-        if word.role == "start":  # it does nothing
-            return
         if word.stands_for:
             node = _spelled_out(word, node.span)
             word = WORDS[node.word]
-        if word.role == "stop":
-            made.append(ir.Stop(node.span))
-            return
         arguments = node.arguments or ()
         span = node.span
         if len(arguments) != len(word.arguments):
             self.wrong.count(word, arguments, span)
             return
-        forever = word.role in ("move", "wait") and arguments[0].expression[0].op == "FOREVER"
+        forever = word.role.lasts and arguments[0].expression[0].op == "FOREVER"
         if forever and node.until is None and not self.has_tasks:
             self.wrong.forever(arguments[0].span, word, span)
-        wanted, way = word.arguments, arguments[0].unit if word.role == "move" else None
+        wanted, way = word.arguments, arguments[0].unit if word.role.is_move else None
         if way is not None:
             self.way(node, way)
             arguments = (arguments[0]._replace(unit=None), *arguments[1:])
@@ -171,7 +166,7 @@ class _Checker(Scope):
         said = len(self.diagnostics)
         values = [
             self.kinds.value(each)
-            if word.role == "show"
+            if its is VALUE
             else self.number(each, its, word.text, (node, word))
             for each, its in zip(arguments[forever:], wanted[forever:], strict=True)
         ]
@@ -179,22 +174,16 @@ class _Checker(Scope):
             self.wrong.values(node, word, said)
         self.stack_fits(values, span)
         self.take(values, span, made)
-        if word.role in ("move", "wait"):
+        terms = [value.terms for value in values]
+        if word.role.lasts:
             until = None if node.until is None else self.until(node.until)
-            made.append(ir.Move(
-                node.word,
-                None if forever else values[0].terms,
-                values[-1].terms if word.role == "move" else None,
-                until,
-                span,
-                "" if way is None else way.op,
-            ))  # fmt: skip
-        elif word.role == "motors":
-            made.append(ir.Motors(values[0].terms, values[1].terms, span))
-        elif word.role == "beep":
-            made.append(ir.Beep(values[0].terms, values[1].terms, span))
-        else:
-            made.append(ir.Show(values[0].terms, values[0].kind == "yes_no", span))
+            time, power = None if forever else terms[0], terms[-1] if word.role.is_move else None
+            unit = "" if way is None else way.op
+            made.append(ir.Move(node.word, time, power, until, span, unit))
+        elif word.role.name == "show":
+            made.append(ir.Show(terms[0], values[0].kind == "yes_no", span))
+        elif word.role.is_instruction:  # START does nothing
+            made.append(_MAKES[word.role.name](*terms, span))
 
     def way(self, node: ast.Command, unit: ast.Part) -> None:
         """Check the unit of a move, and whether the robot's speed is known."""
@@ -416,6 +405,12 @@ def _spelled_out(word: Word, span: Span) -> ast.Command:
     return command._replace(word_span=span, arguments=arguments, span=span)
 
 
+# What the other instructions become, by the role of their words: of their values, and the span.
+_MAKES: dict[str, Callable[..., Statement]] = {
+    "motors": ir.Motors,
+    "beep": ir.Beep,
+    "stop": ir.Stop,
+}
 _CHECKS: dict[type, Callable[..., None]] = {
     ast.Command: _Checker.command,
     ast.Assign: _Checker.assign,

@@ -44,18 +44,18 @@ def _said_of_count(texts: Sequence[str], word: Word, until: re.Match[str] | None
     """
     numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
     said = {"power": "", "spare": "", "kept": ""}
-    if word.role == "move" and len(texts) == 1 and LONG_TIME_S <= numbers[0] <= _MOST_POWER:
+    if word.role.is_move and len(texts) == 1 and LONG_TIME_S <= numbers[0] <= _MOST_POWER:
         said["power"] = f"{word.text}( , {texts[0]})"
         if until is not None:
             said["endless"] = f"{word.text}(FOREVER, {texts[0]}){until[0]}"
         said["number"] = texts[0]
     elif len(texts) > len(word.arguments) and min(numbers) >= 0:
-        is_sound = word.role == "beep" and numbers[1] > LOWEST_HERTZ
+        is_sound = word.role.name == "beep" and numbers[1] > LOWEST_HERTZ
         if is_sound or len(word.arguments) == 1:
             said["spare"] = _call(word, texts[: len(word.arguments)])
-        if word.role == "move" and numbers[0] < LONG_TIME_S <= numbers[1] <= _MOST_POWER:
+        if word.role.is_move and numbers[0] < LONG_TIME_S <= numbers[1] <= _MOST_POWER:
             said["spare"] = _call(word, texts[:2])
-        is_timed = word.role == "wait" and len(texts) == len(_TIME_AND_POWER)
+        is_timed = word.role.name == "wait" and len(texts) == len(_TIME_AND_POWER)
         for first, second in (_TIME_AND_POWER, _TIME_AND_POWER[::-1]):
             if is_timed and 0 <= numbers[first] < LONG_TIME_S <= numbers[second] <= _MOST_POWER:
                 said["kept"] = _call(word, [texts[first]])

@@ -80,4 +80,4 @@ def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
         depth += (tokens[k].kind == ")") - (tokens[k].kind == "(")
         k -= 1
     known = WORDS.get(tokens[k + 1].text)
-    return known is None or known.role not in ("start", "block", "arm")
+    return known is None or known.role.name not in ("start", "block", "arm")

@@ -36,8 +36,8 @@ def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
 
 def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     word, span = node.word, node.word_span
-    commands = [each.text for each in WORDS.values() if each.role not in
-                ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
+    begins = (each for each in WORDS.values() if each.role.begins)
+    commands = [each.text for each in begins if each.text not in ("FOREVER", "SEND")]
     near = whole_name(scope, word, scope.def_names) if node.arguments is None else ""
     near = near or scope.near(word, chain(commands, scope.names, scope.def_names))
     is_own = near in scope.set_somewhere or near in scope.def_names

@@ -12,7 +12,7 @@ from itertools import islice
 
 from tiniscript.base.fixed_point import HIGHEST, as_text
 from tiniscript.base.source import Source, Span
-from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, Argument, Word
+from tiniscript.base.words import OTHER_WAY, UNIT_OF, VALUE, WORDS, Argument, Word
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import looks_ahead
@@ -28,6 +28,9 @@ from tiniscript.syntax import ast
 from tiniscript.syntax.free_names import numbered
 
 _PAIR = re.compile(r"(?i)\b([FBLR])[ \t]*\([ \t]*(\w+)[ \t]*(CM|DEG)\b")  # `F(20 DEG`
+# How an instruction is ended by a condition, by the role of its word.
+_ENDED = {"motors": "{call};W(FOREVER) UNTIL({c});S",
+          **dict.fromkeys(("show", "beep"), "WHILE(NOT ({c}));{call};END_WHILE")}  # fmt: skip
 _NEAR = 500  # characters behind a value for a sensor in which its use is looked for
 
 
@@ -47,9 +50,10 @@ class WrongCalls:
         before = source[Span(node.span.start, until.span.start)]
         start = node.span.start + before.upper().rfind("UNTIL")
         call = source[Span(node.span.start, start)].rstrip()
-        asked = f"UNTIL({source[until.span]})"
-        self.scope.report(codes.UNTIL_NOT_HERE, Span(start, node.span.end), word=node.word,
-                          example=ended_by(call, asked, word))  # fmt: skip
+        said = _ENDED.get("" if word is None else word.role.name, "F(5, 60) UNTIL({c})")
+        example = said.format(call=call, c=source[until.span])
+        place = Span(start, node.span.end)
+        self.scope.report(codes.UNTIL_NOT_HERE, place, word=node.word, example=example)
 
     def forever(self, span: Span, word: Word, call: Span) -> None:
         """FOREVER at `span` in a move without UNTIL."""
@@ -83,7 +87,7 @@ class WrongCalls:
 
     def values(self, node: ast.Command, word: Word, said: int) -> None:
         """Say more of values that have had diagnostics since there were `said`."""
-        if word.role == "show":
+        if VALUE in word.arguments:
             report_words_shown(self.scope, said)
         report_placeholders(self.scope, node, word, said)
 
@@ -141,18 +145,6 @@ def asked_next(source: Source, span: Span) -> str:
     return found[1].strip() if found else "DISTANCE < 10"
 
 
-def ended_by(call: str, asked: str, word: Word | None) -> str:
-    """Return how something is ended by a condition: `M(5, 5);W(FOREVER) UNTIL(c);S`.
-
-    `call` is what the UNTIL of `asked` stands behind.
-    """
-    if word is not None and word.role == "motors":
-        return f"{call};W(FOREVER) {asked};S"
-    if word is not None and word.role in ("show", "beep"):
-        return f"WHILE(NOT {asked.removeprefix('UNTIL')});{call};{BLOCK_ENDS['WHILE']}"
-    return f"F(5, 60) {asked}"
-
-
 _LOW_TONE = 150  # hertz: a note that is no round number, as powers are
 _ROUND = 50
 
@@ -167,14 +159,14 @@ def meant(source: Source, node: ast.Command, word: Word) -> dict[str, str]:
         return values
     first, second = texts
     is_short = first.replace(".", "", 1).isdecimal() and float(first) < LONG_TIME_S
-    if word.role == "beep":
+    if word.role.name == "beep":
         if re.fullmatch(r"\d+\.\d{3}", second):  # `BEEP(1, 1.000)`
             values["fix"] = f"{word.text}({first}, {second.replace('.', '')})"
         elif _is_whole(first) > LOWEST_HERTZ:
             values |= {"fix": f"{word.text}({second}, {first})", "usage": word.usage}
         elif is_short:
             values["tone"] = f"{word.text}({first}, {WORDS['BEEP'].arguments[1].sample})"
-    elif word.role == "move" and word.text in OTHER_WAY:
+    elif word.text in OTHER_WAY:
         if sum(text.startswith("-") for text in texts) == 1:
             shown = ", ".join(text.lstrip("- ") for text in texts)
             values["fix"] = f"{OTHER_WAY[word.text]}({shown})"

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tiniscript.base.words import BLOCK_ENDS, WORDS
+from tiniscript.base.words import BLOCK_ENDS, FUNCTIONS, WORDS
 from tiniscript.studio.block_form import Block, Form, Place, Stack, Value
 from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.block_reading import LOOSE, LOOSE_VALUE
@@ -224,7 +224,7 @@ def text_of(value: Value) -> str:
             stack.append((f"-{inner}", MINUS))
         elif op == "BRACKETS":
             stack.append((f"({stack.pop()[0]})", ATOM))
-        elif op in WORDS and WORDS[op].role == "function":
+        elif op in FUNCTIONS:
             count = len(WORDS[op].arguments)
             arguments = ", ".join(text for text, _ in stack[-count:])
             stack[-count:] = [(f"{op}({arguments})", ATOM)]

@@ -165,7 +165,7 @@ class _Reader:
         known = WORDS.get(node.word)
         arguments = node.arguments or ()
         if known is not None:
-            kind = known.role
+            kind = known.role.name
         elif node.arguments is not None:
             kind = "set"
         else:

@@ -20,8 +20,6 @@ from tiniscript.studio.world_form import form_of, limits
 from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
 
-_UNOFFERED = ("alias", "later")  # roles of words that a program is better off without
-
 
 def description() -> dict[str, Any]:
     """Return everything as data for JSON."""
@@ -29,13 +27,13 @@ def description() -> dict[str, Any]:
         "words": [
             {
                 "text": word.text,
-                "role": word.role,
+                "role": word.role.name,
                 "usage": word.usage,
                 "example": word.example,
                 "arguments": [_range(each.low, each.high, each.sample) for each in word.arguments],
             }
             for word in WORDS.values()
-            if word.role not in _UNOFFERED
+            if word.role.is_offered
         ],
         "robots": [_robot(robots.load(name)) for name in robots.names()],
         "link": {

@@ -10,7 +10,7 @@ from typing import NoReturn
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.base.source import Span
-from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Word
+from tiniscript.base.words import FUNCTIONS, UNIT_OF, WAYS, WORDS, Word
 from tiniscript.diagnostics import codes
 from tiniscript.syntax.ast import Argument, Part
 from tiniscript.syntax.cursor import AFTER_VALUE, Cursor
@@ -112,7 +112,7 @@ class ExpressionParser:
     def word(self, token: Token, read: Postfix) -> bool:
         cursor = self.cursor
         known = WORDS.get(token.text)
-        if known is None or known.role == "value":
+        if known is None or known.role.name == "value":
             cursor.i += 1
             if cursor.tokens[cursor.i].kind == "(":
                 self.reporter.fail(codes.NO_FUNCTION, token.span, found=token.text)
@@ -124,7 +124,7 @@ class ExpressionParser:
                 self.reporter.fail(codes.NOT_NEEDS_BRACKETS, token.span)
             read.wait(NOT, "NOT", token, cursor.i)
             cursor.i += 1
-        elif known.role == "function":
+        elif token.text in FUNCTIONS:
             self.begin_call(token, known, read)
         else:
             self.no_value(token)
@@ -202,8 +202,8 @@ class ExpressionParser:
         if known is not None:
             self.no_unit(token)
             by_role = {"forever": codes.FOREVER_NOT_HERE, "until": codes.UNTIL_ALONE}
-            other = codes.NO_VALUE if known.is_instruction else codes.RESERVED
-            self.reporter.fail(by_role.get(known.role, other), token.span, word=token.text)
+            other = codes.NO_VALUE if known.role.is_instruction else codes.RESERVED
+            self.reporter.fail(by_role.get(known.role.name, other), token.span, word=token.text)
         before = self.cursor.tokens[self.cursor.before(self.cursor.i)] if self.cursor.i else token
         shown = {} if before.kind is ODD else {"before": before.text}
         self.reporter.fail(codes.MISSING_VALUE, token.span or before.span, **shown)

@@ -150,8 +150,8 @@ class Parser:
         following = tokens[cursor.i + 1]
         if known is None:
             self.own_name(word, following)
-        elif not known.is_instruction and known.role != "start":
-            code = _NO_COMMANDS.get(known.role, codes.NOT_AN_INSTRUCTION)
+        elif not known.role.is_instruction and word.text != "START":
+            code = _NO_COMMANDS.get(known.role.name, codes.NOT_AN_INSTRUCTION)
             self.reporter.fail(code, word.span, word=word.text, found=word.text)
         cursor.i += 1
         arguments = until = None
@@ -178,7 +178,7 @@ class Parser:
         if known is not None and not known.arguments:
             self.no_arguments(word)
         arguments = self.expressions.arguments()
-        self.no_units(arguments[known is not None and known.role == "move" :])
+        self.no_units(arguments[known is not None and known.role.is_move :])
         return arguments
 
     def until(self) -> Argument | None:

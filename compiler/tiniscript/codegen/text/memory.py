@@ -13,7 +13,7 @@ from typing import NamedTuple
 from tiniscript.base.fixed_point import read_literal
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Span
-from tiniscript.base.words import WORDS
+from tiniscript.base.words import FUNCTIONS, WORDS, Word
 from tiniscript.bytecode.opcodes import SHORTS
 from tiniscript.codegen.lower_expression import push_bytes
 from tiniscript.syntax.blocks import ENDS
@@ -25,7 +25,6 @@ MOST_BRACKETS = 254  # open at once
 _BLOCK_BYTES = 3  # and three sets of sensors
 _DEF_BYTES = 3  # in front of the name of a DEF, and a set of sensors
 _JUMP = 2  # bytes of an instruction with a short jump
-_MOVES = frozenset(("move", "wait"))
 
 
 class Need(NamedTuple):
@@ -155,12 +154,12 @@ class Reader:
         elif token.text == "ELSE":
             self.next_arm()
             self.blocks[-1].has_else = True
-        elif word.role == "break":
+        elif token.text == "BREAK":
             self.emit(_JUMP)
-        elif word.role == "stop":
+        elif word.role.name == "stop":
             self.emit(1)
         elif word.arguments:
-            self.command(token.text, word.role)
+            self.command(word)
 
     def name(self, name: str) -> None:
         if self.token.kind == "=":
@@ -185,14 +184,15 @@ class Reader:
         self.variables[name] = number
         self.numbered(number)
 
-    def command(self, word: str, role: str) -> None:
+    def command(self, its: Word) -> None:
+        word = its.text
         if word == "ELSEIF":
             self.next_arm()
         elif word == "WHILE":
             self.emit(_JUMP)
             self.open(word)
         is_forever = self.arguments()
-        if role in _MOVES:
+        if its.role.lasts:
             if self.token.kind is WORD:
                 self.take()
                 self.emit(1)
@@ -283,8 +283,7 @@ class Reader:
         if token.text == "NOT":
             self.wait(NOT, "NOT")
             return False
-        word = WORDS.get(token.text)
-        if word is not None and word.role == "function":
+        if token.text in FUNCTIONS:
             self.wait(OPEN, token.text)
             self.skip_newlines()
             self.open_bracket()
