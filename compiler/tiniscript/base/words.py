@@ -122,6 +122,7 @@ WORDS = {word.text: word for word in (
     _row("SEND", "later"),
 )}
 
+MOVES = tuple(word.text for word in WORDS.values() if word.role.is_move)
 FUNCTIONS = tuple(word.text for word in WORDS.values() if word.role.name == "function")
 ALIASES = {
     "END_IF": "ENDIF", "ENDLOOP": "END_LOOP", "ENDWHILE": "END_WHILE", "ENDDEF": "END_DEF",

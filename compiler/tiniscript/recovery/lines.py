@@ -13,12 +13,12 @@ from itertools import chain, count
 from typing import NamedTuple
 from unicodedata import category
 
-from tiniscript.base.words import FUNCTIONS, WAYS, WORDS, concept_of, nearest, said_of
+from tiniscript.base.words import FUNCTIONS, MOVES, WAYS, WORDS, concept_of, nearest, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import concepts, rewrites, rows
 from tiniscript.recovery.concepts import CALLED, LONG_S, NEAR, Lexeme, Names, made, texts
-from tiniscript.recovery.slots import MILLISECONDS_FROM, MOVES, filled
+from tiniscript.recovery.slots import MILLISECONDS_FROM, filled
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline

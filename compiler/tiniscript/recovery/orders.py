@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from itertools import groupby, pairwise
 from typing import NamedTuple
 
-from tiniscript.base.words import BLOCK_ENDS
+from tiniscript.base.words import BLOCK_ENDS, MOVES
 from tiniscript.recovery import lines, rewrites
 from tiniscript.recovery.concepts import CALLED, ENDED, Lexeme, Names, closed, made, said_of
-from tiniscript.recovery.slots import MOVES, Filled, filled
+from tiniscript.recovery.slots import Filled, filled
 from tiniscript.recovery.worded import worded
 from tiniscript.recovery.writing import laid_out
 from tiniscript.syntax.lexer import NUMBER

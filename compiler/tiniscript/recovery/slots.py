@@ -10,7 +10,7 @@ from itertools import pairwise
 from math import nan
 from typing import NamedTuple
 
-from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Argument, said_of
+from tiniscript.base.words import MOVES, UNIT_OF, WAYS, WORDS, Argument, said_of
 from tiniscript.base.words import names as is_called
 from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import CALLED, DONE, LONG_S, NEAR, Lexeme, Names, lexemes, made
@@ -19,7 +19,6 @@ from tiniscript.syntax.lexer import NUMBER, WORD
 _STEPS_FROM = 10  # so many are as many centimetres
 MILLISECONDS_FROM = 100  # no wait is so many seconds
 _SIDES = ("left", "right")
-MOVES = ("F", "B", "L", "R")
 _LETTERS = {"T": "s", "P": "%", "V": "%"}  # how a value of a move is called, in one letter
 _PASSED = frozenset("(),:=.-_") | {"->", "%"}
 

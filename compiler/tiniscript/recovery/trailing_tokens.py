@@ -12,10 +12,9 @@ from itertools import accumulate
 from typing import NamedTuple
 
 from tiniscript.base.source import Span
-from tiniscript.base.words import OTHER_WAY, WAYS, WORDS, concept_of, nearest, said_of
+from tiniscript.base.words import MOVES, OTHER_WAY, WAYS, WORDS, concept_of, nearest, said_of
 from tiniscript.recovery import lines
 from tiniscript.recovery.concepts import ENDED, NEAR, Lexeme, Names, closed, lexemes
-from tiniscript.recovery.slots import MOVES
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
@@ -129,7 +128,7 @@ class Trailing:
 
     def _label_of_call(self) -> str:
         own, known = self.own, WORDS.get(self.own)
-        is_timed = own in (*MOVES, "W")
+        is_timed = known is not None and known.role.lasts
         if self.tokens:
             is_order = known is not None and not self.is_arm and own != "START"
             labels: dict[str, object] = {

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from tiniscript.base.words import UNIT_OF, WORDS
+from tiniscript.base.words import MOVES, UNIT_OF, WORDS
 
 
 class Kind(NamedTuple):
@@ -36,7 +36,6 @@ class Kind(NamedTuple):
 
 
 # fmt: off
-MOVES = tuple(UNIT_OF)
 SUMS = {"ADD": "+", "SUB": "−", "MUL": "×", "DIV": "÷", "MOD": "%"}
 COMPARISONS = {"EQ": "=", "NE": "≠", "LT": "<", "LE": "≤", "GT": ">", "GE": "≥"}
 # What a word with fixed values says where the catalogue has no `block/HORN`: `HORN = BEEP(0.5, 440)`.
