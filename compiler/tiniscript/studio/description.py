@@ -28,7 +28,6 @@ def description() -> dict[str, Any]:
             {
                 "text": word.text,
                 "role": word.role.name,
-                "usage": word.usage,
                 "example": word.example,
                 "arguments": [_range(each.low, each.high, each.sample) for each in word.arguments],
             }
@@ -45,6 +44,9 @@ def description() -> dict[str, Any]:
             "name_bytes": NAME_BYTES,
         },
         "class": {
+            "form": class_keeping.FORM,
+            "file_bytes": class_keeping.FILE_BYTES,
+            "most_pupils": class_keeping.MOST_PUPILS,
             "text_characters": class_keeping.TEXT_CHARACTERS,
             "most_lessons": class_keeping.MOST_LESSONS,
         },

@@ -9,18 +9,19 @@ import json
 import math
 from typing import Any
 
+from tiniscript.base.fixed_point import ONE
 from tiniscript.base.languages import SOURCE, ByLanguage, languages
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
-from tiniscript.virtual.worlds import PARTS, POINTS
+from tiniscript.virtual.worlds import LARGEST_CM, MOST_S, PARTS, POINTS
 
 DECIMALS = 3  # that a world's file may have
 Form = dict[str, Any]
 
 
 def limits() -> dict[str, int]:
-    """Return how many parts of a kind a world may have, and how many points a part."""
-    return {"parts": PARTS, "points": POINTS}
+    """Return how many parts of a kind a world may have, how many points a part, and its numbers."""
+    return {"parts": PARTS, "points": POINTS, "cm": LARGEST_CM // ONE, "seconds": MOST_S // ONE}
 
 
 def form_of(world: World) -> Form:

@@ -4,12 +4,9 @@
 import { downloadFile } from '../page/files.js';
 import { post } from '../robot/host.js';
 import { text } from '../page/texts.js';
+import { CLASS } from '../page/words.js';
 
 /** @typedef {{name: string, text: string, robot: string, lessons: string[]}} WorkOfOne */
-
-const FORM = 1;
-const MOST_BYTES = 12_000_000;
-const MOST = 60;
 
 /** @returns {Promise<WorkOfOne[]>} */
 export async function workOfAll() {
@@ -21,7 +18,7 @@ export async function saveWork() {
   const pupils = await workOfAll();
   const now = new Date();
   const day = [now.getFullYear(), now.getMonth() + 1, now.getDate()].map((part) => String(part).padStart(2, '0')).join('-');
-  const whole = JSON.stringify({ tiniscript_class: FORM, day, pupils }, null, 1);
+  const whole = JSON.stringify({ tiniscript_class: CLASS.form, day, pupils }, null, 1);
   downloadFile(`${text('class_file')}-${day}.json`, new Blob([whole], { type: 'application/json' }));
   return pupils.length;
 }
@@ -30,14 +27,14 @@ export async function saveWork() {
 export async function openWork(file) {
   let found;
   try {
-    if (file.size > MOST_BYTES) return null;
+    if (file.size > CLASS.file_bytes) return null;
     found = JSON.parse(await file.text());
   } catch {
     return null;
   }
-  if (found?.tiniscript_class !== FORM || !Array.isArray(found.pupils)) return null;
+  if (found?.tiniscript_class !== CLASS.form || !Array.isArray(found.pupils)) return null;
   let count = 0;
-  for (const each of found.pupils.slice(0, MOST)) {
+  for (const each of found.pupils.slice(0, CLASS.most_pupils)) {
     const { name, text: program, robot, lessons } = each ?? {};
     if (![name, program, robot].every((part) => typeof part === 'string') || !Array.isArray(lessons)) continue;
     const isTaken = await post({ do: 'class_bring', name, text: program, robot, lessons }).then(() => true, () => false);

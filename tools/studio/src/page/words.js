@@ -6,7 +6,7 @@ import description from '../../made/description.json';
 import { so } from './so.js';
 import { called, hasText, text } from './texts.js';
 
-/** @typedef {{text: string, role: string, usage?: string, example: string}} Word */
+/** @typedef {{text: string, role: string, example: string}} Word */
 
 /** Words that stand for an instruction with its values. */
 export const FIXED = description.words.filter((word) => word.role === 'fixed');

@@ -11,7 +11,6 @@ import { BOARDS, flash } from './stk500.js';
 
 const FLASH_BYTES = 0x8000; // of an Uno or a Nano
 const MOST_BYTES = 0x50_0000; // of a file; a full flash of an ESP32 has 4 MB
-const ESP32S = ['esp32dev', 'esp32c3'];
 
 /**
  * Writes the firmware of a robot, or that of a file; rejects with a Failed.
@@ -24,7 +23,7 @@ const ESP32S = ['esp32dev', 'esp32c3'];
 export async function flashBoard(port, board, which, progress, cancelled) {
   const found = which instanceof File ? await which.slice(0, MOST_BYTES).arrayBuffer() : await fetched(which, board);
   const data = new Uint8Array(found);
-  if (ESP32S.includes(board)) {
+  if (!BOARDS[board]) {
     const { flashEsp32 } = await import('./esp32.js');
     await flashEsp32(port, board, data, progress, cancelled);
     return;

@@ -36,7 +36,7 @@ export const KINDS = ['walls', 'boxes', 'lines', 'lamps', 'flags'];
 export const FLOOR = { kind: 'floor', index: 0 };
 /** @type {Part} */
 export const START = { kind: 'start', index: 0 };
-const LARGEST_CM = 2000;
+const LARGEST_CM = WORLD_LIMITS.cm;
 const LEAST_FLOOR_CM = 20;
 const ROBOT_CM = 9; // from its middle: where it is taken
 const HANDLE_CM = 10; // from the front of a part to what turns it
@@ -50,7 +50,7 @@ const ROUGH_CM = 1; // how far a line may be from the way of a finger
  * @type {Record<Part['kind'], [string, number, number][]>}
  */
 export const NUMBERS = {
-  floor: [['width_cm', LEAST_FLOOR_CM, LARGEST_CM], ['height_cm', LEAST_FLOOR_CM, LARGEST_CM], ['ambient_percent', 0, 100], ['seconds', 0, 600]],
+  floor: [['width_cm', LEAST_FLOOR_CM, LARGEST_CM], ['height_cm', LEAST_FLOOR_CM, LARGEST_CM], ['ambient_percent', 0, 100], ['seconds', 0, WORLD_LIMITS.seconds]],
   start: [['x_cm', 0, LARGEST_CM], ['y_cm', 0, LARGEST_CM], ['heading', -360, 360]],
   walls: [],
   boxes: [['x_cm', 0, LARGEST_CM], ['y_cm', 0, LARGEST_CM], ['length_cm', SMALLEST_CM, LARGEST_CM], ['width_cm', SMALLEST_CM, LARGEST_CM], ['heading', -360, 360]],

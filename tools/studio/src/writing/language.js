@@ -5,8 +5,8 @@ import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/
 import { tags } from '@lezer/highlight';
 import { wordsOf } from '../page/words.js';
 
-const ACTS = new Set(['move', 'wait', 'motors', 'stop', 'start', 'beep', 'show', 'fixed', 'until', 'actuator']);
 const VALUES = new Set(['value', 'function', 'sensor', 'forever']);
+const KEYWORDS = new Set(['setup', 'block', 'arm', 'end', 'break', 'operator', 'unit']);
 
 /**
  * @param {string | undefined} role
@@ -14,8 +14,8 @@ const VALUES = new Set(['value', 'function', 'sensor', 'forever']);
  */
 function tokenOf(role) {
   if (role === undefined) return 'variableName';
-  if (ACTS.has(role)) return 'atom';
-  return VALUES.has(role) ? 'typeName' : 'keyword';
+  if (KEYWORDS.has(role)) return 'keyword';
+  return VALUES.has(role) ? 'typeName' : 'atom';
 }
 
 /**
