@@ -38,8 +38,8 @@ class ChangedWire(Wire):
         self.left = b""
 
     def heard(self, wait_ms: int, quiet_ms: int = 60) -> bytes:
-        *items, self.left = (self.left + super().heard(wait_ms, quiet_ms)).split(b"\0")
-        frames = (decoded(item) for item in items if item)
+        *packets, self.left = (self.left + super().heard(wait_ms, quiet_ms)).split(b"\0")
+        frames = (decoded(packet) for packet in packets if packet)
         changed = [self.change(frame) for frame in frames if frame]
         return b"".join(encoded(frame) for frame in changed if frame)
 

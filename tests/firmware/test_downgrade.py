@@ -78,11 +78,11 @@ class Between:
                 return self.end.passes(20, data)
             if self.zeros_ms is None:
                 self.zeros_ms = now_ms
-        for item in filter(None, data.split(b"\0")):
-            frame = decoded(item)
+        for packet in filter(None, data.split(b"\0")):
+            frame = decoded(packet)
             assert frame
             if self.passes_on(frame):
-                said += self.changed(self.end.passes(20, b"\0" + item + b"\0"))
+                said += self.changed(self.end.passes(20, b"\0" + packet + b"\0"))
             else:
                 self.epoch = frame.epoch
                 said += self.done(frame)
@@ -94,15 +94,15 @@ class Between:
     def changed(self, said: bytes) -> bytes:
         """Return the answers of the robot with bits of HELLO cleared."""
         found = b""
-        for item in filter(None, said.split(b"\0")):
-            frame = decoded(item)
+        for packet in filter(None, said.split(b"\0")):
+            frame = decoded(packet)
             if frame and frame.number == HELLO and frame.payload[0] == 0:
                 values = read(BY_NAME["HELLO"].reply, frame.payload[1:])
                 values["features"] = int(values["features"]) & ~self.cleared
                 payload = b"\0" + written(BY_NAME["HELLO"].reply, values)
                 found += encoded(frame._replace(payload=payload))
             else:
-                found += item + b"\0"
+                found += packet + b"\0"
         return found
 
     def done(self, frame: Frame) -> bytes:
@@ -141,7 +141,7 @@ def state_of(end: End) -> int:
     """Return what the robot does; anybody may ask."""
     end.passes(20, b"\0" + encoded(Frame(HELLO, 1, 0, b"\1" + bytes(5) + b"\1\2\3\4")))
     said = end.passes(20, b"\0" + encoded(Frame(STATUS, 2, 0)))
-    frames = [decoded(item) for item in said.split(b"\0") if item]
+    frames = [decoded(packet) for packet in said.split(b"\0") if packet]
     return next(frame.payload[1] for frame in frames if frame and frame.number == STATUS)
 
 

@@ -54,9 +54,9 @@ class Client:
         self.hear(self.robot.wait(milliseconds, data))
 
     def hear(self, sent: bytes) -> None:
-        *items, self.heard = (self.heard + sent).split(b"\0")
-        for item in items:
-            frame = decoded(item)
+        *packets, self.heard = (self.heard + sent).split(b"\0")
+        for packet in packets:
+            frame = decoded(packet)
             if frame is not None:  # else it is text
                 self.epoch = frame.epoch
                 self.replies += [frame] if frame.number not in EVENTS else []

@@ -82,8 +82,8 @@ class Trials:
         sent = self.robot.step(data, flags=16, ticks=self.rng.choice((0, 1, 1, 2, 20)))
         if milliseconds:
             sent += self.robot.wait(milliseconds)
-        *items, self.heard = (self.heard + sent).split(b"\0")
-        for frame in map(decoded, items):
+        *packets, self.heard = (self.heard + sent).split(b"\0")
+        for frame in map(decoded, packets):
             self.epoch = frame.epoch if frame else self.epoch
 
     def text(self) -> tuple[bytes, set[bytes]]:

@@ -15,7 +15,7 @@ import pytest
 from tests.machines.damage import CppDamage, DamagedLine, cpp_damage
 from tests.machines.link import cpp_link
 from tests.support.campaign import wanted
-from tests.support.link_cases import items_of
+from tests.support.link_cases import packets_of
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import CRC_BYTES, HEAD_BYTES, SMALL_FRAME
 
@@ -82,8 +82,8 @@ def judge_in_python(line: DamagedLine, is_large: bool) -> None:
             assert found >= 0, f"the C++ encodes it in another way: {frame}"
             at = found + len(wire)
     stream = [(0, byte) for byte in sent.data]
-    rows = items_of(stream, is_large=is_large)
-    assert cpp_link(is_large).items(stream) == rows
+    rows = packets_of(stream, is_large=is_large)
+    assert cpp_link(is_large).packets(stream) == rows
     judge(sent, whole(rows))
     assert [frame_of(each) for each in line.accepted] == whole(rows)
 

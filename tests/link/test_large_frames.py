@@ -12,7 +12,7 @@ from cobs import cobs
 
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.link import CppLink, cpp_link
-from tests.support.link_cases import KIT, items_of
+from tests.support.link_cases import KIT, packets_of
 from tiniscript import robots
 from tiniscript.bytecode.image import HEADER_BYTES, isa_of, pack, unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
@@ -34,7 +34,7 @@ from tiniscript.link.messages import (
     written,
 )
 from tiniscript.link.outcomes import LOST
-from tiniscript.link.receiver import LARGE_ITEM, SMALL_ITEM
+from tiniscript.link.receiver import LARGE_PACKET, SMALL_PACKET
 from tiniscript.link.session import Session
 from tiniscript.link.transmission import TRIES
 from tools.bench import large_upload
@@ -66,7 +66,7 @@ def begun(minor: int = LARGE_MINOR, is_large: bool = True, epoch: int = EPOCH) -
 
 
 def sent_by(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[bytes]:
-    """Return the items that a robot answers to frames."""
+    """Return the packets that a robot answers to frames."""
     step = robot.step(10, b"".join(map(encoded, frames)), is_late=is_late)
     return [each for each in step.sent.split(b"\0") if each]
 
@@ -157,7 +157,7 @@ def test_a_computer_gets_the_image_in_frames_that_it_takes(
         assert frame and frame.payload[0] == OK
         assert struct.unpack("<H", frame.payload[1:3])[0] == whole
         assert len(frame.payload) - 3 == min(most, whole - len(image))
-        assert len(wire) <= (LARGE_ITEM if most > 53 else SMALL_ITEM)
+        assert len(wire) <= (LARGE_PACKET if most > 53 else SMALL_PACKET)
         image += frame.payload[3:]
     assert image == pack("SI", 0, CODE)
 
@@ -179,8 +179,8 @@ def test_both_receivers_find_the_same_where_frames_wait() -> None:
             now_ms += draw.choice((0, 0, 0, 1200))
             stream += [(now_ms, byte) for byte in data]
         held = draw.choice((0, 10, 100, 250))
-        rows = items_of(stream, held, is_large=True)
-        assert cpp_link(is_large=True).items(stream, held) == rows
+        rows = packets_of(stream, held, is_large=True)
+        assert cpp_link(is_large=True).packets(stream, held) == rows
         waited += held > 0
     assert waited > 100
 
@@ -212,10 +212,10 @@ class Answering:
         """Answer what came `late_ms` before; return the status of the request."""
         due: list[tuple[int, Frame]] = []
         while request.outcome is None and self.now_ms < most_ms:
-            for item in self.session.poll(self.now_ms).split(b"\0"):
-                frame = decoded(item) if item else None
+            for packet in self.session.poll(self.now_ms).split(b"\0"):
+                frame = decoded(packet) if packet else None
                 if frame is not None:
-                    self.longest = max(self.longest, len(item))
+                    self.longest = max(self.longest, len(packet))
                     due.append((self.now_ms + late_ms, frame))
             self.most_waiting = max(self.most_waiting, len(due))
             while due and due[0][0] <= self.now_ms:
@@ -302,7 +302,7 @@ def test_a_robot_of_before_gets_what_it_got(largest: int, window: int) -> None:
     robot = Answering(taking, largest, window)
     assert robot.run(robot.session.upload(IMAGE)) == OK
     assert taking.found == WHOLE
-    assert robot.most_waiting == 1 and robot.longest == SMALL_ITEM
+    assert robot.most_waiting == 1 and robot.longest == SMALL_PACKET
     assert {length for *_, length in robot.data[:-1]} == {54}
 
 
@@ -357,8 +357,8 @@ def test_a_stop_ends_the_pieces() -> None:
     for _ in range(40):
         if robot.data:
             break
-        for item in robot.session.poll(robot.now_ms).split(b"\0"):
-            frame = decoded(item) if item else None
+        for packet in robot.session.poll(robot.now_ms).split(b"\0"):
+            frame = decoded(packet) if packet else None
             if frame is not None:
                 robot.answer(frame)
         robot.now_ms += 5

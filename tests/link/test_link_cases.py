@@ -13,8 +13,8 @@ from tests.support.link_cases import (
     accept,
     computer_of,
     has_session,
-    items_of,
     link_cases,
+    packets_of,
     play,
     stream_of,
     with_found,
@@ -22,8 +22,8 @@ from tests.support.link_cases import (
 
 TALKS = link_cases("link")
 SESSIONS = [case for case in TALKS if has_session(case)]
-ITEMS = link_cases("items")
-COMPUTERS, ROBOTS = link_cases("computer items"), link_cases("robot items")
+PACKETS = link_cases("packets")
+COMPUTERS, ROBOTS = link_cases("computer packets"), link_cases("robot packets")
 
 
 @pytest.mark.parametrize("case", SESSIONS, ids=lambda case: case.id)
@@ -43,9 +43,9 @@ def test_the_robot(case: LinkCase, request: pytest.FixtureRequest) -> None:
     assert play(case.rows, Written(case.rows), CppSide(cpp_link())) == case.rows
 
 
-@pytest.mark.parametrize("case", [*ITEMS, *COMPUTERS], ids=lambda case: case.id)
+@pytest.mark.parametrize("case", [*PACKETS, *COMPUTERS], ids=lambda case: case.id)
 def test_the_receiver(case: LinkCase, request: pytest.FixtureRequest) -> None:
-    found = with_found(case, items_of(*stream_of(case)))
+    found = with_found(case, packets_of(*stream_of(case)))
     if request.config.getoption("--accept"):
         if found != case.rows:
             accept(case, found)
@@ -53,9 +53,9 @@ def test_the_receiver(case: LinkCase, request: pytest.FixtureRequest) -> None:
     assert found == case.rows
 
 
-@pytest.mark.parametrize("case", [*ITEMS, *ROBOTS], ids=lambda case: case.id)
+@pytest.mark.parametrize("case", [*PACKETS, *ROBOTS], ids=lambda case: case.id)
 def test_the_receiver_in_cpp(case: LinkCase, request: pytest.FixtureRequest) -> None:
-    found = with_found(case, cpp_link().items(*stream_of(case)))
+    found = with_found(case, cpp_link().packets(*stream_of(case)))
     if request.config.getoption("--accept") and case in ROBOTS:
         if found != case.rows:
             accept(case, found)
@@ -64,4 +64,4 @@ def test_the_receiver_in_cpp(case: LinkCase, request: pytest.FixtureRequest) -> 
 
 
 def test_there_are_cases() -> None:
-    assert len(TALKS) >= 25 and len(ITEMS) >= 12
+    assert len(TALKS) >= 25 and len(PACKETS) >= 12

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.machines.link import CppLink, cpp_link
-from tests.support.link_cases import KIT, items_of
+from tests.support.link_cases import KIT, packets_of
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link import messages
 from tiniscript.link.frames import Frame, decoded, encoded
@@ -17,8 +17,8 @@ FORWARD = bytes.fromhex("448c50")  # F(5,80)
 ANSWERS = 17  # to mistakes, without a pause of five seconds: the last one says that these are all
 
 
-def cpp_items(stream: list[tuple[int, int]]) -> list[str]:
-    return cpp_link().items(stream)
+def cpp_packets(stream: list[tuple[int, int]]) -> list[str]:
+    return cpp_link().packets(stream)
 
 
 def robot_with_session() -> CppLink:
@@ -79,7 +79,7 @@ def test_what_the_button_has_started_is_not_tethered() -> None:
     assert ends_at(cpp, 30, 5000) is None
 
 
-@pytest.mark.parametrize("find", [items_of, cpp_items])
+@pytest.mark.parametrize("find", [packets_of, cpp_packets])
 def test_what_is_counted_does_not_wrap(find: Callable[[list[tuple[int, int]]], list[str]]) -> None:
     """A line that is broken for long stops a robot all the time; a long text is no short one."""
     assert find([(0, 0)] * 1402) == [*["stop"] * 350, "damaged 0, dropped 0"]

@@ -144,7 +144,7 @@ def test_no_sealed_frame_is_a_line_of_text() -> None:
         receiver = Receiver()
         for byte in wire:
             receiver.put(byte, 0)
-        assert receiver.item and not receiver.item.is_text
+        assert receiver.packet and not receiver.packet.is_text
 
 
 def test_a_key_is_in_no_text() -> None:

@@ -69,8 +69,8 @@ class CppLink:
         """Something happens to the robot: done, fault, show, button, run by the button, wait."""
         return bool(self.ask(b"R", letter.encode() + pack("<I", value & 0xFFFFFFFF))[0])
 
-    def items(self, stream: Sequence[tuple[int, int]], held: int = 0) -> list[str]:
-        """Return what a receiver finds in times and bytes, as `items_of` says it."""
+    def packets(self, stream: Sequence[tuple[int, int]], held: int = 0) -> list[str]:
+        """Return what a receiver finds in times and bytes, as `packets_of` says it."""
         parts = b"".join(pack("<HB", now_ms & 0xFFFF, byte) for now_ms, byte in stream)
         found, _ = _text(self.ask(b"I", pack("<BI", held, len(stream)) + parts))
         return found.decode().splitlines()

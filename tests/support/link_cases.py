@@ -1,4 +1,4 @@
-"""Reads and plays the cases of the link: `link` and `items` fences of Markdown files.
+"""Reads and plays the cases of the link: `link` and `packets` fences of Markdown files.
 
 A `link` fence is a conversation. Rows without a time say what is wanted: `host ...` of the
 session, `robot ...` what happens to the robot, `wait N` milliseconds, `lose >` and `lose <` the
@@ -11,9 +11,10 @@ Rows with a time say what comes of it: `>` the bytes from the computer, `<` thos
 other. What is said often has a name: a `rows NAME` fence has the rows without their time, and in
 the cases of its file a time and the name stand for them.
 
-An `items` fence is for a receiver alone: `> bytes`, `wait N`, `held N` (bytes before an item is
-taken), and `=` what it finds. A `computer items` fence is for the one in Python, a `robot items`
-fence for the one in C++. It may have many cases, each below a row that says what it is about.
+A `packets` fence is for a receiver alone: `> bytes`, `wait N`, `held N` (bytes before a packet is
+taken), and `=` what it finds. A `computer packets` fence is for the one in Python, a
+`robot packets` fence for the one in C++. It may have many cases, each below a row that says what it
+is about.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ from tiniscript.link.messages import (
     read,
     written,
 )
-from tiniscript.link.receiver import LARGE_ITEM, SMALL_ITEM, Receiver
+from tiniscript.link.receiver import LARGE_PACKET, SMALL_PACKET, Receiver
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.link.sharing.protocol import of_event
@@ -46,9 +47,9 @@ from tiniscript.link.statuses import name_of
 
 STEP_MS = 10
 KIT = 0x231B
-SHOWN_BYTES = 24  # of a longer item, the first ones are written
-OF_ITEMS = re.compile("[>=]|wait |held ")
-KINDS = ("link", "items", "computer items", "robot items")
+SHOWN_BYTES = 24  # of a longer packet, the first ones are written
+OF_PACKETS = re.compile("[>=]|wait |held ")
+KINDS = ("link", "packets", "computer packets", "robot packets")
 
 
 class LinkCase(NamedTuple):
@@ -81,7 +82,7 @@ def _read(path: Path) -> list[LinkCase]:
             fence = "" if fence else row[3:].strip() or "text"
             if fence in KINDS:
                 cases.append(LinkCase(path, number, fence, title, []))
-        elif fence in KINDS[1:] and not OF_ITEMS.match(row):
+        elif fence in KINDS[1:] and not OF_PACKETS.match(row):
             if not cases[-1].rows:
                 cases.pop()  # of the heading above, which has none of its own
             cases.append(LinkCase(path, number, fence, row, []))
@@ -104,7 +105,7 @@ def accept(case: LinkCase, rows: list[str]) -> None:
     """Write what was found where the case says something else; git shows what changed."""
     now = next(each for each in _read(case.path) if each[2:] == case[2:])
     old = case.path.read_text(encoding="utf-8").splitlines()
-    is_over = re.compile(r"```" if case.kind == "link" else rf"(?!{OF_ITEMS.pattern})").match
+    is_over = re.compile(r"```" if case.kind == "link" else rf"(?!{OF_PACKETS.pattern})").match
     end = next(k for k in range(now.line, len(old)) if is_over(old[k]))
     old[now.line : end] = shortened(rows, names_of(case.path))
     case.path.write_text("\n".join(old) + "\n", encoding="utf-8")
@@ -191,17 +192,17 @@ def _mark(side: str, data: bytes, lost: dict[str, int]) -> str:
 
 
 def wire_rows(now_ms: int, mark: str, data: bytes) -> list[str]:
-    """Return the rows of some bytes: one for each item."""
+    """Return the rows of some bytes: one for each packet."""
     rows = []
-    for item in re.findall(rb"\0+|[^\0]+\0?", data):
-        shown = item.hex(" ")
-        rows.append(f"{now_ms:6} {mark} {shown}    {meaning(item)}".rstrip())
+    for packet in re.findall(rb"\0+|[^\0]+\0?", data):
+        shown = packet.hex(" ")
+        rows.append(f"{now_ms:6} {mark} {shown}    {meaning(packet)}".rstrip())
     return rows
 
 
-def meaning(item: bytes) -> str:
-    """Return what the bytes of an item mean, in words."""
-    body = item.rstrip(b"\0")
+def meaning(packet: bytes) -> str:
+    """Return what the bytes of a packet mean, in words."""
+    body = packet.rstrip(b"\0")
     if not body:
         return ""
     if body[0] >= 0x41 or re.fullmatch(rb"(?:[\x20-\x7e]+\r\n)+", body):
@@ -403,7 +404,7 @@ class Written:
 
 
 def stream_of(case: LinkCase) -> tuple[list[tuple[int, int]], int]:
-    """Return the times and bytes of an `items` fence, and how long an item is held."""
+    """Return the times and bytes of a `packets` fence, and how long a packet is held."""
     stream = []
     now_ms = held = 0
     for row in case.rows:
@@ -419,12 +420,14 @@ def stream_of(case: LinkCase) -> tuple[list[tuple[int, int]], int]:
     return stream, held
 
 
-def items_of(stream: Iterable[tuple[int, int]], held: int = 0, is_large: bool = False) -> list[str]:
+def packets_of(
+    stream: Iterable[tuple[int, int]], held: int = 0, is_large: bool = False
+) -> list[str]:
     """Return what the receiver in Python finds: the same rows as the one in C++.
 
     A large one holds several large frames.
     """
-    most_bytes, window = (LARGE_ITEM, LARGE_WINDOW) if is_large else (SMALL_ITEM, 1)
+    most_bytes, window = (LARGE_PACKET, LARGE_WINDOW) if is_large else (SMALL_PACKET, 1)
     receiver = Receiver(most_bytes, window)
     rows = []
     left = 0
@@ -435,12 +438,12 @@ def items_of(stream: Iterable[tuple[int, int]], held: int = 0, is_large: bool = 
                 receiver.take()
         if receiver.put(byte, now_ms):
             rows.append("stop")
-        item = receiver.item
-        if item is None or left:
+        packet = receiver.packet
+        if packet is None or left:
             continue
-        row = f"{'text' if item.is_text else 'frame'} {item.length} {item.data.hex(' ')}"
-        if not item.is_text:
-            row += " damaged" if decoded(item.data) is None else " whole"
+        row = f"{'text' if packet.is_text else 'frame'} {packet.length} {packet.data.hex(' ')}"
+        if not packet.is_text:
+            row += " damaged" if decoded(packet.data) is None else " whole"
         rows.append(row)
         left = held + 1
         if not held:

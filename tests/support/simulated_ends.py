@@ -141,8 +141,8 @@ class Firmware(Nobody):
         self._line += data
         said = b""
         while b"\0" in self._line:
-            item, _, self._line = self._line.partition(b"\0")
-            frame = decoded(item) if item else None
+            packet, _, self._line = self._line.partition(b"\0")
+            frame = decoded(packet) if packet else None
             if frame is not None and not frame.is_reply:
                 said += self._reply(frame)
         return said

@@ -58,7 +58,7 @@ GOALS: tuple[Goal, ...] = (
          "damaged frames", 10_000_000, 2_000_000, "tests.link.test_damaged_frames {count} --large --seed {seed}"),
     Goal("typed-stops", "The receiver sees a typed stop behind any bytes, and none in a frame that arrives whole.",
          "prefixes, and a hundred frames of each", 1_000_000, 100_000, "tests.link.test_typed_stops {count} --seed {seed}"),
-    Goal("typed-stops-chip", "On a simulated Uno, at both rates, a typed stop behind random bytes reaches the pins within a millisecond, or within 105 ms of the last byte if its item began as a frame; nothing that came before it starts.",
+    Goal("typed-stops-chip", "On a simulated Uno, at both rates, a typed stop behind random bytes reaches the pins within a millisecond, or within 105 ms of the last byte if its packet began as a frame; nothing that came before it starts.",
          "stops", 10_000, 500, "tests.firmware.test_typed_stops {count} --seed {seed}", 1000),
     Goal("rows", "Tests that each commit only samples pass with every row: chips, random programs and codes.",
          "runs of all rows", 1, 1, "pytest tests -m sampled --whole -n 2 --dist worksteal"),

@@ -141,9 +141,9 @@ class WireRobot:
 
     def _replies(self) -> list[Frame]:
         """Take what has arrived: keep events and the epoch, and return the replies."""
-        *items, self._rest = (self._rest + self.wire.heard(LOOK_MS, 1)).split(b"\0")
+        *packets, self._rest = (self._rest + self.wire.heard(LOOK_MS, 1)).split(b"\0")
         self._rest = self._rest[-1024:]
-        frames = [frame for frame in map(decoded, filter(None, items)) if frame]
+        frames = [frame for frame in map(decoded, filter(None, packets)) if frame]
         replies = []
         for frame in frames:
             if not frame.is_reply:

@@ -29,7 +29,7 @@ from tiniscript.link.messages import (
 from tiniscript.link.names import row_name
 from tiniscript.link.payloads import HelloReply, SentReply, StatusReply
 from tiniscript.link.requests import Reply
-from tiniscript.link.robot_state import lost_items
+from tiniscript.link.robot_state import lost_packets
 
 PINGS = 20
 PAUSE_MS = 50  # between two of them
@@ -183,8 +183,8 @@ def _hearing(
     expected.note({"good": str(PINGS - missed), **values})
     if missed >= LOSSY or damaged >= LOSSY:
         return [sure("lossy", **values)] if after is not None else []
-    if after is not None and lost_items(before) >= 10 * LOSSY:
-        return [probably("lossy", **{**values, "damaged": str(lost_items(before))})]
+    if after is not None and lost_packets(before) >= 10 * LOSSY:
+        return [probably("lossy", **{**values, "damaged": str(lost_packets(before))})]
     return []
 
 

@@ -85,8 +85,8 @@ class WireRobot(Robot):
                 break
             found += more
             self.heard += more
-            for item in found.split(b"\0"):
-                frame = decoded(item) if item else None
+            for packet in found.split(b"\0"):
+                frame = decoded(packet) if packet else None
                 if frame and frame.is_reply and (frame.number, frame.seq) == (number, self._seq):
                     reply = reply_of(name, frame.payload)
                     if reply is not None:

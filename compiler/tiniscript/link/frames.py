@@ -56,7 +56,7 @@ def begins_text(wire: bytes) -> bool:
 
 
 def decoded(wire: bytes) -> Frame | None:
-    """Return the frame in an item's bytes (without the 0x00), or None if it is damaged."""
+    """Return the frame in a packet's bytes (without the 0x00), or None if it is damaged."""
     try:
         data: bytes = cobs.decode(wire)
     except cobs.DecodeError:

@@ -77,7 +77,7 @@ MINOR = 2  # grows when messages, statuses or features are added
 SMALL_FRAME, LARGE_FRAME = 63, 250
 LARGE_WINDOW = 4
 LARGE_MINOR = 2  # a computer of an older version takes no large frame
-TEXT_FROM = 0x41  # an item whose first byte is this or more is no frame
+TEXT_FROM = 0x41  # a packet whose first byte is this or more is no frame
 HEAD_BYTES = 3  # type, sequence number, epoch
 CRC_BYTES = 4
 STATUS_BYTES = 1  # before the fields of a reply
@@ -103,7 +103,7 @@ SEALED_PAYLOAD_BYTES = payload_bytes(SMALL_FRAME, is_sealed=True)
 
 STOP_BYTES = 8  # zeros that a computer sends to stop a robot
 STOP_RUN = 4  # zeros in a row that stop it
-SILENCE_MS = 1000  # after this silence the next byte begins an item
+SILENCE_MS = 1000  # after this silence the next byte begins a packet
 HELD_MS = 100  # after this silence a typed stop acts in what began as a frame
 DEAD_MAN_MS = 1000  # dead-man timer: without a valid frame, an attached program ends
 LISTEN_MS = 3000  # without a valid frame, a robot sends no more events

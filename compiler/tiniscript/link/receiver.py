@@ -1,7 +1,7 @@
-"""Splits bytes into items: frames, lines of text, and the run of zeros that stops a robot.
+"""Splits bytes into packets: frames, lines of text, and the run of zeros that stops a robot.
 
-Knows where an item begins and ends; `frames` checks whether a frame is undamaged. Holds one item
-until it is taken, or several frames; items that find no place are dropped, a stop is not.
+Knows where a packet begins and ends; `frames` checks whether a frame is undamaged. Holds one packet
+until it is taken, or several frames; packets that find no place are dropped, a stop is not.
 The C++ version is `vm_arduino/src/link/receiver.cpp`.
 """
 
@@ -19,14 +19,14 @@ from tiniscript.link.messages import (
     TEXT_FROM,
 )
 
-# A frame and the first byte of its COBS. An item that begins with a byte of more than LARGE_FIRST
+# A frame and the first byte of its COBS. A packet that begins with a byte of more than LARGE_FIRST
 # is no large frame.
-SMALL_ITEM, LARGE_ITEM = SMALL_FRAME + 1, LARGE_FRAME + 1
+SMALL_PACKET, LARGE_PACKET = SMALL_FRAME + 1, LARGE_FRAME + 1
 LARGE_FIRST = HEAD_BYTES + 1
 LONGEST = 255  # a longer text counts as this long
 
 # places in the stream
-_BEGIN = "begin"  # the next byte begins an item
+_BEGIN = "begin"  # the next byte begins a packet
 _AFTER_TEXT = "after text"  # the same, but white space is skipped
 _BLANK = "blank"  # after white space, which may also be the first byte of a frame
 _CR, _CR_LF = "cr", "cr lf"  # the same after CR, and after CR and LF
@@ -43,7 +43,7 @@ _LETTERS = b"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
 _DELETE = 0x7F
 
 
-class Item(NamedTuple):
+class Packet(NamedTuple):
     """A frame before it is decoded, or the beginning of a line of text of `length` bytes."""
 
     is_text: bool
@@ -52,25 +52,25 @@ class Item(NamedTuple):
 
 
 class Receiver:
-    def __init__(self, most_bytes: int = LARGE_ITEM, window: int = 1) -> None:
+    def __init__(self, most_bytes: int = LARGE_PACKET, window: int = 1) -> None:
         """A frame has `most_bytes` on the wire, without its 0x00; `window` of them may wait."""
-        self.item: Item | None = None
-        self.damaged = 0  # items that were cut, too long, or invalid
-        self.dropped = 0  # items that arrived while one was waiting
+        self.packet: Packet | None = None
+        self.damaged = 0  # packets that were cut, too long, or invalid
+        self.dropped = 0  # packets that arrived while one was waiting
         self._place = _BEGIN
         self._data = bytearray()
         self._length = 0
         self._is_dropping = False
         self._most_bytes = most_bytes
         self._window = window
-        self._behind: deque[Item] = deque()  # frames behind the item that waits
+        self._behind: deque[Packet] = deque()  # frames behind the packet that waits
         self._zeros = 0
         self._last_ms = 0
 
-    def take(self) -> Item | None:
-        """Return the waiting item, if there is one, and make room for the next."""
-        item, self.item = self.item, self._behind.popleft() if self._behind else None
-        return item
+    def take(self) -> Packet | None:
+        """Return the waiting packet, if there is one, and make room for the next."""
+        packet, self.packet = self.packet, self._behind.popleft() if self._behind else None
+        return packet
 
     def put(self, byte: int, now_ms: int) -> bool:
         """Take a byte; return whether it completes a run of four zeros, which is a stop.
@@ -105,7 +105,7 @@ class Receiver:
         return False
 
     def _begin(self, byte: int) -> None:
-        """Classify an item by its first byte, as far as possible."""
+        """Classify a packet by its first byte, as far as possible."""
         self._is_dropping = not self._has_place()
         self._data.clear()
         self._length = 0
@@ -124,7 +124,7 @@ class Receiver:
         self._add(byte)
 
     def _go_on(self, byte: int) -> None:
-        """Take a byte of an item that has begun."""
+        """Take a byte of a packet that has begun."""
         is_text = _is_printable(byte) or byte == 0x09
         if self._place == _SKIP:
             return
@@ -165,29 +165,29 @@ class Receiver:
         return self._zeros == 0
 
     def _cut(self) -> None:
-        """Drop the open item, which has not ended, and begin a new one."""
+        """Drop the open packet, which has not ended, and begin a new one."""
         self.damaged += self._place in (*_MAYBE_FRAME, _OTHER, _TEXT)
         self._place = _BEGIN
 
     def _end(self, is_text: bool) -> None:
         if self._is_dropping:
             return
-        item = Item(is_text, bytes(self._data), self._length)
-        if self.item is None:
-            self.item = item
+        packet = Packet(is_text, bytes(self._data), self._length)
+        if self.packet is None:
+            self.packet = packet
         elif is_text:  # it would come before its turn
             self.dropped += 1
         else:
-            self._behind.append(item)
+            self._behind.append(packet)
 
     def _has_place(self) -> bool:
-        """Return whether an item that begins now may wait: frames do, and nothing behind text."""
-        if self.item is None:
+        """Return whether a packet that begins now may wait: frames do, and nothing behind text."""
+        if self.packet is None:
             return True
-        return not self.item.is_text and len(self._behind) < self._window - 1
+        return not self.packet.is_text and len(self._behind) < self._window - 1
 
     def _room(self) -> int:
-        return self._most_bytes if self._data[:1] <= bytes([LARGE_FIRST]) else SMALL_ITEM
+        return self._most_bytes if self._data[:1] <= bytes([LARGE_FIRST]) else SMALL_PACKET
 
 
 def _is_printable(byte: int) -> bool:

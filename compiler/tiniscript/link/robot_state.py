@@ -25,7 +25,7 @@ _PLACE = struct.Struct("<HI")
 assert _PLACE.size == PLACE_BYTES
 
 
-def lost_items(status: StatusReply) -> int:
+def lost_packets(status: StatusReply) -> int:
     """Return how many errors of its line a robot has counted since its reset."""
     return status.damaged + status.dropped + status.framing + status.overrun
 

@@ -166,13 +166,13 @@ class Session(Requester):
         """Take the bytes that have arrived."""
         for byte in data:
             self._receiver.put(byte, now_ms)
-            item = self._receiver.take()
-            if item is None:
+            packet = self._receiver.take()
+            if packet is None:
                 continue
-            if item.is_text:
-                self._events.append(TextEvent(item.data))
+            if packet.is_text:
+                self._events.append(TextEvent(packet.data))
                 continue
-            frame = decoded(item.data)
+            frame = decoded(packet.data)
             if frame is not None:
                 frame = self._sealing.opened(frame, self._transmission, now_ms)
             if frame is None:

@@ -72,7 +72,7 @@ class Transmission:
         wire = encoded(self.frame if self.seal is None else self.seal.closed(self.frame))
         wait_ms = ROUND_MS + RETRY_MS * min(self.tries, RETRY_STEPS)
         wait_ms += -(-(len(wire) + self._largest + 2) * 10_000 // self._baud)
-        # a 0x00 before a retry and before HELLO ends any partial item in the robot's receiver
+        # a 0x00 before a retry and before HELLO ends any partial packet in the robot's receiver
         is_first = self.tries == 0 and self.frame.number != BY_NAME["HELLO"].number
         self.tries += 1
         self.due_ms = now_ms + wait_ms
@@ -131,7 +131,7 @@ class Window(Transmission):
         """Return the frames that may be sent now."""
         if self._under_way and now_ms >= self._lost_ms:
             self._go_back()
-        # a 0x00 before a retry ends any partial item in the robot's receiver
+        # a 0x00 before a retry ends any partial packet in the robot's receiver
         wire = b"\0" if self._is_again else b""
         self._is_again = False
         while self._sent < len(self._data) and len(self._under_way) < self._window:

@@ -361,7 +361,7 @@ void judge_typed(uint64_t seed) {
   }
   const bool is_stop = put(static_cast<uint8_t>("\r\n"[draw.below(2)]), 0);
   if (!is_stop && !receiver.is_held()) what = "the last stop is not seen";
-  if (receiver.is_held()) {  // its item ends in another way than whole
+  if (receiver.is_held()) {  // its packet ends in another way than whole
     const bool is_cut = draw.below(2) == 0;
     bool has_stopped = false;
     for (uint32_t k = is_cut ? 1 : 80 * 4; k > 0 && receiver.is_held(); k--) {

@@ -30,21 +30,21 @@ uint32_t now_ms;
 uint8_t seq;
 uint8_t epoch;
 
-// What the robot has sent: a row of items, whose frames are whole.
+// What the robot has sent: a row of packets, whose frames are whole.
 std::string sent;
 
 void look_at_sent() {
   size_t begin = 0;
   for (size_t k = 0; k < sent.size(); k++) {
     if (sent[k] != 0) continue;
-    const std::string item = sent.substr(begin, k - begin);
+    const std::string packet = sent.substr(begin, k - begin);
     begin = k + 1;
-    if (item.empty()) continue;
-    if (static_cast<uint8_t>(item[0]) >= kTextFrom || item[0] == '/') continue;  // text
-    uint8_t bytes[kItemBytes];
-    must(item.size() <= sizeof bytes);
-    memcpy(bytes, item.data(), item.size());
-    must(decode_frame(bytes, static_cast<uint8_t>(item.size())) != 0);
+    if (packet.empty()) continue;
+    if (static_cast<uint8_t>(packet[0]) >= kTextFrom || packet[0] == '/') continue;  // text
+    uint8_t bytes[kPacketBytes];
+    must(packet.size() <= sizeof bytes);
+    memcpy(bytes, packet.data(), packet.size());
+    must(decode_frame(bytes, static_cast<uint8_t>(packet.size())) != 0);
     must((bytes[kTypeAt] & kReply) != 0);
     epoch = bytes[kEpochAt];
   }

@@ -147,7 +147,7 @@ void take_lines(std::string* line, std::string* rows) {
   while (receiver.take_text(&byte)) {
     if (byte == kLineEnd) {
       const uint8_t* const bytes = reinterpret_cast<const uint8_t*>(line->data());
-      *rows += row_of("text", bytes, std::min<size_t>(line->size(), 255), kSmallItem) + "\n";
+      *rows += row_of("text", bytes, std::min<size_t>(line->size(), 255), kSmallPacket) + "\n";
     }
     if (byte == kLineStop) continue;  // `test_typed_stops.py` is about these
     if (byte == kLineEnd || byte == kLineCut) {
@@ -160,7 +160,7 @@ void take_lines(std::string* line, std::string* rows) {
 
 // I: bytes and times to a receiver alone: what it finds, a line each. A frame is released, and text
 // taken, after `held` more bytes.
-void answer_items(RequestReader* request, Writer* answer) {
+void answer_packets(RequestReader* request, Writer* answer) {
   receiver = Receiver();
   std::string rows;
   std::string line;
@@ -176,7 +176,7 @@ void answer_items(RequestReader* request, Writer* answer) {
     if (left > 0) continue;
     if (held == 0) take_lines(&line, &rows);
     if (!receiver.has_frame()) continue;
-    rows += row_of("frame", receiver.bytes(), receiver.length(), kItemBytes);
+    rows += row_of("frame", receiver.bytes(), receiver.length(), kPacketBytes);
     rows += decode_frame(receiver.bytes(), receiver.length()) != 0 ? " whole\n" : " damaged\n";
     left = static_cast<uint8_t>(held + 1);
     if (held == 0) {
@@ -237,7 +237,7 @@ const Answers answers = {
     {'B', answer_begin},
     {'S', answer_step},
     {'R', answer_robot},
-    {'I', answer_items},
+    {'I', answer_packets},
     {'H', answer_hash},
     {'X', answer_seal},
     {'M', answer_image},

@@ -38,16 +38,16 @@ uint32_t get32(const uint8_t* bytes);
 // 0x00.
 uint8_t encode_frame(uint8_t* bytes, uint8_t end);
 
-// Checks an item while it arrives, so that little work is left after its last byte.
+// Checks a packet while it arrives, so that little work is left after its last byte.
 class FrameCheck {
  public:
-  // Starts over for another item.
+  // Starts over for another packet.
   void begin();
 
   uint8_t taken() const { return taken_; }
 
-  // Takes the bytes that have arrived since the last call, up to `length` (at most kItemBytes). If
-  // `length` is less than before, another item has begun meanwhile, and it takes none.
+  // Takes the bytes that have arrived since the last call, up to `length` (at most kPacketBytes).
+  // If `length` is less than before, another packet has begun meanwhile, and it takes none.
   void take(const uint8_t* bytes, uint8_t length);
 
   // The number of bytes up to the next zero or the end; more than any frame has if that position
@@ -68,8 +68,8 @@ class FrameCheck {
   uint32_t crc_;
 };
 
-// Decodes the `length` bytes of an item (1 to kItemBytes). Returns where its payload ends, or 0 if
-// it is damaged.
+// Decodes the `length` bytes of a packet (1 to kPacketBytes). Returns where its payload ends, or 0
+// if it is damaged.
 uint8_t decode_frame(uint8_t* bytes, uint8_t length);
 
 }  // namespace tiniscript

@@ -123,7 +123,7 @@ bool Link::next_tx_byte(uint8_t* byte) {
 }
 
 // Stops the robot. Of one that stands already the epoch stays, or a line that is held low would
-// exhaust it. A waiting item is from before the stop and therefore stale.
+// exhaust it. A waiting packet is from before the stop and therefore stale.
 tini_noinline void Link::halt(Cause cause) {
   const bool was_stopped = port_status().state == State::kStopped;
   port_stop(0);
@@ -133,7 +133,7 @@ tini_noinline void Link::halt(Cause cause) {
   confirm(cause);
 }
 
-// Takes the bytes of an item that have arrived.
+// Takes the bytes of a packet that have arrived.
 inline void Link::check() {
   if (receiver_->has_begun()) {
     check_.begin();
@@ -142,7 +142,7 @@ inline void Link::check() {
   const uint8_t length = receiver_->length();
   if (length == check_.taken()) return;
   asm volatile("" ::: "memory");  // barrier: the interrupt has written the bytes before the length
-  check_.take(receiver_->bytes(), length < kItemBytes ? length : kItemBytes);
+  check_.take(receiver_->bytes(), length < kPacketBytes ? length : kPacketBytes);
   if (check_.left() <= kCrcBytes && receiver_->bytes()[kTypeAt] == kLiveByte) prepare();
 }
 

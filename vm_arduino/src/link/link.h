@@ -308,7 +308,7 @@ class Link {
   void hand_over();
 
   ReceiverOfLink receiver_;
-  FrameCheck check_;  // of the item that arrives or waits
+  FrameCheck check_;  // of the packet that arrives or waits
   uint16_t now_ms_;
   uint16_t left_ms_[kTimes];
   uint8_t epoch_;

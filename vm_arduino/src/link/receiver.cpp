@@ -75,26 +75,26 @@ inline void Receiver::sort(uint8_t byte) {
 // A line has ended that is a typed stop; `before` is where the receiver was before its end. Returns
 // whether all of it has found a place as text, and a mark behind it.
 bool Receiver::is_marked(Place before) {
-  const bool is_in_item = before >= Place::kHead && before <= Place::kOther && !is_dropping_ &&
-                          item_[filled()] == Item::kText;
-  if (before != Place::kText && !is_in_item) return false;
+  const bool is_in_packet = before >= Place::kHead && before <= Place::kOther && !is_dropping_ &&
+                            packet_[filled()] == Packet::kText;
+  if (before != Place::kText && !is_in_packet) return false;
   if (place_ == Place::kAfterText) pass_on(kLineStop);
   if (place_ != Place::kAfterText) return false;
   marks_ = static_cast<uint8_t>(marks_ + 1);
   return true;
 }
 
-// Determines the kind of an item from its first byte, as far as possible. A frame after text has a
+// Determines the kind of a packet from its first byte, as far as possible. A frame after text has a
 // zero before it, so while text waits, or a line of it is open, what follows it is text.
 void Receiver::begin(uint8_t byte) {
   if (byte == 0x7f) return skip();
   const bool goes_on = place_ == Place::kAfterText &&
-                       (is_kept_ || first_ != behind_ || item_[filled()] == Item::kText);
+                       (is_kept_ || first_ != behind_ || packet_[filled()] == Packet::kText);
   if (is_letter(byte) || (goes_on && is_printable(byte))) {
     place_ = Place::kText;
     return pass_on(byte);
   }
-  is_dropping_ = item_[filled()] != Item::kNone;
+  is_dropping_ = packet_[filled()] != Packet::kNone;
   if (!is_dropping_) {
     length_[filled()] = 0;
     if (is_first()) has_begun_ = true;
@@ -110,7 +110,7 @@ void Receiver::begin(uint8_t byte) {
   add(byte);
 }
 
-// Takes a further byte of an item.
+// Takes a further byte of a packet.
 void Receiver::go_on(uint8_t byte) {
   const bool is_text = is_printable(byte) || byte == '\t';
   if (place_ == Place::kSkip) return;
@@ -123,7 +123,7 @@ void Receiver::go_on(uint8_t byte) {
     place_ = is_printable(byte) ? Place::kLine : Place::kFrame;  // request types are smaller
   } else if (!is_frame() && ends_line(byte)) {
     place_ = Place::kAfterText;
-    if (!end(Item::kText)) lose();
+    if (!end(Packet::kText)) lose();
     return;
   } else if (place_ == Place::kLine && !is_text) {
     place_ = Place::kFrame;
@@ -133,9 +133,9 @@ void Receiver::go_on(uint8_t byte) {
   if (length_[filled()] == most_bytes() && !is_dropping_) {
     if (is_frame()) return skip();
     place_ = Place::kText;
-    end(Item::kText);
+    end(Packet::kText);
     is_begun_ = true;
-    if (item_[filled()] != Item::kText) {
+    if (packet_[filled()] != Packet::kText) {
       place_ = Place::kLost;
       is_lost_ = true;
     }
@@ -150,22 +150,22 @@ void Receiver::skip() {
   place_ = Place::kSkip;
 }
 
-// Counts an item that begins while another one waits.
+// Counts a packet that begins while another one waits.
 void Receiver::drop() {
   if (is_dropping_) dropped_ = static_cast<uint8_t>(dropped_ + 1);
 }
 
-// Leaves a waiting item and its length unchanged.
+// Leaves a waiting packet and its length unchanged.
 void Receiver::add(uint8_t byte) {
   const uint8_t length = length_[filled()];
-  if (is_dropping_ || length == kItemBytes) return;
+  if (is_dropping_ || length == kPacketBytes) return;
   bytes_[filled()][length] = byte;
   length_[filled()] = static_cast<uint8_t>(length + 1);
 }
 
 void Receiver::zero() {
   if (place_ >= Place::kBlank && place_ <= Place::kHeld && place_ != Place::kOther) {
-    end(Item::kFrame);
+    end(Packet::kFrame);
     place_ = Place::kBegin;
   } else {
     cut();
@@ -175,7 +175,7 @@ void Receiver::zero() {
   due_stop_ = Cause::kSequence;
 }
 
-// Starts over; the open item never ended.
+// Starts over; the open packet never ended.
 void Receiver::cut() {
   const Place place = place_;
   place_ = Place::kBegin;
@@ -183,15 +183,15 @@ void Receiver::cut() {
   if (place == Place::kText || place == Place::kLost) pass_on(kLineCut);
 }
 
-// A line that may overtake older text, or a frame, is dropped. Returns whether the item waits.
-bool Receiver::end(Item item) {
+// A line that may overtake older text, or a frame, is dropped. Returns whether the packet waits.
+bool Receiver::end(Packet packet) {
   if (is_dropping_) return false;
   is_begun_ = false;
   taken_ = 0;
-  if (item == Item::kFrame || (first_ == behind_ && is_first())) {
+  if (packet == Packet::kFrame || (first_ == behind_ && is_first())) {
     may_stop_[filled()] = place_ == Place::kHeld;
-    item_[filled()] = item;
-    if (item == Item::kFrame) fill_on();
+    packet_[filled()] = packet;
+    if (packet == Packet::kFrame) fill_on();
     return true;
   }
   dropped_ = static_cast<uint8_t>(dropped_ + 1);
@@ -217,7 +217,7 @@ void Receiver::pass_on(uint8_t byte) {
   behind_ = behind;
 }
 
-// A line has found no room as an item.
+// A line has found no room as a packet.
 void Receiver::lose() {
   is_lost_ = true;
   pass_on(kLineCut);
@@ -229,14 +229,14 @@ void Receiver::end_text(uint8_t byte) {
 }
 
 bool Receiver::take_text(uint8_t* byte) {
-  if (item_[looked_at()] == Item::kText) {
+  if (packet_[looked_at()] == Packet::kText) {
     if (taken_ < length_[looked_at()]) {
       *byte = bytes_[looked_at()][taken_++];
       return true;
     }
     const bool is_over = !is_begun_;
     asm volatile("" ::: "memory");  // barrier: the bytes are read before the interrupt may write
-    item_[looked_at()] = Item::kNone;
+    packet_[looked_at()] = Packet::kNone;
     if (is_over) {
       *byte = kLineEnd;
       return true;

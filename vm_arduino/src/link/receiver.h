@@ -1,11 +1,11 @@
-// Splits bytes into items: frames, lines of text, and what stops a robot: a run of zeros, or a line
-// that is a typed stop.
+// Splits bytes into packets: frames, lines of text, and what stops a robot: a run of zeros, or a
+// line that is a typed stop.
 //
-// Knows where an item begins and ends; `frames.h` checks whether a frame is whole. Holds frames until
-// they are released, kWindow of them; a frame that finds no place is dropped. Text is passed on as it
-// arrives.
-// Finds the same items as `receiver.py`. `put` may be called from an interrupt, everything else from
-// the main loop.
+// Knows where a packet begins and ends; `frames.h` checks whether a frame is whole. Holds frames
+// until they are released, kWindow of them; a frame that finds no place is dropped. Text is passed
+// on as it arrives.
+// Finds the same packets as `receiver.py`. `put` may be called from an interrupt, everything else
+// from the main loop.
 
 #ifndef TINISCRIPT_LINK_RECEIVER_H_
 #define TINISCRIPT_LINK_RECEIVER_H_
@@ -20,7 +20,7 @@
 
 namespace tiniscript {
 
-enum class Item : uint8_t { kNone, kFrame, kText };
+enum class Packet : uint8_t { kNone, kFrame, kText };
 
 // What `take_text` returns beside the bytes of a line. kLineStop is behind the end of a line that is
 // a typed stop.
@@ -28,10 +28,10 @@ constexpr uint8_t kLineEnd = '\n';
 constexpr uint8_t kLineCut = 0;
 constexpr uint8_t kLineStop = '\r';
 
-// The places of the items that wait: the main loop looks at one, the interrupt fills one. They are
-// the same where nothing waits, or where all places are taken.
+// The places of the packets that wait: the main loop looks at one, the interrupt fills one. They
+// are the same where nothing waits, or where all places are taken.
 template <uint8_t kPlaces>
-class ItemPlaces {
+class PacketPlaces {
  protected:
   uint8_t looked_at() const { return looked_at_; }
   uint8_t filled() const { return filled_; }
@@ -46,7 +46,7 @@ class ItemPlaces {
 };
 
 template <>
-class ItemPlaces<1> {
+class PacketPlaces<1> {
  protected:
   static constexpr uint8_t looked_at() { return 0; }
   static constexpr uint8_t filled() { return 0; }
@@ -54,7 +54,7 @@ class ItemPlaces<1> {
   static void fill_on() {}
 };
 
-class Receiver : private ItemPlaces<kWindow> {
+class Receiver : private PacketPlaces<kWindow> {
  public:
   // Takes a byte at the time `now_ms`. Returns whether the motors go off at once: it completes a run
   // of four zeros, the stop sequence, or a typed stop. Eight zeros are two stops. A byte with a
@@ -85,7 +85,7 @@ class Receiver : private ItemPlaces<kWindow> {
   void take_last_zero() { take(0, last_ms_); }
 
   // Whether a frame waits, the bytes of the first one and their number.
-  bool has_frame() const { return item_[looked_at()] == Item::kFrame; }
+  bool has_frame() const { return packet_[looked_at()] == Packet::kFrame; }
   uint8_t* bytes() { return bytes_[looked_at()]; }
   uint8_t length() const { return length_[looked_at()]; }
 
@@ -107,14 +107,14 @@ class Receiver : private ItemPlaces<kWindow> {
   // Goes on to the next frame: as if it began now, though it may be whole already.
   void release() {
     if (kWindow > 1) length_[looked_at()] = 0;
-    item_[looked_at()] = Item::kNone;
+    packet_[looked_at()] = Packet::kNone;
     if (kWindow == 1) return;
     look_on();
     has_begun_ = true;
   }
 
   // Whether text may wait.
-  bool has_text() const { return item_[looked_at()] == Item::kText || first_ != behind_; }
+  bool has_text() const { return packet_[looked_at()] == Packet::kText || first_ != behind_; }
 
   // Takes the next byte of text. kLineEnd: the line is whole. kLineCut: it never ends, or bytes of
   // it were lost. False: none waits.
@@ -138,9 +138,9 @@ class Receiver : private ItemPlaces<kWindow> {
     return true;
   }
 
-  // Bytes of an unfinished item may be read up to `length`. `has_begun` says whether another item
-  // has begun since the last call: call it before `length`. An item that begins between the two
-  // calls counts as begun, too.
+  // Bytes of an unfinished packet may be read up to `length`. `has_begun` says whether another
+  // packet has begun since the last call: call it before `length`. A packet that begins between the
+  // two calls counts as begun, too.
   bool has_begun() {
     if (!has_begun_) return false;
     has_begun_ = false;
@@ -154,13 +154,13 @@ class Receiver : private ItemPlaces<kWindow> {
   Cause due_stop() const { return due_stop_; }
   void take_stop() { due_stop_ = Cause::kNone; }
 
-  // The number of damaged and dropped items. It wraps around to 0.
+  // The number of damaged and dropped packets. It wraps around to 0.
   uint8_t damaged() const { return damaged_; }
   uint8_t dropped() const { return dropped_; }
 
  private:
   enum class Place : uint8_t {
-    kBegin,      // the next byte begins an item
+    kBegin,      // the next byte begins a packet
     kAfterText,  // the same, except for white space
     kBlank,      // after white space; a frame may also begin
     kCr,         // the same after CR, and after CR and LF
@@ -186,7 +186,7 @@ class Receiver : private ItemPlaces<kWindow> {
   void skip();
   void drop();
   void add(uint8_t byte);
-  bool end(Item item);
+  bool end(Packet packet);
   void pass_on(uint8_t byte);
   void end_text(uint8_t byte);
   void lose();
@@ -194,16 +194,16 @@ class Receiver : private ItemPlaces<kWindow> {
 
   bool is_frame() const { return place_ == Place::kFrame || place_ == Place::kHeld; }
 
-  // Whether no frame waits before the item that is being filled.
+  // Whether no frame waits before the packet that is being filled.
   bool is_first() const { return filled() == looked_at(); }
 
-  // The most bytes that the item has which is being filled, if it is a frame.
+  // The most bytes that the packet has which is being filled, if it is a frame.
   uint8_t most_bytes() const {
-    return kHasLargeFrames && bytes_[filled()][0] > kLargeFirst ? kSmallItem : kItemBytes;
+    return kHasLargeFrames && bytes_[filled()][0] > kLargeFirst ? kSmallPacket : kPacketBytes;
   }
 
-  // The waiting items. A line that might have been a frame waits in `bytes_` like one, as the last.
-  volatile Item item_[kWindow];
+  // The waiting packets. A line that may be a frame waits in `bytes_` like one, as the last.
+  volatile Packet packet_[kWindow];
   volatile bool has_begun_;
   volatile Cause due_stop_;
   TypedStop typed_;
@@ -225,7 +225,7 @@ class Receiver : private ItemPlaces<kWindow> {
   uint8_t zeros_;
   volatile uint8_t length_[kWindow];
   uint16_t last_ms_;
-  uint8_t bytes_[kWindow][kItemBytes];
+  uint8_t bytes_[kWindow][kPacketBytes];
 };
 
 #ifdef __AVR__

@@ -31,10 +31,10 @@ constexpr bool kHasLargeFrames = kLargestFrame > kSmallFrame;
 constexpr uint8_t kPayloadBytes =
     kLargestFrame - kHeadBytes - kCrcBytes - (kHasLargeFrames ? 1 : 0);
 
-// A frame and its first COBS byte. An item that begins with another byte than kLargeFirst or less is
-// none with more bytes than kSmallItem.
-constexpr uint8_t kItemBytes = kLargestFrame + 1;
-constexpr uint8_t kSmallItem = kSmallFrame + 1;
+// A frame and its first COBS byte. A packet that begins with another byte than kLargeFirst or less
+// is none with more bytes than kSmallPacket.
+constexpr uint8_t kPacketBytes = kLargestFrame + 1;
+constexpr uint8_t kSmallPacket = kSmallFrame + 1;
 constexpr uint8_t kLargeFirst = kHeadBytes + 1;
 
 }  // namespace tiniscript

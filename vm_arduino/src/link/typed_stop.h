@@ -1,8 +1,8 @@
 // Finds a typed stop in the bytes of a connection: a line of blanks, `;` and one S or STOP.
 //
 // Such a line begins at power-on, behind CR, LF, 0x00, another control byte but tab, 0x7f, a whole
-// cursor-key sequence, or a second of silence, whatever the bytes around it are. Knows no items and
-// no time.
+// cursor-key sequence, or a second of silence, whatever the bytes around it are. Knows no packets
+// and no time.
 
 #ifndef TINISCRIPT_LINK_TYPED_STOP_H_
 #define TINISCRIPT_LINK_TYPED_STOP_H_

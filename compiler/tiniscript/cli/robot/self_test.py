@@ -28,7 +28,7 @@ from tiniscript.link.messages import RESETS, SAVED
 from tiniscript.link.names import row_name
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import StatusReply
-from tiniscript.link.robot_state import lost_items
+from tiniscript.link.robot_state import lost_packets
 from tiniscript.link.trim import told
 from tiniscript.robots.profile import Robot
 
@@ -131,13 +131,13 @@ class SelfTest:
     def _line(self) -> None:
         """Ask often; what was damaged meanwhile, the robot has counted."""
         ask = self.connection.ask
-        before = lost_items(ask(lambda session: session.status()).values)
+        before = lost_packets(ask(lambda session: session.status()).values)
         times = []
         for _ in range(PINGS):
             begin_s = perf_counter()
             ask(lambda session: session.ping())
             times.append((perf_counter() - begin_s) * 1000)
-        lost = lost_items(ask(lambda session: session.status()).values) - before
+        lost = lost_packets(ask(lambda session: session.status()).values) - before
         said = {"n": str(PINGS), "ms": f"{median(times):.0f}", "lost": str(lost)}
         said |= {"least": f"{min(times):.0f}", "most": f"{max(times):.0f}"}
         if lost > 0:
