@@ -1,4 +1,4 @@
-"""What the checker offers instead of a value of the wrong kind, and up to where it looks."""
+"""What the checker offers instead of a value of the wrong type, and up to where it looks."""
 
 from __future__ import annotations
 

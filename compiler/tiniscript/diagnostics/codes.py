@@ -166,7 +166,7 @@ WANTS_NUMBER = _mistake("TS201")
 WANTS_CONDITION = _mistake("TS202")
 MIXED_COMPARE = _mistake("TS203")
 YES_NO_ORDER = _mistake("TS204")
-KIND_CHANGES = _mistake("TS205")
+TYPE_CHANGES = _mistake("TS205")
 OUT_OF_RANGE = _mistake("TS206")
 # limits
 TOO_MANY_VARIABLES = _mistake("TS301")

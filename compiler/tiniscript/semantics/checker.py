@@ -1,7 +1,7 @@
 """The checker: the AST becomes IR.
 
 Knows every rule that a person can break once the shape is right: names, argument counts,
-ranges, kinds, limits; and the rule which reading a sensor's name means. Does not know bytes.
+ranges, types, limits; and the rule which reading a sensor's name means. Does not know bytes.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics import ir
 from tiniscript.semantics.ir import Statement
 from tiniscript.semantics.symbols import ANY, Name, Scope
-from tiniscript.semantics.types import Kinds, Value
+from tiniscript.semantics.types import Types, Value
 from tiniscript.syntax import ast
 from tiniscript.syntax.parser import parse
 
@@ -54,7 +54,7 @@ class _Procedure(NamedTuple):
 class _Checker(Scope):
     def __init__(self, source: Source, kit: Kit, parsed: ast.Program) -> None:
         super().__init__(source, kit, parsed)
-        self.kinds = Kinds(self)
+        self.types = Types(self)
         self.variables: list[str] = []
         self.procedures: list[ir.Procedure] = []
         self.facts: list[_Procedure] = []
@@ -115,28 +115,28 @@ class _Checker(Scope):
             return
         if node.value is None:
             if name is None:
-                self.variable(node, self.kinds.nothing)
+                self.variable(node, self.types.nothing)
             return
-        value = self.kinds.value(node.value, node.name if name is None else None)
+        value = self.types.value(node.value, node.name if name is None else None)
         self.stack_fits([value], node.span)
         number = self.variable(node, value) if name is None else name.number
-        known = self.kinds.of_variables[number]
-        if ANY not in (known, value.kind) and known != value.kind:
+        known = self.types.of_variables[number]
+        if ANY not in (known, value.type) and known != value.type:
             free = self.wrong.free_name(node.name, self.procedures)
             other = f"{free} = {self.source[node.value.span]}"
-            self.report(codes.KIND_CHANGES, node.value.span, name=node.name, other=other,
-                        old="@" + known, new="@" + value.kind)  # fmt: skip
+            self.report(codes.TYPE_CHANGES, node.value.span, name=node.name, other=other,
+                        old="@" + known, new="@" + value.type)  # fmt: skip
         self.take([value], node.span, made)
         made.append(ir.Assign(number, value.terms, node.span))
 
     def variable(self, node: ast.Assign, value: Value) -> int:
-        """Make a new variable; its kind is that of its first assignment."""
+        """Make a new variable; its type is that of its first assignment."""
         number = len(self.variables)
         if number == VARIABLES:
             self.report(codes.TOO_MANY_VARIABLES, node.name_span, limit=str(VARIABLES))
         self.names[node.name] = Name("variable", number)
         self.variables.append(node.name)
-        self.kinds.of_variables.append(value.kind)
+        self.types.of_variables.append(value.type)
         return number
 
     def command(self, node: ast.Command, made: list[Statement]) -> None:
@@ -165,7 +165,7 @@ class _Checker(Scope):
             wanted = (WAYS[UNIT_OF[word.text]], *wanted[1:])
         said = len(self.diagnostics)
         values = [
-            self.kinds.value(each)
+            self.types.value(each)
             if its is VALUE
             else self.number(each, its, word.text, (node, word))
             for each, its in zip(arguments[forever:], wanted[forever:], strict=True)
@@ -181,7 +181,7 @@ class _Checker(Scope):
             unit = "" if way is None else way.op
             made.append(ir.Move(node.word, time, power, until, span, unit))
         elif word.role.name == "show":
-            made.append(ir.Show(terms[0], values[0].kind == "yes_no", span))
+            made.append(ir.Show(terms[0], values[0].type == "yes_no", span))
         elif word.role.is_instruction:  # START does nothing
             made.append(_MAKES[word.role.name](*terms, span))
 
@@ -206,8 +206,8 @@ class _Checker(Scope):
             assert isinstance(part.value, int)
             if not its.low <= part.value <= its.high:
                 self.wrong.out_of_range(argument.span, part.value, its, word, of)
-        value = self.kinds.value(argument)
-        if value.kind == "yes_no":
+        value = self.types.value(argument)
+        if value.type == "yes_no":
             self.wrong.no_number(argument.span, word)
         return value
 
@@ -217,15 +217,15 @@ class _Checker(Scope):
         return ir.Until(self.missing([value], 0), value.terms)
 
     def condition(self, argument: ast.Argument, word: str) -> Value:
-        value = self.kinds.value(argument)
-        if value.kind == "number":
+        value = self.types.value(argument)
+        if value.type == "number":
             self.wants_condition(argument, word)
         self.stack_fits([value], argument.span)
         return value
 
     def wants_condition(self, argument: ast.Argument, by: str) -> None:
         found = self.source[argument.span]
-        values = self.kinds.wrong.condition(found)
+        values = self.types.wrong.condition(found)
         self.report(codes.WANTS_CONDITION, argument.span, None, by=by, found=found, **values)
 
     def stack_fits(self, values: Sequence[Value], span: Span) -> None:
@@ -262,8 +262,8 @@ class _Checker(Scope):
             return
         argument = node.arguments[0]
         if device.is_yes_no:
-            value = self.kinds.value(argument)
-            if value.kind == "number":
+            value = self.types.value(argument)
+            if value.type == "number":
                 self.wants_condition(argument, device.name)
         else:
             value = self.number(argument, word.arguments[0], device.name)
@@ -301,7 +301,7 @@ class _Checker(Scope):
         after = -1  # what all arms make surely read
         arms: list[ir.Arm] = []
         for arm in node.arms:
-            value = self.kinds.nothing
+            value = self.types.nothing
             if arm.condition is not None:
                 value = self.condition(arm.condition, "ELSEIF" if arms else "IF")
             reads: tuple[int, ...] = ()
@@ -332,7 +332,7 @@ class _Checker(Scope):
         made.append(ir.Loop(count, body, node.span))
 
     def while_(self, node: ast.While, made: list[Statement]) -> None:
-        value = self.kinds.nothing
+        value = self.types.nothing
         if node.condition is not None:
             value = self.condition(node.condition, "WHILE")
         before, self.surely_read = self.surely_read, 0
@@ -372,7 +372,7 @@ class _Checker(Scope):
         self.beside_calls += main_calls
         look = None
         if node.is_when:
-            nothing = ir.Until((), self.kinds.nothing.terms)
+            nothing = ir.Until((), self.types.nothing.terms)
             look = nothing if node.condition is None else self.until(node.condition, "WHEN")
         body = self.body(node.body)
         blocks, calls = self.deepest, self.calls

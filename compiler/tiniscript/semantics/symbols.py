@@ -29,7 +29,7 @@ class Name(NamedTuple):
 class Operand(NamedTuple):
     """A value of an expression, where it stands, and how deep the stack gets for it."""
 
-    kind: str
+    type: str
     depth: int
     start: int
     end: int

@@ -23,7 +23,7 @@ class Value(NamedTuple):
     """A checked expression. `depth` counts values on the stack."""
 
     terms: Expression
-    kind: str
+    type: str
     depth: int
     sensors: tuple[int, ...]  # in order of appearance, perhaps several times
 
@@ -34,7 +34,7 @@ _UNARY = frozenset(("NEG", "ABS"))
 _LEAVES = {"TRUE": Term("YES_NO", 1), "FALSE": Term("YES_NO", 0), "TIME": Term("TIME")}
 
 
-class Kinds:
+class Types:
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
         self.kit = scope.kit
@@ -63,8 +63,8 @@ class Kinds:
                 terms.append(self._name(part, target, stack, sensors))
             elif op in _LEAVES:
                 terms.append(_LEAVES[op])
-                kind = NUMBER if op == "TIME" else YES_NO
-                stack.append(Operand(kind, 1, part.start, part.end))
+                leaf_type = NUMBER if op == "TIME" else YES_NO
+                stack.append(Operand(leaf_type, 1, part.start, part.end))
             elif op == "FOREVER":
                 self.scope.report(codes.FOREVER_NOT_HERE, Span(part.start, part.end))
                 return self.nothing
@@ -73,28 +73,28 @@ class Kinds:
                 if not op.endswith("_LEFT"):
                     self._apply(part, stack)
         result = stack[-1]
-        return Value(tuple(terms), result.kind, result.depth, tuple(sensors))
+        return Value(tuple(terms), result.type, result.depth, tuple(sensors))
 
     def _name(
         self, part: Part, target: str | None, stack: list[Operand], sensors: list[int]
     ) -> Term:
         scope = self.scope
         assert isinstance(part.value, str)
-        kind, term = ANY, Term("NUMBER", 0)
+        value_type, term = ANY, Term("NUMBER", 0)
         name = scope.names.get(part.value)
         if name is None:
             self.wrong.unknown(part, part.value, target)
         elif name.what == "variable":
-            kind, term = self.of_variables[name.number], Term("VARIABLE", name.number)
+            value_type, term = self.of_variables[name.number], Term("VARIABLE", name.number)
         elif name.what == "sensor":
             sensors.append(name.number)
-            kind = YES_NO if self.kit.sensors[name.number].is_yes_no else NUMBER
+            value_type = YES_NO if self.kit.sensors[name.number].is_yes_no else NUMBER
             term = Term("SENSOR", name.number)
         else:
             said = {"device": part.value} if name.what == "actuator" else {}
             span = Span(part.start, part.end)
             scope.report(codes.NO_VALUE, span, None, word=part.value, **said)
-        stack.append(Operand(kind, 1, part.start, part.end))
+        stack.append(Operand(value_type, 1, part.start, part.end))
         return term
 
     def _apply(self, part: Part, stack: list[Operand]) -> None:
@@ -113,26 +113,26 @@ class Kinds:
         left = stack.pop()
         depth = max(left.depth, right.depth + 1)
         start, end = min(left.start, part.start), max(right.end, part.end)
-        kind = YES_NO
+        result_type = YES_NO
         if op in _ARITHMETIC:
             self._wants_number(op, left)
             self._wants_number(op, right)
-            kind = NUMBER
+            result_type = NUMBER
         elif op in ("AND", "OR"):
             self._wants_yes_no(op, left, right)
             self._wants_yes_no(op, right, left)
-        elif left.kind != right.kind:
-            if ANY not in (left.kind, right.kind):
+        elif left.type != right.type:
+            if ANY not in (left.type, right.type):
                 self.wrong.mixed(op, left, right, Span(start, end))
-        elif left.kind == YES_NO and op in _ORDER:
+        elif left.type == YES_NO and op in _ORDER:
             self.wrong.yes_no_order(op, Span(start, end))
-        stack.append(Operand(kind, depth, start, end))
+        stack.append(Operand(result_type, depth, start, end))
 
     def _wants_number(self, op: str, operand: Operand) -> None:
-        if operand.kind == YES_NO:
+        if operand.type == YES_NO:
             self.wrong.no_number(op, operand)
 
     def _wants_yes_no(self, by: str, operand: Operand, other: Operand | None = None) -> None:
         """`other` is the other side of an AND or OR."""
-        if operand.kind == NUMBER:
+        if operand.type == NUMBER:
             self.wrong.no_yes_no(by, operand, other)

@@ -105,7 +105,7 @@ class WrongValues:
     def mixed(self, op: str, left: Operand, right: Operand, span: Span) -> None:
         """A number is compared with a yes or no."""
         self.scope.report(codes.MIXED_COMPARE, span, sign=SIGN_OF[op],
-                          left="@" + left.kind, right="@" + right.kind,
+                          left="@" + left.type, right="@" + right.type,
                           fix=self._yes_no_alone(op, left, right))  # fmt: skip
 
     def yes_no_order(self, op: str, span: Span) -> None:
@@ -149,7 +149,7 @@ class WrongValues:
 
     def _yes_no_alone(self, op: str, left: Operand, right: Operand) -> str:
         """`BUTTON = 1` is `BUTTON`, and `BUTTON = 0` is `NOT BUTTON`."""
-        number, answer = (left, right) if left.kind == NUMBER else (right, left)
+        number, answer = (left, right) if left.type == NUMBER else (right, left)
         digit = self.scope.source[Span(number.start, number.end)]
         found = self.scope.source[Span(answer.start, answer.end)]
         if digit not in ("0", "1") or op not in _EQUAL or not found.isidentifier():
