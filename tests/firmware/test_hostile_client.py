@@ -51,9 +51,9 @@ class Client:
 
     def put(self, data: bytes, milliseconds: int = 3) -> None:
         """Send bytes, and hear what the robot says in this time."""
-        self.hear(self.robot.wait(milliseconds, data))
+        self.receive(self.robot.wait(milliseconds, data))
 
-    def hear(self, sent: bytes) -> None:
+    def receive(self, sent: bytes) -> None:
         *packets, self.heard = (self.heard + sent).split(b"\0")
         for packet in packets:
             frame = decoded(packet)
@@ -174,9 +174,9 @@ class Client:
         self.put(b"", self.rng.choice((30, 999, 1001, 2500)))
 
     def button(self) -> None:
-        self.hear(self.robot.step(flags=1))
+        self.receive(self.robot.step(flags=1))
         self.put(b"", self.rng.choice((40, 2100)))
-        self.hear(self.robot.step(flags=2))
+        self.receive(self.robot.step(flags=2))
 
     def turn(self) -> None:
         self.rng.choice((

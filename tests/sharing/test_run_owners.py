@@ -38,11 +38,11 @@ class FakeLine:
         self.stops = 0
         self.asked: list[PendingRequest[Any]] = []
 
-    def listen(self, hear: Callable[[list[Told]], None]) -> None:
-        self._hear = hear
+    def listen(self, on_events: Callable[[list[Told]], None]) -> None:
+        self._on_events = on_events
 
     def tell(self, event: Event) -> None:
-        self._hear([(0, event)])
+        self._on_events([(0, event)])
 
     def do(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
         self.asked.append(make(cast(Requester, ClientRequests())))

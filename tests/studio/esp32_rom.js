@@ -38,7 +38,7 @@ globalThis.Esp32Rom = class {
     this.isOpen = true;
     this.baud = baudRate;
     this.readable = new ReadableStream({ start: (reading) => { this.#reading = reading; }, cancel: () => { this.#reading = null; } });
-    this.writable = new WritableStream({ write: (data) => { for (const byte of data) this.#hear(byte); } });
+    this.writable = new WritableStream({ write: (data) => { for (const byte of data) this.#onByte(byte); } });
   }
 
   async close() {
@@ -65,7 +65,7 @@ globalThis.Esp32Rom = class {
   }
 
   /** SLIP: a packet is between two 0xc0. */
-  #hear(byte) {
+  #onByte(byte) {
     if (!this.#isLoader || this.how.isDeaf || this.baud !== 115200) return;
     if (byte === 0xc0) {
       if (this.#isIn && this.#came.length) this.#take(Uint8Array.from(this.#came));

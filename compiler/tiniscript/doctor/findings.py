@@ -1,6 +1,6 @@
 """What the doctor can find: the table of causes. Knows no sentence.
 
-A cause is a short name that stays; its sentences are in `cli/texts/doctor.py`.
+A cause is a short name that stays; its sentences are in `languages/en/command.toml`.
 """
 
 from __future__ import annotations

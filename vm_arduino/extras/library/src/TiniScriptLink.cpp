@@ -53,7 +53,7 @@ void TiniLink::begin(uint32_t random) {
   link_.begin(&receiver, static_cast<uint8_t>(random));
 }
 
-void TiniLink::hear(uint8_t byte, uint32_t now_ms) {
+void TiniLink::on_rx_byte(uint8_t byte, uint32_t now_ms) {
   if (receiver.put(byte, static_cast<uint16_t>(now_ms))) player_->stop();
 }
 

@@ -21,13 +21,13 @@ class TiniLink {
   void begin(uint32_t random);
 
   // A byte has come. The motors are off when it completes a stop.
-  void hear(uint8_t byte, uint32_t now_ms);
+  void on_rx_byte(uint8_t byte, uint32_t now_ms);
 
   // Goes on, with the program too: call it in each turn of loop() in the place of the player's.
   void tick(uint32_t now_ms);
 
   // The next byte to send, or false.
-  bool next_byte(uint8_t* byte) { return link_.next_tx_byte(byte); }
+  bool next_tx_byte(uint8_t* byte) { return link_.next_tx_byte(byte); }
 
   // For the link: `link/port.h`.
   tiniscript::Answer prepare_upload();

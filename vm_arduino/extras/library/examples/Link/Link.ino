@@ -32,8 +32,9 @@ void setup() {
 }
 
 void loop() {
-  while (Serial.available() > 0) robot_link.hear(static_cast<uint8_t>(Serial.read()), millis());
+  while (Serial.available() > 0)
+    robot_link.on_rx_byte(static_cast<uint8_t>(Serial.read()), millis());
   robot_link.tick(millis());
   uint8_t byte;
-  while (Serial.availableForWrite() > 0 && robot_link.next_byte(&byte)) Serial.write(byte);
+  while (Serial.availableForWrite() > 0 && robot_link.next_tx_byte(&byte)) Serial.write(byte);
 }
