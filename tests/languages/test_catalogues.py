@@ -18,6 +18,7 @@ from babel.messages.pofile import read_po
 
 from tests.pupils.corpus import check
 from tests.support.command import Tsc
+from tests.support.copies import linked
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.base import catalogue_compiler as compiling
@@ -97,8 +98,7 @@ def test_the_names_in_toml_files_are_translated() -> None:
 def test_a_language_that_is_deleted_is_missed_by_no_other(language: str, tmp_path: Path) -> None:
     """Nothing outside of its folder names it, so nothing becomes an unknown row."""
     package = tmp_path / "tiniscript"
-    left_out = shutil.ignore_patterns("*.mo", "__pycache__", "page", "ready")
-    shutil.copytree(FOLDER.parent, package, ignore=left_out)
+    linked(FOLDER.parent, package, "*.mo", "__pycache__", "page", "ready")
     shutil.rmtree(package / "languages" / language)
     others = [each for each in languages.languages() if each != language]
     commands = [

@@ -15,6 +15,7 @@ import pytest
 
 from tests.machines.host import once
 from tests.support.casefile import ROOT
+from tests.support.copies import linked
 from tests.support.needs import need
 
 OFFLINE = ROOT / "tools" / "builds" / "platformio_offline.py"
@@ -36,8 +37,7 @@ def prepared() -> tuple[dict[str, str], str]:
 def copied(folder: Path) -> Path:
     """Return a copy of the sketch in a folder, to build and to break."""
     need(prepared()[1])
-    ignored = shutil.ignore_patterns(".pio", "__pycache__", "own.h")
-    return Path(shutil.copytree(SKETCH, folder / "vm_arduino", ignore=ignored))
+    return linked(SKETCH, folder / "vm_arduino", ".pio", "__pycache__", "own.h")
 
 
 def pio(project: Path, *words: str) -> tuple[int, str]:
@@ -66,6 +66,7 @@ def changed(folder: Path, name: str, old: str, new: str, environment: str = "uno
     file = project / "src" / name
     text = file.read_text(encoding="utf-8")
     assert text.count(old) == 1, f"{name} has another {old!r} now"
+    file.unlink()
     file.write_text(text.replace(old, new), encoding="utf-8")
     code, said = pio(project, "run", "-e", environment)
     assert code == 0, said[-3000:]
