@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 SCREENS = ((1366, 768), (1024, 600), (390, 844), (844, 390))
 # 1366x768 and 1280x1024 at 200 and 400 %, and a low window.
 LOW = ((683, 384), (640, 512), (320, 256), (1024, 500))
-AXED = (SCREENS[0], *SCREENS[2:])
+AXED = (SCREENS[0], SCREENS[2])
 # How wide and high something is at least.
 LEAST = {"wrong": ("#editor", 0, 96), "blocks": ("#blocks", 300, 96), "drawing": ("#arena", 120, 120),
          "plot": ("#plot_place", 300, 60), "trace": ("#trace_place", 300, 60)}  # fmt: skip

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
+import pytest
+
 from tests.studio.screens import each_screen
 from tests.support import studio
 from tests.support.pseudo import pseudo
@@ -70,6 +72,7 @@ def _answer(route: Route) -> None:
     route.fulfill(body=json.dumps(pseudo(said)), content_type="application/json")
 
 
+@pytest.mark.sampled(of="longer texts")
 def test_longer_texts_fit_into_every_screen(browser: Browser) -> None:
     with studio.served() as server:
         pages = Pages(browser, server.address)
@@ -94,6 +97,7 @@ def test_longer_texts_fit_into_every_screen(browser: Browser) -> None:
         pages.close()
 
 
+@pytest.mark.sampled(of="longer texts")
 def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
     """The wall of ten pupils who want a robot and help, and each window in front of it."""
     with studio.taught([]) as made:

@@ -39,9 +39,9 @@ WHOLE: tuple[str, ...] = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--
 SHARED = Path("/dev/shm")
 if not SHARED.is_dir() or shutil.disk_usage(SHARED).free < 1 << 30:  # in a container it is small
     WHOLE += ("--disable-dev-shm-usage",)
-# WebAssembly is compiled once and not again for speed: Python does little in a page of a test. The
-# tabs of a context share a renderer and what it has compiled.
-OPTIONS = (*WHOLE, "--js-flags=--liftoff-only", "--process-per-site")
+# Code is compiled once and not again for speed: a page of a test does little. The tabs of a context
+# share a renderer and what it has compiled.
+OPTIONS = (*WHOLE, "--js-flags=--liftoff-only --no-maglev --no-opt", "--process-per-site")
 UPLOADS = 10  # after so many stops in a row the computer is not to blame
 
 
