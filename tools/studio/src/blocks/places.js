@@ -10,6 +10,7 @@ const ANY = { low: -2147483.648, high: 2147483.647, sample: '1' };
 const ARGUMENTS = new Map(description.words.map((word) => [word.text, word.arguments]));
 /** Of each role of an instruction its first word: a kind of block is named like it. @type {Map<string, string>} */
 const FIRST_WORDS = new Map(description.words
+  .filter((word) => word.arguments.length || ['stop', 'start'].includes(word.role))
   .map((word) => /** @type {[string, string]} */ ([word.role, word.text])).reverse());
 /** @type {Map<string, Range>} */
 let actuators = new Map();
