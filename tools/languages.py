@@ -96,7 +96,8 @@ def _before(
 ) -> dict[tuple[str, str], Entry]:
     """Return what each text was before: itself, else what is gone and most like it.
 
-    That one has the same key, or the same English text under another key.
+    That one has the same key, or the same English text under another key. A text that is asked
+    for at another key than before has what is there for these words.
     """
     found = {at: own.entries[at] for at in source if at in own.entries}
     for entry in own.entries.values():
@@ -107,7 +108,8 @@ def _before(
         places = places or [at for at in new if at[1] == entry.english]
         if places:
             found[max(places, key=lambda at: _likeness(at[1], entry.english))] = entry
-    return found
+    by_words = {each.english: each for each in own.entries.values() if any(each.said)}
+    return {**{at: by_words[at[1]] for at in source if at[1] in by_words}, **found}
 
 
 def _likeness(one: str, other: str) -> float:

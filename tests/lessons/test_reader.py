@@ -95,7 +95,8 @@ def test_answers_are_read_strictly(folder: Path) -> None:
         ("", "wrong[1].says.key is missing"),
         ("key = 'stil'", "wrong[1].says.key has stil, which is not a known word"),
         ("key = 'touches/wall'", 'wrong[1].says.seconds is missing. Add it, for example: seconds = "…"'),
-        ("key = 'still', cm = 3", "wrong[1].says.cm is a number. Write a text in quotes there"),
+        ("key = 'touches/wall', seconds = 3", "says.seconds is a number. Write a text in quotes there"),
+        ("key = 'still', cm = '3'", "wrong[1].says.cm means nothing"),
     ],
 )  # fmt: skip
 def test_what_is_said_of_a_wrong_answer_is_a_sentence_of_the_checker(
@@ -107,6 +108,15 @@ def test_what_is_said_of_a_wrong_answer_is_a_sentence_of_the_checker(
         catalogue.answers(folder)
     (why,) = describe(found.value, "en")
     assert said in why
+
+
+def test_a_place_of_ones_own_is_said_in_each_language(folder: Path) -> None:
+    rows = "[[wrong]]\nen = 'a'\nprogram = 'S'\n[wrong.says]\nkey = 'ends_in/short'\ncm = '9'\n"
+    rows += "place = 'the blue flag'\nes = 'la bandera azul'\n"
+    (folder / "answers.toml").write_text(rows, encoding="utf-8")
+    _, (answer,) = catalogue.answers(folder)
+    assert "9 cm before the middle of the blue flag" in answer.said["en"]
+    assert "de la bandera azul" in answer.said["es"]
 
 
 def test_a_page_names_the_numbers_of_its_lesson(folder: Path) -> None:

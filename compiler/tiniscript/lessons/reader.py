@@ -9,8 +9,10 @@ import re
 from collections.abc import Mapping
 
 from tiniscript import robots
+from tiniscript.base.catalogue_file import gaps
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.languages import SOURCE, ByLanguage, languages
+from tiniscript.base.languages import found as text_of
 from tiniscript.base.languages import text as said_in
 from tiniscript.base.words import WORDS, nearest
 from tiniscript.lessons.findings import Finding
@@ -45,6 +47,7 @@ ROWS = 100  # criteria, variations, answers
 PART = re.compile(r"(start)|(walls|boxes|lines|lamps)\[([1-9][0-9]{0,2})\]")
 NO_LABELS = ByLanguage({each: said_in("lessons", "place", each) for each in languages()})
 TIME = "TIME"
+OF_SENTENCES = ("word", "question", "what", "times")  # values of which a sentence is made besides
 
 
 def read(text: str, world: World, name: str) -> Lesson:
@@ -112,10 +115,17 @@ def _answer(table: Table, is_wrong: bool) -> Answer:
 
 
 def _said(says: Table) -> dict[str, str]:
-    """Return in each language the sentence of a finding: its key, its values, and its place."""
-    values = {each: says.text(each) or "" for each in says.written()}
+    """Return in each language the sentence of a finding: its key, its values, and its place.
+
+    That one is `place`, or a text in each language.
+    """
     key = says.text("key", 'key = "still"') or "still"
-    finding = Finding("", key, values, ByLanguage({SOURCE: values.get("place", "")}))
+    texts = (text_of("lessons", f"said/{each}", SOURCE) for each in (key, key.partition("/")[0]))
+    names = {*gaps(next(filter(None, texts), "")), "place", *languages(), *OF_SENTENCES}
+    values = {each: says.text(each) or "" for each in says.written() if each in names}
+    places = {each: values[each] for each in languages() if each in values}
+    finding = Finding("", key, values, ByLanguage({SOURCE: values.get("place", ""), **places}))
+    says.finish()
     try:
         return {each: sentence(finding, each) for each in languages()}
     except KeyError as lacking:
