@@ -34,7 +34,6 @@ SOURCES = ROOT / "vm_arduino"
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
 FLAGS = ("-std=c++11", "-O1", "-g1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
-INCLUDED = re.compile(rb'#include "(?:[^"\n]*/)?([^"/\n]+)"')
 FOLDER = re.compile(rb'^(# \d+ ")[^"\n]*/', re.M)  # of a line that says where the next are from
 # Whose builds are used: root's tests in CI compile nothing that the user's have compiled.
 USER = os.getuid() if hasattr(os, "getuid") else None
@@ -224,42 +223,16 @@ def objects_of(
 
     Two workers that need the same ones begin at different ends, and meet.
     """
+    headers = [text for path, text in texts.items() if path.suffix == ".h"]
     sources = [path for path in texts if path.suffix == ".cpp"]
     is_other_end = os.environ.get("PYTEST_XDIST_WORKER", "gw0")[-1] in "13579"
-
-    def object_of(path: Path) -> str:
-        seen = _seen(path, texts)
-        flags = _that_matter(flags_of(path), b"".join(seen))
-        return str(made(compiler, builds, ".o", flags, seen, ["-c", str(path)]))
-
-    found = {path: object_of(path) for path in (reversed(sources) if is_other_end else sources)}
-    return [found[path] for path in sources]
-
-
-def _seen(path: Path, texts: Mapping[Path, bytes]) -> list[bytes]:
-    """Return a source, and each header of the same name as one that it includes, or they do."""
-    seen, names = [texts[path]], set[bytes]()
-    for text in seen:
-        new = set(INCLUDED.findall(text)) - names
-        names |= new
-        seen += [texts[each] for each in texts if each.name.encode() in new]
-    return seen
-
-
-def _that_matter(flags: Sequence[str], code: bytes) -> list[str]:
-    """Return the flags that can make another object of code, which has its own headers.
-
-    It names a macro, or includes headers of an Arduino core, whose macros they are, too.
-    """
-    names = [name.decode() for name in re.findall(rb"#include <([^>\n]+)>", code)]
-    cores = [Path(each.removeprefix("-isystem")) for each in flags if each.startswith("-isystem")]
-    if any((core / name).exists() for core in cores for name in names):
-        return list(flags)
-    macros = {each: each[2:].partition("=")[0].encode() for each in flags if each[:2] == "-D"}
-    return [
-        each for each in flags
-        if not each.startswith("-isystem") and macros.get(each, b"") in code
-    ]  # fmt: skip
+    found = {
+        path: made(
+            compiler, builds, ".o", flags_of(path), [*headers, texts[path]], ["-c", str(path)]
+        )
+        for path in (reversed(sources) if is_other_end else sources)
+    }
+    return [str(found[path]) for path in sources]
 
 
 def made(
