@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 SCREENS = ((1366, 768), (1024, 600), (390, 844), (844, 390))
 # 1366x768 and 1280x1024 at 200 and 400 %, and a low window.
 LOW = ((683, 384), (640, 512), (320, 256), (1024, 500))
-AXED = (SCREENS[0], SCREENS[2])
 # How wide and high something is at least.
 LEAST = {"wrong": ("#editor", 0, 96), "blocks": ("#blocks", 300, 96), "drawing": ("#arena", 120, 120),
          "plot": ("#plot_place", 300, 60), "trace": ("#trace_place", 300, 60)}  # fmt: skip
@@ -108,6 +107,7 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
     page: Page, theme: Literal["light", "dark"], language: str
 ) -> None:
     """At each size; of the class there is `test_page_class.py`."""
+    axed = SCREENS[0], SCREENS[2 if theme == "light" else 3]
     page.emulate_media(color_scheme=theme)
     speak(page, language)
     page.click("#home")
@@ -131,7 +131,7 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
                 page.click(f"#share_{how}")
                 page.locator("#programs:not([data-shared=asked])").wait_for()
                 assert page.evaluate(DIALOG) == [], (how, size)
-        if size in AXED:
+        if size in axed:
             assert axe(page) == [], (screen, size)
     page.emulate_media(color_scheme="null")
     page.set_viewport_size({"width": 1366, "height": 768})

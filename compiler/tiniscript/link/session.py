@@ -111,9 +111,8 @@ class Session(Requester):
         self.tells_places = False  # PLACE events are wanted
         self.tells_starts = False  # STARTED events are wanted
         self.is_attached = True  # events are wanted, so the heartbeat goes on while nothing runs
-        self.sends_heartbeat: Callable[[], bool] = lambda: (
-            True
-        )  # False: nobody attends to the robot
+        # False: nobody attends to the robot.
+        self.sends_heartbeat: Callable[[], bool] = lambda: True
         self.damaged = 0  # count of damaged frames
         self._receiver = Receiver()
         self._seq = nonce & 0xFF
