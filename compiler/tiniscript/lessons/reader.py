@@ -9,7 +9,6 @@ import re
 from collections.abc import Mapping
 
 from tiniscript import robots
-from tiniscript.base.catalogue_file import gaps
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.languages import SOURCE, ByLanguage, languages
 from tiniscript.base.languages import found as text_of
@@ -44,6 +43,7 @@ PROGRAM_CHARACTERS = 20_000
 MOST_SECONDS, MOST_WORLDS, MOST_NOISE = 600, 20, 20
 MOST_CM = 2000
 ROWS = 100  # criteria, variations, answers
+GAP = re.compile(r"\{(\w+)\}")
 PART = re.compile(r"(start)|(walls|boxes|lines|lamps)\[([1-9][0-9]{0,2})\]")
 NO_LABELS = ByLanguage({each: said_in("lessons", "place", each) for each in languages()})
 TIME = "TIME"
@@ -121,7 +121,8 @@ def _said(says: Table) -> dict[str, str]:
     """
     key = says.text("key", 'key = "still"') or "still"
     texts = (text_of("lessons", f"said/{each}", SOURCE) for each in (key, key.partition("/")[0]))
-    names = {*gaps(next(filter(None, texts), "")), "place", *languages(), *OF_SENTENCES}
+    gaps = GAP.findall(next(filter(None, texts), ""))
+    names = {*gaps, "place", *languages(), *OF_SENTENCES}
     values = {each: says.text(each) or "" for each in says.written() if each in names}
     places = {each: values[each] for each in languages() if each in values}
     finding = Finding("", key, values, ByLanguage({SOURCE: values.get("place", ""), **places}))
