@@ -127,7 +127,8 @@ def _text(answer: bytes) -> tuple[bytes, bytes]:
     return answer[4 : 4 + length], answer[4 + length :]
 
 
-def built(sources: Path, is_large: bool = False, flags: Sequence[str] = FLAGS) -> Path:
+@lru_cache
+def built(sources: Path, is_large: bool = False, flags: tuple[str, ...] = FLAGS) -> Path:
     """Return the program or the library made from `sources`, or what was made from the same."""
     inputs = sorted(
         path
