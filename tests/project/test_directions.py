@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.rows import each_row
-from tiniscript.base.languages import catalogue
+from tiniscript.base.languages import catalogue, languages
 from tools import measures
 
 PACKAGE = Path(__file__).resolve().parent.parent.parent / "compiler" / "tiniscript"
@@ -175,7 +175,8 @@ OF_WRONG = re.compile(
 def test_a_right_program_loads_nothing_for_wrong_ones(verb: str, tmp_path: Path) -> None:
     program = tmp_path / "right.ts"
     program.write_text(RIGHT)
-    catalogue("command", "en")  # as a package has it
+    for each in languages():  # as a package has them
+        catalogue("command", each)
     modules = imported_by(
         "from tiniscript.cli import main; "
         f"assert main([{verb!r}, '--robot', 'grabber', {str(program)!r}]) == 0"
@@ -208,7 +209,8 @@ def test_every_verb_is_there_without_the_extras() -> None:
 def test_compile_imports_no_other_verb(tmp_path: Path) -> None:
     program = tmp_path / "drive.ts"
     program.write_text("SI|F(5,80)")
-    catalogue("command", "en")  # as a package has it
+    for each in languages():  # as a package has them
+        catalogue("command", each)
     modules = imported_by(
         f"from tiniscript.cli import main; assert main(['compile', {str(program)!r}]) == 0"
     )
