@@ -171,12 +171,18 @@ OF_WRONG = re.compile(
 )
 
 
+def make_catalogues() -> None:
+    """Make those that a command asks for, as a package has them."""
+    for language in languages():
+        for name in ("command", "messages"):
+            catalogue(name, language)
+
+
 @pytest.mark.parametrize("verb", ["compile", "check"])
 def test_a_right_program_loads_nothing_for_wrong_ones(verb: str, tmp_path: Path) -> None:
     program = tmp_path / "right.ts"
     program.write_text(RIGHT)
-    for each in languages():  # as a package has them
-        catalogue("command", each)
+    make_catalogues()
     modules = imported_by(
         "from tiniscript.cli import main; "
         f"assert main([{verb!r}, '--robot', 'grabber', {str(program)!r}]) == 0"
@@ -209,8 +215,7 @@ def test_every_verb_is_there_without_the_extras() -> None:
 def test_compile_imports_no_other_verb(tmp_path: Path) -> None:
     program = tmp_path / "drive.ts"
     program.write_text("SI|F(5,80)")
-    for each in languages():  # as a package has them
-        catalogue("command", each)
+    make_catalogues()
     modules = imported_by(
         f"from tiniscript.cli import main; assert main(['compile', {str(program)!r}]) == 0"
     )
