@@ -70,7 +70,7 @@ def test_a_typed_stop_over_a_network() -> None:
 
 
 @pytest.mark.parametrize("word", [b"S", b"\r\n sToP; ", b";s", b"\x1b[A stop"])
-def test_silence_ends_a_typed_stop_of_a_guest(word: bytes) -> None:
+def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
     """Of somebody in a network who may yet be a web page: it lets nobody in."""
     robot, owner = joined(Keys())
     end = Network(robot)

@@ -39,7 +39,7 @@ def ends_at(cpp: CppLink, from_ms: int, until_ms: int) -> int | None:
 
 
 @pytest.mark.parametrize("start", [0, 0xFFFFFFFF - 2000])
-def test_a_tethered_program_ends_a_second_after_the_last_valid_frame(start: int) -> None:
+def test_an_attached_program_ends_a_second_after_the_last_valid_frame(start: int) -> None:
     cpp = robot_with_session()
     live = messages.written(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
     cpp.step(start, encoded(Frame(8, 2, 10, live)))
@@ -69,7 +69,7 @@ def test_a_long_silence_is_no_short_one() -> None:
         assert cpp.happens("s", 1) and (not sent or now_ms < LISTEN_MS + 1000), now_ms
 
 
-def test_what_the_button_has_started_is_not_tethered() -> None:
+def test_what_the_button_has_started_is_not_attached() -> None:
     cpp = robot_with_session()
     live = messages.written(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
     cpp.step(10, encoded(Frame(8, 2, 10, live)))

@@ -69,7 +69,7 @@ struct Kit {
   uint32_t turn;
 };
 
-// A listing that breaks one rule, for the kit of tinibot.
+// Code that breaks one rule, for the kit of tinibot.
 struct RefusedCase {
   std::string title;
   std::vector<uint8_t> code;

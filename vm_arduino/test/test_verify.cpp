@@ -32,7 +32,7 @@ TEST_CASE("every rule refuses something") {
   for (const cases::RefusedCase& each : cases::refused_cases()) {
     rules.insert(static_cast<int>(each.rule));
   }
-  // the rest is too long for a listing
+  // the rest is too long for a case
   const int first = static_cast<int>(Rule::kCodeLength);
   for (int rule = first + 1; rule <= static_cast<int>(Rule::kTooManyTasks); rule++) {
     CAPTURE(rule);

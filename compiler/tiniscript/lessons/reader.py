@@ -122,8 +122,8 @@ def _said(says: Table) -> dict[str, str]:
     key = says.text("key", 'key = "still"') or "still"
     texts = (text_of("lessons", f"said/{each}", SOURCE) for each in (key, key.partition("/")[0]))
     gaps = GAP.findall(next(filter(None, texts), ""))
-    names = {*gaps, "place", *languages(), *OF_SENTENCES}
-    values = {each: says.text(each) or "" for each in says.written() if each in names}
+    names = dict.fromkeys([*gaps, "place", *languages(), *OF_SENTENCES])
+    values = {each: says.text(each) or "" for each in names if says.has(each)}
     places = {each: values[each] for each in languages() if each in values}
     finding = Finding("", key, values, ByLanguage({SOURCE: values.get("place", ""), **places}))
     says.finish()

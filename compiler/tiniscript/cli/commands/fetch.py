@@ -33,5 +33,5 @@ def run(options: Namespace, language: str) -> int:
             checksum=f"{ready.image.checksum:08x}",
         ))  # fmt: skip
     else:
-        show.print_listing(ready, robot, name, language)
+        show.print_disassembly(ready, robot, name, language)
     return 0

@@ -31,7 +31,7 @@ def run(options: Namespace, language: str) -> int:
     if options.json:
         print_json(ready, robot)
     else:
-        print_listing(ready, robot, inputs.shown(given.name), language)
+        print_disassembly(ready, robot, inputs.shown(given.name), language)
     return 0
 
 
@@ -61,7 +61,7 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     return 0
 
 
-def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
+def print_disassembly(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
     image = ready.image
     key = "for_robot" if image.devices else "any_robot"
     print(text("head", language).format(
