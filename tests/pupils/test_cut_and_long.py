@@ -43,8 +43,9 @@ def test_all_cut_programs_end() -> None:
         "F(1,50). " * 16000,
         "F(1,50). " * 433,
         "F(1,60,R)\n" * 10000,
+        "é" * 100_000,
     ],
-    ids=["words", "notes", "again", "equal", "kinds", "stops", "steps", "values"],
+    ids=["words", "notes", "again", "equal", "kinds", "stops", "steps", "values", "letters"],
 )
 def test_a_long_row_is_read_once(program: str) -> None:
     begin = time.process_time()

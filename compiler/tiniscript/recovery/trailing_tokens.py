@@ -275,7 +275,7 @@ class Trailing:
 @lru_cache(maxsize=1)
 def _set_in(text: str) -> frozenset[str]:
     """Return the words that a text sets, which is told at their own lines."""
-    return frozenset(re.findall(r"(\w+)\s*=", text.upper()))
+    return frozenset(re.findall(r"\b(\w+)\s*=", text.upper()))
 
 
 def _label(first: str, labels: Mapping[str, object]) -> str:
