@@ -5,13 +5,12 @@ Nothing here measures time: what depends on it has a clock of its own.
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from tests.support.command import FOREVER, inside
 from tests.support.terminal import Terminal
 from tiniscript import compile_text, robots
 from tiniscript.base.trace import Ending, Event, Senses
@@ -43,10 +42,9 @@ def ended(
     return terminal
 
 
-def plain(*arguments: str) -> bytes:
+def plain(*arguments: str) -> str:
     """What `tsc run` prints with no terminal."""
-    command = [sys.executable, "-m", "tiniscript", "run", *arguments]
-    return subprocess.run(command, stdout=subprocess.PIPE, check=False).stdout
+    return inside("run", *arguments).out
 
 
 def row(lines: list[str], name: str) -> list[str]:
@@ -62,15 +60,16 @@ def picture(lines: list[str]) -> list[str]:
 # ---- what is drawn
 
 
-@pytest.mark.parametrize("pace", ["0", "20"])
-@pytest.mark.parametrize("size", [(80, 24), (40, 15), (24, 6)])
+@pytest.mark.parametrize(
+    ("pace", "size"), [("0", (80, 24)), ("20", (80, 24)), ("20", (40, 15)), ("20", (24, 6))]
+)
 def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) -> None:
     """Which shows the way in color and the values, beside it or below; the cursor comes back."""
     terminal = ended("-e", OBSTACLES, *SEEN, "--pace", pace, size=size)
     written, seen = terminal.written, terminal.whole()
     if pace != "0":  # then it is drawn once
         assert written.count(HIDE) == 1 and written.rindex(REVEAL) > written.rindex(HIDE)
-    trace = plain("-e", OBSTACLES, *SEEN).decode().splitlines()
+    trace = plain("-e", OBSTACLES, *SEEN).splitlines()
     top = next(k for k in range(len(seen)) if seen[k].startswith("0 "))
     assert seen[top : top + len(trace)] == trace
     drawn = picture(seen)
@@ -85,11 +84,10 @@ def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) ->
         assert row(drawn, "left motor")[2] == "0"
 
 
-@pytest.mark.parametrize("pace", ["0", "20"])
-def test_a_file_gets_the_trace_byte_for_byte(pace: str, tmp_path: Path) -> None:
+def test_a_file_gets_the_trace_byte_for_byte(tmp_path: Path) -> None:
     file = tmp_path / "trace"
-    terminal = ended("-e", OBSTACLES, *SEEN, "--pace", pace, output=file)
-    assert file.read_bytes() == plain("-e", OBSTACLES, *SEEN)
+    terminal = ended("-e", OBSTACLES, *SEEN, "--pace", "20", output=file)
+    assert file.read_bytes() == plain("-e", OBSTACLES, *SEEN).encode()
     assert b"MOTORS" not in terminal.written
     assert picture(terminal.whole())[0].startswith("── TiniBot")
 
@@ -122,10 +120,9 @@ def test_a_fault_is_in_the_picture_and_explained_below_it() -> None:
 
 
 def test_without_a_terminal_there_is_no_picture() -> None:
-    command = [sys.executable, "-m", "tiniscript", "run", "-e", OBSTACLES, *SEEN, "--show"]
-    done = subprocess.run(command, capture_output=True, check=True)
-    assert done.stdout == plain("-e", OBSTACLES, *SEEN)
-    assert b"TiniBot" not in done.stderr
+    done = inside("run", "-e", OBSTACLES, *SEEN, "--show")
+    assert (done.code, done.out) == (0, plain("-e", OBSTACLES, *SEEN))
+    assert "TiniBot" not in done.err
 
 
 # ---- how it ends
@@ -133,7 +130,7 @@ def test_without_a_terminal_there_is_no_picture() -> None:
 
 @pytest.mark.parametrize("to_a_file", [False, True])
 def test_ctrl_c_leaves_a_clean_terminal(to_a_file: bool, tmp_path: Path) -> None:
-    words = ("run", "-e", "SI|LOOP(FOREVER);F(1, 80);END_LOOP", "--max-time", "1000000", "--show")
+    words = ("run", "-e", FOREVER, "--max-time", "1000000", "--show")
     output = tmp_path / "trace" if to_a_file else None
     terminal = Terminal(*words, output=output, types=False)
     terminal.until("↑")

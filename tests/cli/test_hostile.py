@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import io
+import json
 import os
 import shlex
 import signal
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from tests.support.command import PROGRAM, TSC, Tsc
+from tests.support.command import PROGRAM, TSC, Command, Tsc
 from tiniscript.bytecode.image import unpack
-from tiniscript.cli import help
+from tiniscript.cli import help, main
 
 # -- anything whatever --------------------------------------------------------------------------
 
@@ -118,55 +121,58 @@ def test_the_language_comes_from_the_locale(tsc: Tsc, monkeypatch: pytest.Monkey
         assert word in tsc("check", "-e", "S = 5;F = 6").err
 
 
-@pytest.mark.parametrize("closed", ["2>&-", "<&-", ">&-", ">/dev/full"])
-def test_closed_and_full_streams(closed: str) -> None:
+@pytest.mark.parametrize(("closed", "program", "code"), [
+    ("2>&-", "LOOP(3);S;END_LOOP;X = 1", 0), ("2>&-", "F(1", 1), ("<&-", "S", 0), (">&-", "S", 0),
+    (">/dev/full", "S", 2),
+])  # fmt: skip
+def test_closed_and_full_streams(closed: str, program: str, code: int) -> None:
     """With nowhere to write there is still an exit code, and the trace stays the trace."""
     if "full" in closed and not Path("/dev/full").exists():
         pytest.skip("this system has no full device")
-    for program, code in (("LOOP(3);S;END_LOOP;X = 1", 0), ("F(1", 1)):
-        command = f"{shlex.join(TSC)} run -e {shlex.quote(program)} {closed}"
-        done = subprocess.run(command, shell=True, capture_output=True, text=True)
-        assert "Traceback" not in done.stderr
-        assert "was not made for" not in done.stderr
-        if "full" in closed and code == 0:
-            assert done.returncode == 2
-            assert done.stderr
-        else:
-            assert done.returncode == code
-        if closed == "2>&-":
-            assert done.stdout == ("0 MOTORS 0 0\n" * 3 + "0 DONE\n" if code == 0 else "")
+    command = f"{shlex.join(TSC)} run -e {shlex.quote(program)} {closed}"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True)
+    assert "Traceback" not in done.stderr
+    assert "was not made for" not in done.stderr
+    assert done.returncode == code
+    assert bool(done.stderr) == (code == 2)
+    if closed == "2>&-":
+        assert done.stdout == ("0 MOTORS 0 0\n" * 3 + "0 DONE\n" if code == 0 else "")
 
 
 def test_ctrl_c_is_said() -> None:
-    command = [*TSC, "run", "-e", "LOOP(FOREVER);SHOW(1);END_LOOP", "--max-steps", "1000000000"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
-        assert running.stdout and running.stderr
-        running.stdout.readline()  # it runs
-        running.send_signal(signal.SIGINT)
-        running.stdout.read()
-        said = running.stderr.read().decode()
-    assert said.endswith("\nStopped.\n")
-    assert running.returncode == 2
+    loop = "LOOP(FOREVER);SHOW(1);END_LOOP"
+    command = Command("run", "-e", loop, "--max-steps", "1000000000")
+    command.until("SHOW 1")
+    command.signal(signal.SIGINT)
+    done = command.ended()
+    assert done.code == 2 and done.err.endswith("\nStopped.\n")
 
 
-def test_output_that_is_not_unicode() -> None:
-    environ = {**os.environ, "PYTHONIOENCODING": "ascii"}
-    done = subprocess.run(
-        [*TSC, "check", "--lang", "es", "-e", "año = 5"], capture_output=True, env=environ
-    )
-    assert done.returncode == 1
-    assert b"l\\xednea 1:" in done.stderr
+def in_encoding(name: str, data: bytes = b"") -> io.TextIOWrapper:
+    return io.TextIOWrapper(io.BytesIO(data), encoding=name)
 
 
-def test_input_that_is_no_text() -> None:
+@pytest.mark.parametrize(("stream", "options"), [("stderr", []), ("stdout", ["--json"])])
+def test_output_that_is_not_unicode(
+    monkeypatch: pytest.MonkeyPatch, stream: str, options: list[str]
+) -> None:
+    """JSON is JSON there, too."""
+    written = in_encoding("ascii")
+    monkeypatch.setattr(sys, stream, written)
+    assert main(["check", "--lang", "es", "-e", "año = 5", *options]) == 1
+    written.flush()
+    said = written.buffer.getvalue()  # type: ignore[attr-defined]
+    if options:
+        assert json.loads(said)[0]["severity"] == "mistake"
+    else:
+        assert b"l\\xednea 1:" in said
+
+
+def test_input_that_is_no_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     for encoding in ("ascii", "utf-8", "cp1252"):
-        environ = {**os.environ, "PYTHONIOENCODING": encoding}
-        done = subprocess.run(
-            [*TSC, "live", "--virtual"], input=b"F(\xff\x81\n", capture_output=True, env=environ
-        )
-        assert done.returncode == 1
-        assert b"was not made for" not in done.stderr
-        assert b"[TS" in done.stderr
+        monkeypatch.setattr(sys, "stdin", in_encoding(encoding, b"F(\xff\x81\n"))
+        done = tsc("live", "--virtual")
+        assert (done.code, "[TS" in done.err) == (1, True), encoding
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such files")

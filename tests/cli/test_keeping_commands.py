@@ -8,18 +8,10 @@ from __future__ import annotations
 import json
 import signal
 
-import pytest
-
 from tests.support.command import Command, Done
 from tests.support.pty_robot import PtyRobot, on, uploading
 
 WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
-
-
-def held(pty_robot: PtyRobot, text: str) -> Command:
-    command = Command("upload", "-e", text, "--port", pty_robot.port)
-    command.until("running")
-    return command
 
 
 def interrupted(command: Command) -> Done:
@@ -28,7 +20,7 @@ def interrupted(command: Command) -> Done:
 
 
 def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyRobot) -> None:
-    command = held(pty_robot, WAITS)
+    command = Command("upload", "-e", WAITS, "--port", pty_robot.port)
     command.until("Saved in slot 0.")
     pty_robot.switch_off()
     pty_robot.switch_on()
@@ -46,34 +38,27 @@ def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
     assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
 
 
-@pytest.mark.parametrize(
-    ("language", "said"),
-    [("en", "keeps it as soon as its motors have stopped"), ("es", "lo guarda en")],
-)
-def test_a_name_while_it_drives_is_told_to_be_kept_later(
-    pty_robot: PtyRobot, language: str, said: str
-) -> None:
+def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: PtyRobot) -> None:
     command = uploading(pty_robot)
-    done = on(pty_robot, "name", "ANA", "--lang", language)
-    assert done.code == 3 and said in done.err and not done.out
+    naming, trimming = ("name", "ANA"), ("trim", "--balance", "5")
+    for words in (naming, trimming):
+        done = on(pty_robot, *words)
+        assert done.code == 3 and not done.out
+        assert "keeps it as soon as its motors have stopped" in done.err
+    assert "lo guarda en" in on(pty_robot, *naming, "--lang", "es").err
     assert pty_robot.moves, "nothing has stopped it"
     interrupted(command)
-    assert on(pty_robot, "name", "ANA").code == 0
+    for words in (naming, trimming):
+        assert on(pty_robot, *words).code == 0
     pty_robot.switch_off()
     pty_robot.switch_on()
     assert json.loads(on(pty_robot, "info", "--json").out)["name"] == "ANA"
 
 
-def test_a_trim_while_it_drives_is_told_to_be_kept_later(pty_robot: PtyRobot) -> None:
-    command = uploading(pty_robot)
-    done = on(pty_robot, "trim", "--balance", "5")
-    assert done.code == 3 and "keeps it as soon as its motors have stopped" in done.err
-    interrupted(command)
-    assert on(pty_robot, "trim", "--balance", "5").code == 0
-
-
 def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
+    done = on(pty_robot, "upload", "-e", "SI|SHOW(6)", "--no-save")
+    assert done.code == 0 and "batter" not in done.err + done.out, "nothing is to be saved"
     done = on(pty_robot, "upload", "-e", "SI|SHOW(7)")
     assert "SHOW 7" in done.out, "it runs all the same"
     assert done.code == 3 and "Change the batteries and send it again" in done.err
@@ -99,15 +84,3 @@ def test_a_supply_that_is_enough_again_saves_what_runs(pty_robot: PtyRobot) -> N
     pty_robot.ask(lambda robot: robot.supply(is_low=False))
     command.until('"event": "SAVED"')
     assert interrupted(command).code == 2
-
-
-def test_what_is_not_to_be_saved_is_told_nothing_of(pty_robot: PtyRobot) -> None:
-    pty_robot.ask(lambda robot: robot.supply(is_low=True))
-    done = on(pty_robot, "upload", "-e", "SI|SHOW(7)", "--no-save")
-    assert done.code == 0 and "batter" not in done.err + done.out
-
-
-def test_another_program_is_not_taken_for_the_one_that_is_saved(pty_robot: PtyRobot) -> None:
-    with_json = on(pty_robot, "upload", "-e", "SI|SHOW(1)", "--json")
-    events = [json.loads(line)["event"] for line in with_json.out.splitlines()]
-    assert events == ["RECEIPT", "SHOW", "DONE", "SAVED"]

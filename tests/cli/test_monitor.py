@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import ended, process, running
+from tests.support.command import ended, inside, running
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
 
@@ -38,7 +38,7 @@ def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path
 def test_monitor_keeps_the_last_rows_where_no_robot_answers(tmp_path: Path) -> None:
     rows = tmp_path / "rows.csv"
     rows.write_text("ms,event,value\n1,SHOW,5\n", encoding="utf-8")
-    done = process("monitor", "--port", tmp_path / "no-port", "--csv", rows, "--max-time", "1")
+    done = inside("monitor", "--port", tmp_path / "no-port", "--csv", rows, "--max-time", "1")
     assert done.code == 3
     assert rows.read_text(encoding="utf-8") == "ms,event,value\n1,SHOW,5\n"
 

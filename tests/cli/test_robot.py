@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import FOREVER, LONG, Tsc, ended, process, running
-from tests.support.pty_robot import PtyRobot, on
-from tiniscript import robots
+from tests.support.command import FOREVER, LONG, Tsc, inside
+from tests.support.pty_robot import PtyRobot, on, uploading
+from tiniscript import compile_text, robots
 from tiniscript.library import opening
 from tiniscript.link import errors, known_ports, ports, requests
 from tiniscript.link.payloads import HelloReply
@@ -49,17 +49,32 @@ def test_a_port_that_another_program_uses_is_said(
     assert pty_robot.heard == b""
 
 
-def test_ctrl_c_stops_the_robot(pty_robot: PtyRobot) -> None:
-    command = running("upload", "-e", FOREVER, "--port", pty_robot.port)
-    pty_robot.until(lambda: pty_robot.moves, "it drives")
+def test_however_a_command_ends_its_robot_stops(pty_robot: PtyRobot) -> None:
+    """By Ctrl-C, by the robot's button, killed, and where the cable is pulled."""
+    command = uploading(pty_robot)
     pressed_ms = pty_robot.robot_ms
-    command.send_signal(signal.SIGINT)
-    done = ended(command)
+    command.signal(signal.SIGINT)
+    done = command.ended()
     assert done.code == 2
     assert "Stopped: the robot has confirmed it." in done.err
     assert pty_robot.did[-1] == "MOTORS 0 0"
     assert int(pty_robot.timed[-1].split()[0]) <= pressed_ms + 1000
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
+    command = uploading(pty_robot)
+    pty_robot.push()
+    done = command.ended()
+    assert done.code == 3
+    assert "with its button" in done.out
+    command = uploading(pty_robot)
+    command.process.kill()
+    command.process.communicate()
+    pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
+    assert "LINK_LOST" in on(pty_robot, "info").out
+    command = uploading(pty_robot)
+    pty_robot.pull()
+    done = command.ended()
+    assert done.code == 3
+    assert "is gone" in done.err
 
 
 def test_stop_stops_what_runs_alone(pty_robot: PtyRobot) -> None:
@@ -71,87 +86,55 @@ def test_stop_stops_what_runs_alone(pty_robot: PtyRobot) -> None:
     assert not pty_robot.moves
 
 
-def test_the_button_ends_it_for_the_command_too(pty_robot: PtyRobot) -> None:
-    command = running("upload", "-e", FOREVER, "--port", pty_robot.port)
-    pty_robot.until(lambda: pty_robot.moves, "it drives")
-    pty_robot.push()
-    done = ended(command)
-    assert done.code == 3
-    assert "with its button" in done.out
-
-
-def test_a_command_that_is_killed_leaves_a_robot_that_stops(pty_robot: PtyRobot) -> None:
-    command = running("upload", "-e", FOREVER, "--port", pty_robot.port)
-    pty_robot.until(lambda: pty_robot.moves, "it drives")
-    command.kill()
-    command.communicate()
-    pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
-    assert "LINK_LOST" in on(pty_robot, "info").out
-
-
-def test_a_cable_that_is_pulled_is_said(pty_robot: PtyRobot) -> None:
-    command = running("upload", "-e", FOREVER, "--port", pty_robot.port)
-    pty_robot.until(lambda: pty_robot.moves, "it drives")
-    pty_robot.pull()
-    done = ended(command)
-    assert done.code == 3
-    assert "is gone" in done.err
-
-
-def test_power_lost_in_the_middle_leaves_the_old_program(
-    tsc: Tsc, hasty: None, tmp_path: Path
-) -> None:
+def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: Path) -> None:
     with PtyRobot(KIT, bytes_per_ms=2) as pty_robot:
-        old = tmp_path / "old.bin"
-        process("compile", "-e", "SB|F(0.1, 40)", "-o", old)
-        assert on(pty_robot, "upload", old).code == 0
+        assert on(pty_robot, "upload", "-e", "SB|F(0.1, 40)").code == 0
         pty_robot.off_after = 250
-        done = tsc("upload", "-e", LONG, "--port", pty_robot.port)
+        done = inside("upload", "-e", LONG, "--port", pty_robot.port)
         assert done.code == 3
         assert "lost the connection to the robot" in done.err
         pty_robot.switch_on()
         assert on(pty_robot, "fetch", "-o", tmp_path / "new.bin").code == 0
-        assert (tmp_path / "new.bin").read_bytes() == old.read_bytes()
+    old = compile_text("SB|F(0.1, 40)", KIT).image
+    assert (tmp_path / "new.bin").read_bytes() == old
 
 
 # -- who is there -------------------------------------------------------------------------------
 
 
 def test_a_robot_describes_itself_and_its_port_is_remembered(pty_robot: PtyRobot) -> None:
-    assert process("info").code == 3  # which port?
+    assert inside("info").code == 3  # which port?
     done = on(pty_robot, "ping", "--count", "3")
     assert done.code == 0
     assert "3 round trips" in done.out
-    known = json.loads(process("info", "--json").out)
+    known = json.loads(inside("info", "--json").out)
     assert (known["port"], known["kit"], known["robot"]) == (
         pty_robot.port, f"{KIT.fingerprint:04x}", "tinibot",
     )  # fmt: skip
     assert known["program"] is None
     assert known["text_level"] == "uno"
     assert "reads text, level uno" in done.out
-    assert json.loads(process("ping", "--json").out)["round_trips"] == 10
-    assert "10 round trips" in process("upload", "-e", "PING|check_connection").out
+    assert json.loads(inside("ping", "--json").out)["round_trips"] == 10
+    assert "10 round trips" in inside("upload", "-e", "PING|check_connection").out
 
 
-@pytest.mark.parametrize(("features", "level", "said"), [
-    (0, None, "no lee texto"),
-    (1, "uno", "lee texto, nivel uno"),
-    (0xFFFE, "mega", "lee texto, nivel mega"),  # whatever else it is able to do
-    (0x3, "esp32", "lee texto, nivel esp32"),
-])  # fmt: skip
 def test_the_level_of_text_is_that_of_two_bits(
-    pty_robot: PtyRobot, tsc: Tsc, monkeypatch: pytest.MonkeyPatch,
-    features: int, level: str | None, said: str,
-) -> None:  # fmt: skip
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
     described = requests.described
+    for features, level, said in (
+        (0, None, "no lee texto"),
+        (1, "uno", "lee texto, nivel uno"),
+        (0xFFFE, "mega", "lee texto, nivel mega"),  # whatever else it is able to do
+        (0x3, "esp32", "lee texto, nivel esp32"),
+    ):
 
-    def with_features(values: HelloReply) -> DeviceInfo:
-        return described(values._replace(features=features))
+        def with_features(values: HelloReply, features: int = features) -> DeviceInfo:
+            return described(values._replace(features=features))
 
-    monkeypatch.setattr(requests, "described", with_features)
-    found = tsc("info", "--port", pty_robot.port, "--json")
-    assert json.loads(found.out)["text_level"] == level
-    assert said in tsc("info", "--port", pty_robot.port, "--lang", "es").out
+        monkeypatch.setattr(requests, "described", with_features)
+        assert json.loads(on(pty_robot, "info", "--json").out)["text_level"] == level
+        assert said in on(pty_robot, "info", "--lang", "es").out
 
 
 def test_a_board_that_has_just_been_reset_is_waited_for(pty_robot: PtyRobot) -> None:
@@ -171,7 +154,7 @@ def test_a_name_survives_power_off(pty_robot: PtyRobot) -> None:
     assert json.loads(on(pty_robot, "info", "--json").out)["name"] == "Ñandú"
     for name in ("", " ", "a" * 17, "ñ" * 9, "a\nb"):
         assert on(pty_robot, "name", name).code == 2
-    assert "Ñandú, remembered   last used" in process("ports").out
+    assert "Ñandú, remembered   last used" in inside("ports").out
 
 
 def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, pty_robot: PtyRobot, hasty: None) -> None:

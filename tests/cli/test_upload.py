@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import LONG, OBSTACLE, Command, process
+from tests.support.command import LONG, OBSTACLE, Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
 from tiniscript import compile_text, robots
@@ -54,42 +54,29 @@ def test_a_program_that_waits_ends_with_its_receipt(pty_robot: PtyRobot) -> None
 def test_a_longer_program_goes_in_pieces_and_comes_back(
     pty_robot: PtyRobot, tmp_path: Path
 ) -> None:
+    """Noise on the line costs time and nothing else."""
     ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    process("compile", "-e", LONG, "-o", ours)
-    done = on(pty_robot, "upload", ours, "--no-run", "--no-save")
-    assert (done.code, pty_robot.did) == (0, [])
-    assert "in RAM only   SI: waits" in done.out
-    done = on(pty_robot, "fetch", "-o", theirs)
-    assert done.code == 0
-    assert theirs.read_bytes() == ours.read_bytes()
+    ours.write_bytes(compile_text(LONG, KIT).image)
+    for damages in (0, 211):
+        pty_robot.damages = damages
+        done = on(pty_robot, "upload", ours, "--no-run", "--no-save")
+        assert (done.code, pty_robot.did) == (0, [])
+        assert "in RAM only   SI: waits" in done.out
+        assert on(pty_robot, "fetch", "-o", theirs).code == 0
+        assert theirs.read_bytes() == ours.read_bytes()
+        fields = json.loads(on(pty_robot, "info", "--json").out)
+        assert bool(fields["damaged"]) == bool(damages)
     listing = on(pty_robot, "fetch").out
-    assert listing.split("\n", 1)[1] == process("show", ours).out.split("\n", 1)[1]
-
-
-def test_noise_on_the_line_costs_time_and_nothing_else(pty_robot: PtyRobot, tmp_path: Path) -> None:
-    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    process("compile", "-e", LONG, "-o", ours)
-    pty_robot.damages = 211
-    assert on(pty_robot, "upload", ours, "--no-run", "--no-save").code == 0
-    assert on(pty_robot, "fetch", "-o", theirs).code == 0
-    assert theirs.read_bytes() == ours.read_bytes()
-    assert json.loads(on(pty_robot, "info", "--json").out)["damaged"] > 0
+    assert listing.split("\n", 1)[1] == inside("show", ours).out.split("\n", 1)[1]
 
 
 def test_the_receipt_is_data_too(pty_robot: PtyRobot) -> None:
-    done = on(
-        pty_robot, "upload", "-e", "SI|SHOW(0.5);SHOW(2);SHOW(FALSE);X = 0;SHOW(1 / X)", "--json"
-    )
+    text = "SI|SHOW(0.5);SHOW(2);SHOW(FALSE);X = 0;SHOW(1 / X)"
+    done = on(pty_robot, "upload", "-e", text, "--json")
     assert done.code == 1
     lines = [json.loads(line) for line in done.out.splitlines()]
-    assert [line["event"] for line in lines] == [
-        "RECEIPT",
-        "SHOW",
-        "SHOW",
-        "SHOW",
-        "FAULT",
-        "SAVED",
-    ]
+    kinds = [line["event"] for line in lines]
+    assert kinds == ["RECEIPT", "SHOW", "SHOW", "SHOW", "FAULT", "SAVED"]
     assert [line["value"] for line in lines[1:4]] == [0.5, 2, False]
     assert (lines[0]["start"], lines[0]["is_running"], lines[0]["saved"]) == ("SI", True, "SAVING")
     assert lines[0]["is_pushed"] is False
@@ -118,7 +105,7 @@ def test_mistakes_keep_the_program_off_the_robot(pty_robot: PtyRobot) -> None:
 
 def test_what_does_not_fit_is_said_with_numbers(pty_robot: PtyRobot, tmp_path: Path) -> None:
     target = tmp_path / "a.bin"
-    process("compile", "-e", "SHOW(TIME * 1.234);" * 90, "-o", target, "--robot", "grabber")
+    target.write_bytes(compile_text("SHOW(TIME * 1.234);" * 90, robots.load("grabber").kit).image)
     done = on(pty_robot, "upload", target)
     assert done.code == 1
     assert "540 bytes of code, 151 more than the robot has room for (389)" in done.err

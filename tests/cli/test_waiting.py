@@ -38,24 +38,14 @@ def silent(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
 def test_who_waits_for_a_robot_is_told(
     tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Not for a moment, and no program that reads is."""
     looks_on(monkeypatch)
     done = tsc("ping", "--port", silent, "--lang", "es")
     assert done.code == 3
     assert done.err.startswith(f"Esperando al robot en {silent} …\n")
-
-
-def test_a_moment_is_not_worth_a_word(
-    tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    looks_on(monkeypatch)
     monkeypatch.setattr(progress, "MOMENT_S", HANGS_S)
     assert "Waiting" not in tsc("ping", "--port", silent).err
-
-
-def test_a_program_that_reads_is_not_told(
-    tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    looks_on(monkeypatch)
+    monkeypatch.setattr(progress, "MOMENT_S", 0.0)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: False)
     assert "Waiting" not in tsc("ping", "--port", silent).err
 
