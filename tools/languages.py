@@ -21,8 +21,6 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "compiler"))
 
 from tiniscript.base import catalogue_source
 from tiniscript.base.catalogue_file import Catalogue, Entry, load, written

@@ -1,6 +1,6 @@
 """Prints how large the repository is and how its package hangs together, with the goals beside.
 
-    python tools/measures.py
+    python -m tools.measures
 
 A module is a folder of the package, or a single file in it; an arrow says that one imports another,
 at the top of a file, inside a function or for types; a circle is a group of files each of which
@@ -17,7 +17,8 @@ import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+from tools import ROOT
+
 PACKAGE = ROOT / "compiler" / "tiniscript"
 Graph = dict[str, set[str]]
 Import = ast.Import | ast.ImportFrom

@@ -31,11 +31,9 @@ from itertools import accumulate, zip_longest
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tests.support import order
 from tiniscript.base.files import cache_folder
+from tools import ROOT
 
 LIMIT_S = 300  # processor time of the tests of one mutant: an endless loop is noticed, too
 WAITS_S = 1800  # for what waits and does not work

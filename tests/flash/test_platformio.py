@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -187,7 +186,7 @@ def test_test_sketch_has_a_program_that_every_robot_can_run() -> None:
 
 def offline(*words: str, **variables: str) -> tuple[int, str, str]:
     done = subprocess.run(
-        [sys.executable, str(OFFLINE), "--offline", *words],
+        [*OFFLINE, "--offline", *words],
         env={**os.environ, **variables},
         capture_output=True,
         text=True,

@@ -18,7 +18,7 @@ from tests.support.casefile import ROOT
 from tests.support.copies import linked
 from tests.support.needs import need
 
-OFFLINE = ROOT / "tools" / "builds" / "platformio_offline.py"
+OFFLINE = [sys.executable, "-m", "tools.builds.platformio_offline"]
 SKETCH = ROOT / "vm_arduino"
 
 
@@ -27,9 +27,7 @@ def prepared() -> tuple[dict[str, str], str]:
     """Return the variables that `pio` needs, none where it is online, and why it cannot run."""
     if importlib.util.find_spec("platformio") is None:
         return {}, "PlatformIO is not installed"
-    done = subprocess.run(
-        [sys.executable, str(OFFLINE)], capture_output=True, text=True, check=False
-    )
+    done = subprocess.run(OFFLINE, cwd=ROOT, capture_output=True, text=True, check=False)
     exports = (shlex.split(row)[1].partition("=")[::2] for row in done.stdout.splitlines())
     return dict(exports), done.stderr if done.returncode else ""
 

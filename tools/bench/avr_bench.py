@@ -12,7 +12,8 @@ import tempfile
 from functools import lru_cache
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+from tools import ROOT
+
 SOURCES = ROOT / "vm_arduino"
 CHIP = "atmega328p"
 USUAL = (

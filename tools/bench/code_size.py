@@ -8,19 +8,15 @@ an arm of an IF is part of the IF, END_... is none, and a DEF, a TASK and a WHEN
 
 from __future__ import annotations
 
-import sys
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
 from typing import NamedTuple
-
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support.casefile import documents, read
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.semantics.ir import every
+from tools import ROOT
 
 CASES = ROOT / "tests" / "cases"
 LESSONS = ROOT / "compiler" / "tiniscript" / "lessons"

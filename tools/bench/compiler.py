@@ -14,10 +14,8 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "compiler"))
-
 from tiniscript import compile_text, robots
+from tools import ROOT
 
 KIT = robots.load(robots.DEFAULT).kit
 OBSTACLE = "SI|START;LOOP(FOREVER);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP"

@@ -13,16 +13,12 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tiniscript import robots
-from tools import uno
+from tools import ROOT, uno
 from tools.bench import firmware_stack
 from tools.builds.platformio_offline import CannotStandIn, config_of
 
 PROJECT = ROOT / "vm_arduino"
-OFFLINE = ROOT / "tools" / "builds" / "platformio_offline.py"
 DEFAULT = "tinibot"  # where the name of an environment has no robot
 NEW_NANO = "nano_new"
 WITHOUT_TASKS = "uno_without_tasks"  # not what a shipped robot gets
@@ -50,9 +46,10 @@ def environments() -> list[str]:
 
 def measured(name: str, project: Path = PROJECT) -> Sketch:
     """Build one environment and return its sizes. Raises RuntimeError with the log."""
-    command = [sys.executable, str(OFFLINE), "--project", str(project)]
+    command = [sys.executable, "-m", "tools.builds.platformio_offline", "--project", str(project)]
     done = subprocess.run(
         [*command, "pio", "run", "-e", name],
+        cwd=ROOT,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

@@ -8,11 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections import deque
-from pathlib import Path
 from typing import NamedTuple
-
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host import missing

@@ -13,13 +13,10 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tests.machines.wired import Wired
 from tiniscript import robots
 from tiniscript.link.session import Session
-from tools import uno
+from tools import ROOT, uno
 from tools.bench import firmware_size, stops
 from tools.bench.compiler import PROGRAMS
 from tools.bench.firmware_stack import image_of, must

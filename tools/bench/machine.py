@@ -10,12 +10,8 @@ from __future__ import annotations
 import sys
 from collections import defaultdict
 from collections.abc import Sequence
-from pathlib import Path
 from struct import pack
 from typing import NamedTuple
-
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tools import uno
 from tools.bench import avr_bench, sketch_cycles, workloads

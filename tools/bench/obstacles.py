@@ -8,16 +8,11 @@ robot is stuck where it stays within 3 cm of one place for 5 s.
 from __future__ import annotations
 
 import math
-import sys
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
-from pathlib import Path
 from random import Random
 from statistics import median
 from typing import NamedTuple
-
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support.virtual_robot import Talk
 from tiniscript import robots
@@ -25,6 +20,7 @@ from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Driving
 from tiniscript.virtual.robot import Settings, VirtualRobot
+from tools import ROOT
 
 SECONDS = 1800  # of the robot's time
 SEEDS = 20

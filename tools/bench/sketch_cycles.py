@@ -9,11 +9,7 @@ tsc, so no frame comes in between. Constants come from a light sensor.
 from __future__ import annotations
 
 import re
-import sys
 from pathlib import Path
-
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.machines.wired import Wired
 from tiniscript import robots

@@ -21,9 +21,6 @@ from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tests.support import studio
 from tiniscript.studio import serving
 from tools.builds.studio import PAGE, found_tools, size_rows

@@ -19,9 +19,6 @@ from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tests.machines.wired import Wired
 from tiniscript import robots
 from tiniscript.link.session import Session

@@ -10,9 +10,6 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tools import uno
 from tools.bench.compiler import OBSTACLE
 from tools.bench.link import BAUDS, PHASE_CYCLES, built, first_move, row

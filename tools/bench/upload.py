@@ -16,15 +16,12 @@ import subprocess
 import sys
 import tempfile
 import time
-from pathlib import Path
-
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.machines.host import missing
 from tests.support.pty_robot import PtyRobot
 from tests.support.robot_fleet import RobotFleet
 from tiniscript import robots
+from tools import ROOT
 from tools.bench.compiler import table
 
 RUNS = 15

@@ -6,17 +6,13 @@ seconds of the processor.
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
 from time import process_time
-
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support.virtual_robot import Talk
 from tiniscript import robots
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import VirtualRobot
+from tools import ROOT
 
 SECONDS = 60
 RUNS = 3

@@ -21,9 +21,6 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tests.support.uno_with_discs import ENVIRONMENT, Driven
 from tests.support.virtual_robot import Talk, floor
 from tiniscript import robots

@@ -6,14 +6,9 @@ from a sensor, so that no compiler can fold them.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from functools import lru_cache
-from pathlib import Path
 from typing import NamedTuple
-
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler")]
 
 from tiniscript import compile_text, robots
 from tiniscript.base.trace import Ending, Senses

@@ -14,7 +14,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+from tools import ROOT
+
 SOURCES = ROOT / "vm_arduino"
 
 USUAL = (

@@ -16,15 +16,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tiniscript import robots
 from tiniscript.cli.firmware_build import on_boards
 from tiniscript.flash import building
 from tiniscript.flash.ready import FOLDER, NOTICE, name_of, title_of
 from tiniscript.library import install_advice
 from tiniscript.robots.profile import Robot, answered
+from tools import ROOT
 from tools.builds.platformio_offline import PROJECT, CannotStandIn, settings_for
 
 LICENCE = Path("/usr/share/common-licenses/LGPL-2.1")  # Debian's copy

@@ -19,9 +19,6 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT)]
-
 from tools.bench import firmware_size
 
 SCRIPT = firmware_size.PROJECT / "src" / "boards" / "avr" / "order.ld"

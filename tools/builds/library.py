@@ -15,11 +15,9 @@ import shutil
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tiniscript import __version__, compile_text, robots
 from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
+from tools import ROOT
 from tools.release.facts import PEOPLE, address
 
 SOURCES = ROOT / "vm_arduino" / "src"

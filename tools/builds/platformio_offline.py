@@ -30,7 +30,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+from tools import ROOT
+
 PROJECT = ROOT / "vm_arduino"
 STAND_INS = ROOT / "tools" / "builds" / "platformio_stand_ins"
 HOME = ROOT / ".venv" / "platformio_offline"

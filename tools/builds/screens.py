@@ -10,9 +10,6 @@ import sys
 from pathlib import Path
 from typing import Literal
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tests.studio.screens import each_screen
 from tests.support import studio
 from tiniscript.base.languages import languages

@@ -24,12 +24,10 @@ from typing import TYPE_CHECKING
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tests.support import studio
 from tiniscript.base.languages import languages
 from tiniscript.lessons import catalogue
+from tools import ROOT
 from tools.builds.page_texts import page_texts
 from tools.site.documents import sources
 

@@ -22,10 +22,8 @@ from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tiniscript.base.languages import SOURCE, about, languages, text
+from tools import ROOT
 from tools.builds import studio
 from tools.site import links, theme
 from tools.site.documents import FRONT, PARTS, Document, documents, sources

@@ -23,14 +23,12 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tiniscript.base.languages import SOURCE, about, catalogue, languages
 from tiniscript.studio import block_kinds, building
 from tiniscript.studio.building import MODULES, SOURCES, Tools
 from tiniscript.studio.description import description
 from tiniscript.studio.serving import FIRMWARE, POLICY, with_firmware
+from tools import ROOT
 from tools.builds.page_texts import messages, page_texts
 
 COMMAND = f"python -m {building.MODULE}"

@@ -20,12 +20,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tiniscript import __version__
 from tiniscript.base.languages import SOURCE, text, told_in
 from tiniscript.flash import ready
+from tools import ROOT
 from tools.builds import stick_pages, stick_wheels
 from tools.builds.stick_wheels import PYTHONS, SYSTEMS, CannotMake
 from tools.site.documents import name_in

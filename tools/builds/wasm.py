@@ -19,7 +19,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+from tools import ROOT
+
 SOURCES = "vm_arduino"
 COMMAND = "python -m tools.builds.wasm"
 

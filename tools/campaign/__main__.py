@@ -15,11 +15,8 @@ import time
 from collections.abc import Sequence
 from datetime import datetime, timezone
 from math import inf
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
+from tools import ROOT
 from tools.campaign import results
 from tools.campaign.goals import BY_NAME, GOALS, Goal
 from tools.campaign.results import Result, measured

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript.base.files import replace
+from tools import ROOT
 from tools.campaign.goals import GOALS, Goal
 
-ROOT = Path(__file__).resolve().parent.parent.parent
 WRITTEN = Path(__file__).with_name("results.json")
 CODE = ("compiler", "vm_arduino", "tests")  # what a figure is about
 HEAD = ("name", "guarantee", "target", "measured", "seeds", "date", "commit")

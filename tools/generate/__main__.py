@@ -12,9 +12,6 @@ from functools import partial
 from itertools import accumulate
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tiniscript import robots
 from tiniscript.base import limits
 from tiniscript.base.kit import DEVICES
@@ -23,6 +20,7 @@ from tiniscript.robots import firmware
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
+from tools import ROOT
 from tools.generate import avr_header, cpp_header, link_header, remark_tables, text_tables
 from tools.generate.arena import world_picture
 from tools.generate.command_pages import DOCUMENTED, page

@@ -7,7 +7,6 @@ firmware of a real one.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 import tiniscript
@@ -17,6 +16,7 @@ from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
 from tiniscript.virtual.geometry import Point, Segment, distance
 from tiniscript.virtual.world import World
+from tools import ROOT
 
 SAMPLE_MS = 50
 FLOOR, WALL, BOX, WAY, BODY = "#f5f2ea", "#37414b", "#8a97a3", "#1273de", "#e8590c"
@@ -93,7 +93,7 @@ def arena(world: World, way: Way, left: float, top: float, scale: float) -> list
     ]
 
 
-EXAMPLES = Path(__file__).resolve().parent.parent.parent / "examples"
+EXAMPLES = ROOT / "examples"
 DRIVES = (  # the world, the example, the robot, for so many seconds
     ("obstacles", "obstacle_until.ts", "tinibot", 20),
     ("light", "light.ts", "tinibot", 8),

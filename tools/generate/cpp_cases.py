@@ -6,12 +6,7 @@ Knows how the case files become tables of C++: the traces and the refusals of `t
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterable, Sequence
-from pathlib import Path
-
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support.casefile import Case, read
 from tests.support.images import image_for, needs_of
@@ -19,6 +14,7 @@ from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import robots
 from tiniscript.base.kit import Device, Kit
 from tiniscript.bytecode.disassembly import assemble
+from tools import ROOT
 
 CASES = ROOT / "tests" / "cases"
 GUARD = "TINISCRIPT_TEST_CASES_H_"

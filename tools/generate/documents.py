@@ -15,10 +15,11 @@ from tiniscript.base.languages import SOURCE, languages, text
 from tiniscript.base.words import WORDS
 from tiniscript.lessons.lesson import AREA, KINDS, WHATS, Kind
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
+from tools import ROOT
 from tools.site.documents import LIST, documents, sources
 
-FOLDER = Path(__file__).resolve().parent.parent.parent / "docs"
-PACKAGE = FOLDER.parent / "compiler" / "tiniscript"
+FOLDER = ROOT / "docs"
+PACKAGE = ROOT / "compiler" / "tiniscript"
 
 
 def architecture_document() -> str:
@@ -87,7 +88,7 @@ def language_document(document: str, language: str) -> str:
 
 def list_of_documents(command: str) -> str:
     """Return `docs/README.md`: the documents' titles, in all languages side by side."""
-    found = [each for each in documents(FOLDER.parent) if each.sources.get(SOURCE) != LIST]
+    found = [each for each in documents(ROOT) if each.sources.get(SOURCE) != LIST]
     shown = [each for each in languages() if any(each in one.sources for one in found)]
 
     def said(key: str) -> list[str]:
@@ -112,7 +113,7 @@ def _linked(source: str) -> str:
     """Return the title of a document, with a link to it, or nothing."""
     if not source:
         return ""
-    text = (FOLDER.parent / source).read_text(encoding="utf-8")
+    text = (ROOT / source).read_text(encoding="utf-8")
     title = next(row[2:] for row in text.splitlines() if row.startswith("# "))
     return f"[{title}]({os.path.relpath(source, 'docs')})"
 
@@ -146,11 +147,11 @@ DOCUMENTS: dict[str, Callable[[], str]] = {
     "guarantees.md": guarantees_document,
     **{
         Path(path).name: partial(bring_up_document, Path(path).name, language)
-        for language, path in sources(FOLDER.parent, "docs/bring-up.md").items()
+        for language, path in sources(ROOT, "docs/bring-up.md").items()
     },
     **{
         Path(path).name: partial(language_document, Path(path).name, language)
-        for language, path in sources(FOLDER.parent, "docs/language.en.md").items()
+        for language, path in sources(ROOT, "docs/language.en.md").items()
     },
     "lessons.en.md": lessons_document,
 }

@@ -12,17 +12,16 @@ from functools import cache, partial
 from html import escape
 from io import StringIO
 from itertools import dropwhile
-from pathlib import Path
 
 from tiniscript.base.languages import text
 from tiniscript.base.words import WORDS
 from tiniscript.cli import main as tsc
 from tiniscript.robots.wiring.drawing import FONT
 from tiniscript.virtual import worlds
+from tools import ROOT
 from tools.generate.arena import Way, arena, driven
 from tools.site.documents import sources
 
-ROOT = Path(__file__).resolve().parent.parent.parent
 PROGRAM = ROOT / "examples" / "obstacle_until.ts"
 ROBOT, WORLD = "tinibot", "obstacles"
 LASTS_MS = 30_000

@@ -16,11 +16,12 @@ from tiniscript.lessons.variation import varied
 from tiniscript.robots.wiring.drawing import FONT
 from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
+from tools import ROOT
 from tools.generate.arena import FLOOR, WALL, WAY, arena, driven
 from tools.site.documents import sources
 
-DOCS = Path(__file__).resolve().parent.parent.parent / "docs"
-GUIDES = {each: Path(file).name for each, file in sources(DOCS.parent, "docs/monday.en.md").items()}
+DOCS = ROOT / "docs"
+GUIDES = {each: Path(file).name for each, file in sources(ROOT, "docs/monday.en.md").items()}
 PAD, PAPER, SKY = 10, "#ffffff", "#dcebfb"
 
 

@@ -25,9 +25,7 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
+from tools import ROOT
 from tools.builds.studio import CannotBuild, found_tools
 from tools.release import facts
 from tools.release.packing import sha256

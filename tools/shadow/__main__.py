@@ -29,9 +29,6 @@ from collections.abc import Iterable, Sequence
 from hashlib import sha256
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
-
 from tests.pupils.corpus import Entry, check, entries
 from tests.pupils.test_damage import programs
 from tiniscript.base.source import Source

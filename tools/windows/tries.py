@@ -15,9 +15,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+from tools import ROOT
 from tools.windows.computer import CODEPAGE, VERSION, Computer, Done
 
-ROOT = Path(__file__).resolve().parent.parent.parent
 WORD = "María Ñ"  # in the names of folders
 PROGRAM = "SI|F(2, 80);SHOW(7)\n"
 SLOW_S = 900.0

@@ -1,0 +1,7 @@
+"""What developers run. Knows where the repository is, and has its package found beside it."""
+
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "compiler")]
