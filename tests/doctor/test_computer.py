@@ -25,14 +25,11 @@ def linux(tmp_path: Path) -> FakeComputer:
 
 
 def test_a_computer_without_anything(linux: FakeComputer) -> None:
+    assert diagnosis.looked(linux).adapters is None  # no sysfs: nothing is known of USB
     linux.usb("usb1", "1d6b", "0002")  # its own hub
     found = diagnosis.looked(linux)
     assert (found.adapters, found.bluetooth, found.paired) == ((), NONE, ())
     assert found.has_module is False
-
-
-def test_where_there_is_no_sysfs_nothing_is_known_of_usb(linux: FakeComputer) -> None:
-    assert diagnosis.looked(linux).adapters is None
 
 
 @pytest.mark.parametrize(
@@ -102,11 +99,8 @@ def test_a_program_of_another_user_is_known_by_its_lock(linux: FakeComputer) -> 
     assert diagnosis.access(linux, port).users == ("screen",)
     linux.write("/run/lock/LCK..ttyUSB0", "999")  # it has ended
     assert diagnosis.access(linux, port).users == ()
-
-
-def test_an_address_and_a_port_that_is_not_there_are_free(linux: FakeComputer) -> None:
-    for port in ("socket://robot:7000", "/dev/ttyUSB9"):
-        assert diagnosis.access(linux, port) == computer.FREE
+    for other in ("socket://robot:7000", "/dev/ttyUSB9"):
+        assert diagnosis.access(linux, other) == computer.FREE
 
 
 # -- macOS and Windows --------------------------------------------------------------------------
@@ -133,27 +127,20 @@ def test_macos(tmp_path: Path) -> None:
     assert adapter.has_port
 
 
-@pytest.mark.parametrize(
-    ("said", "state"),
-    [
-        (None, UNKNOWN),
+def test_bluetooth_of_macos(tmp_path: Path) -> None:
+    off = [{"controller_properties": {"controller_state": "attrib_off"}}]
+    system = FakeComputer(tmp_path, "darwin")
+    assert diagnosis.looked(system).bluetooth == UNKNOWN
+    for said, state in (
         ("no JSON", UNKNOWN),
         ('{"SPBluetoothDataType": 5}', UNKNOWN),
         ('{"SPBluetoothDataType": []}', NONE),
         ('{"SPBluetoothDataType": [{}]}', NONE),
-        (
-            '{"SPBluetoothDataType": [{"controller_properties":'
-            ' {"controller_state": "attrib_off"}}]}',
-            OFF,
-        ),
-    ],
-)
-def test_bluetooth_of_macos(tmp_path: Path, said: str | None, state: str) -> None:
-    system = FakeComputer(tmp_path, "darwin")
-    if said is not None:
+        (json.dumps({"SPBluetoothDataType": off}), OFF),
+    ):
         system.outputs["system_profiler", "SPBluetoothDataType", "-json"] = said
-    found = diagnosis.looked(system)
-    assert (found.bluetooth, found.adapters) == (state, None)
+        found = diagnosis.looked(system)
+        assert (found.bluetooth, found.adapters) == (state, None), said
 
 
 def test_who_uses_a_port_of_macos(tmp_path: Path) -> None:

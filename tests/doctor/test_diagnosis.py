@@ -134,16 +134,16 @@ def case(tmp_path: Path) -> Case:
 Make = Callable[[Case], object]
 
 
-def _member(case: Case) -> None:
-    case.with_port(CABLE)
-    case.system.owners[CABLE] = (20, False)
-    case.system.write("/etc/group", "dialout:x:20:somebody\n")
+def _of_dialout(member: str) -> Make:
+    def make(case: Case) -> None:
+        case.with_port(CABLE)
+        case.system.owners[CABLE] = (20, False)
+        case.system.write("/etc/group", f"dialout:x:20:{member}\n")
+
+    return make
 
 
-def _stranger(case: Case) -> None:
-    case.with_port(CABLE)
-    case.system.owners[CABLE] = (20, False)
-    case.system.write("/etc/group", "dialout:x:20:\n")
+_member, _stranger = _of_dialout("somebody"), _of_dialout("")
 
 
 def _used(name: str) -> Make:
@@ -226,7 +226,10 @@ def test_each_cause_of_computer_and_port(
     assert case.cause(port) == (cause, is_sure)
 
 
-def test_a_port_of_a_cable_is_opened_after_a_yes_alone(case: Case) -> None:
+def test_a_port_of_a_cable_is_opened_after_a_yes_alone_and_a_radio_without(case: Case) -> None:
+    diagnosis = case.diagnosis(RADIO)
+    assert (diagnosis.findings[0].cause, diagnosis.is_opened) == ("fine", True)
+    assert (case.opened.pop(), case.asked) == (RADIO, [])
     case.with_port(CABLE)
     assert case.cause() == ("not_opened", True)
     assert (case.opened, case.asked) == ([], [CABLE])
@@ -251,12 +254,6 @@ def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
         assert "tsc doctor --port" in then
 
 
-def test_a_radio_is_opened_without_a_question(case: Case) -> None:
-    diagnosis = case.diagnosis(RADIO)
-    assert (diagnosis.findings[0].cause, diagnosis.is_opened) == ("fine", True)
-    assert case.asked == []
-
-
 @pytest.mark.parametrize("make", [_stranger, _member, _used("minicom"), _other_tsc])
 def test_a_port_that_is_not_ours_is_not_opened(case: Case, make: Make) -> None:
     make(case)
@@ -272,12 +269,6 @@ def test_the_last_port_and_the_only_port(case: Case) -> None:
     assert case.diagnosis(None).port is None
     case.last = RADIO
     assert case.diagnosis(None).port == RADIO
-
-
-def test_the_driver_is_named(case: Case) -> None:
-    _plugged(*CH340)(case)
-    (finding,) = case.diagnosis(None).findings
-    assert finding.values == {"chip": "CH340", "driver": "ch341"}
 
 
 @pytest.mark.parametrize(
@@ -297,11 +288,11 @@ def test_the_only_port_of_each_system(
     [(RADIO, "port_gone", True), ("socket://robot:7000", "other_host", False)],
 )
 def test_a_port_that_vanishes(case: Case, port: str, cause: str, is_sure: bool) -> None:
-    class ConnectionLost(Nobody):
+    class Gone(Nobody):
         def answer(self, data: bytes) -> bytes:
             raise OSError("gone")
 
-    case.end, case.says_yes = ConnectionLost(), True
+    case.end, case.says_yes = Gone(), True
     assert case.cause(port) == (cause, is_sure)
 
 
@@ -331,7 +322,10 @@ def test_a_robot_is_watched_where_nothing_else_is_wrong_and_its_port_is_shared(c
 
 
 def test_what_was_not_opened_is_not_said_to_have_been(case: Case) -> None:
-    assert not case.diagnosis(None).is_opened
+    _plugged(*CH340)(case)
+    diagnosis = case.diagnosis(None)
+    assert diagnosis.findings[0].values == {"chip": "CH340", "driver": "ch341"}
+    assert not diagnosis.is_opened
     assert not case.failing(errors.SLOW).diagnosis(RADIO).is_opened
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from string import Formatter
 
-import pytest
-
+from tests.support.rows import each_row
 from tests.support.texts import in_all
 from tests.support.texts import said as all_said
-from tiniscript.doctor.findings import CAUSES
+from tiniscript.cli.commands.doctor import _said
+from tiniscript.doctor.findings import CAUSES, Finding
 
 # The values of each cause that has some; the sentences may use no others.
 VALUES = {
@@ -24,7 +24,7 @@ VALUES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("cause", CAUSES)
+@each_row("cause", CAUSES)
 def test_a_cause_says_what_is_wrong_what_was_seen_and_what_to_do(cause: str) -> None:
     for kind in ("doctor", "seen", "next"):
         for said in in_all(f"{kind}_{cause}"):
@@ -45,9 +45,6 @@ def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
 
 def test_one_restart_is_said_as_one() -> None:
     """A count of 1 has a sentence of its own: "1 veces" is no Spanish."""
-    from tiniscript.cli.commands.doctor import _said
-    from tiniscript.doctor.findings import Finding
-
     for cause in ("restarts", "motors_restart"):
         for count, words in (("1", ("once", "una vez")), ("3", ("3 times", "3 veces"))):
             values = {"count": count, "reset": "BROWN_OUT"}

@@ -13,6 +13,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+import pytest
+
 from tests.machines.link import CppLink, cpp_link, link_library
 from tests.support.campaign import each_seed, wanted
 from tests.support.link_cases import KIT
@@ -23,8 +25,6 @@ from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.session import Session
 from tiniscript.link.statuses import name_of
 
-UPLOADS = 300
-LARGE_UPLOADS = 100
 UNDOS = 100
 LARGE_COUNTS = (80, 81, 160, 400, 1000, 2700)  # of moves, for a robot that is large
 OUTCOMES = {LOST: "lost", CANCELLED: "cancelled"}
@@ -238,17 +238,14 @@ def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
     return "done" if is_done else OUTCOMES.get(status) or name_of(status)
 
 
-def test_uploads_over_a_bad_radio() -> None:
-    """No upload says done that is not, and nothing is done twice."""
-    found = Counter(one_upload(cpp_link(), seed) for seed in range(UPLOADS))
-    assert found["done"] > UPLOADS * 0.9, found
+@pytest.mark.parametrize(("is_large", "count", "least"), [(False, 300, 0.9), (True, 100, 0.85)])
+def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> None:
+    """No upload says done that is not, and nothing is done twice.
 
-
-def test_large_uploads_over_a_bad_radio() -> None:
-    """The same with large frames, several under way; some come twice or in another order."""
-    cpp = cpp_link(is_large=True)
-    found = Counter(one_upload(cpp, seed) for seed in range(LARGE_UPLOADS))
-    assert found["done"] > LARGE_UPLOADS * 0.85, found
+    Of large frames several are under way; some come twice or in another order.
+    """
+    found = Counter(one_upload(cpp_link(is_large), seed) for seed in range(count))
+    assert found["done"] > count * least, found
 
 
 def one_undo(cpp: CppLink, seed: int) -> str:

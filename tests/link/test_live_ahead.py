@@ -108,34 +108,17 @@ def test_what_runs_goes_on_until_the_frame_ends() -> None:
     assert robot.step(20, data[-1:]).did[0] == "END"
 
 
-def test_a_button_in_between_makes_it_stale() -> None:
+@pytest.mark.parametrize(("before", "between"), [("", "b"), ("r", "f")], ids=["button", "fault"])
+def test_a_button_or_a_fault_in_between_makes_it_stale(before: str, between: str) -> None:
     robot = greeted()
+    if before:
+        robot.happens(before)
     data = live(CODES[0])
     assert not robot.step(10, data[:-1]).did
-    robot.happens("b")
+    robot.happens(between, 65)
     step = robot.step(20, data[-1:])
     assert not [row for row in step.did if "START" in row]
     assert step.sent
-
-
-def test_a_fault_in_between_makes_it_stale() -> None:
-    robot = greeted()
-    robot.happens("r")
-    data = live(CODES[0])
-    assert not robot.step(10, data[:-1]).did
-    robot.happens("f", 65)
-    step = robot.step(20, data[-1:])
-    assert not [row for row in step.did if "START" in row]
-    assert step.sent
-
-
-def test_the_same_line_twice_runs_once() -> None:
-    robot = greeted()
-    data = live(CODES[0])
-    assert STARTED in robot.step(10, data).did
-    again = robot.step(20, data)
-    assert not [row for row in again.did if "START" in row]
-    assert again.sent
 
 
 def test_a_stop_ends_the_frame_and_then_the_run() -> None:

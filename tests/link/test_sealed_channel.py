@@ -11,6 +11,8 @@ from __future__ import annotations
 import random
 from collections import Counter
 
+import pytest
+
 from tests.link.test_link_channel import World, damaged, one_upload, program
 from tests.machines.link import CppLink, cpp_link, link_library
 from tests.support.campaign import each_seed, wanted
@@ -125,27 +127,19 @@ class QuietWorld(SealedWorld):
     def disturb(self) -> None: ...
 
 
-def test_sealed_uploads_over_a_bad_radio() -> None:
-    found = Counter(one_upload(cpp_link(), seed, QuietWorld) for seed in range(UPLOADS))
-    assert found["done"] > UPLOADS * 0.9, found
-
-
-def test_sealed_uploads_beside_a_stranger() -> None:
-    """The stranger may end sessions; nothing wrong is done or believed, and much is still done."""
-    found = Counter(one_upload(cpp_link(), seed, SealedWorld) for seed in range(UPLOADS))
-    assert found["done"] > UPLOADS * 0.4, found
-
-
-def test_large_sealed_uploads_over_a_bad_radio() -> None:
-    cpp = cpp_link(is_large=True)
-    found = Counter(one_upload(cpp, seed, QuietWorld) for seed in range(UPLOADS))
-    assert found["done"] > UPLOADS * 0.85, found
-
-
-def test_large_sealed_uploads_beside_a_stranger() -> None:
-    cpp = cpp_link(is_large=True)
-    found = Counter(one_upload(cpp, seed, SealedWorld) for seed in range(UPLOADS))
-    assert found["done"] > UPLOADS * 0.3, found
+@pytest.mark.parametrize(
+    ("world", "is_large", "least"),
+    [
+        (QuietWorld, False, 0.9),
+        (QuietWorld, True, 0.85),
+        (SealedWorld, False, 0.4),
+        (SealedWorld, True, 0.3),
+    ],
+)
+def test_sealed_uploads_over_a_bad_radio(world: type[World], is_large: bool, least: float) -> None:
+    """A stranger may end sessions; nothing wrong is done or believed, and much is still done."""
+    found = Counter(one_upload(cpp_link(is_large), seed, world) for seed in range(UPLOADS))
+    assert found["done"] > UPLOADS * least, found
 
 
 def test_the_frames_of_a_session_are_sealed() -> None:

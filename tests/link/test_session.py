@@ -1,4 +1,4 @@
-"""The computer's session: retries, the heartbeat, the stop, and what a robot answers."""
+"""The computer's session: retries, waits, the heartbeat, the stop, and what a robot answers."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import BY_NAME, BY_NUMBER, STATUSES
-from tiniscript.link.outcomes import CANCELLED, LOST, TextEvent
+from tiniscript.link.messages import BY_NAME, BY_NUMBER, PLACES, STATUSES
+from tiniscript.link.outcomes import CANCELLED, LOST, PlaceEvent, TextEvent
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.requests import SHORT_BYTES
 from tiniscript.link.session import HEARTBEAT_MS, IDLE_HEARTBEAT_MS, Session
 from tiniscript.link.transmission import CONFIRM_MS, STOP_MS
 
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
-
+LOW, SAVING = STATUSES["LOW_SUPPLY"], STATUSES["SAVING"]
 
 DESCRIPTION: dict[str, int | bytes] = {
     "major": 1, "minor": 0, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR, "kit": KIT,
@@ -132,29 +132,19 @@ def test_a_stop_cuts_everything_short() -> None:
     requests: list[PendingRequest[Any]] = [session.live(FORWARD), session.fetch()]
     session.poll(0)
     session.stop(3)
-    assert [request.outcome.status for request in requests if request.outcome] == [
-        CANCELLED,
-        CANCELLED,
-    ]
+    assert all(each.outcome and each.outcome.status == CANCELLED for each in requests)
     assert sending(session, 250) == [(3, bytes(8)), (103, bytes(8)), (203, bytes(8))]
     session.receive(event("STOPPED", 0, {"cause": 1}), 260)
     assert [each.name for each in session.events()] == ["STOPPED"]
     assert session.is_latched and sending(session, 500) == []
 
 
-def test_a_stop_that_nobody_answers_is_told() -> None:
-    session = greeted()
-    session.stop(0)
-    sent = sending(session, 2 * DEADLINE_MS)
-    assert len(sent) == CONFIRM_MS // STOP_MS
-    assert [each.name for each in session.events()] == ["LOST"]
-
-
-def test_a_stop_that_nobody_answers_holds_up_others_for_a_few_seconds() -> None:
+def test_a_stop_that_nobody_answers_is_told_and_holds_up_others_for_a_few_seconds() -> None:
     session = greeted()
     session.stop(0)
     early = session.ping()
-    sending(session, CONFIRM_MS)
+    assert len(sending(session, CONFIRM_MS)) == CONFIRM_MS // STOP_MS
+    assert [each.name for each in session.events()] == ["LOST"]
     assert early.outcome and early.outcome.status == LOST
     late = session.ping()
     data = session.poll(CONFIRM_MS + 1)
@@ -253,10 +243,8 @@ def test_what_does_not_fit_is_not_sent() -> None:
     for each, status, detail in cases:
         request = session.upload(each)
         assert session.poll(0) == b""
-        assert request.outcome and (request.outcome.status, request.outcome.detail) == (
-            status,
-            detail,
-        )
+        assert request.outcome
+        assert (request.outcome.status, request.outcome.detail) == (status, detail)
     request = session.live(bytes(SHORT_BYTES + 1))
     assert session.poll(0) == b""
     assert request.outcome and request.outcome.status == STATUSES["TOO_LARGE"]
@@ -342,46 +330,31 @@ def test_a_line_that_an_older_machine_does_not_know(minor: int, said: tuple[int,
     assert request.outcome and (request.outcome.status, request.outcome.detail) == said
 
 
-def test_a_busy_robot_is_asked_again_but_not_for_ever() -> None:
+@pytest.mark.parametrize(("busy_ms", "ends"), [(60_000, STATUSES["BUSY"]), (1000, LOST)])
+def test_a_busy_robot_is_asked_again_but_not_for_ever(busy_ms: int, ends: int) -> None:
+    """One that answers is not lost; one that falls silent then is."""
     session = greeted()
     request = session.upload(unpack(pack("SI", 0, FORWARD)))
     now_ms = 0
     while request.outcome is None and now_ms < 3 * DEADLINE_MS:
         data = session.poll(now_ms)
-        if data:
+        if data and now_ms < busy_ms:
             session.receive(answer(data, {}, STATUSES["BUSY"]), now_ms)
         now_ms += 10
-    assert request.outcome and request.outcome.status == STATUSES["BUSY"], (
-        "it answers: it is not lost"
-    )
+    assert request.outcome and request.outcome.status == ends
     assert now_ms <= DEADLINE_MS + 1000
-
-
-def test_a_robot_that_was_busy_and_then_falls_silent_is_lost() -> None:
-    session = greeted()
-    request = session.upload(unpack(pack("SI", 0, FORWARD)))
-    now_ms = 0
-    while request.outcome is None and now_ms < 3 * DEADLINE_MS:
-        data = session.poll(now_ms)
-        if data and now_ms < 1000:
-            session.receive(answer(data, {}, STATUSES["BUSY"]), now_ms)
-        now_ms += 10
-    assert request.outcome and request.outcome.status == LOST
 
 
 def test_a_stop_between_makes_what_waits_stale() -> None:
     """The answer bears another epoch: what was wanted before is not wanted any more."""
     session = Session(1, kit=KIT)
-    requests: list[PendingRequest[Any]] = [
-        session.hello(),
-        session.live(FORWARD),
-        session.live(FORWARD),
-    ]
+    session.hello()
+    first, second = session.live(FORWARD), session.live(FORWARD)
     session.receive(answer(session.poll(0), DESCRIPTION), 0)
-    assert requests[1].outcome is None  # HELLO begins an epoch, it ends none
+    assert first.outcome is None  # HELLO begins an epoch, it ends none
     session.receive(answer(session.poll(1), receipt(1), epoch=11), 1)
-    assert requests[1].outcome and requests[1].outcome.status == 0
-    assert requests[2].outcome and requests[2].outcome.status == STATUSES["STALE"]
+    assert first.outcome and first.outcome.status == 0
+    assert second.outcome and second.outcome.status == STATUSES["STALE"]
 
 
 def test_a_short_program_takes_few_bytes() -> None:
@@ -390,3 +363,79 @@ def test_a_short_program_takes_few_bytes() -> None:
     session = greeted()
     session.upload(unpack(compiled.image))
     assert len(session.poll(0)) == 13  # at most 14
+
+
+def lost_at(session: Session, now_ms: int = 0) -> int:
+    """Let nobody answer, and look every millisecond; return when the robot is given up."""
+    for at in range(now_ms, now_ms + 10_000):
+        session.poll(at)
+        if [each.name for each in session.events()] == ["LOST"]:
+            return at
+    raise AssertionError("it waits for ever")
+
+
+def test_a_heartbeat_has_three_seconds_and_so_has_asking_for_the_end_of_a_run() -> None:
+    assert 3000 <= lost_at(greeted()) - IDLE_HEARTBEAT_MS < 3500  # the end of a try
+    session = greeted()
+    session.live(FORWARD)
+    session.receive(answer(session.poll(0), receipt(1)), 0)
+    at = session.wakes_at()
+    assert at is not None
+    session.receive(answer(session.poll(at), {"state": 0, "run": 1}), at)
+    assert session.poll(at), "it asks how the run has ended"
+    assert 3000 <= lost_at(session, at) - at < 3500
+
+
+def asked(statuses: list[int]) -> tuple[int, int]:
+    """Name a robot that answers with these statuses, the last one for ever; return how many
+    times it is asked, and how that ends."""
+    session = greeted()
+    request = session.name(b"Ana")
+    times = now_ms = 0
+    while request.outcome is None and now_ms < 60_000:
+        data = session.poll(now_ms)
+        if data:
+            session.receive(answer(data, {}, statuses[min(times, len(statuses) - 1)]), now_ms)
+            times += 1
+        now_ms += 10
+    assert request.outcome
+    return times, request.outcome.status
+
+
+@pytest.mark.parametrize(
+    ("statuses", "times", "ends"),
+    [
+        ([LOW], 1 + 4, LOW),
+        ([SAVING], 1 + 12, SAVING),
+        # a voltage that was enough in between is waited for anew
+        ([LOW, LOW, LOW, LOW, SAVING, LOW], 1 + 4 + 4, LOW),
+    ],
+)
+def test_a_low_voltage_is_waited_for_less_long(statuses: list[int], times: int, ends: int) -> None:
+    assert asked(statuses) == (times, ends)
+
+
+def places_told(*replies: bytes) -> list[tuple[int, int]]:
+    """Return the runs and places that a session tells when its heartbeats get these replies."""
+    session = greeted(features=PLACES)
+    session.tells_places = True
+    now_ms = 10
+    for payload in replies:
+        now_ms += 1000
+        sent = decoded(session.poll(now_ms).strip(b"\0"))
+        assert sent and sent.number == 2 and sent.payload == b"\1"
+        reply = Frame(2, sent.seq, 10, b"\0" + payload, is_reply=True)
+        session.receive(encoded(reply), now_ms + 1)
+    return [(each.run, each.at) for each in session.events() if isinstance(each, PlaceEvent)]
+
+
+def test_a_place_is_told_when_it_is_another_one() -> None:
+    place, other = b"\3\0abcd", b"\3\0abce"
+    assert places_told(b"\1\1" + place, b"\1\1" + place, b"\0\1") == [(1, 3), (1, -1)]
+    found = places_told(b"\1\1" + place, b"\1\2" + place, b"\1\2" + other)
+    assert found == [(1, 3), (2, 3), (2, 3)]
+
+
+def test_a_place_that_is_cut_or_of_nothing_that_runs_is_none() -> None:
+    assert places_told(b"\1\1", b"\1\1abc", b"\0\1\3\0abcd", b"\2\1\3\0abcd") == []
+    assert places_told(b"\1\1\xff\xffabcd") == [(1, 0xFFFF)]

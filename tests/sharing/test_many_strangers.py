@@ -21,8 +21,8 @@ from urllib.request import urlopen
 
 import pytest
 
-from tests.sharing.test_strangers import few, registration_of
-from tests.support.command import FOREVER, process
+from tests.sharing.test_strangers import driven, registration_of
+from tests.support.command import process
 from tests.support.waiting import HANGS_S
 from tiniscript.studio.serving import CONNECTIONS
 
@@ -34,12 +34,12 @@ TESTED = 400  # connections of a test
 FILES = 140  # that a listener may have open more than before: those who have not said anything yet
 GROWN_KB = 8_000  # of memory; a Python that has handled errors has more than one that has not
 # Who comes and how: `open` are there at once. Each says something, and hears nothing.
-KINDS = ("closed", "silent", "half-open", "slow", "browser")
+KINDS = ("closed", "silent", "half-open", "slow", "half a frame", "browser")
 VISITORS = """
 import contextlib, socket, sys, time
 port, kind, count = int(sys.argv[1]), sys.argv[2], int(sys.argv[3])
 REQUEST = b"GET / HTTP/1.1\\r\\nHost: robot\\r\\n\\r\\n"
-SAYS = {"slow": b"P", "browser": REQUEST}.get(kind, b"")
+SAYS = {"slow": b"P", "half a frame": b"\\0", "browser": REQUEST}.get(kind, b"")
 peers = []
 for k in range(count):
     peer = socket.socket()
@@ -105,27 +105,27 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
 
     Before, while they are there, and when they have gone.
     """
-    with few("robot") as robot:
-        assert robot.stdout
-        port = robot.stdout.readline().decode().strip()
-        with few("upload", "--port", port, "-e", FOREVER) as command:
-            assert command.stdout
-            assert b"running" in command.stdout.readline()
-            places = [
-                ("virtual robot", robot.pid, int(port.rpartition(":")[2])),
-                ("shared port", command.pid, registration_of(port).number),
-            ]
-            found = []
-            for name, pid, number in places:
-                before = had(pid)
-                with visitors(number, kind, count):
-                    meanwhile = had(pid)
-                    state = json.loads(process("info", "--port", port, "--json").out)["state"]
-                    assert state == "RUNNING"
-                found.append((name, before, meanwhile, settled(pid, before.files + 3)))
-            with visitors(places[0][2], kind, count), visitors(places[1][2], kind, count):
-                assert process("stop", "--port", port).code == 0
-            assert command.wait(timeout=HANGS_S) == 3
+    with driven() as (robot, port, command):
+        places = [
+            ("virtual robot", robot.pid, int(port.rpartition(":")[2])),
+            ("shared port", command.pid, registration_of(port).number),
+        ]
+        found = []
+        for name, pid, number in places:
+            before = had(pid)
+            with visitors(number, kind, count):
+                meanwhile = had(pid)
+                state = json.loads(process("info", "--port", port, "--json").out)["state"]
+                assert state == "RUNNING"
+            found.append((name, before, meanwhile, settled(pid, before.files + 3)))
+        with visitors(places[0][2], kind, count), visitors(places[1][2], kind, count):
+            assert process("stop", "--port", port).code == 0
+        out, err = command.communicate(timeout=HANGS_S)
+        assert command.returncode == 3
+        assert b"was stopped from a computer" in out + err
+        with visitors(places[0][2], kind, count):
+            done = process("stop", "--port", port)  # nobody holds it
+            assert (done.code, done.err) == (0, "")
         robot.send_signal(signal.SIGINT)
         assert b"FAULT" not in robot.communicate(timeout=HANGS_S)[0]
     return found

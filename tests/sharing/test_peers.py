@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from tests.cli.test_virtual_command import robot, visitor
-from tests.sharing.test_strangers import few, registration_of
-from tests.support.command import FOREVER, process
+from tests.sharing.test_strangers import driven, registration_of
+from tests.support.command import process
 from tests.support.waiting import HANGS_S
 from tiniscript.base import files
 from tiniscript.link.sharing import peers, registry
@@ -158,29 +158,21 @@ def test_a_pseudo_terminal_is_for_its_user_alone(monkeypatch: pytest.MonkeyPatch
 @linux
 def test_the_token_is_in_one_private_file() -> None:
     """In no command line, no environment, no output and no other file."""
-    with few("robot") as virtual:
-        assert virtual.stdout
-        port = virtual.stdout.readline().decode().strip()
-        with few("upload", "--port", port, "-e", FOREVER) as command:
-            assert command.stdout
-            said = command.stdout.readline()
-            registration = registration_of(port)
-            secrets = [each.encode() for each in (registration.token, registration.answer)]
-            assert process("info", "--port", port).code == 0
-            seen = [said]
-            for pid in (virtual.pid, command.pid):
-                seen += [
-                    Path(f"/proc/{pid}/{name}").read_bytes() for name in ("cmdline", "environ")
-                ]
-            having = []
-            for path in files.cache_folder().rglob("*"):
-                if path.is_file():
-                    content = path.read_bytes()
-                    having += [path] if any(each in content for each in secrets) else []
-                    seen.append(str(path).encode())
-            assert process("stop", "--port", port).code == 0
-            out, err = command.communicate(timeout=HANGS_S)
-            seen += [out, err]
+    with driven() as (virtual, port, command):
+        registration = registration_of(port)
+        secrets = [each.encode() for each in (registration.token, registration.answer)]
+        assert process("info", "--port", port).code == 0
+        seen = []
+        for pid in (virtual.pid, command.pid):
+            seen += [Path(f"/proc/{pid}/{name}").read_bytes() for name in ("cmdline", "environ")]
+        having = []
+        for path in files.cache_folder().rglob("*"):
+            if path.is_file():
+                content = path.read_bytes()
+                having += [path] if any(each in content for each in secrets) else []
+                seen.append(str(path).encode())
+        assert process("stop", "--port", port).code == 0
+        seen += command.communicate(timeout=HANGS_S)
     assert len(having) == 1 and len(seen) > 6
     assert not [each for each in seen for secret in secrets if secret in each]
 

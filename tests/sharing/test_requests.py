@@ -11,10 +11,11 @@ import pytest
 from tiniscript.bytecode.image import Image
 from tiniscript.link.sharing.protocol import BadMessage, message_of
 from tiniscript.link.sharing.requests import ClientRequest, ClientRequests, asked_for
-from tiniscript.link.wifi import BrokerSettings, Network
+from tiniscript.link.wifi import BrokerSettings, Network, Tls
 
 HOME = Network(b"Home", b"a password", False)
 BROKER = BrokerSettings(bytes((10, 0, 0, 7)), 1883, "class", b"robot", b"secret")
+NAMED = BROKER._replace(name=b"broker.class", tls=Tls(bytes(range(256)) * 8, 20261121))
 IMAGE = Image("SI", 3, b"\x44\xf0\x50", 0xFFFFFFFF, (2, 0), b"\1")
 
 
@@ -38,7 +39,8 @@ ASKED = (
     Asked("live", (b"\x44", 7)), Asked("join", (HOME,)),
     Asked("join", (Network(b"N" * 32, b"p" * 63, True),)),
     Asked("join", (Network(b"N", b"p" * 8, False),)),
-    Asked("use_broker", (BROKER,)), Asked("use_broker", (None,)),
+    Asked("use_broker", (BROKER,)), Asked("use_broker", (None,)), Asked("use_broker", (NAMED,)),
+    Asked("use_broker", (BROKER._replace(name=b"x"),)),
     Asked("upload", (IMAGE, False, True, True, 7)),
     Asked("upload", (IMAGE._replace(isa=(2, 1), needs=255), True, True, False, 7)),
 )  # fmt: skip
@@ -61,7 +63,7 @@ BAD: tuple[dict[str, Any], ...] = (
     {"do": "poll"}, {"do": None}, {}, of("claim", 2), of("claim", -1), of("disown", 2),
     of("allow_text", 1), of("name", b""), of("name", b"A" * 17), of("name", b"A", name="g"),
     of("trim", b"\1"), of("trim", b"\1\2\3\4"), of("start", 1), of("live", b"\x44", kit="7"),
-    of("live", b"\x44", kit=-1), of("live", b"\x44", kit=1 << 16),
+    of("live", b"\x44", kit=-1), of("live", b"\x44", kit=1 << 16), of("live", b"", 7, code=7),
     of("join", Network(b"", b"a password", False)),
     of("join", Network(b"N" * 33, b"a password", False)),
     of("join", Network(b"N", b"p" * 7, False)), of("join", Network(b"N", b"p" * 64, False)),
@@ -69,10 +71,15 @@ BAD: tuple[dict[str, Any], ...] = (
     of("join", Network(b"N", b"a pass\0word", False)), of("join", HOME, is_access_point=None),
     of("use_broker", BROKER, port=0), of("use_broker", BROKER, port=1 << 16),
     of("use_broker", BROKER, address=""), of("use_broker", BROKER, password="61" * 64),
+    *(of("use_broker", NAMED, **{key: value}) for key, value in (
+        ("trust", ""), ("trust", "00" * 2049), ("trust", 1), ("date", 0), ("date", -1),
+        ("date", True), ("date", 1 << 32), ("name", ""), ("name", "00"), ("name", "78" * 97),
+        ("port", 0), ("address", "7f"), ("group", "a/b"),
+    )),
     of("upload", IMAGE, start="XX"), of("upload", IMAGE, isa="02"), of("upload", IMAGE, later="1"),
     of("upload", IMAGE, devices=-1), of("upload", IMAGE, devices=1 << 16),
     of("upload", IMAGE, checksum=1 << 32), of("upload", IMAGE, code="00" * 0x8000),
-    of("upload", IMAGE, later="00" * 242), of("upload", IMAGE, runs=1),
+    of("upload", IMAGE, later="00" * 241), of("upload", IMAGE, runs=1),
     of("upload", IMAGE, kit=1 << 16), of("upload", IMAGE, kit=-1),
     of("upload", IMAGE, needs=1 << 8), of("upload", IMAGE, needs=-1),
 )  # fmt: skip

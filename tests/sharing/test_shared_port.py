@@ -183,27 +183,19 @@ NEVER = {"tomllib", "tomli", "rich", "ssl", "asyncio", "bleak", "zeroconf", "was
 OF_A_PORT = {"serial", "cobs", "threading", "tiniscript.link.session", "tiniscript.link.ports"}
 
 
-def imported_by(port: str, arguments: tuple[str, ...]) -> set[str]:
-    done = Command(*arguments, "--port", port, code=IMPORTS).ended()
-    return set(done.out.splitlines()[-1].split())
-
-
 @pytest.mark.parametrize(("arguments", "unwanted"), AT_ONCE)
-def test_through_a_server_a_command_imports_no_more_than_it_needs(
-    arguments: tuple[str, ...], unwanted: set[str]
-) -> None:
-    with Shared() as (pty_robot, _):
-        found = imported_by(pty_robot.port, arguments)
-    assert sorted((NEVER | OF_A_PORT | unwanted) & found) == []
-
-
-@pytest.mark.parametrize(("arguments", "unwanted"), AT_ONCE)
-def test_a_command_that_opens_the_port_imports_no_more_than_it_needs(
+def test_a_command_imports_no_more_than_it_needs(
     pty_robot: PtyRobot, arguments: tuple[str, ...], unwanted: set[str]
 ) -> None:
-    found = imported_by(pty_robot.port, arguments)
+    def imported_by(port: str) -> set[str]:
+        done = Command(*arguments, "--port", port, code=IMPORTS).ended()
+        return set(done.out.splitlines()[-1].split())
+
+    found = imported_by(pty_robot.port)
     assert sorted((NEVER | unwanted) & found) == []
     assert found >= OF_A_PORT
+    with Shared() as (shared, _):
+        assert sorted((NEVER | OF_A_PORT | unwanted) & imported_by(shared.port)) == []
 
 
 # -- whose run it is ------------------------------------------------------------------------------

@@ -10,12 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from random import Random
 
-import pytest
-
-from tests.support.command import FOREVER, TSC, Command, process
-from tests.support.crowd import crowd
+from tests.support.command import FOREVER, TSC, Command
 from tests.support.pty_robot import PtyRobot, on, uploading
-from tests.support.waiting import HANGS_S
 from tiniscript import __version__
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
@@ -122,7 +118,7 @@ def test_no_bytes_of_a_stranger_end_a_client_of_link(pty_robot: PtyRobot, link: 
     assert done.out.count(": connected.") == 2  # strangers are not told of
 
 
-# -- many of them -------------------------------------------------------------------------------
+# -- of `test_many_strangers.py`, too --------------------------------------------------------------
 
 FEW = ["sh", "-c", 'ulimit -n 256; exec "$@"', "sh", *TSC]  # files, as on macOS
 
@@ -140,27 +136,13 @@ def few(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
         process.communicate()
 
 
-@pytest.mark.parametrize(("there", "here"), [(b"", b""), (b"\0", b'{"tsc"'), (b"POS", b"POST")])
-def test_a_stop_gets_through_a_thousand_connections(there: bytes, here: bytes) -> None:
-    """At the port of the robot, and at that of the command that holds it."""
+@contextmanager
+def driven() -> Iterator[tuple[subprocess.Popen[bytes], str, subprocess.Popen[bytes]]]:
+    """A virtual robot, its port, and the command that drives it."""
     with few("robot") as robot:
         assert robot.stdout
         port = robot.stdout.readline().decode().strip()
-        number = int(port.rpartition(":")[2])
-        with crowd(number, says=(there,)):
-            done = process("stop", "--port", port)
-            assert (done.code, done.err) == (0, "")
         with few("upload", "--port", port, "-e", FOREVER) as command:
             assert command.stdout
             assert b"running" in command.stdout.readline()
-            held = registration_of(port).number
-            with crowd(number, says=(there,)), crowd(held, says=(here,)):
-                done = process("info", "--port", port, "--json")
-                assert json.loads(done.out)["state"] == "RUNNING"
-                assert process("stop", "--port", port).code == 0
-            out, err = command.communicate(timeout=HANGS_S)
-            assert command.returncode == 3
-            assert b"was stopped from a computer" in out + err
-        robot.send_signal(signal.SIGINT)
-        did = robot.communicate(timeout=HANGS_S)[0].decode()
-    assert "FAULT" not in did
+            yield robot, port, command

@@ -1,0 +1,174 @@
+"""A broker: the list of a class is whole over a slow network, what is said there is not kept, and
+large messages are not taken."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+import pytest
+
+from tests.support.mosquitto import Mosquitto
+from tests.support.network import Network
+from tests.support.waiting import HANGS_S, until
+from tiniscript.link.messages import STOP_BYTES
+
+paho = pytest.importorskip("paho.mqtt.publish")
+from tiniscript.link.errors import PortError  # noqa: E402
+from tiniscript.link.transports import broker  # noqa: E402
+from tiniscript.link.transports.broker import MESSAGE_BYTES, Access, Broker  # noqa: E402
+
+ROBOTS = 30
+LAST = "tests/last"
+LET_IN = bytes((0x20, 2, 0, 0))
+PIECE = bytes(65_536)
+
+
+@pytest.fixture
+def school(tmp_path: Path) -> Iterator[Mosquitto]:
+    """A broker that knows thirty robots of the class 3b."""
+    found = Mosquitto(tmp_path, "robots", "word")
+    robots = [
+        {"topic": f"{broker.ROOT}/3b/{k:08x}", "payload": f"+R{k}", "retain": True}
+        for k in range(ROBOTS)
+    ]
+    paho.multiple(robots, "127.0.0.1", found.port, auth={"username": "robots", "password": "word"})
+    yield found
+    found.kill()
+
+
+# -- the list of a class ------------------------------------------------------------------------
+
+
+class SlowNetwork(Network):
+    """What the broker hears is `late_s` on its way, and what it says stands still for `gap_s` once,
+    in the middle of what it retains; `is_cut` says nothing of that at all.
+    """
+
+    most = 200
+
+    def __init__(self, target: int, late_s: float, gap_s: float, is_cut: bool) -> None:
+        self.late_s, self.gap_s, self.is_cut = late_s, gap_s, is_cut
+        self.is_silent = False
+        super().__init__(target)
+
+    def passed(self, data: bytes, is_back: bool, number: int) -> bytes:
+        if not is_back:
+            time.sleep(self.late_s)
+        elif b"tiniscript/" in data:
+            time.sleep(self.gap_s)
+            self.gap_s = 0
+            self.is_silent = self.is_cut
+        return b"" if is_back and self.is_silent else data
+
+
+@pytest.mark.parametrize(("late_s", "gap_s"), [(0.0, 0.0), (0.4, 0.0), (0.0, 0.8)])
+def test_each_robot_of_a_class_is_listed(school: Mosquitto, late_s: float, gap_s: float) -> None:
+    with (
+        closing(SlowNetwork(school.port, late_s, gap_s, is_cut=False)) as network,
+        closing(Broker("127.0.0.1", network.port, Access("robots", "word"))) as found,
+    ):
+        for _ in range(2):
+            assert len(found.present("3b")) == ROBOTS
+        assert found.present("4a") == []
+
+
+def test_a_list_that_is_not_whole_is_none(
+    school: Mosquitto, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(broker, "LIST_S", 1.0)
+    with (
+        closing(SlowNetwork(school.port, 0, 0, is_cut=True)) as network,
+        closing(Broker("127.0.0.1", network.port, Access("robots", "word"))) as found,
+        pytest.raises(PortError),
+    ):
+        found.present("3b")
+
+
+# -- what a computer says is said once ------------------------------------------------------------
+
+
+def heard(client: Broker) -> None:
+    """Wait until the broker has taken all that a client has said."""
+    client._client.publish(LAST, b"", qos=1).wait_for_publish(HANGS_S)
+
+
+def kept(own: Mosquitto) -> list[str]:
+    """Return the topics of all that a broker retains."""
+    late = own.connected()
+    found: list[str] = []
+
+    def keep(_: Any, __: Any, message: Any) -> None:
+        found.append(message.topic)
+
+    late._client.on_message = keep
+    late._client.subscribe("#")
+    late._client.publish(LAST, b"")  # what is retained comes before what is said later
+    until(lambda: LAST in found, "all that is retained has come")
+    late.close()
+    return found[: found.index(LAST)]
+
+
+def test_stops_and_frames_are_not_retained(tmp_path: Path) -> None:
+    own = Mosquitto(tmp_path)
+    try:
+        teacher = own.connected()
+        port = teacher.robot("aula", "12345678")
+        port.write(bytes(STOP_BYTES))
+        teacher.stop("aula")
+        port.close()
+        heard(teacher)
+        assert kept(own) == []
+        teacher._client.publish("tiniscript/aula/12345678", b"+x", retain=True)
+        heard(teacher)
+        assert kept(own) == ["tiniscript/aula/12345678"], "what is retained would be seen"
+        teacher.close()
+    finally:
+        own.kill()
+
+
+# -- a broker that sends more than a robot says ---------------------------------------------------
+
+
+def message(bytes_of_it: int) -> bytes:
+    """Return the head of a message with so many bytes behind it."""
+    head = bytearray((0x30,))
+    while True:
+        rest = bytes_of_it >> 7
+        head.append((bytes_of_it & 127) | (128 if rest else 0))
+        if not rest:
+            return bytes(head)
+        bytes_of_it = rest
+
+
+@pytest.mark.parametrize("size", [MESSAGE_BYTES + 1, (256 << 20) - 1])
+def test_a_large_message_ends_the_connection_before_it_is_in_memory(size: int) -> None:
+    taken = 0
+
+    def serve() -> None:
+        nonlocal taken
+        peer, _ = listening.accept()
+        with peer:
+            peer.recv(4096)
+            peer.sendall(LET_IN + message(MESSAGE_BYTES) + b"\0\1x" + bytes(MESSAGE_BYTES - 3))
+            peer.sendall(message(size))
+            try:
+                while taken < size:
+                    taken += peer.send(PIECE)
+            except ConnectionError:
+                pass
+
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        serving = Thread(target=serve, daemon=True)
+        serving.start()
+        client = Broker("127.0.0.1", listening.getsockname()[1], Access())
+        until(lambda: client.gone != "", "the connection ends")
+        assert client.gone == f"the broker sends a message of {size} bytes"
+        serving.join(HANGS_S)
+        client.close()
+    assert taken < 32 << 20  # what the system's buffers hold
