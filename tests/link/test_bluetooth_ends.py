@@ -26,8 +26,8 @@ from tests.support.fake_bluez import FakeBluez
 from tiniscript.link import errors, ports
 
 
-def moves_on_its_own(ble: BleRobot) -> None:
-    """It stops by itself: nobody is there to stop it."""
+def stops_by_itself(ble: BleRobot) -> None:
+    """Nobody is there to stop it."""
     ble.robot.until(lambda: not ble.robot.moves, "the dead-man timer stops it")
 
 
@@ -35,13 +35,13 @@ def moves_on_its_own(ble: BleRobot) -> None:
 
 
 @pytest.mark.parametrize("stage", ["connect", "services", "notify"])
-@pytest.mark.parametrize("language", ["en", "es"])
-def test_a_connection_that_is_never_made(ble: BleRobot, stage: str, language: str) -> None:
+def test_a_connection_that_is_never_made(ble: BleRobot, stage: str) -> None:
     ble.fails_at = stage
-    done = inside("upload", "-e", DRIVE, "--port", PLACE, "--lang", language)
-    assert (done.code, done.out) == (3, "")
-    assert done.err.startswith("tsc: ")
-    assert PLACE.upper() in done.err.upper()
+    for language in ("en", "es"):
+        done = inside("upload", "-e", DRIVE, "--port", PLACE, "--lang", language)
+        assert (done.code, done.out) == (3, "")
+        assert done.err.startswith("tsc: ")
+        assert PLACE.upper() in done.err.upper()
     assert ble.robot.did == []
     ble.fails_at = ""
     assert inside("upload", "-e", DRIVE, "--port", PLACE).code == 0
@@ -62,7 +62,7 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     assert done.code == 3
     assert f"the Bluetooth connection to {PLACE} has ended" in done.err
     ble.parts_after = None
-    moves_on_its_own(ble)
+    stops_by_itself(ble)
     ours = tmp_path / "ours.bin"
     inside("compile", "-e", LONG, "-o", ours)
     assert inside("fetch", "-o", after, "--port", PLACE).code == 0
@@ -78,7 +78,7 @@ def test_a_robot_out_of_reach_stops_and_the_command_says_so(
     done = command.ended()
     assert done.code == 3
     assert f"the Bluetooth connection to {PLACE} has ended" in done.err
-    moves_on_its_own(ble)
+    stops_by_itself(ble)
     assert inside("upload", "-e", DRIVE, "--port", NAME).code == 0
 
 
@@ -118,15 +118,13 @@ def test_an_adapter_that_is_gone_ends_the_command(
     assert done.code == 3
     assert "the Bluetooth connection" in done.err
     assert done.err.count("\n") == 1  # nothing of bleak's
-    moves_on_its_own(ble)
+    stops_by_itself(ble)
     done = inside("stop", "--port", PLACE, "--lang", "es")
     said = "el servicio de Bluetooth" if what == "vanish" else "el Bluetooth de esta computadora"
     assert (done.code, said in done.err) == (3, True)
 
 
-def test_an_echo_and_a_flood_are_no_robot(
-    bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_flood_is_no_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_MS", 1500)
 
     class Flood(Peripheral):
@@ -185,10 +183,9 @@ def test_a_bus_that_lets_nobody_in(bluez: FakeBluez, monkeypatch: pytest.MonkeyP
     assert search.reason_of(RuntimeError("new")) == errors.RADIO_BROKEN
 
 
-@pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("package", ["bleak", "zeroconf"])
 def test_without_its_package_the_next_step_is_said(
-    tsc: Tsc, monkeypatch: pytest.MonkeyPatch, package: str, language: str
+    tsc: Tsc, monkeypatch: pytest.MonkeyPatch, package: str
 ) -> None:
     for name in [each for each in sys.modules if each.partition(".")[0] == package]:
         monkeypatch.setitem(sys.modules, name, None)
@@ -201,13 +198,14 @@ def test_without_its_package_the_next_step_is_said(
         monkeypatch.delattr(f"{folder}.{name}", raising=False)
     monkeypatch.setitem(sys.modules, package, None)
     port = {"bleak": "ble://Tini", "zeroconf": "tcp://tini"}[package]
-    done = tsc("ping", "--port", port, "--lang", language)
-    assert done.code == 3
-    assert package in done.err
-    assert "[radio]" in done.err
-    if package == "zeroconf":
-        done = tsc("robot", "--announce", "--for", "0.1", "--lang", language)
-        assert (done.code, "[radio]" in done.err) == (2, True)
+    for language in ("en", "es"):
+        done = tsc("ping", "--port", port, "--lang", language)
+        assert done.code == 3
+        assert package in done.err
+        assert "[radio]" in done.err
+        if package == "zeroconf":
+            done = tsc("robot", "--announce", "--for", "0.1", "--lang", language)
+            assert (done.code, "[radio]" in done.err) == (2, True)
 
 
 # -- the pace -----------------------------------------------------------------------------------
@@ -249,37 +247,7 @@ def test_an_hm10_gets_no_more_than_its_uart_passes_on(
     assert (written, slept) == (sizes, waits)
 
 
-def test_a_scan_that_fails_after_its_start_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    from tiniscript.link.transports import bluetooth_search
-
-    did: list[str] = []
-
-    async def start() -> None:
-        did.append("start")
-
-    async def stop() -> None:
-        did.append("stop")
-
-    async def fails() -> None:
-        raise OSError("the adapter is gone")
-
-    scanner = SimpleNamespace(start=start, stop=stop)
-    monkeypatch.setattr(bluetooth_search, "BleakScanner", lambda _: scanner)
-    monkeypatch.setattr(bluetooth_search, "_connected", fails)
-
-    async def search() -> None:
-        for _ in range(2):  # the second one begins anew
-            with pytest.raises(OSError, match="gone"):
-                async with bluetooth_search._Scan():
-                    pass
-
-    asyncio.run(search())
-    assert did == ["start", "stop"] * 2
-
-
-def test_a_scan_that_is_cancelled_while_it_starts_is_stopped(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_scan_that_fails_or_is_cancelled_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     from tiniscript.link.transports import bluetooth_search
 
     did: list[str] = []
@@ -295,6 +263,9 @@ def test_a_scan_that_is_cancelled_while_it_starts_is_stopped(
         async def stop() -> None:
             did.append("stop")
 
+        async def fails() -> None:
+            raise OSError("the adapter is gone")
+
         scanner = SimpleNamespace(start=start, stop=stop)
         monkeypatch.setattr(bluetooth_search, "BleakScanner", lambda _: scanner)
         task = asyncio.create_task(bluetooth_search._Scan().__aenter__())
@@ -305,6 +276,11 @@ def test_a_scan_that_is_cancelled_while_it_starts_is_stopped(
         answer.set()
         with pytest.raises(asyncio.CancelledError):
             await task
+        monkeypatch.setattr(bluetooth_search, "_connected", fails)
+        for _ in range(2):  # the second one begins anew
+            with pytest.raises(OSError, match="gone"):
+                async with bluetooth_search._Scan():
+                    pass
 
     asyncio.run(search())
-    assert did == ["start", "started", "stop"]
+    assert did == ["start", "started", "stop"] * 3
