@@ -73,20 +73,16 @@ def test_a_program_over_each_radio(make: Make, major: int) -> None:
     assert [event.name for event in client.events()] == ["SHOW", "DONE"]
 
 
-def test_the_idle_task_of_a_chip_with_one_core_gets_its_turn() -> None:
+def test_a_chip_with_one_core_and_no_serial_port_over_bluetooth() -> None:
+    """Its idle task gets its turn."""
     robot = booted("tinibotc3")
+    assert radios(robot)[:2] == ("tini-5678", "")
     before = robot.rests()
     robot.wait(1000)
     assert 8 <= robot.rests() - before <= 12
     two_cores = booted()
     two_cores.wait(1000)
     assert two_cores.rests() == 0
-
-
-def test_a_chip_without_a_serial_port_over_bluetooth() -> None:
-    robot = booted("tinibotc3")
-    assert radios(robot).advertised == "tini-5678"
-    assert radios(robot).serial_port == ""
 
 
 def test_the_radios_have_the_robots_name() -> None:
@@ -104,36 +100,24 @@ def test_the_radios_have_the_robots_name() -> None:
 def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
     robot = booted()
     driver, other = session(1, robot), session(2, robot)
-    ends: Ends = [(None, driver), (make(robot), other)]
+    end = make(robot)
+    ends: Ends = [(None, driver), (end, other)]
     assert uploaded(robot, ends, driver) == "OK"
-    assert ended(robot, ends, other.hello()) == "OK"
-    assert ended(robot, ends, other.ping()) == "OK"
-    assert ended(robot, ends, other.status()) == "OK"
-    assert ended(robot, ends, other.identify()) == "OK"
+    for asked in (other.hello(), other.ping(), other.status(), other.identify()):
+        assert ended(robot, ends, asked) == "OK"
     for refused in (other.live(image_of("F(1, 10)").code), other.start(), other.name(b"mine"),
                     other.upload(image_of(AWAY)), other.undo(), other.trim()):  # fmt: skip
         assert ended(robot, ends, refused) == "OTHER_DRIVER"
     assert happened(robot) == ["MOTORS 80 80"]
     talk(robot, ends, 1500)
     assert happened(robot) == ["MOTORS 80 80"], "the driver's session lives beside the other one"
-    other.stop(robot.now_ms)
-    talk(robot, ends, 200)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
-    assert [each.name for each in driver.events()] == ["STOPPED"]
-    assert ended(robot, ends, other.start()) == "OTHER_DRIVER"
-    assert uploaded(robot, ends, driver) == "OK", "who drives goes on after it"
-
-
-@pytest.mark.parametrize("make", RADIOS)
-def test_the_zeros_stop_over_every_transport_at_once(make: Make) -> None:
-    robot = booted()
-    driver = session(1, robot)
-    end = make(robot)
-    ends: Ends = [(None, driver)]
-    assert uploaded(robot, ends, driver) == "OK"
     end.send(bytes(STOP_BYTES // 2))
     robot.wait(3)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    talk(robot, ends, 200)
+    assert [each.name for each in driver.events()] == ["STOPPED"]
+    assert ended(robot, ends, other.start()) == "OTHER_DRIVER"
+    assert uploaded(robot, ends, driver) == "OK", "who drives goes on after it"
 
 
 def test_the_next_one_drives_when_the_first_is_silent() -> None:
@@ -154,7 +138,7 @@ def test_the_next_one_drives_when_the_first_is_silent() -> None:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_who_leaves_ends_an_attached_run_and_drives_no_more(make: Make) -> None:
+def test_who_leaves_ends_his_own_run_and_drives_no_more(make: Make) -> None:
     robot = booted()
     driver, other = session(1, robot), session(2, robot)
     end = make(robot)
@@ -164,6 +148,11 @@ def test_who_leaves_ends_an_attached_run_and_drives_no_more(make: Make) -> None:
     talk(robot, ends[1:], 5)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     assert uploaded(robot, ends[1:], other) == "OK"
+    looks, end = session(3, robot), make(robot)
+    assert ended(robot, [(end, looks), *ends[1:]], looks.ping()) == "OK"
+    end.leave()
+    talk(robot, ends[1:], 300)
+    assert happened(robot)[-1] == "MOTORS 80 80", "nothing of others"
 
 
 def test_who_comes_at_once_when_another_one_leaves_is_not_taken_for_that_one() -> None:
@@ -177,19 +166,6 @@ def test_who_comes_at_once_when_another_one_leaves_is_not_taken_for_that_one() -
     talk(robot, ends, 5)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     assert uploaded(robot, ends, other) == "OK"
-
-
-@pytest.mark.parametrize("make", RADIOS)
-def test_who_leaves_ends_nothing_of_others(make: Make) -> None:
-    robot = booted()
-    driver, other = session(1, robot), session(2, robot)
-    end = make(robot)
-    ends: Ends = [(None, driver), (end, other)]
-    assert ended(robot, ends, other.ping()) == "OK"
-    assert uploaded(robot, ends, driver) == "OK"
-    end.leave()
-    talk(robot, ends[:1], 300)
-    assert happened(robot) == ["MOTORS 80 80"]
 
 
 def test_an_upload_that_another_one_has_overtaken_is_not_begun_any_more() -> None:

@@ -47,10 +47,14 @@ def far_owner(keys: Keys) -> tuple[Esp32Robot, Network, Session]:
     return robot, Network(robot), remote(robot, keys)
 
 
+def school_in_reach(robot: Esp32Robot) -> None:
+    in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
+
+
 def joined(keys: Keys, network: wifi.Network = SCHOOL) -> tuple[Esp32Robot, Session]:
     """Return the same with a network, which is in reach."""
     robot, owner = owned(keys)
-    in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
+    school_in_reach(robot)
     assert ended(robot, [(None, owner)], owner.join(network)) == "OK"
     talk(robot, [(None, owner)], 50)
     return robot, owner
@@ -93,7 +97,7 @@ def test_what_there_is_no_memory_for_is_announced_later() -> None:
     again = Esp32Robot(kept=robot.kept())
     again.wait(100)
     again.radio("H", b"\1")
-    in_reach(again, SCHOOL.name.decode(), SCHOOL.password.decode())
+    school_in_reach(again)
     again.wait(400)
     assert port_of(again) and not radios(again).service
     again.radio("H", b"\0")
@@ -104,7 +108,7 @@ def test_what_there_is_no_memory_for_is_announced_later() -> None:
 def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
     robot, owner = joined(Keys())
     again = Esp32Robot(kept=robot.kept())
-    in_reach(again, SCHOOL.name.decode(), SCHOOL.password.decode())
+    school_in_reach(again)
     again.wait(400)
     assert port_of(again)
     ends: Ends = [(None, owner)]
@@ -164,17 +168,17 @@ def test_a_stranger_takes_none_away() -> None:
     assert radios(robot).network.encode() == SCHOOL.name
 
 
-@pytest.mark.parametrize(("name", "password"), [
-    (b"x", b"short"), (b"x", b""), (b"a\0b", b"12345678"), (b"x", b"1234\0" + b"5678"),
-])  # fmt: skip
-def test_what_is_no_network_is_refused(name: bytes, password: bytes) -> None:
+def test_what_is_no_network_is_refused() -> None:
     robot, owner = owned(Keys())
-    request = owner.join(wifi.Network(name, password))
-    assert ended(robot, [(None, owner)], request) == "BAD_VALUE"
-    assert state(robot, owner) == ("OFF", "OFF")
+    for name, password in (
+        (b"x", b"short"), (b"x", b""), (b"a\0b", b"12345678"), (b"x", b"1234\0" + b"5678"),
+    ):  # fmt: skip
+        request = owner.join(wifi.Network(name, password))
+        assert ended(robot, [(None, owner)], request) == "BAD_VALUE", (name, password)
+        assert state(robot, owner) == ("OFF", "OFF")
 
 
-def test_it_is_kept_when_the_motors_stand_and_not_where_nvs_is_full() -> None:
+def test_it_is_kept_when_the_motors_stand_and_whole_or_not_at_all() -> None:
     robot, owner = owned(Keys())
     ends: Ends = [(None, owner)]
     assert uploaded(robot, ends, owner, "SI|F(1.5, 40)") == "OK"
@@ -188,37 +192,31 @@ def test_it_is_kept_when_the_motors_stand_and_not_where_nvs_is_full() -> None:
     assert ended(robot, ends, owner.join(HOTSPOT)) == "NOT_KEPT"
     assert robot.kept().entries[WIFI_KEY] == before
     assert told(robot, ends, owner).network == SCHOOL.name
-
-
-@pytest.mark.parametrize("entry", [b"", b"\1" * 5, b"\xff" * 98, b"\1" + b"x" * 97])
-def test_an_entry_of_nvs_that_is_none_is_none(entry: bytes) -> None:
-    robot, _ = owned(Keys())
     kept = robot.kept()
-    again = Esp32Robot(kept=Kept(kept.noinit, {**kept.entries, WIFI_KEY: entry}, 0))
-    again.wait(400)
-    assert radios(again).joins == 0
+    for entry in (b"", b"\1" * 5, b"\xff" * 98, b"\1" + b"x" * 97):
+        again = Esp32Robot(kept=Kept(kept.noinit, {**kept.entries, WIFI_KEY: entry}, 0))
+        again.wait(400)
+        assert radios(again).joins == 0, entry
 
 
-@pytest.mark.parametrize("reason", [15, 202, 203, 204])
-def test_a_wrong_password_and_a_network_out_of_reach_are_told(reason: int) -> None:
+def test_a_wrong_password_and_a_network_out_of_reach_are_told() -> None:
     """The core says "disconnected" of a wrong password; its event has the reason."""
     robot, owner = joined(Keys())
     ends: Ends = [(None, owner)]
-    robot.radio("x", bytes([8]))  # it was only left
-    in_reach(robot, SCHOOL.name.decode(), "another one")
-    talk(robot, ends, 20)
-    assert state(robot, owner) == ("STATION", "SEARCHING")
-    robot.radio("x", bytes([reason]))
-    in_reach(robot, SCHOOL.name.decode(), "another one")
-    talk(robot, ends, 20)
-    assert state(robot, owner) == ("STATION", "REFUSED")
-    in_reach(robot, "", "")
-    talk(robot, ends, 20)
-    assert state(robot, owner) == ("STATION", "SEARCHING")
+    for reason, found in (
+        (8, "SEARCHING"), (15, "REFUSED"), (202, "REFUSED"), (203, "REFUSED"), (204, "REFUSED"),
+    ):  # fmt: skip
+        robot.radio("x", bytes([reason]))  # 8: it was only left
+        in_reach(robot, SCHOOL.name.decode(), "another one")
+        talk(robot, ends, 20)
+        assert state(robot, owner) == ("STATION", found), reason
+        in_reach(robot, "", "")
+        talk(robot, ends, 20)
+        assert state(robot, owner) == ("STATION", "SEARCHING")
     joins = radios(robot).joins
     talk(robot, ends, 16_000)
     assert radios(robot).joins == joins + 1
-    in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
+    school_in_reach(robot)
     talk(robot, ends, 20)
     assert state(robot, owner) == ("STATION", "READY")
 
@@ -246,18 +244,12 @@ def test_no_two_transports_have_the_same_challenge() -> None:
     first, second = Bytes(asks), Bytes(asks)
     ends: Ends = [(None, first), (LowEnergy(again), second)]
     talk(again, ends, 60)
-    epoch = again_epoch(first)
-    assert epoch == again_epoch(second)
+    frames = [decoded(each.heard.strip(b"\0")) for each in (first, second)]
+    [epoch] = {frame.epoch for frame in frames if frame}
     first.said = second.said = encoded(Frame(17, 2, epoch, b"\0"))
     first.heard = second.heard = b""
     talk(again, ends, 60)
     assert len(first.heard) == 20 and first.heard != second.heard
-
-
-def again_epoch(who: Bytes) -> int:
-    frame = decoded(who.heard.strip(b"\0"))
-    assert frame
-    return frame.epoch
 
 
 # -- over TCP -----------------------------------------------------------------------------------
@@ -315,18 +307,14 @@ def test_a_network_that_drops_ends_the_run_and_the_cable_goes_on() -> None:
     assert happened(robot)[-1] == "MOTORS 0 0"
     assert end.has_ended
     assert ended(robot, ends[1:], cable.ping()) == "OK"
-    in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
+    school_in_reach(robot)
     talk(robot, [], 20)
-    again = remote(robot, keys, 13)
-    assert uploaded(robot, [(Network(robot), again)], again) == "OK"
-
-
-def test_a_client_that_leaves_ends_its_run_at_once() -> None:
-    robot, end, owner = far_owner(Keys())
-    assert uploaded(robot, [(end, owner)], owner) == "OK"
+    again, end = remote(robot, keys, 13), Network(robot)
+    assert uploaded(robot, [(end, again)], again) == "OK"
+    assert happened(robot)[-1] == "MOTORS 80 80"
     end.leave()
     robot.wait(5)
-    assert happened(robot)[-1] == "MOTORS 0 0"
+    assert happened(robot)[-1] == "MOTORS 0 0", "a client that leaves ends its run at once"
 
 
 def test_strangers_who_trickle_bytes_keep_no_stop_out() -> None:
@@ -401,7 +389,7 @@ def restarted(robot: Esp32Robot, reset: int, lived_ms: int) -> Esp32Robot:
     kept = robot.kept()
     robot.close()
     again = Esp32Robot(kept=kept, reset=reset)
-    in_reach(again, SCHOOL.name.decode(), SCHOOL.password.decode())
+    school_in_reach(again)
     again.wait(400)
     return again
 

@@ -35,13 +35,6 @@ __all__ = ("robots_of_both_kinds",)  # a fixture
 # -- claiming -------------------------------------------------------------------------------------
 
 
-def test_a_robot_without_an_owner_is_free() -> None:
-    table = Owned()
-    session = table.session(Keys())
-    assert owner_of(table, session) == FREE
-    assert table.tries(session) == "OK"
-
-
 def test_the_button_confirms_a_claim_and_the_robot_keeps_the_key() -> None:
     table, keys = Owned(), Keys()
     session = table.claimed(keys)

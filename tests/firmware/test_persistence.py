@@ -18,7 +18,7 @@ from tests.firmware.test_host_firmware import (
     stored,
     switched_on,
 )
-from tests.machines.host_firmware import EMPTY, HostFirmware
+from tests.machines.host_firmware import HostFirmware
 from tiniscript.bytecode.image import pack
 from tiniscript.link.messages import SAVED, STATUSES
 from tiniscript.link.payloads import EmptyReply, FetchReply
@@ -230,12 +230,6 @@ def test_what_a_worn_last_byte_has_spoilt_is_empty() -> None:
     assert robot.memory()[slot : slot + 2] == b"\xff\xff", "the generation and its mark"
 
 
-def test_a_robot_says_of_which_kit_it_is() -> None:
-    robot, session = switched_on(), computer()
-    assert robot.until(session, session.hello()) == OK
-    assert session.robot is not None and session.robot.kit == KIT.fingerprint
-
-
 # -- the supply -----------------------------------------------------------------------------------
 
 
@@ -345,8 +339,3 @@ def test_a_stop_ends_a_start_that_waits_for_the_memory() -> None:
     other.stop(robot.now_ms)
     robot.talk(other, 2000)
     assert [line for line in happened(robot) if line.startswith("MOTORS")] == []
-
-
-def test_an_empty_memory_is_no_program() -> None:
-    robot, session = switched_on(EMPTY), computer()
-    assert robot.until(session, session.fetch()) == STATUSES["NO_PROGRAM"]
