@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.mosquitto import Mosquitto
 from tools.uno import Uno
 
 
@@ -30,3 +31,15 @@ def robot(board: str, sketches: Callable[[str], Path], memory: Path) -> Iterator
 
     with switched_on(sketches(board), memory, board) as found:
         yield found
+
+
+@pytest.fixture
+def brokers(request: pytest.FixtureRequest, tmp_path: Path) -> Callable[..., Mosquitto]:
+    """What begins a broker of the test's own; the words are those of `Mosquitto`."""
+
+    def begin(user: str = "", password: str = "", more: str = "") -> Mosquitto:
+        found = Mosquitto(tmp_path, user, password, more)
+        request.addfinalizer(found.kill)
+        return found
+
+    return begin

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 
 from tests.firmware.test_esp32_transports import AWAY, Ends, ended, uploaded
-from tests.firmware.test_esp32_wifi import joined, remote
+from tests.firmware.test_esp32_wifi import joined, remote, school_in_reach
 from tests.firmware.test_host_firmware import happened, image_of
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import in_reach, talk
@@ -94,8 +93,8 @@ class Drive(NamedTuple):
     ends: Ends
 
 
-def driving(broker: Mosquitto, text: str = AWAY) -> Drive:
-    keys = Keys()
+def driving(broker: Mosquitto, text: str = AWAY, keys: Keys | None = None) -> Drive:
+    keys = keys or Keys()
     robot, _ = at(broker, keys)
     teacher, owner = broker.connected(), remote(robot, keys)
     ends: Ends = [(AtBroker(robot, teacher), owner)]
@@ -139,7 +138,7 @@ def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
     robot, owner = at(broker, Keys())
     assert told(robot, owner) == ("STATION", "READY", "aula")
     again = Esp32Robot(kept=robot.kept())
-    in_reach(again, "Aula 3 ñ", "correct horse battery staple, and forty more")
+    school_in_reach(again)
     again.wait(400)
     teacher = broker.connected()
     until(again, lambda: present(again, teacher) == [Present(ID, "tini-5678", True)])
@@ -151,38 +150,35 @@ def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
     assert b"hunter" not in b"".join(robot.kept().entries.values())
 
 
-@pytest.mark.parametrize("settings", [
-    wifi.BrokerSettings(bytes(4), 0, "aula"), wifi.BrokerSettings(bytes(4), 1883, ""),
-    *(wifi.BrokerSettings(bytes(4), 1883, name)
-      for name in ("a/b", "a+", "#", "Aula", "aula 3", "ñ", "x" * 17)),
-    wifi.BrokerSettings(bytes(4), 1883, "aula", b"a\0b"),
-    wifi.BrokerSettings(bytes(4), 1883, "aula", b"a", b"a\0b"),
-])  # fmt: skip
-def test_what_is_no_broker_is_refused(broker: Mosquitto, settings: wifi.BrokerSettings) -> None:
+def test_what_is_no_broker_is_refused(broker: Mosquitto) -> None:
     robot, owner = at(broker, Keys())
-    assert not settings.is_sound
-    assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE"
-    assert told(robot, owner) == ("STATION", "READY", "aula")
+    names = ("", "a/b", "a+", "#", "Aula", "aula 3", "ñ", "x" * 17)
+    for settings in (
+        wifi.BrokerSettings(bytes(4), 0, "aula"),
+        *(wifi.BrokerSettings(bytes(4), 1883, name) for name in names),
+        wifi.BrokerSettings(bytes(4), 1883, "aula", b"a\0b"),
+        wifi.BrokerSettings(bytes(4), 1883, "aula", b"a", b"a\0b"),
+    ):
+        assert not settings.is_sound
+        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE", settings
+        assert told(robot, owner) == ("STATION", "READY", "aula")
 
 
-def test_a_name_and_a_password_where_the_broker_asks_for_them(tmp_path: Path) -> None:
-    own = Mosquitto(tmp_path, "robots", "a long password: 40 letters and some more")
-    try:
-        keys = Keys()
-        good = own.settings("aula", "robots", "a long password: 40 letters and some more")
-        robot, owner = at(own, keys, good)
-        kept = robot.kept().entries
-        assert b"40 letters" in kept[BROKER_KEY], "it has come whole"
-        wrong = own.settings("aula", "robots", "another one")
-        assert ended(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
-        until(robot, lambda: told(robot, owner)[1] == "REFUSED")
-        for access in (Access(), Access("robots", "another one"), Access("who", "x")):
-            with pytest.raises(PortError) as failure:
-                own.connected(access)
-            assert failure.value.reason == errors.REFUSED
-        own.connected(Access("robots", "a long password: 40 letters and some more")).close()
-    finally:
-        own.kill()
+def test_a_name_and_a_password_where_the_broker_asks_for_them(
+    brokers: Callable[..., Mosquitto],
+) -> None:
+    user, password = "robots", "a long password: 40 letters and some more"
+    own = brokers(user, password)
+    robot, owner = at(own, Keys(), own.settings("aula", user, password))
+    assert b"40 letters" in robot.kept().entries[BROKER_KEY], "it has come whole"
+    wrong = own.settings("aula", user, "another one")
+    assert ended(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
+    until(robot, lambda: told(robot, owner)[1] == "REFUSED")
+    for access in (Access(), Access(user, "another one"), Access("who", "x")):
+        with pytest.raises(PortError) as failure:
+            own.connected(access)
+        assert failure.value.reason == errors.REFUSED
+    own.connected(Access(user, password)).close()
 
 
 def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
@@ -257,19 +253,20 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
     assert motors(robot) == "MOTORS 0 0"
 
 
-@pytest.mark.parametrize("stop", [b"S\n", b"F(1,80)\r\n ; stop ;\r", b"Stop"])
-def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto, stop: bytes) -> None:
+def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto) -> None:
     """In one message, which ends a line; not where that is a frame, whose code may hold one."""
-    robot, _, _, ends = driving(broker)
+    robot, _, owner, ends = driving(broker)
     stranger = broker.connected()
     topic = f"{ROOT}/aula/{ID}/in/{stranger.peer}"
     for none in (b"SS\n", b"SI", encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1Z\nS\n"))):
         stranger.publish(topic, none)
         talk(robot, ends, 100)
-    assert motors(robot) == "MOTORS 80 80"
-    stranger.publish(topic, stop)
-    talk(robot, ends, 100)
-    assert motors(robot) == "MOTORS 0 0"
+    for stop in (b"S\n", b"F(1,80)\r\n ; stop ;\r", b"Stop"):
+        assert motors(robot) == "MOTORS 80 80"
+        stranger.publish(topic, stop)
+        talk(robot, ends, 100)
+        assert motors(robot) == "MOTORS 0 0", stop
+        assert uploaded(robot, ends, owner) == "OK"
 
 
 def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
@@ -285,7 +282,7 @@ def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
         in_reach(robot, "", "")
         talk(robot, cable, 50)
         assert uploaded(robot, cable, owner) == "OK"
-        in_reach(robot, "Aula 3 ñ", "correct horse battery staple, and forty more")
+        school_in_reach(robot)
         for _ in range(600):  # a broker says what it retains when the robot comes back
             talk(robot, cable, 10)
             time.sleep(0.005)
@@ -299,24 +296,23 @@ def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
         stranger.close()
 
 
-def test_what_is_said_again_has_nothing_done(broker: Mosquitto) -> None:
+def test_what_is_said_again_has_nothing_done(
+    broker: Mosquitto, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """All that the owner has said, later, in its order: a whole drive and more."""
-    keys = Keys()
-    robot, _ = at(broker, keys)
-    teacher, thief = broker.connected(), broker.connected()
     heard: list[bytes] = []
-    end = AtBroker(robot, teacher)
-    send = end.port.write
+    send = AtBroker.send
 
-    def write(data: bytes) -> None:
+    def sends(end: AtBroker, data: bytes) -> None:
         heard.append(data)
-        send(data)
+        send(end, data)
 
-    end.port.write = write  # type: ignore[method-assign]
-    owner = remote(robot, keys)
-    ends: Ends = [(end, owner)]
-    assert uploaded(robot, ends, owner, "SI|F(0.2, 80)") == "OK"
+    monkeypatch.setattr(AtBroker, "send", sends)
+    robot, _, _, ends = driving(broker, "SI|F(0.2, 80)")
+    thief = broker.connected()
     talk(robot, ends, 400)
+    end = ends[0][0]
+    assert isinstance(end, AtBroker)
     end.leave()
     talk(robot, [], AUTHORITY_MS + 3500)
     before = len(robot.did)
@@ -326,7 +322,7 @@ def test_what_is_said_again_has_nothing_done(broker: Mosquitto) -> None:
         for _ in range(10):
             robot.step()
             time.sleep(0.0005)
-    assert not [line for line in robot.did[before:] if "MOTORS" in line]
+    assert heard and not [line for line in robot.did[before:] if "MOTORS" in line]
 
 
 def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) -> None:
@@ -348,62 +344,46 @@ def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) ->
 
 
 @pytest.mark.parametrize("how", ["dies", "stalls", "is out of reach"])
-def test_a_broker_that_is_gone_ends_the_run(tmp_path: Path, how: str) -> None:
-    own = Mosquitto(tmp_path)
-    try:
-        keys = Keys()
-        robot, owner_by_cable = at(own, keys)
-        owner, teacher = remote(robot, keys), own.connected()
-        ends: Ends = [(AtBroker(robot, teacher), owner)]
-        assert uploaded(robot, ends, owner) == "OK"
-        talk(robot, ends, 500)
-        assert motors(robot) == "MOTORS 80 80"
-        if how == "dies":
-            own.kill()
-        elif how == "stalls":
-            own.stall()
-        else:
-            in_reach(robot, "", "")
-        begun_ms = robot.now_ms
-        limit_ms = DEAD_MAN_MS if how == "stalls" else AT_ONCE_MS
-        while motors(robot) != "MOTORS 0 0":
-            talk(robot, ends, 5)
-            assert robot.now_ms < begun_ms + limit_ms
-        own.stall(False)
-        if how == "dies":
-            own.start()
-        in_reach(robot, "Aula 3 ñ", "correct horse battery staple, and forty more")
-        assert ended(robot, [(None, owner_by_cable)], owner_by_cable.ping()) == "OK"
-        until(robot, lambda: told(robot, owner_by_cable)[1] == "READY", 15_000)
-        again, end = remote(robot, keys, 13), own.connected()
-        talk(robot, [], AUTHORITY_MS + 3000)
-        assert uploaded(robot, [(AtBroker(robot, end), again)], again) == "OK"
-        end.close()
-    finally:
+def test_a_broker_that_is_gone_ends_the_run(brokers: Callable[..., Mosquitto], how: str) -> None:
+    own, keys = brokers(), Keys()
+    robot, _, _, ends = driving(own, keys=keys)
+    talk(robot, ends, 500)
+    assert motors(robot) == "MOTORS 80 80"
+    if how == "dies":
         own.kill()
+    elif how == "stalls":
+        own.stall()
+    else:
+        in_reach(robot, "", "")
+    begun_ms = robot.now_ms
+    limit_ms = DEAD_MAN_MS if how == "stalls" else AT_ONCE_MS
+    while motors(robot) != "MOTORS 0 0":
+        talk(robot, ends, 5)
+        assert robot.now_ms < begun_ms + limit_ms
+    own.stall(False)
+    if how == "dies":
+        own.start()
+    school_in_reach(robot)
+    cable = remote(robot, keys, 20)
+    assert ended(robot, [(None, cable)], cable.ping()) == "OK"
+    until(robot, lambda: told(robot, cable)[1] == "READY", 15_000)
+    again, end = remote(robot, keys, 13), own.connected()
+    talk(robot, [], AUTHORITY_MS + 3000)
+    assert uploaded(robot, [(AtBroker(robot, end), again)], again) == "OK"
+    end.close()
 
 
-def test_a_client_that_leaves_ends_its_run_and_makes_room(broker: Mosquitto) -> None:
+def test_a_client_that_leaves_or_hangs_ends_its_run_and_makes_room(broker: Mosquitto) -> None:
     keys = Keys()
-    robot, _ = at(broker, keys)
-    first, second = broker.connected(), broker.connected()
-    owner = remote(robot, keys)
-    end = AtBroker(robot, first)
-    assert uploaded(robot, [(end, owner)], owner) == "OK"
+    robot, _, _, [(end, _)] = driving(broker, keys=keys)
+    assert end
     end.leave()
     until(robot, lambda: motors(robot) == "MOTORS 0 0", 200)
-    again = remote(robot, keys, 13)
-    assert uploaded(robot, [(AtBroker(robot, second), again)], again) == "OK"
-
-
-def test_a_driver_that_hangs_keeps_no_run_alive(broker: Mosquitto) -> None:
-    keys = Keys()
-    robot, _ = at(broker, keys)
-    teacher = broker.connected()
-    owner = remote(robot, keys)
-    ends: Ends = [(AtBroker(robot, teacher), owner)]
-    teacher.attend()
-    assert uploaded(robot, ends, owner) == "OK"
+    second, again = broker.connected(), remote(robot, keys, 13)
+    ends: Ends = [(AtBroker(robot, second), again)]
+    second.attend()
+    assert uploaded(robot, ends, again) == "OK"
+    assert motors(robot) == "MOTORS 80 80"
     time.sleep(0.6)
     talk(robot, ends, 400)
     assert motors(robot) == "MOTORS 0 0"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import socket
 import ssl
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from datetime import date
 from pathlib import Path
@@ -16,10 +16,10 @@ import pytest
 
 from tests.firmware.test_esp32_broker import DEAD_MAN_MS, ID, at, motors, present, told, until
 from tests.firmware.test_esp32_transports import Ends, ended, uploaded
-from tests.firmware.test_esp32_wifi import joined, remote
+from tests.firmware.test_esp32_wifi import joined, remote, school_in_reach
 from tests.machines.esp32 import HAS_TLS, Esp32Robot
 from tests.support.certificates import Authority, der
-from tests.support.esp32_radio import in_reach, known, talk
+from tests.support.esp32_radio import known, talk
 from tests.support.mosquitto import LOCAL, AtBroker, Mosquitto
 from tests.support.network import CuttingNetwork
 from tests.support.owners import Keys
@@ -80,22 +80,14 @@ def test_the_owner_drives_over_tls(room: Room) -> None:
     assert motors(robot) == "MOTORS 0 0"
 
 
-def test_it_is_kept_and_used_after_a_reset(room: Room) -> None:
-    robot, _ = at(room.broker, Keys(), room.settings())
-    again = Esp32Robot(kept=robot.kept())
-    in_reach(again, "Aula 3 ñ", "correct horse battery staple, and forty more")
-    again.wait(400)
-    teacher = room.connected()
-    until(again, lambda: present(again, teacher) == [Present(ID, "tini-5678", True)])
-
-
 @pytest.mark.parametrize(("what", "state"), [
     ("another authority", "UNTRUSTED"), ("no certificate", "UNTRUSTED"),
     ("another name", "OTHER_NAME"), ("the start of the name", "OTHER_NAME"),
     ("it has ended", "EXPIRED"), ("a broker without TLS", "NO_TLS"),
 ])  # fmt: skip
-def test_who_is_not_trusted_gets_nothing(room: Room, tmp_path: Path, what: str, state: str) -> None:
-    own = None
+def test_who_is_not_trusted_gets_nothing(
+    room: Room, tmp_path: Path, brokers: Callable[..., Mosquitto], what: str, state: str
+) -> None:
     settings = room.settings()
     if what == "another authority":
         settings = room.settings(trust=Authority(tmp_path).der)
@@ -108,23 +100,17 @@ def test_who_is_not_trusted_gets_nothing(room: Room, tmp_path: Path, what: str, 
     elif what == "it has ended":
         settings = room.settings(today=LATER)
     else:
-        own = Mosquitto(tmp_path)
-        settings = settings._replace(port=own.port)
-    keys = Keys()
-    robot, owner = joined(keys)
-    try:
-        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
-        until(robot, lambda: told(robot, owner)[1] == state)
-        talk(robot, [(None, owner)], 1000)
-        assert told(robot, owner)[1] == state, "it stays while the robot tries again"
-        if own is None:
-            teacher = room.connected()
-            assert not [each for each in present(robot, teacher) if each.is_here]
-            assert ended(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
-            until(robot, lambda: told(robot, owner)[1] == "READY")
-    finally:
-        if own is not None:
-            own.kill()
+        settings = settings._replace(port=brokers().port)
+    robot, owner = joined(Keys())
+    assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+    until(robot, lambda: told(robot, owner)[1] == state)
+    talk(robot, [(None, owner)], 1000)
+    assert told(robot, owner)[1] == state, "it stays while the robot tries again"
+    if state != "NO_TLS":
+        teacher = room.connected()
+        assert not [each for each in present(robot, teacher) if each.is_here]
+        assert ended(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
+        until(robot, lambda: told(robot, owner)[1] == "READY")
 
 
 def test_a_broker_that_is_set_anew_is_not_answered_with_what_was_wrong_before(
@@ -181,46 +167,40 @@ def test_an_old_tls_is_none(tmp_path: Path, version: ssl.TLSVersion, state: str)
 
 @pytest.mark.parametrize("is_chain", [False, True])
 def test_the_brokers_own_certificate_is_enough_and_no_other_of_its_authority(
-    tmp_path: Path, is_chain: bool
+    tmp_path: Path, brokers: Callable[..., Mosquitto], is_chain: bool
 ) -> None:
     """One that an authority has signed, which nobody knows. Its name and its date still count."""
     authority = Authority(tmp_path)
-    own = Room(Mosquitto(tmp_path, more=authority.rules(NAME, is_chain)), authority)
+    own = Room(brokers(more=authority.rules(NAME, is_chain)), authority)
     authority.rules("other.aula")
     trust, other = (der(authority.signed(name)) for name in (NAME, "other.aula"))
-    keys = Keys()
-    robot, owner = joined(keys)
-    try:
-        for settings, state in (
-            (own.settings(trust=other), "UNTRUSTED"), (own.settings(trust=trust), "READY"),
-            (own.settings("localhost", trust=trust), "OTHER_NAME"),
-            (own.settings(today=LATER, trust=trust), "EXPIRED"),
-        ):  # fmt: skip
-            assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
-            talk(robot, [(None, owner)], 50)
-            until(robot, lambda state=state: told(robot, owner)[1] == state)  # type: ignore[misc]
-    finally:
-        own.broker.kill()
+    robot, owner = joined(Keys())
+    for settings, state in (
+        (own.settings(trust=other), "UNTRUSTED"), (own.settings(trust=trust), "READY"),
+        (own.settings("localhost", trust=trust), "OTHER_NAME"),
+        (own.settings(today=LATER, trust=trust), "EXPIRED"),
+    ):  # fmt: skip
+        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+        talk(robot, [(None, owner)], 50)
+        until(robot, lambda state=state: told(robot, owner)[1] == state)  # type: ignore[misc]
 
 
-def test_a_broker_that_dies_ends_the_run_over_tls(tmp_path: Path) -> None:
-    authority = Authority(tmp_path)
-    own = Room(Mosquitto(tmp_path, more=authority.rules(NAME)), authority)
-    try:
-        keys = Keys()
-        robot, _ = at(own.broker, keys, own.settings())
-        owner = remote(robot, keys)
-        ends: Ends = [(AtBroker(robot, own.connected()), owner)]
-        assert uploaded(robot, ends, owner) == "OK"
-        talk(robot, ends, 500)
-        assert motors(robot) == "MOTORS 80 80"
-        own.broker.kill()
-        begun_ms = robot.now_ms
-        while motors(robot) != "MOTORS 0 0":
-            talk(robot, ends, 5)
-            assert robot.now_ms < begun_ms + DEAD_MAN_MS
-    finally:
-        own.broker.kill()
+def test_a_broker_that_dies_ends_the_run_over_tls(
+    tmp_path: Path, brokers: Callable[..., Mosquitto]
+) -> None:
+    authority, keys = Authority(tmp_path), Keys()
+    own = Room(brokers(more=authority.rules(NAME)), authority)
+    robot, _ = at(own.broker, keys, own.settings())
+    owner = remote(robot, keys)
+    ends: Ends = [(AtBroker(robot, own.connected()), owner)]
+    assert uploaded(robot, ends, owner) == "OK"
+    talk(robot, ends, 500)
+    assert motors(robot) == "MOTORS 80 80"
+    own.broker.kill()
+    begun_ms = robot.now_ms
+    while motors(robot) != "MOTORS 0 0":
+        talk(robot, ends, 5)
+        assert robot.now_ms < begun_ms + DEAD_MAN_MS
 
 
 def test_who_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: Room) -> None:
@@ -261,45 +241,46 @@ def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Roo
     (NAME, NOBODY, True), ("nobody.aula", LOCAL, True), ("nobody.aula", NOBODY, False),
 ])  # fmt: skip
 def test_a_broker_is_found_by_its_name_or_where_it_was(
-    tmp_path: Path, name: str, address: bytes, is_found: bool
+    brokers: Callable[..., Mosquitto], name: str, address: bytes, is_found: bool
 ) -> None:
-    own = Mosquitto(tmp_path)
-    try:
-        robot, owner = joined(Keys())
-        known(robot, NAME, "127.0.0.1")
-        settings = own.settings()._replace(name=name.encode(), address=address)
-        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
-        if is_found:
-            until(robot, lambda: told(robot, owner)[1] == "READY")
-        talk(robot, [(None, owner)], 500)
-        assert told(robot, owner)[1] == ("READY" if is_found else "SEARCHING")
-    finally:
-        own.kill()
+    robot, owner = joined(Keys())
+    known(robot, NAME, "127.0.0.1")
+    settings = brokers().settings()._replace(name=name.encode(), address=address)
+    assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+    if is_found:
+        until(robot, lambda: told(robot, owner)[1] == "READY")
+    talk(robot, [(None, owner)], 500)
+    assert told(robot, owner)[1] == ("READY" if is_found else "SEARCHING")
 
 
 TRUST = bytes(range(1, 201))
 PLAIN = wifi.BrokerSettings(LOCAL, 8883, "aula", name=b"x")
 
 
-@pytest.mark.parametrize("settings", [
-    PLAIN._replace(name=b"", tls=wifi.Tls(TRUST, TODAY)),
-    PLAIN._replace(tls=wifi.Tls(b"", TODAY)), PLAIN._replace(tls=wifi.Tls(TRUST, 0)),
-    PLAIN._replace(tls=wifi.Tls(bytes(TRUST_BYTES + 1), TODAY)),
-    PLAIN._replace(name=b"x" * (BROKER_NAME_BYTES + 1)), PLAIN._replace(name=b"a\0b"),
-])  # fmt: skip
-def test_what_is_no_tls_is_refused(settings: wifi.BrokerSettings) -> None:
+def test_what_is_no_tls_is_refused() -> None:
     robot, owner = joined(Keys())
-    assert not settings.is_sound
-    assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE"
-    assert told(robot, owner) == ("OFF", "OFF", "")
+    for settings in (
+        PLAIN._replace(name=b"", tls=wifi.Tls(TRUST, TODAY)),
+        PLAIN._replace(tls=wifi.Tls(b"", TODAY)), PLAIN._replace(tls=wifi.Tls(TRUST, 0)),
+        PLAIN._replace(tls=wifi.Tls(bytes(TRUST_BYTES + 1), TODAY)),
+        PLAIN._replace(name=b"x" * (BROKER_NAME_BYTES + 1)), PLAIN._replace(name=b"a\0b"),
+    ):  # fmt: skip
+        assert not settings.is_sound
+        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE", settings
+        assert told(robot, owner) == ("OFF", "OFF", "")
     most = PLAIN._replace(name=b"x" * BROKER_NAME_BYTES, tls=wifi.Tls(bytes(TRUST_BYTES), TODAY))
     assert most.is_sound
     assert ended(robot, [(None, owner)], owner.use_broker(most)) == "OK"
 
 
-def test_a_full_nvs_keeps_the_broker_that_was(room: Room) -> None:
+def test_it_is_kept_and_used_after_a_reset_also_where_another_finds_no_room(room: Room) -> None:
     robot, owner = at(room.broker, Keys(), room.settings())
     robot.fill_nvs()
     assert ended(robot, [(None, owner)], owner.use_broker(PLAIN)) == "NOT_KEPT"
     talk(robot, [(None, owner)], 100)
     assert told(robot, owner) == ("STATION", "READY", "aula")
+    again = Esp32Robot(kept=robot.kept())
+    school_in_reach(again)
+    again.wait(400)
+    teacher = room.connected()
+    until(again, lambda: present(again, teacher) == [Present(ID, "tini-5678", True)])
