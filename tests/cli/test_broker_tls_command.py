@@ -1,4 +1,4 @@
-"""`tsc wifi --broker --tls` as processes: a robot with an ESP32 at Mosquitto with certificates."""
+"""`tsc wifi --broker --tls`: a robot with an ESP32 at Mosquitto with certificates."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) 
     later = on(school.robot, "wifi").out
     assert "is at the broker" in later and "tsc class" not in later, "it knows no port"
     _, *next_command = shlex.split(said.partition("To see all of them:  ")[2])
-    assert "no program; nothing runs; yours" in process(*next_command, data=b"a secret\n").out
+    assert "no program; nothing runs; yours" in inside(*next_command, data=b"a secret\n").out
 
 
 def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path) -> None:
@@ -87,22 +87,30 @@ def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path
 
 
 def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_path: Path) -> None:
-    """As a robot does; not another one of its authority."""
+    """As a robot does; not another one of its authority. No trust is told from nobody there.
+
+    Each in a process, since one keeps its connection to a broker.
+    """
     authority = Authority(tmp_path)
     broker = Mosquitto(tmp_path, more=authority.rules(NAME))
     authority.rules("other.aula")
     binary = tmp_path / "own.der"
     binary.write_bytes(der(authority.signed(NAME)))
     (tmp_path / "none").write_bytes(b"hello")
+    trusted, strange = "no robot of the class", "does not trust the certificate"
     try:
-        for file, said in (
-            (authority.signed(NAME), "no robot of the class"), (binary, "no robot of the class"),
-            (authority.signed("other.aula"), "does not trust the certificate"),
-            (tmp_path / "none", "does not trust the certificate"),
-        ):  # fmt: skip
-            words = ("--broker", f"{NAME}:{broker.port}", "--tls", "--trust", file)
-            done = process("class", *words)
-            assert done.code == 3 and said in done.err, (file, done.err)
+        for name, trust, said in (
+            (NAME, ("--trust", authority.signed(NAME)), trusted),
+            ("127.0.0.1", ("--trust", authority.signed(NAME)), trusted),
+            (NAME, ("--trust", binary), trusted),
+            (NAME, ("--trust", authority.signed("other.aula")), strange),
+            (NAME, ("--trust", tmp_path / "none"), strange),
+            (NAME, (), strange),
+        ):
+            done = process("class", "--broker", f"{name}:{broker.port}", "--tls", *trust)
+            assert done.code == 3 and said in done.err, (name, trust, done.err)
+        done = process("class", "--broker", f"{NAME}:{broker.port}")
+        assert done.code == 3, "without TLS it is no broker"
     finally:
         broker.kill()
 

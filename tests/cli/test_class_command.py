@@ -1,12 +1,13 @@
-"""`tsc class` as processes: robots with an ESP32 at Mosquitto, and what else is there."""
+"""`tsc class` as processes: robots with an ESP32 at Mosquitto, and what else is there.
+
+One process keeps its connection to a broker.
+"""
 
 from __future__ import annotations
 
 import csv
 import json
-import shutil
 import signal
-import subprocess
 from argparse import Namespace
 from collections.abc import Iterator
 from functools import partial
@@ -79,6 +80,25 @@ def tsc(room: Class, *words: str) -> tuple[int, str, str]:
     return done.code, done.out, done.err
 
 
+def driving(room: Class) -> Command:
+    """A command that stays and has all robots drive."""
+    command = Command("class", "upload", "-e", FOREVER, *room.access, data=SECRET + b"\n")
+    all_drive(room)
+    return command
+
+
+def all_drive(room: Class) -> None:
+    for robot in room:
+        robot.until(lambda robot=robot: robot.moves, "it drives")  # type: ignore[misc]
+
+
+def pass_ms(room: Class, milliseconds: int) -> None:
+    """Let so much time pass on each robot."""
+    for robot in room:
+        end_ms = robot.robot_ms + milliseconds
+        robot.until(lambda robot=robot, ms=end_ms: robot.robot_ms > ms, "time has passed")  # type: ignore[misc]
+
+
 def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> None:
     code, said, _ = tsc(room)
     assert code == 0 and "12345678" in said and "0badcafe" in said, said
@@ -86,23 +106,28 @@ def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> No
     assert code == 0 and said.count("SHOW 7") == 2, said
     assert all(drove(robot)[-2:] == DROVE for robot in room)
     assert files_with(tmp_path / "cache", SECRET) == []
-    command = Command("class", "upload", "-e", FOREVER, *room.access, data=SECRET + b"\n")
-    for robot in room:
-        robot.until(lambda robot=robot: robot.moves, "it drives")  # type: ignore[misc]
+    command = driving(room)
     code, said, error = tsc(room, "stop")
     assert not any(robot.moves for robot in room)
     assert (code, said.count("has confirmed")) == (0, 2), (said, error)
     assert command.ended().code != 0
+    room[1].switch_off()
+    until(lambda: "0badcafe) is not at the broker any more" in tsc(room)[1], "its last will")
 
 
 def test_who_has_no_key_sees_and_stops(
     room: Class, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    code, _, _ = tsc(room, "upload", "-e", "SI|LOOP(FOREVER); F(1, 80); END_LOOP", "--detach")
-    assert code == 0
-    for robot in room:
-        robot.until(lambda robot=robot: robot.moves, "it drives")  # type: ignore[misc]
+    """Who does not know the password of the broker does not even see."""
+    assert tsc(room, "upload", "-e", FOREVER, "--detach")[0] == 0
+    all_drive(room)
     as_another(monkeypatch, tmp_path)
+    for data in (b"wrong\n", b"\n", b""):
+        done = process("class", *room.access, data=data)
+        assert done.code in (2, 3) and done.out == "" and "assword" in done.err
+    done = process("class", *room.place)
+    assert done.code == 3 and "does not let this computer in" in done.err
+    assert "no deja entrar" in process("class", *room.place, "--lang", "es").err
     assert tsc(room, "list")[0] == 0
     code, said, _ = tsc(room, "upload", "-e", DRIVES)
     assert code == 3 and said.count("has an owner") == 2
@@ -112,14 +137,18 @@ def test_who_has_no_key_sees_and_stops(
 
 
 def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
-    command = Command("class", "upload", "-e", FOREVER, *room.access, data=SECRET + b"\n")
-    for robot in room:
-        robot.until(lambda robot=robot: robot.moves, "it drives")  # type: ignore[misc]
-    command.process.send_signal(signal.SIGSTOP)
+    """A robot keeps its client for 3 s; another client waits so long, and then is told."""
+    command = driving(room)
+    command.signal(signal.SIGSTOP)
     begun_ms = [robot.robot_ms for robot in room]
     for robot, began_ms in zip(room, begun_ms, strict=True):
         assert robot.stands_after_ms(began_ms) < 2000, "the dead-man timer is a second"
     command.process.kill()
+    command = driving(room)
+    command.process.kill()
+    command.process.wait()
+    code, said, error = tsc(room, "upload", "-e", DRIVES)
+    assert code == 0, said + error
 
 
 def test_who_only_looks_changes_nothing(room: Class) -> None:
@@ -128,14 +157,11 @@ def test_who_only_looks_changes_nothing(room: Class) -> None:
     assert tsc(room, "upload", "-e", text, "--detach")[0] == 0
     command = Command("class", "show", *room.access, data=SECRET + b"\n")
     command.until("SHOW 5")
-    command.process.send_signal(signal.SIGSTOP)
+    command.signal(signal.SIGSTOP)
+    pass_ms(room, 1200)
+    command.signal(signal.SIGCONT)
+    pass_ms(room, 2500)
     for robot in room:
-        until_ms = robot.robot_ms + 1200
-        robot.until(lambda r=robot, t=until_ms: r.robot_ms > t, "time has passed")  # type: ignore[misc]
-    command.process.send_signal(signal.SIGCONT)
-    for robot in room:
-        until_ms = robot.robot_ms + 2500
-        robot.until(lambda r=robot, t=until_ms: r.robot_ms > t, "it has heard that")  # type: ignore[misc]
         assert robot.moves, robot.did
     command.process.kill()
 
@@ -199,20 +225,6 @@ def test_the_times_of_all_robots_count_from_one_start() -> None:
     assert [each - early_ms for each in times] == [2000, 2100, 7000, 7100]
 
 
-def test_a_robot_that_is_off_is_told(room: Class) -> None:
-    room[1].switch_off()
-    until(lambda: "0badcafe) is not at the broker any more" in tsc(room)[1], "its last will")
-
-
-def test_a_broker_that_does_not_let_us_in(room: Class) -> None:
-    for data in (b"wrong\n", b"\n", b""):
-        done = process("class", *room.access, data=data)
-        assert done.code in (2, 3) and done.out == "" and "assword" in done.err
-    done = process("class", *room.place)
-    assert done.code == 3 and "does not let this computer in" in done.err
-    assert "no deja entrar" in process("class", *room.place, "--lang", "es").err
-
-
 def test_what_a_stranger_retains_reaches_no_terminal_raw(tmp_path: Path) -> None:
     broker = Mosquitto(tmp_path)
     try:
@@ -220,7 +232,7 @@ def test_what_a_stranger_retains_reaches_no_terminal_raw(tmp_path: Path) -> None
         for robot, data in (("00000001", b"+\x1b[2Jtsc: ok\n"), ("00000002", b"-\x9b2J\r")):
             stranger._client.publish(f"{ROOT}/class/{robot}", data, retain=True)
         stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)
-        done = process("class", "--broker", f"127.0.0.1:{broker.port}")
+        done = inside("class", "--broker", f"127.0.0.1:{broker.port}")
         assert done.code == 3
         assert not set(done.out + done.err) & set("\x1b\x9b\r")
         assert "is not at the broker" in done.out
@@ -251,27 +263,6 @@ def test_a_robots_broker_is_told_in_words_that_make_sense(words: list[str]) -> N
     assert done.code == 2 and done.err.startswith("tsc: ")
 
 
-@pytest.mark.skipif(shutil.which("openssl") is None, reason="needs openssl")
-def test_tls_as_the_broker_offers_it(tmp_path: Path) -> None:
-    """The computer's half. Who is not trusted is told apart from who is not there."""
-    key, certificate = tmp_path / "key.pem", tmp_path / "certificate.pem"
-    subprocess.run(
-        ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-keyout", key,
-         "-out", certificate, "-subj", "/CN=127.0.0.1", "-addext", "subjectAltName=IP:127.0.0.1"],
-        check=True, capture_output=True,
-    )  # fmt: skip
-    broker = Mosquitto(tmp_path, more=f"certfile {certificate}\nkeyfile {key}")
-    try:
-        place = ["class", "--broker", f"127.0.0.1:{broker.port}"]
-        trusted = process(*place, "--tls", "--trust", certificate)
-        assert trusted.code == 3 and "no robot of the class class" in trusted.err
-        strange = process(*place, "--tls")
-        assert strange.code == 3 and "does not trust the certificate" in strange.err
-        assert process(*place).code == 3, "without TLS it is no broker"
-    finally:
-        broker.kill()
-
-
 def test_nobody_at_the_broker(tmp_path: Path) -> None:
     done = inside("class", "--broker", "127.0.0.1:1")
     assert done.code == 3 and "no MQTT broker answers" in done.err
@@ -284,17 +275,6 @@ def test_nobody_at_the_broker(tmp_path: Path) -> None:
         assert done.code == 3
     finally:
         broker.kill()
-
-
-def test_who_comes_after_a_driver_that_was_killed(room: Class) -> None:
-    """A robot keeps its client for 3 s; another client waits so long, and then is told."""
-    command = Command("class", "upload", "-e", FOREVER, *room.access, data=SECRET + b"\n")
-    for robot in room:
-        robot.until(lambda robot=robot: robot.moves, "it drives")  # type: ignore[misc]
-    command.process.kill()
-    command.process.wait()
-    code, said, error = tsc(room, "upload", "-e", DRIVES)
-    assert code == 0, said + error
 
 
 def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import FOREVER, Command, Tsc, process
+from tests.support.command import FOREVER, Command, Tsc, inside
 from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.simulated_ends import Echo, Firmware, Sketch
@@ -115,7 +115,7 @@ def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> No
     command = Command("doctor", "--port", pty_robot.port, "--watch", "60")
     pty_robot.until(lambda: registry.found(pty_robot.port) is not None, "it is watched")
     assert pty_robot.moves
-    assert process("stop", "--port", pty_robot.port).code == 0  # its time is also the doctor's
+    assert inside("stop", "--port", pty_robot.port).code == 0  # its time is also the doctor's
     assert not pty_robot.moves
     command.signal(signal.SIGINT)
     done = command.ended()
@@ -128,12 +128,12 @@ def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> No
 def test_a_port_that_another_program_has_locked() -> None:
     with PtyEnd(Firmware()) as end:
         holder = opened(end.port, 9600)
-        done = process("doctor", "--port", end.port)
+        done = inside("doctor", "--port", end.port)
         holder.close()
         assert done.code == 3
         assert "1. Another program is using this port (sure)" in done.out
         assert "does not tell by whom" in done.out
-        assert process("doctor", "--port", end.port).code == 0
+        assert inside("doctor", "--port", end.port).code == 0
 
 
 @pytest.mark.parametrize(("end", "cause"), [(Echo(), "echo"), (Sketch(115_200), "other_sketch"),

@@ -1,4 +1,4 @@
-"""`tsc` as processes, and a robot with an ESP32 on its cable and in a network at once."""
+"""`tsc` and a robot with an ESP32 on its cable and in a network at once."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from tests.cli.test_owner_commands import as_another, claimed
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
-from tests.support.command import FOREVER, LONG, Command, inside, process
+from tests.support.command import FOREVER, LONG, Command, inside
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.esp32_radio import in_reach, port_of, radios
 from tests.support.network import BadNetwork
@@ -59,6 +59,14 @@ def joined(robot: Esp32PtyRobot) -> Esp32PtyRobot:
     return robot
 
 
+def driving(robot: Esp32PtyRobot, place: str) -> Command:
+    """A command that stays and has the robot drive, over its network."""
+    command = Command("upload", "-e", FOREVER, "--port", place)
+    command.until("running")
+    robot.until(lambda: robot.moves, "it drives")
+    return command
+
+
 def drove(robot: Esp32PtyRobot) -> list[str]:
     return [line for line in robot.did if line.startswith("MOTORS")]
 
@@ -90,12 +98,12 @@ def test_a_network_is_set_told_and_forgotten(joined: Esp32PtyRobot, tmp_path: Pa
     assert asked(joined, "network") == ""
 
 
-@pytest.mark.parametrize("data", [b"", b"\n", b"short\n", b"x" * 64 + b"\n", b"12345678\0\n",
-                                  b"1234567\x1b[2J\n", b"x" * 5000])  # fmt: skip
-def test_what_is_no_password_changes_nothing(joined: Esp32PtyRobot, data: bytes) -> None:
-    done = on(joined, "wifi", "Other", data=data)
-    assert done.code == 2 and "8 to 63" in done.err and "\x1b" not in done.err
-    assert asked(joined, "network") == NETWORK
+def test_what_is_no_password_changes_nothing(joined: Esp32PtyRobot) -> None:
+    for data in (b"", b"\n", b"short\n", b"x" * 64 + b"\n", b"12345678\0\n",
+                 b"1234567\x1b[2J\n", b"x" * 5000):  # fmt: skip
+        done = on(joined, "wifi", "Other", data=data)
+        assert done.code == 2 and "8 to 63" in done.err and "\x1b" not in done.err, data
+        assert asked(joined, "network") == NETWORK
 
 
 @pytest.mark.parametrize("words", [
@@ -115,14 +123,12 @@ def test_two_computers_at_once_over_cable_and_network(
 ) -> None:
     place = f"socket://127.0.0.1:{asked(joined, 'port')}"
     for words in (("wifi", "Other"), ("wifi", "--forget")):
-        done = process(*words, "--port", place, data=PASSWORD)
+        done = inside(*words, "--port", place, data=PASSWORD)
         assert done.code == 2 and "Bluetooth" in done.err
-    assert NETWORK in process("wifi", "--port", place).out
-    assert process("upload", "-e", DRIVES, "--port", place).code == 0
+    assert NETWORK in inside("wifi", "--port", place).out
+    assert inside("upload", "-e", DRIVES, "--port", place).code == 0
     assert drove(joined)[-2:] == DROVE
-    command = Command("upload", "-e", FOREVER, "--port", place)
-    command.until("running")
-    joined.until(lambda: joined.moves, "it drives")
+    command = driving(joined, place)
     refused = on(joined, "upload", "-e", DRIVES)
     assert refused.code == 3 and "another connection" in refused.err
     assert "otra conexión" in on(joined, "live", "F(1, 20)", "--lang", "es").err
@@ -132,28 +138,24 @@ def test_two_computers_at_once_over_cable_and_network(
     assert on(joined, "stop").code == 0
     assert not joined.moves
     assert "stopped" in command.ended().out + command.ended().err
-    assert process("upload", "-e", DRIVES, "--port", place).code == 3, "it is another's robot"
+    assert inside("upload", "-e", DRIVES, "--port", place).code == 3, "it is another's robot"
 
 
 def test_over_a_bad_network(joined: Esp32PtyRobot, tmp_path: Path) -> None:
     bad = BadNetwork(int(asked(joined, "port")))
     place = f"socket://127.0.0.1:{bad.port}"
     for _ in range(3):
-        done = process("upload", "-e", LONG, "--no-run", "--port", place)
+        done = inside("upload", "-e", LONG, "--no-run", "--port", place)
         assert done.code == 0, done.err
     ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    assert process("compile", "-e", LONG, "-o", ours).code == 0
-    assert process("fetch", "-o", theirs, "--port", place).code == 0
+    assert inside("compile", "-e", LONG, "-o", ours).code == 0
+    assert inside("fetch", "-o", theirs, "--port", place).code == 0
     assert ours.read_bytes() == theirs.read_bytes()
-    command = Command("upload", "-e", FOREVER, "--port", place)
-    command.until("running")
-    joined.until(lambda: joined.moves, "it drives")
-    assert process("stop", "--port", place).code == 0
+    command = driving(joined, place)
+    assert inside("stop", "--port", place).code == 0
     assert not joined.moves
     command.ended()
-    command = Command("upload", "-e", FOREVER, "--port", place)
-    command.until("running")
-    joined.until(lambda: joined.moves, "it drives")
+    command = driving(joined, place)
     began_ms = joined.robot_ms
     bad.cut()
     assert joined.stands_after_ms(began_ms) < 2000, "the connection was its dead-man timer"

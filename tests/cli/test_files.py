@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import socket
 import stat
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 from time import time
 from typing import IO
@@ -16,7 +16,7 @@ from typing import IO
 import platformdirs
 import pytest
 
-from tests.support.command import PROGRAM, Tsc, process
+from tests.support.command import PROGRAM, Command, Tsc, inside
 from tiniscript.base import files
 from tiniscript.cli import outputs
 from tiniscript.library import source_map
@@ -26,25 +26,23 @@ from tiniscript.link.sharing.registry import Registration
 HERE = Path(files.__file__).parent
 
 
-@pytest.fixture(autouse=True)
-def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    return tmp_path / "cache" / "tiniscript"
+@pytest.fixture
+def cache() -> Path:
+    return files.cache_folder()
 
 
-@pytest.mark.parametrize("chosen", [None, "", "part", "/elsewhere", "/elsewhere/", "~/cache"])
-@pytest.mark.parametrize("home", [None, "", "part", "/home/ada", "/"])
-def test_the_folders_are_where_platformdirs_has_them(
-    chosen: str | None, home: str | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_folders_are_where_platformdirs_has_them(monkeypatch: pytest.MonkeyPatch) -> None:
     """Though on Linux they are found without that."""
-    for name, value in (("XDG_CACHE_HOME", chosen), ("XDG_CONFIG_HOME", chosen), ("HOME", home)):
-        if value is None:
-            monkeypatch.delenv(name, raising=False)
-        else:
-            monkeypatch.setenv(name, value)
-    assert files.cache_folder() == platformdirs.user_cache_path("tiniscript", appauthor=False)
-    assert files.settings_folder() == platformdirs.user_config_path("tiniscript", appauthor=False)
+    chosen = (None, "", "part", "/elsewhere", "/elsewhere/", "~/cache")
+    for one, home in product(chosen, (None, "", "part", "/home/ada", "/")):
+        for name, value in (("XDG_CACHE_HOME", one), ("XDG_CONFIG_HOME", one), ("HOME", home)):
+            if value is None:
+                monkeypatch.delenv(name, raising=False)
+            else:
+                monkeypatch.setenv(name, value)
+        cache = platformdirs.user_cache_path("tiniscript", appauthor=False)
+        settings = platformdirs.user_config_path("tiniscript", appauthor=False)
+        assert (files.cache_folder(), files.settings_folder()) == (cache, settings), (one, home)
 
 
 def test_no_folder_on_windows_is_in_one_of_an_author(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -66,22 +64,20 @@ def mode_of(path: Path) -> int:
     return stat.S_IMODE(path.stat().st_mode)
 
 
-@pytest.mark.parametrize("umask", [0o022, 0o077, 0o002])
-def test_a_new_file_has_the_mode_of_the_umask(tmp_path: Path, umask: int) -> None:
-    before = os.umask(umask)
-    try:
-        files.replace(tmp_path / "x", b"1")
-    finally:
-        os.umask(before)
-    assert mode_of(tmp_path / "x") == 0o666 & ~umask
-
-
-@pytest.mark.parametrize("mode", [0o600, 0o644, 0o755, 0o666])
-def test_a_file_that_is_replaced_keeps_its_mode(tmp_path: Path, mode: int) -> None:
-    (tmp_path / "x").write_bytes(b"1")
-    (tmp_path / "x").chmod(mode)
-    files.replace(tmp_path / "x", b"2")
-    assert mode_of(tmp_path / "x") == mode and (tmp_path / "x").read_bytes() == b"2"
+def test_a_new_file_has_the_mode_of_the_umask_and_another_keeps_its_own(tmp_path: Path) -> None:
+    for umask in (0o022, 0o077, 0o002):
+        before = os.umask(umask)
+        try:
+            files.replace(tmp_path / f"{umask:o}", b"1")
+        finally:
+            os.umask(before)
+        assert mode_of(tmp_path / f"{umask:o}") == 0o666 & ~umask
+    path = tmp_path / "x"
+    path.write_bytes(b"1")
+    for mode in (0o600, 0o644, 0o755, 0o666):
+        path.chmod(mode)
+        files.replace(path, b"%o" % mode)
+        assert (mode_of(path), path.read_bytes()) == (mode, b"%o" % mode)
 
 
 def test_another_hard_link_keeps_the_old_content_and_a_pipe_stays_one(tmp_path: Path) -> None:
@@ -308,19 +304,21 @@ def test_a_lock_goes_with_its_command() -> None:
     assert names() == set()
 
 
-def test_the_lock_of_a_killed_command_goes() -> None:
+def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
+    """They are forgotten by the next command that looks."""
     code = (
         "from tiniscript.link.sharing import registry; lock = registry.claimed('socket://x:1');"
+        "registry.write(registry.Registration("
+        f"'socket://x:1', {free_number()}, 't', 'a', 'link', 1, 2));"
         "print('held', flush=True); input()"
     )
-    with subprocess.Popen(
-        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    ) as running:
-        assert running.stdout and running.stdout.readline() == b"held\n"
-        assert registry.claimed("socket://x:1") is None
-        running.kill()
-    assert len(names()) == 1
-    registry.tidy()
+    command = Command(code=code)
+    command.until("held")
+    assert registry.claimed("socket://x:1") is None
+    command.process.kill()
+    command.process.communicate()
+    assert len(names()) == 2
+    assert json.loads(inside("ports", "--json").out) is not None
     assert names() == set()
 
 
@@ -342,21 +340,6 @@ def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.Mo
     assert registry.claimed("socket://x:1") is None
     assert others[1] is not None, "one has it"
     others[1].close()
-
-
-def test_a_killed_link_leaves_nothing_for_long(cache: Path) -> None:
-    """A command that was killed is forgotten by the next one that looks."""
-    code = (
-        "import os, signal; from tiniscript.link.sharing import registry;"
-        "lock = registry.claimed('socket://x:1');"
-        "registry.write(registry.Registration("
-        f"'socket://x:1', {free_number()}, 't', 'a', 'link', 1, 2));"
-        "os.kill(os.getpid(), signal.SIGKILL)"
-    )
-    assert subprocess.run([sys.executable, "-c", code]).returncode == -signal.SIGKILL
-    assert len(names()) == 2
-    assert json.loads(process("ports", "--json").out) is not None
-    assert names() == set()
 
 
 @pytest.mark.parametrize("is_of_folder", [False, True], ids=["the link itself", "of a folder"])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
 import sys
 from argparse import Namespace
 from pathlib import Path
@@ -15,10 +14,10 @@ import pytest
 
 from tests.cli.test_virtual_command import Robot, robot
 from tests.support.casefile import ROOT
-from tests.support.command import OBSTACLE, TSC, Tsc, inside
+from tests.support.command import OBSTACLE, Command, Tsc, inside
 from tests.support.link_events import event
+from tests.support.rows import each_row
 from tests.support.virtual_robot import Talk, robot_in
-from tests.support.waiting import HANGS_S
 from tiniscript import compile_text, robots
 from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, Repl, requested
 from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
@@ -68,7 +67,7 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     assert "drove 0 cm in 3.0 s" in done.err
 
 
-def test_what_only_brings_a_program_pushes_no_button(tsc: Tsc) -> None:
+def test_what_only_brings_a_program_pushes_no_button() -> None:
     done = inside("upload", "--virtual", "--no-run", "-e", "SB|F(1, 80)")
     assert (done.code, done.err) == (0, "")
     assert "SB: waits for the button" in done.out
@@ -125,11 +124,7 @@ class Upload(Robot):
     """A `tsc upload --virtual` that drives."""
 
     def __init__(self, *arguments: str) -> None:
-        command = [*TSC, "upload", "--virtual", "-e", FOREVER, *arguments]
-        self._process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            text=True,
-        )  # fmt: skip
+        self.command = Command("upload", "--virtual", "-e", FOREVER, *arguments)
         receipt = self.line()
         self.port = re.search(r"\((socket://.*?)\)", receipt)[1]  # type: ignore[index]
 
@@ -145,9 +140,9 @@ def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     assert (done.code, done.out) == (
         0, f"Stopped: the robot on {upload.port} has confirmed it.\n",
     )  # fmt: skip
-    ended = upload._process.communicate(timeout=HANGS_S)
-    assert upload._process.returncode == 3
-    assert "The robot was stopped from a computer." in ended[0]
+    ended = upload.command.ended()
+    assert ended.code == 3
+    assert "The robot was stopped from a computer." in ended.out
     done = inside("stop", *options)
     assert done.code == 3  # there is none any more
     assert directory.running() == []
@@ -162,9 +157,7 @@ def test_stop_stops_all_that_are_in_use() -> None:
         assert done.code == 0
         assert done.err == "Done: 3 of 3.\n"
         assert {found.port, first.port, second.port} <= set(re.findall(r"socket:\S*\d", done.out))
-        for each in (first, second):
-            each._process.communicate(timeout=HANGS_S)
-            assert each._process.returncode == 3
+        assert [each.command.ended().code for each in (first, second)] == [3, 3]
         assert found.until("STOP")
 
 
@@ -191,6 +184,10 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
         local = found.port.replace("127.0.0.1", "localhost")
         assert inside("ping", "--port", local, "--count", "1").code == 0
         assert found.port in inside("ports").out
+        done = inside("live", "-", "--port", found.port, data=b"X = 5;SHOW(X)\nS\n")
+        assert (done.code, done.out) == (0, "SHOW 5\n")
+        lines = found.until("DONE") + found.until("DONE")
+        assert sum("SHOW" in line for line in lines) == 1, "what live keeps is not printed"
     assert "socket" not in inside("ports").out
     known_ports.remember(found.port, "KAT")  # by a tsc that did
     assert "socket" not in inside("ports").out
@@ -344,14 +341,6 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     assert hidden == [False, False, True, True, False, False, False, False]
 
 
-def test_a_virtual_robot_does_not_print_what_live_keeps() -> None:
-    with robot() as found:
-        done = inside("live", "-", "--port", found.port, data=b"X = 5;SHOW(X)\nS\n")
-        assert (done.code, done.out) == (0, "SHOW 5\n")
-        lines = found.until("DONE") + found.until("DONE")
-        assert sum("SHOW" in line for line in lines) == 1
-
-
 # -- slips with names -----------------------------------------------------------------------------
 
 
@@ -384,30 +373,26 @@ def test_a_program_without_a_verb(tsc: Tsc, tmp_path: Path) -> None:
     assert tsc("x" * 5000).code == 2
 
 
-@pytest.mark.parametrize(
-    ("real", "said"),
-    [
-        ("prog.ts.txt", "prog.ts"),
-        ("prog.ts", "prog"),
-        ("prog.ts.txt", "prog"),
-        ("prog.tini", "prog"),
-        ("prog.tini.txt", "prog.tini"),
-    ],
-)
+@each_row("real, said", [
+    ("prog.ts.txt", "prog.ts"), ("prog.ts", "prog"), ("prog.ts.txt", "prog"), ("prog.tini", "prog"),
+    ("prog.tini.txt", "prog.tini"),
+])  # fmt: skip
 def test_a_file_is_found_by_the_name_that_a_folder_shows(
     tsc: Tsc, tmp_path: Path, real: str, said: str
 ) -> None:
-    path = tmp_path / real
+    folder = tmp_path / f"{real} as {said}"
+    folder.mkdir()
+    path = folder / real
     path.write_text("SI|F(1, 80)")
-    done = tsc("check", tmp_path / said)
+    done = tsc("check", folder / said)
     assert done.code == 0
     assert done.out == f"{path}: no mistakes.\n"
     assert f"tsc uses {path}, its full name" in done.err
-    assert tsc("compile", tmp_path / said).code == 0
-    assert (tmp_path / "prog.bin").exists()
-    assert "su nombre completo" in tsc("run", tmp_path / said, "--lang", "es").err
-    (tmp_path / said).write_text("SI|S")
-    assert tsc("check", tmp_path / said).err == ""
+    assert tsc("compile", folder / said).code == 0
+    assert (folder / "prog.bin").exists()
+    assert "su nombre completo" in tsc("run", folder / said, "--lang", "es").err
+    (folder / said).write_text("SI|S")
+    assert tsc("check", folder / said).err == ""
 
 
 def test_board_says_where_the_build_looks(

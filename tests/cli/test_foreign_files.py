@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import Tsc, process
+from tests.support.command import Tsc, inside
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript import robots
 from tiniscript.cli.paths import is_foreign
@@ -95,7 +95,7 @@ def test_a_link_leads_to_a_foreign_file_and_a_pipe_is_none(tsc: Tsc, tmp_path: P
 def test_a_picture_and_rows(tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
     for _ in range(2):
-        assert process("robot", "--for", "0.1", "--hurry", "max", "--plot", picture).code == 0
+        assert inside("robot", "--for", "0.1", "--hurry", "max", "--plot", picture).code == 0
         assert not is_foreign(picture)
 
 

@@ -1,6 +1,6 @@
 """What `tsc` says of what a robot keeps: when it has, and what is in the way of that.
 
-The robot is the firmware in C++, `tsc` a process of its own.
+The robot is the firmware in C++.
 """
 
 from __future__ import annotations

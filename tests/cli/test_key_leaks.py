@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.test_owner_commands import claimed
-from tests.support.command import Command, inside, process
+from tests.support.command import Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.link.keys import KeyFile
 
@@ -47,7 +47,7 @@ def test_a_key_is_in_its_file_alone(
         said += done.out + done.err
     with monkeypatch.context() as debugging:
         debugging.setenv("TINISCRIPT_DEBUG", "1")
-        done = process("info", "--json", "--port", pty_robot.port)
+        done = on(pty_robot, "info", "--json")
         said += done.out + done.err
     said += inside("keys").out + inside("keys", "--json").out
     link = Command("link", "--port", pty_robot.port)

@@ -12,7 +12,7 @@ from contextlib import closing
 
 import pytest
 
-from tests.support.command import FOREVER, Done, Tsc, ended, inside, process, running
+from tests.support.command import FOREVER, Command, Done, inside
 from tests.support.robot_fleet import RobotFleet
 from tests.support.terminal import Terminal
 from tiniscript import robots
@@ -54,7 +54,7 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
             pupils[number].damages = 97
         for pupil in pupils:
             known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
-        done = process("upload", "-e", SHORT, "--all", "--json")
+        done = inside("upload", "-e", SHORT, "--all", "--json")
         assert done.code == 3
         rows = results(done)
         bad = {pupils[number].port for number in (SILENT, OTHER_KIT, DEAF)}
@@ -75,10 +75,10 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         # the silent one is over last
         assert events[-1]["port"] in bad | {port for port, row in rows.items() if row["is_absent"]}
 
-        done = process("upload", "-e", FOREVER, "--all", "--detach")
+        done = inside("upload", "-e", FOREVER, "--all", "--detach")
         assert done.code == 3
         assert sum(pupil.moves for pupil in pupils) == ROBOTS - 2  # it uses no device of a kit
-        done = process("stop", "--all")
+        done = inside("stop", "--all")
         assert done.code == 3
         assert not any(pupil.moves for pupil in pupils)
         assert done.out.count("the robot has confirmed it") == ROBOTS - 2  # the other kit, too
@@ -121,51 +121,60 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
     assert not any(each.moves for each in class_.pupils)
 
 
-def test_stop_all_stops_what_another_command_drives(class_: RobotFleet) -> None:
-    command = running("upload", "-e", FOREVER, "--all")
-    class_.until(lambda: all(pupil.moves for pupil in class_.pupils), "all drive")
+def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
+    """By `stop --all` of another terminal, by Ctrl-C, and killed."""
+
+    def driven() -> Command:
+        command = Command("upload", "-e", FOREVER, "--all")
+        class_.until(lambda: all(pupil.moves for pupil in class_.pupils), "all drive")
+        return command
+
+    command = driven()
     done = inside("stop", "--all", "--json")
     assert done.code == 0
     assert not any(pupil.moves for pupil in class_.pupils)
     rows = [row for row in results(done).values() if not row["is_absent"]]
     assert len(rows) == len(class_.pupils)
-    done = ended(command)
+    done = command.ended()
     assert done.code == 3
     told = ("The robot was stopped from a computer.", "another command has stopped the robot")
     assert sum(map(done.out.count, told)) == len(class_.pupils)  # before or after its start
-
-
-def test_ctrl_c_stops_all(class_: RobotFleet) -> None:
-    command = running("upload", "-e", FOREVER, "--all")
-    class_.until(lambda: all(pupil.moves for pupil in class_.pupils), "all drive")
-    command.send_signal(signal.SIGINT)
-    done = ended(command)
+    command = driven()
+    command.signal(signal.SIGINT)
+    done = command.ended()
     assert done.code == 2
     assert not any(pupil.moves for pupil in class_.pupils)
     assert done.out.count("the robot has confirmed it") == len(class_.pupils)
-
-
-def test_robots_stop_when_the_command_of_all_is_killed(class_: RobotFleet) -> None:
-    command = running("upload", "-e", FOREVER, "--all")
-    class_.until(lambda: all(pupil.moves for pupil in class_.pupils), "all drive")
-    command.kill()
-    command.communicate()
+    command = driven()
+    command.process.kill()
+    command.process.communicate()
     class_.until(lambda: not any(pupil.moves for pupil in class_.pupils), "they stop")
 
 
-def test_info_and_ping_have_a_row_for_each(class_: RobotFleet) -> None:
+def test_each_robot_has_a_row(class_: RobotFleet) -> None:
+    """And each port that is named must have a robot."""
+    assert inside("upload", "-e", "F(2 80)", "--all").code == 1
+    assert not any(pupil.heard for pupil in class_.pupils)
+    assert inside("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
     assert inside("upload", "-e", "SB|S", "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
     done = inside("info", "--all")
     assert done.code == 0
-    assert sorted(line.split("(")[1].split(")")[0] for line in done.out.splitlines()) == sorted(
-        names
-    )
+    rows = [line.split("(")[1].split(")")[0] for line in done.out.splitlines()]
+    assert sorted(rows) == sorted(names)
     assert done.out.count("nothing runs") == len(names)
-    done = inside("ping", "--count", "3", "--json", "--port", names[0], "--port", names[2])
-    rows = results(done)
-    assert set(rows) == {names[0], names[2]}
-    assert all(row["round_trips"] == 3 for row in rows.values())
+    ports_of = ("--port", names[0], "--port", names[2])
+    found = results(inside("ping", "--count", "3", "--json", *ports_of))
+    assert set(found) == {names[0], names[2]}
+    assert all(row["round_trips"] == 3 for row in found.values())
+    done = inside("upload", "-e", "SI|X = DISTANCE;SHOW(1 / X)", "--all", "--no-save")
+    assert done.code == 3
+    assert done.out.count("DIVIDE_BY_ZERO") == 4
+    assert done.out.count("line 1") == 4
+    done = inside("ping", "--port", names[0], "--port", "/dev/no-such", "--lang", "es")
+    assert done.code == 3
+    assert "no existe el puerto /dev/no-such" in done.out
+    assert "3" in inside("ping", "--count", "3", "--port", names[0], "--port", names[0]).out
 
 
 def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
@@ -186,31 +195,23 @@ def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
     assert str(checksums.pop()) not in done.out
 
 
-def test_ports_that_are_named_must_have_robots(class_: RobotFleet) -> None:
-    name = class_.pupils[0].port
-    done = inside("ping", "--port", name, "--port", "/dev/no-such", "--lang", "es")
-    assert done.code == 3
-    assert "no existe el puerto /dev/no-such" in done.out
-    assert "3" in inside("ping", "--count", "3", "--port", name, "--port", name).out
-
-
 def test_a_port_that_never_had_a_robot_is_no_failure(
-    tsc: Tsc, class_: RobotFleet, monkeypatch: pytest.MonkeyPatch
+    class_: RobotFleet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import pty
 
     ends = [end for _ in range(2) for end in pty.openpty()]
     port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
-    monkeypatch.setattr("tiniscript.link.ports.listed", lambda: [ports.Found(port, "")])
+    monkeypatch.setattr(ports, "listed", lambda: [ports.Found(port, "")])
     monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_S", 1.0)
-    done = tsc("ping", "--all", "--count", "1")
+    done = inside("ping", "--all", "--count", "1")
     assert done.code == 0
     assert len(done.out.splitlines()) == 4
     assert done.err == f"Done: 4 of 4.\nNo robot answers on {port}.\n"
-    monkeypatch.setattr("tiniscript.link.ports.listed", list)
-    monkeypatch.setattr("tiniscript.library.opening.ANSWER_MS", 1000)
+    monkeypatch.setattr(ports, "listed", list)
+    monkeypatch.setattr(opening, "ANSWER_MS", 1000)
     known_ports.remember(known, "R9", is_used=False)
-    done = tsc("ping", "--all", "--count", "1")
+    done = inside("ping", "--all", "--count", "1")
     assert done.code == 3
     assert f"R9 ({known}): nothing answers" in done.out
     assert "Done: 4 of 5." in done.err
@@ -218,28 +219,14 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
         os.close(end)
 
 
-def test_a_program_with_mistakes_reaches_nobody(class_: RobotFleet) -> None:
-    assert inside("upload", "-e", "F(2 80)", "--all").code == 1
-    assert not any(pupil.heard for pupil in class_.pupils)
-    assert inside("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
-
-
-def test_a_fault_is_a_row_of_its_robot(class_: RobotFleet) -> None:
-    text = "SI|X = DISTANCE;SHOW(1 / X)"
-    done = inside("upload", "-e", text, "--all", "--no-save")
-    assert done.code == 3
-    assert done.out.count("DIVIDE_BY_ZERO") == 4
-    assert done.out.count("line 1") == 4
-
-
-def test_nobody_and_wrong_use(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tiniscript.link.ports.listed", list)
+def test_nobody_and_wrong_use(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ports, "listed", list)
     for language, words in (("en", "no robot answers"), ("es", "ningún robot responde")):
-        done = tsc("stop", "--all", "--lang", language)
+        done = inside("stop", "--all", "--lang", language)
         assert done.code == 3
         assert words in done.err
-        assert tsc("stop", "--all", "--port", "x", "--lang", language).code == 2
-        assert tsc("info", "--port", "a\0b", "--port", "x", "--lang", language).code == 2
+        assert inside("stop", "--all", "--port", "x", "--lang", language).code == 2
+        assert inside("info", "--port", "a\0b", "--port", "x", "--lang", language).code == 2
 
 
 def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -> None:

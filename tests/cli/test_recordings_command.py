@@ -8,7 +8,7 @@ from time import monotonic
 
 import pytest
 
-from tests.support.command import Done, Tsc, process
+from tests.support.command import Done, Tsc, inside
 from tiniscript import compile
 from tiniscript.cli.commands import upload
 from tiniscript.cli.errors import CommandError
@@ -36,7 +36,7 @@ def of_the_page(*events: tuple[int, str]) -> bytes:
 def test_a_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.jsonl"
     program.write_text(TEXT)
-    done = process("upload", program, "--virtual", "--record", file)
+    done = inside("upload", program, "--virtual", "--record", file)
     assert (done.code, "3" in done.err) == (1, True)
     found = read(file.read_bytes())
     assert found.program == CHECKSUM
@@ -60,7 +60,7 @@ def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
 ) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.jsonl"
     program.write_text("X = 0; LOOP(6); W(2); X = X + 1; SHOW(X); END_LOOP; W(3)")
-    done = process("upload", program, "--virtual", "--hurry", hurry, "--record", file)
+    done = inside("upload", program, "--virtual", "--hurry", hurry, "--record", file)
     assert done.code == 0, done.err
     events = read(file.read_bytes()).events
     assert [each.event for each in events] == [*(f"SHOW {k}" for k in range(1, 7)), "DONE"]
@@ -73,7 +73,7 @@ def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
 def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.jsonl"
     program.write_text("SHOW(TRUE); W(FOREVER) UNTIL(FALSE)")
-    process("upload", program, "--virtual", "--hurry", "max", "--for", "30", "--record", file)
+    inside("upload", program, "--virtual", "--hurry", "max", "--for", "30", "--record", file)
     first, last = read(file.read_bytes()).events
     assert (first.event, last.event) == ("SHOW TRUE", "STOPPED")
     assert first.ms <= 100 and last.ms >= 29_900

@@ -1,6 +1,6 @@
 """`tsc undo`: what a person is told when the program before comes back, or cannot.
 
-The robot is the firmware in C++, `tsc` a process of its own.
+The robot is the firmware in C++.
 """
 
 from __future__ import annotations

@@ -7,7 +7,6 @@ import json
 import re
 import signal
 import socket
-import subprocess
 import sys
 from collections import Counter
 from collections.abc import Iterator
@@ -17,8 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import OBSTACLE, TSC, Command, Done, Tsc, inside
-from tests.support.waiting import HANGS_S
+from tests.support.command import OBSTACLE, Command, Done, Tsc, inside
 from tiniscript.cli.commands.robot import ended_by_signal
 from tiniscript.library import install_advice
 from tiniscript.link import ports
@@ -30,16 +28,13 @@ FOREVER = "SI|LOOP(FOREVER);L(1, 30);END_LOOP"
 class Robot:
     """A `tsc robot` that runs."""
 
-    def __init__(self, *arguments: str | Path) -> None:
-        self._process = subprocess.Popen(
-            [*TSC, "robot", *map(str, arguments)],
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        )  # fmt: skip
+    def __init__(self, *words: str | Path) -> None:
+        self.command = Command("robot", *map(str, words))
         self.port = self.line()
 
     def line(self) -> str:
-        assert self._process.stdout
-        return self._process.stdout.readline().removesuffix("\n")
+        assert self.command.process.stdout
+        return self.command.process.stdout.readline().decode().removesuffix("\n")
 
     def until(self, said: str) -> list[str]:
         """Return the lines up to one that ends so."""
@@ -50,14 +45,13 @@ class Robot:
         return lines
 
     def kill(self) -> None:
-        self._process.kill()
-        self._process.communicate()
+        self.command.process.kill()
+        self.command.process.communicate()
 
     def end(self, number: int = signal.SIGINT) -> Done:
-        if self._process.poll() is None:
-            self._process.send_signal(number)
-        out, err = self._process.communicate(timeout=HANGS_S)
-        return Done(self._process.returncode, out, err)
+        if self.command.process.poll() is None:
+            self.command.signal(number)
+        return self.command.ended()
 
 
 @contextmanager
@@ -113,11 +107,10 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
 @pytest.mark.parametrize("hurry", ["1", "50"])
 def test_a_computer_that_vanishes_stops_the_robot(hurry: str) -> None:
     with robot("--hurry", hurry) as found:
-        command = [*TSC, "upload", "--port", found.port, "-e", FOREVER]
-        upload = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+        upload = Command("upload", "--port", found.port, "-e", FOREVER)
         found.until("0 MOTORS -30 30")
-        upload.kill()
-        upload.wait()
+        upload.process.kill()
+        upload.process.communicate()
         line = "MOTORS"
         while "MOTORS" in line:
             line = found.line()
@@ -139,74 +132,42 @@ def test_ctrl_c_counts_wherever_it_comes(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_a_second_computer_is_told_that_the_port_is_taken() -> None:
-    with robot() as found, visitor(found.port) as first:
-        first.sendall(b"SHOW(1)\n")
-        assert first.recv(1000)  # it is heard
-        done = inside("info", "--port", found.port)
-        assert done.code == 3
-        assert f"another program is using the port {found.port}" in done.err
-        with visitor(found.port) as third:
-            assert third.recv(1000).startswith(b"Port already in use")
-            assert third.recv(1000) == b""
-
-
-def test_the_next_computer_has_it_alone() -> None:
-    """What the one before it has begun to say is none of its words."""
+    """What the one before it has begun to say is none of the words of the next one."""
     with robot() as found:
         with visitor(found.port) as first:
+            first.sendall(b"SHOW(1)\n")
+            assert first.recv(1000)  # it is heard
+            done = inside("info", "--port", found.port)
+            assert done.code == 3
+            assert f"another program is using the port {found.port}" in done.err
+            with visitor(found.port) as third:
+                assert third.recv(1000).startswith(b"Port already in use")
+                assert third.recv(1000) == b""
             first.sendall(b"\x05half a frame")
         done = inside("upload", "--port", found.port, "-e", "SI|F(0.1, 50)")
         assert (done.code, done.err) == (0, "")
 
 
 def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
+    """The button starts it at the same millisecond, so with the same seed all is the same."""
     memory = tmp_path / "kept.bin"
+    text = OBSTACLE.replace("SI|", "SB|")
     with robot("--memory", memory) as found:
-        assert inside("upload", "--virtual", "-e", "SB|F(0.1, 60)").code == 0
+        assert inside("upload", "--virtual", "-e", text).code == 0
         assert inside("name", "INTI", "--virtual").code == 0
         found.end(signal.SIGTERM)
     assert len(memory.read_bytes()) == 1024
-    with robot("--memory", memory, "--button-at", "0.5", "--hurry", "max", "--for", "3") as found:
-        assert found.until("100 DONE")[0] == "0 START"
-        assert found.end().code == 0
-    with robot("--memory", memory):
-        assert json.loads(inside("info", "--virtual", "--json").out)["name"] == "INTI"
-
-
-def test_what_it_drives_when_its_time_is_over_counts(tmp_path: Path) -> None:
-    memory = tmp_path / "kept.bin"
-    with robot("--memory", memory):
-        assert inside("upload", "--virtual", "-e", "SB|F(30, 60)").code == 0
-    options = ("--memory", str(memory), "--button-at", "0.5", "--hurry", "max", "--for", "3")
-    done = inside("robot", *options)
-    found = re.search(r"drove (\d+) cm in 3.0 s", done.err)
-    assert found and int(found[1]) > 50, done.err
-
-
-def test_it_ends_by_itself_and_chance_begins_with_its_seed(tmp_path: Path) -> None:
-    """The button starts it at the same millisecond, so all is the same."""
-    memory = tmp_path / "kept.bin"
-    with robot("--memory", memory):
-        text = OBSTACLE.replace("SI|", "SB|")
-        assert inside("upload", "--virtual", "-e", text).code == 0
-    options = [
-        "--memory",
-        str(memory),
-        "--button-at",
-        "1",
-        "--for",
-        "20",
-        "--hurry",
-        "max",
-        "--noise",
-    ]
+    options = ("--button-at", "1", "--for", "20", "--hurry", "max", "--noise", "5", "--lang", "es")
     first, second, other = (
-        inside("robot", *options, "5", "--seed", seed, "--lang", "es") for seed in "112"
+        inside("robot", "--memory", memory, *options, "--seed", seed) for seed in "112"
     )
     assert first.code == 0
     assert first.out.count("READ DISTANCE") > 10
     assert first.out.splitlines()[1:] == second.out.splitlines()[1:] != other.out.splitlines()[1:]
-    assert "El robot virtual recorrió" in first.err
+    found_cm = re.search(r"El robot virtual recorrió (\d+) cm en 20.0 s", first.err)
+    assert found_cm and int(found_cm[1]) > 50, "what it drives when its time is over counts"
+    with robot("--memory", memory):
+        assert json.loads(inside("info", "--virtual", "--json").out)["name"] == "INTI"
 
 
 def test_a_pseudo_terminal_is_a_port_too() -> None:
@@ -316,24 +277,16 @@ def test_upload_and_live_say_what_they_say_of_any_robot() -> None:
 
 def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
-    command = [*TSC, "upload", "--virtual", "-e", "SI|LOOP(FOREVER);F(0.1, 30);SHOW(1);END_LOOP",
-               "--plot", str(picture)]  # fmt: skip
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as up:
-        assert up.stdout and up.stderr
-        assert "SI: running" in up.stdout.readline()
-        assert up.stdout.readline() == "SHOW 1\n"
-        up.send_signal(signal.SIGINT)
-        out, err = up.communicate(timeout=HANGS_S)
-    assert up.returncode == 2
-    assert "Stopped: the robot has confirmed it." in err
-    assert str(picture) in out
+    text = "SI|LOOP(FOREVER);F(0.1, 30);SHOW(1);END_LOOP"
+    command = Command("upload", "--virtual", "-e", text, "--plot", str(picture))
+    command.until("SI: running")
+    command.until("SHOW 1")
+    command.signal(signal.SIGINT)
+    done = command.ended()
+    assert done.code == 2
+    assert "Stopped: the robot has confirmed it." in done.err
+    assert str(picture) in done.out
     assert picture.read_bytes().startswith(b"\x89PNG")
-
-
-def test_without_a_robot_the_virtual_one_is_named() -> None:
-    done = inside("upload", "-e", "SI|S")
-    assert done.code == 3
-    assert "Without a robot:  --virtual" in done.err
 
 
 def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
@@ -398,17 +351,15 @@ def test_a_port_that_is_taken_and_a_memory_that_is_none(tsc: Tsc, tmp_path: Path
     assert "that has 1024 bytes" in done.err
 
 
-@pytest.mark.parametrize(
-    ("name", "arguments"),
-    [
-        ("wasmtime", "upload --virtual -e SI|S"),
-        ("wasmtime", "robot --for 1"),
-        ("wasmtime", "lesson check 1 -e SI|S"),
-        ("PIL", "upload --virtual -e SI|S --plot way.png"),
-    ],
-)
-def test_what_is_not_installed_is_said(name: str, arguments: str) -> None:
-    code = f"import sys; sys.modules[{name!r}] = None; from tiniscript.cli import main; "
-    done = Command(*arguments.split(), code=f"{code} sys.exit(main())").ended()
-    assert done.code == 2
-    assert install_advice.command("virtual") in done.err
+@pytest.mark.parametrize(("name", "commands"), [
+    ("wasmtime", ["upload --virtual -e SI|S", "robot --for 1", "lesson check 1 -e SI|S"]),
+    ("PIL", ["upload --virtual -e SI|S --plot way.png"]),
+])  # fmt: skip
+def test_what_is_not_installed_is_said(name: str, commands: list[str]) -> None:
+    code = (
+        f"import sys; sys.modules[{name!r}] = None; from tiniscript.cli import main;"
+        "sys.exit(str([main(each.split()) for each in sys.argv[1:]]))"
+    )
+    done = Command(*commands, code=code).ended()
+    assert done.err.endswith(f"{[2] * len(commands)}\n")
+    assert done.err.count(install_advice.command("virtual")) == len(commands)
