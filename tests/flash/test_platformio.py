@@ -66,10 +66,10 @@ def test_no_test_case_fails(project: Path) -> None:
 
 def test_early_end_fails(project: Path) -> None:
     """A run that stops in the middle is no success, whatever its exit code."""
-    broken = project / "test" / "test_verify.cpp"
+    broken = project / "test" / "test_cases.cpp"
     with changed(
         broken,
-        ('TEST_CASE("every rule', 'TEST_CASE("ends") { exit(0); }\nTEST_CASE("every rule'),
+        ('TEST_CASE("a robot does', 'TEST_CASE("ends") { exit(0); }\nTEST_CASE("a robot does'),
         ("#include <doctest.h>", "#include <doctest.h>\n#include <stdlib.h>"),
     ):
         code, log = pio(project, "test", "-e", "native")

@@ -16,8 +16,7 @@ from pathlib import Path
 from struct import pack
 from typing import TYPE_CHECKING
 
-from tests.machines.chips import ran
-from tests.machines.host import SOURCES, WARNINGS, Ran, contents, kept, run_request
+from tests.machines.host import SOURCES, WARNINGS, Ran, contents, kept, ran, run_request
 from tiniscript.base.kit import Kit
 
 if TYPE_CHECKING:

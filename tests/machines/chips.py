@@ -1,35 +1,17 @@
-"""What a chip answers to the request to run an image, whichever chip it is.
-
-`vm_arduino/extras/chip/runner.cpp` is the other side.
-"""
+"""What a chip is for tests, whichever chip it is."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
-from tests.machines.host import REFUSAL_NAMES, RULE_NAMES, Ran
+from tests.machines.host import Ran
 from tiniscript.base.kit import Kit
 from tiniscript.base.limits import CODE_BYTES
-from tiniscript.bytecode.image import HEADER_BYTES, ImageRefused
-from tiniscript.bytecode.verify import Refused
+from tiniscript.bytecode.image import HEADER_BYTES
 
 if TYPE_CHECKING:
     from tests.machines import Senses
-
-
-def ran(answer: str) -> Ran:
-    """Return the run that an answer tells of, or raise what refuses the image."""
-    trace, _, last = answer.removesuffix("\n").rpartition("\n")
-    words = last.split()
-    assert len(words) == 3, f"the chip ends with {answer[-2000:]!r}"
-    first, second = int(words[1]), int(words[2])
-    if words[0] == "REFUSED":
-        raise ImageRefused(REFUSAL_NAMES[first])
-    if words[0] == "BREAKS":
-        raise Refused(RULE_NAMES[first], second)
-    assert words[0] == "RAN", last
-    return Ran(first, second, trace + "\n")
 
 
 class Chip(NamedTuple):

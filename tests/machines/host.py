@@ -124,18 +124,12 @@ class Host(Process):
         Each `not_ready`th time that the robot is asked, it is not ready; `begin_ms` is what the
         clock of the machine says at the beginning.
         """
-        answer = self.ask(b"R", run_request(image, kit, senses, not_ready, begin_ms))
-        if answer[0]:
-            raise ImageRefused(REFUSAL_NAMES[answer[0]])
-        if answer[1]:
-            raise Refused(RULE_NAMES[answer[1]], int.from_bytes(answer[2:4], "little"))
-        if answer[4]:
-            raise ImageRefused(REFUSAL_NAMES[answer[4]])
-        return _ran(answer[5:])
+        request = run_request(image, kit, senses, not_ready, begin_ms)
+        return ran(self.ask(b"R", request).decode())
 
     def run_unverified(self, code: bytes, kit: Kit, senses: Senses) -> Ran:
         """Run code whatever it is: it must end in a fault or go on, never outside its memory."""
-        return _ran(self.ask(b"U", run_request(code, kit, senses)))
+        return ran(self.ask(b"U", run_request(code, kit, senses)).decode())
 
     def run_late(self, image: bytes, kit: Kit, senses: Senses, late_ms: Sequence[int]) -> str:
         """Return the trace where the tick after each wait comes so late; after the last it ends."""
@@ -179,21 +173,28 @@ def _texts(texts: Iterable[bytes]) -> bytes:
     return b"".join(part for text in texts for part in (pack("<I", len(text)), text))
 
 
-def _ran(answer: bytes) -> Ran:
-    offset, steps = Struct("<HI").unpack_from(answer)
-    return Ran(offset, steps, answer[10:].decode())
+def ran(answer: str) -> Ran:
+    """Return the run that an answer tells of, or raise what refuses the image."""
+    trace, _, last = answer.removesuffix("\n").rpartition("\n")
+    words = last.split()
+    assert len(words) == 3, f"the machine ends with {answer[-2000:]!r}"
+    first, second = int(words[1]), int(words[2])
+    if words[0] == "REFUSED":
+        raise ImageRefused(REFUSAL_NAMES[first])
+    if words[0] == "BREAKS":
+        raise Refused(RULE_NAMES[first], second)
+    assert words[0] == "RAN", last
+    return Ran(first, second, trace + "\n")
 
 
 def built(sources: Path, builds: Path = BUILDS) -> Path:
     """Return the program made from `sources`, a folder like `vm_arduino`."""
     inputs = sorted(
         path
-        for folder in ("src", "src/vm", "extras/host")
+        for folder in ("src", "src/vm", "extras/chip", "extras/host")
         for path in (sources / folder).glob("*")
         if path.suffix in (".h", ".cpp")
     )
-    shared = ("answers.cpp", "answers.h", "port.h", "request.h")
-    inputs += [sources / "extras/chip" / name for name in shared]
     return compiled(inputs, FLAGS, builds)
 
 

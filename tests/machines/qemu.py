@@ -15,8 +15,7 @@ from struct import pack
 from threading import Timer
 from typing import TYPE_CHECKING
 
-from tests.machines.chips import ran
-from tests.machines.host import SOURCES, WARNINGS, Process, Ran, contents, kept, run_request
+from tests.machines.host import SOURCES, WARNINGS, Process, Ran, contents, kept, ran, run_request
 from tests.machines.text_reader import Answer
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import STARTS

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from tests.machines import Senses
-from tests.machines.chips import Chip, ran
-from tests.machines.host import Ran, run_request
+from tests.machines.chips import Chip
+from tests.machines.host import Ran, ran, run_request
 from tests.machines.python import ran_python
 from tests.support.cpp_edges import changed_code, kit_of
 from tests.support.kits import KITS

@@ -24,7 +24,7 @@ from tools import ROOT
 from tools.generate import avr_header, cpp_header, link_header, remark_tables, text_tables
 from tools.generate.arena import world_picture
 from tools.generate.command_pages import DOCUMENTED, page
-from tools.generate.cpp_cases import cases_header, cases_tables
+from tools.generate.cpp_cases import cases_table
 from tools.generate.documents import DOCUMENTS, list_of_documents, spliced, table
 from tools.generate.driver_lists import with_drivers
 from tools.generate.front import fronts
@@ -249,8 +249,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (ROOT / "docs" / "worlds.svg", partial(world_picture, COMMAND)),
     *((ROOT / "docs" / name, make) for name, make in guide_pictures(COMMAND).items()),
     (ROOT / LIST, partial(list_of_documents, COMMAND)),  # which reads the other documents' titles
-    (ROOT / "vm_arduino" / "test" / "cases.h", partial(cases_header, COMMAND)),
-    (ROOT / "vm_arduino" / "test" / "cases.cpp", partial(cases_tables, COMMAND)),
+    (ROOT / "vm_arduino" / "test" / "cases.cpp", partial(cases_table, COMMAND)),
     (CONFORMANCE / "machine.json", partial(machine_kit, COMMAND)),
     (CONFORMANCE / "link.json", partial(link_kit, COMMAND)),
     *(

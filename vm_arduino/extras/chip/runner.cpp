@@ -3,6 +3,7 @@
 #include "../../src/vm/image.h"
 #include "../../src/vm/verify.h"
 #include "../../src/vm/vm.h"
+#include "answers.h"
 #include "text.h"
 #include "traced_robot.h"
 
@@ -35,7 +36,8 @@ void end(const char* what, uint32_t first, uint32_t second) {
   put('\n');
 }
 
-void say_fault() {
+void say_end(Status status) {
+  if (status == Status::kDone) return robot.say("DONE\n");
   robot.say("FAULT ");
   if (machine.fault() == Fault::kOverflow) return put_text("OVERFLOW\n");
   if (machine.fault() == Fault::kDivideByZero) return put_text("DIVIDE_BY_ZERO\n");
@@ -48,30 +50,36 @@ uint32_t run(const Image& image, const Limits& limits) {
   for (int32_t& reading : readings) reading = 0;
   machine.start(image.code, image.code_length, readings, robot.sensor_count, limits.seed,
                 limits.begin_ms);
+  robot.has_tasks = machine.has_tasks();
   uint32_t steps = 0;
   uint32_t left = limits.max_steps;  // before the clock must move
   for (;;) {
     const uint8_t budget = left < kSlice ? static_cast<uint8_t>(left) : kSlice;
-    const Status status = machine.tick(robot.now_ms + limits.begin_ms, budget);
+    const uint32_t now_ms = static_cast<uint32_t>(robot.now_ms);
+    robot.must_wait = false;
+    const Status status = machine.tick(now_ms + limits.begin_ms, budget);
     const uint8_t ran = static_cast<uint8_t>(budget - machine.left());
     steps += ran;
     left -= ran;
-    if (status == Status::kDone) {
-      robot.say("DONE\n");
-      return steps;
-    }
-    if (status == Status::kFault) {
-      say_fault();
+    if (status >= Status::kDone) {
+      if (!robot.is_off) robot.say("NOT OFF\n");
+      // nothing happens any more
+      if (machine.tick(now_ms + limits.begin_ms, kSlice) != status) robot.say("GOES ON\n");
+      say_end(status);
       return steps;
     }
     if (status == Status::kWaiting) {
       uint32_t wake_ms = machine.wake_ms() - limits.begin_ms;
-      if (wake_ms > robot.now_ms) wake_ms += limits.late_ms;
+      if (wake_ms > now_ms) wake_ms += limits.late_ms;
       if (wake_ms > limits.max_ms) {
         robot.now_ms = limits.max_ms;
         left = 0;
       } else {
-        if (wake_ms > robot.now_ms) left = limits.max_steps;
+        if (wake_ms > now_ms) {
+          left = limits.max_steps;
+          // a tick that is too early changes nothing
+          if (limits.late_ms == 0) machine.tick(wake_ms - 1 + limits.begin_ms, kSlice);
+        }
         robot.now_ms = wake_ms;
       }
     }
@@ -114,6 +122,25 @@ void answer_run(Request request, bool is_verified, uint32_t late_ms) {
   }
   const uint32_t steps = run(image, limits);
   end("RAN", machine.at(), steps);
+}
+
+bool answer_any(Request request, size_t request_end) {
+  switch (request.u8()) {
+    case 'R':
+      answer_run(request);
+      return true;
+    case 'V':
+      answer_verdicts(request, request_end);
+      return true;
+    case 'I':
+      answer_images(request, request_end);
+      return true;
+    case 'A':
+      answer_arithmetic(request, request_end);
+      return true;
+    default:
+      return false;
+  }
 }
 
 }  // namespace tiniscript

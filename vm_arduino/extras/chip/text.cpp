@@ -21,8 +21,8 @@ void put_text(const char* text) {
   while (*text != 0) put(*text++);
 }
 
-void put_size(uint32_t size) {
-  char digits[10];
+void put_size(unsigned long size) {
+  char digits[20];
   uint8_t count = 0;
   do {
     digits[count++] = static_cast<char>('0' + size % 10);

@@ -8,7 +8,7 @@
 namespace tiniscript {
 
 void put_text(const char* text);
-void put_size(uint32_t size);
+void put_size(unsigned long size);
 void put_number(int32_t value);
 
 // Thousandths as the shortest decimal: `12.5`, `-0.001`, `7`; or TRUE or FALSE.

@@ -23,8 +23,9 @@ void put_device(size_t name, int32_t value, bool is_yes_no) {
 
 bool TracedRobot::read(Request* request) {
   now_ms = 0;
+  must_wait = is_off = false;
   sensor_count = request->u8();
-  if (sensor_count > sizeof sensors / sizeof sensors[0]) return false;
+  if (sensor_count > kMostSensors) return false;
   for (uint8_t k = 0; k < sensor_count; k++) {
     Sensor& sensor = sensors[k];
     sensor.name = request->text();
@@ -36,7 +37,7 @@ bool TracedRobot::read(Request* request) {
     request->skip(sizeof(int32_t) * sensor.count);
   }
   actuator_count = request->u8();
-  if (actuator_count > sizeof actuators / sizeof actuators[0]) return false;
+  if (actuator_count > kMostActuators) return false;
   for (uint8_t k = 0; k < actuator_count; k++) {
     Actuator& actuator = actuators[k];
     actuator.name = request->text();
@@ -52,7 +53,11 @@ bool TracedRobot::read(Request* request) {
   return true;
 }
 
-bool TracedRobot::is_ready() { return not_ready == 0 || ++asked % not_ready != 0; }
+bool TracedRobot::is_ready() {
+  if (must_wait && !has_tasks) say("ASKED AGAIN AT ONCE\n");
+  must_wait = not_ready != 0 && ++asked % not_ready == 0;
+  return !must_wait;
+}
 
 void TracedRobot::say(const char* what) const {
   put_size(now_ms);
@@ -61,6 +66,7 @@ void TracedRobot::say(const char* what) const {
 }
 
 void robot_motors(int8_t left, int8_t right) {
+  robot.is_off = false;
   robot.say("MOTORS ");
   put_number(left);
   put(' ');
@@ -69,7 +75,7 @@ void robot_motors(int8_t left, int8_t right) {
 }
 
 // The final stop is no line of a trace.
-void robot_off() {}
+void robot_off() { robot.is_off = true; }
 
 bool robot_read(uint8_t sensor, int32_t* value) {
   if (!robot.is_ready()) return false;
@@ -110,6 +116,7 @@ uint16_t robot_device_hash(uint16_t device) {
 }
 
 void robot_set(uint8_t actuator, int32_t value) {
+  if (actuator >= robot.actuator_count) return;  // the code was not verified
   const TracedRobot::Actuator& to = robot.actuators[actuator];
   if (!to.is_yes_no) {
     // its limits are whole units, and within them a product has 32 bits

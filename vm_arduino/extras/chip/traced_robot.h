@@ -1,7 +1,7 @@
-// A robot that only records what it does, in memory of fixed size.
+// A robot that only records what it does, as the lines of `tsc run`, in memory of fixed size.
 //
-// Defines what `robot.h` declares, and means the same as `../host/traced_robot.h`; its names and
-// readings stay in the request.
+// Defines what `robot.h` declares. Readings come from lists: each takes the next value, the last
+// one repeats, no list is 0. Names and readings stay in the request.
 
 #ifndef TINISCRIPT_CHIP_TRACED_ROBOT_H_
 #define TINISCRIPT_CHIP_TRACED_ROBOT_H_
@@ -9,6 +9,14 @@
 #include "request.h"
 
 namespace tiniscript {
+
+#ifdef __AVR__
+constexpr uint8_t kMostSensors = 8;
+constexpr uint8_t kMostActuators = 4;
+#else  // more than a profile may have
+constexpr uint8_t kMostSensors = 255;
+constexpr uint8_t kMostActuators = 255;
+#endif
 
 struct TracedRobot {
   struct Sensor {
@@ -27,15 +35,18 @@ struct TracedRobot {
     bool is_yes_no;
   };
 
-  uint32_t now_ms;
+  unsigned long now_ms;  // does not wrap around on a computer
   uint32_t not_ready;  // every so many questions the robot is not ready; 0: always ready
   uint32_t asked;
   uint32_t speed;
   uint32_t turn;
+  bool has_tasks;  // each of them asks by itself
+  bool must_wait;  // it was not ready, and this tick should be over
+  bool is_off;     // and no motor was set since
   uint8_t sensor_count;
   uint8_t actuator_count;
-  Sensor sensors[8];
-  Actuator actuators[4];
+  Sensor sensors[kMostSensors];
+  Actuator actuators[kMostActuators];
 
   // Takes sensors, readings and actuators from a request and starts at 0 ms. False: there are more
   // than fit.
