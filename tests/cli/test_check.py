@@ -6,6 +6,7 @@ import csv
 import json
 import os
 from io import StringIO
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -140,9 +141,11 @@ def test_a_table_of_one_program_is_refused(folder: Path, tsc: Tsc) -> None:
 
 
 def test_fix_writes_the_sure_repairs_and_says_what_is_left(folder: Path, tsc: Tsc) -> None:
+    """Twice is once."""
     done = tsc("check", "--fix", "sub/c.ts", "--lang", "es")
     assert done.code == 1
-    assert (folder / "sub" / "c.ts").read_text("utf-8") == "SI|F(2, 80);girar(derecha, 90)\n"
+    once = (folder / "sub" / "c.ts").read_bytes()
+    assert once == b"SI|F(2, 80);girar(derecha, 90)\n"
     assert done.out == (
         "--- sub/c.ts\n+++ sub/c.ts\n@@ -1,2 +1,2 @@\n"
         "-SI|F(2 80);girar(derecha, 90)\n+SI|F(2, 80);girar(derecha, 90)\n \n"
@@ -152,11 +155,6 @@ def test_fix_writes_the_sure_repairs_and_says_what_is_left(folder: Path, tsc: Ts
         "Lo que queda lo corriges tú, porque puede querer decir varias cosas:\n"
     )
     assert "la palabra es R" in done.err
-
-
-def test_fix_twice_is_fix_once(folder: Path, tsc: Tsc) -> None:
-    tsc("check", "--fix", "sub/c.ts")
-    once = (folder / "sub" / "c.ts").read_bytes()
     done = tsc("check", "--fix", "sub/c.ts")
     assert ((folder / "sub" / "c.ts").read_bytes(), done.out) == (once, "")
     assert "nothing here that tsc can safely repair" in done.err
@@ -172,18 +170,14 @@ def test_a_difference_alone_writes_nothing(folder: Path, tsc: Tsc, option: str) 
         assert done.err == "b.ts: 1 mistake can be repaired. Try:  tsc check --fix\n"
 
 
-@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
-@pytest.mark.parametrize("bom", [b"", b"\xef\xbb\xbf"])
-@pytest.mark.parametrize("last", ["", "END"])
-def test_a_file_keeps_its_line_ends_and_its_mark(
-    folder: Path, tsc: Tsc, end: str, bom: bytes, last: str
-) -> None:
-    last = end if last else ""
-    text = f"SI|F(2 80) // ñandú{end}{end}\tR(1,5, 60){last}"
-    (folder / "b.ts").write_bytes(bom + text.encode())
-    assert tsc("check", "--fix", "b.ts").code == 0
-    right = f"SI|F(2, 80) // ñandú{end}{end}\tR(1.5, 60){last}"
-    assert (folder / "b.ts").read_bytes() == bom + right.encode()
+def test_a_file_keeps_its_line_ends_and_its_mark(folder: Path, tsc: Tsc) -> None:
+    for end, bom, has_last in product(("\n", "\r\n", "\r"), (b"", b"\xef\xbb\xbf"), (False, True)):
+        last = end if has_last else ""
+        text = f"SI|F(2 80) // ñandú{end}{end}\tR(1,5, 60){last}"
+        (folder / "b.ts").write_bytes(bom + text.encode())
+        assert tsc("check", "--fix", "b.ts").code == 0
+        right = f"SI|F(2, 80) // ñandú{end}{end}\tR(1.5, 60){last}"
+        assert (folder / "b.ts").read_bytes() == bom + right.encode()
 
 
 def test_without_a_file_the_program_is_printed(tsc: Tsc) -> None:
@@ -191,31 +185,24 @@ def test_without_a_file_the_program_is_printed(tsc: Tsc) -> None:
     assert (done.code, done.out) == (0, "F(2, 80)")
 
 
-def test_what_is_no_text_stays_as_it_is(folder: Path, tsc: Tsc) -> None:
-    (folder / "b.ts").write_bytes(b"F(2 80)\xff")
-    done = tsc("check", "--fix", "b.ts")
-    assert (done.code, (folder / "b.ts").read_bytes()) == (1, b"F(2 80)\xff")
-    assert "TS003" in done.err
-
-
-@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-be", "utf-16-le"])
-def test_notepad_s_unicode_is_text_in_another_encoding(
-    tmp_path: Path, tsc: Tsc, encoding: str
+def test_what_is_no_text_and_a_line_with_a_checksum_stay_as_they_are(
+    folder: Path, tsc: Tsc
 ) -> None:
+    for data, code in ((b"F(2 80)\xff", "TS003"), (b"SI|F(2 80);S~21FFE748\n", "TS")):
+        (folder / "b.ts").write_bytes(data)
+        done = tsc("check", "--fix", "b.ts")
+        assert (done.code, (folder / "b.ts").read_bytes()) == (1, data)
+        assert code in done.err
+
+
+def test_notepad_s_unicode_is_text_in_another_encoding(tmp_path: Path, tsc: Tsc) -> None:
     """So PowerShell's > writes it, too: `explain TS003` names it, and what to choose."""
     path = tmp_path / "unicode.ts"
-    path.write_bytes(("" if encoding == "utf-16" else "\ufeff").encode(encoding)
-                     + RIGHT.encode(encoding))  # fmt: skip
-    assert "TS003" in tsc("check", path).err
+    for encoding, mark in (("utf-16", ""), ("utf-16-be", "\ufeff"), ("utf-16-le", "\ufeff")):
+        path.write_bytes((mark + RIGHT).encode(encoding))
+        assert "TS003" in tsc("check", path).err, encoding
     path.write_bytes(RIGHT.encode("utf-16-le"))  # without its mark it may be anything
     assert "TS002" in tsc("check", path).err
-
-
-def test_a_line_with_a_checksum_is_not_repaired(folder: Path, tsc: Tsc) -> None:
-    line = "SI|F(2 80);S~21FFE748\n"
-    (folder / "b.ts").write_text(line, encoding="utf-8")
-    assert tsc("check", "--fix", "b.ts").code == 1
-    assert (folder / "b.ts").read_text("utf-8") == line
 
 
 def test_a_file_that_cannot_be_written_is_as_it_was(

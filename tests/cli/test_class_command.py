@@ -23,6 +23,7 @@ from tests.support.command import FOREVER, Command, inside, process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto
 from tests.support.pty_robot import on
+from tests.support.rows import each_row
 from tests.support.waiting import HANGS_S, until
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import robot_broker
@@ -240,7 +241,7 @@ def test_what_a_stranger_retains_reaches_no_terminal_raw(tmp_path: Path) -> None
         broker.kill()
 
 
-@pytest.mark.parametrize("words", [
+@each_row("words", [
     [], ["--user", "x"], ["--broker", ""], ["--broker", "x:0"], ["--broker", "x:65536"],
     ["--broker", "http://x"], ["--broker", "x", "--class", "a/b"],
     ["--broker", "x", "--class", "#"], ["--broker", "x", "--class", ""],
@@ -254,7 +255,7 @@ def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: lis
         assert done.code == 2 and done.err.startswith("tsc: ") and not done.out
 
 
-@pytest.mark.parametrize("words", [
+@each_row("words", [
     ["--broker", "x", "--no-broker"], ["NET", "--broker", "x"], ["--forget", "--no-broker"],
     ["--user", "x"], ["--class", "x"], ["--broker", "no.such.host.invalid"],
 ])  # fmt: skip

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import OBSTACLE, PROGRAM, Tsc, inside
+from tests.support.rows import each_row
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import FAULTS
@@ -25,29 +26,22 @@ def test_compile_writes_the_image_and_nothing_else(tsc: Tsc, program: Path) -> N
     assert "18 bytes (3 of code)   stack 0 of 16   runs 5 s" in done.out
     assert unpack(target.read_bytes()).code.hex() == "448c50"
     assert sorted(each.name for each in program.parent.glob("*.*")) == ["drive.ts", "out.bin"]
-
-
-def test_compile_goes_beside_the_source(tsc: Tsc, program: Path) -> None:
     assert tsc("compile", program).code == 0
-    assert program.with_suffix(".bin").exists()
+    assert program.with_suffix(".bin").read_bytes() == target.read_bytes()
+    assert tsc("compile", "-e", PROGRAM).code == 2, "it needs a name for the image"
 
 
-@pytest.mark.parametrize(
-    ("text", "runs"),
-    [
-        ("W(1.5);BEEP(0.25, 440)", "runs 1.75 s"),
-        ("IF(DISTANCE < 5);W(2);ELSE;W(8);ENDIF", "runs 2 to 8 s"),
-        ("F(5,80) UNTIL(DISTANCE < 5)", "runs 0 to 5 s"),
-        ("W(1);W(DISTANCE)", "runs at least 1 s"),
-        ("LOOP(FOREVER);W(1);END_LOOP", "runs until it is stopped"),
-        ("LOOP(FOREVER);W(1);IF(DISTANCE < 5);BREAK;ENDIF;END_LOOP", "stack 1 of 16\n"),
-        ("W(5);SHOW(1 / 0);W(5)", "stack 2 of 16\n"),
-        (
-            "LOOP(FOREVER);IF(DISTANCE < 5);BREAK;ENDIF;LOOP(FOREVER);W(1);END_LOOP;END_LOOP",
-            "stack 1 of 16\n",
-        ),
-    ],
-)
+@each_row("text, runs", [
+    ("W(1.5);BEEP(0.25, 440)", "runs 1.75 s"),
+    ("IF(DISTANCE < 5);W(2);ELSE;W(8);ENDIF", "runs 2 to 8 s"),
+    ("F(5,80) UNTIL(DISTANCE < 5)", "runs 0 to 5 s"),
+    ("W(1);W(DISTANCE)", "runs at least 1 s"),
+    ("LOOP(FOREVER);W(1);END_LOOP", "runs until it is stopped"),
+    ("LOOP(FOREVER);W(1);IF(DISTANCE < 5);BREAK;ENDIF;END_LOOP", "stack 1 of 16\n"),
+    ("W(5);SHOW(1 / 0);W(5)", "stack 2 of 16\n"),
+    ("LOOP(FOREVER);IF(DISTANCE < 5);BREAK;ENDIF;LOOP(FOREVER);W(1);END_LOOP;END_LOOP",
+     "stack 1 of 16\n"),
+])  # fmt: skip
 def test_compile_says_how_long_it_runs(tsc: Tsc, tmp_path: Path, text: str, runs: str) -> None:
     assert runs in tsc("compile", "-e", text, "-o", tmp_path / "a.bin").out
 
@@ -78,10 +72,6 @@ def test_compile_to_standard_output(
     done = capsysbinary.readouterr()
     assert unpack(done.out).code.hex() == "448c50"
     assert b"18 bytes" in done.err
-
-
-def test_compile_needs_a_name_for_the_image(tsc: Tsc) -> None:
-    assert tsc("compile", "-e", PROGRAM).code == 2
 
 
 def test_map_says_which_line(tsc: Tsc, tmp_path: Path) -> None:
@@ -197,10 +187,14 @@ def test_run_shows_nothing_where_the_program_is_wrong(tsc: Tsc) -> None:
     assert (done.code, done.out) == (1, "")
 
 
-def test_run_stops_a_loop_that_takes_no_time(tsc: Tsc) -> None:
-    done = tsc("run", "-e", "W(2);LOOP(FOREVER);X = 1;SHOW(X);END_LOOP", "--max-steps", "50")
-    assert done.code == 0
-    assert done.out.splitlines()[-1] == "2000 LIMIT"
+def test_max_steps_cuts_only_what_takes_no_time(tsc: Tsc) -> None:
+    for text, steps, last in (
+        ("W(2);LOOP(FOREVER);X = 1;SHOW(X);END_LOOP", "50", "2000 LIMIT"),
+        ("X = 0;LOOP(FOREVER);LOOP(20);X = X + 1;END_LOOP;W(0.1);END_LOOP", "100", "60000 LIMIT"),
+        ("LOOP(FOREVER);W(0);END_LOOP", "100", "0 LIMIT"),
+    ):
+        done = tsc("run", "-e", text, "--max-steps", steps)
+        assert (done.code, done.out.splitlines()[-1]) == (0, last), text
 
 
 def test_run_is_repeatable_and_seeded(tsc: Tsc) -> None:
@@ -210,47 +204,17 @@ def test_run_is_repeatable_and_seeded(tsc: Tsc) -> None:
     assert first != tsc("run", "-e", text, "--seed", "2").out
 
 
-def test_max_steps_cuts_only_what_takes_no_time(tsc: Tsc) -> None:
-    text = "X = 0;LOOP(FOREVER);LOOP(20);X = X + 1;END_LOOP;W(0.1);END_LOOP"
-    done = tsc("run", "-e", text, "--max-steps", "100")
-    assert done.out == "60000 LIMIT\n"
-    done = tsc("run", "-e", "LOOP(FOREVER);W(0);END_LOOP", "--max-steps", "100")
-    assert done.out == "0 LIMIT\n"
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ["--sensor", "DISTANC=5"],
-        ["--sensor", "DISTANCE"],
-        ["--sensor", "DISTANCE="],
-        ["--sensor", "=5"],
-        ["--sensor", "DISTANCE=5,,6"],
-        ["--sensor", "DISTANCE=400.001"],
-        ["--sensor", "DISTANCE=-1"],
-        ["--sensor", "DISTANCE=TRUE"],
-        ["--sensor", "DISTANCE=1e2"],
-        ["--sensor", "DISTANCE=5", "--sensor", "distance=6"],
-        ["--sensor"],
-        ["--seed", "0"],
-        ["--seed", "4294967296"],
-        ["--seed", "x"],
-        ["--seed", "9" * 5000],
-        ["--max-time", "-1"],
-        ["--max-time", "soon"],
-        ["--max-time", "9" * 5000],
-        ["--max-steps", "1.5"],
-        ["--machine", "steam"],
-        ["--robot", "nobody"],
-        ["--robot", ""],
-        ["-e", "W(1)"],
-        ["--robot", "/"],
-        ["--robot", "no/such.toml"],
-        ["--lang", "fr"],
-        ["--nonsense"],
-        ["another.ts"],
-    ],
-)
+@each_row("arguments", [
+    ["--sensor", "DISTANC=5"], ["--sensor", "DISTANCE"], ["--sensor", "DISTANCE="],
+    ["--sensor", "=5"], ["--sensor", "DISTANCE=5,,6"], ["--sensor", "DISTANCE=400.001"],
+    ["--sensor", "DISTANCE=-1"], ["--sensor", "DISTANCE=TRUE"], ["--sensor", "DISTANCE=1e2"],
+    ["--sensor", "DISTANCE=5", "--sensor", "distance=6"], ["--sensor"],
+    ["--seed", "0"], ["--seed", "4294967296"], ["--seed", "x"], ["--seed", "9" * 5000],
+    ["--max-time", "-1"], ["--max-time", "soon"], ["--max-time", "9" * 5000],
+    ["--max-steps", "1.5"], ["--machine", "steam"],
+    ["--robot", "nobody"], ["--robot", ""], ["--robot", "/"], ["--robot", "no/such.toml"],
+    ["-e", "W(1)"], ["--lang", "fr"], ["--nonsense"], ["another.ts"],
+])  # fmt: skip
 def test_wrong_use_of_run(tsc: Tsc, arguments: list[str]) -> None:
     for language in ([], ["--lang", "es"]):
         done = tsc("run", "-e", "DISTANCE", *language, *arguments)
@@ -323,17 +287,14 @@ def test_an_image_of_another_robot_says_which(tsc: Tsc, tmp_path: Path) -> None:
 
 
 def test_show_lists_with_lines(tsc: Tsc, tmp_path: Path) -> None:
-    target = tmp_path / "a.bin"
-    tsc("compile", "-e", "SI|\nF(5, 80)\nDISTANCE", "-o", target)
+    target, text = tmp_path / "a.bin", "SI|\nF(5, 80)\nDISTANCE"
+    tsc("compile", "-e", text, "-o", target)
     done = tsc("show", target)
     assert "0000  44 8c 50           MOVE8_F 140 80" in done.out
     assert "line 2: F(5, 80)" in done.out
     assert "READ_2" in done.out
     assert "DISTANCE  line 3: DISTANCE" in done.out
-    assert (
-        tsc("show", "-e", "SI|\nF(5, 80)\nDISTANCE").out.split("\n", 1)[1]
-        == (done.out.split("\n", 1)[1])
-    )
+    assert tsc("show", "-e", text).out.split("\n", 1)[1] == done.out.split("\n", 1)[1]
 
 
 def test_show_json(tsc: Tsc, program: Path) -> None:
@@ -360,22 +321,16 @@ def test_fmt_lays_out_in_place(tsc: Tsc, program: Path) -> None:
     assert tsc("fmt", "-e", laid_out).out == laid_out
 
 
-def test_fmt_leaves_what_is_wrong(tsc: Tsc, program: Path) -> None:
-    program.write_text("f(2 80)", encoding="utf-8")
-    assert tsc("fmt", program).code == 1
-    assert program.read_text(encoding="utf-8") == "f(2 80)"
-    assert tsc("compile", "-e", PROGRAM, "-o", program.with_suffix(".bin")).code == 0
-    assert tsc("fmt", program.with_suffix(".bin")).code == 2
-
-
-def test_fmt_keeps_a_program_that_it_would_make_too_large(
+def test_fmt_leaves_what_is_wrong_and_what_it_would_make_too_large(
     tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tiniscript.cli.commands.fmt.LARGEST_SOURCE", 1000)
-    text = "S\n" * 499
-    program.write_text(text, encoding="utf-8")
-    assert tsc("fmt", program).code == 2
-    assert program.read_text(encoding="utf-8") == text
+    for text, code in (("f(2 80)", 1), ("S\n" * 499, 2)):
+        program.write_text(text, encoding="utf-8")
+        assert tsc("fmt", program).code == code
+        assert program.read_text(encoding="utf-8") == text
+    assert tsc("compile", "-e", PROGRAM, "-o", program.with_suffix(".bin")).code == 0
+    assert tsc("fmt", program.with_suffix(".bin")).code == 2
 
 
 def test_explain(tsc: Tsc) -> None:

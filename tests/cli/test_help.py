@@ -6,7 +6,6 @@ import os
 import re
 import shlex
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.support.command import PROGRAM, TSC, Tsc
+from tests.support.command import PROGRAM, Tsc, inside
 from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
@@ -127,19 +126,16 @@ def test_the_first_help_has_the_ten_that_most_people_need(language: str) -> None
     assert [row.split()[1] for row in rows_of(said) if row.startswith("tsc ")] == list(FIRST)
 
 
-@pytest.mark.parametrize(
-    ("asked", "verb"),
-    [
-        ("put firmware on", "firmware"), ("rename robot", "name"), ("list serial ports", "ports"),
-        ("make it drive straight", "trim"), ("read my program back", "fetch"),
-        ("bluetooth pin", "module"), ("dibujar conexiones", "wiring"),
-        ("conectar a la red wifi", "wifi"), ("ir en línea recta", "trim"),
-        ("poner firmware", "firmware"), ("which port", "ports"), ("give it a name", "name"),
-        ("print a worksheet", "lesson"), ("lock the robot", "claim"), ("use blocks", "studio"),
-        ("robot does not answer", "doctor"), ("no responde", "doctor"),
-        ("ver los sensores", "live"), ("programar con bloques", "studio"),
-    ],
-)  # fmt: skip
+@each_row("asked, verb", [
+    ("put firmware on", "firmware"), ("rename robot", "name"), ("list serial ports", "ports"),
+    ("make it drive straight", "trim"), ("read my program back", "fetch"),
+    ("bluetooth pin", "module"), ("dibujar conexiones", "wiring"),
+    ("conectar a la red wifi", "wifi"), ("ir en línea recta", "trim"),
+    ("poner firmware", "firmware"), ("which port", "ports"), ("give it a name", "name"),
+    ("print a worksheet", "lesson"), ("lock the robot", "claim"), ("use blocks", "studio"),
+    ("robot does not answer", "doctor"), ("no responde", "doctor"),
+    ("ver los sensores", "live"), ("programar con bloques", "studio"),
+])  # fmt: skip
 def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked: str, verb: str) -> None:
     done = tsc("help", asked)
     assert done.code == 0
@@ -281,19 +277,32 @@ def test_long_help_is_shown_a_page_at_a_time(language: str, keys: str) -> None:
         (100, {"PAGER": "false"}),  # it fits
     ],
 )
-def test_help_is_printed_where_there_is_no_pager(rows: int, environ: dict[str, str]) -> None:
-    shell = on_terminal(rows, "help upload --lang en", **environ)
-    assert shell.end() == 0
-    assert printed(shell.written).endswith(help.of("upload", "en"))
+def test_help_is_printed_where_there_is_no_pager(
+    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
+    rows: int, environ: dict[str, str],
+) -> None:  # fmt: skip
+    monkeypatch.delenv("PAGER", raising=False)
+    for name, value in {"TERM": "xterm", "COLUMNS": "80", "LINES": str(rows), **environ}.items():
+        monkeypatch.setenv(name, value)
+    for stream in (sys.stdin, sys.stdout):
+        monkeypatch.setattr(stream, "isatty", lambda: True)
+    assert main(["help", "upload", "--lang", "en"]) == 0
+    assert capfd.readouterr().out == help.of("upload", "en", 80)
 
 
-def test_help_that_goes_elsewhere_is_never_paged(tmp_path: Path) -> None:
+def test_help_that_goes_elsewhere_is_never_paged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     marker = tmp_path / "begun"
-    environ = {**os.environ, "PAGER": f"touch {marker}"}
-    done = subprocess.run(
-        [*TSC, "help", "upload", "--lang", "en"], capture_output=True, text=True, env=environ
-    )
-    assert (done.returncode, done.stdout, marker.exists()) == (0, help.of("upload", "en"), False)
+    monkeypatch.setenv("PAGER", f"touch {marker}")
+    done = inside("help", "upload", "--lang", "en")
+    assert (done.code, done.out, marker.exists()) == (0, help.of("upload", "en"), False)
+
+
+def test_help_is_narrow_on_a_narrow_terminal(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "60")
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    assert tsc("stop", "--help", "--lang", "en").out == help.of("stop", "en", 60)
 
 
 PAGER = """
@@ -326,47 +335,29 @@ def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
     assert printed(shell.written).replace("^C", "") == said
 
 
-def test_help_is_narrow_on_a_narrow_terminal() -> None:
-    from tests.support import shell as support
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(support, "COLUMNS", 60)
-        shell = on_terminal(100, "stop --help --lang en")
-        assert shell.end() == 0
-    assert printed(shell.written) == help.of("stop", "en", 60)
-
-
-@pytest.mark.parametrize(
-    ("words", "english", "spanish"),
-    [
-        (["ping", "--port"], "--port needs a value", "a --port le falta su valor"),
-        (["ping", "--json=3"], "--json takes no value: '3'", "--json no lleva valor: '3'"),
-        (["ping", "x"], "x means nothing here", "no conozco x"),
-    ],
-)
+@each_row("words, english, spanish", [
+    (["ping", "--port"], "--port needs a value", "a --port le falta su valor"),
+    (["ping", "--json=3"], "--json takes no value: '3'", "--json no lleva valor: '3'"),
+    (["ping", "x"], "x means nothing here", "no conozco x"),
+])  # fmt: skip
 def test_what_argparse_says_is_said_in_plain_words(
-    capsys: pytest.CaptureFixture[str], words: list[str], english: str, spanish: str
+    tsc: Tsc, words: list[str], english: str, spanish: str
 ) -> None:
     for language, said in (("en", english), ("es", spanish)):
-        done = Tsc(capsys)(words[0], "--lang", language, *words[1:])
+        done = tsc(words[0], "--lang", language, *words[1:])
         assert done.code == 2
         assert done.err.startswith(f"tsc: {said}. ")
 
 
-@pytest.mark.parametrize(
-    ("words", "meant"),
-    [
-        (["wiring", "Grabber"], "--robot grabber"), (["upload", "x.ts", "--prot", "C"], "--port"),
-        (["info", "--al"], "--all"), (["nmae", "ANA"], "name"),
-        (["flash"], "firmware"), (["serial"], "monitor"), (["simulate", "x"], "robot"),
-        (["repl"], "live"), (["version"], "--version"),
-    ],
-)  # fmt: skip
-def test_what_was_meant_stands_before_what_to_try(
-    capsys: pytest.CaptureFixture[str], words: list[str], meant: str
-) -> None:
-    assert f". Did you mean {meant}? Try:  tsc " in Tsc(capsys)(*words, "--lang", "en").err
-    assert f". ¿Quisiste decir {meant}? Prueba:  tsc " in Tsc(capsys)(*words, "--lang", "es").err
+@each_row("words, meant", [
+    (["wiring", "Grabber"], "--robot grabber"), (["upload", "x.ts", "--prot", "C"], "--port"),
+    (["info", "--al"], "--all"), (["nmae", "ANA"], "name"),
+    (["flash"], "firmware"), (["serial"], "monitor"), (["simulate", "x"], "robot"),
+    (["repl"], "live"), (["version"], "--version"),
+])  # fmt: skip
+def test_what_was_meant_stands_before_what_to_try(tsc: Tsc, words: list[str], meant: str) -> None:
+    assert f". Did you mean {meant}? Try:  tsc " in tsc(*words, "--lang", "en").err
+    assert f". ¿Quisiste decir {meant}? Prueba:  tsc " in tsc(*words, "--lang", "es").err
 
 
 def test_ctrl_c_before_tsc_knows_its_language(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,8 +6,8 @@ import re
 
 import pytest
 
-from tests.support.command import inside
-from tests.support.pty_robot import PtyRobot
+from tests.support.command import Done
+from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
 from tiniscript import robots
 from tiniscript.cli.robot.live_state import Known, Value, open_ends
@@ -16,17 +16,17 @@ KIT = robots.load("tinibot").kit
 
 
 def test_a_line_is_done_at_once_and_the_program_stays(pty_robot: PtyRobot) -> None:
-    assert inside("upload", "-e", "SB|W(1)", "--port", pty_robot.port).code == 0
-    done = inside("live", "F(0.2, 80);SHOW(1.5)", "--port", pty_robot.port)
+    assert on(pty_robot, "upload", "-e", "SB|W(1)").code == 0
+    done = on(pty_robot, "live", "F(0.2, 80);SHOW(1.5)")
     assert (done.code, done.out) == (0, "SHOW 1.5\nDone.\n")
     assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
-    assert "SB" in inside("fetch").out
-    assert inside("live", "F(2 80)").code == 1
-    assert inside("live", "SB|F(2, 80)").code == 1
-    done = inside("live", "SHOW(TIME * 1.234);" * 12)
+    assert "SB" in on(pty_robot, "fetch").out
+    assert on(pty_robot, "live", "F(2 80)").code == 1
+    assert on(pty_robot, "live", "SB|F(2, 80)").code == 1
+    done = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 12)
     assert done.code == 1
     assert "room for 55" in done.err
-    assert inside("live", "X = 0;SHOW(1 / X)").code == 1
+    assert on(pty_robot, "live", "X = 0;SHOW(1 / X)").code == 1
 
 
 def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
@@ -40,7 +40,7 @@ def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
         "X = 1 / 0",
         "SHOW(9)",
     )
-    done = inside("live", "-", "--port", pty_robot.port, data="\n".join(lines).encode())
+    done = on(pty_robot, "live", "-", data="\n".join(lines).encode())
     assert done.code == 1  # the fault ends it
     assert done.out.splitlines() == [
         "TELL: known from now on.", "SHOW 30.5", "SHOW 31.5", "SHOW 31.5", "SHOW TRUE",
@@ -89,15 +89,17 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
 
 def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
     """Up to its end, or to the first line with a mistake."""
-    lines = "DEF TELL\n  SHOW(1)\nEND_DEF\nLOOP(2)\n\n  TELL // twice\nEND_LOOP\nSHOW(3)\n"
-    done = inside("live", "-", "--port", pty_robot.port, data=lines.encode())
+
+    def told(lines: str) -> Done:
+        return on(pty_robot, "live", "-", data=lines.encode())
+
+    done = told("DEF TELL\n  SHOW(1)\nEND_DEF\nLOOP(2)\n\n  TELL // twice\nEND_LOOP\nSHOW(3)\n")
     assert (done.code, done.err) == (0, "")
     assert done.out == "TELL: known from now on.\nSHOW 1\nSHOW 1\nSHOW 3\n"
-    lines = "LOOP(2)\nF(2 80)\nEND_LOOP\nSHOW(4)\n"
-    done = inside("live", "-", "--port", pty_robot.port, data=lines.encode())
+    done = told("LOOP(2)\nF(2 80)\nEND_LOOP\nSHOW(4)\n")
     assert (done.code, done.out) == (1, "")
     assert done.err.startswith("line 2:") and "comma" in done.err and "END_LOOP" not in done.err
-    done = inside("live", "-", "--port", pty_robot.port, data=b"IF(TRUE)\nSHOW(5)\n")
+    done = told("IF(TRUE)\nSHOW(5)\n")
     assert (done.code, done.out) == (1, "")
     assert "ENDIF" in done.err
 

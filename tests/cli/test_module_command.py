@@ -130,35 +130,23 @@ def test_a_module_that_does_not_do_it_is_an_exit_code(tsc: Tsc, module: Simulate
     assert "try again" in done.err
 
 
-def test_a_cable_that_is_pulled_says_what_is_known_of_the_speed() -> None:
+@pytest.mark.parametrize(("is_on", "is_pulled", "code", "said"), [
+    (True, True, 3, "has vanished. It was being set to 115200 baud"),
+    (True, False, 2, "It was being set to 115200 baud: it has that speed or the old one."),
+    (False, False, 2, "Its speed has not changed. Try again"),
+])  # fmt: skip
+def test_a_pulled_cable_and_ctrl_c_say_at_which_speeds_the_module_may_be(
+    is_on: bool, is_pulled: bool, code: int, said: str
+) -> None:
     end = Hm10()
+    end.is_on = is_on
     with PtyEnd(end) as pty_end:
         command = Command("module", "--port", pty_end.port, "--baud", "115200")
-        until(lambda: b"AT+BAUD4" in pty_end.heard, "it is asked")
-        pty_end.pull()
+        until(lambda: (b"AT+BAUD4" if is_on else b"AT") in pty_end.heard, "it is asked")
+        if is_pulled:
+            pty_end.pull()
+        else:
+            command.signal(signal.SIGINT)
         done = command.ended()
-    assert done.code == 3
-    assert "has vanished. It was being set to 115200 baud" in done.err
-
-
-def test_ctrl_c_says_at_which_speeds_the_module_may_be() -> None:
-    end = Hc06()
-    end.is_on = False
-    with PtyEnd(end) as pty_end:
-        command = Command("module", "--port", pty_end.port, "--baud", "115200")
-        until(lambda: bool(pty_end.heard), "it is asked")
-        command.signal(signal.SIGINT)
-        done = command.ended()
-    assert done.code == 2
-    assert "Its speed has not changed. Try again" in done.err
-
-
-def test_ctrl_c_while_the_speed_changes() -> None:
-    end = Hm10()
-    with PtyEnd(end) as pty_end:
-        command = Command("module", "--port", pty_end.port, "--baud", "115200")
-        until(lambda: b"AT+BAUD4" in pty_end.heard, "it is asked")
-        command.signal(signal.SIGINT)
-        done = command.ended()
-    assert done.code == 2
-    assert "It was being set to 115200 baud: it has that speed or the old one." in done.err
+    assert done.code == code
+    assert said in done.err

@@ -17,6 +17,7 @@ from tests.support.command import FOREVER, Command, Done
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.cli import main
 from tiniscript.cli.commands import claim
+from tiniscript.link import authority
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
 from tiniscript.link.sharing.requests import ClientRequests
@@ -112,9 +113,15 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
 
 
 def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
+    """A robot with an owner takes text only while it is told to."""
     assert "nothing to give up" in on(pty_robot, "disown").out
+    assert "no owner" in on(pty_robot, "text", "off").out
     assert claimed(pty_robot).code == 0
     assert len(KeyFile().all()) == 1
+    assert "until it is switched off" in on(pty_robot, "text", "on").out
+    assert "except S" in on(pty_robot, "text", "off").out
+    assert on(pty_robot, "text").code == 2
+    assert on(pty_robot, "text", "perhaps").code == 2
     assert on(pty_robot, "disown").code == 0
     assert KeyFile().all() == []
     assert ", free" in on(pty_robot, "info").out
@@ -138,18 +145,13 @@ def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -
 def test_a_claim_without_the_button_says_what_to_do(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    code = (
-        "from tiniscript.link import authority; authority.HOLD_TRIES = 3\n"
-        "import sys; from tiniscript.cli import main; sys.exit(main())"
-    )
-    done = Command("claim", "--port", pty_robot.port, code=code).ended()
+    """And where the key could not be kept the robot gives none."""
+    monkeypatch.setattr(authority, "HOLD_TRIES", 3)
+    done = on(pty_robot, "claim")
     assert done.code == 3 and "2 s" in done.err
     assert KeyFile().all() == []
-
-
-def test_a_key_that_cannot_be_kept_is_not_given(pty_robot: PtyRobot) -> None:
     path = KeyFile().path
-    path.parent.mkdir(parents=True)
+    path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("broken")
     done = on(pty_robot, "claim")
     assert done.code == 2 and str(path) in done.err
@@ -173,15 +175,6 @@ def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
     as_another(monkeypatch, tmp_path, "settings")
     assert on(pty_robot, "start").code == 0
     assert {key.which for key in KeyFile().all()} == {KEY_TEACHER}
-
-
-def test_text_on_and_off(pty_robot: PtyRobot) -> None:
-    assert "no owner" in on(pty_robot, "text", "off").out
-    assert claimed(pty_robot).code == 0
-    assert "until it is switched off" in on(pty_robot, "text", "on").out
-    assert "except S" in on(pty_robot, "text", "off").out
-    assert on(pty_robot, "text").code == 2
-    assert on(pty_robot, "text", "perhaps").code == 2
 
 
 def test_a_shared_port_has_the_authority_and_its_messages_no_key(

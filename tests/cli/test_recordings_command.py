@@ -56,7 +56,7 @@ def test_a_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("hurry", ["20", "max"])
 def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
-    tsc: Tsc, tmp_path: Path, hurry: str
+    tmp_path: Path, hurry: str
 ) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.jsonl"
     program.write_text("X = 0; LOOP(6); W(2); X = X + 1; SHOW(X); END_LOOP; W(3)")
@@ -66,7 +66,7 @@ def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
     assert [each.event for each in events] == [*(f"SHOW {k}" for k in range(1, 7)), "DONE"]
     for each, wanted_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
         assert wanted_ms <= each.ms <= wanted_ms + 100, events
-    done = tsc("run", program, "--replay", file)
+    done = inside("run", program, "--replay", file)
     assert (done.code, done.out) == (0, "Both did the same. Comparisons: 7.\n")
 
 
@@ -104,18 +104,16 @@ def test_a_recording_of_the_page_is_compared(
     assert (done.code, done.out[:39]) == (1, "The recording is of another program. Na")
 
 
-@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
-@pytest.mark.parametrize("end", ["\n", "\r\n"])
-def test_a_recording_that_another_program_has_saved_is_read(
-    tsc: Tsc, tmp_path: Path, encoding: str, end: str
-) -> None:
+def test_a_recording_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path) -> None:
     """PowerShell and Notepad write a byte order mark and other line ends."""
     file = tmp_path / "run.jsonl"
     text = of_the_page((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")).decode() + "\n"
-    mark = "\ufeff" if encoding.startswith("utf-16-") else ""
-    file.write_bytes((mark + text.replace("\n", end)).encode(encoding))
-    done = tsc("run", "-e", TEXT, "--replay", file)
-    assert (done.code, done.out) == (0, "Both did the same. Comparisons: 2.\n"), done.err
+    for encoding in ("utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"):
+        mark = "\ufeff" if encoding.startswith("utf-16-") else ""
+        for end in ("\n", "\r\n"):
+            file.write_bytes((mark + text.replace("\n", end)).encode(encoding))
+            done = tsc("run", "-e", TEXT, "--replay", file)
+            assert done.out == "Both did the same. Comparisons: 2.\n", (encoding, end, done)
 
 
 @pytest.mark.parametrize(
@@ -171,22 +169,17 @@ def test_what_is_not_recorded_or_compared_says_why(
     assert Path("r").read_bytes() == of_the_page((5, "SHOW 5"))
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        ("--sensor", "DISTANCE=5"), ("--seed", "7"), ("--max-time", "3"), ("--max-steps", "9"),
-        ("--machine", "python"), ("--show",), ("--pace", "0"), ("--pace", "fast"),
-    ],
-)  # fmt: skip
-def test_what_a_comparison_does_not_take_is_refused(
-    tsc: Tsc, tmp_path: Path, words: tuple[str, ...]
-) -> None:
+def test_what_a_comparison_does_not_take_is_refused(tsc: Tsc, tmp_path: Path) -> None:
     file = tmp_path / "run.jsonl"
     file.write_bytes(of_the_page((200, "SHOW 5")))
-    for language, said in (("en", "does not go with --replay"), ("es", "no va con --replay")):
-        done = tsc("run", "-e", TEXT, "--replay", file, *words, "--lang", language)
-        assert (done.code, done.out) == (2, "")
-        assert f"{words[0]} {said}" in done.err
+    for words in (
+        ("--sensor", "DISTANCE=5"), ("--seed", "7"), ("--max-time", "3"), ("--max-steps", "9"),
+        ("--machine", "python"), ("--show",), ("--pace", "0"), ("--pace", "fast"),
+    ):  # fmt: skip
+        for language, said in (("en", "does not go with --replay"), ("es", "no va con --replay")):
+            done = tsc("run", "-e", TEXT, "--replay", file, *words, "--lang", language)
+            assert (done.code, done.out) == (2, "")
+            assert f"{words[0]} {said}" in done.err
 
 
 def test_the_robot_of_a_comparison_is_that_of_the_recording(tsc: Tsc, tmp_path: Path) -> None:
@@ -214,41 +207,39 @@ def test_the_robot_of_a_comparison_is_that_of_the_recording(tsc: Tsc, tmp_path: 
         assert "is damaged, or no recording (line 1)" in done_with(odd).err
 
 
-def recorded(file: Path) -> list[str]:
-    return [each.event for each in read(file.read_bytes()).events]
+def recorded(
+    file: Path, *events: tuple[str, str], began_s: float | None = None, end: str = ""
+) -> tuple[Recorded, ...]:
+    """Record these events of a robot; return what the file has then."""
+    made = Recorder(str(file), CHECKSUM, "tinibot", began_s=began_s)
+    for event in events:
+        made.add(7, *event)
+    if end:
+        made.end(end)
+    made.close()
+    return read(file.read_bytes()).events
 
 
 def test_a_recording_has_an_end_and_no_more(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    file = tmp_path / "run.jsonl"
+    file, show = tmp_path / "run.jsonl", ("SHOW", "1")
     for ends, wanted in (
         ((), ["SHOW 1", "STOPPED"]),
         ((("MISSED", "3"), ("SHOW", "2"), ("DONE", "")), ["SHOW 1", "MISSED"]),
         ((("TEXT", "hello"), ("STOPPED", "BUTTON"), ("DONE", "")), ["SHOW 1", "STOPPED"]),
     ):
-        made = Recorder(str(file), CHECKSUM, "tinibot", began_s=monotonic())
-        made.add(7, "SHOW", "1")
-        for event in ends:
-            made.add(7, *event)
-        made.close()
-        assert recorded(file) == wanted
+        found = recorded(file, show, *ends, began_s=monotonic())
+        assert [each.event for each in found] == wanted
     monkeypatch.setattr(recorder, "MOST", 3)
-    made = Recorder(str(file), CHECKSUM, "tinibot", began_s=None)
-    for k in range(9):
-        made.add(7, "SHOW", str(k))
-    made.end("LOST")
-    made.close()
-    assert recorded(file) == ["SHOW 0", "SHOW 1", "STOPPED"]
-    assert read(file.read_bytes()).events[0] == Recorded(0, "SHOW 0")  # it began with that
-    made = Recorder(str(file), CHECKSUM, "tinibot", began_s=monotonic())
+    found = recorded(file, *(("SHOW", str(k)) for k in range(9)), end="LOST")
+    assert [each.event for each in found] == ["SHOW 0", "SHOW 1", "STOPPED"]
+    assert found[0] == Recorded(0, "SHOW 0")  # it began with that
+    began_s = monotonic()
     monkeypatch.setattr(recorder, "monotonic", lambda: 1e9)
-    made.add(7, "SHOW", "1")
-    made.close()
-    assert read(file.read_bytes()).events == (Recorded(600_000, "STOPPED"),)  # as long as may be
-    made = Recorder(str(file), CHECKSUM, "tinibot", began_s=None)
-    made.close()
-    assert read(file.read_bytes()).events == (Recorded(0, "STOPPED"),)
+    found = recorded(file, show, began_s=began_s)
+    assert found == (Recorded(600_000, "STOPPED"),)  # as long as may be
+    assert recorded(file) == (Recorded(0, "STOPPED"),)
 
 
 @pytest.mark.parametrize(("event", "wanted"), [("", "STOPPED"), ("LOST", "LOST")])
@@ -258,14 +249,9 @@ def test_a_recording_ends_when_the_run_does(
     """A robot that hangs after its first value and is stopped by hand has not done the same."""
     file, clock = tmp_path / "run.jsonl", iter((10.2, 70.0))
     monkeypatch.setattr(recorder, "monotonic", lambda: next(clock))
-    made = Recorder(str(file), CHECKSUM, "tinibot", began_s=10.0)
-    made.add(7, "SHOW", "5")
-    if event:
-        made.end(event)
-    made.close()
-    found = read(file.read_bytes())
-    assert found.events == (Recorded(200, "SHOW 5"), Recorded(60_000, wanted))
-    compared = replay(found, TEXT.encode(), "tinibot", worlds.load("obstacles"))
+    events = recorded(file, ("SHOW", "5"), began_s=10.0, end=event)
+    assert events == (Recorded(200, "SHOW 5"), Recorded(60_000, wanted))
+    compared = replay(read(file.read_bytes()), TEXT.encode(), "tinibot", worlds.load("obstacles"))
     assert compared.what == ("same" if event else "virtual_more")
 
 

@@ -14,7 +14,7 @@ from unittest import mock
 import pytest
 
 from tests.machines.host_firmware import EMPTY, HostFirmware
-from tests.support.command import Tsc
+from tests.support.command import inside
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.simulated_port import simulated
 from tiniscript import robots
@@ -27,12 +27,9 @@ GOOD = (LIGHT, LIGHT, DISTANCE)
 KINDS = [name for name, _ in RESETS]
 
 
-def found_by(
-    tsc: Tsc, pty_robot: PtyRobot, *words: str
-) -> tuple[int, dict[str, dict[str, object]]]:
+def found_by(pty_robot: PtyRobot, *words: str) -> tuple[int, dict[str, dict[str, object]]]:
     """Return the exit code, and each finding by what it is about."""
-    with simulated(pty_robot):
-        done = tsc("selftest", "--yes", "--json", "--port", pty_robot.port, *words)
+    done = on(pty_robot, "selftest", "--yes", "--json", *words)
     rows = json.loads(done.out)["found"]
     return done.code, {
         f"{each['what']} {each['values'].get('name', '')}".strip(): each for each in rows
@@ -46,9 +43,9 @@ def started_after(pty_robot: PtyRobot, reset: str) -> None:
         pty_robot._robot = HostFirmware(pty_robot.kit, EMPTY, KINDS.index(reset))
 
 
-def test_a_good_robot_without_a_person(tsc: Tsc, pty_robot: PtyRobot) -> None:
+def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
-    code, found = found_by(tsc, pty_robot)
+    code, found = found_by(pty_robot)
     assert code == 0
     verdicts = {name: each["verdict"] for name, each in found.items()}
     sensors = {f"sensor {each.name}" for each in pty_robot.kit.sensors}
@@ -69,11 +66,11 @@ def test_a_good_robot_without_a_person(tsc: Tsc, pty_robot: PtyRobot) -> None:
 
 
 @pytest.mark.parametrize("name", [*robots.names()])
-def test_every_board_has_its_sensors_tested(tsc: Tsc, name: str) -> None:
+def test_every_board_has_its_sensors_tested(name: str) -> None:
     """Without `--robot`, too: the robot says which kit it has."""
     kit = robots.load(name).kit
     with PtyRobot(kit) as robot:
-        code, found = found_by(tsc, robot)
+        code, found = found_by(robot)
         # an ESP32's robot has the words of the paper's
         kits = {each: robots.load(each).kit for each in robots.names()}
         same = [{"robot": each} for each, its in kits.items() if its[:2] == kit[:2]]
@@ -82,46 +79,38 @@ def test_every_board_has_its_sensors_tested(tsc: Tsc, name: str) -> None:
         assert code == 0
 
 
-def test_another_kit_than_was_said(tsc: Tsc) -> None:
+def test_another_kit_than_was_said() -> None:
     with PtyRobot(robots.load("liner").kit) as robot:
-        code, found = found_by(tsc, robot, "--robot", "tinibot")
+        code, found = found_by(robot, "--robot", "tinibot")
     assert code == 3
     assert found["kit"]["verdict"] == "wrong"
     assert "--robot liner" in str(found["kit"]["next"])
 
 
 @pytest.mark.parametrize(("reset", "finding"), [("BROWN_OUT", "supply_low"), ("WATCHDOG", "hung")])
-def test_a_robot_that_has_restarted(
-    tsc: Tsc, pty_robot: PtyRobot, reset: str, finding: str
-) -> None:
+def test_a_robot_that_has_restarted(pty_robot: PtyRobot, reset: str, finding: str) -> None:
     started_after(pty_robot, reset)
-    code, found = found_by(tsc, pty_robot)
+    code, found = found_by(pty_robot)
     assert code == 3
     assert (found["supply"]["verdict"], found["supply"]["finding"]) == ("wrong", finding)
 
 
-def test_a_sensor_at_the_end_of_its_range_wants_eyes(tsc: Tsc, pty_robot: PtyRobot) -> None:
+def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
+    """A sensor at the end of its range, a bad line, and in the middle of it the robot is silent."""
     low = pty_robot.kit.sensors[0].low
     pty_robot.ask(lambda robot: robot.sense(low, LIGHT, DISTANCE))
-    _, found = found_by(tsc, pty_robot)
+    _, found = found_by(pty_robot)
     first, second = (f"sensor {each.name}" for each in pty_robot.kit.sensors[:2])
     assert found[first]["finding"] == "stuck"
     assert found[second]["verdict"] == "ok"
-
-
-def test_a_line_that_damages_messages(tsc: Tsc, pty_robot: PtyRobot) -> None:
     pty_robot.damages = 150
-    code, found = found_by(tsc, pty_robot)
+    code, found = found_by(pty_robot)
     assert code == 3
     assert found["line"]["finding"] == "line_bad"
-
-
-def test_a_robot_that_falls_silent(tsc: Tsc, pty_robot: PtyRobot) -> None:
-    """What was found before is said, and the last finding is the end."""
-    pty_robot.off_after = 150
-    code, found = found_by(tsc, pty_robot)
+    pty_robot.damages, pty_robot.off_after = 0, 150
+    code, found = found_by(pty_robot)
     assert code == 3
-    assert found["kit"]["verdict"] == "ok"
+    assert found["kit"]["verdict"] == "ok", "what was found before is said"
     assert found["answers"]["verdict"] == "wrong"
 
 
@@ -174,24 +163,24 @@ def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
     assert turned == ["MOTORS 60 0", "MOTORS 0 0", "MOTORS 0 60", "MOTORS 0 0"]
 
 
-@pytest.mark.parametrize(("motors", "said"), [("2", "tsc trim"), ("3", "its wires")])
-def test_motors_that_turn_wrong_or_not_at_all(pty_robot: PtyRobot, motors: str, said: str) -> None:
+def test_what_a_person_sees_is_wrong(pty_robot: PtyRobot) -> None:
+    """Motors that turn wrong or not at all, and sensors that notice nothing."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
-    code, out, _ = asked(pty_robot, person(pty_robot, motors))
-    assert code == 3
-    assert out.count("WRONG") == 2
-    assert f"Try:  {said}" in out
-
-
-def test_a_sensor_that_notices_nothing(pty_robot: PtyRobot) -> None:
-    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    for motors, said in (("2", "tsc trim"), ("3", "its wires")):
+        code, out, _ = asked(pty_robot, person(pty_robot, motors))
+        assert code == 3
+        assert out.count("WRONG") == 2
+        assert f"Try:  {said}" in out
     code, out, _ = asked(pty_robot, person(pty_robot, is_noticed=False))
     assert code == 3
     assert out.count("does not notice") == len(pty_robot.kit.sensors)
 
 
 def test_once_more_turns_the_motor_again(pty_robot: PtyRobot) -> None:
+    """And where the person leaves, questions are left."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    assert on(pty_robot, "selftest").code == 0
+    assert not any("MOTORS" in line for line in pty_robot.did)
     answers = iter(["4", "7", "1", "1", "1"])
 
     def answer(question: str) -> str:
@@ -201,16 +190,10 @@ def test_once_more_turns_the_motor_again(pty_robot: PtyRobot) -> None:
     assert sum("MOTORS 60 0" in line for line in pty_robot.did) == 3
 
 
-def test_a_person_who_leaves_leaves_questions(pty_robot: PtyRobot) -> None:
-    pty_robot.ask(lambda robot: robot.sense(*GOOD))
-    assert on(pty_robot, "selftest").code == 0
-    assert not any("MOTORS" in line for line in pty_robot.did)
-
-
 # -- the report
 
 
-def test_a_report_has_no_names(tsc: Tsc, pty_robot: PtyRobot, tmp_path: Path) -> None:
+def test_a_report_has_no_names(pty_robot: PtyRobot, tmp_path: Path) -> None:
     assert on(pty_robot, "name", "LUISITO").code == 0
     file = tmp_path / "report.txt"
     for _ in range(2):  # a report of ours is replaced
@@ -227,9 +210,9 @@ def test_a_report_has_no_names(tsc: Tsc, pty_robot: PtyRobot, tmp_path: Path) ->
     assert mine.read_text() == "mine"
 
 
-def test_a_robot_that_is_not_there_has_a_report_too(tsc: Tsc, tmp_path: Path) -> None:
+def test_a_robot_that_is_not_there_has_a_report_too(tmp_path: Path) -> None:
     file = tmp_path / "report.txt"
-    done = tsc("selftest", "--port", "/dev/serial-of-Ana", "--report", file)
+    done = inside("selftest", "--port", "/dev/serial-of-Ana", "--report", file)
     assert done.code == 3
     said = file.read_text(encoding="utf-8")
     assert "Ana" not in said

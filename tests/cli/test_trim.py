@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import signal
-import subprocess
 from collections.abc import Callable
 from typing import cast
 
@@ -12,9 +11,8 @@ import pytest
 
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support import pty_robot as pty_robots
-from tests.support.command import TSC, Done, Tsc
+from tests.support.command import Command, Done, inside
 from tests.support.pty_robot import PtyRobot
-from tests.support.waiting import HANGS_S
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.cli.commands.trim import words
@@ -66,31 +64,23 @@ def driven(robot: HostFirmware, session: Session, left: int, right: int) -> list
 # -- the robot ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("trim", "found"),
-    [
-        (Trim(), "80 40"),
-        (Trim(is_exchanged=True), "40 80"),
-        (Trim(is_left_reversed=True), "-80 40"),
-        (Trim(is_right_reversed=True), "80 -40"),
-        (Trim(is_exchanged=True, is_left_reversed=True), "40 -80"),
-        (Trim(balance=25), "60 40"),
-        (Trim(balance=-25), "80 30"),
-        (Trim(least=20), "84 52"),  # 20, and 80 % of what is asked
-        (Trim(balance=40, least=40), "56 64"),
-    ],
-)
-def test_motors_get_what_the_trim_makes_of_it(trim: Trim, found: str) -> None:
+def test_motors_get_what_the_trim_makes_of_it() -> None:
     robot, session = switched_on(), computer()
-    assert robot.until(session, session.trim(trim.data())) == OK
-    assert driven(robot, session, 80, 40) == [found, "0 0"]
-
-
-def test_one_percent_moves_and_none_is_none() -> None:
-    robot, session = switched_on(), computer()
-    assert robot.until(session, session.trim(Trim(balance=10, least=30).data())) == OK
-    assert driven(robot, session, 1, -1) == ["30 -30", "0 0"]
-    assert driven(robot, session, 100, -100) == ["90 -100", "0 0"]
+    for trim, power, found in (
+        (Trim(), (80, 40), "80 40"),
+        (Trim(is_exchanged=True), (80, 40), "40 80"),
+        (Trim(is_left_reversed=True), (80, 40), "-80 40"),
+        (Trim(is_right_reversed=True), (80, 40), "80 -40"),
+        (Trim(is_exchanged=True, is_left_reversed=True), (80, 40), "40 -80"),
+        (Trim(balance=25), (80, 40), "60 40"),
+        (Trim(balance=-25), (80, 40), "80 30"),
+        (Trim(least=20), (80, 40), "84 52"),  # 20, and 80 % of what is asked
+        (Trim(balance=40, least=40), (80, 40), "56 64"),
+        (Trim(balance=10, least=30), (1, -1), "30 -30"),
+        (Trim(balance=10, least=30), (100, -100), "90 -100"),
+    ):
+        assert robot.until(session, session.trim(trim.data())) == OK
+        assert driven(robot, session, *power) == [found, "0 0"], trim
     assert driven(robot, session, 0, 0) == []
 
 
@@ -112,14 +102,12 @@ def test_a_trim_survives_and_so_does_the_name() -> None:
     assert other.robot is not None and other.robot.name == "TINI"
 
 
-@pytest.mark.parametrize(
-    "data", [b"\x08\0\0", b"\0\x29\0", b"\0\xd7\0", b"\0\x80\0", b"\0\0\x29", b"\0\0", b"\0"]
-)
-def test_a_trim_that_makes_no_sense_is_refused(data: bytes) -> None:
+def test_a_trim_that_makes_no_sense_is_refused() -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.trim(Trim(balance=3).data())) == OK
-    expected = "BAD_VALUE" if len(data) == 3 else "BAD_LENGTH"
-    assert robot.until(session, session.trim(data)) == STATUSES[expected]
+    for data in (b"\x08\0\0", b"\0\x29\0", b"\0\xd7\0", b"\0\x80\0", b"\0\0\x29", b"\0\0", b"\0"):
+        expected = "BAD_VALUE" if len(data) == 3 else "BAD_LENGTH"
+        assert robot.until(session, session.trim(data)) == STATUSES[expected], data
     assert told(robot.done(session, session.trim())) == Trim(balance=3, pace=Pace())
 
 
@@ -140,12 +128,13 @@ def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> No
     assert keeps(pty_robot) == Trim(pace=Pace())
 
 
-@pytest.mark.parametrize(
-    "wrong", [("--balance", "41"), ("--least", "-1"), ("--exchange", "maybe"), ("--least", "x")]
-)
-def test_what_cannot_be_set_is_said_without_a_robot(tsc: Tsc, wrong: tuple[str, str]) -> None:
-    done = tsc("trim", *wrong, "--port", "/nowhere")
-    assert done.code == 2 and wrong[0] in done.err
+def test_what_cannot_be_set_is_said_without_a_robot() -> None:
+    for option, value in (
+        ("--balance", "41"), ("--least", "-1"), ("--exchange", "maybe"), ("--least", "x"),
+        ("--speed-80", "-1"), ("--turn-80", "656"), ("--turn-40", "fast"),
+    ):  # fmt: skip
+        done = inside("trim", option, value, "--port", "/nowhere")
+        assert done.code == 2 and option in done.err, option
 
 
 # Enter; the left output turns the right wheel, backward; the right one the left wheel, forward;
@@ -170,34 +159,28 @@ def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot)
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("answers", "said"),
-    [
+def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(pty_robot: PtyRobot) -> None:
+    assert on(pty_robot, "--balance", "7", "--least", "3").code == 0
+    for answers, said in (
         ("\n1\n1\n1\n1\n", "the same wheel"),
         ("\n3\n", "did not turn"),
         ("\n1\n1\n2\n1\n" + "2\n" * 8, "do not turn with 40 %"),
         ("\n1\n1\n2\n1\n1\n\n" + "2\n" * 3, "more than 40 % stronger"),
         ("\n1\n", "the answers ended"),
-    ],
-)
-def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(
-    pty_robot: PtyRobot, answers: str, said: str
-) -> None:
-    assert on(pty_robot, "--balance", "7", "--least", "3").code == 0
-    done = on(pty_robot, data=answers)
-    assert done.code == 3
-    assert said in done.err
-    assert keeps(pty_robot) == Trim(balance=7, least=3, pace=Pace())
-    assert not pty_robot.moves
+    ):
+        done = on(pty_robot, data=answers)
+        assert done.code == 3
+        assert said in done.err
+        assert keeps(pty_robot) == Trim(balance=7, least=3, pace=Pace()), said
+        assert not pty_robot.moves
 
 
-@pytest.mark.parametrize("key", ["stopped_elsewhere", "plain"])
 def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
-    monkeypatch: pytest.MonkeyPatch, key: str
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Another terminal stops the robot in the moment in which it is given a trim to try."""
     given: list[bytes] = []
-    stops = ["stopped_elsewhere", "plain"]  # it goes on: what is asked meanwhile is stale
+    stops: list[str] = []
 
     class Asked:
         def trim(self, data: bytes) -> None:
@@ -214,25 +197,19 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
 
     monkeypatch.setattr(trim_wizard.TrimWizard, "trim", stopped)
     monkeypatch.setattr(trim_wizard.TrimWizard, "__init__", lambda wizard, connection: None)
-    with pytest.raises(CommandError, match=key):
-        trim_wizard.guided(cast("Connection", Connected()), Trim(balance=7))
-    assert given == [Trim(balance=7).data()]
+    for key in ("stopped_elsewhere", "plain"):
+        stops[:] = ["stopped_elsewhere", "plain"]  # it goes on: what is asked meanwhile is stale
+        with pytest.raises(CommandError, match=key):
+            trim_wizard.guided(cast("Connection", Connected()), Trim(balance=7))
+        assert given.pop() == Trim(balance=7).data() and not given
 
 
 def test_ctrl_c_stops_the_robot_and_it_keeps_what_it_had(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "--balance", "7").code == 0
-    command = subprocess.Popen(
-        [*TSC, "trim", "--port", pty_robot.port],
-        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
-    assert command.stdin
-    command.stdin.write(b"\n")
-    command.stdin.flush()
+    command = Command("trim", "--port", pty_robot.port, data=b"\n")
     pty_robot.until(lambda: pty_robot.moves, "a motor turns")
-    command.send_signal(signal.SIGINT)
-    out, err = command.communicate(timeout=HANGS_S)
-    done = Done(command.returncode, out.decode(), err.decode())
-    assert done.code == 2
+    command.signal(signal.SIGINT)
+    assert command.ended().code == 2
     assert not pty_robot.moves
     assert keeps(pty_robot) == Trim(balance=7, pace=Pace())
 
@@ -275,13 +252,13 @@ def test_a_measured_robot_may_not_move_at_all_with_little_power() -> None:
     assert fault_name(status.outcome.values.fault) == "NO_POWER"
 
 
-@pytest.mark.parametrize("pace", [Pace(20, 20), Pace(20, 10), Pace(1, 0), Pace(0, 0, 9, 8)])
-def test_a_robot_refuses_a_pace_that_does_not_rise_whole(pace: Pace) -> None:
+def test_a_robot_refuses_a_pace_that_does_not_rise_whole() -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.trim(Trim(balance=3, pace=PACE).data())) == OK
-    refused = robot.until(session, session.trim(Trim(balance=9, pace=pace).data()))
-    assert refused == STATUSES["BAD_VALUE"]
-    assert told(robot.done(session, session.trim())) == Trim(balance=3, pace=PACE)
+    for pace in (Pace(20, 20), Pace(20, 10), Pace(1, 0), Pace(0, 0, 9, 8)):
+        refused = robot.until(session, session.trim(Trim(balance=9, pace=pace).data()))
+        assert refused == STATUSES["BAD_VALUE"], pace
+        assert told(robot.done(session, session.trim())) == Trim(balance=3, pace=PACE)
 
 
 def test_a_pace_survives_a_fault_and_a_torn_save() -> None:
@@ -332,29 +309,14 @@ def test_who_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None:
     assert keeps(pty_robot).pace == Pace(0, 16.51, 144, 288)
 
 
-@pytest.mark.parametrize("answers", ["1\n", "1\n\n33\n\n"])
-def test_who_stops_measuring_leaves_what_was_there(pty_robot: PtyRobot, answers: str) -> None:
-    assert on(pty_robot, "--speed-40", "10", "--speed-80", "20,5", "--balance", "7").code == 0
-    done = on(pty_robot, data=LIFTED + answers)
-    assert done.code == 3
-    assert "the answers ended" in done.err
-    assert keeps(pty_robot) == Trim(balance=7, pace=Pace(10, 20.5))
-    assert not pty_robot.moves
-
-
-@pytest.mark.parametrize(
-    ("wrong", "said"),
-    [
-        (("--speed-40", "20"), "faster than at 40 %"),
-        (("--speed-80", "-1"), "--speed-80"),
-        (("--turn-80", "656"), "--turn-80"),
-        (("--turn-40", "fast"), "--turn-40"),
-    ],
-)
-def test_a_pace_that_cannot_be_is_refused(
-    pty_robot: PtyRobot, wrong: tuple[str, str], said: str
-) -> None:
-    done = on(pty_robot, *wrong)
-    assert done.code == 2
-    assert said in done.err
+def test_who_stops_measuring_leaves_what_was_there(pty_robot: PtyRobot) -> None:
+    done = on(pty_robot, "--speed-40", "20")
+    assert done.code == 2 and "faster than at 40 %" in done.err
     assert keeps(pty_robot).pace == Pace()
+    assert on(pty_robot, "--speed-40", "10", "--speed-80", "20,5", "--balance", "7").code == 0
+    for answers in ("1\n", "1\n\n33\n\n"):
+        done = on(pty_robot, data=LIFTED + answers)
+        assert done.code == 3
+        assert "the answers ended" in done.err
+        assert keeps(pty_robot) == Trim(balance=7, pace=Pace(10, 20.5))
+        assert not pty_robot.moves
