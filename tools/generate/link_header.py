@@ -11,9 +11,14 @@ from itertools import accumulate
 from tiniscript.base.languages import SOURCE, text
 from tiniscript.link import messages
 from tiniscript.link.messages import FIRST_EVENT, MESSAGES, SHARED_REPLIES, Field, Message
-from tools.generate.cpp_header import array, camel, constants, enumeration
-
-HEADER_GUARD = "TINISCRIPT_LINK_MESSAGES_H_"
+from tools.generate.cpp_header import (
+    array,
+    camel,
+    constants,
+    constants_of,
+    cpp_file,
+    enumeration,
+)
 
 
 def header(command: str) -> str:
@@ -24,59 +29,15 @@ def header(command: str) -> str:
         for name, number in messages.STATUSES.items()
     ]
     parts = (
-        f"{_first_line(command)}"
-        "//\n"
-        "// The numbers of the link: messages, where the fields of their requests begin,\n"
-        "// statuses, states, times. Knows no behaviour. `docs/link.md` says what they mean.\n"
-        "\n"
-        f"#ifndef {HEADER_GUARD}\n"
-        f"#define {HEADER_GUARD}\n"
-        "\n"
-        "#include <stdint.h>\n"
-        "\n"
-        '#include "../vm/flash.h"\n'
-        "\n"
-        "// clang-format off\n"
-        "\n"
-        "namespace tiniscript {\n",
-        constants(
-            ("kLinkMajor", messages.MAJOR),
-            ("kLinkMinor", messages.MINOR),
-            ("kSmallFrame", messages.SMALL_FRAME),
-            ("kLargeFrame", messages.LARGE_FRAME),
-            ("kLargeWindow", messages.LARGE_WINDOW),
-            ("kLargeMinor", messages.LARGE_MINOR),
-            ("kTextFrom", messages.TEXT_FROM),
-            ("kHeadBytes", messages.HEAD_BYTES),
-            ("kCrcBytes", messages.CRC_BYTES),
-            ("kReply", messages.REPLY),
-            ("kSealed", messages.SEALED),
-            ("kNameBytes", messages.NAME_BYTES),
-            ("kMostBalance", messages.MOST_BALANCE),
-            ("kMostLeast", messages.MOST_LEAST),
-            ("kStopRun", messages.STOP_RUN),
-            ("kSilenceMs", messages.SILENCE_MS),
-            ("kHeldMs", messages.HELD_MS),
-            ("kDeadManMs", messages.DEAD_MAN_MS),
-            ("kListenMs", messages.LISTEN_MS),
-            ("kAgainMs", messages.AGAIN_MS),
-            ("kKeyBytes", messages.KEY_BYTES),
-            ("kChallengeBytes", messages.CHALLENGE_BYTES),
-            ("kTagBytes", messages.TAG_BYTES),
-            ("kAuthorityMs", messages.AUTHORITY_MS),
-            ("kKeyTries", messages.KEY_TRIES),
-            ("kKeyPauseMs", messages.KEY_PAUSE_MS),
-            ("kLongMs", messages.LONG_MS),
-            ("kClaimMs", messages.CLAIM_MS),
-            ("kForgetMs", messages.FORGET_MS),
-            ("kNetworkBytes", messages.NETWORK_BYTES),
-            ("kWifiTextBytes", messages.WIFI_TEXT_BYTES),
-            ("kPasswordBytes", messages.PASSWORD_BYTES),
-            ("kLeastPassword", messages.LEAST_PASSWORD),
-            ("kClassBytes", messages.CLASS_BYTES),
-            ("kBrokerPlaceBytes", messages.BROKER_PLACE_BYTES),
-            ("kBrokerNameBytes", messages.BROKER_NAME_BYTES),
-            ("kTrustBytes", messages.TRUST_BYTES),
+        constants(("kLinkMajor", messages.MAJOR), ("kLinkMinor", messages.MINOR))
+        + constants_of(
+            messages, "SMALL_FRAME", "LARGE_FRAME", "LARGE_WINDOW", "LARGE_MINOR", "TEXT_FROM",
+            "HEAD_BYTES", "CRC_BYTES", "REPLY", "SEALED", "NAME_BYTES", "MOST_BALANCE",
+            "MOST_LEAST", "STOP_RUN", "SILENCE_MS", "HELD_MS", "DEAD_MAN_MS", "LISTEN_MS",
+            "AGAIN_MS", "KEY_BYTES", "CHALLENGE_BYTES", "TAG_BYTES", "AUTHORITY_MS", "KEY_TRIES",
+            "KEY_PAUSE_MS", "LONG_MS", "CLAIM_MS", "FORGET_MS", "NETWORK_BYTES",
+            "WIFI_TEXT_BYTES", "PASSWORD_BYTES", "LEAST_PASSWORD", "CLASS_BYTES",
+            "BROKER_PLACE_BYTES", "BROKER_NAME_BYTES", "TRUST_BYTES",
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),
@@ -86,9 +47,7 @@ def header(command: str) -> str:
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.FEATURES)),
         enumeration("Message", named),
         "// Requests are the numbers from 1 up to this one; from kFirstActing on they act.\n"
-        + constants(
-            ("kFirstActing", messages.FIRST_ACTING),
-        )
+        + constants_of(messages, "FIRST_ACTING")
         + "#ifdef ARDUINO_ARCH_ESP32\n"
         + constants(("kLastRequest", _requests()[-1].number)).rstrip("\n")
         + "\n#else  // it has no radio of its own\n"
@@ -102,50 +61,28 @@ def header(command: str) -> str:
         *(
             enumeration(name, [(each, k, what) for k, (each, what) in enumerate(rows)])
             for name, rows in (
-                ("State", messages.STATES),
-                ("Saved", messages.SAVED),
-                ("Cause", messages.CAUSES),
-                ("Reset", messages.RESETS),
-                ("TextLevel", messages.TEXT_LEVELS),
-                ("Key", messages.KEYS),
-                ("WifiStep", messages.WIFI_STEPS),
-                ("WifiMode", messages.WIFI_MODES),
-                ("WifiState", messages.WIFI_STATES),
+                ("State", messages.STATES), ("Saved", messages.SAVED), ("Cause", messages.CAUSES),
+                ("Reset", messages.RESETS), ("TextLevel", messages.TEXT_LEVELS),
+                ("Key", messages.KEYS), ("WifiStep", messages.WIFI_STEPS),
+                ("WifiMode", messages.WIFI_MODES), ("WifiState", messages.WIFI_STATES),
             )
         ),
         "// Faults that no instruction makes. The others are `Fault`.\n"
         + enumeration("LinkFault", [(name, n, what) for n, name, what in messages.LINK_FAULTS]),
-        f"}}  // namespace tiniscript\n\n#endif  // {HEADER_GUARD}\n",
+    )  # fmt: skip
+    about = (
+        "The numbers of the link: messages, where the fields of their requests begin,",
+        "statuses, states, times. Knows no behaviour. `docs/link.md` says what they mean.",
     )
-    return "\n".join(parts)
+    return cpp_file(command, "link/messages.h", about, "\n".join(parts), "../vm/flash.h")
 
 
 def tables(command: str) -> str:
     """Return `messages.cpp`: the table that the header declares."""
-    rows = [
-        (f"{{{_length_range(each.request)}}}", each.name)
-        for each in _requests()
-        if each.number <= messages.LAST_WITHOUT_RADIO
-    ]
-    of_radio = [
-        f"    {{{_length_range(each.request)}}},  // {each.name}"
-        for each in _requests()
-        if each.number > messages.LAST_WITHOUT_RADIO
-    ]
-    table = array("kRequestBytes[][2]", rows)
-    assert table.endswith("\n};\n"), table
-    guarded = ["#ifdef ARDUINO_ARCH_ESP32", *of_radio, "#endif", "};", ""]
-    table = table.removesuffix("};\n") + "\n".join(guarded)
-    return "\n".join(
-        (
-            _first_line(command),
-            '#include "sizes.h"\n',
-            "// clang-format off\n",
-            "namespace tiniscript {\n",
-            table,
-            "}  // namespace tiniscript\n",
-        )
-    )
+    rows = [(f"{{{_length_range(each.request)}}}", each.name) for each in _requests()]
+    of_radio = len(rows) - messages.LAST_WITHOUT_RADIO
+    table = array("kRequestBytes[][2]", rows, of_radio, "ARDUINO_ARCH_ESP32")
+    return cpp_file(command, "link/messages.cpp", (), table, "sizes.h")
 
 
 def _length_range(fields: tuple[Field, ...]) -> str:
@@ -153,10 +90,6 @@ def _length_range(fields: tuple[Field, ...]) -> str:
     least, most = messages.sizes(fields)
     is_filling = any(each.fills for each in fields)
     return f"{least}, {'kPayloadBytes' if is_filling else most}"
-
-
-def _first_line(command: str) -> str:
-    return f"// Generated by {command} from the tables in compiler/tiniscript/link. Do not edit.\n"
 
 
 def _requests() -> list[messages.Message]:

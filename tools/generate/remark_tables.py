@@ -23,7 +23,7 @@ def remarks_header(command: str) -> str:
     return file_of(
         command,
         "remarks.h",
-        "// What the robot says to a person beside what is wrong with a line.\n",
+        "What the robot says to a person beside what is wrong with a line.",
         [
             "enum class Remark : uint8_t {",
             "  kNone = 0,",
@@ -42,7 +42,7 @@ def texts_header(command: str) -> str:
     return file_of(
         command,
         "texts.h",
-        "// The texts of problems, remarks and faults: their numbers, and how they are packed.\n",
+        "The texts of problems, remarks and faults: their numbers, and how they are packed.",
         [
             "// The numbers of texts, in the order in which they lie.",
             "constexpr uint8_t text_of(Problem problem) {",
@@ -70,7 +70,8 @@ def texts_header(command: str) -> str:
             "const uint8_t* packed_codes();",
             "const uint8_t* pair_of(uint8_t code);",
         ],
-        include=("problems.h", "remarks.h"),
+        "problems.h",
+        "remarks.h",
     )
 
 
@@ -99,7 +100,7 @@ def texts(command: str) -> str:
             "",
             *_chosen("pair_of(uint8_t code)", "Pairs", "[code - 1]"),
         ],
-        include=("kit_words.h",),
+        "kit_words.h",
     )
 
 
