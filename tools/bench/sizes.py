@@ -187,7 +187,6 @@ PARTS = {
     "machine and verifier": Part(
         MACHINE_ALONE, "", VERIFY_AND_RUN, ("store",), avr_bench.FLAGS
     ),
-    "machine, with images": Part(MACHINE_ALONE, "", ALL, ("store",), avr_bench.FLAGS),
     "store": Part(MACHINE_ALONE, ALL, STORE, ("store",), avr_bench.FLAGS),
     "link, with text": Part(
         MACHINE.replace("PORT", PORT), PORT_USED + ALL, LINK, ("link", "text"),

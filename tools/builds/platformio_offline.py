@@ -22,10 +22,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import threading
-import time
 import urllib.request
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -144,24 +143,16 @@ def registry_answers() -> bool:
     """Return whether a host of the registry describes one of its packages in time."""
     from platformio import __registry_mirror_hosts__ as hosts
 
-    answers: list[str] = []
-
-    def ask(host: str) -> None:
+    def answers(host: str) -> bool:
         url = f"https://api.{host}/v3/packages/platformio/platform/native"
         try:
             with urllib.request.urlopen(url, timeout=REGISTRY_SECONDS) as answer:
-                if json.load(answer)["name"] == "native":
-                    answers.append(host)
+                return bool(json.load(answer)["name"] == "native")
         except (OSError, ValueError, KeyError, TypeError):
-            return
+            return False
 
-    asking = [threading.Thread(target=ask, args=(host,), daemon=True) for host in hosts]
-    for thread in asking:
-        thread.start()
-    end = time.monotonic() + REGISTRY_SECONDS
-    while not answers and any(thread.is_alive() for thread in asking) and time.monotonic() < end:
-        time.sleep(0.02)
-    return bool(answers)
+    with ThreadPoolExecutor() as pool:
+        return any(pool.map(answers, hosts))
 
 
 # -- what Debian has ----------------------------------------------------------------------------

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from itertools import accumulate
 from pathlib import Path
@@ -105,11 +105,6 @@ def image_table() -> str:
     return table(("offset", "bytes", "field", "meaning"), rows)
 
 
-def refusal_table() -> str:
-    rows = [(number, f"`{name}`", why) for name, (number, why) in image.REFUSALS.items()]
-    return table(("number", "reason", "when"), rows)
-
-
 def instruction_table() -> str:
     rows = []
     for op in opcodes.OPS:
@@ -128,9 +123,8 @@ def operand_table() -> str:
     return table(("operand", "bytes", "range", "meaning"), rows)
 
 
-def rule_table() -> str:
-    rows = [(number, f"`{name}`", what) for name, (number, what) in verify.RULES.items()]
-    return table(("number", "rule", "refused"), rows)
+def numbered(head: Sequence[str], found: Mapping[str, tuple[int, str]]) -> str:
+    return table(head, [(number, f"`{name}`", what) for name, (number, what) in found.items()])
 
 
 def role_table() -> str:
@@ -150,7 +144,8 @@ def fault_table() -> str:
 
 
 def limit_table() -> str:
-    compiler, operand = "compiler", "verifier: `BAD_OPERAND`"
+    compiler, operand, deep = "compiler", "verifier: `BAD_OPERAND`", "verifier: `TOO_DEEP`"
+    for_blocks = "words: 1 for an IF, 2 for a loop"
     both = "compiler, and verifier: `{}`"
     rows = (
         ("code", limits.CODE_BYTES, "bytes", both.format("CODE_LENGTH")),
@@ -158,21 +153,11 @@ def limit_table() -> str:
         ("stack", limits.STACK_VALUES, "values", both.format("STACK_OVERFLOW")),
         ("variables", limits.VARIABLES, "", f"{compiler}, and {operand}"),
         ("sensors of a kit, and actuators", DEVICES, "", f"the robot's profile, and {operand}"),
-        (
-            "counted loops open at once, those around a call included",
-            limits.COUNTERS,
-            "",
-            "verifier: `TOO_DEEP`",
-        ),
+        ("counted loops open at once, those around a call included", limits.COUNTERS, "", deep),
         ("calls open at once", limits.CALLS, "", both.format("TOO_DEEP")),
         ("procedures", limits.DEFS, "", both.format("TOO_MANY_DEFS")),
-        (
-            "open blocks of one routine",
-            limits.NEST_WORDS,
-            "words: 1 for an IF, 2 for a loop",
-            "verifier: `TOO_DEEP`",
-        ),
-        ("open joins", limits.JOINS, "", "verifier: `TOO_DEEP`"),
+        ("open blocks of one routine", limits.NEST_WORDS, for_blocks, deep),
+        ("open joins", limits.JOINS, "", deep),
         ("between two checks of an UNTIL", limits.CHECK_MS, "ms", "nobody: it is always so"),
     )
     return table(("what", "at most", "", "refused by"), rows)
@@ -204,10 +189,10 @@ def robot_header(path: Path) -> str:
 SPEC = ROOT / "bytecode_spec.md"
 SPEC_TABLES: dict[str, Callable[[], str]] = {
     "image": image_table,
-    "refusals": refusal_table,
+    "refusals": partial(numbered, ("number", "reason", "when"), image.REFUSALS),
     "instructions": instruction_table,
     "operands": operand_table,
-    "rules": rule_table,
+    "rules": partial(numbered, ("number", "rule", "refused"), verify.RULES),
     "roles": role_table,
     "faults": fault_table,
     "limits": limit_table,

@@ -151,21 +151,17 @@ def number_rows(table: Sequence[tuple[str, str]]) -> Rows:
     return ("number", "name", "meaning"), rows
 
 
+def bit_rows(table: Sequence[tuple[int, str, str]], bits: str = "bits", digits: int = 2) -> Rows:
+    rows = [(f"0x{number:0{digits}x}", f"`{name}`", what) for number, name, what in table]
+    return (bits, "name", "meaning"), rows
+
+
 DOCUMENT_TABLES: dict[str, dict[str, Callable[[], Rows]]] = {
     "link.md": {
         "messages": message_rows,
-        "modes": lambda: (
-            ("bits", "name", "meaning"),
-            [(f"0x{bits:02x}", f"`{name}`", what) for bits, name, what in messages.MODES],
-        ),
-        "wheels": lambda: (
-            ("bit", "name", "meaning"),
-            [(f"0x{bits:02x}", f"`{name}`", what) for bits, name, what in messages.WHEELS],
-        ),
-        "features": lambda: (
-            ("bits", "name", "meaning"),
-            [(f"0x{bits:04x}", f"`{name}`", what) for bits, name, what in messages.FEATURES],
-        ),
+        "modes": lambda: bit_rows(messages.MODES),
+        "wheels": lambda: bit_rows(messages.WHEELS, "bit"),
+        "features": lambda: bit_rows(messages.FEATURES, digits=4),
         "text levels": lambda: number_rows(messages.TEXT_LEVELS),
         "statuses": status_rows,
         "states": lambda: number_rows(messages.STATES),

@@ -5,9 +5,6 @@ many. A quarter of the pupils' programs is put aside: its score is printed, neve
 `--show worse` prints the others that have this mark, `--code TS036` those of a code alone; `--keep`
 writes scores that rose.
 
-`--judge FILE` prints for judges what is said of each program of a file, which blank lines part, and
-what `--fix` makes of it; `--lang en` says it in English.
-
 `slips as meant` was begun anew: its sample was drawn from pins, and fell from 16.8 to 12.0 as they
 changed. It is drawn from right programs now, and says what `--fix` makes of them; with 64 other
 programs of documents it fell from 18.0 to 17.8. `aside without a false repair` fell from 100.0 to
@@ -31,9 +28,7 @@ from pathlib import Path
 
 from tests.pupils.corpus import Entry, check, entries
 from tests.pupils.test_damage import programs
-from tiniscript.base.source import Source
 from tiniscript.diagnostics.fixing import fixed
-from tiniscript.diagnostics.rendering import message
 from tiniscript.lessons import catalogue
 from tiniscript.recovery.explanation import explained
 from tools.shadow import marks
@@ -60,15 +55,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--show", choices=MARKS, help="print the programs with this mark")
     parser.add_argument("--code", default="", help="print those with this code alone")
     parser.add_argument("--keep", action="store_true", help="write what rose")
-    parser.add_argument(
-        "--judge", type=Path, metavar="FILE", help="print what is said of its programs"
-    )
-    parser.add_argument("--lang", default="es", help="the language of what is said")
     options = parser.parse_args(arguments)
-    if options.judge:
-        for program in options.judge.read_text(encoding="utf-8").strip("\n").split("\n\n"):
-            judge(program, options.lang)
-        return 0
     begun = time.monotonic()
     took: list[float] = []
     seen: list[Answer] = []
@@ -88,18 +75,6 @@ def main(arguments: list[str] | None = None) -> int:
     median, worst = (1000 * took[k] for k in (len(took) // 2, -1))
     print(f"median {median:.1f} ms, at worst {worst:.0f} ms; {time.monotonic() - begun:.0f} s")
     return kept(scores, options.keep)
-
-
-def judge(program: str, lang: str) -> None:
-    """Print a program, what is said of it, and what `--fix` makes of it."""
-    print("-" * 80, program, sep="\n")
-    for each in check(program):
-        said = message(each, Source(program), lang)
-        label = "line" if each.is_mistake else "warning, the program runs: line"
-        print(f"  {label} {said.line}: {said.message} | try: {said.fix}")
-    made = fixed(program, check).text
-    if made != program:
-        print("  repaired:", *made.split("\n"), sep="\n    ")
 
 
 def of_pupils(name: str, answers: Sequence[Answer]) -> Scores:

@@ -218,10 +218,6 @@ class Uno:
 
     # -- its serial port ----------------------------------------------------------------------
 
-    def baud(self, bits_per_second: int) -> None:
-        """Say how fast `send` and `hold` are; the pty has the speed that its program sets."""
-        self._tell(f"baud {bits_per_second}")
-
     def send(self, data: bytes, at: int | None = None, *, stop_bits_fail: bool = False) -> None:
         """Send bytes to the chip one after the other; the first start bit at a cycle, or now."""
         if data:

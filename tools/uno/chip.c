@@ -56,6 +56,13 @@ void asking_begin(struct Asking* asking, uint8_t vector) {
   avr_irq_register_notify(&asking->vector->irq[AVR_INT_IRQ_RUNNING], asking_runs, asking);
 }
 
+void on_interrupts(avr_irq_notify_t notify) {
+  for (int k = 0; k < avr->interrupts.vector_count; k++) {
+    avr_int_vector_t* vector = avr->interrupts.vector[k];
+    avr_irq_register_notify(&vector->irq[AVR_INT_IRQ_RUNNING], notify, vector);
+  }
+}
+
 static void interrupt_entered(struct avr_irq_t* irq, uint32_t value, void* param) {
   (void)irq;
   (void)param;
@@ -200,10 +207,7 @@ static int on_ioctl(struct avr_io_t* io, uint32_t request, void* param) {
 void chip_begin(void) {
   static avr_io_t own = {.kind = "uno", .ioctl = on_ioctl};
   avr_register_io(avr, &own);
-  for (int k = 0; k < avr->interrupts.vector_count; k++) {
-    avr_irq_t* running = &avr->interrupts.vector[k]->irq[AVR_INT_IRQ_RUNNING];
-    avr_irq_register_notify(running, interrupt_entered, NULL);
-  }
+  on_interrupts(interrupt_entered);
   barking = (struct Asking){barking_wants, barking_entered, NULL};
   asking_begin(&barking, board->vectors.watchdog);
   take_register(kWdtcsr, control_read, control_write);

@@ -8,7 +8,6 @@
 //     analog PIN COUNT          0 to 1023, as the chip will read it
 //     supply MILLIVOLTS         of the chip, as its converter sees it
 //     sonar TRIGGER ECHO MM     an HC-SR04 and what is before it; 0: nothing
-//     baud N                    for the following
 //     send HEX, send_bad HEX    bytes one after the other; bad: with a stop bit that is low
 //     hold low|high BITS        a break, or silence
 //     reset external|power-on|brown-out
@@ -109,10 +108,6 @@ static bool is_done(Cycle when, const char* line) {
   }
   if (is_word(line, "masked")) {
     masked_tell();
-    return true;
-  }
-  if (sscanf(line, "baud %d", &number) == 1 && number > 0) {
-    wire_set_speed(number);
     return true;
   }
   if (strncmp(line, "send ", 5) == 0) return send_hex(when, line + 5, true);

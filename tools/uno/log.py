@@ -57,11 +57,10 @@ class Byte:
     cycle: int
     began: int
     value: int
-    is_broken: bool  # the stop bit was low
 
     @classmethod
     def of(cls, event: Event) -> Byte:
-        return cls(event.cycle, event["began"], event["byte"], "framing_error" in event.rest)
+        return cls(event.cycle, event["began"], event["byte"])
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@
 //       --board NAME      uno or mega: uno
 //       --run SPEED       begin at once; otherwise it waits for the command `run`
 //       --baud N          of the pty until somebody sets another, and of the commands: 115200
-//       --link PATH       also make PATH a link to the pty
 //       --eeprom FILE     where the EEPROM is kept
 //       --reset-on-open   opening the pty resets the board
 //       --bootloader HEX  where a reset begins
@@ -236,7 +235,7 @@ static void load(const char* firmware, const char* bootloader) {
 }
 
 int main(int count, char** words) {
-  const char *firmware = NULL, *link = NULL, *eeprom = NULL, *bootloader = NULL;
+  const char *firmware = NULL, *eeprom = NULL, *bootloader = NULL;
   bool resets_on_open = false, watches_stack = false, watches_masked = false;
   int baud = 115200;
   for (int k = 1; k < count; k++) {
@@ -248,8 +247,6 @@ int main(int count, char** words) {
       run_speed = atof(value);
     } else if (value && strcmp(word, "--baud") == 0) {
       baud = atoi(value);
-    } else if (value && strcmp(word, "--link") == 0) {
-      link = value;
     } else if (value && strcmp(word, "--eeprom") == 0) {
       eeprom = value;
     } else if (value && strcmp(word, "--board") == 0) {
@@ -285,7 +282,7 @@ int main(int count, char** words) {
   pins_begin();
   uart_begin();
   eeprom_begin(eeprom);
-  wire_begin(link, resets_on_open, baud);
+  wire_begin(resets_on_open, baud);
   if (watches_stack) stack_begin();
   if (watches_masked) masked_begin();
   reset_soon(kPowerOn);

@@ -69,10 +69,7 @@ static void entered(struct avr_irq_t* irq, uint32_t value, void* param) {
 void masked_begin(void) {
   is_watched = true;
   avr->run_cycle_limit = 1;  // the run looks after each instruction
-  for (int k = 0; k < avr->interrupts.vector_count; k++) {
-    avr_int_vector_t* vector = avr->interrupts.vector[k];
-    avr_irq_register_notify(&vector->irq[AVR_INT_IRQ_RUNNING], entered, vector);
-  }
+  on_interrupts(entered);
 }
 
 bool masked_is_watched(void) { return is_watched; }

@@ -51,10 +51,7 @@ static void entered(struct avr_irq_t* irq, uint32_t value, void* param) {
 void stack_begin(void) {
   is_watched = true;
   avr->run_cycle_limit = 1;  // the run looks after each instruction
-  for (int k = 0; k < avr->interrupts.vector_count; k++) {
-    avr_irq_t* running = &avr->interrupts.vector[k]->irq[AVR_INT_IRQ_RUNNING];
-    avr_irq_register_notify(running, entered, NULL);
-  }
+  on_interrupts(entered);
 }
 
 bool stack_is_watched(void) { return is_watched; }

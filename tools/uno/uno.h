@@ -93,6 +93,9 @@ bool reset_where_wanted(void);
 // Calls `write` or `read` for a register instead of what libsimavr has for it.
 void take_register(uint16_t address, avr_io_read_t read, avr_io_write_t write);
 
+// Calls `notify` where an interrupt is entered and left, with its vector.
+void on_interrupts(avr_irq_notify_t notify);
+
 // An interrupt that is asked for as long as `wants` says so. `entered` may be none.
 struct Asking {
   bool (*wants)(void);
@@ -113,17 +116,14 @@ void uart_wire(Cycle when, bool level);
 
 // -- wire.c: the other end of the two wires -----------------------------------------------------
 
-void wire_begin(const char* link, bool resets_on_open, int speed);
+// What the commands send has so many bits in a second; the pty has those of its settings.
+void wire_begin(bool resets_on_open, int speed);
 
 // Sends a byte after all that is waiting, from `when` on. With `stop` false its stop bit is low.
 void wire_send(Cycle when, uint8_t byte, bool stop);
 
 // Holds the wire low, or leaves it alone, for so many bits.
 void wire_hold(Cycle when, bool level, uint32_t bits);
-
-// What the commands send has this many bits in a second; the pty has those of its settings.
-void wire_set_speed(int bits_per_second);
-double wire_bit_cycles(void);
 
 // The chip has sent a byte, with bits of this length.
 void wire_receive(Cycle when, uint8_t byte, double bit_cycles);

@@ -80,15 +80,11 @@ void wire_hold(Cycle when, bool held, uint32_t bits) {
   push((struct Item){when, own_bit_cycles, 1, 1, true});
 }
 
-void wire_set_speed(int bits_per_second) { own_bit_cycles = (double)kHertz / bits_per_second; }
-double wire_bit_cycles(void) { return own_bit_cycles; }
-
 // -- the pty ------------------------------------------------------------------------------------
 
 static int master = -1;
 static bool is_open;
 static bool is_reset_by_opening;
-static const char* link_name;
 
 static const struct {
   speed_t code;
@@ -150,27 +146,19 @@ void wire_look(void) {
 
 int wire_file(void) { return master; }
 
-static void remove_link(void) { unlink(link_name); }
-
-void wire_begin(const char* link, bool resets_on_open, int speed) {
+void wire_begin(bool resets_on_open, int speed) {
   is_reset_by_opening = resets_on_open;
   struct termios settings;
   memset(&settings, 0, sizeof settings);
   cfmakeraw(&settings);
   settings.c_cflag |= CREAD | CS8 | CLOCAL;
   cfsetspeed(&settings, code_of(speed));
-  wire_set_speed(speed);
+  own_bit_cycles = (double)kHertz / speed;
   int slave;
   char name[128];
   if (openpty(&master, &slave, name, &settings, NULL) != 0) give_up("there is no pty");
   close(slave);
   fcntl(master, F_SETFL, O_NONBLOCK);
-  if (link) {
-    unlink(link);
-    if (symlink(name, link) != 0) give_up("cannot make the link %s", link);
-    link_name = link;
-    atexit(remove_link);
-  }
   pin_wire(level);
   tell(0, "pty", "\"name\": \"%s\"", name);
 }
