@@ -8,30 +8,25 @@ from __future__ import annotations
 
 import operator
 import random
-import zlib
 from collections import Counter
 from collections.abc import Callable, Sequence
 from itertools import product
-from struct import pack as struct_pack
 
 from tests.machines import Senses
-from tests.machines.host import Host, Process
+from tests.machines.host import Process
 from tests.oracle import programs
-from tests.support.casefile import Case
 from tests.support.images import image_for
 from tests.support.kits import KITS
-from tests.support.random_codes import EDGES, any_number, random_codes, simple, some_programs
-from tests.vm.test_cases import robot_and_senses
+from tests.support.random_codes import EDGES, any_number, random_codes
 from tiniscript import compile_text
 from tiniscript.base import fixed_point
 from tiniscript.base.kit import Kit
 from tiniscript.base.trace import Ending, TracedRobot
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.base.words import COMPARATORS
-from tiniscript.bytecode.disassembly import assemble
-from tiniscript.bytecode.image import EVERYTHING, GO, TASKS, unpack
-from tiniscript.bytecode.opcodes import BY_NAME, FAULTS, NEEDS_GO, OPS
-from tiniscript.bytecode.verify import RULES, Refused, verify
+from tiniscript.bytecode.image import unpack
+from tiniscript.bytecode.opcodes import BY_NAME, FAULTS
+from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.runner import MachineOf, run
 from tiniscript.vm.state import WAITING
@@ -82,66 +77,6 @@ def compare_runs(machine: Process, code: bytes, kit: Kit, senses: Senses) -> str
 # -- code ---------------------------------------------------------------------------------------
 
 
-def check_disassembly(machine: Host, case: Case) -> None:
-    """The disassembly of a case has the same verdict, and so has each beginning of it."""
-    kit = robot_and_senses(case)[0].kit
-    code = assemble(case.parts["bytecode"])
-    beginnings = [code[:length] for length in range(len(code) + 1)]
-    for needs in (0, TASKS, GO, EVERYTHING):
-        compare_verdicts(machine, beginnings, len(kit.sensors), len(kit.actuators), needs)
-
-
-def check_length(machine: Host, length: int) -> None:
-    compare_verdicts(machine, [simple("STOP") * length], 3, 2)
-
-
-def check_devices(machine: Host, devices: int) -> None:
-    """Sensors and actuators of every number, for a kit that has so many sensors."""
-    codes = [simple("READ") + bytes([k]) for k in range(256)]
-    codes += [simple("PUSH_TRUE") + simple("SET") + bytes([k]) for k in range(256)]
-    codes += [simple("PUSH_TRUE") * op.pops + bytes([op.code]) for op in OPS if op.implied]
-    compare_verdicts(machine, codes, devices, 255 - devices)
-
-
-def check_short_codes(machine: Host) -> None:
-    """All codes of up to two bytes."""
-    every = [bytes(each) for size in range(3) for each in product(range(256), repeat=size)]
-    for code in compare_verdicts(machine, every, *SIZES):
-        compare_runs(machine, code, WIDE, Senses(max_ms=100, max_steps=50))
-
-
-def check_pairs(machine: Host, few_at: int) -> None:
-    """All pairs of opcodes; the byte at `few_at` is one of the edges of its ranges."""
-    opcodes = [op.code for op in OPS if op.needs != NEEDS_GO]
-    few = (0, 1, 2, 3, 31, 32, 100, 101, 127, 128, 156, 255)
-    sets = [opcodes, opcodes, opcodes]
-    sets[few_at] = list(few)
-    codes = [bytes(each) for each in product(*sets)]
-    for code in compare_verdicts(machine, codes, *SIZES):
-        compare_runs(machine, code, WIDE, Senses(max_ms=100, max_steps=50))
-
-
-def check_runs_safely(machine: Host, first: int) -> None:
-    """In C++ alone: what its verifier accepts never fails a run-time check."""
-    for byte in range(first, first + 16):
-        accepted, bad, _ = machine.all_of_three(byte, 3, 2)
-        assert bad == 0, f"{bad} of {accepted} codes that begin with {byte:02x}"
-
-
-def check_three(machine: Host, first: int) -> int:
-    """All codes of three bytes that begin with `first` have the same verdict.
-
-    Return how many are accepted.
-    """
-    accepted, bad, checksum = machine.all_of_three(first, 3, 2)
-    ours = 0
-    for rest in product(range(256), repeat=2):
-        verdict = python_verdict(bytes((first, *rest)), 3, 2)
-        ours = zlib.crc32(struct_pack("<BH", *verdict), ours)
-    assert (bad, checksum) == (0, ours), f"{first:02x}"
-    return accepted
-
-
 def check_codes(machine: Process, seed: int, count: int) -> Counter[str]:
     """Compare random codes, and run what is accepted; return how often each thing happened."""
     rng = random.Random(seed)
@@ -158,34 +93,7 @@ def check_codes(machine: Process, seed: int, count: int) -> Counter[str]:
     return seen
 
 
-def check_a_batch(machine: Host, seed: int, count: int) -> None:
-    """A batch of random codes breaks every rule and comes to every ending."""
-    seen = check_codes(machine, seed, count)
-    others = ("CODE_LENGTH", "TOO_MANY_TASKS")  # these codes have no tasks
-    rules = {str(number) for name, (number, _) in RULES.items() if name not in others}
-    assert rules <= set(seen), sorted(rules - set(seen))
-    assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(seen), seen
-    assert "BAD_CODE" not in seen, seen
-
-
-def check_memory(machine: Host) -> None:
-    """Code that no verifier has seen: it ends, waits or faults; sanitizers see what else."""
-    endings: Counter[str] = Counter()
-    for code in random_codes(1, 20_000):
-        ran = machine.run_unverified(code, WIDE, Senses(max_ms=MAX_MS, max_steps=MAX_STEPS))
-        endings[ran.trace.split()[-1]] += 1
-    assert endings["BAD_CODE"] > 1000, endings
-    assert endings["DONE"] > 1000, endings
-
-
 # -- time and a robot that is not ready ---------------------------------------------------------
-
-
-def check_clock(machine: Host, begin_ms: int) -> None:
-    """The clock of the machine may begin anywhere, and wrap around."""
-    for image, kit, senses in some_programs():
-        ran = machine.run(image, kit, senses)
-        assert machine.run(image, kit, senses, begin_ms=begin_ms) == ran, ran.trace
 
 
 LATE_BUDGET = 250  # instructions, as many as the host machine runs in a tick
@@ -207,14 +115,6 @@ def run_late(
             break
         robot.now_ms = max(machine.wake_ms, robot.now_ms) + late
     return "".join(f"{event}\n" for event in robot.events)
-
-
-def check_late(machine: Host, late_ms: int) -> None:
-    """A program's own clock catches up with a delay of up to 20 ms, and not with more."""
-    each_ms = [count * 7 % (late_ms + 1) for count in range(1, 200)]
-    for image, kit, senses in some_programs():
-        theirs = machine.run_late(image, kit, senses, each_ms)
-        assert theirs == run_late(image, kit, senses, each_ms), theirs
 
 
 # Ticks at 2^31 - 8 and 2^32 - 16 ms, both multiples of 20, and then in time, for what waits from 0.
@@ -239,27 +139,6 @@ def check_round(run: Callable[[bytes, Kit, Senses, Sequence[int]], str]) -> None
     senses = Senses({"DISTANCE": [50_000] * 7 + [9_000]})
     kit = KITS[0][1]
     assert run(compile_text(ROUND, kit).image, kit, senses, ROUND_MS) == ROUND_TRACE
-
-
-def check_weeks(machine: Host) -> None:
-    """Programs go on where a tick comes up to 2^31 ms after the one before."""
-    for number, (image, kit, senses) in enumerate(some_programs()):
-        rng = random.Random(number)
-        late_ms = [rng.choice((0, 7, 30, rng.randrange(2**31 - 10**6))) for _ in range(60)]
-        theirs = machine.run_late(image, kit, senses, late_ms)
-        assert theirs == run_late(image, kit, senses, late_ms), theirs
-
-
-def check_not_ready(machine: Host) -> None:
-    """A robot that is not ready is asked again: the trace is the same, only the tries are more."""
-    tries = 0
-    for image, kit, senses in some_programs():
-        ready = machine.run(image, kit, senses)
-        if not ready.trace.endswith(" LIMIT\n") or ready.steps < senses.max_steps:
-            slow = machine.run(image, kit, senses._replace(max_steps=20_000), not_ready=2)
-            assert slow.trace == ready.trace, f"{ready.trace}not\n{slow.trace}"
-            tries += slow.steps - ready.steps
-    assert tries > 500, tries
 
 
 # -- arithmetic ---------------------------------------------------------------------------------

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterator
-from struct import pack as struct_pack
 
 from tests.machines import Senses
 from tests.machines.host import Process
 from tests.support.random_codes import changed_kit, images_of_programs, random_images
-from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.image import (
     EVERYTHING,
     HEADER_BYTES,
@@ -46,21 +44,6 @@ def check_images(machine: Process, seed: int, count: int, has: int = EVERYTHING)
         assert ours == reason, f"{image.hex(' ')}: {ours}, not {reason}"
     headers = {number for name, (number, _) in REFUSALS.items() if name != "OTHER_KIT"}
     assert {*theirs} == {0, *headers}
-
-
-def check_long_images(machine: Process) -> None:
-    """What a header may say of the code is known before the code is."""
-    longest = pack("SI", 0, bytes(CODE_BYTES))
-    for length in (CODE_BYTES, CODE_BYTES + 1, 40_000, 65_535):
-        for header_length in (HEADER_BYTES, 0xFF):
-            head = bytearray(longest[:HEADER_BYTES])
-            head[5], head[8:10] = header_length, struct_pack("<H", length)
-            image = sealed(bytes(head) + bytes(header_length - HEADER_BYTES + length))
-            images = [image, image[:-1], image + b"x"]
-            said = machine.refusals(images)
-            assert said == [python_refusal(each) for each in images]
-            names = ["", "TRUNCATED", "TRAILING"] if length == CODE_BYTES else ["BAD_HEADER"] * 3
-            assert said == [REFUSALS[name][0] if name else 0 for name in names], length
 
 
 def refusal_of(load: Callable[[], object]) -> str:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 
 from tests.machines import Senses
-from tests.machines.host import Host, Process
+from tests.machines.host import Process
 from tests.machines.python import ran_python
 from tests.oracle.task_programs import task_program
-from tests.support.cpp_checks import LATE_BUDGET, SIZES, compare_verdicts, run_late
+from tests.support.cpp_checks import LATE_BUDGET, SIZES, compare_verdicts
 from tests.support.kits import KITS
 from tests.support.random_codes import mutated, task_codes
 from tiniscript import compile_text
@@ -55,28 +55,6 @@ def check_task_codes(machine: Process, seed: int, count: int) -> None:
 def check_task_programs(machine: Process, first: int, count: int) -> None:
     for image, senses in some_task_programs(first, count):
         assert machine.run(image, KIT, senses) == ran_python(image, KIT, senses), first
-
-
-def check_task_clock(machine: Host, begin_ms: int) -> None:
-    """The clock of the machine may begin anywhere, and wrap around."""
-    for image, senses in some_task_programs(0, 200):
-        ran = machine.run(image, KIT, senses)
-        assert machine.run(image, KIT, senses, begin_ms=begin_ms) == ran, ran.trace
-
-
-def check_late_tasks(machine: Host, late_of: Callable[[random.Random], Sequence[int]]) -> None:
-    """Each task's own clock catches up with a delay of up to 20 ms, and not with more."""
-    for number, (image, senses) in enumerate(some_task_programs(0, 200)):
-        late_ms = late_of(random.Random(number))
-        theirs = machine.run_late(image, KIT, senses, late_ms)
-        assert theirs == run_late(image, KIT, senses, late_ms, machine_of), theirs
-
-
-def check_slow_tasks(machine: Host, not_ready: int) -> None:
-    """A reading or a SHOW that is not ready ends the turn of its task alone."""
-    for image, senses in some_task_programs(0, 200):
-        ran = machine.run(image, KIT, senses, not_ready=not_ready)
-        assert ran.trace == slow_run(image, senses, not_ready), ran.trace
 
 
 class SlowRobot(TracedRobot):

@@ -9,17 +9,42 @@ from __future__ import annotations
 import argparse
 import random
 import time
+import zlib
 from collections import Counter
+from collections.abc import Callable, Sequence
+from itertools import product
+from struct import pack as struct_pack
 
 import pytest
 
+from tests.machines import Senses
 from tests.machines.host import host
-from tests.support import cpp_checks, cpp_edges, cpp_images, cpp_tasks, cpp_ways
+from tests.support import cpp_images, cpp_tasks, cpp_ways
 from tests.support.casefile import Case
+from tests.support.cpp_checks import (
+    MAX_MS,
+    MAX_STEPS,
+    OPERATIONS,
+    SIZES,
+    WIDE,
+    check_arithmetic,
+    check_codes,
+    check_round,
+    compare_runs,
+    compare_verdicts,
+    python_verdict,
+    run_late,
+)
+from tests.support.cpp_tasks import KIT, some_task_programs
+from tests.support.random_codes import random_codes, simple, some_programs
 from tests.support.rows import each_row
-from tests.vm.test_cases import disassemblies_alone
+from tests.vm.test_cases import disassemblies_alone, robot_and_senses
 from tiniscript.base.limits import CODE_BYTES
-from tiniscript.bytecode.opcodes import BY_NAME
+from tiniscript.bytecode.disassembly import assemble
+from tiniscript.bytecode.image import EVERYTHING, GO, HEADER_BYTES, REFUSALS, TASKS, pack, sealed
+from tiniscript.bytecode.opcodes import BY_NAME, NEEDS_GO, OPS
+from tiniscript.bytecode.verify import RULES
+from tiniscript.vm.tasks import machine_of
 
 BATCH = 12_500
 BATCHES = 80  # in the tests
@@ -30,32 +55,67 @@ BATCHES = 80  # in the tests
 
 @each_row("case", disassemblies_alone())
 def test_disassembly_has_the_same_verdict(case: Case) -> None:
-    cpp_checks.check_disassembly(host(), case)
+    """And so has each beginning of it."""
+    kit = robot_and_senses(case)[0].kit
+    code = assemble(case.parts["bytecode"])
+    beginnings = [code[:length] for length in range(len(code) + 1)]
+    for needs in (0, TASKS, GO, EVERYTHING):
+        compare_verdicts(host(), beginnings, len(kit.sensors), len(kit.actuators), needs)
 
 
-@pytest.mark.parametrize("length", [0, 1, CODE_BYTES - 1, CODE_BYTES, CODE_BYTES + 1, 100_000])
-def test_length_of_code(length: int) -> None:
-    cpp_checks.check_length(host(), length)
+def test_length_of_code() -> None:
+    lengths = (0, 1, CODE_BYTES - 1, CODE_BYTES, CODE_BYTES + 1, 100_000)
+    compare_verdicts(host(), [simple("STOP") * length for length in lengths], 3, 2)
 
 
-@pytest.mark.parametrize("devices", [0, 1, 32, 33, 255])
+@each_row("devices", [0, 1, 32, 33, 255])
 def test_number_of_devices(devices: int) -> None:
-    cpp_checks.check_devices(host(), devices)
+    """Sensors and actuators of every number, for a kit that has so many sensors."""
+    codes = [simple("READ") + bytes([k]) for k in range(256)]
+    codes += [simple("PUSH_TRUE") + simple("SET") + bytes([k]) for k in range(256)]
+    codes += [simple("PUSH_TRUE") * op.pops + bytes([op.code]) for op in OPS if op.implied]
+    compare_verdicts(host(), codes, devices, 255 - devices)
+
+
+def check_and_run(codes: Sequence[bytes]) -> None:
+    for code in compare_verdicts(host(), codes, *SIZES):
+        compare_runs(host(), code, WIDE, Senses(max_ms=100, max_steps=50))
 
 
 def test_all_codes_of_up_to_two_bytes() -> None:
-    cpp_checks.check_short_codes(host())
+    check_and_run([bytes(each) for size in range(3) for each in product(range(256), repeat=size)])
 
 
 @pytest.mark.sampled("few_at")
 @pytest.mark.parametrize("few_at", [1, 2])
 def test_codes_of_three_bytes_with_two_opcodes(few_at: int) -> None:
-    cpp_checks.check_pairs(host(), few_at)
+    """All pairs of opcodes; the byte at `few_at` is one of the edges of its ranges."""
+    opcodes = [op.code for op in OPS if op.needs != NEEDS_GO]
+    sets = [opcodes, opcodes, opcodes]
+    sets[few_at] = [0, 1, 2, 3, 31, 32, 100, 101, 127, 128, 156, 255]
+    check_and_run([bytes(each) for each in product(*sets)])
 
 
 @pytest.mark.parametrize("first", range(0, 256, 16), ids=lambda first: f"from {first:02x}")
 def test_all_codes_of_three_bytes_run_safely(first: int) -> None:
-    cpp_checks.check_runs_safely(host(), first)
+    """In C++ alone: what its verifier accepts never fails a run-time check."""
+    for byte in range(first, first + 16):
+        accepted, bad, _ = host().all_of_three(byte, 3, 2)
+        assert bad == 0, f"{bad} of {accepted} codes that begin with {byte:02x}"
+
+
+def check_three(first: int) -> int:
+    """All codes of three bytes that begin with `first` have the same verdict.
+
+    Return how many are accepted.
+    """
+    accepted, bad, checksum = host().all_of_three(first, 3, 2)
+    ours = 0
+    for rest in product(range(256), repeat=2):
+        verdict = python_verdict(bytes((first, *rest)), 3, 2)
+        ours = zlib.crc32(struct_pack("<BH", *verdict), ours)
+    assert (bad, checksum) == (0, ours), f"{first:02x}"
+    return accepted
 
 
 @pytest.mark.sampled("name", keep=3)
@@ -65,71 +125,73 @@ def test_all_codes_of_three_bytes_run_safely(first: int) -> None:
 )
 def test_codes_of_three_bytes_that_begin_alike(name: str) -> None:
     """A sample of `--three`: what begins with an instruction of one, two or three bytes."""
-    assert cpp_checks.check_three(host(), BY_NAME[name].code) > 0
+    assert check_three(BY_NAME[name].code) > 0
 
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(BATCHES))
 def test_random_codes(seed: int) -> None:
-    """A million in all, an eightieth of it on a commit."""
-    cpp_checks.check_a_batch(host(), seed, BATCH)
-
-
-def test_many_defs() -> None:
-    cpp_edges.check_many_defs(host())
-
-
-def test_what_is_closed_takes_no_room() -> None:
-    cpp_edges.check_what_is_closed(host())
-
-
-def test_a_procedure_needs_what_it_calls_needs() -> None:
-    cpp_edges.check_needs(host())
-
-
-def test_everything_has_a_place_of_its_own() -> None:
-    cpp_edges.check_places(host())
-
-
-def test_an_instruction_of_one_byte_means_what_is_in_its_code() -> None:
-    cpp_edges.check_shorts(host())
-
-
-def test_a_program_may_run_for_24_days() -> None:
-    cpp_edges.check_long_time(host())
+    """A million in all, an eightieth of it on a commit: they break every rule, end in every way."""
+    seen = check_codes(host(), seed, BATCH)
+    others = ("CODE_LENGTH", "TOO_MANY_TASKS")  # these codes have no tasks
+    rules = {str(number) for name, (number, _) in RULES.items() if name not in others}
+    assert rules <= set(seen), sorted(rules - set(seen))
+    assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(seen), seen
+    assert "BAD_CODE" not in seen, seen
 
 
 def test_whatever_the_code_the_machine_keeps_to_its_memory() -> None:
-    cpp_checks.check_memory(host())
-
-
-def test_code_that_changed_after_it_was_verified() -> None:
-    cpp_edges.check_run_time_checks(host())
+    """Code that no verifier has seen: it ends, waits or faults; sanitizers see what else."""
+    endings: Counter[str] = Counter()
+    for code in random_codes(1, 20_000):
+        ran = host().run_unverified(code, WIDE, Senses(max_ms=MAX_MS, max_steps=MAX_STEPS))
+        endings[ran.trace.split()[-1]] += 1
+    assert endings["BAD_CODE"] > 1000, endings
+    assert endings["DONE"] > 1000, endings
 
 
 # -- time and a robot that is not ready ---------------------------------------------------------
 
 
-@pytest.mark.parametrize("begin_ms", [1, 2**31 - 500, 2**31, 2**32 - 1, 2**32 - 1500])
-def test_the_clock_may_wrap_around(begin_ms: int) -> None:
-    cpp_checks.check_clock(host(), begin_ms)
+def test_the_clock_may_begin_anywhere_and_wrap_around() -> None:
+    for image, kit, senses in some_programs():
+        ran = host().run(image, kit, senses)
+        for begin_ms in (1, 2**31 - 500, 2**31, 2**32 - 1, 2**32 - 1500):
+            assert host().run(image, kit, senses, begin_ms=begin_ms) == ran, (begin_ms, ran.trace)
 
 
 @pytest.mark.parametrize("late_ms", [0, 1, 19, 20, 21, 25, 100, 3000])
 def test_ticks_may_come_late(late_ms: int) -> None:
-    cpp_checks.check_late(host(), late_ms)
+    """A program's own clock catches up with a delay of up to 20 ms, and not with more."""
+    each_ms = [count * 7 % (late_ms + 1) for count in range(1, 200)]
+    for image, kit, senses in some_programs():
+        theirs = host().run_late(image, kit, senses, each_ms)
+        assert theirs == run_late(image, kit, senses, each_ms), theirs
 
 
 def test_a_watched_move_may_last_longer_than_the_clock() -> None:
-    cpp_checks.check_round(host().run_late)
+    check_round(host().run_late)
 
 
 def test_weeks_may_pass_between_two_ticks() -> None:
-    cpp_checks.check_weeks(host())
+    """Programs go on where a tick comes up to 2^31 ms after the one before."""
+    for number, (image, kit, senses) in enumerate(some_programs()):
+        rng = random.Random(number)
+        late_ms = [rng.choice((0, 7, 30, rng.randrange(2**31 - 10**6))) for _ in range(60)]
+        theirs = host().run_late(image, kit, senses, late_ms)
+        assert theirs == run_late(image, kit, senses, late_ms), theirs
 
 
 def test_a_robot_that_is_not_ready_is_asked_again() -> None:
-    cpp_checks.check_not_ready(host())
+    """The trace is the same, only the tries are more."""
+    tries = 0
+    for image, kit, senses in some_programs():
+        ready = host().run(image, kit, senses)
+        if not ready.trace.endswith(" LIMIT\n") or ready.steps < senses.max_steps:
+            slow = host().run(image, kit, senses._replace(max_steps=20_000), not_ready=2)
+            assert slow.trace == ready.trace, f"{ready.trace}not\n{slow.trace}"
+            tries += slow.steps - ready.steps
+    assert tries > 500, tries
 
 
 # -- tasks --------------------------------------------------------------------------------------
@@ -147,26 +209,37 @@ def test_random_programs_with_tasks(first: int) -> None:
     cpp_tasks.check_task_programs(host(), first, 250)
 
 
-@pytest.mark.parametrize("begin_ms", [2**31 - 100, 2**32 - 100])
-def test_the_clock_of_tasks_may_wrap_around(begin_ms: int) -> None:
-    cpp_tasks.check_task_clock(host(), begin_ms)
+def test_the_clock_of_tasks_may_begin_anywhere_and_wrap_around() -> None:
+    for image, senses in some_task_programs(0, 200):
+        ran = host().run(image, KIT, senses)
+        for begin_ms in (2**31 - 100, 2**32 - 100):
+            assert host().run(image, KIT, senses, begin_ms=begin_ms) == ran, (begin_ms, ran.trace)
+
+
+def check_late_turns(late_of: Callable[[random.Random], int]) -> None:
+    """Each task's own clock catches up with a delay of up to 20 ms, and not with more."""
+    for number, (image, senses) in enumerate(some_task_programs(0, 200)):
+        rng = random.Random(number)
+        late_ms = [late_of(rng) for _ in range(80)]
+        theirs = host().run_late(image, KIT, senses, late_ms)
+        assert theirs == run_late(image, KIT, senses, late_ms, machine_of), theirs
 
 
 @pytest.mark.parametrize("late_ms", [1, 20, 21, 100])
 def test_turns_may_come_late(late_ms: int) -> None:
-    cpp_tasks.check_late_tasks(host(), lambda rng: [rng.randint(0, late_ms) for _ in range(80)])
+    check_late_turns(lambda rng: rng.randint(0, late_ms))
 
 
 def test_weeks_may_pass_between_two_turns() -> None:
-    def late(rng: random.Random) -> list[int]:
-        return [rng.choice((0, 7, 30, rng.randrange(2**31 - 10**6))) for _ in range(80)]
-
-    cpp_tasks.check_late_tasks(host(), late)
+    check_late_turns(lambda rng: rng.choice((0, 7, 30, rng.randrange(2**31 - 10**6))))
 
 
 @pytest.mark.parametrize("not_ready", [2, 3])
 def test_a_task_whose_reading_is_not_ready_lets_the_others_go_on(not_ready: int) -> None:
-    cpp_tasks.check_slow_tasks(host(), not_ready)
+    """The same where a SHOW is not ready."""
+    for image, senses in some_task_programs(0, 200):
+        ran = host().run(image, KIT, senses, not_ready=not_ready)
+        assert ran.trace == cpp_tasks.slow_run(image, senses, not_ready), ran.trace
 
 
 # -- ways ---------------------------------------------------------------------------------------
@@ -201,13 +274,24 @@ def test_images_of_programs(seed: int) -> None:
 
 
 def test_long_images() -> None:
-    cpp_images.check_long_images(host())
+    """What a header may say of the code is known before the code is."""
+    longest = pack("SI", 0, bytes(CODE_BYTES))
+    for length in (CODE_BYTES, CODE_BYTES + 1, 40_000, 65_535):
+        for header_length in (HEADER_BYTES, 0xFF):
+            head = bytearray(longest[:HEADER_BYTES])
+            head[5], head[8:10] = header_length, struct_pack("<H", length)
+            image = sealed(bytes(head) + bytes(header_length - HEADER_BYTES + length))
+            images = [image, image[:-1], image + b"x"]
+            said = host().refusals(images)
+            assert said == [cpp_images.python_refusal(each) for each in images]
+            names = ["", "TRUNCATED", "TRAILING"] if length == CODE_BYTES else ["BAD_HEADER"] * 3
+            assert said == [REFUSALS[name][0] if name else 0 for name in names], length
 
 
-@pytest.mark.parametrize("name", cpp_checks.OPERATIONS)
+@pytest.mark.parametrize("name", OPERATIONS)
 def test_arithmetic(name: str) -> None:
     """Two million operations in all."""
-    cpp_checks.check_arithmetic(host(), name, 100_000)
+    check_arithmetic(host(), name, 100_000)
 
 
 # -- a campaign ---------------------------------------------------------------------------------
@@ -218,7 +302,7 @@ def campaign(count: int, first: int) -> None:
     total: Counter[str] = Counter()
     done = 0
     for seed in range(first, first + -(-count // BATCH)):
-        total += cpp_checks.check_codes(host(), seed, BATCH)
+        total += check_codes(host(), seed, BATCH)
         done += BATCH
         print(f"{done} codes agree, {done / (time.monotonic() - begun):.0f} a second", flush=True)
     print(", ".join(f"{what}: {times}" for what, times in sorted(total.items())))
@@ -226,7 +310,7 @@ def campaign(count: int, first: int) -> None:
 
 def all_of_three() -> None:
     for first in range(256):
-        accepted = cpp_checks.check_three(host(), first)
+        accepted = check_three(first)
         print(f"{first:02x}: {accepted} accepted", flush=True)
 
 

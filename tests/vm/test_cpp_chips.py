@@ -16,18 +16,18 @@ import pytest
 
 from tests.machines import Senses, avr
 from tests.machines.chips import Chip
-from tests.machines.host import Ran
+from tests.machines.host import Ran, ran, run_request
 from tests.machines.python import ran_python
 from tests.machines.qemu import emulated
 from tests.machines.qemu import missing as emulator_missing
 from tests.oracle import programs
 from tests.support import avr_tasks, cpp_checks, cpp_images, cpp_tasks, cpp_ways
-from tests.support.avr_questions import of_changed_code, of_long_loops
 from tests.support.casefile import Case
 from tests.support.images import image_for, needs_of
 from tests.support.kits import KITS
-from tests.support.random_codes import random_codes, simple
+from tests.support.random_codes import jump, random_codes, simple
 from tests.vm.test_cases import compiled, disassemblies_alone, having, robot_and_senses
+from tests.vm.test_cpp_edges import changed_code, kit_of
 from tiniscript import compile_text
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import assemble
@@ -54,6 +54,17 @@ def some_chips(*names: str) -> pytest.MarkDecorator:
         for name in names
     }
     return pytest.mark.parametrize("chip", [pytest.param(n, marks=marks[n]) for n in names])
+
+
+SENSORS = 3  # of the kit of code that no verifier accepts: there is room for that many
+# What the AVR does not look at: a statement on an empty stack empties it, the second of two values
+# that is not there means nothing, and so does what NEXT counts without a loop.
+LENIENT = (
+    simple("SHOW"),
+    simple("PUSH_TRUE") + simple("ADD") + simple("SHOW"),
+    simple("PUSH_TRUE") + simple("MOTORS"),
+    jump("NEXT", False, 0),
+)
 
 
 each_chip = some_chips(*CHIPS)
@@ -140,19 +151,28 @@ def test_some_random_codes(chip: str, seed: int) -> None:
 @some_chips(avr.UNO)
 def test_code_that_changed_after_it_was_verified(chip: str) -> None:
     """It ends in BAD_CODE at each edge, and not too early."""
+    kit, senses = kit_of(SENSORS), Senses(max_ms=100, max_steps=100)
     endings = set()
-    for question in of_changed_code():
-        said = avr.answer(avr.UNO, question.request)
-        assert question.is_answered_by(said), f"{question.name}: {said}"
-        endings.add(question.want)
+    for code, caught in changed_code(SENSORS):
+        if code not in LENIENT:
+            want = "DONE" if caught is None else "BAD_CODE"
+            said = avr.answer(chip, b"U" + run_request(code, kit, senses))
+            assert ran(said).trace.split()[-1] == want, f"{code.hex()}: {said}"
+            endings.add(want)
     assert endings == {"DONE", "BAD_CODE"}
 
 
 @some_chips(avr.UNO)
 def test_loops_count_beyond_65535(chip: str) -> None:
-    """A counter has 24 bits, in registers and in memory."""
-    for question in of_long_loops():
-        assert question.is_answered_by(avr.answer(avr.UNO, question.request)), question.name
+    """With a loop in it, and with a long body: a counter has 24 bits, in registers and memory."""
+    kit = KITS[0][1]
+    far = f"IF(X < 0); {'Y = Y + 1; ' * 130} ENDIF; Y = X;"
+    for body in ("LOOP(1); Y = X; END_LOOP;", far):
+        text = f"X = 0; Y = 0; LOOP(70000); X = X + 1; {body} END_LOOP; SHOW(Y)"
+        image = compile_text(text, kit).image
+        for not_ready in (0, 2):
+            got = avr.ran_on(chip, image, kit, Senses(), not_ready)
+            assert got.trace == ran_python(image, kit, Senses()).trace, (body, not_ready)
 
 
 @some_chips(avr.UNO)

@@ -1,6 +1,6 @@
 """What holds at the limits of the C++ machine: that it has so much room and uses no other.
 
-Checks like those of `cpp_checks`, of code that is made to come to one limit.
+Each test is of code that is made to come to one limit.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tests.machines import Senses
-from tests.machines.host import Host
+from tests.machines.host import host
 from tests.support.cpp_checks import WIDE, compare_runs, compare_verdicts
 from tests.support.images import image_for
 from tests.support.random_codes import jump, loop, simple
@@ -25,13 +25,13 @@ def kit_of(sensors: int) -> Kit:
     return Kit(tuple(Device(f"S{number}", NUMBER, "", 0, 1000) for number in range(sensors)), ())
 
 
-def check_many_defs(machine: Host) -> None:
+def test_many_defs() -> None:
     for count in range(20):
         for calls in range(12):
             end = simple("RETURN")
             one = jump("DEF", False, len(end)) + end
             code = one * count + jump("CALL", False, 3) * (calls if count else 0)
-            compare_verdicts(machine, [code], 3, 2)
+            compare_verdicts(host(), [code], 3, 2)
 
 
 def procedure(body: bytes) -> bytes:
@@ -56,7 +56,7 @@ def calls_in_calls(count: int) -> bytes:
     return code
 
 
-def check_what_is_closed(machine: Host) -> None:
+def test_what_is_closed_takes_no_room() -> None:
     """Blocks and procedures that have ended take no more room: there may be any number."""
     yes, stop = simple("PUSH_TRUE"), simple("STOP")
     leave = jump("BREAK", True, 3)
@@ -71,19 +71,19 @@ def check_what_is_closed(machine: Host) -> None:
         simple("WATCH_FOREVER_WAIT") + yes + simple("UNTIL"),
     )
     for piece in pieces:
-        compare_verdicts(machine, [piece * count for count in range(40)], 3, 2)
-        compare_runs(machine, piece * 40, WIDE, Senses(max_ms=1000, max_steps=1000))
+        compare_verdicts(host(), [piece * count for count in range(40)], 3, 2)
+        compare_runs(host(), piece * 40, WIDE, Senses(max_ms=1000, max_steps=1000))
     # what one procedure needs is not what the next one needs
     for needs in (0, 8, COUNTERS):
         for around in range(COUNTERS + 1):
             code = procedure(loops(stop, needs)) + procedure(stop)
             code += loops(jump("CALL", True, 5 + 2 * around), around)
-            compare_verdicts(machine, [code], 3, 2)
+            compare_verdicts(host(), [code], 3, 2)
     for count in range(CALLS + 1):
-        compare_verdicts(machine, [calls_in_calls(CALLS) + calls_in_calls(count)], 3, 2)
+        compare_verdicts(host(), [calls_in_calls(CALLS) + calls_in_calls(count)], 3, 2)
 
 
-def check_needs(machine: Host) -> None:
+def test_a_procedure_needs_what_it_calls_needs() -> None:
     """A procedure needs what it calls needs; loops and procedures are remembered at once."""
     stop = simple("STOP")
     for needs in (0, 1, 8):
@@ -93,15 +93,15 @@ def check_needs(machine: Host) -> None:
                 second = loops(jump("CALL", True, len(first) + 7 + 2 * between), between)
                 code = procedure(first) + procedure(second)
                 code += loops(jump("CALL", True, len(second) + 4 + 2 * around), around)
-                compare_verdicts(machine, [code], 3, 2)
+                compare_verdicts(host(), [code], 3, 2)
     for count in (DEFS - 1, DEFS, DEFS + 1):
         code = procedure(stop) * count + jump("CALL", True, 5)
         code += simple("PUSH_TRUE") + jump("IF", True, 1) + stop
         code += loops(stop, COUNTERS)
-        compare_verdicts(machine, [code, code + loops(stop, COUNTERS + 1)], 3, 2)
+        compare_verdicts(host(), [code, code + loops(stop, COUNTERS + 1)], 3, 2)
 
 
-def check_places(machine: Host) -> None:
+def test_everything_has_a_place_of_its_own() -> None:
     """Every variable, reading, counter, value and call has a place of its own."""
     kit = kit_of(DEVICES)
     readings = {each.name: [1000 * k + 500] for k, each in enumerate(kit.sensors)}
@@ -122,18 +122,18 @@ def check_places(machine: Host) -> None:
     code += procedures + jump("CALL", True, last + 3)
     for k in range(VARIABLES):
         code += simple("PUSH_VAR") + bytes([k]) + simple("SHOW")
-    compare_verdicts(machine, [code], DEVICES, 0)
-    ending = compare_runs(machine, code, kit, senses)
+    compare_verdicts(host(), [code], DEVICES, 0)
+    ending = compare_runs(host(), code, kit, senses)
     assert ending == "DONE", ending
     # joins beside a procedure
     code = calls_in_calls(1)
     for k in reversed(range(JOINS)):
         code += simple("PUSH_TRUE") + jump("AND_THEN", True, 4 * k + 1)
     code += simple("PUSH_TRUE") + simple("SHOW_YES_NO")
-    compare_verdicts(machine, [code + jump("CALL", True, len(code))], 3, 2)
+    compare_verdicts(host(), [code + jump("CALL", True, len(code))], 3, 2)
 
 
-def check_shorts(machine: Host) -> None:
+def test_an_instruction_of_one_byte_means_what_is_in_its_code() -> None:
     """Instructions of one byte mean the variable, sensor or actuator that is in their code."""
     devices = kit_of(SHORTS).sensors
     kit = Kit(devices, tuple(each._replace(name=f"A{each.name}") for each in devices))
@@ -146,21 +146,21 @@ def check_shorts(machine: Host) -> None:
             words = (before.format(n + 1), f"{family}_{n}", behind)
             code += b"".join(simple(word) for word in words if word)
     readings = {each.name: (1000 * k + 1, 1000 * k + 2) for k, each in enumerate(devices)}
-    compare_verdicts(machine, [code], SHORTS, SHORTS)
-    ending = compare_runs(machine, code, kit, Senses(readings, max_ms=100, max_steps=200))
+    compare_verdicts(host(), [code], SHORTS, SHORTS)
+    ending = compare_runs(host(), code, kit, Senses(readings, max_ms=100, max_steps=200))
     assert ending == "DONE", ending
 
 
-def check_long_time(machine: Host) -> None:
+def test_a_program_may_run_for_24_days() -> None:
     """TIME is too large for a number after 24 days, and stays so: the clock of 32 bits wraps."""
     most = simple("PUSH32") + (2**31 - 1).to_bytes(4, "little") + simple("WAIT")
     time = simple("TIME") + simple("SHOW")
     senses = Senses(max_ms=2**31 + 1000, max_steps=100)
-    ending = compare_runs(machine, most + time + simple("WAIT8") + b"\x01" + time, WIDE, senses)
+    ending = compare_runs(host(), most + time + simple("WAIT8") + b"\x01" + time, WIDE, senses)
     assert ending == "OVERFLOW", ending
     for code in (most * 2 + simple("WAIT8") + b"\x78", most * 5):
         image = image_for(code + time, WIDE)
-        ran = machine.run(image, WIDE, senses._replace(max_ms=2**32 - 1))
+        ran = host().run(image, WIDE, senses._replace(max_ms=2**32 - 1))
         assert ran.trace.splitlines()[-1].endswith(" FAULT OVERFLOW"), ran.trace
 
 
@@ -235,13 +235,13 @@ def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
             yield bytes([code, 0, 0, 0, 0]), 0
 
 
-def check_run_time_checks(machine: Host) -> None:
+def test_code_that_changed_after_it_was_verified() -> None:
     """Code that changed after it was verified ends in BAD_CODE, and not too early."""
     # a robot may say that it has more sensors than a machine remembers
     for many in (3, DEVICES - 1, DEVICES, DEVICES + 1, 2 * DEVICES):
         kit = kit_of(many)
         for code, caught in changed_code(min(many, DEVICES)):
-            ran = machine.run_unverified(code, kit, Senses(max_ms=100, max_steps=100))
+            ran = host().run_unverified(code, kit, Senses(max_ms=100, max_steps=100))
             ending = ran.trace.splitlines()[-1].split()[-1]
             wanted = "DONE" if caught is None else "BAD_CODE"
             assert ending == wanted, f"{code.hex(' ')}: {ending}, not {wanted}"
