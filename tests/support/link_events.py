@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from tiniscript.link.outcomes import Event, LostEvent, StartedEvent
-from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent, StatusReply, StoppedEvent
-
-QUIET = StatusReply(*[0] * len(StatusReply._fields))  # of an idle robot that has done nothing
+from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent, StoppedEvent
 
 EVENTS: tuple[Event, ...] = (
     ShowEvent(7, 0),

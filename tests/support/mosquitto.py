@@ -15,7 +15,6 @@ from tests.machines.esp32 import Esp32Robot
 from tests.support.needs import need
 from tests.support.waiting import until
 from tiniscript.link import wifi
-from tiniscript.link.transports import broker
 from tiniscript.link.transports.broker import Access, Broker, BrokerPort
 
 PROGRAM = shutil.which("mosquitto") or next(iter(Path("/usr/sbin").glob("mosquitto")), None)
@@ -128,6 +127,3 @@ def _me() -> str:
     import pwd
 
     return pwd.getpwuid(os.getuid()).pw_name
-
-
-assert broker.ROOT == "tiniscript"

@@ -21,7 +21,6 @@ from tiniscript.link.requests import OK
 from tiniscript.robots import load
 
 KIT = load("tinibot").kit.fingerprint
-ACTING = {message.number for message in BY_NUMBER.values() if message.acts}
 
 
 def reset(name: str) -> int:
