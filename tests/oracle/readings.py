@@ -14,26 +14,17 @@ def inner_blocks(statement: Statement) -> list[list[Statement]]:
     return [] if isinstance(statement, Do) else [statement.body]
 
 
-def nesting(body: list[Statement], defs: Mapping[str, Facts]) -> int:
-    """How deep blocks are open in a body; those of a DEF count on top of those at its call."""
-    deepest = 0
+def depths(body: list[Statement], defs: Mapping[str, Facts]) -> tuple[int, int]:
+    """How many blocks, and DEFs, a body has open at once; a call adds those of its DEF."""
+    nesting = calling = 0
     for statement in body:
         for inner in inner_blocks(statement):
-            deepest = max(deepest, 1 + nesting(inner, defs))
+            nested, called = depths(inner, defs)
+            nesting, calling = max(nesting, 1 + nested), max(calling, called)
         if isinstance(statement, Do) and statement.word == "CALL":
-            deepest = max(deepest, defs[statement.name].nesting)
-    return deepest
-
-
-def calling(body: list[Statement], defs: Mapping[str, Facts]) -> int:
-    """How many DEFs a body has open at once."""
-    deepest = 0
-    for statement in body:
-        for inner in inner_blocks(statement):
-            deepest = max(deepest, calling(inner, defs))
-        if isinstance(statement, Do) and statement.word == "CALL":
-            deepest = max(deepest, 1 + defs[statement.name].calling)
-    return deepest
+            facts = defs[statement.name]
+            nesting, calling = max(nesting, facts.nesting), max(calling, 1 + facts.calling)
+    return nesting, calling
 
 
 def settle_readings(

@@ -8,8 +8,6 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Sequence
 
-import pytest
-
 from tests.machines import Senses
 from tests.machines.python import run_python
 from tests.oracle import machine, programs
@@ -18,6 +16,7 @@ from tests.support.cpp_checks import check_round, python_verdict, run_late
 from tests.support.images import image_for
 from tests.support.kits import KITS
 from tests.support.random_codes import random_codes
+from tests.support.rows import each_row
 from tiniscript import compile_text
 from tiniscript.bytecode.image import unpack
 
@@ -61,7 +60,7 @@ def test_traces() -> None:
     assert {"DONE", "LIMIT", "FAULT OVERFLOW", "FAULT DIVIDE_BY_ZERO"} <= endings
 
 
-@pytest.mark.parametrize("seed", [1, 7, 2**31, 2**32 - 1])
+@each_row("seed", [1, 7, 2**31, 2**32 - 1])
 def test_random_numbers(seed: int) -> None:
     text = "LOOP(50); SHOW(RANDOM(1, 6)); SHOW(RANDOM(100, -1000.5)); END_LOOP"
     assert compare(compile_text(text, KITS[0][1]).code, 0, {}, seed) == "DONE"

@@ -18,8 +18,10 @@ from tests.machines.python import run_python
 from tests.oracle.interpreter import PAPER_KIT, Mistake, run
 from tests.oracle.task_programs import task_program
 from tests.support.campaign import each_seed, wanted
-from tiniscript import compile_text, robots
+from tests.support.rows import each_row
+from tiniscript import Compiled, compile_text, robots
 from tiniscript.base.source import Source
+from tiniscript.bytecode.image import unpack
 from tiniscript.syntax.formatter import formatted
 
 KIT = robots.load("tinibot").kit
@@ -27,12 +29,18 @@ MAX_MS = 600
 BATCH = 50
 
 
-def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str:
-    """Compare the traces of one random program on some machines; return how it ended."""
-    text, senses = task_program(random.Random(seed))
+def check_program(seed: int, machines: Sequence[Machine] = (run_python,), needs: int = 0) -> str:
+    """Compare the traces of one random program on some machines; return how it ended.
+
+    With the `needs` of a way it has some.
+    """
+    rng = random.Random(seed)
+    both: list[Compiled] = []
+    while not both or unpack(both[0].image).needs & needs != needs:
+        text, senses = task_program(rng, ways=needs != 0)
+        both = [compile_text(text, KIT, optimize=optimize) for optimize in (True, False)]
+        assert all(each.is_right for each in both), f"seed {seed}:\n{text}"
     want = run(text, PAPER_KIT, senses, MAX_MS)
-    both = [compile_text(text, KIT, optimize=optimize) for optimize in (True, False)]
-    assert all(each.is_right for each in both), f"seed {seed}:\n{text}"
     for image in dict.fromkeys(each.image for each in both):  # often they are the same
         for machine in machines:
             got = machine(image, KIT, Senses(senses, MAX_MS))
@@ -50,7 +58,7 @@ def test_random_programs(first: int) -> None:
     assert set(ends) == {"DONE", "LIMIT"}
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     [
         "LOOP(1);TASK;END_TASK;END_LOOP",
@@ -87,7 +95,7 @@ def test_what_both_refuse(text: str) -> None:
     assert not compile_text(text, KIT).is_right
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     [
         "TASK;END_TASK",

@@ -145,21 +145,12 @@ def test_no_device_has_a_number_above_31() -> None:
             assert said == {0 if number == 31 else RULES["BAD_OPERAND"][0]}
 
 
-READS = (
-    "words",
-    "lexer",
-    "ast",
-    "readings",
-    "expressions",
-    "text",
-    "robot",
-    "tasks",
-    "interpreter",
-)
+READS = ("words", "lexer", "ast", "readings", "expressions", "text", "robot", "tasks",
+         "interpreter")  # fmt: skip
 CHECKS = ("spec_tables", "verifier", "arithmetic", "machine")
 
 
-@pytest.mark.parametrize("name", [*READS, *CHECKS])
+@each_row("name", [*READS, *CHECKS])
 def test_it_knows_nothing_of_the_package(name: str) -> None:
     text = (ROOT / "tests" / "oracle" / f"{name}.py").read_text(encoding="utf-8")
     imported = {

@@ -16,37 +16,30 @@ from tests.machines import MACHINES, Machine, Senses
 from tests.machines.python import run_python
 from tests.oracle import machine, programs
 from tests.oracle.interpreter import PAPER_KIT, Kit, Mistake, run
-from tests.oracle.task_programs import task_program
+from tests.oracle.test_tasks import check_program as check_tasks
 from tests.support.campaign import each_seed, wanted
 from tests.support.kits import KITS
+from tests.support.rows import each_row
 from tests.vm.test_agreement import MAX_MS, MAX_STEPS, same
-from tiniscript import compile_text
+from tiniscript import Compiled, compile_text
 from tiniscript.base.source import Source
 from tiniscript.bytecode.image import GO, unpack
 from tiniscript.syntax.formatter import formatted
 
 BATCH = 100
-TASKS_MS = 600
-
-
-def goes(text: str, number: int) -> bool:
-    """Whether a right program has a way in it."""
-    found = compile_text(text, KITS[number][1])
-    assert found.is_right, text
-    return bool(unpack(found.image).needs & GO)
 
 
 def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str:
     """Compare the traces of one random program on some machines; return how it ended."""
     rng = random.Random(seed)
     theirs, kit = KITS[seed // 2 % 2]
-    text = ""
-    while not goes(text, seed // 2 % 2):
+    both: list[Compiled] = []
+    while not both or not unpack(both[0].image).needs & GO:
         text = programs.program(rng, theirs, ways=True)
+        both = [compile_text(text, kit, optimize=optimize) for optimize in (True, False)]
+        assert all(found.is_right for found in both), f"seed {seed}:\n{text}"
     readings = programs.senses(rng, theirs)
     want = run(text, theirs, readings, MAX_MS, MAX_STEPS)
-    both = [compile_text(text, kit, optimize=optimize) for optimize in (True, False)]
-    assert all(found.is_right for found in both), f"seed {seed}:\n{text}"
     for image in dict.fromkeys(found.image for found in both):  # often they are the same
         for each in machines:
             got = each(image, kit, Senses(readings, MAX_MS, MAX_STEPS))
@@ -58,20 +51,6 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
     return want.split(" ", 1)[1].split("\n")[-2].split(" ", 1)[1] if want.count("\n") > 1 else ""
 
 
-def check_task_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str:
-    """The same with tasks."""
-    rng = random.Random(seed)
-    text = ""
-    while not goes(text, 0):
-        text, senses = task_program(rng, ways=True)
-    want = run(text, PAPER_KIT, senses, TASKS_MS)
-    found = compile_text(text, KITS[0][1])
-    assert found.is_right, f"seed {seed}:\n{text}"
-    for each in machines:
-        assert each(found.image, KITS[0][1], Senses(senses, TASKS_MS)) == want, f"{seed}:\n{text}"
-    return want.split()[-1]
-
-
 @pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, 4 * BATCH, BATCH))
 def test_random_programs(first: int) -> None:
@@ -80,11 +59,11 @@ def test_random_programs(first: int) -> None:
 
 
 def test_random_programs_with_tasks() -> None:
-    ends = Counter(check_task_program(seed) for seed in range(BATCH))
+    ends = Counter(check_tasks(seed, needs=GO) for seed in range(BATCH))
     assert {"DONE", "LIMIT", "NO_POWER"} <= set(ends), ends
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     [
         "F(20 DEG, 60)",
@@ -122,7 +101,7 @@ def test_what_both_refuse(text: str) -> None:
     assert not compile_text(text, KITS[0][1]).is_right
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     [
         "F(20 CM, 60)",
@@ -152,8 +131,8 @@ def test_a_robot_whose_speed_is_not_known_has_no_such_moves() -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("text", "code", "shown"),
+@each_row(
+    "text, code, shown",
     [
         ("R(20, 60)", "TS811", "R(20 DEG, 60)"),
         ("L(90, 60)", "TS811", "L(90 DEG, 60)"),
@@ -181,7 +160,7 @@ def test_degrees_are_only_shown_where_the_robot_has_them() -> None:
 
 def either(seed: int) -> str:
     machines = [MACHINES[name] for name in ("python", "host")]
-    return (check_program if seed % 2 else check_task_program)(seed, machines)
+    return check_program(seed, machines) if seed % 2 else check_tasks(seed, machines, GO)
 
 
 if __name__ == "__main__":

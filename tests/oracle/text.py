@@ -22,7 +22,7 @@ from tests.oracle.ast import (
     sensors_in,
 )
 from tests.oracle.expressions import ExpressionParser
-from tests.oracle.readings import calling, nesting, settle_readings
+from tests.oracle.readings import depths, settle_readings
 from tests.oracle.words import (
     ALIASES,
     BLOCK_WORDS,
@@ -73,7 +73,7 @@ class Parser(ExpressionParser):
 
     def settle(self, body: list[Statement], defs: Mapping[str, Facts]) -> Facts:
         """Settles the readings of the program or of a DEF and checks its depths."""
-        nested, called = nesting(body, defs), calling(body, defs)
+        nested, called = depths(body, defs)
         if nested > MAX_NESTING:
             self.fail("blocks nested too deep")
         if called > MAX_CALLS:
