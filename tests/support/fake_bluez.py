@@ -21,16 +21,7 @@ if find_spec("dbus_fast") is None:
 
 from dbus_fast import BusType, DBusError, PropertyAccess
 from dbus_fast.aio import MessageBus
-from dbus_fast.annotations import (
-    DBusBool,
-    DBusBytes,
-    DBusDict,
-    DBusInt16,
-    DBusObjectPath,
-    DBusSignature,
-    DBusStr,
-    DBusUInt16,
-)
+from dbus_fast.annotations import DBusBytes, DBusDict, DBusSignature
 from dbus_fast.service import ServiceInterface, dbus_method, dbus_property
 
 from tests.support.needs import need
@@ -41,9 +32,18 @@ if TYPE_CHECKING:
 ADAPTER = "/org/bluez/hci0"
 ADVERTISED_S = 0.05
 STEP_S = 10.0  # timeout of a step in the bus's thread
-_READ = PropertyAccess.READ
 _Nothing = Annotated[None, DBusSignature("")]
-_Strings = Annotated[list[str], DBusSignature("as")]
+
+
+def told(name: str, signature: str, tell: Callable[[Any], object]) -> property:
+    """Return a property that can be read, of this name and with the signature of its type."""
+
+    def read(self: Any) -> object:
+        return tell(self)
+
+    read.__name__ = name
+    read.__annotations__["return"] = signature
+    return dbus_property(access=PropertyAccess.READ)(read)
 
 
 class Adapter(ServiceInterface):
@@ -70,21 +70,10 @@ class Adapter(ServiceInterface):
     def StopDiscovery(self) -> _Nothing:  # noqa: N802
         self.is_scanning = False
 
-    @dbus_property(access=_READ)
-    def Address(self) -> DBusStr:  # noqa: N802
-        return "00:11:22:33:44:55"
-
-    @dbus_property(access=_READ)
-    def Roles(self) -> _Strings:  # noqa: N802
-        return ["central"]
-
-    @dbus_property(access=_READ)
-    def Powered(self) -> DBusBool:  # noqa: N802
-        return self.is_powered
-
-    @dbus_property(access=_READ)
-    def Discovering(self) -> DBusBool:  # noqa: N802
-        return self.is_scanning
+    Address = told("Address", "s", lambda self: "00:11:22:33:44:55")
+    Roles = told("Roles", "as", lambda self: ["central"])
+    Powered = told("Powered", "b", lambda self: self.is_powered)
+    Discovering = told("Discovering", "b", lambda self: self.is_scanning)
 
 
 class Device(ServiceInterface):
@@ -148,45 +137,16 @@ class Device(ServiceInterface):
     def Disconnect(self) -> _Nothing:  # noqa: N802
         self.part()
 
-    @dbus_property(access=_READ)
-    def Address(self) -> DBusStr:  # noqa: N802
-        return self.peripheral.address
-
-    @dbus_property(access=_READ)
-    def AddressType(self) -> DBusStr:  # noqa: N802
-        return "public"
-
-    @dbus_property(access=_READ)
-    def Name(self) -> DBusStr:  # noqa: N802
-        return self.peripheral.name
-
-    @dbus_property(access=_READ)
-    def Alias(self) -> DBusStr:  # noqa: N802
-        return self.peripheral.name
-
-    @dbus_property(access=_READ)
-    def Adapter(self) -> DBusObjectPath:  # noqa: N802
-        return ADAPTER
-
-    @dbus_property(access=_READ)
-    def UUIDs(self) -> _Strings:  # noqa: N802
-        return [self.peripheral.service]
-
-    @dbus_property(access=_READ)
-    def RSSI(self) -> DBusInt16:  # noqa: N802
-        return self.signal
-
-    @dbus_property(access=_READ)
-    def Connected(self) -> DBusBool:  # noqa: N802
-        return self.is_connected
-
-    @dbus_property(access=_READ)
-    def Paired(self) -> DBusBool:  # noqa: N802
-        return False
-
-    @dbus_property(access=_READ)
-    def ServicesResolved(self) -> DBusBool:  # noqa: N802
-        return self.is_resolved
+    Address = told("Address", "s", lambda self: self.peripheral.address)
+    AddressType = told("AddressType", "s", lambda self: "public")
+    Name = told("Name", "s", lambda self: self.peripheral.name)
+    Alias = told("Alias", "s", lambda self: self.peripheral.name)
+    Adapter = told("Adapter", "o", lambda self: ADAPTER)
+    UUIDs = told("UUIDs", "as", lambda self: [self.peripheral.service])
+    RSSI = told("RSSI", "n", lambda self: self.signal)
+    Connected = told("Connected", "b", lambda self: self.is_connected)
+    Paired = told("Paired", "b", lambda self: False)
+    ServicesResolved = told("ServicesResolved", "b", lambda self: self.is_resolved)
 
 
 class Service(ServiceInterface):
@@ -194,17 +154,9 @@ class Service(ServiceInterface):
         super().__init__("org.bluez.GattService1")
         self.device = device
 
-    @dbus_property(access=_READ)
-    def UUID(self) -> DBusStr:  # noqa: N802
-        return self.device.peripheral.service
-
-    @dbus_property(access=_READ)
-    def Device(self) -> DBusObjectPath:  # noqa: N802
-        return self.device.path
-
-    @dbus_property(access=_READ)
-    def Primary(self) -> DBusBool:  # noqa: N802
-        return True
+    UUID = told("UUID", "s", lambda self: self.device.peripheral.service)
+    Device = told("Device", "o", lambda self: self.device.path)
+    Primary = told("Primary", "b", lambda self: True)
 
 
 class Characteristic(ServiceInterface):
@@ -242,29 +194,12 @@ class Characteristic(ServiceInterface):
     def StopNotify(self) -> _Nothing:  # noqa: N802
         self.is_notifying = False
 
-    @dbus_property(access=_READ)
-    def UUID(self) -> DBusStr:  # noqa: N802
-        return self.uuid
-
-    @dbus_property(access=_READ)
-    def Service(self) -> DBusObjectPath:  # noqa: N802
-        return f"{self.device.path}/service0010"
-
-    @dbus_property(access=_READ)
-    def Flags(self) -> _Strings:  # noqa: N802
-        return self.flags
-
-    @dbus_property(access=_READ)
-    def Value(self) -> DBusBytes:  # noqa: N802
-        return self.value
-
-    @dbus_property(access=_READ)
-    def Notifying(self) -> DBusBool:  # noqa: N802
-        return self.is_notifying
-
-    @dbus_property(access=_READ)
-    def MTU(self) -> DBusUInt16:  # noqa: N802
-        return self.device.peripheral.mtu
+    UUID = told("UUID", "s", lambda self: self.uuid)
+    Service = told("Service", "o", lambda self: f"{self.device.path}/service0010")
+    Flags = told("Flags", "as", lambda self: self.flags)
+    Value = told("Value", "ay", lambda self: self.value)
+    Notifying = told("Notifying", "b", lambda self: self.is_notifying)
+    MTU = told("MTU", "q", lambda self: self.device.peripheral.mtu)
 
 
 class Root(ServiceInterface):
