@@ -8,12 +8,14 @@ import sys
 from contextlib import redirect_stderr
 from importlib.util import find_spec
 from pathlib import Path
+from shutil import copytree
 from typing import NamedTuple
 
 import pytest
 
 import tiniscript
 from tests.support.casefile import ROOT, Example, example_robot, examples
+from tests.support.rows import each_row
 from tiniscript.cli import main
 from tools.site.documents import FRONT, links, sources
 
@@ -47,7 +49,7 @@ def commands() -> list[Command]:
     return found
 
 
-@pytest.mark.parametrize(("language", "name"), sources(ROOT, FRONT).items())
+@each_row("language, name", sources(ROOT, FRONT).items())
 def test_every_readme_leads_to_the_others(language: str, name: str) -> None:
     row = (ROOT / name).read_text(encoding="utf-8").splitlines()[2]
     assert row == " · ".join(links(language, FRONT, sources(ROOT, FRONT)))
@@ -59,12 +61,9 @@ def test_console(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
     """A command of a document prints what the document shows; files it needs are the examples."""
-    from shutil import copytree
-
-    copytree(ROOT / "examples", tmp_path / "examples")
+    for folder in (tmp_path / "examples", tmp_path):
+        copytree(ROOT / "examples", folder, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
-    for example in (tmp_path / "examples").iterdir():
-        (tmp_path / example.name).write_bytes(example.read_bytes())
     with redirect_stderr(sys.stdout):  # a terminal shows both in the order of their writing
         main(command.words)
     said = capsys.readouterr().out
@@ -92,7 +91,7 @@ def test_python(
     assert capsys.readouterr().out == example.output
 
 
-@pytest.mark.parametrize("name", sources(ROOT, "docs/api.en.md").values())
+@each_row("name", sources(ROOT, "docs/api.en.md").values())
 def test_each_page_of_the_library_names_all_of_it(name: str) -> None:
     page = (ROOT / name).read_text(encoding="utf-8")
     absent = [each for each in tiniscript.__all__ if f"`{each}" not in page]
@@ -100,7 +99,7 @@ def test_each_page_of_the_library_names_all_of_it(name: str) -> None:
     assert len(examples(ROOT / name)) == len(examples(ROOT / "docs" / "api.en.md")) >= 8
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+@each_row("document", DOCUMENTS)
 def test_links_lead_somewhere(document: Path) -> None:
     text = document.read_text(encoding="utf-8")
     for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text):
@@ -146,9 +145,7 @@ def exists(path: str) -> bool:
     return path in BUILT or any((base / path).exists() for base in BASES)
 
 
-@pytest.mark.parametrize(
-    "document", [*DOCUMENTS, ROOT / "tools" / "uno" / "README.md"], ids=lambda path: path.name
-)
+@each_row("document", [*DOCUMENTS, ROOT / "tools" / "uno" / "README.md"])
 def test_files_that_are_named_exist(document: Path) -> None:
     """A span with a folder of the repository in front is a path; a file's name alone is one's name.
 

@@ -7,12 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.project.known_mutants import KNOWN
+from tests.project.known_mutants import KNOWN, Known
 from tests.support import exchanged
 from tests.support.casefile import ROOT
 from tests.support.exchanged import Try
 from tools import mutation
 from tools.mutation import MODULES, Copy, Module, Mutant, equivalent, mutants
+
+PARTS = 3  # of the known mutants: a commit tries one
 
 
 @pytest.mark.sampled("module", keep=len(MODULES) // 3)
@@ -42,14 +44,25 @@ def test_what_is_listed_as_equivalent_is_still_there() -> None:
         assert was in {line.strip() for line in lines}, f"{file}: {was}"
 
 
-def test_known_mutants_are_noticed(tmp_path: Path) -> None:
-    copy, tries = Copy(tmp_path), []
+def tried(known: Known) -> Try:
+    text = (ROOT / known.file).read_text(encoding="utf-8")
+    assert text.count(known.was) == 1, f"{known.missing}: the code has changed: find it again"
+    return Try(known.file, text.replace(known.was, known.becomes), known.test)
+
+
+def test_known_mutants_are_of_code_and_tests_that_are_there() -> None:
     for each in KNOWN:
-        text = (ROOT / each.file).read_text(encoding="utf-8")
-        assert text.count(each.was) == 1, f"{each.missing}: the code has changed: find it again"
-        tries.append(Try(each.file, text.replace(each.was, each.becomes), each.test))
+        file, _, name = tried(each).test.partition("::")
+        assert f"def {name}(" in (ROOT / file).read_text(encoding="utf-8"), each.test
+
+
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(PARTS))
+def test_known_mutants_are_noticed(tmp_path: Path, part: int) -> None:
+    copy, known = Copy(tmp_path), KNOWN[part::PARTS]
+    tries = [tried(each) for each in known]
     answers = exchanged.answers(tries, tmp_path)
-    for each, one, answer in zip(KNOWN, tries, answers, strict=True):
+    for each, one, answer in zip(known, tries, answers, strict=True):
         assert answer != exchanged.PASSES, f"no test notices {each.missing}"
         if answer != exchanged.FAILS:
             mutant = Mutant(each.file, 0, each.was, each.becomes, one.text)

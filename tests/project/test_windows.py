@@ -19,6 +19,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
+from tests.support.rows import each_row
 from tests.support.texts import said as said_in
 from tiniscript.base import files
 from tiniscript.base.languages import languages
@@ -31,7 +32,7 @@ PROGRAM = "SI|F(2, 80)\n"
 # -- names
 
 
-@pytest.mark.parametrize(
+@each_row(
     "name",
     ["con", "CON.bin", "aux.html", "nul.txt", "com1.csv", "lpt9", "COM¹.bin", "x/prn.toml",
      r"C:\x\con.bin", "x.", "x ", "sheet:1.html", "what?.bin", "a\tb", r"d:\x\a:b", "con .bin"],
@@ -40,7 +41,7 @@ def test_names_that_no_file_has(name: str) -> None:
     assert has_no_file(name)
 
 
-@pytest.mark.parametrize(
+@each_row(
     "name",
     ["prog.bin", "console.bin", "com.bin", "com10.csv", "C:prog.bin", r"C:\Users\Ana María\p.bin",
      r"..\x\prog.bin", "./prog.bin", r"\\school\pupils\prog.bin", "lpt.bin", "año.bin", ".x"],
@@ -65,19 +66,20 @@ def test_an_output_that_windows_would_lose_is_refused(
     assert tsc("compile", "prog.ts", "-o", "good.bin").code == 0
 
 
-@pytest.mark.parametrize("name", ["aux.ts", "con", "x/NUL.ts", r"C:\x\com1.txt"])
-def test_a_device_is_no_program(
-    name: str, tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_device_is_no_program(tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Reading the console or a serial port would wait for ever."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "x").mkdir()
-    (tmp_path / name).write_text(PROGRAM)
-    assert tsc("check", name).code == 0
+    names = ("aux.ts", "con", "x/NUL.ts", r"C:\x\com1.txt")
+    for name in names:
+        (tmp_path / name).write_text(PROGRAM)
+    assert tsc("check", *names).code == 0
     monkeypatch.setattr(sys, "platform", "win32")
-    done = tsc("check", name, "--lang", "en")
-    assert done.code == 2 and "there is no file" in done.err
-    assert is_device(name) and not is_device(f"{name}/prog.ts") and not is_device("console.ts")
+    for name in names:
+        done = tsc("check", name, "--lang", "en")
+        assert done.code == 2 and "there is no file" in done.err, name
+        assert is_device(name) and not is_device(f"{name}/prog.ts"), name
+    assert not is_device("console.ts")
 
 
 def test_a_pattern_means_its_files(
@@ -133,7 +135,7 @@ def encoded(said: str, encoding: str) -> str:
     return said.encode(encoding, streams.NAME).decode(encoding)
 
 
-@pytest.mark.parametrize("encoding", ["cp1252", "cp850", "cp437"])
+@each_row("encoding", ["cp1252", "cp850", "cp437"])
 def test_every_sentence_can_be_read_in_an_encoding_of_windows(encoding: str) -> None:
     said = [each for language in languages() for each in said_in(language).values()]
     assert len(said) > 500

@@ -6,6 +6,7 @@ them, as a browser would follow them.
 
 from __future__ import annotations
 
+from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
@@ -39,12 +40,18 @@ def dead(folder: Path) -> list[str]:
 
     The studio's page is looked at, but not what its scripts do: its tests do that.
     """
+    folder = folder.resolve()
     pages = {path: _read(path) for path in sorted(folder.rglob("*.html"))}
+
+    @cache  # what is around a page is the same on each
+    def wrong(path: Path, address: str, is_fetched: bool) -> str:
+        return _wrong(folder, path, address, is_fetched, pages)
+
     found: list[str] = []
     for path, page in pages.items():
         for address, is_fetched in page.links:
-            why = _wrong(folder, path, address, is_fetched, pages)
-            if why:
+            is_here = address.startswith(("#", "?"))
+            if why := wrong(path if is_here else path.parent / "*", address, is_fetched):
                 found.append(f"{path.relative_to(folder).as_posix()}: {address}: {why}")
     return found
 
@@ -58,7 +65,7 @@ def _read(path: Path) -> _Page:
 def _wrong(
     folder: Path, path: Path, address: str, is_fetched: bool, pages: dict[Path, _Page]
 ) -> str:
-    """Return what is wrong with a link of a page, or nothing."""
+    """Return what is wrong with a link of a page in a resolved folder, or nothing."""
     parts = urlsplit(address)
     if parts.scheme or parts.netloc:
         if is_fetched and parts.scheme != "data":
@@ -66,14 +73,14 @@ def _wrong(
         return ""
     target = path.parent / unquote(parts.path) if parts.path else path
     target = target.resolve()
-    if not target.is_relative_to(folder.resolve()):
+    if not target.is_relative_to(folder):
         return "outside of the site"
     if target.is_dir():
         target /= "index.html"
     if not target.is_file():
         return "no such file"
     name = unquote(parts.fragment)
-    there = pages.get(folder / target.relative_to(folder.resolve()))
+    there = pages.get(target)
     if name and there is not None and name not in there.names:
         return "no such place on that page"
     return ""
