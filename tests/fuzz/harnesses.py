@@ -163,6 +163,15 @@ def mqtt_seeds() -> Iterator[bytes]:
         yield (message + b"p" * payload + b"\0") * 2
 
 
+def first_inputs(name: str, folder: Path) -> Path:
+    """Return a folder in another one, with the inputs that a harness begins with."""
+    inputs = folder / name
+    inputs.mkdir()
+    for number, data in enumerate(seeds(name)):
+        (inputs / f"{number:04}").write_bytes(data)
+    return inputs
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description="Fuzz a part of the robot's C++.")
     parser.add_argument("name", choices=NAMES)
@@ -174,10 +183,7 @@ def main() -> int:
         print(why)
         return 2
     with tempfile.TemporaryDirectory() as folder:
-        inputs = Path(folder) / "inputs"
-        inputs.mkdir()
-        for number, data in enumerate(seeds(options.name)):
-            (inputs / f"{number:04}").write_bytes(data)
+        inputs = first_inputs(options.name, Path(folder))
         found = fuzz(harness(options.name), inputs, options.runs, options.seed)
     if found.wrong:
         print(f"{found.wrong}\ninput: {found.input.hex()}")

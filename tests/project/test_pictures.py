@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 from tests.support.casefile import ROOT
+from tests.support.rows import each_row
 from tiniscript.virtual import worlds
 from tools.generate import arena, front
 from tools.generate.arena import DRIVES, world_picture
@@ -18,7 +19,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 SIGN = 0.602  # the width of a sign, of its size
 
 
-@pytest.fixture(params=sources(ROOT, "README.md"))
+@pytest.fixture(scope="module", params=sources(ROOT, "README.md"))
 def drawing(request: pytest.FixtureRequest) -> ElementTree.Element:
     return ElementTree.fromstring(front.front(request.param, "a test"))
 
@@ -67,7 +68,7 @@ def test_every_world_and_its_way_are_inside_of_the_picture() -> None:
         assert all(0 < x < width and 0 < y < height for x, y in way)
 
 
-@pytest.mark.parametrize("name", guide_pictures(""))
+@each_row("name", guide_pictures(""))
 def test_a_picture_of_a_guide_has_all_of_its_parts_inside(name: str) -> None:
     drawing = ElementTree.fromstring(guide_pictures("a test")[name]())
     _, _, width, height = map(int, drawing.get("viewBox", "").split())
