@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import ended, inside, running
+from tests.support.command import Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
 
@@ -18,15 +18,15 @@ def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path
     assert (
         on(pty_robot, "upload", "-e", "SB|SHOW(1.5);W(0.1);SHOW(TRUE);X = 0;SHOW(1 / X)").code == 0
     )
-    command = running("monitor", "--port", pty_robot.port, "--csv", str(rows), "--json")
-    assert command.stderr
-    command.stderr.readline()  # it watches
+    command = Command("monitor", "--port", pty_robot.port, "--csv", str(rows), "--json")
+    assert command.process.stderr
+    command.process.stderr.readline()  # it watches
     pty_robot.push()
     pty_robot.until(
         lambda: "FAULT" in rows.read_text(encoding="utf-8"), "the fault is written down"
     )
-    command.send_signal(signal.SIGINT)
-    done = ended(command)
+    command.signal(signal.SIGINT)
+    done = command.ended()
     assert done.code == 0
     events = [json.loads(line) for line in done.out.splitlines()]
     assert [event["event"] for event in events] == ["SHOW", "SHOW", "FAULT"]

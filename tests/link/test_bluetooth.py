@@ -23,7 +23,7 @@ from tests.support.ble_robot import (
     Peripheral,
     uploading,
 )
-from tests.support.command import LONG, ended, inside, running
+from tests.support.command import LONG, Command, inside
 from tests.support.fake_bluez import ADVERTISED_S, FakeBluez
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import until
@@ -121,8 +121,8 @@ def test_a_stop_without_a_port_stops_it_once(ble: BleRobot) -> None:
 
 
 def test_two_at_once_take_turns(ble: BleRobot) -> None:
-    both = [running("ping", "--port", port) for port in (NAME, PLACE)]
-    done = [ended(each) for each in both]
+    both = [Command("ping", "--port", port) for port in (NAME, PLACE)]
+    done = [each.ended() for each in both]
     assert 0 in [each.code for each in done]
     for each in done:
         assert each.code == 0 or "another program is using" in each.err or "in reach" in each.err

@@ -69,19 +69,6 @@ def process(*arguments: str | Path, data: bytes = b"") -> Done:
     return Done(done.returncode, done.stdout.decode(), done.stderr.decode())
 
 
-def running(*arguments: str) -> subprocess.Popen[bytes]:
-    """Start `tsc` as a process of its own, for `ended`."""
-    return subprocess.Popen(
-        [*TSC, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
-
-
-def ended(command: subprocess.Popen[bytes]) -> Done:
-    """Wait until a process has ended."""
-    out, err = command.communicate(timeout=HANGS_S)
-    return Done(command.returncode, out.decode(), err.decode())
-
-
 class Command:
     """A `tsc` that stays."""
 
