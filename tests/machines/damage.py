@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from functools import lru_cache
 from pathlib import Path
-from struct import pack, unpack_from
+from struct import pack
 from typing import NamedTuple
 
-from tests.machines.host import SOURCES, Process, compiled
+from tests.machines.host import SOURCES, Process, compiled, first_number, first_text
 
 FLAGS = ("-std=c++11", "-O2")
 LARGE = ("-Dtiniscript_like_esp32",)
@@ -56,29 +56,18 @@ class CppDamage(Process):
         assert not wrong, f"{wrong} of seed {seed}"
 
     def line(self, seed: int, line: int) -> DamagedLine:
-        texts = _Texts(self.ask(b"L", pack("<II", seed, line)))
-        data = texts.text()
-        frames, is_damaged = [], []
-        for _ in range(texts.number("I")):
-            is_damaged.append(bool(texts.number("B")))
-            frames.append(texts.text())
-        accepted = [texts.text() for _ in range(texts.number("I"))]
-        return DamagedLine(data, frames, is_damaged, accepted)
-
-
-class _Texts:
-    def __init__(self, data: bytes) -> None:
-        self._data, self._at = data, 0
-
-    def number(self, form: str) -> int:
-        found: int = unpack_from("<" + form, self._data, self._at)[0]
-        self._at += 1 if form == "B" else 4
+        data, answer = first_text(self.ask(b"L", pack("<II", seed, line)))
+        found = DamagedLine(data, [], [], [])
+        count, answer = first_number(answer)
+        for _ in range(count):
+            found.is_damaged.append(bool(answer[0]))
+            frame, answer = first_text(answer[1:])
+            found.frames.append(frame)
+        count, answer = first_number(answer)
+        for _ in range(count):
+            frame, answer = first_text(answer)
+            found.accepted.append(frame)
         return found
-
-    def text(self) -> bytes:
-        length = self.number("I")
-        self._at += length
-        return self._data[self._at - length : self._at]
 
 
 def built(sources: Path, is_large: bool) -> Path:

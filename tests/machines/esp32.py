@@ -14,14 +14,23 @@ from pathlib import Path
 from struct import pack, unpack
 from typing import NamedTuple
 
-from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, Process, made, objects_of
+from tests.machines.host import (
+    BUILDS,
+    FLAGS,
+    SOURCES,
+    WARNINGS,
+    Process,
+    first_number,
+    first_text,
+    made,
+    objects_of,
+    texts,
+)
 from tests.machines.host_firmware import TICKS, HostFirmware
 from tiniscript import robots
 from tiniscript.robots import firmware
 from tiniscript.robots.ports import ESP32S
 from tiniscript.robots.profile import Robot
-
-__all__ = ("EMPTY", "Esp32Robot", "Kept", "flags_of")
 
 STAND_INS = SOURCES / "extras" / "esp32"
 SIMULATED = (
@@ -63,19 +72,18 @@ class Esp32Robot(HostFirmware):
         self.now_ms = 0
         self.did: list[str] = []
         self.is_lit, self.is_latched = False, True
-        entries = b"".join(_text(each) for item in kept.entries.items() for each in item)
-        head = pack("<BI", reset, seed) + _text(kept.noinit)
+        entries = texts(*(each for item in kept.entries.items() for each in item))
+        head = pack("<BI", reset, seed) + texts(kept.noinit)
         self.ask(b"B", head + pack("<I", len(kept.entries)) + entries)
 
     def kept(self) -> Kept:
-        answer = self.ask(b"E", b"")
-        noinit, answer = _next(answer)
-        count, answer = int.from_bytes(answer[:4], "little"), answer[4:]
+        noinit, answer = first_text(self.ask(b"E", b""))
+        count, answer = first_number(answer)
         entries = {}
         for _ in range(count):
-            key, answer = _next(answer)
-            entries[key], answer = _next(answer)
-        return Kept(noinit, entries, int.from_bytes(answer[:4], "little"))
+            key, answer = first_text(answer)
+            entries[key], answer = first_text(answer)
+        return Kept(noinit, entries, first_number(answer)[0])
 
     def hang(self, milliseconds: int) -> None:
         """Let the main loop stand still."""
@@ -121,8 +129,7 @@ class Esp32Robot(HostFirmware):
     def moved(self) -> tuple[int, float]:
         """Return after how many turns of the main loop, and microseconds of this computer, a motor
         pin changed in the last step."""
-        answer = self.ask(b"M", b"")
-        turns, ns = (int.from_bytes(answer[k : k + 4], "little") for k in (0, 4))
+        turns, ns, _ = unpack("<III", self.ask(b"M", b""))
         return turns, ns / 1000
 
     def rests(self) -> int:
@@ -135,15 +142,6 @@ class Esp32Robot(HostFirmware):
 
     def fill_nvs(self, is_full: bool = True) -> None:
         self.ask(b"F", pack("<B", is_full))
-
-
-def _text(data: bytes) -> bytes:
-    return pack("<I", len(data)) + data
-
-
-def _next(answer: bytes) -> tuple[bytes, bytes]:
-    length = int.from_bytes(answer[:4], "little")
-    return answer[4 : 4 + length], answer[4 + length :]
 
 
 def flags_of(chip: str, major: int) -> tuple[str, ...]:
@@ -165,7 +163,7 @@ def built(header: str, chip: str, major: int) -> Path:
         draft = own.with_suffix(f".{os.getpid()}")
         draft.write_text(header, encoding="utf-8")
         draft.replace(own)
-    texts = {
+    files = {
         path: path.name.encode() + path.read_bytes()
         for part in ("src", "extras/esp32", "extras/host")
         for path in sorted((SOURCES / part).rglob("*"))
@@ -182,7 +180,7 @@ def built(header: str, chip: str, major: int) -> Path:
         is_own = path.parent.name in ("boards", "esp32", "src")
         return (*usual, *of_boards) if is_own else usual
 
-    used = {path: text for path, text in texts.items() if not is_other(path)}
+    used = {path: text for path, text in files.items() if not is_other(path)}
     objects = objects_of("g++", BUILDS, used, flags)
     return made("g++", BUILDS, "", usual, [name.encode() for name in objects], [*objects, *TLS])
 

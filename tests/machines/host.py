@@ -13,14 +13,14 @@ import re
 import shutil
 import subprocess
 import tempfile
+import weakref
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from struct import Struct, pack
 from threading import get_ident
-from typing import TYPE_CHECKING, NamedTuple
+from typing import IO, TYPE_CHECKING, NamedTuple
 
-from tests.machines.child import Child
 from tests.support.needs import need
 from tiniscript.base.kit import Device, Kit
 from tiniscript.bytecode.image import REFUSALS, ImageRefused
@@ -69,8 +69,45 @@ class Ran(NamedTuple):
     trace: str
 
 
-class Process(Child):
-    """One process that answers requests about the machine; `who` it is stands in its mistakes."""
+class Process:
+    """A process that answers requests; `who` it is stands in its mistakes.
+
+    It ends with its object: one that nobody closes would stay for as long as the tests take, and a
+    process has room for about a thousand pipes.
+    """
+
+    def __init__(self, command: Sequence[str | Path], who: str) -> None:
+        self._who = who
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115
+        self._process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+        )
+        self._closed = weakref.finalize(self, _close, self._process, self._errors)
+
+    def end(self) -> None:
+        self._process.kill()
+
+    def close(self) -> None:
+        self._closed()
+
+    def has_ended(self) -> bool:
+        return self._process.poll() is not None
+
+    @property
+    def pipes(self) -> tuple[IO[bytes], IO[bytes]]:
+        """What it reads, and what it writes."""
+        assert self._process.stdin and self._process.stdout
+        return self._process.stdin, self._process.stdout
+
+    def said(self) -> str:
+        """Return the last words of a process that has ended: the sanitizers' report."""
+        status = self._process.wait()
+        self._errors.seek(0)
+        report = self._errors.read().decode(errors="replace")
+        return f"{self._who} ended with status {status}:\n{report[:4000]}"
 
     def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
         """Run an image, or raise what refuses it."""
@@ -80,12 +117,12 @@ class Process(Child):
         self, codes: Sequence[bytes], sensors: int, actuators: int, needs: int = 0
     ) -> list[tuple[int, int]]:
         """Return the number of the rule that each code breaks, or 0, and the offset."""
-        answer = self.ask(b"V", bytes((sensors, actuators, needs)) + _texts(codes))
+        answer = self.ask(b"V", bytes((sensors, actuators, needs)) + texts(*codes))
         return [(rule, offset) for rule, offset in Struct("<BH").iter_unpack(answer)]
 
     def refusals(self, images: Sequence[bytes]) -> list[int]:
         """Return the number of the reason for which each image's header is refused, or 0."""
-        return list(self.ask(b"I", _texts(images)))
+        return list(self.ask(b"I", texts(*images)))
 
     def results(self, operations: Iterable[tuple[int, int, int]]) -> list[tuple[int, int]]:
         """Return the fault, or 0, and the result of each opcode with its two values."""
@@ -105,6 +142,12 @@ class Process(Child):
         if len(head) < 4:
             raise AssertionError(self.said())
         return answer
+
+
+def _close(process: subprocess.Popen[bytes], errors: IO[bytes]) -> None:
+    process.kill()
+    process.communicate()
+    errors.close()
 
 
 class Host(Process):
@@ -162,15 +205,27 @@ def run_request(
     for actuator in kit.actuators:
         parts += [_named(actuator, next(hashes)), pack("<ii", actuator.low, actuator.high)]
     parts.append(pack("<III", kit.speed, kit.turn, not_ready))
-    return b"".join(parts) + _texts([data])
+    return b"".join(parts) + texts(data)
 
 
 def _named(device: Device, hashed: int) -> bytes:
-    return _texts([device.name.encode()]) + pack("<BH", device.is_yes_no, hashed)
+    return texts(device.name.encode()) + pack("<BH", device.is_yes_no, hashed)
 
 
-def _texts(texts: Iterable[bytes]) -> bytes:
-    return b"".join(part for text in texts for part in (pack("<I", len(text)), text))
+def texts(*parts: bytes) -> bytes:
+    """Return parts of a request, each behind its length."""
+    return b"".join(pack("<I", len(part)) + part for part in parts)
+
+
+def first_number(answer: bytes) -> tuple[int, bytes]:
+    """Return the number of four bytes at the beginning of an answer, and the rest."""
+    return int.from_bytes(answer[:4], "little"), answer[4:]
+
+
+def first_text(answer: bytes) -> tuple[bytes, bytes]:
+    """Return what is behind its length at the beginning of an answer, and the rest."""
+    length, rest = first_number(answer)
+    return rest[:length], rest[length:]
 
 
 def ran(answer: str) -> Ran:
@@ -189,13 +244,14 @@ def ran(answer: str) -> Ran:
 
 def built(sources: Path, builds: Path = BUILDS) -> Path:
     """Return the program made from `sources`, a folder like `vm_arduino`."""
-    inputs = sorted(
-        path
-        for folder in ("src", "src/vm", "extras/chip", "extras/host")
-        for path in (sources / folder).glob("*")
-        if path.suffix in (".h", ".cpp")
-    )
+    inputs = files_in(sources, "src", "src/vm", "extras/chip", "extras/host")
     return compiled(inputs, FLAGS, builds)
+
+
+def files_in(sources: Path, *folders: str) -> list[Path]:
+    """Return the sources and headers in folders of `sources`, a folder like `vm_arduino`."""
+    found = (path for folder in folders for path in (sources / folder).glob("*"))
+    return sorted(path for path in found if path.suffix in (".h", ".cpp"))
 
 
 def compiled(inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS) -> Path:

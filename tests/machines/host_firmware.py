@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from struct import iter_unpack, pack
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
-from tests.machines.host import FLAGS, SOURCES, Process, compiled
+from tests.machines.host import FLAGS, SOURCES, Process, compiled, files_in, first_text, texts
 from tiniscript.base.kit import Kit
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.requests import OK
@@ -20,22 +20,11 @@ from tiniscript.link.session import Session
 from tiniscript.robots.kit_words import kit_words
 from tiniscript.robots.profile import language_number
 
-__all__ = ("EMPTY", "HostFirmware", "Seen")
-
 EMPTY = bytes(1024).replace(b"\0", b"\xff")  # what a new EEPROM holds
 TICKS = 20  # in a millisecond
 POWER_ON, RESET_BUTTON = 1, 2
 SPREAD, UNTIL_SENT = 1, 2  # how time passes
 T = TypeVar("T")
-
-
-class Seen(NamedTuple):
-    """What the robot has sent, what it has done at which time, and its light and latch."""
-
-    sent: bytes
-    did: list[str]
-    is_lit: bool
-    is_latched: bool
 
 
 class HostFirmware(Process):
@@ -67,19 +56,16 @@ class HostFirmware(Process):
         head = pack("<HBBB", kit.fingerprint, len(kit.sensors), len(kit.actuators), reset)
         times = pack("<IIB", seed, max_run_ms, int(write_ms * TICKS))
         hashes = pack(f"<{len(kit.hashes)}H", *kit.hashes)
-        words = kit_words(kit)
-        begin = head + times + hashes + pack("<I", len(memory)) + memory
-        self.ask(
-            b"B", begin + pack("<I", len(words)) + words + pack("<H", language_number(language))
-        )
+        begin = head + times + hashes + texts(memory, kit_words(kit))
+        self.ask(b"B", begin + pack("<H", language_number(language)))
 
     def step(self, data: bytes = b"", flags: int = 0, ticks: int = TICKS) -> bytes:
         """Let a millisecond pass in which bytes arrive; return what is sent."""
         self.now_ms += 1
         head = pack("<IBHI", self.now_ms, flags, ticks, len(data))
         answer = self.ask(b"S", head + data)
-        sent, rest = _text(answer)
-        did, rest = _text(rest)
+        sent, rest = first_text(answer)
+        did, rest = first_text(rest)
         self.did += [f"{self.now_ms} {line}" for line in did.decode().splitlines()]
         self.is_lit, self.is_latched = bool(rest[0]), bool(rest[1])
         return sent
@@ -99,11 +85,11 @@ class HostFirmware(Process):
 
     def _pass(self, milliseconds: int, data: bytes, how: int) -> tuple[bytes, list[bool]]:
         head = pack("<IIHBI", self.now_ms + 1, milliseconds, TICKS, how, len(data))
-        sent, rest = _text(self.ask(b"W", head + data))
-        did, rest = _text(rest)
+        sent, rest = first_text(self.ask(b"W", head + data))
+        did, rest = first_text(rest)
         self.did += did.decode().splitlines()
         self.is_lit = bool(rest[0])
-        latched = [bool(each) for each in _text(rest[1:])[0]]
+        latched = [bool(each) for each in first_text(rest[1:])[0]]
         self.now_ms += len(latched)
         self.is_latched = latched[-1]
         return sent, latched
@@ -135,12 +121,12 @@ class HostFirmware(Process):
         """Return the codes that were started since this was asked last."""
         found, rest = [], self.ask(b"C", b"")
         while rest:
-            code, rest = _text(rest)
+            code, rest = first_text(rest)
             found.append(code)
         return found
 
     def memory(self) -> bytes:
-        return _text(self.ask(b"E", b""))[0]
+        return first_text(self.ask(b"E", b""))[0]
 
     def talk(self, session: Session, milliseconds: int, flags: int = 0) -> None:
         """Let a computer talk with the robot for a while."""
@@ -186,29 +172,12 @@ class HostFirmware(Process):
         return request.outcome.values
 
 
-def _text(answer: bytes) -> tuple[bytes, bytes]:
-    length = int.from_bytes(answer[:4], "little")
-    return answer[4 : 4 + length], answer[4 + length :]
-
-
 @lru_cache
 def built(sources: Path, defines: tuple[str, ...] = ()) -> Path:
     """Return the program made from `sources`; what was made before from the same is used again."""
-    folders = (
-        "src",
-        "src/vm",
-        "src/link",
-        "src/text",
-        "src/store",
-        "src/firmware",
-        "extras/host_firmware",
-    )
-    inputs = sorted(
-        path
-        for folder in folders
-        for path in (sources / folder).glob("*")
-        if path.suffix in (".h", ".cpp")
-    )
+    parts = ("vm", "link", "text", "store", "firmware")
+    folders = ("src", *(f"src/{part}" for part in parts), "extras/host_firmware")
+    inputs = files_in(sources, *folders)
     flags = (*FLAGS, *(f"-D{each}" for each in defines))
     return compiled([*inputs, sources / "extras/host" / "wire.h"], flags)
 

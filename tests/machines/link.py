@@ -13,11 +13,9 @@ from pathlib import Path
 from struct import pack
 from typing import NamedTuple
 
-from tests.machines.host import FLAGS, SOURCES, Process, compiled
+from tests.machines.host import FLAGS, SOURCES, Process, compiled, files_in, first_text, texts
 from tiniscript import robots
 from tiniscript.robots.kit_words import kit_words
-
-__all__ = ("CppLink", "Step", "built", "cpp_link", "link_library")
 
 LIBRARY = ("-std=c++11", "-O1", "-shared", "-fPIC")
 
@@ -48,9 +46,8 @@ class CppLink:
         """Switch a robot on: its devices are those of tinibot, as far as it has them."""
         numbers = pack("<HHBBB", room, kit, sensors, actuators, epoch)
         hashes = (*robots.load("tinibot").kit.hashes, *range(510))[: sensors + actuators]
-        words = kit_words(robots.load("tinibot").kit)
         begin = numbers + pack(f"<{len(hashes)}H", *hashes)
-        self.ask(b"B", begin + pack("<I", len(words)) + words)
+        self.ask(b"B", begin + texts(kit_words(robots.load("tinibot").kit)))
 
     def step(
         self, now_ms: int, data: bytes = b"", is_late: bool = False, is_slow: bool = False
@@ -61,8 +58,8 @@ class CppLink:
         """
         how = 2 if is_slow else is_late
         answer = self.ask(b"S", pack("<IBI", now_ms, how, len(data)) + data)
-        sent, rest = _text(answer)
-        did, _ = _text(rest)
+        sent, rest = first_text(answer)
+        did, _ = first_text(rest)
         return Step(sent, did.decode().splitlines())
 
     def happens(self, letter: str, value: int = 0) -> bool:
@@ -72,17 +69,17 @@ class CppLink:
     def packets(self, stream: Sequence[tuple[int, int]], held: int = 0) -> list[str]:
         """Return what a receiver finds in times and bytes, as `packets_of` says it."""
         parts = b"".join(pack("<HB", now_ms & 0xFFFF, byte) for now_ms, byte in stream)
-        found, _ = _text(self.ask(b"I", pack("<BI", held, len(stream)) + parts))
+        found, _ = first_text(self.ask(b"I", pack("<BI", held, len(stream)) + parts))
         return found.decode().splitlines()
 
     def siphash(self, key: bytes, message: bytes) -> bytes:
-        return self.ask(b"H", key + pack("<I", len(message)) + message)
+        return self.ask(b"H", key + texts(message))
 
     def sealed(self, key: bytes, origin: bytes, heard: int, sent: int, frame: bytes) -> bytes:
         """Return a frame of the robot, from its type to its MAC; nothing if no counter is left."""
         body = b"\0" + frame[:3] + bytes(5) + frame[3:]
         answer = self._seal(key, origin, heard, sent, body, b"")
-        return _text(answer)[0][1:]
+        return first_text(answer)[0][1:]
 
     def opens(self, key: bytes, origin: bytes, heard: int, frame: bytes) -> bool:
         """Return whether the robot takes a frame, from its type to its MAC."""
@@ -91,12 +88,11 @@ class CppLink:
     def _seal(
         self, key: bytes, origin: bytes, heard: int, sent: int, own: bytes, given: bytes
     ) -> bytes:
-        parts = (len(each).to_bytes(4, "little") + each for each in (own, given))
-        return self.ask(b"X", key + origin + pack("<II", heard, sent) + b"".join(parts))
+        return self.ask(b"X", key + origin + pack("<II", heard, sent) + texts(own, given))
 
     def held(self) -> bytes:
         """Return the image that the robot holds."""
-        return _text(self.ask(b"M", b""))[0]
+        return first_text(self.ask(b"M", b""))[0]
 
 
 class LinkProcess(Process, CppLink):
@@ -122,20 +118,10 @@ class LinkLibrary(CppLink):
         return ctypes.string_at(found, length.value)
 
 
-def _text(answer: bytes) -> tuple[bytes, bytes]:
-    length = int.from_bytes(answer[:4], "little")
-    return answer[4 : 4 + length], answer[4 + length :]
-
-
 @lru_cache
 def built(sources: Path, is_large: bool = False, flags: tuple[str, ...] = FLAGS) -> Path:
     """Return the program or the library made from `sources`, or what was made from the same."""
-    inputs = sorted(
-        path
-        for folder in ("src/vm", "src/link", "src/text", "extras/link")
-        for path in (sources / folder).glob("*")
-        if path.suffix in (".h", ".cpp")
-    )
+    inputs = files_in(sources, "src/vm", "src/link", "src/text", "extras/link")
     inputs.append(sources / "extras/host" / "wire.h")
     # the machine is not asked here, only its verifier and its checksum
     flags = (*flags, "-Dtiniscript_like_esp32") if is_large else flags

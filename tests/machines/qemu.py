@@ -15,6 +15,7 @@ from struct import pack
 from threading import Timer
 from typing import TYPE_CHECKING
 
+from tests.machines import host
 from tests.machines.host import SOURCES, WARNINGS, Process, Ran, contents, kept, ran, run_request
 from tests.machines.text_reader import Answer
 from tiniscript.base.kit import Kit
@@ -48,8 +49,7 @@ class Emulated(Process):
 
     def read(self, texts: Sequence[bytes], kit: Kit, room: int) -> list[Answer]:
         """Return what the reader of text says of each."""
-        parts = [kit_words(kit), *texts]
-        data = b"".join(pack("<I", len(each)) + each for each in parts)
+        data = host.texts(kit_words(kit), *texts)
         said = BytesIO(self.ask(b"T", pack("<H", room) + data))
         found = [_answer(said) for _ in texts]
         assert not said.read()

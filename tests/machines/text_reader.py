@@ -7,11 +7,9 @@ from __future__ import annotations
 
 import subprocess
 from pathlib import Path
-from struct import pack
 from typing import NamedTuple
 
-from tests.machines.child import Child
-from tests.machines.host import BUILDS, FLAGS, SOURCES, compiled
+from tests.machines.host import FLAGS, SOURCES, Process, compiled, files_in, texts
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import STARTS
 from tiniscript.codegen.text.problems import NAMES
@@ -34,7 +32,7 @@ class Answer(NamedTuple):
         return bool(self.start)
 
 
-class TextReader(Child):
+class TextReader(Process):
     """A process that reads texts: each is one program, however many lines it has."""
 
     def __init__(self, kit: Kit, room: int = LARGEST_ROOM, flags: tuple[str, ...] = ()) -> None:
@@ -43,7 +41,7 @@ class TextReader(Child):
 
     def read(self, text: bytes) -> Answer:
         pipe_in, pipe_out = self.pipes
-        pipe_in.write(pack("<I", len(text)) + text)
+        pipe_in.write(texts(text))
         pipe_in.flush()
         line = pipe_out.readline().decode()
         assert line, f"{text!r} ends the reader:\n{self.said()}"
@@ -70,12 +68,7 @@ def answer(line: str) -> Answer:
 
 def built(flags: tuple[str, ...] = ()) -> Path:
     """Return the program made from the reader and `extras/text`."""
-    inputs = sorted(
-        path
-        for folder in ("src/text", "extras/text")
-        for path in (SOURCES / folder).glob("*")
-        if path.suffix in (".h", ".cpp")
-    )
+    inputs = files_in(SOURCES, "src/text", "extras/text")
     vm = SOURCES / "src" / "vm"
     inputs += [vm / name for name in ("bytecode.h", "crc32.h", "flash.h", "small.h", "crc32.cpp")]
-    return compiled(inputs, (*FLAGS, *flags), BUILDS)
+    return compiled(inputs, (*FLAGS, *flags))
