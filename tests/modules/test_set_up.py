@@ -6,11 +6,12 @@ from collections import deque
 
 import pytest
 
+from tests.support.rows import each_row
 from tests.support.simulated_modules import KINDS, Bt05, Cc41, Hc05, Hc05New, Hc06, Hm10
 from tests.support.simulated_modules import SimulatedModule as Simulated
 from tests.support.simulated_wire import SimulatedWire
 from tiniscript.link.modules import set_up
-from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect
+from tiniscript.link.modules.dialects import BAUDS, DIALECTS
 from tiniscript.link.modules.set_up import Outcome, Wanted
 from tiniscript.link.modules.talk import Module, found
 
@@ -23,15 +24,23 @@ def met(wire: SimulatedWire) -> Module:
     return module
 
 
-def pin_of(dialect: Dialect) -> str:
-    return "135790"[: dialect.pin_digits]
-
-
-def ended(wire: SimulatedWire, module: Module, wanted: Wanted) -> list[Outcome]:
+def ended(wire: SimulatedWire, wanted: Wanted, module: Module | None = None) -> list[Outcome]:
+    """Set up the module that is met at the other end."""
+    module = module or met(wire)
     told: list[Outcome] = []
     outcomes = set_up.done(wire, module, set_up.steps(wanted, module.dialect), told.append)
     assert told == outcomes
     return outcomes
+
+
+def all_wanted(wire: SimulatedWire, end: Simulated, name: str, baud: int) -> Module:
+    """Set up everything; return the module as it was met, which has it all now."""
+    module = met(wire)
+    wanted = Wanted(name, "135790"[: module.dialect.pin_digits], baud)
+    outcomes = ended(wire, wanted, module)
+    assert [each.how in set_up.GOOD for each in outcomes] == [True] * 3
+    assert (end.name, end.pin, end.data_baud) == wanted
+    return module
 
 
 class Odd:
@@ -78,16 +87,9 @@ class Odd:
 def test_a_module_that_echoes_or_is_late_is_the_same(kind: str, late_ms: int) -> None:
     end: Simulated = KINDS[kind]()
     wire = SimulatedWire(Odd(end, echoes=True, late_ms=late_ms))
-    module = met(wire)
-    assert (module.dialect.name, module.version[:2]) == (kind, met_plainly(kind).version[:2])
-    wanted = Wanted("Tini-7F3A", pin_of(module.dialect), 9600)
-    outcomes = ended(wire, module, wanted)
-    assert [each.how in set_up.GOOD for each in outcomes] == [True] * 3
-    assert (end.name, end.pin, end.data_baud) == wanted
-
-
-def met_plainly(kind: str) -> Module:
-    return met(SimulatedWire(KINDS[kind]()))
+    plain = met(SimulatedWire(KINDS[kind]()))
+    module = all_wanted(wire, end, "Tini-7F3A", 9600)
+    assert (module.dialect.name, module.version[:2]) == (kind, plain.version[:2])
 
 
 @pytest.mark.parametrize("kind", ["HC-05", "HC-06"])
@@ -96,11 +98,11 @@ def test_a_module_that_says_no_version_is_found_all_the_same(kind: str) -> None:
     wire = SimulatedWire(Odd(end, deaf="VER"))
     module = met(wire)
     assert (module.dialect.name, module.version) == (kind, "")
-    assert [each.how in set_up.GOOD for each in ended(wire, module, Wanted("Tini"))] == [True]
+    assert [each.how in set_up.GOOD for each in ended(wire, Wanted("Tini"), module)] == [True]
     assert end.name == "Tini"
 
 
-def test_a_wire_that_only_echoes_is_no_module() -> None:
+def test_nobody_and_a_wire_that_only_echoes_are_no_module() -> None:
     class Echo:
         baud = 9600
 
@@ -111,6 +113,9 @@ def test_a_wire_that_only_echoes_is_no_module() -> None:
             """Nobody is there."""
 
     assert found(SimulatedWire(Echo())) is None
+    end = Hc06()
+    end.is_on = False
+    assert found(SimulatedWire(end)) is None
 
 
 def test_every_dialect_has_a_simulated_module() -> None:
@@ -121,8 +126,7 @@ def test_every_dialect_has_a_simulated_module() -> None:
 def test_a_module_is_told_from_all_others(kind: str) -> None:
     wire = SimulatedWire(KINDS[kind]())
     module = met(wire)
-    assert module.dialect.name == kind
-    assert module.baud == wire.end.baud
+    assert (module.dialect.name, module.baud) == (kind, wire.end.baud)
     assert module.version and "\r" not in module.version
 
 
@@ -135,31 +139,21 @@ def test_a_module_is_found_at_any_speed(kind: str, baud: int) -> None:
 
 @of_each
 @pytest.mark.parametrize("baud", [9600, 57600, 115200])
-def test_name_pin_and_speed_are_what_was_wanted(kind: str, baud: int) -> None:
+def test_name_pin_and_speed_are_what_was_wanted_and_else_stay(kind: str, baud: int) -> None:
     end: Simulated = KINDS[kind]()
     wire = SimulatedWire(end)
-    module = met(wire)
-    wanted = Wanted("Tini-7F3A", pin_of(module.dialect), baud)
-    outcomes = ended(wire, module, wanted)
-    assert [each.how in set_up.GOOD for each in outcomes] == [True] * 3
-    assert (end.name, end.pin, end.data_baud) == wanted
+    before = end.name, end.pin, end.data_baud
+    assert ended(wire, Wanted()) == []
+    assert (end.name, end.pin, end.data_baud) == before
+    all_wanted(wire, end, "Tini-7F3A", baud)
     end.power_on()
     assert end.baud == baud
-
-
-@of_each
-def test_what_is_not_wanted_stays(kind: str) -> None:
-    end = KINDS[kind]()
-    before = end.name, end.pin, end.data_baud
-    wire = SimulatedWire(end)
-    assert ended(wire, met(wire), Wanted()) == []
-    assert (end.name, end.pin, end.data_baud) == before
 
 
 def test_an_old_hc_05_gets_its_pin_without_quotes_and_a_new_one_with() -> None:
     for end in (Hc05(), Hc05New()):
         wire = SimulatedWire(end)
-        (outcome,) = ended(wire, met(wire), Wanted(pin="4711"))
+        (outcome,) = ended(wire, Wanted(pin="4711"))
         assert (end.pin, outcome.how) == ("4711", set_up.DONE)
 
 
@@ -170,7 +164,7 @@ def test_quotes_that_a_module_has_kept_are_not_taken_for_the_pin() -> None:
     wire = SimulatedWire(end)
     module = met(wire)
     assert module.dialect.name == "HC-05 3.x"
-    (outcome,) = ended(wire, module, Wanted(pin="4711"))
+    (outcome,) = ended(wire, Wanted(pin="4711"), module)
     assert (end.pin, outcome.how) == ("4711", set_up.DONE)
 
 
@@ -188,7 +182,7 @@ def test_a_speed_that_was_set_before_a_restart_is_found_again() -> None:
     wire = SimulatedWire(end)
     module = met(wire)
     end.breaks_after = len(end.commands) + 1  # AT+BAUD is the last one that it hears
-    outcomes = ended(wire, module, Wanted(baud=115200))
+    outcomes = ended(wire, Wanted(baud=115200), module)
     assert outcomes[-1].how == set_up.LOST
     end.breaks_after = None
     end.power_on()
@@ -201,9 +195,8 @@ def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, comman
     end = KINDS[kind]()
     wire = SimulatedWire(end)
     module = met(wire)
-    wanted = Wanted("ANA", pin_of(module.dialect), 57600)
     end.breaks_after = len(end.commands) + commands
-    outcomes = ended(wire, module, wanted)
+    outcomes = ended(wire, Wanted("ANA", "135790"[: module.dialect.pin_digits], 57600), module)
     is_whole = end.is_on
     assert is_whole == (len(outcomes) == 3 and all(each.how in set_up.GOOD for each in outcomes))
     end.breaks_after = None
@@ -211,9 +204,7 @@ def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, comman
         end.is_on = True  # its button is still held
     else:
         end.power_on()
-    outcomes = ended(wire, met(wire), wanted)
-    assert all(each.how in set_up.GOOD for each in outcomes)
-    assert (end.name, end.pin, end.data_baud) == wanted
+    all_wanted(wire, end, "ANA", 57600)
 
 
 def test_a_clone_whose_numbers_are_others_is_found_where_it_went() -> None:
@@ -227,12 +218,12 @@ def test_a_clone_whose_numbers_are_others_is_found_where_it_went() -> None:
     module = met(wire)
     assert module.dialect.name == "CC41-A"
     end.data_baud = 38400
-    (outcome,) = ended(wire, module, Wanted(baud=9600))
+    (outcome,) = ended(wire, Wanted(baud=9600), module)
     assert (outcome.how, end.baud) == (set_up.DONE, 9600)
-    outcomes = ended(wire, met(wire), Wanted(baud=57600))
+    outcomes = ended(wire, Wanted(baud=57600))
     assert outcomes[-1].how == set_up.REFUSED
     end.bauds = Hm10.bauds
-    outcomes = ended(wire, met(wire), Wanted(baud=9600))
+    outcomes = ended(wire, Wanted(baud=9600))
     assert (outcomes[-1].how, outcomes[-1].said) == (set_up.ELSEWHERE, "115200")
     assert end.baud == 115200
 
@@ -244,7 +235,7 @@ def test_a_module_that_refuses_is_not_said_to_have_done_it() -> None:
 
     end = Stubborn()
     wire = SimulatedWire(end)
-    outcomes = ended(wire, met(wire), Wanted("ANA", "1111", 115200))
+    outcomes = ended(wire, Wanted("ANA", "1111", 115200))
     assert [each.how for each in outcomes] == [set_up.UNSEEN, set_up.REFUSED]
     assert outcomes[-1].said == "ERROR:(7)"
     assert (end.pin, end.baud) == ("1234", 9600)
@@ -258,18 +249,12 @@ def test_a_module_that_cuts_a_name_is_seen_to_have_done_so() -> None:
             return said
 
     wire = SimulatedWire(Short())
-    (outcome,) = ended(wire, met(wire), Wanted("Tini-7F3A"))
+    (outcome,) = ended(wire, Wanted("Tini-7F3A"))
     assert (outcome.how, outcome.said) == (set_up.DIFFERS, "Tini")
 
 
-def test_nobody_is_no_module() -> None:
-    end = Hc06()
-    end.is_on = False
-    assert found(SimulatedWire(end)) is None
-
-
-@pytest.mark.parametrize(
-    ("wanted", "dialect", "what"),
+@each_row(
+    "wanted, dialect, what",
     [
         (Wanted("x" * 20), "HC-06", ""),
         (Wanted("x" * 21), "HC-06", "name"),
@@ -295,6 +280,6 @@ def test_what_a_module_cannot_have_is_known_before(wanted: Wanted, dialect: str,
     assert set_up.misfit(wanted, found_dialect) == what
 
 
-def test_a_name_from_an_id() -> None:
+def test_a_name_from_an_id_fits_each() -> None:
     assert set_up.name_for(0x12347F3A) == "Tini-7F3A"
     assert all(not set_up.misfit(Wanted(set_up.name_for(7)), each) for each in DIALECTS)

@@ -1,6 +1,7 @@
-"""Robots with a disc on each wheel: how far and how straight they go, and what ends such a move.
+"""Moves by centimetres and degrees: how far and how straight robots go, and what ends such a move.
 
-The firmware is the robot's own; wheels, motors and discs are those of `virtual/wheels.py`.
+The firmware is the robot's own. Most have a disc on each wheel; wheels, motors and discs are those
+of `virtual/wheels.py`. Those without discs go as long as `tsc run` says.
 """
 
 from __future__ import annotations
@@ -10,12 +11,15 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.support.virtual_robot import Talk, floor, trace
-from tiniscript import compile_text, robots
-from tiniscript.bytecode.image import unpack
+from tests.support.rows import each_row
+from tests.support.virtual_robot import Talk, floor, robot_in, trace
+from tiniscript import compile_text, robots, run
+from tiniscript.base.kit import Kit
+from tiniscript.bytecode.image import GO, TASKS, unpack
 from tiniscript.bytecode.opcodes import BY_CODE, ESCAPE
 from tiniscript.cli.robot.event_printer import fault_sentence
-from tiniscript.link.messages import STATUSES, TEXT_LEVEL, TEXT_LEVELS
+from tiniscript.link.messages import SAVED_STORED, STATUSES, TEXT_LEVEL, TEXT_LEVELS
+from tiniscript.robots.kinematics import START, moved
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import wheels
 from tiniscript.virtual.robot import Settings, VirtualRobot
@@ -33,6 +37,8 @@ TWO_CHANNELS = TWO._replace(
     )
 )
 WAY = "F(60 CM, 60)"
+ALONE = "F(20 CM, 60); R(90 DEG, 60); F(45 CM, 50) UNTIL(TIME > 2)"
+BESIDE = f"{ALONE}\nTASK\nW(0.3); B(4.5 CM, 100)\nEND_TASK"
 
 
 def begun(
@@ -247,14 +253,14 @@ def test_counts_that_wrap_around() -> None:
 
 
 def test_the_same_seed_gives_the_same_run_however_often_it_is_looked_at() -> None:
-    def run(look: Callable[[VirtualRobot], object], step_ms: int) -> object:
+    def went(look: Callable[[VirtualRobot], object], step_ms: int) -> object:
         robot, talk = begun(WAY, seed=5)
         for _ in range(4000 // step_ms):
             talk.wait(step_ms)
             look(robot)
         return robot.pose, trace(robot.take_events())
 
-    assert run(lambda robot: None, 1000) == run(lambda robot: robot.pose, 8)
+    assert went(lambda robot: None, 1000) == went(lambda robot: robot.pose, 8)
 
 
 def test_an_uno_with_discs_reads_no_text_but_a_typed_stop() -> None:
@@ -274,3 +280,61 @@ def test_a_mega_with_discs_reads_text() -> None:
     talk = Talk(VirtualRobot(robots.load("tinibot2", "mega"), floor()))
     found = talk.until(talk.session.hello()).values
     assert TEXT_LEVELS[found.features & TEXT_LEVEL][0] == "MEGA"
+
+
+# -- without discs --------------------------------------------------------------------------------
+
+
+def traced(text: str, name: str) -> list[str]:
+    return [f"{each.ms} {each.text}" for each in run(text, robot=name).events]
+
+
+@pytest.mark.parametrize("name", ["grabber", "tinibot32"])
+@pytest.mark.parametrize("text", [ALONE, BESIDE])
+def test_a_program_takes_as_long_as_the_profile_says(name: str, text: str) -> None:
+    robot = robot_in(name=name)
+    talk = Talk(robot)
+    assert talk.upload(text).status == OK
+    talk.wait(6000)
+    assert trace(robot.take_events()) == traced(text, name)
+    assert talk.until(talk.session.status()).values.saved == SAVED_STORED
+
+
+@each_row("name", robots.names())
+def test_a_simulated_body_goes_and_turns_as_its_kit_says(name: str) -> None:
+    profile = robots.load(name)
+    go_ms = profile.kit.go_ms(20_000, 60, turns=False)
+    turn_ms = profile.kit.go_ms(90_000, 60, turns=True)
+    assert go_ms is not None and turn_ms is not None
+    assert moved(profile.body, START, 60, 60, go_ms).x_cm == pytest.approx(20, abs=0.05)
+    assert moved(profile.body, START, 60, -60, turn_ms).heading == pytest.approx(-90, abs=0.3)
+
+
+@pytest.mark.parametrize(("text", "needs"), [(ALONE, GO), (BESIDE, GO | TASKS), ("W(0.1)", 0)])
+def test_the_robot_finds_out_what_code_needs(text: str, needs: int) -> None:
+    """Of a program in one frame, and of a live line: its image is the compiler's."""
+    robot = robot_in(name="tinibot32")
+    talk = Talk(robot)
+    image = compile_text(text, robot.profile.kit).image
+    assert unpack(image).needs == needs
+    assert talk.upload(text, runs=False).status == OK
+    talk.wait(2000)
+    assert talk.until(talk.session.fetch()).values.image == image
+    assert talk.until(talk.session.live(unpack(image).code)).status == OK
+    talk.wait(6000)
+    assert trace(robot.take_events()) == traced(text, "tinibot32")
+
+
+def test_without_numbers_it_never_comes_there() -> None:
+    """A profile without `speed` is not asked for such programs; whoever sends one sees a fault."""
+    robot = robot_in(name="grabber")
+    kit = robot.profile.kit
+    assert kit.go_ms(20_000, 60, turns=False)
+    robot.profile = robot.profile._replace(kit=Kit(kit.sensors, kit.actuators))
+    robot.power_cycle()
+    talk = Talk(robot)
+    talk.until(talk.session.hello())
+    image = unpack(compile_text("W(0.1); F(20 CM, 60)", kit).image)
+    assert talk.until(talk.session.upload(image, True, True)).status == OK
+    talk.wait(3000)
+    assert robot.fault == "NO_POWER"

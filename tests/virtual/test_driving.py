@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from random import Random
 
 import pytest
 
@@ -55,12 +56,8 @@ def test_segments_cross_or_have_a_distance() -> None:
 def test_a_cone_sees_the_nearest_point_inside(heading: float, half: float, found: float) -> None:
     least = seen([ACROSS], Point(0, 0), math.radians(heading), math.radians(half))
     assert least == pytest.approx(found)
-
-
-@pytest.mark.parametrize("y", [-5, 5])
-def test_what_ends_on_the_border_of_a_cone_is_seen(y: float) -> None:
-    ending = Segment(Point(10, 0), Point(10, y))
-    assert seen([ending], Point(0, 0), 0, 0) == 10
+    for y in (-5, 5):  # what ends on the border
+        assert seen([Segment(Point(10, 0), Point(10, y))], Point(0, 0), 0, 0) == 10
 
 
 # -- driving --------------------------------------------------------------------------------------
@@ -74,12 +71,8 @@ def test_where_nothing_is_in_the_way_the_way_is_that_of_the_wheels() -> None:
     found = driving(floor(size=2000, start="x_cm = 1000\ny_cm = 1000"))
     pose = Pose(1000, 1000, 0)
     now_ms = 0.0
-    for left, right, duration_ms in (
-        (80, 80, 1000),
-        (60, -60, 500),
-        (100, 30, 2500),
-        (-50, 20, 700),
-    ):
+    ways = ((80, 80, 1000), (60, -60, 500), (100, 30, 2500), (-50, 20, 700))
+    for left, right, duration_ms in ways:
         found.set_motors(now_ms, left, right)
         now_ms += duration_ms
         pose = moved(TINIBOT.body, pose, left, right, duration_ms)
@@ -239,18 +232,15 @@ def test_a_line_sensor_is_over_a_line_or_not() -> None:
         assert read(line, left, Pose(x, y, 0), LINER) * ONE == is_black
 
 
-@pytest.mark.parametrize(
-    ("heading", "is_touched"), [(0, True), (30, True), (80, False), (180, False)]
-)
-def test_a_bumper_notices_what_is_in_front(heading: float, is_touched: bool) -> None:
-    hull = Hull(LINER.body)
-    cos = math.cos(math.radians(heading))
-    along = max(hull.front_cm * cos, hull.back_cm * cos)
-    touching = Pose(200 - hull.radius_cm - along, 100, heading)
-    bumper = 2
-    assert read(floor(), bumper, touching, LINER) * ONE == is_touched
-    off = touching._replace(x_cm=touching.x_cm - TOUCH_CM - 0.01)
-    assert read(floor(), bumper, off, LINER) == 0
+def test_a_bumper_notices_what_is_in_front() -> None:
+    hull, bumper = Hull(LINER.body), 2
+    for heading, is_touched in ((0, True), (30, True), (80, False), (180, False)):
+        cos = math.cos(math.radians(heading))
+        along = max(hull.front_cm * cos, hull.back_cm * cos)
+        touching = Pose(200 - hull.radius_cm - along, 100, heading)
+        assert read(floor(), bumper, touching, LINER) * ONE == is_touched, heading
+        off = touching._replace(x_cm=touching.x_cm - TOUCH_CM - 0.01)
+        assert read(floor(), bumper, off, LINER) == 0
 
 
 def test_a_sensor_without_a_place_says_something_sensible_or_what_it_is_told() -> None:
@@ -264,8 +254,6 @@ def test_a_sensor_without_a_place_says_something_sensible_or_what_it_is_told() -
 
 
 def test_noise_is_about_as_large_as_it_is_said_to_be() -> None:
-    from random import Random
-
     sensing = Sensing(TINIBOT, floor(), 0.05, Random(1))
     pose = Pose(100, 100, 0)
     readings = [sensing.read(DISTANCE, pose) / ONE / 87 for _ in range(400)]

@@ -9,6 +9,7 @@ from random import Random
 
 import pytest
 
+from tests.support.rows import each_row
 from tests.support.virtual_robot import floor, robot_in
 from tests.virtual.test_simulator import PING, received, until, until_answered, visit
 from tiniscript import compile_text, robots
@@ -82,7 +83,7 @@ NOT_FOR_ROBOTS = {
 }
 
 
-@pytest.mark.parametrize("name", NOT_FOR_ROBOTS)
+@each_row("name", NOT_FOR_ROBOTS)
 def test_no_beginning_of_a_browser_is_for_a_robot(name: str) -> None:
     """However slowly it comes, byte by byte."""
     data = NOT_FOR_ROBOTS[name]
@@ -111,22 +112,12 @@ def test_all_frames_of_a_computer_are_for_a_robot() -> None:
         assert False not in [is_for_robot(data[:k]) for k in range(4)], data.hex()
 
 
-@pytest.mark.parametrize(
-    ("text", "after"),
-    [
-        ("SI|F(2,80)\n", 5),
-        ("W(1)\r\n", 2),
-        ("PING|\n", 6),  # a method may be called so: at the end of the line it is none
-        ("POST = 5\n", 6),
-        ("S // stop\n", 10),
-        ("S\r", 2),
-        ("S\0", 2),
-        ("// HTTP/1.1\n", 3),
-        ("año = 5\n", 2),
-        ("SHOW(1) \n", 5),
-        ('SHOW("GET / HTTP/1.1")\n', 5),
-    ],
-)
+@each_row("text, after", [
+    ("SI|F(2,80)\n", 5), ("W(1)\r\n", 2), ("POST = 5\n", 6), ("S // stop\n", 10), ("S\r", 2),
+    ("PING|\n", 6),  # a method may be called so: at the end of the line it is none
+    ("// HTTP/1.1\n", 3), ("año = 5\n", 2), ("SHOW(1) \n", 5), ("S\0", 2),
+    ('SHOW("GET / HTTP/1.1")\n', 5),
+])  # fmt: skip
 def test_a_line_of_text_is_for_a_robot_as_soon_as_it_can_be_told(text: str, after: int) -> None:
     found = verdicts(text.encode())
     assert False not in found
@@ -143,18 +134,22 @@ def test_a_first_line_has_an_end() -> None:
 # -- at the port --------------------------------------------------------------------------------
 
 
-def is_let_go(simulator: Simulator, client: socket.socket) -> bool:
-    """Whether it was hung up on without a word."""
-    said = b"?"
-    with contextlib.suppress(BlockingIOError, ConnectionError):
-        said = client.recv(1000)
-        assert said == b""
-    with contextlib.suppress(BlockingIOError):
-        try:
-            client.send(b"x")
-        except ConnectionError:
-            return True
-    return said == b""
+def until_let_go(simulator: Simulator, client: socket.socket) -> None:
+    """Wait until it is hung up on without a word."""
+
+    def is_let_go() -> bool:
+        said = b"?"
+        with contextlib.suppress(BlockingIOError, ConnectionError):
+            said = client.recv(1000)
+            assert said == b""
+        with contextlib.suppress(BlockingIOError):
+            try:
+                client.send(b"x")
+            except ConnectionError:
+                return True
+        return said == b""
+
+    until(simulator, is_let_go)
 
 
 def _has_moved(simulator: Simulator) -> bool:
@@ -169,7 +164,7 @@ def test_what_a_page_would_send_moves_a_robot_only_without_its_header(simulator:
                     client.sendall(part)
                 simulator.turn(0.01)
             if header:
-                until(simulator, lambda client=client: is_let_go(simulator, client))  # type: ignore[misc]
+                until_let_go(simulator, client)
                 assert simulator.transports.visits == 0
                 assert simulator.robot.take_events() == []
             else:
@@ -183,7 +178,7 @@ def test_a_page_does_not_come_in_after_another_client_either(simulator: Simulato
         with visit(simulator) as page:
             page.sendall(NOT_FOR_ROBOTS["post"] + program())
             simulator.turn(0.01)
-            until(simulator, lambda: is_let_go(simulator, page))
+            until_let_go(simulator, page)
     until(simulator, lambda: not simulator.transports.is_connected)
     assert not _has_moved(simulator)
 
@@ -244,7 +239,7 @@ def test_whoever_says_nothing_has_to_leave(
     for says in (b"", b"GE"):
         with visit(simulator) as client:
             client.sendall(says)
-            until(simulator, lambda client=client: is_let_go(simulator, client))  # type: ignore[misc]
+            until_let_go(simulator, client)
 
 
 def test_a_silent_client_leaves_its_place_to_one_who_speaks(

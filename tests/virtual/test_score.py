@@ -22,63 +22,57 @@ WAYS = {
     "parking": [(125, 50), (125, 105)],
     "gaps": [(140, 31), (165, 38), (190, 72), (180, 94), (120, 110), (40, 110)],
     "line": [(130, 25), (163, 50), (126, 84), (85, 91), (48, 106), (30, 55), (60, 25)],
-    "delivery": [
-        (28, 25),
-        (135, 25),
-        (135, 62),
-        (135, 104),
-        (185, 104),
-        (236, 104),
-        (236, 186),
-        (54, 190),
-    ],
+    "delivery": [(28, 25), (135, 25), (135, 62), (135, 104), (185, 104), (236, 104), (236, 186),
+                 (54, 190)],
     "ring": [(60, 110), (75, 160), (104, 160), (150, 110), (100, 55)],
     "light": [(190, 130)],
-}
+}  # fmt: skip
 
 
-def scored(text: str, program: str, ms: int = 9000) -> dict[str, object] | None:
+def scored(text: str, program: str, ms: int = 9000) -> dict[str, int] | None:
     simulation = Simulation("tinibot", read(text, "own"), compile(program).image)
     for part in (ms // 3, ms // 3, ms // 3):
         simulation.go(part)
-    found: dict[str, object] | None = simulation.state()["score"]
+    found: dict[str, int] | None = simulation.state()["score"]
     return found
+
+
+def counted(text: str, program: str, ms: int = 9000) -> tuple[int, int]:
+    """Return how many flags are taken, and the stars."""
+    found = scored(text, program, ms)
+    assert found is not None
+    return found["taken"], found["stars"]
 
 
 def test_a_world_without_flags_has_no_score() -> None:
     assert scored(FLOOR, "F(1, 80)", 900) is None
 
 
-def test_flags_are_taken_in_their_order() -> None:
-    found = scored(TWO, "F(100 CM, 80)")
-    assert found is not None and (found["taken"], found["of"], found["stars"]) == (2, 2, 3)
+def test_flags_are_taken_in_their_order_and_give_points_as_seconds_that_are_left_do() -> None:
+    at_once = scored(TWO, "F(100 CM, 80)") or {}
+    assert (at_once["taken"], at_once["of"], at_once["stars"]) == (2, 2, 3)
+    later = scored(TWO, "W(2);F(100 CM, 80)") or {}
+    assert at_once["points"] == later["points"] + 10
     turned = TWO.replace("x_cm = 90", "x_cm = 200").replace("x_cm = 140", "x_cm = 90")
-    found = scored(turned.replace("x_cm = 200", "x_cm = 140"), "F(100 CM, 80)")
-    assert found is not None and (found["taken"], found["stars"], found["points"]) == (1, 0, 100)
+    found = scored(turned.replace("x_cm = 200", "x_cm = 140"), "F(100 CM, 80)") or {}
+    assert (found["taken"], found["stars"], found["points"]) == (1, 0, 100)
 
 
 def test_a_collision_and_a_late_end_cost_a_star_each() -> None:
-    assert (scored(TWO, "F(100 CM, 80)") or {})["stars"] == 3
-    assert (scored(TWO, "W(5);F(100 CM, 80)", 12_000) or {})["stars"] == 2
+    assert counted(TWO, "W(5);F(100 CM, 80)", 12_000) == (2, 2)
     wall = "[[walls]]\npoints = [[20, 80], [20, 20]]\n"
-    crashed = scored(TWO.replace("seconds = 6", "seconds = 60") + wall, "B(1, 80);F(4, 80)")
-    assert crashed is not None and (crashed["stars"], crashed["taken"]) == (2, 2)
-    late = scored(TWO.replace("seconds = 6", "seconds = 4") + wall, "B(1, 80);W(3);F(4, 80)")
-    assert late is not None and late["stars"] == 1
+    crashed = TWO.replace("seconds = 6", "seconds = 60") + wall
+    assert counted(crashed, "B(1, 80);F(4, 80)") == (2, 2)
+    late = TWO.replace("seconds = 6", "seconds = 4") + wall
+    assert counted(late, "B(1, 80);W(3);F(4, 80)") == (2, 1)
     # What happens after the last flag counts no more.
-    assert (scored(TWO, "F(9, 80)", 12_000) or {})["stars"] == 3
-
-
-def test_points_are_for_flags_and_for_seconds_that_are_left() -> None:
-    at_once = scored(TWO, "F(100 CM, 80)") or {}
-    later = scored(TWO, "W(2);F(100 CM, 80)") or {}
-    assert at_once["points"] == int(str(later["points"])) + 10
+    assert counted(TWO, "F(9, 80)", 12_000) == (2, 3)
 
 
 def test_where_it_is_to_rest_it_stands() -> None:
     rests = TWO + "rests = true\nreach_cm = 20\n"
-    assert (scored(rests, "F(9, 80)") or {})["taken"] == 1
-    assert (scored(rests, "F(100 CM, 80)") or {})["taken"] == 2  # its program has ended there
+    assert counted(rests, "F(9, 80)")[0] == 1
+    assert counted(rests, "F(100 CM, 80)")[0] == 2  # its program has ended there
 
 
 @pytest.mark.parametrize("name", [each for each in worlds.names() if worlds.load(each).flags])

@@ -76,6 +76,7 @@ def test_clients_come_and_go(simulator: Simulator) -> None:
             until(simulator, lambda: simulator.transports.is_connected)
         until(simulator, lambda: not simulator.transports.is_connected)
     assert simulator.transports.visits == 30
+    assert simulator.transports._server.getsockname()[0] == "127.0.0.1"  # only this computer
 
 
 def test_many_at_once_are_all_told_but_one(simulator: Simulator) -> None:
@@ -97,10 +98,6 @@ def test_many_at_once_are_all_told_but_one(simulator: Simulator) -> None:
     for client in crowd:
         client.close()
     until(simulator, lambda: not simulator.transports.is_connected)
-
-
-def test_only_this_computer_is_let_in(simulator: Simulator) -> None:
-    assert simulator.transports._server.getsockname()[0] == "127.0.0.1"
 
 
 # -- the heartbeat of a hurried robot -------------------------------------------------------------

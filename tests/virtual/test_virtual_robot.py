@@ -2,23 +2,39 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from random import Random
 
 import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import OBSTACLE
+from tests.support.owners import Keys
 from tests.support.virtual_robot import Talk, floor, robot_in, trace
 from tiniscript import compile_text, robots
 from tiniscript.base.trace import Ending, Senses
-from tiniscript.bytecode.image import unpack
-from tiniscript.link.messages import STATUSES
+from tiniscript.bytecode.image import pack, unpack
+from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
+from tiniscript.link.messages import (
+    KEY_OWNER,
+    LARGE_FRAME,
+    LARGE_WINDOW,
+    SAVED_STORED,
+    SMALL_FRAME,
+    STATUSES,
+)
 from tiniscript.link.trim import Trim
+from tiniscript.robots.text_levels import LEVELS
 from tiniscript.virtual import worlds
+from tiniscript.virtual.robot import VirtualRobot
+from tiniscript.virtual.simulator import HOLD_MS, PUSH_MS, Simulator
 from tiniscript.virtual.transports import BadLine
 from tiniscript.vm.runner import run
+from tools.bench import large_upload
 
 KIT = robots.load("tinibot").kit
+OK, TOO_LARGE = STATUSES["OK"], STATUSES["TOO_LARGE"]
+LARGEST = {"grabber": 1900, "tinibot32": 8192, "tinibotc3": 8192}  # bytes of code
 PROGRAMS = {
     "drive": "SI|F(5,80)",
     "loop": "SI|LOOP(3);F(2,50);END_LOOP",
@@ -67,22 +83,16 @@ def test_a_run_repeats_with_its_seed(name: str) -> None:
     assert went(1, 0.0)[1] == went(2, 0.0)[1]
 
 
-def test_unequal_motors_drive_a_curve() -> None:
-    robot = robot_in(floor(size=400, start="x_cm = 100\ny_cm = 100"), motors=(100, 90))
-    Talk(robot).upload("SI|F(2, 100)")
-    robot.step(robot.now_ms + 900)
-    assert robot.pose.heading == pytest.approx(-0.1 / 2 * 360 * 0.9, rel=0.1)
-
-
-def test_its_trim_makes_unequal_motors_drive_straight() -> None:
+def test_unequal_motors_drive_a_curve_and_their_trim_makes_it_straight() -> None:
     """The numbers are those that a robot with pins keeps: its right motor is a tenth too weak."""
-    robot = robot_in(floor(size=400, start="x_cm = 100\ny_cm = 100"), motors=(100, 90))
-    talk = Talk(robot)
-    assert talk.until(talk.session.trim(Trim(balance=10).data())).status == 0
-    talk.upload("SI|F(2, 100)")
-    robot.step(robot.now_ms + 900)
-    assert robot.pose.heading == pytest.approx(0, abs=0.5)
-    assert robot.pose.x_cm > 130
+    for trim, heading in ((Trim(), -0.1 / 2 * 360 * 0.9), (Trim(balance=10), 0)):
+        robot = robot_in(floor(size=400, start="x_cm = 100\ny_cm = 100"), motors=(100, 90))
+        talk = Talk(robot)
+        assert talk.until(talk.session.trim(trim.data())).status == 0
+        talk.upload("SI|F(2, 100)")
+        robot.step(robot.now_ms + 900)
+        assert robot.pose.heading == pytest.approx(heading, rel=0.1, abs=0.5)
+        assert robot.pose.x_cm > 130
 
 
 def test_the_papers_program_drives_around_the_obstacles_and_touches_none() -> None:
@@ -103,9 +113,8 @@ def test_the_line_example_stays_on_its_line() -> None:
     places = []
     for _ in range(300):
         robot.step(robot.now_ms + 100)
-        pose = robot.pose
-        places.append(pose)
-        off += not any(robot.sensing.look(number, pose) for number in (0, 1))
+        places.append(robot.pose)
+        off += not any(robot.sensing.look(number, robot.pose) for number in (0, 1))
     assert off < 30
     assert robot.driving.driven_cm > 400
     assert max(each.x_cm for each in places) > 150  # all around
@@ -128,6 +137,11 @@ def test_the_light_example_finds_a_lamp() -> None:
 # -- the link -------------------------------------------------------------------------------------
 
 
+def push(robot: VirtualRobot) -> None:
+    robot.press()
+    robot.let_go()
+
+
 def test_a_robot_whose_computer_is_silent_stops_after_a_second() -> None:
     robot = robot_in()
     Talk(robot).upload("SI|LOOP(FOREVER);L(5, 50);END_LOOP")
@@ -144,8 +158,7 @@ def test_a_program_that_is_detached_goes_on() -> None:
     Talk(robot).upload("SI|LOOP(FOREVER);L(5, 50);END_LOOP", is_detached=True)
     robot.step(robot.now_ms + 5000)
     assert robot.is_running
-    robot.press()
-    robot.let_go()
+    push(robot)
     assert not robot.is_running
     assert robot.take_events()[-1].text == "STOP"
 
@@ -189,16 +202,14 @@ def test_a_saved_program_is_there_after_a_power_cycle() -> None:
     robot.power_cycle()
     robot.step(robot.now_ms + 300)
     assert robot.is_lit
-    robot.press()
-    robot.let_go()
+    push(robot)
     robot.step(robot.now_ms + 200)
     expected = ["0 MOTORS 50 50", "100 MOTORS 0 0", "100 DONE"]
     assert trace(robot.take_events()) == expected
     # and in another robot with the same memory
     other = robot_in(memory=memory)
     other.step(300)
-    other.press()
-    other.let_go()
+    push(other)
     other.step(600)
     assert trace(other.take_events()) == expected
 
@@ -214,8 +225,7 @@ def test_a_byte_that_is_saved_takes_its_time() -> None:
     robot.step(robot.now_ms + 20)
     robot.power_cycle()
     robot.step(robot.now_ms + 300)
-    robot.press()
-    robot.let_go()
+    push(robot)
     robot.step(robot.now_ms + 200)
     assert trace(robot.take_events())[0] == "0 MOTORS 50 50"
 
@@ -296,3 +306,106 @@ def test_a_running_robot_goes_on_by_itself() -> None:
     robot._firmware.call = counted  # type: ignore[method-assign]
     robot.step(robot.now_ms + 40_000)
     assert asked == 1
+
+
+# -- its chip -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("name", "sizes", "level"), [
+    ("tinibot", (SMALL_FRAME, 1), "uno"), ("grabber", (SMALL_FRAME, 1), "mega"),
+    ("tinibot32", (LARGE_FRAME, LARGE_WINDOW), "esp32"),
+    ("tinibotc3", (LARGE_FRAME, LARGE_WINDOW), "esp32"),
+])  # fmt: skip
+def test_it_says_the_sizes_of_its_chip(name: str, sizes: tuple[int, int], level: str) -> None:
+    talk = Talk(robot_in(name=name))
+    found = talk.until(talk.session.hello()).values
+    assert (found.largest, found.window) == sizes
+    assert list(LEVELS)[(found.features & 3) - 1] == level
+    assert found.room >= talk.robot.profile.board.program_bytes
+
+
+@pytest.mark.parametrize("is_all", [False, True])
+@pytest.mark.parametrize("name", LARGEST)
+def test_it_keeps_what_its_board_promises_and_what_it_says_itself(name: str, is_all: bool) -> None:
+    robot = robot_in(name=name)
+    assert robot.profile.board.program_bytes == LARGEST[name]
+    talk = Talk(robot)
+    room = talk.until(talk.session.hello()).values.room
+    image = pack("SI", 0, large_upload.program(room if is_all else LARGEST[name]).code)
+    assert talk.until(talk.session.upload(unpack(image), runs=False)).status == OK
+    talk.wait(20_000)
+    assert talk.until(talk.session.status()).values.saved == SAVED_STORED
+    robot.power_cycle()
+    again = Talk(robot, nonce=6)
+    assert again.until(again.session.hello()).values.program == unpack(image).checksum
+    assert again.until(again.session.fetch()).values.image == image
+
+
+def test_what_it_does_not_hold_is_refused() -> None:
+    talk = Talk(robot_in(name="grabber"))
+    room = talk.until(talk.session.hello()).values.room
+    image = unpack(pack("SI", 0, large_upload.program(room + 1).code))
+    assert talk.until(talk.session.upload(image, runs=False)).status == TOO_LARGE
+    assert len(talk.robot.memory) == 4096  # bytes of a Mega's EEPROM
+
+
+def test_it_runs_a_long_live_line() -> None:
+    talk = Talk(robot_in(name="tinibot32"))
+    talk.until(talk.session.hello())
+    assert talk.until(talk.session.live(large_upload.program(240).code)).status == OK
+    assert talk.robot.is_running
+
+
+# -- its owner ------------------------------------------------------------------------------------
+
+
+def owner_of(talk: Talk) -> str:
+    talk.until(talk.session.hello())
+    assert talk.session.robot
+    return whose(talk.session.robot)
+
+
+@pytest.mark.parametrize(("held_ms", "status"), [(HOLD_MS, "OK"), (PUSH_MS, "HOLD_BUTTON")])
+def test_its_button_confirms_a_claim(held_ms: int, status: str) -> None:
+    keys, robot = Keys(), robot_in()
+    talk = Talk(robot, keys=keys)
+    request = talk.session.claim(KEY_OWNER)
+    talk.wait(500)
+    robot.press()
+    talk.wait(held_ms)
+    robot.let_go()
+    assert talk.until(request).status == STATUSES[status]
+    if status == "OK":
+        assert [key.seals for key in keys.found] == [True]
+        robot.power_cycle()
+        assert owner_of(Talk(robot, 6)) == OF_ANOTHER
+        assert owner_of(Talk(robot, 7, keys)) == YOUR_OWN
+
+
+def test_it_is_seen_and_heard_which_one_it_is() -> None:
+    robot = robot_in()
+    talk = Talk(robot)
+    assert talk.until(talk.session.identify()).status == 0
+    lights = []
+    for _ in range(35):
+        talk.wait(100)
+        lights.append(robot.is_lit)
+    assert sum(was != now for was, now in pairwise(lights)) >= 10
+    assert [event.what for event in robot.take_events()] == ["BEEP"] * 3
+
+
+def test_a_long_push_of_the_simulator_lasts(
+    simulator: Simulator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot = simulator.robot
+    pushed: list[tuple[str, int]] = []
+    monkeypatch.setattr(robot, "press", lambda: pushed.append(("down", robot.now_ms)))
+    monkeypatch.setattr(robot, "let_go", lambda: pushed.append(("up", robot.now_ms)))
+    simulator.push(HOLD_MS)
+    simulator.push()  # waits until the long one is over
+    for _ in range(3000):
+        simulator._step(1, False)
+    (_, began_ms), (_, ended_ms), (_, again_ms), (_, over_ms) = pushed
+    assert ended_ms - began_ms == HOLD_MS
+    assert again_ms > ended_ms
+    assert over_ms - again_ms == PUSH_MS

@@ -11,6 +11,7 @@ from PIL import Image
 
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
+from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES
 from tests.support.virtual_robot import floor, robot_in
 from tiniscript import robots
@@ -68,12 +69,8 @@ def test_a_world_is_read() -> None:
     assert world.ambient == 0.125
     assert world.walls == (((10, 20), (30.5, 20), (30.5, 0)),)
     [box] = world.boxes
-    assert [(round(x, 9), round(y, 9)) for x, y in box] == [
-        (95, 60),
-        (95, 40),
-        (105, 40),
-        (105, 60),
-    ]
+    corners = [(round(x, 9), round(y, 9)) for x, y in box]
+    assert corners == [(95, 60), (95, 40), (105, 40), (105, 60)]
     assert world.lines == ((((0, 0), (9, 9)), 1.5),)
     assert world.lamps == (((7, 8), 100),)
     assert {world.labels[each] for each in LANGUAGES} == {"mine"}
@@ -100,8 +97,8 @@ def test_the_world_of_the_documents_is_one(name: str) -> None:
         assert "--world" not in options or options[options.index("--world") + 1] in worlds.names()
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
+@each_row(
+    "text, said",
     [
         ("", "floor is missing. Add it, for example: [floor]"),
         (RIGHT + "[[wall]]\n", "wall means nothing in a world. Did you mean walls?"),
