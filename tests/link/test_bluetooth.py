@@ -46,22 +46,18 @@ def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
 # -- what is done -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("port", [NAME, PLACE, "BLE://tini 1", PLACE.lower()])
-def test_a_program_is_uploaded_and_runs(ble: BleRobot, port: str) -> None:
-    done = inside("upload", "-e", DRIVE, "--port", port)
-    assert (done.code, done.err) == (0, "")
-    assert done.out.splitlines()[-2:] == ["Done.", "Saved in slot 0."]
-    assert ble.robot.did == DROVE
+def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot) -> None:
+    for count, port in enumerate((NAME, PLACE, "BLE://tini 1", PLACE.lower()), 1):
+        done = inside("upload", "-e", DRIVE, "--port", port)
+        assert (done.code, done.err) == (0, ""), port
+        assert done.out.splitlines()[-2:] == ["Done.", "Saved in slot 0."]
+        assert (ble.robot.did, ble.connections) == (DROVE * count, 2 * count - 1)
+        assert inside("info").code == 0  # the port is remembered
     assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
     assert max(len(data) for _, data in ble.written) == 20
-    assert ble.connections == 1
-    assert inside("info").code == 0  # the port is remembered
-
-
-def test_lines_are_done_at_once(ble: BleRobot) -> None:
     done = inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\nR(0.1, 40)\n")
     assert (done.code, done.err) == (0, "")
-    assert ble.robot.did[0::3] == ["MOTORS 50 50", "MOTORS 40 -40"]
+    assert ble.robot.did[-6::3] == ["MOTORS 50 50", "MOTORS 40 -40"]
 
 
 @pytest.mark.sampled("service", "mtu", "late_s", keep=3)
@@ -99,25 +95,16 @@ def test_where_a_module_answers_each_write_it_is_waited_for(
 # -- who has the port ---------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("first", "second"), [(NAME, PLACE), (NAME, NAME), (PLACE, PLACE)])
-def test_commands_share_a_connection_whatever_they_call_it(
-    ble: BleRobot, first: str, second: str
-) -> None:
-    command = uploading(ble, first)
+@pytest.mark.parametrize("port", [NAME, PLACE, ""])
+def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: str) -> None:
+    command = uploading(ble, NAME)
     rows = [row for row in json.loads(inside("ports", "--json").out) if row["held_by"]]
-    assert [row["port"] for row in rows] == [first]
-    done = inside("stop", "--port", second)
-    assert done.code == 0
+    assert [row["port"] for row in rows] == [NAME]
+    done = inside("stop", *(("--port", port) if port else ()))
+    assert (done.code, done.out.count("Stopped")) == (0, 1)
     assert not ble.robot.moves
     assert command.ended().code == 3
     assert ble.connections == 1
-
-
-def test_a_stop_without_a_port_stops_it_once(ble: BleRobot) -> None:
-    command = uploading(ble, NAME)
-    done = inside("stop")
-    assert (done.code, done.out.count("Stopped")) == (0, 1)
-    command.ended()
 
 
 def test_two_at_once_take_turns(ble: BleRobot) -> None:

@@ -77,15 +77,6 @@ def answers(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[Frame
     return [frame for frame in found if frame]
 
 
-def put_program(robot: CppLink) -> None:
-    """Have the robot hold IMAGE, frame after frame."""
-    session = Session(7, BAUD, KIT)
-    asked = session.upload(IMAGE, runs=False)
-    for now_ms in range(0, 3000, 5):
-        session.receive(robot.step(now_ms, session.poll(now_ms)).sent, now_ms)
-    assert asked.outcome and asked.outcome.status == OK and robot.held() == pack("SI", 0, CODE)
-
-
 def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
     """A robot with a window of 4 answers four that came at once, one with 1 the first."""
     for is_large, window in ((True, LARGE_WINDOW), (False, 1)):
@@ -146,7 +137,11 @@ def test_a_computer_gets_the_image_in_frames_that_it_takes(
     minor: int, is_large: bool, most: int
 ) -> None:
     robot = begun(is_large=is_large)
-    put_program(robot)
+    session = Session(7, BAUD, KIT)
+    asked = session.upload(IMAGE, runs=False)
+    for now_ms in range(0, 3000, 5):
+        session.receive(robot.step(now_ms, session.poll(now_ms)).sent, now_ms)
+    assert asked.outcome and asked.outcome.status == OK and robot.held() == pack("SI", 0, CODE)
     hello = struct.pack("<BBBBHI", MAJOR, minor, *isa_of(0), KIT, 8)
     answers(robot, Frame(HELLO, 1, 0, hello))
     image = b""
@@ -229,12 +224,7 @@ class Answering:
         message = BY_NAME["HELLO"]
         if frame.number == HELLO:
             values = {field.name: 0 if field.kind != "rest" else b"R" for field in message.reply}
-            values |= {
-                "major": MAJOR,
-                "isa_major": ISA_MAJOR,
-                "isa_minor": ISA_MINOR,
-                "kit": KIT,
-            }
+            values |= {"major": MAJOR, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR, "kit": KIT}
             values |= {"largest": self.largest, "window": self.window, "room": 8192}
             payload = bytes([OK]) + written(message.reply, values)
         elif frame.number == BY_NAME["BEGIN"].number:
@@ -248,10 +238,8 @@ class Answering:
             self.has_commit = True
             payload = struct.pack("<BIBBB", OK, IMAGE.checksum, 1, 0, 3)
         if payload is not None:
-            self.session.receive(
-                encoded(Frame(frame.number, frame.seq, frame.epoch, payload, is_reply=True)),
-                self.now_ms,
-            )
+            reply = frame._replace(payload=payload, is_reply=True)
+            self.session.receive(encoded(reply), self.now_ms)
 
 
 class Taking:
@@ -295,23 +283,19 @@ def test_what_is_lost_is_sent_again_and_no_more(
     assert 2 <= robot.most_waiting <= LARGE_WINDOW
 
 
-@pytest.mark.parametrize("window", [0, 1])
-@pytest.mark.parametrize("largest", [0, SMALL_FRAME])
-def test_a_robot_of_before_gets_what_it_got(largest: int, window: int) -> None:
+@pytest.mark.parametrize(("largest", "window"), [
+    (0, 0), (0, 1), (SMALL_FRAME, 0), (SMALL_FRAME, 1),  # of before: they get what they got
+    (255, 255), (251, 2), (100, 200),  # they say more than there is
+])  # fmt: skip
+def test_a_robot_gets_frames_as_it_says_up_to_what_there_is(largest: int, window: int) -> None:
     taking = Taking()
     robot = Answering(taking, largest, window)
     assert robot.run(robot.session.upload(IMAGE)) == OK
     assert taking.found == WHOLE
-    assert robot.most_waiting == 1 and robot.longest == SMALL_PACKET
-    assert {length for *_, length in robot.data[:-1]} == {54}
-
-
-@pytest.mark.parametrize(("largest", "window"), [(255, 255), (251, 2), (100, 200)])
-def test_a_robot_that_says_more_than_there_is_gets_what_there_is(largest: int, window: int) -> None:
-    robot = Answering(Taking(), largest, window)
-    assert robot.run(robot.session.upload(IMAGE)) == OK
-    assert robot.longest == min(largest, LARGE_FRAME) + 1
-    assert robot.most_waiting == min(window, LARGE_WINDOW)
+    is_small = largest <= SMALL_FRAME
+    assert robot.longest == (SMALL_PACKET if is_small else min(largest, LARGE_FRAME) + 1)
+    assert robot.most_waiting == max(1, min(window, LARGE_WINDOW))
+    assert not is_small or {length for *_, length in robot.data[:-1]} == {54}
 
 
 def test_a_slow_line_has_little_before_a_stop() -> None:

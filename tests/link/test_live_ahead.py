@@ -11,7 +11,7 @@ import struct
 import pytest
 
 from tests.link.test_link_channel import damaged
-from tests.machines.link import CppLink, cpp_link
+from tests.machines.link import CppLink, Step, cpp_link
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
@@ -25,6 +25,7 @@ EPOCH = 9  # of the robot when it begins; HELLO makes it one more
 TEXTS = ("SI|F(5, 80)", "SI|X = 0; LOOP(3); X = X + 1; END_LOOP; SHOW(X)", "SI|SHOW(DISTANCE)")
 CODES = [unpack(compile_text(text, KIT).image).code for text in TEXTS]
 STARTED = "START live, run 1"
+NOTHING = Step(b"", [])
 SEED = 5
 FRAMES = 1500
 
@@ -65,10 +66,15 @@ def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
 
 @pytest.mark.parametrize("code", CODES)
 def test_it_does_not_run_before_its_frame_ends(code: bytes) -> None:
-    robot = greeted()
-    data = live(code)
-    assert not robot.step(10, data[:-1]).did
-    assert STARTED in robot.step(20, data[-1:]).did
+    """And what runs goes on until then."""
+    for runs in (False, True):
+        robot = greeted()
+        if runs:
+            robot.happens("r")
+        assert not robot.step(10, live(code)[:-1]).did
+        did = robot.step(20, b"\0").did
+        assert (did[0] == "END") == runs
+        assert did[-1].startswith("START live")
 
 
 @pytest.mark.parametrize("text", [*TEXTS, "SI|TASK;SHOW(1);END_TASK"])
@@ -81,31 +87,18 @@ def test_a_robot_makes_the_image_of_the_compiler(text: str) -> None:
     assert [checksum in reply.payload for reply in replies] == [True]
 
 
-@pytest.mark.parametrize("at", [2, 3, 7, 9, 10, 11])
-def test_a_damaged_frame_runs_nothing(at: int) -> None:
-    data = bytearray(live(CODES[0]))
-    data[at] ^= 0x40 if at < 8 else 0x11
-    step = greeted().step(10, bytes(data))
-    assert not step.did
-    assert not step.sent
-
-
-@pytest.mark.parametrize("code", CODES)
-@pytest.mark.parametrize("more", [b"\x01", b"\x05", b"\x01\x01", b"\xff"])
-def test_a_frame_that_goes_on_is_another_one(code: bytes, more: bytes) -> None:
-    robot = greeted()
-    step = robot.step(10, live(code)[:-1])
-    step = robot.step(10, more + b"\0")
-    assert not step.did
-    assert not step.sent
-
-
-def test_what_runs_goes_on_until_the_frame_ends() -> None:
-    robot = greeted()
-    robot.happens("r")
-    data = live(CODES[0])
-    assert not robot.step(10, data[:-1]).did
-    assert robot.step(20, data[-1:]).did[0] == "END"
+def test_a_frame_that_is_damaged_goes_on_or_ends_too_late_runs_nothing() -> None:
+    for at in (2, 3, 7, 9, 10, 11):
+        damage = bytearray(live(CODES[0]))
+        damage[at] ^= 0x40 if at < 8 else 0x11
+        assert greeted().step(10, bytes(damage)) == NOTHING, at
+    more = (b"\x01\0", b"\x05\0", b"\x01\x01\0", b"\xff\0")
+    ends = [(10 + messages.SILENCE_MS, b"\0"), *((10, each) for each in more)]
+    for code in CODES:
+        for now_ms, end in ends:
+            robot = greeted()
+            assert not robot.step(10, live(code)[:-1]).did
+            assert robot.step(now_ms, end) == NOTHING, (code, end)
 
 
 @pytest.mark.parametrize(("before", "between"), [("", "b"), ("r", "f")], ids=["button", "fault"])
@@ -127,15 +120,6 @@ def test_a_stop_ends_the_frame_and_then_the_run() -> None:
     did = robot.step(10, bytes(8)).did
     assert did.index(STARTED) < did.index("PINS OFF") < did.index("STOP")
     assert not robot.step(20, bytes(1)).did
-
-
-def test_silence_in_between_damages_it() -> None:
-    robot = greeted()
-    data = live(CODES[0])
-    assert not robot.step(10, data[:-1]).did
-    step = robot.step(10 + messages.SILENCE_MS, data[-1:])
-    assert not step.did
-    assert not step.sent
 
 
 def test_another_frame_after_one_that_was_cut_runs_its_own_code() -> None:

@@ -9,6 +9,7 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager, suppress
 from ipaddress import ip_address
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 import pytest
@@ -24,6 +25,13 @@ if TYPE_CHECKING:  # without zeroconf there is none
     from zeroconf import ServiceInfo, Zeroconf
 
     from tiniscript.link.transports.network import Announced
+
+
+@pytest.fixture
+def network() -> ModuleType:
+    from tiniscript.link.transports import network
+
+    return network
 
 
 # Every announcement is heard by all tests of this computer: names are of one test process, and
@@ -158,9 +166,9 @@ def test_a_robot_announces_itself_only_when_asked(
         assert [row.split("   ")[0] for row in rows if "quiet" in row] == [found.port]
 
 
-def test_the_announcement_ends_with_the_robot(monkeypatch: pytest.MonkeyPatch) -> None:
-    from tiniscript.link.transports import network
-
+def test_the_announcement_ends_with_the_robot(
+    network: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     name = f"short-{HERE}"
     with robot("--announce", "--name", name):
         assert inside("ping", "--port", f"tcp://{name}", "--count", "1").code == 0
@@ -170,14 +178,13 @@ def test_the_announcement_ends_with_the_robot(monkeypatch: pytest.MonkeyPatch) -
     assert f"ningún robot de esta red se anuncia como tcp://{name}" in done.err
 
 
-@pytest.mark.parametrize("name", ["x" * 64, "Ñ" * 40, "_tcp", ".", "..", "a.b", "a..b", " "])
-def test_names_that_nobody_has(tsc: Tsc, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    from tiniscript.link.transports import network
-
+def test_names_that_nobody_has(
+    tsc: Tsc, network: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(network, "SEARCH_S", 0.2)
-    done = tsc("ping", "--port", f"tcp://{name}")
-    assert done.code == 3
-    assert "announces itself" in done.err
+    for name in ("x" * 64, "Ñ" * 40, "_tcp", ".", "..", "a.b", "a..b", " "):
+        done = tsc("ping", "--port", f"tcp://{name}")
+        assert (done.code, "announces itself" in done.err) == (3, True), name
 
 
 def test_two_robots_of_one_name_are_not_announced(tini: Robot) -> None:
@@ -190,15 +197,14 @@ def test_two_robots_of_one_name_are_not_announced(tini: Robot) -> None:
 def test_an_address_outside_is_not_called(address: str) -> None:
     with announced(f"bait-{HERE}", address, 7007):
         done = inside("ping", "--port", f"tcp://bait-{HERE}")
-        assert (done.code, f"an address that is not in this network ({address})" in done.err) == (
-            3, True,
-        )  # fmt: skip
+        said = f"an address that is not in this network ({address})"
+        assert (done.code, said in done.err) == (3, True)
 
 
-def test_a_packet_may_announce_anything(listing: None, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_packet_may_announce_anything(
+    listing: None, network: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Written by hand: zeroconf refuses to announce some of these, and to believe others."""
-    from tiniscript.link.transports import network
-
     monkeypatch.setattr(network, "LISTED_S", 0.5)
     heard = ["_tcp", "a.b", "plain", "x" * 63, "\u202ex"]
     found: list[Announced] = []
@@ -213,15 +219,14 @@ def test_a_packet_may_announce_anything(listing: None, monkeypatch: pytest.Monke
 
 
 def test_names_without_an_address_do_not_hold_up_the_list(
-    listing: None, monkeypatch: pytest.MonkeyPatch
+    listing: None, network: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tiniscript.link.transports import network
-
     asked, limits_ms = network.asked, []
 
-    def look(network: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
+    def look(zeroconf: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
         limits_ms.append(limit_ms)
-        return asked(network, name, limit_ms)
+        found: ServiceInfo | None = asked(zeroconf, name, limit_ms)
+        return found
 
     monkeypatch.setattr(network, "ADDRESSES_S", 0.5)
     monkeypatch.setattr(network, "asked", look)
@@ -259,10 +264,8 @@ def test_whatever_answers_a_name_has_to_be_a_robot() -> None:
 
 
 def test_without_multicast_the_address_is_the_next_step(
-    tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+    tsc: Tsc, network: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tiniscript.link.transports import network
-
     def fail(**_: object) -> None:
         raise OSError(101, "Network is unreachable")
 

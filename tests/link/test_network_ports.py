@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import socket
 import threading
-from collections.abc import Callable
 from types import SimpleNamespace
 
 import pytest
@@ -28,18 +27,11 @@ class Modemless(serial.Serial):  # type: ignore[misc]
     _update_dtr_state = _update_rts_state = _update_break_state = _nothing
 
 
-class _Writer:
-    """What PortManager writes its own answers to."""
-
-    def __init__(self, write: Callable[[bytes], None]) -> None:
-        self.write = write
-
-
 def serve(tcp: socket.socket, port: str, is_rfc2217: bool) -> None:
     """Pass bytes between one peer and a port, until the peer leaves."""
     peer, _ = tcp.accept()
     device = Modemless(port, 9600, timeout=0.005)
-    manager = PortManager(device, _Writer(peer.sendall)) if is_rfc2217 else None
+    manager = PortManager(device, SimpleNamespace(write=peer.sendall)) if is_rfc2217 else None
     has_left = threading.Event()
 
     def back() -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 
 from tests.machines.link import CppLink, cpp_link
@@ -15,10 +13,6 @@ from tiniscript.link.messages import AGAIN_MS, BY_NAME, DEAD_MAN_MS, LISTEN_MS
 
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
 ANSWERS = 17  # to mistakes, without a pause of five seconds: the last one says that these are all
-
-
-def cpp_packets(stream: list[tuple[int, int]]) -> list[str]:
-    return cpp_link().packets(stream)
 
 
 def robot_with_session() -> CppLink:
@@ -48,17 +42,19 @@ def test_an_attached_program_ends_a_second_after_the_last_valid_frame(start: int
     assert ends_at(cpp, start + 900, start + 2000) == start + 700 + DEAD_MAN_MS
 
 
-@pytest.mark.parametrize("name", ["PROGRAM", "START"])
-def test_a_detached_program_goes_on(name: str) -> None:
+@pytest.mark.parametrize("name", ["PROGRAM", "START", "button"])
+def test_a_detached_program_and_what_the_button_has_started_go_on(name: str) -> None:
     cpp = robot_with_session()
-    mode = 0x50 if name == "PROGRAM" else 0x40
-    program = messages.written(
-        BY_NAME["PROGRAM"].request, {"mode": mode & 0x70 if mode & 0x10 else 0, "code": FORWARD}
-    )
+    mode = {"PROGRAM": 0x50, "START": 0, "button": 0x10}[name]
+    program = messages.written(BY_NAME["PROGRAM"].request, {"mode": mode, "code": FORWARD})
     cpp.step(10, encoded(Frame(9, 2, 10, program)))
     if name == "START":
-        cpp.step(20, encoded(Frame(7, 3, 10, bytes([mode]))))
-    assert ends_at(cpp, 20, 5000) is None
+        cpp.step(20, encoded(Frame(7, 3, 10, b"\x40")))
+    elif name == "button":
+        cpp.happens("b")
+        cpp.step(20)
+        cpp.happens("r")
+    assert ends_at(cpp, 30, 5000) is None
 
 
 def test_a_long_silence_is_no_short_one() -> None:
@@ -69,21 +65,11 @@ def test_a_long_silence_is_no_short_one() -> None:
         assert cpp.happens("s", 1) and (not sent or now_ms < LISTEN_MS + 1000), now_ms
 
 
-def test_what_the_button_has_started_is_not_attached() -> None:
-    cpp = robot_with_session()
-    live = messages.written(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
-    cpp.step(10, encoded(Frame(8, 2, 10, live)))
-    cpp.happens("b")
-    cpp.step(20)
-    cpp.happens("r")
-    assert ends_at(cpp, 30, 5000) is None
-
-
-@pytest.mark.parametrize("find", [packets_of, cpp_packets])
-def test_what_is_counted_does_not_wrap(find: Callable[[list[tuple[int, int]]], list[str]]) -> None:
+def test_what_is_counted_does_not_wrap() -> None:
     """A line that is broken for long stops a robot all the time; a long text is no short one."""
-    assert find([(0, 0)] * 1402) == [*["stop"] * 350, "damaged 0, dropped 0"]
-    assert find([(0, byte) for byte in b"A" * 300 + b"\n"])[0].startswith("text 255 41 41")
+    for find in (packets_of, cpp_link().packets):
+        assert find([(0, 0)] * 1402) == [*["stop"] * 350, "damaged 0, dropped 0"]
+        assert find([(0, byte) for byte in b"A" * 300 + b"\n"])[0].startswith("text 255 41 41")
 
 
 def test_a_line_that_is_held_low_neither_runs_the_epoch_round_nor_fills_the_line_back() -> None:

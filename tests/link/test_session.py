@@ -97,14 +97,11 @@ def test_times_of_retries_come_from_the_baud_rate(baud: int, first: int) -> None
     assert request.outcome and request.outcome.status == LOST
 
 
-def test_a_session_that_waits_for_nothing_sleeps() -> None:
+def test_the_heartbeat() -> None:
     assert Session(1).wakes_at() is None
     session = greeted()
     session.is_attached = False
     assert session.wakes_at() is None
-
-
-def test_the_heartbeat() -> None:
     session = greeted()
     assert session.wakes_at() == IDLE_HEARTBEAT_MS
     session.live(FORWARD)

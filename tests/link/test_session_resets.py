@@ -16,28 +16,16 @@ from tiniscript.link.session import Session
 KIT = robots.load("tinibot").kit
 
 
-def test_a_reset_robot_runs_its_first_program_with_a_heartbeat() -> None:
-    session = Session(1, 9600, KIT.fingerprint)
-    first = HostFirmware(KIT)
-    first.wait(100)
-    assert first.until(session, session.live(compile_text("SHOW(1)", KIT).code)) == OK
-    first.talk(session, 500)
-    assert [event.name for event in session.events()] == ["SHOW", "DONE"]
-
-    second = HostFirmware(KIT, seed=0x9ABCDEF1)  # run 1 of the first has ended, this one's has not
-    second.now_ms = first.now_ms
-    second.wait(100)
-    code = compile_text("SHOW(2);F(2, 80);SHOW(3)", KIT).code
-    assert second.until(session, session.live(code)) == OK  # after HELLO
-    assert session.is_running
-    second.talk(session, 2500)
-    assert [event.name for event in session.events()] == ["SHOW", "SHOW", "DONE"]
-
-
-def running(seconds: int = 200) -> tuple[Session, HostFirmware]:
+def begun(text: str) -> tuple[Session, HostFirmware]:
+    """Return a robot that has just begun a program, and the session that has asked for it."""
     session, robot = Session(1, 9600, KIT.fingerprint), HostFirmware(KIT)
     robot.wait(100)
-    assert robot.until(session, session.live(compile_text(f"F({seconds}, 80)", KIT).code)) == OK
+    assert robot.until(session, session.live(compile_text(text, KIT).code)) == OK
+    return session, robot
+
+
+def running() -> tuple[Session, HostFirmware]:
+    session, robot = begun("F(200, 80)")
     robot.talk(session, 500)
     assert session.is_running and not session.events()
     return session, robot
@@ -49,6 +37,18 @@ def reset(robot: HostFirmware, seed: int = 0x9ABCDEF1) -> HostFirmware:
     found.now_ms = robot.now_ms
     found.wait(100)
     return found
+
+
+def test_a_reset_robot_runs_its_first_program_with_a_heartbeat() -> None:
+    session, robot = begun("SHOW(1)")
+    robot.talk(session, 500)
+    assert [event.name for event in session.events()] == ["SHOW", "DONE"]
+    robot = reset(robot)  # run 1 of before has ended, the next one's has not
+    code = compile_text("SHOW(2);F(2, 80);SHOW(3)", KIT).code
+    assert robot.until(session, session.live(code)) == OK  # after HELLO
+    assert session.is_running
+    robot.talk(session, 2500)
+    assert [event.name for event in session.events()] == ["SHOW", "SHOW", "DONE"]
 
 
 @pytest.mark.parametrize("seed", range(1, 9))
@@ -113,10 +113,7 @@ def test_a_stop_that_nobody_has_told_is_no_reset() -> None:
     ],
 )
 def test_an_end_that_nobody_has_told_is_asked_for(program: str, end: Event) -> None:
-    session, robot = Session(1, 9600, KIT.fingerprint), HostFirmware(KIT)
-    robot.wait(100)
-    code = compile_text(program, KIT).code
-    assert code and robot.until(session, session.live(code)) == OK
+    session, robot = begun(program)
     robot.wait(900)  # its end is lost
     robot.talk(session, 1500)
     [found] = session.events()

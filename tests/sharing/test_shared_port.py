@@ -201,36 +201,33 @@ def test_a_command_imports_no_more_than_it_needs(
 # -- whose run it is ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGSTOP])
 def test_a_robot_stops_without_the_command_that_has_started_it(
-    pty_robot: PtyRobot, link: Command, number: int
+    pty_robot: PtyRobot, link: Command
 ) -> None:
-    command = uploading(pty_robot)
-    gone_ms = pty_robot.robot_ms
-    command.signal(number)
-    pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
-    # at once, if the server sees it go
-    assert int(pty_robot.timed[-1].split()[0]) <= gone_ms + (
-        1500 if number == signal.SIGSTOP else 900
-    )
-    # The server's stop for the command that is gone may come behind a first upload, which says so.
-    until(lambda: on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0, "another one drives")
-    command.process.kill()
-    command.process.communicate()
+    """At once, if the server sees it go."""
+    for number, within_ms in (
+        (signal.SIGKILL, 900), (signal.SIGTERM, 900), (signal.SIGSTOP, 1500),
+    ):  # fmt: skip
+        command = uploading(pty_robot)
+        gone_ms = pty_robot.robot_ms
+        command.signal(number)
+        pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
+        assert int(pty_robot.timed[-1].split()[0]) <= gone_ms + within_ms, number
+        # The server's stop for the command that is gone may come behind a first upload: it says so.
+        until(lambda: on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0, "others drive")
+        command.process.kill()
+        command.process.communicate()
 
 
-def test_ctrl_c_in_a_client_stops_the_robot(pty_robot: PtyRobot, link: Command) -> None:
+def test_a_program_ends_with_its_command_unless_it_needs_nobody(
+    pty_robot: PtyRobot, link: Command
+) -> None:
     command = uploading(pty_robot)
     command.signal(signal.SIGINT)
     done = command.ended()
     assert done.code == 2
     assert "the robot has confirmed it" in done.err
     assert not pty_robot.moves
-
-
-def test_a_program_that_needs_nobody_outlives_its_command(
-    pty_robot: PtyRobot, link: Command
-) -> None:
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     pty_robot.ask(lambda robot: robot.wait(1500))
     assert pty_robot.moves
