@@ -20,6 +20,7 @@ from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, made
 NVS = SOURCES / "src" / "boards" / "esp32" / "nvs.cpp"
 OTHERS = [
     SOURCES / "src" / "vm" / "crc32.cpp",
+    SOURCES / "extras" / "powercut" / "contents.cpp",
     STAND_INS / "simulated_chip.cpp",
     STAND_INS / "powercut.cpp",
 ]
@@ -31,7 +32,11 @@ BLOB_BYTES, HEADER_BYTES = 1024, 15
 
 
 def program(store: Path = STORE) -> Path:
-    headers = [path for part in ("src", "extras/esp32") for path in (SOURCES / part).rglob("*.h")]
+    headers = [
+        path
+        for part in ("src", "extras/esp32", "extras/powercut")
+        for path in (SOURCES / part).rglob("*.h")
+    ]
     flags = (*FLAGS, *WARNINGS, *flags_of("esp32dev", 2))
     texts = [path.read_bytes() for path in (*sorted(headers), NVS)]
     objects = [

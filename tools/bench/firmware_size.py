@@ -16,7 +16,7 @@ from typing import NamedTuple
 from tiniscript import robots
 from tools import ROOT, uno
 from tools.bench import firmware_stack
-from tools.builds.platformio_offline import CannotStandIn, config_of
+from tools.builds.platformio_offline import config_of
 
 PROJECT = ROOT / "vm_arduino"
 DEFAULT = "tinibot"  # where the name of an environment has no robot
@@ -67,7 +67,7 @@ def measured(name: str, project: Path = PROJECT) -> Sketch:
 def main() -> int:
     try:
         sketches = [measured(name) for name in environments()]
-    except (RuntimeError, CannotStandIn) as why:
+    except RuntimeError as why:
         print(why, file=sys.stderr)
         return 2
     print("| robot | board | flash | of | RAM | free behind the stack |")

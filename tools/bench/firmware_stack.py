@@ -56,10 +56,15 @@ def measured(firmware: Path, robot: Robot, board: str) -> Stack:
         firmware, board=BOARDS[board], baud=baud, tells_sleep=False, watches_stack=True
     ) as uno:
         surround(uno, robot)
-        uno.run_ms(300)
-        wired = Wired(uno, Session(1, baud, robot.kit.fingerprint, keys=Keys()))
-        wear_out(wired, robot)
+        wear_out(connected(uno, robot, keys=Keys()), robot)
         return uno.stack(free_from(firmware))
+
+
+def connected(uno: Uno, robot: Robot, baud: int = 0, keys: Keys | None = None) -> Wired:
+    """Let a board begin, and put a session at its line, with the robot's baud if none is given."""
+    uno.run_ms(300)
+    session = Session(1, baud or robot.board.baud, robot.kit.fingerprint, keys=keys)
+    return Wired(uno, session)
 
 
 def free_from(firmware: Path) -> int:
@@ -175,21 +180,19 @@ def longest(kit: Kit, room: int) -> Image:
     return found
 
 
-def deep(kit: Kit, more: int) -> str:
+def all_devices(kit: Kit) -> list[str]:
+    """Return statements that read each sensor and set each actuator."""
     reads = [
         f"Y = {each.name}" if each.kind == NUMBER else f"IF({each.name}); Y = 1; ENDIF"
         for each in kit.sensors
     ]
     sets = [f"{each.name}({'X' if each.kind == NUMBER else 'TRUE'})" for each in kit.actuators]
-    lines = [
-        "X = 0; Y = 0",
-        "DEF D1",
-        *reads,
-        *sets,
-        "BEEP(0.02, 440 + X)",
-        "SHOW(X * 1.5 / 7)",
-        "END_DEF",
-    ]
+    return [*reads, *sets]
+
+
+def deep(kit: Kit, more: int) -> str:
+    lines = ["X = 0; Y = 0", "DEF D1", *all_devices(kit)]
+    lines += ["BEEP(0.02, 440 + X)", "SHOW(X * 1.5 / 7)", "END_DEF"]
     for number in range(2, CALLS + 1):
         lines += [f"DEF D{number}", "LOOP(1)", f"D{number - 1}", "END_LOOP", "END_DEF"]
     sum_of_all = "X / 7 % 5"

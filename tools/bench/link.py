@@ -15,11 +15,10 @@ from typing import NamedTuple
 
 from tests.machines.wired import Wired
 from tiniscript import robots
-from tiniscript.link.session import Session
 from tools import ROOT, uno
 from tools.bench import firmware_size, stops
 from tools.bench.compiler import PROGRAMS
-from tools.bench.firmware_stack import image_of, must
+from tools.bench.firmware_stack import connected, image_of, must
 from tools.uno import CYCLES_PER_MS, Uno
 
 PROJECT = ROOT / "vm_arduino"
@@ -77,8 +76,7 @@ def first_move(board: Uno, since: int) -> int:
 
 def measured(firmware: Path, baud: int) -> Figures:
     with Uno(firmware, baud=baud) as board:
-        board.run_ms(300)
-        wired = Wired(board, Session(1, baud, KIT.fingerprint))
+        wired = connected(board, robots.load(ROBOT), baud)
         must(wired, wired.session.hello())
         start_ms = max(started(wired, 300 + k)[0] for k in range(UPLOADS))
         live_us = max(started(wired, 300 + k, is_live=True)[1] for k in range(UPLOADS))

@@ -14,7 +14,7 @@ from struct import pack
 from typing import NamedTuple
 
 from tools import uno
-from tools.bench import avr_bench, sketch_cycles, workloads
+from tools.bench import avr_bench, firmware_size, sketch_cycles, workloads
 from tools.bench.compiler import table
 from tools.bench.workloads import Work, check, code_of
 
@@ -71,7 +71,7 @@ def cycles() -> None:
     if not avr_bench.missing():
         alone = [f"{per_iteration(work):,.0f}" for work in workloads.WORKS]
     if not uno.missing():
-        firmware = sketch_cycles.built()
+        firmware = firmware_size.measured("uno").firmware
         found = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
         sketch = [f"{each:,.0f}" for each in found]
     rows = [

@@ -13,26 +13,15 @@ from pathlib import Path
 
 from tests.machines.wired import Wired
 from tiniscript import robots
-from tiniscript.link.session import Session
-from tools.bench import firmware_size
-from tools.bench.firmware_stack import image_of, must, pin
+from tools.bench.firmware_stack import connected, image_of, must, pin
 from tools.bench.workloads import Work, WrongResult, expected
-from tools.builds.platformio_offline import CannotStandIn
 from tools.uno import Uno
 
 ROBOT = robots.load(robots.DEFAULT)
 SENSOR = "LIGHT_L"  # the one for which the constants are
 _NUMBER = [each.name for each in ROBOT.kit.sensors].index(SENSOR)
 SENSOR_PIN = pin(ROBOT, ROBOT.board.sensors[_NUMBER].pins["pin"])
-BOOT_MS, WORK_MS, SHOW_MS = 300, 10_000, 500
-
-
-def built() -> Path:
-    """Return the firmware of an Uno. Raises RuntimeError with the log."""
-    try:
-        return firmware_size.measured("uno").firmware
-    except CannotStandIn as why:
-        raise RuntimeError(str(why)) from None
+WORK_MS, SHOW_MS = 10_000, 500
 
 
 def text_of(work: Work, has_loop: bool = True) -> str:
@@ -54,8 +43,7 @@ def text_of(work: Work, has_loop: bool = True) -> str:
 def per_iteration(firmware: Path, work: Work) -> float:
     """Return the cycles of one time around the loop of a work. Raises WrongResult."""
     with Uno(firmware, baud=ROBOT.board.baud, tells_sleep=False) as board:
-        board.run_ms(BOOT_MS)
-        wired = Wired(board, Session(1, ROBOT.board.baud, ROBOT.kit.fingerprint))
+        wired = connected(board, ROBOT)
         if work.readings:
             board.analog(SENSOR_PIN, work.readings[0])
         with_loop, shown = _cycles(wired, text_of(work))

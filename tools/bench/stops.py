@@ -16,11 +16,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.machines.wired import Wired
-from tiniscript.base.kit import NUMBER, Kit
-from tiniscript.link.session import Session
+from tiniscript.base.kit import Kit
 from tiniscript.robots.profile import Robot
-from tools.bench.firmware_stack import BOARDS, image_of, must, pin
+from tools.bench.firmware_stack import BOARDS, all_devices, connected, image_of, must, pin
 from tools.uno import CYCLES_PER_MS, HERTZ, Masked, Uno
 
 TEXT = b"// nobody reads that\n", b"// nor this line, which nobody ends"
@@ -66,7 +64,6 @@ class Busy:
         self.chip = Uno(
             firmware, board=BOARDS[board], baud=baud, tells_sleep=False, watches_masked=True
         )
-        self._wired = Wired(self.chip, Session(1, baud, robot.kit.fingerprint))
         self._motors = {pin(robot, number) for number in robot.board.motors.pins.values()}
         self._sonar = ""
         for device in robot.board.sensors:
@@ -75,7 +72,7 @@ class Busy:
                     pin(robot, device.pins[name]) for name in ("trigger", "echo")
                 )
                 self.chip.sonar(self._trigger, self._sonar, None)
-        self.chip.run_ms(300)
+        self._wired = connected(self.chip, robot, baud)
         must(self._wired, self._wired.session.hello())
         must(self._wired, self._wired.session.upload(image_of(busy(robot.kit), robot.kit)))
 
@@ -145,12 +142,7 @@ def _is_before(place: Masked, received: int) -> bool:
 
 def busy(kit: Kit) -> str:
     """Return a program that measures, moves what can move, plays and sends without end."""
-    reads = [
-        f"Y = {each.name}" if each.kind == NUMBER else f"IF({each.name}); Y = 1; ENDIF"
-        for each in kit.sensors
-    ]
-    sets = [f"{each.name}({'X' if each.kind == NUMBER else 'TRUE'})" for each in kit.actuators]
-    lines = ["X = 0", "LOOP(FOREVER)", "M(80, 80)", *reads, *sets, "BEEP(0.005, 5000)"]
+    lines = ["X = 0", "LOOP(FOREVER)", "M(80, 80)", *all_devices(kit), "BEEP(0.005, 5000)"]
     return "SI|" + "; ".join([*lines, "SHOW(X * 1.5 / 7)", "X = (X + 1) % 100", "END_LOOP"])
 
 

@@ -19,21 +19,17 @@ from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 
-from tests.machines.wired import Wired
 from tiniscript import robots
-from tiniscript.link.session import Session
 from tools import uno
 from tools.bench import avr_bench, firmware_size
-from tools.bench.firmware_stack import image_of, must
+from tools.bench.firmware_stack import connected, image_of, must
 from tools.bench.machine import BUDGET, count
 from tools.bench.sketch_cycles import SENSOR_PIN
-from tools.builds.platformio_offline import CannotStandIn
 from tools.uno import CYCLES_PER_MS, Uno
 
 ROBOT = robots.load(robots.DEFAULT)
 LOOK_MS = 20
 LOOKS = 40
-BOOT_MS = 300
 COUNTING = "TASK; {0} = 0; LOOP(FOREVER); {0} = {0} + 1; END_LOOP; END_TASK;"
 TURNS = 1000
 WITH_TASKS = "-Dtiniscript_with_tasks"
@@ -58,7 +54,7 @@ def main() -> int:
     try:
         firmware = firmware_size.measured("uno").firmware
         without = firmware_size.measured(firmware_size.WITHOUT_TASKS).firmware
-    except (RuntimeError, CannotStandIn) as failed:
+    except RuntimeError as failed:
         print(failed, file=sys.stderr)
         return 2
     print("tasks beside the main one   cycles of a turn of one more")
@@ -104,8 +100,7 @@ def jitter_ms(firmware: Path, others: int) -> float:
         firmware, names=names, eeprom=Path(folder) / "eeprom",
         baud=ROBOT.board.baud, resets_on_open=False,
     ) as board:  # fmt: skip
-        board.run_ms(BOOT_MS)
-        wired = Wired(board, Session(1, ROBOT.board.baud, ROBOT.kit.fingerprint))
+        wired = connected(board, ROBOT)
         image = image_of(text, ROBOT.kit)
         must(wired, wired.session.upload(image, saves=False, is_detached=True))
         at_ms: list[float] = []

@@ -32,14 +32,17 @@ UPLOAD = ("upload", str(ROOT / "examples" / "obstacle.ts"), "--detach", "--no-sa
 BYTES_PER_MS = 12  # about 115200 baud
 
 
+def environment(folder: str) -> dict[str, str]:
+    """Return the variables of a command that keeps what it caches in a folder."""
+    return {"PYTHONPATH": str(ROOT / "compiler"), "XDG_CACHE_HOME": folder, "LC_ALL": "C.UTF-8"}
+
+
 class Bench:
     """A robot on a port, and processes that are timed."""
 
     def __init__(self, pty_robot: PtyRobot, folder: str) -> None:
         self.pty_robot = pty_robot
-        self.environ = {
-            "PYTHONPATH": str(ROOT / "compiler"), "XDG_CACHE_HOME": folder, "LC_ALL": "C.UTF-8",
-        }  # fmt: skip
+        self.environ = environment(folder)
 
     def start(self, *arguments: str) -> subprocess.Popen[bytes]:
         command = [sys.executable, "-m", "tiniscript", *arguments, "--port", self.pty_robot.port]
@@ -86,7 +89,7 @@ def measured(bench: Bench, runs: int) -> tuple[float, float, float, int]:
 
 def crowd(count: int, runs: int, folder: str) -> tuple[float, float]:
     """Return how long (ms) until all of some robots move, and until all have stopped; medians."""
-    environ = {"PYTHONPATH": str(ROOT / "compiler"), "XDG_CACHE_HOME": folder, "LC_ALL": "C.UTF-8"}
+    environ = environment(folder)
     moving, stopping = [], []
     with RobotFleet([robots.load("tinibot").kit] * count) as room:
         ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]

@@ -61,7 +61,7 @@ BOARDS = {
 }  # fmt: skip
 
 
-class CannotStandIn(Exception):
+class CannotStandIn(RuntimeError):
     """Something is missing or does not match; says what, and what to do."""
 
 

@@ -15,8 +15,7 @@
 
 #include "../../src/boards/esp32/nvs.cpp"
 #include "../../src/store/store.h"
-#include "../../src/vm/crc32.h"
-#include "../../src/vm/image.h"
+#include "../powercut/contents.h"
 #include "simulated_chip.h"
 
 using namespace tiniscript;
@@ -26,7 +25,6 @@ void tiniscript::ultrasonic_forget() {}  // there is none
 namespace {
 
 typedef std::map<std::string, std::string> Entries;
-typedef std::vector<uint8_t> Content;  // empty: nothing
 
 constexpr uint32_t kMostTicks = 60000;
 
@@ -62,35 +60,6 @@ void power_on(Entries entries, uint32_t cut_at, TornEntry torn) {
   chip.torn = torn;
   chip.is_off = false;
   forget();
-}
-
-Content read(const Store& store, Area area) {
-  Content found;
-  uint8_t byte = 0;
-  if (!store.fetch(area, 0, &byte)) return found;
-  uint16_t length = area == Area::kOwner ? kOwnerBytes : kRecordBytes;
-  if (area == Area::kProgram) {
-    uint8_t header[kHeaderBytes];
-    if (!store.fetch_first(area, header, kHeaderBytes)) wrong("a header cannot be read");
-    length = static_cast<uint16_t>(kHeaderBytes +
-                                   (header[kCodeLengthAt] | header[kCodeLengthAt + 1] << 8));
-  }
-  found.resize(length);
-  if (!store.fetch_first(area, found.data(), length)) wrong("it cannot be read");
-  return found;
-}
-
-Content some_image(uint16_t code_bytes) {
-  Content image(kHeaderBytes + code_bytes);
-  for (uint8_t& byte : image) byte = static_cast<uint8_t>(rand());
-  image[kHeaderLengthAt] = kHeaderBytes;
-  image[kCodeLengthAt] = static_cast<uint8_t>(code_bytes);
-  image[kCodeLengthAt + 1] = static_cast<uint8_t>(code_bytes >> 8);
-  uint32_t check = crc32(0, image.data(), kChecksumAt);
-  check = crc32(check, image.data() + kChecksumAt + kCheckBytes,
-                static_cast<uint16_t>(image.size() - kChecksumAt - kCheckBytes));
-  __builtin_memcpy(image.data() + kChecksumAt, &check, kCheckBytes);
-  return image;
 }
 
 bool begin(Store* store, Area area, Content* content) {
@@ -159,15 +128,6 @@ void cut_everything(const Entries& before, Area area, const Content& old, const 
   }
 }
 
-Content some_record(Area area) {
-  Content record(area == Area::kOwner ? kOwnerBytes : kRecordBytes);
-  for (uint8_t& byte : record) byte = static_cast<uint8_t>(rand());
-  const uint32_t check =
-      crc32(0, record.data() + kCheckBytes, static_cast<uint16_t>(record.size() - kCheckBytes));
-  __builtin_memcpy(record.data(), &check, kCheckBytes);
-  return record;
-}
-
 void history(const char* name, Area area, const std::vector<Content>& contents) {
   doing = name;
   Entries entries;
@@ -196,7 +156,7 @@ void save_all(const std::vector<Content>& contents) {
 
 int main(int count, char** arguments) {
   if (count != 3 && count != 4) return 2;
-  srand(static_cast<unsigned>(atoi(arguments[1])));
+  seed_random(static_cast<uint32_t>(atoi(arguments[1])));
   const uint16_t size = static_cast<uint16_t>(atoi(arguments[2]));
   const Content a = some_image(size);
   const Content b = some_image(static_cast<uint16_t>(size / 2));

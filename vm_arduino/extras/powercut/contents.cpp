@@ -4,12 +4,14 @@
 #include <stdlib.h>
 
 #include "../../src/vm/crc32.h"
+#include "../../src/store/layout.h"
 #include "../../src/vm/image.h"
-#include "memory.h"
 
 namespace tiniscript {
 
 namespace {
+
+uint32_t state = 1;
 
 void put(Content* content, size_t at, uint32_t check) {
   for (size_t k = 0; k < kCheckBytes; k++)
@@ -19,6 +21,15 @@ void put(Content* content, size_t at, uint32_t check) {
 uint8_t any_byte() { return static_cast<uint8_t>(random_below(0x100)); }
 
 }  // namespace
+
+void seed_random(uint32_t seed) { state = seed * 2654435761U | 1; }
+
+uint32_t random_below(uint32_t end) {
+  state ^= state << 13;
+  state ^= state >> 17;
+  state ^= state << 5;
+  return static_cast<uint32_t>(static_cast<uint64_t>(state) * end >> 32);
+}
 
 Content checked(Content image) {
   const uint32_t head = crc32(0, image.data(), kChecksumAt);

@@ -1,4 +1,4 @@
-// Images and records to keep.
+// Images and records to keep, and chance.
 
 #ifndef TINISCRIPT_POWERCUT_CONTENTS_H_
 #define TINISCRIPT_POWERCUT_CONTENTS_H_
@@ -10,6 +10,10 @@
 #include "../../src/store/store.h"
 
 namespace tiniscript {
+
+// Any number less than `end`, the same ones in each run.
+uint32_t random_below(uint32_t end);
+void seed_random(uint32_t seed);
 
 using Content = std::vector<uint8_t>;  // empty: nothing
 

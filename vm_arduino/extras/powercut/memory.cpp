@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "../../src/store/nvm.h"
+#include "contents.h"
 
 namespace tiniscript {
 
@@ -11,8 +12,6 @@ Memory memory;
 uint16_t erases[kMemoryBytes];
 
 namespace {
-
-uint32_t state = 1;
 
 void expect(bool is_so, const char* what) {
   if (is_so) return;
@@ -73,15 +72,6 @@ void write(uint16_t place, uint8_t value) {
 
 void Memory::fill(uint8_t value) {
   for (Cell& cell : cells) cell = {value, value};
-}
-
-void seed_random(uint32_t seed) { state = seed * 2654435761U | 1; }
-
-uint32_t random_below(uint32_t end) {
-  state ^= state << 13;
-  state ^= state >> 17;
-  state ^= state << 5;
-  return static_cast<uint32_t>(static_cast<uint64_t>(state) * end >> 32);
 }
 
 bool nvm_is_ready() { return !memory.is_writing; }

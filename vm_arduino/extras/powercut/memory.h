@@ -49,10 +49,6 @@ extern Memory memory;
 // Erases of each byte since somebody put them to 0.
 extern uint16_t erases[kMemoryBytes];
 
-// Any number less than `end`, the same ones in each run.
-uint32_t random_below(uint32_t end);
-void seed_random(uint32_t seed);
-
 }  // namespace tiniscript
 
 #endif  // TINISCRIPT_POWERCUT_MEMORY_H_
