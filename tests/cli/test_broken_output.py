@@ -5,13 +5,12 @@ from __future__ import annotations
 import os
 import subprocess
 from argparse import Namespace
-from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from typing import Any
 
 import pytest
 
-from tests.support.command import PROGRAM, TSC, Tsc
+from tests.support.command import PROGRAM, TSC, inside
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.robot_fleet import RobotFleet
 from tests.support.waiting import HANGS_S
@@ -19,10 +18,9 @@ from tiniscript import robots
 from tiniscript.cli import CLOSED
 from tiniscript.cli.robot import connect, fleet
 from tiniscript.library import opening
-from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.messages import STOP_RUN
-
-T = TypeVar("T")
+from tiniscript.link.messages import STATUSES, STOP_RUN
+from tiniscript.link.payloads import SentReply
+from tiniscript.link.requests import Reply, reply_of
 
 KIT = robots.load("tinibot").kit
 SHOWS = "SI|LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP"
@@ -155,16 +153,13 @@ def test_every_verb_has_the_same_exit_code(words: list[str]) -> None:
 
 @pytest.mark.parametrize(("words", "which"), [(["name", "TINI"], 1), (["trim", "--reset"], 2)])
 def test_a_port_that_vanishes_is_no_bug(
-    tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], which: int
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], which: int
 ) -> None:
     """The cable is pulled before the robot has said that it has kept what it was told."""
     real = connect.Connection.do
     asked = []
 
-    def do(
-        self: connect.Connection, make: Callable[[Requester], PendingRequest[T]],
-        limit_ms: int | None = None,
-    ) -> PendingRequest[T]:  # fmt: skip
+    def do(self: connect.Connection, make: Any, limit_ms: int | None = None) -> Any:
         if limit_ms is None:  # a request behind HELLO
             asked.append(make)
         if len(asked) == which:
@@ -172,19 +167,16 @@ def test_a_port_that_vanishes_is_no_bug(
         return real(self, make, limit_ms)
 
     monkeypatch.setattr(connect.Connection, "do", do)
-    done = tsc(*words, "--port", pty_robot.port)
+    done = inside(*words, "--port", pty_robot.port)
     assert len(asked) == which
     assert done.code == 3
     assert "is gone" in done.err
 
 
 def test_a_robot_that_is_busy_for_too_long_is_not_lost(
-    tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whoever waits hears that it saves, and what to do."""
-    from tiniscript.link.messages import STATUSES
-    from tiniscript.link.payloads import SentReply
-    from tiniscript.link.requests import Reply, reply_of
 
     def busy(name: str, payload: bytes) -> Reply[SentReply] | None:
         reply = reply_of(name, payload)
@@ -194,6 +186,6 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
     monkeypatch.setattr("tiniscript.library.client.PATIENCE_MS", 600)
     for language, said in (("en", "still saving"), ("es", "está guardando")):
         for words in (["upload", "-e", PROGRAM], ["start"]):
-            done = tsc(*words, "--port", pty_robot.port, "--lang", language)
+            done = on(pty_robot, *words, "--lang", language)
             assert done.code == 3
             assert said in done.err and "lost" not in done.err and "perdió" not in done.err

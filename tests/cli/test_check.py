@@ -48,32 +48,35 @@ def test_a_folder_has_a_line_for_each_program_and_a_table(folder: Path, tsc: Tsc
 
 
 def test_programs_that_are_right_give_zero_and_each_is_checked_once(folder: Path, tsc: Tsc) -> None:
+    """That is one program, for which there is no table; a folder may have none."""
     done = tsc("check", "a.ts", "./a.ts", "a.ts")
     assert (done.code, done.out.count("no mistakes")) == (0, 1)
+    done = tsc("check", "a.ts", "--csv", "t.csv")
+    assert (done.code, (folder / "t.csv").exists()) == (2, False)
+    assert "--csv is for several programs or a folder" in done.err
+    (folder / "empty").mkdir()
+    done = tsc("check", "empty")
+    assert (done.code, done.out) == (2, "")
+    assert done.err.startswith("tsc: empty has no program in it. Their names end in .ts or .tini.")
 
 
 def test_the_table_as_data_and_for_a_spreadsheet(folder: Path, tsc: Tsc) -> None:
+    """What it says is what the command says, but for a first sign that begins a formula."""
     (folder / "=1+1.ts").write_text(RIGHT, encoding="utf-8")
-    done = tsc("check", "=1+1.ts", "b.ts", "--json", "--csv", "table.csv")
+    (folder / "d.ts").write_text("SI|F(2, =X)", encoding="utf-8")
+    (folder / "e.ts").write_text("SI|+F(2,80)", encoding="utf-8")
+    done = tsc("check", "=1+1.ts", "b.ts", "d.ts", "e.ts", "--json", "--csv", "table.csv")
     rows = json.loads(done.out)
-    assert [(row["file"], row["mistakes"], row["problem"]) for row in rows] == [
+    assert [(row["file"], row["mistakes"], row["problem"]) for row in rows[:2]] == [
         ("=1+1.ts", 0, ""),
         ("b.ts", 1, ""),
     ]
     assert rows[1]["messages"][0]["fix"] == "F(2, 80)"
     table = list(csv.DictReader(StringIO((folder / "table.csv").read_text("utf-8-sig"))))
-    assert [row["file"] for row in table] == ["'=1+1.ts", "b.ts"]  # no formula
+    assert [row["file"] for row in table] == ["'=1+1.ts", "b.ts", "d.ts", "e.ts"]
     assert (table[1]["mistakes"], table[1]["line"], table[1]["code"]) == ("1", "1", "TS017")
-
-
-def test_a_sentence_of_a_table_is_what_the_command_says(folder: Path, tsc: Tsc) -> None:
-    """But for its first sign, where that would begin a formula."""
-    (folder / "d.ts").write_text("SI|F(2, =X)", encoding="utf-8")
-    (folder / "e.ts").write_text("SI|+F(2,80)", encoding="utf-8")
-    rows = json.loads(tsc("check", "d.ts", "e.ts", "--json", "--csv", "table.csv").out)
-    said = [row["messages"][0]["message"] for row in rows]
-    table = list(csv.DictReader(StringIO((folder / "table.csv").read_text("utf-8-sig"))))
-    assert [row["message"] for row in table] == [said[0], f"'{said[1]}"]
+    said = [row["messages"][0]["message"] for row in rows[2:]]
+    assert [row["message"] for row in table[2:]] == [said[0], f"'{said[1]}"]
 
 
 def test_a_spreadsheet_in_spanish_has_semicolons_and_may_be_written_again(
@@ -113,13 +116,6 @@ def test_what_lies_in_a_folder_does_no_harm(folder: Path, tsc: Tsc) -> None:
     assert "./dangling.ts: there is no file" in done.out
 
 
-def test_a_folder_without_programs_says_what_a_program_is(folder: Path, tsc: Tsc) -> None:
-    (folder / "empty").mkdir()
-    done = tsc("check", "empty")
-    assert (done.code, done.out) == (2, "")
-    assert done.err.startswith("tsc: empty has no program in it. Their names end in .ts or .tini.")
-
-
 def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
     deep = folder
     for k in range(30):
@@ -129,12 +125,6 @@ def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
     done = tsc("check", "d")
     assert done.code == 1
     assert done.out.endswith("programs: 30, without mistakes: 15\n")
-
-
-def test_a_table_of_one_program_is_refused(folder: Path, tsc: Tsc) -> None:
-    done = tsc("check", "a.ts", "--csv", "t.csv")
-    assert (done.code, (folder / "t.csv").exists()) == (2, False)
-    assert "--csv is for several programs or a folder" in done.err
 
 
 # -- repairs ------------------------------------------------------------------------------------
@@ -162,12 +152,15 @@ def test_fix_writes_the_sure_repairs_and_says_what_is_left(folder: Path, tsc: Ts
 
 @pytest.mark.parametrize("option", ["--diff", "--dry-run"])
 def test_a_difference_alone_writes_nothing(folder: Path, tsc: Tsc, option: str) -> None:
+    """Without a file the program is printed."""
     for options in ([option], ["--fix", option]):
         done = tsc("check", *options, "b.ts")
         assert (folder / "b.ts").read_text("utf-8") == WRONG
         assert done.code == 1
         assert "-SI|F(2 80)\n+SI|F(2, 80)\n" in done.out
         assert done.err == "b.ts: 1 mistake can be repaired. Try:  tsc check --fix\n"
+    done = tsc("check", "--fix", "-e", "F(2 80)")
+    assert (done.code, done.out) == (0, "F(2, 80)")
 
 
 def test_a_file_keeps_its_line_ends_and_its_mark(folder: Path, tsc: Tsc) -> None:
@@ -178,11 +171,6 @@ def test_a_file_keeps_its_line_ends_and_its_mark(folder: Path, tsc: Tsc) -> None
         assert tsc("check", "--fix", "b.ts").code == 0
         right = f"SI|F(2, 80) // ñandú{end}{end}\tR(1.5, 60){last}"
         assert (folder / "b.ts").read_bytes() == bom + right.encode()
-
-
-def test_without_a_file_the_program_is_printed(tsc: Tsc) -> None:
-    done = tsc("check", "--fix", "-e", "F(2 80)")
-    assert (done.code, done.out) == (0, "F(2, 80)")
 
 
 def test_what_is_no_text_and_a_line_with_a_checksum_stay_as_they_are(

@@ -75,6 +75,14 @@ def room(tmp_path: Path) -> Iterator[Class]:
     found.close()
 
 
+@pytest.fixture
+def broker(tmp_path: Path) -> Iterator[Mosquitto]:
+    """One that lets in everybody."""
+    found = Mosquitto(tmp_path)
+    yield found
+    found.kill()
+
+
 def tsc(room: Class, *words: str) -> tuple[int, str, str]:
     done = process("class", *words, *room.access, data=SECRET + b"\n")
     assert SECRET.decode() not in done.out + done.err
@@ -226,19 +234,23 @@ def test_the_times_of_all_robots_count_from_one_start() -> None:
     assert [each - early_ms for each in times] == [2000, 2100, 7000, 7100]
 
 
-def test_what_a_stranger_retains_reaches_no_terminal_raw(tmp_path: Path) -> None:
-    broker = Mosquitto(tmp_path)
-    try:
-        stranger = broker.connected()
-        for robot, data in (("00000001", b"+\x1b[2Jtsc: ok\n"), ("00000002", b"-\x9b2J\r")):
-            stranger._client.publish(f"{ROOT}/class/{robot}", data, retain=True)
-        stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)
-        done = inside("class", "--broker", f"127.0.0.1:{broker.port}")
-        assert done.code == 3
-        assert not set(done.out + done.err) & set("\x1b\x9b\r")
-        assert "is not at the broker" in done.out
-    finally:
-        broker.kill()
+def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
+    """What a stranger retains reaches no terminal raw."""
+    done = inside("class", "--broker", "127.0.0.1:1")
+    assert done.code == 3 and "no MQTT broker answers" in done.err
+    place = ("--broker", f"127.0.0.1:{broker.port}")
+    for words in ([], ["stop"], ["upload", "-e", DRIVES], ["show"]):
+        done = inside("class", *words, *place)
+        assert done.code == 3 and "no robot of the class class" in done.err
+    assert inside("class", "--tls", *place).code == 3
+    stranger = broker.connected()
+    for robot, data in (("00000001", b"+\x1b[2Jtsc: ok\n"), ("00000002", b"-\x9b2J\r")):
+        stranger._client.publish(f"{ROOT}/class/{robot}", data, retain=True)
+    stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)
+    done = process("class", *place)
+    assert done.code == 3
+    assert not set(done.out + done.err) & set("\x1b\x9b\r")
+    assert "is not at the broker" in done.out
 
 
 @each_row("words", [
@@ -262,20 +274,6 @@ def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: lis
 def test_a_robots_broker_is_told_in_words_that_make_sense(words: list[str]) -> None:
     done = inside("wifi", *words, "--port", "/none", data=PASSWORD)
     assert done.code == 2 and done.err.startswith("tsc: ")
-
-
-def test_nobody_at_the_broker(tmp_path: Path) -> None:
-    done = inside("class", "--broker", "127.0.0.1:1")
-    assert done.code == 3 and "no MQTT broker answers" in done.err
-    broker = Mosquitto(tmp_path)
-    try:
-        for words in ([], ["stop"], ["upload", "-e", DRIVES], ["show"]):
-            done = inside("class", *words, "--broker", f"127.0.0.1:{broker.port}")
-            assert done.code == 3 and "no robot of the class class" in done.err
-        done = inside("class", "--tls", "--broker", f"127.0.0.1:{broker.port}")
-        assert done.code == 3
-    finally:
-        broker.kill()
 
 
 def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:

@@ -11,6 +11,7 @@ from tests.cli.test_owner_commands import as_another, claimed
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
 from tests.support.command import FOREVER, LONG, Command, inside
+from tests.support.esp32_announced import Announced
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.esp32_radio import in_reach, port_of, radios
 from tests.support.network import BadNetwork
@@ -161,3 +162,29 @@ def test_over_a_bad_network(joined: Esp32PtyRobot, tmp_path: Path) -> None:
     assert joined.stands_after_ms(began_ms) < 2000, "the connection was its dead-man timer"
     assert command.ended().code == 3
     bad.close()
+
+
+# -- by its name, with real multicast DNS ---------------------------------------------------------
+
+PLACE = "tcp://tini-5678"
+
+
+def is_listed() -> bool:
+    rows = [row for row in inside("ports", "--ask").out.split("\n") if row.startswith(PLACE)]
+    return any("announced in the network" in row and "robot tinibot (yours)" in row for row in rows)
+
+
+def test_a_robot_is_found_and_driven_by_its_name(joined: Esp32PtyRobot) -> None:
+    with Announced(joined):
+        for place in (f"{PLACE}.local", PLACE):  # the last one is remembered
+            assert inside("ping", "--port", place, "--count", "1").code == 0
+        joined.until(is_listed, "it is listed")  # a busy computer misses what comes after 2 s
+        command = driving(joined, PLACE)
+        assert inside("stop", "--port", PLACE).code == 0
+        assert not joined.moves
+        command.ended()
+        assert on(joined, "wifi", "--forget").code == 0
+        assert asked(joined, "service") == ""
+        joined.until(
+            lambda: "announces itself" in inside("ping", "--port", PLACE).err, "it is silent"
+        )

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
@@ -225,15 +226,14 @@ def test_a_page_of_other_sources_is_told(
     clone.has_node()
     build = [sys.executable, str(clone.root / "tools" / "builds" / "studio.py")]
     subprocess.run(build, env=clone.variables(), cwd=clone.root, check=True)
-    for name in ("tools/studio/src/main.js", "compiler/tiniscript/library/new.py"):
-        for changes in (False, True):
-            if changes:
-                clone.put(name, "")
-            person = Person(clone, clone.studio(*words))
-            started.append(person)
-            seen = person.sees("http://127.0.0.1:")
-            assert (said in seen) is (" ".join(build) in seen) is changes, seen
-        clone.root.joinpath(name).unlink()
+    for new in ("", "tools/studio/src/main.js", "compiler/tiniscript/library/new.py"):
+        path = clone.put(new, "") if new else None
+        person = Person(clone, clone.studio(*words))
+        started.append(person)
+        seen = person.sees("http://127.0.0.1:")
+        assert (said in seen) is (" ".join(build) in seen) is bool(new), seen
+        if path:
+            path.unlink()
 
 
 def test_a_wheel_begins_with_the_same_question(clone: Clone, started: list[Person]) -> None:
@@ -344,17 +344,7 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, started: list[Pe
 def test_platformio_is_installed_after_a_yes(
     clone: Clone, started: list[Person], words: list[str], size: str, asks: str
 ) -> None:
-    person = Person(clone, clone.firmware(*words))
-    started.append(person)
-    said = person.sees(asks)
-    assert size in said and "4 MB" in said and "50 MB" in said
-    person.types("y")
-    assert person.ended() == 0, person.seen
-    assert "tinibot" in person.seen.splitlines()[-1] and "0 bytes" in person.seen
-    assert any((clone.own / "platformio").iterdir())
-
-
-def test_no_platformio_is_installed_without_a_yes(clone: Clone, started: list[Person]) -> None:
+    """Then its compiler alone is asked for, if it is not there, and once."""
     person = Person(clone, clone.firmware())
     started.append(person)
     person.sees("[y/N]")
@@ -363,16 +353,21 @@ def test_no_platformio_is_installed_without_a_yes(clone: Clone, started: list[Pe
     done = clone.unasked(clone.firmware())
     assert done.code == 2 and "--yes" in done.err
     assert not (clone.own / "platformio").exists() and not clone.core.exists()
-
-
-def test_the_compiler_alone_is_asked_for_too_and_once(clone: Clone) -> None:
-    clone.put("../own/platformio/__init__.py", "")
-    clone.put("../own/platformio/__main__.py", PLATFORMIO)
-    done = clone.unasked(clone.firmware())
-    assert done.code == 2 and "about 50 MB" in done.err and "PyPI" not in done.err
-    done = clone.unasked(clone.firmware("--yes"))
-    assert done.code == 0 and "about 50 MB" in done.err and "builds" in done.err
-    done = clone.unasked(clone.firmware("--lang", "es"))  # another firmware
+    person = Person(clone, clone.firmware(*words))
+    started.append(person)
+    said = person.sees(asks)
+    assert size in said and "4 MB" in said and "50 MB" in said
+    person.types("y")
+    assert person.ended() == 0, person.seen
+    assert "tinibot" in person.seen.splitlines()[-1] and "0 bytes" in person.seen
+    assert any((clone.own / "platformio").iterdir())
+    shutil.rmtree(clone.core)
+    another, third = ("--lang", "pt"), ("--lang", "en" if words else "es")
+    done = clone.unasked(clone.firmware(*another))
+    assert done.code == 2 and "50 MB" in done.err and "PyPI" not in done.err
+    done = clone.unasked(clone.firmware(*another, "--yes"))
+    assert done.code == 0 and "50 MB" in done.err
+    done = clone.unasked(clone.firmware(*third))
     assert done.code == 0 and "MB" not in done.err
 
 

@@ -5,10 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sys
-from argparse import Namespace
 from pathlib import Path
-from types import SimpleNamespace
-from typing import cast
 
 import pytest
 
@@ -19,9 +16,8 @@ from tests.support.link_events import event
 from tests.support.rows import each_row
 from tests.support.virtual_robot import Talk, robot_in
 from tiniscript import compile_text, robots
-from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, Repl, requested
+from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, requested
 from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
-from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.live_state import Known
 from tiniscript.library.other_robots import named_among
@@ -292,12 +288,6 @@ def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
     assert requested("exit", known) == ""  # it is the person's own
 
 
-def test_help_at_the_prompt_names_what_the_robot_has() -> None:
-    known, connection = Known(robots.load("tinibot").kit), SimpleNamespace(language="en")
-    told = Repl(cast(Connection, connection), known, Namespace())._help()
-    assert all(sensor.name in told for sensor in known.kit.sensors)
-
-
 def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture[str]) -> None:
     """It is the smallest number: `Y = -2147483.647 - 0.001` gives it."""
     known = Known(robots.load("tinibot").kit)
@@ -415,7 +405,8 @@ def test_board_says_where_the_build_looks(
 
 def test_the_first_run_explains_its_warning(tsc: Tsc) -> None:
     done = tsc("check", ROOT / "examples" / "obstacle.ts")
-    assert done.err.count("Warning") == 1
+    assert done.code == 0 and "no mistakes" in done.out
+    assert done.err.count("Warning") == 1 and "F(1, 80) UNTIL(DISTANCE < 10)" in done.err
     assert tsc("check", ROOT / "examples" / "obstacle_until.ts").err == ""
     for path in ("README.md", "tools/try.py", "examples/obstacle.ts"):
         said = (ROOT / path).read_text(encoding="utf-8")

@@ -9,7 +9,6 @@ import pytest
 
 from tests.support.command import Tsc, inside
 from tests.support.pty_robot import PtyRobot, on
-from tiniscript import robots
 from tiniscript.cli.paths import is_foreign
 
 PROGRAM = "SI|F(0.1, 50)"
@@ -99,13 +98,12 @@ def test_a_picture_and_rows(tmp_path: Path) -> None:
         assert not is_foreign(picture)
 
 
-def test_rows_of_a_monitor(tmp_path: Path) -> None:
+def test_rows_of_a_monitor(pty_robot: PtyRobot, tmp_path: Path) -> None:
     rows, letter = tmp_path / "rows.csv", tmp_path / "letter.csv"
     letter.write_bytes(b"a;b\n1;2\n")
-    with PtyRobot(robots.load("tinibot").kit) as found:
-        for _ in range(2):
-            assert on(found, "monitor", "--csv", rows, "--max-time", "1").code == 0
+    for _ in range(2):
+        assert on(pty_robot, "monitor", "--csv", rows, "--max-time", "1").code == 0
         assert rows.read_bytes() == b"ms,event,value\n"
-        done = on(found, "monitor", "--csv", letter, "--max-time", "1")
+    done = on(pty_robot, "monitor", "--csv", letter, "--max-time", "1")
     assert done.code == 2 and "tsc has not made it" in done.err
     assert letter.read_bytes() == b"a;b\n1;2\n"

@@ -80,22 +80,21 @@ def test_any_input_gets_an_answer(tsc: Tsc, tmp_path: Path, verb: str, name: str
 
 
 @pytest.mark.parametrize("verb", ["compile", "check", "run", "show", "fmt"])
-def test_files_that_are_none(tsc: Tsc, tmp_path: Path, verb: str) -> None:
-    for name in (tmp_path, tmp_path / "missing.ts", "a\0b", "a" * 5000, ""):
-        done = tsc(verb, name)
-        assert done.code == 2
+def test_files_that_are_none_or_may_not_be_read(
+    tsc: Tsc, tmp_path: Path, program: Path, monkeypatch: pytest.MonkeyPatch, verb: str
+) -> None:
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    for name in (folder, tmp_path / "missing.ts", "a\0b", "a" * 5000, ""):
+        assert tsc(verb, name).code == 2
     assert tsc(verb).code == 2
     assert tsc(verb, "-e", PROGRAM, "a.ts").code == 2
 
-
-def test_a_file_that_may_not_be_read(
-    tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
     def refuse(*_: object, **__: object) -> None:
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "open", refuse)  # root may read everything, so nothing else would do
-    done = tsc("check", program)
+    done = tsc(verb, program)
     assert done.code == 2
     assert "no permission to read" in done.err
 
@@ -213,25 +212,23 @@ def test_a_number_that_no_port_has_is_no_robot(number: str) -> None:
     assert not directory._is_listening(f"socket://127.0.0.1:{number}")
 
 
-def test_a_cache_that_cannot_be_written_is_no_trouble(
+def test_a_cache_that_is_damaged_or_cannot_be_written_is_no_trouble(
     tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    blocked = program.with_name("blocked")
-    blocked.write_text("")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
-    assert tsc("compile", program).code == 0
-    done = tsc("show", program.with_suffix(".bin"))
-    assert done.code == 0
-    assert "line" not in done.out
-
-
-def test_a_damaged_cache_is_no_trouble(tsc: Tsc, program: Path) -> None:
     from tiniscript.library import source_map
 
+    image = program.with_suffix(".bin")
     tsc("compile", program)
-    path = source_map._path(unpack(program.with_suffix(".bin").read_bytes()).checksum)
+    path = source_map._path(unpack(image.read_bytes()).checksum)
     huge = '{"version": 1, "name": "", "lines": [], "places": [[1e400, 1, 1, 1, 9]]}'
     wrong = ("", "{}", "[]", '{"version": 1, "places": 5}', "nonsense", '{"version": 9}')
     for text in ("[" * 200_000, huge, *wrong):
         path.write_text(text)
-        assert tsc("show", program.with_suffix(".bin")).code == 0
+        assert tsc("show", image).code == 0
+    blocked = program.with_name("blocked")
+    blocked.write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
+    assert tsc("compile", program).code == 0
+    done = tsc("show", image)
+    assert done.code == 0
+    assert "line" not in done.out

@@ -121,16 +121,6 @@ def test_no_output_is_another_file_of_its_command(
     assert sorted(os.listdir(tmp_path)) == before  # noqa: PTH208 - nothing was made either
 
 
-def test_there_are_outputs_to_be_looked_at() -> None:
-    assert {
-        ("upload", "plot", "program"), ("live", "plot", "world"), ("robot", "plot", "memory"),
-        ("compile", "output", "program"), ("compile", "output", "robot"),
-        ("compile", "map", "robot"), ("compile", "map", "output"), ("board", "output", "robot"),
-        ("wiring", "output", "robot"), ("fetch", "output", "port"), ("fetch", "output", "robot"),
-        ("monitor", "csv", "port"), ("monitor", "csv", "robot"),
-    } <= set(PAIRS)  # fmt: skip
-
-
 def test_the_image_that_nobody_names_is_an_output_too(tsc: Tsc, tmp_path: Path) -> None:
     program = tmp_path / "a.ts"
     program.write_text(PROGRAM)

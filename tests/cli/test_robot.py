@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import FOREVER, LONG, Tsc, inside
+from tests.support.command import LONG, Tsc, inside
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tiniscript import compile_text, robots
 from tiniscript.library import opening
@@ -75,15 +75,6 @@ def test_however_a_command_ends_its_robot_stops(pty_robot: PtyRobot) -> None:
     done = command.ended()
     assert done.code == 3
     assert "is gone" in done.err
-
-
-def test_stop_stops_what_runs_alone(pty_robot: PtyRobot) -> None:
-    assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
-    assert pty_robot.moves
-    done = on(pty_robot, "stop")
-    assert done.code == 0
-    assert "has confirmed it" in done.out
-    assert not pty_robot.moves
 
 
 def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: Path) -> None:

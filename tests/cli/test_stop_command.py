@@ -8,7 +8,7 @@ from typing import cast
 
 import pytest
 
-from tests.support.command import Command
+from tests.support.command import FOREVER, Command
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
@@ -30,8 +30,11 @@ def test_a_second_stop_is_confirmed_like_the_first(
 ) -> None:
     if is_shared:
         request.getfixturevalue("link")
+    assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
+    assert pty_robot.moves
     for _ in range(3):
         assert at_once(pty_robot, "stop")
+        assert not pty_robot.moves
     assert on(pty_robot, "info").code == 0
 
 

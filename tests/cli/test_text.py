@@ -28,16 +28,11 @@ def test_the_line_goes_to_standard_output(tsc: Tsc, program: Path) -> None:
     assert [path.name for path in program.parent.iterdir()] == ["go.ts"]
 
 
-def test_the_line_goes_to_a_file(tsc: Tsc, program: Path) -> None:
-    target = program.parent / "line.ts"
-    done = tsc("compile", "--text", program, "-o", target, "--lang", "es")
-    assert done.code == 0 and target.read_bytes() == LINE.encode()
-    assert f"{program} -> {target}   20 bytes de texto" in done.out
-
-
 def test_the_line_runs_and_compiles_as_the_program_does(tsc: Tsc, program: Path) -> None:
     line = program.parent / "line.ts"
-    tsc("compile", "--text", program, "-o", line)
+    done = tsc("compile", "--text", program, "-o", line, "--lang", "es")
+    assert done.code == 0 and line.read_bytes() == LINE.encode()
+    assert f"{program} -> {line}   20 bytes de texto" in done.out
     assert tsc("run", line).out == tsc("run", program).out
     for path in (line, program):
         assert tsc("compile", path).code == 0

@@ -84,24 +84,6 @@ def test_motors_get_what_the_trim_makes_of_it() -> None:
     assert driven(robot, session, 0, 0) == []
 
 
-def test_without_a_trim_each_percent_is_itself() -> None:
-    robot, session = switched_on(), computer()
-    for percent in range(1, 101):
-        assert driven(robot, session, percent, -percent)[0] == f"{percent} {-percent}"
-
-
-def test_a_trim_survives_and_so_does_the_name() -> None:
-    robot, session = switched_on(), computer()
-    trim = Trim(True, False, True, -7, 12)
-    assert robot.until(session, session.name(b"TINI")) == OK
-    robot.talk(session, 1000)
-    assert robot.until(session, session.trim(trim.data())) == OK
-    robot.talk(session, 1000)
-    again, other = switched_on(robot.memory()), computer(2)
-    assert told(again.done(other, other.trim())) == trim._replace(pace=Pace())
-    assert other.robot is not None and other.robot.name == "TINI"
-
-
 def test_a_trim_that_makes_no_sense_is_refused() -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.trim(Trim(balance=3).data())) == OK

@@ -1,14 +1,15 @@
-"""`tsc upload` and a robot: real processes, a real port, the whole firmware behind it."""
+"""`tsc upload`, what a robot keeps, and `tsc undo`: a real port, the whole firmware behind it."""
 
 from __future__ import annotations
 
 import json
+import signal
 from pathlib import Path
 
 import pytest
 
-from tests.support.command import LONG, OBSTACLE, Command, inside
-from tests.support.pty_robot import PtyRobot, on
+from tests.support.command import LONG, OBSTACLE, Command, Done, inside
+from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.terminal import Terminal
 from tiniscript import compile_text, robots
 
@@ -138,3 +139,167 @@ def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) 
     done = command.ended()
     assert done.code == 3 and "Done." not in done.out + done.err
     assert "was restarted" in done.out + done.err, done
+
+
+# -- what a robot keeps, and what is in the way of that -------------------------------------------
+
+WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
+
+
+def interrupted(command: Command) -> Done:
+    command.signal(signal.SIGINT)
+    return command.ended()
+
+
+def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyRobot) -> None:
+    command = Command("upload", "-e", WAITS, "--port", pty_robot.port)
+    command.until("Saved in slot 0.")
+    pty_robot.switch_off()
+    pty_robot.switch_on()
+    command.process.kill()
+    command.process.communicate()
+    assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
+
+
+def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
+    done = interrupted(uploading(pty_robot))
+    assert done.code == 2 and "the robot has confirmed it" in done.err, done.err
+    assert "Saved in slot 0." in done.out, done.err
+    pty_robot.switch_off()
+    pty_robot.switch_on()
+    assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
+
+
+def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: PtyRobot) -> None:
+    command = uploading(pty_robot)
+    naming, trimming = ("name", "ANA"), ("trim", "--balance", "5")
+    for words in (naming, trimming):
+        done = on(pty_robot, *words)
+        assert done.code == 3 and not done.out
+        assert "keeps it as soon as its motors have stopped" in done.err
+    assert "lo guarda en" in on(pty_robot, *naming, "--lang", "es").err
+    assert pty_robot.moves, "nothing has stopped it"
+    interrupted(command)
+    for words in (naming, trimming):
+        assert on(pty_robot, *words).code == 0
+    pty_robot.switch_off()
+    pty_robot.switch_on()
+    assert json.loads(on(pty_robot, "info", "--json").out)["name"] == "ANA"
+
+
+def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
+    pty_robot.ask(lambda robot: robot.supply(is_low=True))
+    done = on(pty_robot, "upload", "-e", "SI|SHOW(6)", "--no-save")
+    assert done.code == 0 and "batter" not in done.err + done.out, "nothing is to be saved"
+    done = on(pty_robot, "upload", "-e", "SI|SHOW(7)")
+    assert "SHOW 7" in done.out, "it runs all the same"
+    assert done.code == 3 and "Change the batteries and send it again" in done.err
+    done = on(pty_robot, "upload", "-e", "SB|SHOW(8)", "--lang", "es")
+    assert done.code == 3 and "Cambia las pilas y envíalo otra vez" in done.err
+    assert "its batteries are too weak to save it" in on(pty_robot, "info").out
+    fields = json.loads(on(pty_robot, "info", "--json").out)
+    assert (fields["saved"], fields["slot"]) == ("LOW_SUPPLY", None)
+    for words in (("name", "ANA"), ("trim", "--balance", "5")):
+        done = on(pty_robot, *words)
+        assert done.code == 3 and "Change the batteries" in done.err
+        assert "Cambia las pilas" in on(pty_robot, *words, "--lang", "es").err
+    pty_robot.ask(lambda robot: robot.supply(is_low=False))
+    assert on(pty_robot, "name", "ANA").code == 0
+    assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
+
+
+def test_a_supply_that_is_enough_again_saves_what_runs(pty_robot: PtyRobot) -> None:
+    """Somebody plugs the USB cable in."""
+    pty_robot.ask(lambda robot: robot.supply(is_low=True))
+    command = Command("upload", "-e", WAITS, "--port", pty_robot.port, "--json")
+    command.until('"saved": "LOW_SUPPLY"')
+    pty_robot.ask(lambda robot: robot.supply(is_low=False))
+    command.until('"event": "SAVED"')
+    assert interrupted(command).code == 2
+
+
+# -- the program before comes back, or cannot -----------------------------------------------------
+
+FIRST, SECOND = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
+
+
+def with_two(pty_robot: PtyRobot) -> list[str]:
+    """Send two programs; return their checksums."""
+    done = [on(pty_robot, "upload", "--json", "-e", text) for text in (FIRST, SECOND)]
+    assert [each.code for each in done] == [0, 0]
+    return [json.loads(each.out.splitlines()[0])["checksum"] for each in done]
+
+
+def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRobot) -> None:
+    """As data it is a receipt."""
+    first, second = with_two(pty_robot)
+    for language, checksum, said, saved in (
+        ("en", first, "it holds the previous program again, checksum", "Saved in slot 0."),
+        ("es", second, "vuelve a tener el programa anterior, suma", "Guardado en el lugar 1."),
+    ):
+        done = on(pty_robot, "undo", "--lang", language)
+        assert (done.code, done.err) == (0, "")
+        lines = done.out.splitlines()
+        assert f"{said} {checksum}" in lines[0] and "tsc undo" in lines[0]
+        assert lines[1:] == [saved]
+        pty_robot.switch_off()
+        pty_robot.switch_on()
+        assert json.loads(on(pty_robot, "info", "--json").out)["program"] == checksum
+    receipt, kept = map(json.loads, on(pty_robot, "undo", "--json").out.splitlines())
+    assert receipt["event"] == "RECEIPT" and receipt["checksum"] == first
+    assert receipt["saved"] == "SAVING" and receipt["slot"] is None
+    assert kept["event"] == "SAVED" and kept["slot"] == 0
+
+
+def test_the_file_of_the_program_is_named_where_it_is_known(
+    pty_robot: PtyRobot, tmp_path: Path
+) -> None:
+    name = tmp_path / "square.ts"
+    name.write_text(FIRST + "\n", encoding="utf-8")
+    assert on(pty_robot, "upload", name).code == 0
+    assert on(pty_robot, "upload", "-e", SECOND).code == 0
+    assert "square.ts)" in on(pty_robot, "undo").out
+
+
+def test_where_there_is_none_before_the_next_step_is_said(pty_robot: PtyRobot) -> None:
+    assert on(pty_robot, "upload", "-e", FIRST).code == 0
+    for language, said, advice in (
+        ("en", "no program from before that it can run", "Send the program that you want"),
+        ("es", "ningún programa anterior que pueda", "Envía el programa que quieras"),
+    ):
+        done = on(pty_robot, "undo", "--lang", language)
+        assert done.code == 3 and not done.out
+        assert said in done.err and advice in done.err
+    assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
+
+
+def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> None:
+    with_two(pty_robot)
+    command = uploading(pty_robot)
+    done = on(pty_robot, "undo")
+    assert done.code == 0, done.err
+    assert done.out.splitlines()[-1].startswith("Saved in slot")
+    assert not pty_robot.moves
+    assert command.ended().code in (0, 3)
+
+
+def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot) -> None:
+    first, second = with_two(pty_robot)
+    pty_robot.ask(lambda robot: robot.supply(is_low=True))
+    for language, said in (("en", "Nothing is lost"), ("es", "No se pierde nada")):
+        done = on(pty_robot, "undo", "--lang", language)
+        assert done.code == 3 and said in done.err and first in done.out
+        assert on(pty_robot, "undo").code == 0, "the second one is saved already"
+    on(pty_robot, "undo")
+    pty_robot.ask(lambda robot: robot.supply(is_low=False))
+    pty_robot.switch_off()
+    pty_robot.switch_on()
+    assert json.loads(on(pty_robot, "info", "--json").out)["program"] in (first, second)
+
+
+def test_ports_and_options_are_those_of_the_other_verbs() -> None:
+    for words in (("--port", "/dev/no-such-port"), ("--virtual",)):
+        done = inside("undo", *words)
+        assert done.code == 3 and done.err.startswith("tsc: ") and not done.out
+    assert inside("undo", "--all", "--port", "X").code == 2
+    assert inside("undo", "what").code == 2

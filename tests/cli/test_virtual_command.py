@@ -8,11 +8,11 @@ import re
 import signal
 import socket
 import sys
-from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -191,28 +191,25 @@ def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
     assert inside("stop", "--virtual").code == 3
 
 
-def test_of_several_robots_one_is_named() -> None:
-    with robot(), robot() as second:
-        done = inside("info", "--virtual")
-        assert done.code == 3
-        assert second.port in done.err
-        asked = inside("info")  # without --virtual and without a terminal
-        assert (asked.code, asked.err) == (3, done.err)
-        assert inside("info", "--port", second.port).code == 0
-
-
-def test_a_person_chooses_among_virtual_robots(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_of_several_robots_one_is_named(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "listed", list)
     with robot() as first, robot("--world", "line") as second:
+        done = tsc("info", "--virtual")
+        assert done.code == 3
+        assert second.port in done.err
+        asked = tsc("info")  # without --virtual and without a terminal
+        assert (asked.code, asked.err) == (3, done.err)
         places = sorted([(first.port, "obstacles"), (second.port, "a line to follow")])
-        monkeypatch.setattr("sys.stdin.isatty", lambda: True)
-        monkeypatch.setattr("sys.stdin.readline", lambda: "2\n")
-        monkeypatch.setattr("sys.stderr.isatty", lambda: True)
-        done = tsc("info")
+        with monkeypatch.context() as person:
+            person.setattr("sys.stdin.isatty", lambda: True)
+            person.setattr("sys.stdin.readline", lambda: "2\n")
+            person.setattr("sys.stderr.isatty", lambda: True)
+            done = tsc("info")
         assert done.code == 0
         for number, (port, world) in enumerate(places, 1):
             assert f'  {number}  {port}   virtual robot tinibot, world "{world}"\n' in done.err
         assert places[1][0] in done.out
+        assert tsc("info", "--port", second.port).code == 0
 
 
 # -- a robot for one command ----------------------------------------------------------------------
@@ -227,16 +224,14 @@ def colours(data: bytes) -> dict[str, int]:
     with Image.open(BytesIO(data)) as image:
         assert image.format == "PNG"
         assert image.size == (1200, 1143)  # the floor, 220 cm x 200 cm, its margins and the foot
-        data = image.convert("RGB").tobytes()
-        pixels = Counter(data[k : k + 3] for k in
-                         range(0, 3 * image.width * image.height, 3))  # fmt: skip
-    names = {"way": picture.WAY, "box": picture.BOX, "robot": picture.ROBOT}
-    found = dict.fromkeys(names, 0)
-    for name, colour in names.items():
+        pixels: Any = image.convert("RGB").getcolors(image.width * image.height)
+    found = {}
+    for name, colour in (("way", picture.WAY), ("box", picture.BOX), ("robot", picture.ROBOT)):
         wanted = bytes.fromhex(colour[1:])
-        for pixel, count in pixels.items():  # the borders of lines are mixed
-            is_like = max(abs(a - b) for a, b in zip(pixel, wanted, strict=True)) < 70
-            found[name] += count * is_like
+        found[name] = sum(  # the borders of lines are mixed
+            count for count, pixel in pixels
+            if max(abs(a - b) for a, b in zip(pixel, wanted, strict=True)) < 70
+        )  # fmt: skip
     return found
 
 
