@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 
 import pytest
 
 from tests.firmware.test_boards import LAMP, START, on_board, pulses, started
-from tests.machines.board import HERTZ, MS
+from tests.machines.board import HERTZ, MS, Board
 from tiniscript import robots
+from tiniscript.robots.profile import Robot
 
 # -- sensors
 
@@ -106,21 +108,33 @@ def test_a_voltage_is_a_reading(
     assert abs(shown - power * 2.55) < 3
 
 
-@pytest.mark.parametrize(("name", "sensor", "pin", "is_high", "is_true"), [
+def is_true(robot: Robot, condition: str, set_up: Callable[[Board], object]) -> bool:
+    """Return what a program finds, which shows it as a power."""
+    board = started(robot, f"SI|IF({condition});M(20, 0);ELSE;M(10, 0);ENDIF;W(5)")
+    set_up(board)
+    board.ran(START + 5)
+    found = board.motors(START + 4)[0]
+    assert found in (f"pwm {20 * 653 >> 8}", f"pwm {10 * 653 >> 8}")
+    return found == f"pwm {20 * 653 >> 8}"
+
+
+@pytest.mark.parametrize(("name", "sensor", "pin", "is_high", "says"), [
     ("liner", "LINE_L", 15, True, True),
     ("liner", "LINE_R", 16, False, False),
     ("liner", "BUTTON", 12, True, False),
     ("liner", "BUTTON", 12, False, True),
     ("grabber", "BUTTON", 28, False, True),
 ])  # fmt: skip
-def test_a_level_is_yes_or_no(
-    name: str, sensor: str, pin: int, is_high: bool, is_true: bool
-) -> None:
-    text = f"SI|IF({sensor});M(20, 0);ELSE;M(10, 0);ENDIF;W(5)"
-    board = started(robots.load(name), text)
-    board.level(0, pin, is_high)
-    board.ran(START + 5)
-    assert board.motors(START + 4)[0] == f"pwm {(20 if is_true else 10) * 653 >> 8}"
+def test_a_level_is_yes_or_no(name: str, sensor: str, pin: int, is_high: bool, says: bool) -> None:
+    assert is_true(robots.load(name), sensor, lambda board: board.level(0, pin, is_high)) == says
+
+
+def test_a_threshold_and_thousandths() -> None:
+    """149 of 1023 are 1.4565 of 10 V, and a bit: the half is what tells the one from the other."""
+    workshop = on_board("tinibot", "uno", *WORKSHOP)
+    assert is_true(workshop, "BRIGHT", lambda board: board.analog(2, 2910))
+    assert not is_true(workshop, "BRIGHT", lambda board: board.analog(2, 2950))
+    assert is_true(robots.load("liner"), "BATTERY > 1.456", lambda board: board.analog(7, 729))
 
 
 # -- what a robot has besides
@@ -218,24 +232,6 @@ def test_a_fan_and_a_lamp_that_is_on_when_low() -> None:
         "low", "pwm 0", "pwm 128", "pwm 255",
     ]  # fmt: skip
     assert [board.pin(19, START + ms) for ms in (-1, 50, 150)] == ["high", "low", "high"]
-
-
-@pytest.mark.parametrize(("millivolts", "is_true"), [(2910, True), (2950, False)])
-def test_a_threshold(millivolts: int, is_true: bool) -> None:
-    text = "SI|IF(BRIGHT);M(20, 0);ELSE;M(10, 0);ENDIF;W(5)"
-    board = started(on_board("tinibot", "uno", *WORKSHOP), text)
-    board.analog(2, millivolts)
-    board.ran(START + 5)
-    assert board.motors(START + 4)[0] == f"pwm {(20 if is_true else 10) * 653 >> 8}"
-
-
-def test_a_reading_is_rounded_to_thousandths() -> None:
-    """149 of 1023 are 1.4565 of 10 V, and a bit: the half is what tells the one from the other."""
-    text = "SI|IF(BATTERY > 1.456);M(20, 0);ELSE;M(10, 0);ENDIF;W(5)"
-    board = started(robots.load("liner"), text)
-    board.analog(7, 729)
-    board.ran(START + 5)
-    assert board.motors(START + 4)[0] == f"pwm {20 * 653 >> 8}"
 
 
 def test_a_reading_of_the_last_program_is_none_of_the_next() -> None:

@@ -94,12 +94,20 @@ def switched_on(robot: Esp32Robot) -> Esp32Robot:
     return robot
 
 
-def run(robot: Esp32Robot, text: str) -> None:
+def run(robot: Esp32Robot, text: str) -> Session:
     kit = robot.robot.kit
     compiled = compile_text(text, kit)
     assert compiled.image, compiled
     session = Session(1, 9600, kit.fingerprint)
     assert robot.until(session, session.upload(unpack(compiled.image))) == OK
+    return session
+
+
+def shown(robot: Esp32Robot, text: str) -> list[int]:
+    """Run a program; return what it shows in half a second."""
+    session = run(robot, text)
+    robot.talk(session, 500)
+    return [event.value for event in session.events() if event.name == "SHOW"]
 
 
 @pytest.mark.sampled("name", "major", draw="ESP32s", keep=2)
@@ -178,7 +186,6 @@ def test_a_bluetooth_module_that_nobody_is_connected_to_ends_an_attached_run() -
     assert [event.cause for event in session.events() if event.name == "STOPPED"] == [4]
 
 
-@pytest.mark.sampled("motors")
 @pytest.mark.parametrize("motors", [SERVOS, TWO_WIRE], ids=["servos", "two_wire"])
 def test_other_motors(motors: str) -> None:
     robot = wired(motors)
@@ -192,6 +199,11 @@ def test_other_motors(motors: str) -> None:
     if motors == SERVOS:  # neutral pulses for a second, then none
         assert robot.output(25) > 0
         robot.wait(1100)
+        assert robot.output(25) == robot.output(26) == 0
+        run(robot, "SI|F(1, 80)")
+        robot.wait(300)
+        assert robot.output(25) > 0
+        robot.panic()
         assert robot.output(25) == robot.output(26) == 0
 
 
@@ -208,15 +220,6 @@ def test_a_panic_turns_the_motors_off_first(name: str, major: int) -> None:
     robot.panic()
     pins = robot.robot.board.motors.pins.values()
     assert [robot.output(pin) for pin in pins] == [0] * len(pins)
-
-
-def test_a_panic_leaves_servos_without_pulses() -> None:
-    robot = wired(SERVOS)
-    run(robot, "SI|F(1, 80)")
-    robot.wait(300)
-    assert robot.output(25) > 0
-    robot.panic()
-    assert robot.output(25) == robot.output(26) == 0
 
 
 def test_actuators_and_what_a_stop_makes_of_them() -> None:
@@ -238,25 +241,14 @@ def test_sensors() -> None:
     robot.analog(35, 400)
     robot.analog(32, 100)
     robot.digital(22, False)
+    assert shown(robot, "SI|SHOW(DISTANCE)") == [400_000], "it hears nothing"
     robot.sonar(trigger, echo, 50)
-    session = Session(1, 9600, robot.robot.kit.fingerprint)
-    text = "SI|SHOW(LIGHT_R);SHOW(LIGHT_L);SHOW(DISTANCE);SHOW(BUMP);SHOW(DARK)"
-    compiled = compile_text(text, robot.robot.kit)
-    assert compiled.image
-    assert robot.until(session, session.upload(unpack(compiled.image))) == OK
-    robot.talk(session, 500)
-    shown = [event.value for event in session.events() if event.name == "SHOW"]
-    assert shown[:2] == [1_023_000, 100_000]
-    assert abs(shown[2] - 50_000) < 100  # thousandths of a centimetre
-    assert shown[3:] == [1, 1]
-
-
-def test_a_sonar_that_hears_nothing_says_400() -> None:
-    robot = switched_on(Esp32Robot())
-    session = computer()
-    send(robot, session, "SI|SHOW(DISTANCE)")
-    robot.talk(session, 500)
-    assert [event.value for event in session.events() if event.name == "SHOW"] == [400_000]
+    right, left, distance, *others = shown(
+        robot, "SI|SHOW(LIGHT_R);SHOW(LIGHT_L);SHOW(DISTANCE);SHOW(BUMP);SHOW(DARK)"
+    )
+    assert (right, left) == (1_023_000, 100_000)
+    assert abs(distance - 50_000) < 100  # thousandths of a centimetre
+    assert others == [1, 1]
 
 
 def test_an_echo_that_comes_while_a_page_is_erased_is_asked_for_again() -> None:
@@ -271,24 +263,21 @@ def test_an_echo_that_comes_while_a_page_is_erased_is_asked_for_again() -> None:
     assert all(49_000 < each < 51_000 for each in shown), shown
 
 
-def test_a_beep() -> None:
-    robot = switched_on(Esp32Robot())
-    send(robot, computer(), "SI|BEEP(0.2, 880);F(1, 50)")
-    robot.wait(400)
-    assert happened(robot)[0] == "TONE 880" and "TONE 0" in happened(robot)
-    assert robot.output(23) == 0
-
-
 @pytest.mark.sampled("name", "major", draw="ESP32s", keep=2)
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("name", KITS)
-@pytest.mark.parametrize("hertz", [31, 37, 76, 999, 1000, 20000])
-def test_every_tone_that_a_program_may_ask_for(name: str, major: int, hertz: int) -> None:
+def test_every_tone_that_a_program_may_ask_for(name: str, major: int) -> None:
     robot = switched_on(Esp32Robot(robots.load(name), major=major))
-    send(robot, computer(), f"SI|BEEP(0.2, {hertz});F(1, 50)")
-    robot.wait(100)
-    assert happened(robot)[0] == f"TONE {hertz}"
-    assert robot.output(robot.robot.board.buzzer) in (127, 128)
+    session = computer()
+    for hertz in (31, 37, 76, 880, 999, 1000, 20000):
+        robot.did.clear()
+        send(robot, session, f"SI|BEEP(0.2, {hertz});F(1, 50)")
+        robot.talk(session, 100)
+        assert f"TONE {hertz}" in happened(robot)
+        assert robot.output(robot.robot.board.buzzer) in (127, 128), hertz
+        robot.talk(session, 200)
+        assert happened(robot)[-1] == "TONE 0"
+        assert robot.output(robot.robot.board.buzzer) == 0, hertz
 
 
 def test_the_button_starts_what_is_stored_and_the_light_says_that_it_can() -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 
 from tests.support.owners import (
@@ -17,6 +20,7 @@ from tests.support.owners import (
     state_of,
 )
 from tiniscript.link.authority import FREE, OF_ANOTHER, YOUR_OWN, RobotKey
+from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import (
     BY_NAME,
@@ -28,6 +32,7 @@ from tiniscript.link.messages import (
     STATUSES,
 )
 from tiniscript.link.outcomes import UNKEPT, UNPROVEN
+from tiniscript.link.session import Session
 
 __all__ = ("robots_of_both_kinds",)  # a fixture
 
@@ -46,55 +51,49 @@ def test_the_button_confirms_a_claim_and_the_robot_keeps_the_key() -> None:
     assert owner_of(later, later.session(keys, nonce=2)) == YOUR_OWN
 
 
-@pytest.mark.parametrize("press_ms", [200, 1000, 1900])
-def test_a_shorter_press_confirms_nothing(press_ms: int) -> None:
-    table, keys = Owned(), Keys()
-    session = table.session(keys)
+def a_shorter_press(table: Owned, session: Session) -> PendingRequest[Any]:
     request = session.claim(KEY_OWNER)
     table.pass_time(session, 300)
-    table.hold(session, press_ms)
-    assert table.outcome(session, request) == "HOLD_BUTTON"
-    assert keys.found == []
-    assert owner_of(table, session) == FREE
+    table.hold(session, 1900)
+    return request
 
 
-def test_a_press_before_the_claim_confirms_nothing() -> None:
-    table, keys = Owned(), Keys()
-    session = table.session(keys)
+def a_press_before_it(table: Owned, session: Session) -> PendingRequest[Any]:
     assert table.outcome(session, session.hello()) == "OK"
     table.hold(session, 2500)
-    assert table.outcome(session, session.claim(KEY_OWNER)) == "HOLD_BUTTON"
+    return session.claim(KEY_OWNER)
 
 
-def test_spikes_on_the_buttons_wire_confirm_nothing() -> None:
-    table, keys = Owned(), Keys()
-    session = table.session(keys)
+def spikes_on_the_wire(table: Owned, session: Session) -> PendingRequest[Any]:
     request = session.claim(KEY_OWNER)
     table.pass_time(session, 300)
     for _ in range(40):  # edges down that no press follows
         table.pass_time(session, 1, PRESSED)
         table.pass_time(session, 99)
-    assert table.outcome(session, request) == "HOLD_BUTTON"
+    return request
 
 
-def test_a_claim_expires_where_no_frame_comes() -> None:
+@pytest.mark.parametrize("what", [a_shorter_press, a_press_before_it, spikes_on_the_wire])
+def test_what_confirms_no_claim(what: Callable[[Owned, Session], PendingRequest[Any]]) -> None:
     table, keys = Owned(), Keys()
     session = table.session(keys)
-    session.claim(KEY_OWNER)
-    table.pass_time(session, 300)
-    table.pass_time(None, 2100)  # out of reach
-    table.hold(None, 2500)
-    other = table.session(keys, nonce=5)
-    assert table.outcome(other, other.claim(KEY_OWNER)) == "HOLD_BUTTON"
+    assert table.outcome(session, what(table, session)) == "HOLD_BUTTON"
+    assert keys.found == []
+    assert owner_of(table, session) == FREE
 
 
-def test_of_two_computers_the_one_whose_session_lives_gets_the_robot() -> None:
+def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() -> None:
     table = Owned()
     first, second = Keys(1), Keys(50)
     early, late = table.session(first, nonce=1), table.session(second, nonce=2)
     early.claim(KEY_OWNER)
     table.pass_time(early, 300)
-    request = late.claim(KEY_OWNER)
+    table.pass_time(None, 2100)  # out of reach
+    table.hold(None, 2500)
+    assert owner_of(table, table.session(nonce=5)) == FREE
+    early.claim(KEY_OWNER)
+    table.pass_time(early, 300)
+    request = late.claim(KEY_OWNER)  # and its session lives
     table.pass_time(late, 300)
     table.hold(late, 2200)
     assert table.outcome(late, request) == "OK"
@@ -102,14 +101,9 @@ def test_of_two_computers_the_one_whose_session_lives_gets_the_robot() -> None:
     assert table.outcome(again, again.claim(KEY_OWNER)) in ("NOT_OWNER", "WRONG_KEY")
     assert table.tries(table.session(first, nonce=4)) != "OK"
     assert table.tries(table.session(second, nonce=5)) == "OK"
-
-
-def test_a_claimed_robot_is_claimed_by_nobody_else_with_the_button() -> None:
-    table = Owned()
-    table.claimed(Keys())
     stranger = table.session(Keys(99), nonce=9)
-    assert table.claim(stranger) == "NOT_OWNER"
-    assert table.claim(stranger, KEY_TEACHER) == "NOT_OWNER"
+    for which in (KEY_OWNER, KEY_TEACHER):
+        assert table.claim(stranger, which) == "NOT_OWNER"
 
 
 def test_a_key_that_this_computer_cannot_keep_is_not_given_to_the_robot() -> None:
@@ -240,6 +234,10 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
     mine = table.session(pupil, nonce=7)
     assert table.outcome(mine, mine.start()) == "HELD_BACK"
     assert table.outcome(mine, mine.clear()) == "HELD_BACK"
+    assert table.outcome(mine, mine.allow_text(True)) == "OK"
+    table.pass_time(None, 5000)
+    assert b"teacher" in table.robot.wait(100, b"SI|F(1, 80)\n")
+    assert not [line for line in table.robot.did if "MOTORS" in line]
     session = table.session(teacher, nonce=8)
     assert table.outcome(session, session.clear()) == "OK"
     mine = table.session(pupil, nonce=9)
@@ -250,16 +248,6 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
     mine = table.session(pupil, nonce=11)
     table.pass_time(mine, 10)
     assert state_of(table, mine) == STATE_RUNNING
-
-
-def test_a_teachers_stop_is_not_released_by_text() -> None:
-    table, teacher = Owned(), Keys(90)
-    session = table.claimed(teacher, KEY_TEACHER)
-    assert table.outcome(session, session.hold_back()) == "OK"
-    table.pass_time(None, 5000)
-    sent = table.robot.wait(100, b"SI|F(1, 80)\n")
-    assert b"teacher" in sent
-    assert not [line for line in table.robot.did if "MOTORS" in line]
 
 
 # -- forgetting, text, making itself known --------------------------------------------------------
@@ -291,37 +279,28 @@ def test_ten_seconds_later_forget_nothing() -> None:
 
 
 def test_text_drives_an_owned_robot_only_where_it_may() -> None:
+    """It may while the owner says so, or since a press of two seconds, until power-off."""
     table, keys = Owned(), Keys()
     session = table.claimed(keys)
-    table.pass_time(None, 5000)
-    said = table.robot.wait(200, b"SI|F(1, 80)\n")
-    assert b"tsc text on" in said
-    assert table.outcome(session, session.allow_text(True)) == "OK"
-    table.pass_time(None, 5000)
-    assert b"OK" in table.robot.wait(200, b"SI|F(1, 80)\n")
-    assert [line for line in table.robot.did if "MOTORS" in line]
-    assert table.outcome(session, session.allow_text(False)) == "OK"
-    table.pass_time(None, 5000)
-    assert b"tsc text on" in table.robot.wait(200, b"SI|F(1, 80)\n")
 
+    def answer(line: bytes = b"SI|F(1, 80)\n") -> bytes:
+        table.pass_time(None, 5000)
+        return table.robot.wait(200, line)
 
-def test_a_press_of_two_seconds_lets_text_drive_until_power_off() -> None:
-    table, keys = Owned(), Keys()
-    table.claimed(keys)
-    table.pass_time(None, 5000)
-    table.hold(None, 2100)
-    assert b"OK" in table.robot.wait(200, b"SI|F(1, 80)\n")
-    later = Owned(table.robot.memory())
-    assert b"tsc text on" in later.robot.wait(200, b"SI|F(1, 80)\n")
-
-
-def test_s_stops_an_owned_robot_whatever_text_may_do() -> None:
-    table, keys = Owned(), Keys()
-    session = table.claimed(keys)
+    assert b"tsc text on" in answer()
+    for is_allowed in (True, False):
+        assert table.outcome(session, session.allow_text(is_allowed)) == "OK"
+        assert (b"OK" if is_allowed else b"tsc text on") in answer()
+        assert ("MOTORS 80 80" in "".join(table.robot.did)) == is_allowed
+        table.robot.did.clear()
     assert table.outcome(session, session.upload(image_of(FOREVER), is_detached=True)) == "OK"
-    table.pass_time(None, 5000)
-    table.robot.wait(1500, b"S\n")
-    assert table.robot.is_latched
+    answer(b"S\n")
+    table.robot.wait(1300)
+    assert table.robot.is_latched, "S stops it whatever text may do"
+    table.hold(None, 2100)
+    assert b"OK" in answer()
+    table = Owned(table.robot.memory())
+    assert b"tsc text on" in answer()
 
 
 def test_a_robot_makes_itself_known_and_leaves_the_buzzer_to_a_program() -> None:

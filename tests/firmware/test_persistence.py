@@ -63,13 +63,15 @@ def marks(robot: HostFirmware) -> list[str]:
 # -- motors ---------------------------------------------------------------------------------------
 
 
-def test_a_program_that_stands_is_saved_while_it_runs() -> None:
+def test_what_stands_is_saved_while_it_runs() -> None:
     robot, session = switched_on(), computer()
     send(robot, session, WAITS)
     assert saved(robot, session) == "SAVING"
     stored(robot, session, 2000)
-    assert session.is_running
     assert program_after_power_off(robot) == bytes_of(WAITS)
+    assert robot.until(session, session.name(b"NEW")) == OK
+    assert session.is_running
+    assert name_after_power_off(robot) == "NEW"
 
 
 def test_a_program_that_drives_without_a_pause_is_saved_when_it_ends() -> None:
@@ -135,14 +137,6 @@ def test_a_name_given_while_it_drives_is_told_to_be_kept_later() -> None:
     assert robot.until(session, session.name(b"NEW")) == OK
 
 
-def test_a_name_given_while_it_stands_in_a_program_is_kept() -> None:
-    robot, session = switched_on(), computer()
-    send(robot, session, WAITS)
-    assert robot.until(session, session.name(b"NEW")) == OK
-    assert session.is_running
-    assert name_after_power_off(robot) == "NEW"
-
-
 def test_a_trim_is_ok_when_it_is_kept() -> None:
     robot, session = switched_on(), computer()
     for trim in (b"\1\5\7", b"\1\5\1", b"\0\0\0"):
@@ -177,20 +171,6 @@ def test_a_plug_pulled_while_a_pace_is_kept_leaves_a_whole_one() -> None:
 def trim_after_power_off(robot: HostFirmware) -> Trim:
     again, other = switched_on(robot.memory()), computer(2)
     return told(again.done(other, other.trim()))
-
-
-def test_a_worn_memory_is_told() -> None:
-    robot, session = switched_on(), computer()
-    assert robot.until(session, session.name(b"OLD")) == OK
-    for slot in range(2):
-        robot.wear_out(4 + EACH * slot + 4 + 8)  # the first letter of the name
-        name = b"NEW" if slot == 0 else b"WEN"
-        found = [robot.until(session, session.name(each)) for each in (name, b"XYZ", name)]
-        if STATUSES["NOT_KEPT"] in found:
-            assert name_after_power_off(robot) != "XYZ" or found[-1] == OK
-            break
-    else:
-        raise AssertionError("a byte that keeps what it is was taken for one that does not")
 
 
 def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:

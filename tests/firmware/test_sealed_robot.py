@@ -51,14 +51,6 @@ def opened(*defines: str) -> tuple[Owned, Session, Keys]:
     return table, session, keys
 
 
-def test_the_robot_says_that_it_seals_and_does() -> None:
-    table, session, _ = opened()
-    assert session.robot and session.robot.values.features & SEALS
-    there, back = recorded(table, session, SHORT)
-    for frame in map(decoded, there[-1:] + back[-1:]):
-        assert frame and frame.is_sealed
-
-
 def test_a_firmware_without_seals_does_as_before() -> None:
     table, session, _ = opened("tiniscript_without_seals")
     assert session.robot and session.robot.values.features & (SEALS | OWNERS) == OWNERS
@@ -205,6 +197,9 @@ def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
     table.pass_time(session, 50)
     assert [each for each in session.events() if each.name == "STOPPED"]
     assert table.robot.is_latched
+    recorded(table, session, FOREVER)
+    table.robot.step(flags=PRESSED)
+    assert table.robot.is_latched
 
 
 @pytest.mark.parametrize("payload", [b"", bytes(12), bytes(13), bytes(40)])
@@ -296,14 +291,6 @@ def test_a_stranger_is_told_all_that_is_for_all_beside_a_seal() -> None:
     assert table.tries(session) == "OK"
     stranger = table.session(nonce=50)
     assert owner_of(table, stranger) == OF_ANOTHER
-
-
-def test_the_button_and_the_zeros_stop_beside_a_seal() -> None:
-    for how in ("zeros", "button"):
-        table, session, _ = opened()
-        recorded(table, session, FOREVER)
-        table.robot.step(*((bytes(4),) if how == "zeros" else (b"", PRESSED)))
-        assert table.robot.is_latched
 
 
 def test_frames_of_the_wire_open_nothing(frames: int = 2500) -> None:

@@ -1,4 +1,7 @@
-"""A robot that is stopped, and stopped again, while a button is down or not."""
+"""A robot that is stopped, and stopped again, while a button is down or not, and in every state.
+
+The states are those of the button: what the robot holds is still there, and its button starts it.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,16 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.firmware.test_host_firmware import AWAY, computer, happened, image_of, send, switched_on
+from tests.firmware.test_button_states import STATES, Table, keeps_trim, saves
+from tests.firmware.test_host_firmware import (
+    AWAY,
+    KIT,
+    computer,
+    happened,
+    live,
+    send,
+    switched_on,
+)
 from tests.machines.host_firmware import HostFirmware
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME
@@ -21,38 +33,14 @@ def waiting(robot: HostFirmware, session: Session) -> None:
     robot.did.clear()
 
 
-def live(robot: HostFirmware, session: Session, text: str) -> None:
-    assert robot.until(session, session.live(image_of(text).code)) == OK
-
-
-def stopped_by_zeros(robot: HostFirmware, session: Session) -> None:
-    robot.step(bytes(4))
-
-
-def stopped_by_a_message(robot: HostFirmware, session: Session) -> None:
-    robot.wait(20, encoded(Frame(BY_NAME["STOP"].number, 200, 0)))
-
-
-def ended(robot: HostFirmware, session: Session) -> None:
-    live(robot, session, "SI|F(0.1, 80)")
-    robot.talk(session, 300)
-    assert happened(robot)[-1] == "FINISHED"
-
-
-def faulted(robot: HostFirmware, session: Session) -> None:
-    live(robot, session, "SI|X = 0; SHOW(5 / X)")
-    robot.talk(session, 300)
-    assert happened(robot)[-1] == "FAULTED"
-
-
-def lost(robot: HostFirmware, session: Session) -> None:
-    live(robot, session, AWAY)
-    robot.wait(1500)
-    assert happened(robot)[-1] == "FAULTED"
-
-
-def still_running(robot: HostFirmware, session: Session) -> None:
-    live(robot, session, "SI|F(0.3, 80)")
+def ran(robot: HostFirmware, session: Session, text: str, last: str, milliseconds: int) -> None:
+    """Let a line run to an end, without a computer where that is a lost link."""
+    live(robot, session, text)
+    if text == AWAY:
+        robot.wait(milliseconds)
+    else:
+        robot.talk(session, milliseconds)
+    assert happened(robot)[-1] == last
 
 
 def left(robot: HostFirmware, session: Session) -> None:
@@ -60,18 +48,25 @@ def left(robot: HostFirmware, session: Session) -> None:
     robot.step(flags=8)
 
 
-BETWEENS = [stopped_by_zeros, stopped_by_a_message, ended, faulted, lost, still_running, left]
+STOP_MESSAGE = b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0))
+BETWEENS: dict[str, Callable[[HostFirmware, Session], object]] = {
+    "stopped by zeros": lambda robot, session: robot.step(bytes(4)),
+    "stopped by a message": lambda robot, session: robot.wait(20, STOP_MESSAGE),
+    "ended": lambda robot, session: ran(robot, session, "SI|F(0.1, 80)", "FINISHED", 300),
+    "faulted": lambda robot, session: ran(robot, session, "SI|X = 0; SHOW(5 / X)", "FAULTED", 300),
+    "lost": lambda robot, session: ran(robot, session, AWAY, "FAULTED", 1500),
+    "still running": lambda robot, session: live(robot, session, "SI|F(0.3, 80)"),
+    "left": left,
+}
 
 
-@pytest.mark.parametrize("between", BETWEENS, ids=lambda between: between.__name__)
-def test_a_button_that_was_down_meanwhile_starts_nothing(
-    between: Callable[[HostFirmware, Session], None],
-) -> None:
+@pytest.mark.parametrize("between", BETWEENS)
+def test_a_button_that_was_down_meanwhile_starts_nothing(between: str) -> None:
     robot, session = switched_on(), computer()
     waiting(robot, session)
     robot.talk(session, 1, flags=1)
     robot.talk(session, 50)
-    between(robot, session)
+    BETWEENS[between](robot, session)
     robot.did.clear()
     robot.talk(session, 1, flags=2)
     robot.talk(session, 500)
@@ -136,3 +131,88 @@ def test_who_stops_with_zeros_is_answered_with_a_frame_whatever_was_typed_before
     assert b"//" not in sent
     frames = [decoded(each) for each in sent.split(b"\0") if each]
     assert [each and each.number for each in frames] == [BY_NAME["STOPPED"].number]
+
+
+# -- in every state of the firmware, in every way, once, twice and again and again ----------------
+
+
+ZEROS = bytes(4)
+WAYS: dict[str, Callable[[HostFirmware], bytes]] = {
+    "four zeros": lambda robot: robot.step(ZEROS),
+    "eight zeros": lambda robot: robot.step(ZEROS + ZEROS),
+    "two": lambda robot: robot.step(ZEROS) + robot.wait(30) + robot.step(ZEROS),
+    "for a second": lambda robot: b"".join(robot.wait(100, ZEROS) for _ in range(10)),
+    "a message": lambda robot: robot.wait(3, STOP_MESSAGE),
+    "a message and zeros": lambda robot: robot.wait(3, STOP_MESSAGE) + robot.step(ZEROS),
+    "a line": lambda robot: robot.wait(3, b"\0S\n"),
+}
+# The push that follows means nothing where the button is down from the reset on; in an open block
+# a line S belongs to the program.
+NOT_HERE = (("was reset with the button down", None), ("has an open block of text", "a line"))
+PAIRS = [
+    (state, way)
+    for state in STATES
+    for way in WAYS
+    if not {(state, way), (state, None)} & set(NOT_HERE)
+]
+
+
+def begun(state: str) -> Table:
+    table = Table()
+    STATES[state](table)
+    table.robot.did.clear()
+    return table
+
+
+@pytest.mark.parametrize(("state", "way"), PAIRS)
+def test_a_stop_in_every_state(state: str, way: str) -> None:
+    table = begun(state)
+    robot = table.robot
+    was_running = not robot.is_latched
+    WAYS[way](robot)
+    moves = [line for line in happened(robot) if line.startswith("MOTORS")]
+    assert set(moves) <= {"MOTORS 0 0"} and (moves or not was_running)
+    assert robot.is_latched
+    before = len(robot.did)
+    table.talk(1500)
+    later = [line for line in happened(robot)[before:] if line.startswith("MOTORS")]
+    assert set(later) <= {"MOTORS 0 0"}, "nothing begins by itself"
+    robot.push()
+    table.talk(50)
+    if table.program:
+        assert happened(robot)[-1] == f"MOTORS {table.program} {table.program}"
+    else:
+        assert robot.is_latched
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_program_that_is_being_saved_is_saved_all_the_same(way: str) -> None:
+    table = begun("saves its program")
+    WAYS[way](table.robot)
+    table.robot.wait(1500)
+    later = HostFirmware(KIT, table.robot.memory())
+    later.wait(100)
+    later.push()
+    later.wait(50)
+    assert happened(later)[-1] == f"MOTORS {table.program} {table.program}"
+
+
+@pytest.mark.parametrize("after_ms", [0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89])
+@pytest.mark.parametrize("state", [saves, keeps_trim])
+def test_a_stop_at_any_time_of_a_save(state: Callable[[Table], None], after_ms: int) -> None:
+    table = Table()
+    state(table)
+    table.talk(after_ms)
+    table.robot.step(ZEROS)
+    assert table.robot.is_latched
+    table.robot.wait(1500)
+    later = HostFirmware(KIT, table.robot.memory())
+    later.wait(100)
+    session = computer(7)
+    if state is keeps_trim:
+        request = session.trim()
+        assert later.until(session, request) == OK
+        assert request.outcome and request.outcome.values.least in (0, 1)
+    later.push()
+    later.talk(session, 50)
+    assert happened(later)[-1] == f"MOTORS {table.program} {table.program}"

@@ -9,7 +9,7 @@ import random
 
 import pytest
 
-from tests.firmware import test_text, test_text_fuzz, test_text_limits
+from tests.firmware import test_text, test_text_fuzz
 from tests.firmware.test_host_firmware import (
     computer,
     happened,
@@ -42,10 +42,9 @@ OTHERWISE = {  # tests of robots that have room for two programs
     "test_anything_and_then_a_line",
 }
 
-for module in (test_text, test_text_limits):
-    for name, test in vars(module).items():
-        if name.startswith("test_") and name not in OTHERWISE:
-            globals()[name] = test
+for name, test in vars(test_text).items():
+    if name.startswith("test_") and name not in OTHERWISE:
+        globals()[name] = test
 
 
 @pytest.fixture(autouse=True)
@@ -59,9 +58,7 @@ def test_anything_and_then_a_line(seed: int) -> None:
 
 
 def test_these_are_all_tests_that_differ() -> None:
-    assert (
-        set(vars(test_text)) | set(vars(test_text_limits)) | set(vars(test_text_fuzz)) >= OTHERWISE
-    )
+    assert set(vars(test_text)) | set(vars(test_text_fuzz)) >= OTHERWISE
 
 
 # -- the program that it holds --------------------------------------------------------------------

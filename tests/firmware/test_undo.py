@@ -1,12 +1,16 @@
-"""UNDO: a robot holds the program before again, over every power-off, and loses none."""
+"""UNDO: a robot holds the program before again, over every power-off, and loses none.
+
+In every state what runs ends, nothing starts, and a pulled plug leaves one of the two. The states
+are those of the button. Before each of them the robot has saved one program more.
+"""
 
 from __future__ import annotations
 
 import random
-from struct import pack as struct_pack
 
 import pytest
 
+from tests.firmware.test_button_states import OTHER, SAVED, STATES, SmallRobot, Table
 from tests.firmware.test_host_firmware import (
     KIT,
     LONG,
@@ -14,6 +18,7 @@ from tests.firmware.test_host_firmware import (
     happened,
     held,
     image_of,
+    outcome,
     send,
     stored,
     switched_on,
@@ -31,7 +36,7 @@ from tests.machines.host_firmware import HostFirmware
 from tiniscript.bytecode.image import sealed
 from tiniscript.bytecode.opcodes import ISA_MINOR
 from tiniscript.link.frames import decoded
-from tiniscript.link.messages import SAVED, STATUSES
+from tiniscript.link.messages import SAVED_STORED, STATUSES
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -61,36 +66,24 @@ def test_a_robot_without_any_program_has_none_before() -> None:
     assert saved(robot, session) == "NOTHING"
 
 
-def of_another_kit() -> bytes:
-    """An image that is whole but for the devices: those of another kit."""
-    image = bytearray(bytes_of("SI|SHOW(DISTANCE)"))
-    image[6:8] = struct_pack("<H", int.from_bytes(image[6:8], "little") ^ 0x1111)
-    return sealed(bytes(image))
-
-
-def of_another_minor() -> bytes:
-    image = bytearray(bytes_of(A))
-    image[3] = ISA_MINOR + 1
-    return sealed(bytes(image))
-
-
-def that_no_verifier_takes() -> bytes:
-    image = bytearray(bytes_of(A))
-    image[-1] = 0xFE
-    return sealed(bytes(image))
-
-
-def that_is_damaged() -> bytes:
-    image = bytearray(bytes_of(A))
-    image[-1] ^= 1
+def with_byte(text: str, at: int, value: int) -> bytes:
+    image = bytearray(bytes_of(text))
+    image[at] = value
     return bytes(image)
 
 
-@pytest.mark.parametrize(
-    "image",
-    [OLD, of_another_kit(), of_another_minor(), that_no_verifier_takes(), that_is_damaged()],
-    ids=["old", "kit", "minor", "verifier", "damaged"],
-)
+OF_ANOTHER_KIT = sealed(with_byte("SI|SHOW(DISTANCE)", 6, 0x11))  # a byte of what it needs
+THAT_NO_VERIFIER_TAKES = sealed(with_byte(A, -1, 0xFE))
+CANNOT_RUN = {
+    "old": OLD,
+    "kit": OF_ANOTHER_KIT,
+    "minor": sealed(with_byte(A, 3, ISA_MINOR + 1)),
+    "verifier": THAT_NO_VERIFIER_TAKES,
+    "damaged": with_byte(A, -1, bytes_of(A)[-1] ^ 1),
+}
+
+
+@pytest.mark.parametrize("image", CANNOT_RUN.values(), ids=CANNOT_RUN)
 @pytest.mark.parametrize("is_first", [True, False])
 def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> None:
     good = bytes_of(A)
@@ -113,19 +106,15 @@ def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> 
     assert held(robot, session) == good
 
 
-@pytest.mark.parametrize(
-    "image", [of_another_kit(), that_no_verifier_takes()], ids=["kit", "verifier"]
-)
+@pytest.mark.parametrize("image", [OF_ANOTHER_KIT, THAT_NO_VERIFIER_TAKES], ids=["kit", "verifier"])
 @pytest.mark.parametrize("has_good", [True, False])
 def test_a_robot_begins_with_the_newest_program_that_it_can_run(
     image: bytes, has_good: bool
 ) -> None:
     """Its checksum is right, so that only the verifier or the kit says no."""
     good = bytes_of(A)
-    robot, session = (
-        HostFirmware(KIT, kept(*[(SECOND, 6, good)][:has_good], (FIRST, 7, image))),
-        computer(),
-    )
+    before = [(SECOND, 6, good)] if has_good else []
+    robot, session = HostFirmware(KIT, kept(*before, (FIRST, 7, image))), computer()
     robot.wait(400)
     assert saved(robot, session) == ("STORED" if has_good else "NOTHING")
     assert robot.is_lit == has_good
@@ -145,7 +134,7 @@ def test_a_program_that_is_not_saved_makes_way_for_the_saved_one() -> None:
     send(robot, session, C, saves=False)
     robot.talk(session, 500)
     memory = robot.memory()
-    assert SAVED[robot.done(session, session.undo()).saved][0] == "STORED"
+    assert robot.done(session, session.undo()).saved == SAVED_STORED
     assert held(robot, session) == bytes_of(B)
     robot.talk(session, 500)
     assert robot.memory() == memory, "nothing is written"
@@ -204,6 +193,7 @@ def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
     assert program_after_power_off(robot) == bytes_of(DRIVES)
 
 
+@pytest.mark.sampled("cut_ms", keep=18)
 @pytest.mark.parametrize("cut_ms", range(0, 160, 3))
 def test_pulled_out_at_any_moment_it_has_one_of_the_two(cut_ms: int) -> None:
     robot, session = with_two()
@@ -259,3 +249,113 @@ def test_any_order_of_programs_undos_and_power_offs() -> None:
             robot, session = switched_on(robot.memory()), computer(step)
         if now:
             assert held(robot, session) == bytes_of(now), step
+
+
+# -- in every state of the firmware ---------------------------------------------------------------
+
+
+EARLIER = 21  # the power of the program that was saved first
+IN_MEMORY = {
+    "holds a program in memory only", "holds a program that was typed", "runs a program in memory",
+}  # fmt: skip
+NO_PREVIOUS, NOT_OWNER = STATUSES["NO_PREVIOUS"], STATUSES["NOT_OWNER"]
+
+
+def begun(state: str, has_draft: bool = True) -> tuple[Table, Session]:
+    """Return a robot in a state, and who asks it: who talks with it, or another one."""
+    table = Table(has_draft)
+    table.robot.wait(200)
+    table.is_ready(EARLIER)
+    STATES[state](table)
+    if table.talks is not None:
+        return table, table.talks
+    return table, table.session if state == "has an owner" else computer(9)
+
+
+def after_power_off(table: Table) -> bytes:
+    """Return the program that it holds at the next two starts, the same, for who has its key."""
+    memory, found = table.robot.memory(), []
+    for nonce in (31, 32):
+        robot = switched_on(memory, seed=nonce)
+        asks = Session(nonce, 9600, KIT.fingerprint, keys=table.keys)
+        found.append(held(robot, asks))
+        memory = robot.memory()
+    assert found[0] == found[1]
+    return found[0]
+
+
+def program_of(power: int) -> bytes:
+    return bytes_of(f"SB|F(600, {power})")
+
+
+def back_in(state: str) -> int:
+    """Return the power of the program that comes back."""
+    if state == "holds no program":
+        return 0  # EARLIER is the only one
+    if state == "brings the program before back":
+        return OTHER
+    return SAVED if state in IN_MEMORY else EARLIER
+
+
+@pytest.mark.parametrize("has_draft", [True, False])
+@pytest.mark.parametrize("state", STATES)
+def test_undo_in_every_state(state: str, has_draft: bool) -> None:
+    table, session = begun(state, has_draft)
+    robot, back = table.robot, back_in(state)
+    was_running = not robot.is_latched
+    robot.did.clear()
+    status = undo(robot, session)
+    assert status == (OK if back else NO_PREVIOUS)
+    now = program_of(back or EARLIER)
+    assert held(robot, session) == now
+    assert robot.is_latched, "what runs ends"
+    robot.talk(session, 1500)
+    moves = {line for line in happened(robot) if line.startswith("MOTORS")}
+    assert moves == ({"MOTORS 0 0"} if was_running else set()), "nothing starts"
+    stored(robot, session)
+    assert after_power_off(table) == now
+    assert undo(robot, session) == (OK if back else NO_PREVIOUS)
+    stored(robot, session)
+    other = held(robot, session)
+    assert after_power_off(table) == other
+    assert (other != now) == bool(back), "a second one brings another"
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_two_at_once_are_two(state: str) -> None:
+    """The second request is on its way before the first is answered."""
+    table, session = begun(state)
+    robot, back = table.robot, back_in(state)
+    requests = [session.undo(), session.undo()]
+    found = [robot.until(session, each) for each in requests]
+    assert found == [OK if back else NO_PREVIOUS] * 2
+    programs = [outcome(each).values.program for each in requests if back]
+    assert len(set(programs)) == len(programs)
+    stored(robot, session)
+    assert after_power_off(table) == held(robot, session)
+
+
+@pytest.mark.sampled("cut_ms", keep=1)
+@pytest.mark.parametrize("cut_ms", [0, 10, 20, 30, 60, 140])
+@pytest.mark.parametrize("state", STATES)
+def test_a_plug_that_is_pulled_leaves_a_program_that_was_there(state: str, cut_ms: int) -> None:
+    table, session = begun(state)
+    robot = table.robot
+    kept = {after_power_off(table), program_of(EARLIER), program_of(SAVED)}
+    kept |= {program_of(OTHER)} if state == "brings the program before back" else set()
+    session.undo()
+    robot.talk(session, cut_ms)
+    assert after_power_off(table) in kept
+
+
+def test_a_stranger_brings_nothing_back() -> None:
+    table, _ = begun("has an owner")
+    before = after_power_off(table)
+    stranger = computer(9)
+    assert undo(table.robot, stranger) == NOT_OWNER
+    table.robot.wait(2000)
+    assert after_power_off(table) == before
+
+
+def test_the_small_robot_is_one() -> None:
+    assert isinstance(begun("runs text", has_draft=False)[0].robot, SmallRobot)

@@ -1,4 +1,5 @@
 """How long a stop takes on a simulated chip, whatever else the robot does: to the motor pins.
+And how much of the RAM the whole sketch leaves to the stack at its heaviest.
 
 A busy robot is stopped at some places of the sweep of `python -m tools.bench.link`. And what may
 come before a stop is bounded: all that keeps interrupts off, each at its longest and all at once.
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tiniscript import robots
+from tools.bench.firmware_stack import LEAST_FREE, measured
 from tools.bench.stops import Busy, Place, sample
 from tools.uno import CYCLES_PER_MS
 
@@ -51,3 +53,26 @@ def test_a_stop_is_at_the_pins_in_12_us(
         )
         print(f"\n  {slowest_us:.1f} us; all at once {together_us:.1f} us", end=" ")
     assert together <= MOST_CYCLES + more_cycles
+
+
+# -- what the whole sketch leaves free of the RAM at its heaviest ---------------------------------
+
+
+@pytest.mark.sampled(of="long ways of a chip")
+@pytest.mark.parametrize(
+    ("environment", "robot"),
+    [("uno", "tinibot"), ("nano_liner", "liner"), ("uno_tinibot2", "tinibot2")],
+)
+def test_the_sketch_leaves_stack_free(
+    environment: str,
+    robot: str,
+    sketches: Callable[[str], Path],
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    stack = measured(sketches(environment), robots.load(robot), environment.partition("_")[0])
+    with capsys.disabled():
+        print(f"\n  {stack.untouched} bytes untouched, {stack.least_free} at least", end=" ")
+    assert stack.program > 100 and stack.interrupt > 20
+    assert stack.least_free <= stack.untouched + 4
+    assert stack.untouched >= LEAST_FREE
+    assert stack.least_free >= LEAST_FREE
