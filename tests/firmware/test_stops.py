@@ -10,15 +10,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.firmware.test_button_states import STATES, Table, keeps_trim, saves
-from tests.firmware.test_host_firmware import (
-    AWAY,
-    KIT,
-    computer,
-    happened,
-    live,
-    send,
-    switched_on,
-)
+from tests.firmware.test_host_firmware import AWAY, KIT, computer, happened, live, send, switched_on
 from tests.machines.host_firmware import HostFirmware
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME

@@ -8,13 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_uno_robot import (
-    NAMES,
-    computer,
-    image_of,
-    saved,
-    send,
-)
+from tests.firmware.test_uno_robot import NAMES, computer, image_of, saved, send
 from tests.machines.wired import Wired
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
 from tiniscript.link.requests import OK
