@@ -16,7 +16,7 @@ from tests.firmware.test_text import typed
 from tests.machines.host_firmware import HostFirmware
 from tests.support.casefile import ROOT
 from tests.support.owners import HELD, KIT, PRESSED, RELEASED, Keys
-from tiniscript.link.messages import KEY_OWNER, OWNED, TEXT_ALLOWED
+from tiniscript.link.messages import KEY_OWNER, OWNED
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -331,15 +331,3 @@ def test_an_upload_is_lost_by_a_start_alone(press: str) -> None:
         outcome = table.robot.until(table.session, request, 30_000)
         drives = f"MOTORS {OTHER} {OTHER}" in " ".join(table.robot.did)
         assert (outcome == OK) == drives == (SHORT not in PRESSES[press][1])
-
-
-def test_two_seconds_let_text_drive_an_owned_robot() -> None:
-    for press in ("just long", "held 2 s"):
-        table = Table()
-        has_owner(table)
-        played(table, press)
-        session = computer(9)
-        assert table.robot.until(session, session.hello()) == OK
-        assert session.robot
-        is_allowed = bool(session.robot.values.features & TEXT_ALLOWED)
-        assert is_allowed == (press == "held 2 s")

@@ -115,10 +115,20 @@ def test_a_broker_for_which_there_is_no_memory_is_told_and_tried_again(broker: M
 # -- the road -----------------------------------------------------------------------------------
 
 
-def test_the_owner_drives_over_a_broker(broker: Mosquitto) -> None:
+def test_the_owner_drives_over_a_broker_and_one_message_stops_the_class(
+    broker: Mosquitto,
+) -> None:
     robot, teacher, owner, ends = driving(broker)
     assert present(robot, teacher) == [Present(ID, "tini-5678", True)]
+    other = broker.connected()
+    other.stop("another")
     talk(robot, ends, 1500)
+    assert motors(robot) == "MOTORS 80 80"
+    other.stop("aula")
+    talk(robot, ends, 100)
+    assert motors(robot) == "MOTORS 0 0"
+    owner.events()
+    assert uploaded(robot, ends, owner) == "OK"
     assert motors(robot) == "MOTORS 80 80"
     owner.stop(robot.now_ms)
     talk(robot, ends, 60)
@@ -209,17 +219,6 @@ def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosqui
 
 
 # -- stops --------------------------------------------------------------------------------------
-
-
-def test_one_message_stops_the_class_and_no_other_class(broker: Mosquitto) -> None:
-    robot, _, _, ends = driving(broker)
-    other = broker.connected()
-    other.stop("another")
-    talk(robot, ends, 200)
-    assert motors(robot) == "MOTORS 80 80"
-    other.stop("aula")
-    talk(robot, ends, 100)
-    assert motors(robot) == "MOTORS 0 0"
 
 
 def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:

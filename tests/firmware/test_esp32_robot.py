@@ -280,19 +280,6 @@ def test_every_tone_that_a_program_may_ask_for(name: str, major: int) -> None:
         assert robot.output(robot.robot.board.buzzer) == 0, hertz
 
 
-def test_the_button_starts_what_is_stored_and_the_light_says_that_it_can() -> None:
-    robot, session = switched_on(Esp32Robot()), computer()
-    assert not robot.is_lit
-    send(robot, session, "SI|F(0.5, 80)")
-    robot.talk(session, 700)
-    stored(robot, session)
-    again = switched_on(Esp32Robot(kept=robot.kept()))
-    assert again.is_lit
-    again.push()
-    again.wait(600)
-    assert happened(again)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
-
-
 def test_nvs_is_written_only_while_the_motors_stand() -> None:
     """A write may stop the chip while a page is erased: a stop would come late."""
     robot, session = switched_on(Esp32Robot()), computer()
@@ -308,7 +295,9 @@ def test_nvs_is_written_only_while_the_motors_stand() -> None:
 
 
 def test_a_full_nvs_is_said_and_the_program_before_stays() -> None:
+    """The button starts what is stored, and the light says that it can."""
     robot, session = switched_on(Esp32Robot()), computer()
+    assert not robot.is_lit
     send(robot, session, "SB|F(0.5, 80)")
     stored(robot, session)
     kept = robot.kept()
@@ -318,7 +307,8 @@ def test_a_full_nvs_is_said_and_the_program_before_stays() -> None:
     assert robot.done(session, session.status()).saved == 1  # in memory alone
     assert robot.kept().entries == kept.entries
     again = switched_on(Esp32Robot(kept=robot.kept()))
-    assert pushed(again, 100) == ["MOTORS 80 80"]
+    assert again.is_lit
+    assert pushed(again, 600)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
 
 
 # -- what goes wrong

@@ -49,13 +49,18 @@ def stops(robot: Esp32Robot, end: End | None, ends: Ends, data: bytes, what: str
     assert stands(robot), what
 
 
+def stops_behind_every_prefix(
+    robot: Esp32Robot, driver: Session, driver_end: End | None, end: End | None
+) -> None:
+    for k, (name, prefix) in enumerate(PREFIXES.items()):
+        ends = drives(robot, driver, driver_end)
+        stops(robot, end, ends, prefix + SPELLINGS[k % len(SPELLINGS)], name)
+
+
 @pytest.mark.parametrize("make", RADIOS)
 def test_a_typed_stop_over_a_radio_while_the_cable_drives(make: Make) -> None:
     robot = booted()
-    driver, end = session(1, robot), make(robot)
-    for k, (name, prefix) in enumerate(PREFIXES.items()):
-        ends = drives(robot, driver)
-        stops(robot, end, ends, prefix + SPELLINGS[k % len(SPELLINGS)], name)
+    stops_behind_every_prefix(robot, session(1, robot), None, make(robot))
 
 
 def test_a_typed_stop_over_a_network() -> None:
@@ -63,9 +68,7 @@ def test_a_typed_stop_over_a_network() -> None:
     robot, owner = joined(Keys())
     end = Network(robot)
     end.send(b"\0\0")
-    for k, (name, prefix) in enumerate(PREFIXES.items()):
-        ends = drives(robot, owner)
-        stops(robot, end, ends, prefix + SPELLINGS[k % len(SPELLINGS)], name)
+    stops_behind_every_prefix(robot, owner, None, end)
     end.leave()
 
 
@@ -90,25 +93,14 @@ def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
     talk(robot, ends, LATE_MS)
     other.taken()
     assert other.has_ended == (is_for_robot(word + page) is False)
+    stops(robot, end, drives(robot, owner), b"S\n", "behind one that has stopped nothing")
     end.leave()
     other.leave()
 
 
-def test_a_client_begins_a_line_behind_silence() -> None:
-    robot, owner = joined(Keys())
-    end = Network(robot)
-    end.send(b"S")
-    talk(robot, [(None, owner)], SILENCE_MS + 100)
-    ends = drives(robot, owner)
-    stops(robot, end, ends, b"S\n", "behind an S that has stopped nothing")
-
-
 def test_a_typed_stop_over_the_cable_while_a_radio_drives() -> None:
     robot = booted()
-    driver, end = session(1, robot), RADIOS[0](robot)
-    for k, (name, prefix) in enumerate(PREFIXES.items()):
-        ends = drives(robot, driver, end)
-        stops(robot, None, ends, prefix + SPELLINGS[k % len(SPELLINGS)], name)
+    stops_behind_every_prefix(robot, session(1, robot), RADIOS[0](robot), None)
 
 
 @pytest.mark.parametrize("make", RADIOS)

@@ -426,23 +426,21 @@ def test_after_three_restarts_wifi_rests_and_the_cable_brings_it_back(reset: int
         assert not rests(robot), "it counts anew"
 
 
-@pytest.mark.parametrize("between", [POWER_ON, EXTERNAL])
-def test_a_power_on_does_not_count(between: int) -> None:
-    robot, _ = joined(Keys())
-    for _ in range(4):
-        robot = restarted(robot, between, 1000)
-        assert not rests(robot)
-    for reset in (PANIC, between, PANIC, between):
-        robot = restarted(robot, reset, 1000)
-        assert not rests(robot)
-    assert rests(restarted(robot, PANIC, 1000))
+ROW = (PANIC, 1000)  # a reset, and how long after the one before
 
 
-def test_a_restart_later_than_20_seconds_ends_the_row() -> None:
+@pytest.mark.parametrize("row", [
+    [(POWER_ON, 1000)] * 4 + [ROW, (POWER_ON, 1000), ROW, (POWER_ON, 1000)],
+    [(EXTERNAL, 1000)] * 4 + [ROW, (EXTERNAL, 1000), ROW, (EXTERNAL, 1000)],
+    [ROW, ROW, (PANIC, 20_000), ROW, ROW, (PANIC, 20_000)],
+], ids=["power-on", "external", "20 seconds"])  # fmt: skip
+def test_what_is_no_row_of_restarts(row: list[tuple[int, int]]) -> None:
     robot, _ = joined(Keys())
-    for lived_ms in (1000, 1000, 20_000, 1000, 1000, 20_000):
-        robot = restarted(robot, PANIC, lived_ms)
+    for reset, lived_ms in row:
+        robot = restarted(robot, reset, lived_ms)
         assert not rests(robot)
+    if row[-1][0] != PANIC:  # these are not counted, and do not end a row
+        assert rests(restarted(robot, PANIC, 1000))
 
 
 def test_wifi_rests_where_nvs_is_full_and_without_wifi_nothing_counts() -> None:

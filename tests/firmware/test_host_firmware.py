@@ -154,7 +154,7 @@ def test_no_run_of_the_button_is_attached(starts: int) -> None:
     assert happened(robot)[-1] == "MOTORS 0 0" and robot.is_lit
     robot.talk(session, 100)
     robot.step(flags=2)
-    assert [event.name for event in session.events()] == ["STOPPED"]
+    assert [event.cause for event in session.events() if event.name == "STOPPED"] == [3]
     robot.wait(1500)
     for _ in range(starts - 1):
         robot.push()

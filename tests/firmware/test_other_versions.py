@@ -8,11 +8,18 @@ from struct import pack as struct_pack
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT, computer, image_of, send, switched_on
-from tests.firmware.test_persistence import EACH, FIRST, SECOND, saved
+from tests.firmware.test_host_firmware import (
+    KIT,
+    computer,
+    happened,
+    image_of,
+    send,
+    switched_on,
+)
+from tests.firmware.test_persistence import EACH, FIRST, SECOND, bytes_of, saved
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.owners import Keys
-from tiniscript.bytecode.image import REFUSALS, sealed
+from tiniscript.bytecode.image import REFUSALS, pack, sealed, unpack
 from tiniscript.link.authority import FREE, OF_ANOTHER, RobotKey, whose
 from tiniscript.link.messages import KEY_OWNER
 from tiniscript.link.requests import OK
@@ -82,8 +89,6 @@ def test_the_next_program_replaces_it() -> None:
 
 
 def test_one_of_this_version_before_it_counts() -> None:
-    from tests.firmware.test_persistence import bytes_of
-
     mine = bytes_of("SB|F(0.1, 60)")
     robot, session = met(kept((FIRST, 3, mine), (SECOND, 4, OLD)))
     assert saved(robot, session) == "STORED"
@@ -93,9 +98,6 @@ def test_one_of_this_version_before_it_counts() -> None:
 
 
 def test_a_program_with_a_longer_header_is_run() -> None:
-    from tests.firmware.test_persistence import bytes_of
-    from tiniscript.bytecode.image import pack, unpack
-
     image = unpack(bytes_of("SB|F(0.1, 60)"))
     longer = pack("SB", image.devices, image.code, b"what a later version says")
     robot, session = met(kept((FIRST, 3, longer)))
@@ -103,10 +105,7 @@ def test_a_program_with_a_longer_header_is_run() -> None:
     assert robot.done(session, session.fetch()).image == longer
     robot.push()
     robot.wait(300)
-    assert [line.split(" ", 1)[1] for line in robot.did if "MOTORS" in line] == [
-        "MOTORS 60 60",
-        "MOTORS 0 0",
-    ]
+    assert happened(robot)[:2] == ["MOTORS 60 60", "MOTORS 0 0"]
 
 
 def test_name_and_trim_outlive_an_update() -> None:

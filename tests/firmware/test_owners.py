@@ -27,7 +27,6 @@ from tiniscript.link.messages import (
     KEY_OWNER,
     KEY_TEACHER,
     OWNERS,
-    STATE_IDLE,
     STATE_RUNNING,
     STATUSES,
 )
@@ -106,14 +105,6 @@ def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() 
         assert table.claim(stranger, which) == "NOT_OWNER"
 
 
-def test_a_key_that_this_computer_cannot_keep_is_not_given_to_the_robot() -> None:
-    table, keys = Owned(), Keys()
-    keys.is_full = True
-    session = table.session(keys)
-    assert table.outcome(session, session.claim(KEY_OWNER)) == str(UNKEPT)
-    assert owner_of(table, session) == FREE
-
-
 @pytest.mark.sampled("cut_ms", keep=9)
 @pytest.mark.parametrize("cut_ms", range(1, 260, 7))
 def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
@@ -156,25 +147,17 @@ def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None
     assert [(key.is_pending, key.is_stale) for key in stale.found] == [(True, True)] * 2
 
 
-def test_a_worn_memory_is_told() -> None:
+def test_a_key_that_one_of_both_cannot_keep_is_nobodys() -> None:
     table, keys = Owned(), Keys()
-    table.robot.wear_out(536 + 8)  # the first byte of a key
+    keys.is_full = True
     session = table.session(keys)
+    assert table.outcome(session, session.claim(KEY_OWNER)) == str(UNKEPT)
+    assert owner_of(table, session) == FREE
+    keys.is_full = False
+    table.robot.wear_out(536 + 8)  # the first byte of a key
+    session = table.session(keys, nonce=2)
     assert table.claim(session) == "NOT_KEPT"
     assert owner_of(table, session) == FREE
-
-
-def test_a_long_press_starts_nothing_and_a_short_one_does() -> None:
-    table = Owned()
-    session = table.session(Keys())
-    assert table.outcome(session, session.upload(image_of("SB|F(1, 80)"))) == "OK"
-    table.pass_time(session, 2000)
-    table.hold(session, 1010)
-    table.pass_time(session, 100)
-    assert state_of(table, session) == STATE_IDLE
-    table.hold(session, 900)
-    table.pass_time(session, 100)
-    assert state_of(table, session) == STATE_RUNNING
 
 
 def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
@@ -257,6 +240,8 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
     table, keys = Owned(), Keys()
     table.claimed(keys, KEY_TEACHER)
     table.claimed(keys)
+    table.hold(None, 11_000)
+    assert owner_of(table, table.session(keys, nonce=4)) == YOUR_OWN, "later they forget nothing"
     for milliseconds, found in ((9800, YOUR_OWN), (10_800, FREE)):
         table = Owned(table.robot.memory(), seed=milliseconds)
         table.pass_time(None, 1, HELD)  # as a button that was down before the reset
@@ -269,13 +254,6 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
         assert owner_of(table, session) == found
     other = table.session(Keys(200), nonce=3)
     assert table.claim(other, KEY_TEACHER) == "OK"
-
-
-def test_ten_seconds_later_forget_nothing() -> None:
-    table, keys = Owned(), Keys()
-    table.claimed(keys)
-    table.hold(None, 11_000)
-    assert owner_of(table, table.session(keys, nonce=4)) == YOUR_OWN
 
 
 def test_text_drives_an_owned_robot_only_where_it_may() -> None:

@@ -102,13 +102,23 @@ def test_a_program_is_saved_in_its_pauses_and_no_motor_runs_meanwhile(wait: int)
 # -- names and trims ------------------------------------------------------------------------------
 
 
-def test_a_name_is_ok_when_it_is_kept() -> None:
+def test_a_name_is_ok_when_it_is_kept_and_told_to_be_kept_later_while_it_drives() -> None:
     """The plug is pulled as soon as the robot has said OK."""
     robot, session = switched_on(), computer()
     for name in (b"TINI", b"TIN", b"ANA"):
         assert robot.until(session, session.name(name)) == OK
         assert name_after_power_off(robot) == name.decode()
         assert session.robot is not None and session.robot.name == name.decode()
+    send(robot, session, DRIVES, saves=False)
+    begun_ms = robot.now_ms
+    assert robot.until(session, session.name(b"NEW")) == STATUSES["SAVING"]
+    assert robot.now_ms - begun_ms < 6000  # for which a command waits
+    assert session.is_running
+    assert name_after_power_off(robot) == "ANA"
+    session.stop(robot.now_ms)
+    robot.talk(session, 500)
+    assert name_after_power_off(robot) == "NEW"
+    assert robot.until(session, session.name(b"NEW")) == OK
 
 
 @pytest.mark.parametrize("cut_ms", range(1, 240, 17))
@@ -120,21 +130,6 @@ def test_a_name_that_is_not_ok_yet_is_the_old_one_or_the_new_one(cut_ms: int) ->
     found = name_after_power_off(robot)
     assert found in ("OLD", "NEW")
     assert request.outcome is None or found == "NEW"
-
-
-def test_a_name_given_while_it_drives_is_told_to_be_kept_later() -> None:
-    robot, session = switched_on(), computer()
-    assert robot.until(session, session.name(b"OLD")) == OK
-    send(robot, session, DRIVES, saves=False)
-    begun_ms = robot.now_ms
-    assert robot.until(session, session.name(b"NEW")) == STATUSES["SAVING"]
-    assert robot.now_ms - begun_ms < 6000  # for which a command waits
-    assert session.is_running
-    assert name_after_power_off(robot) == "OLD"
-    session.stop(robot.now_ms)
-    robot.talk(session, 500)
-    assert name_after_power_off(robot) == "NEW"
-    assert robot.until(session, session.name(b"NEW")) == OK
 
 
 def test_a_trim_is_ok_when_it_is_kept() -> None:
@@ -272,22 +267,27 @@ def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
 # -- reading while it is written ------------------------------------------------------------------
 
 
-def writing_a_name(robot: HostFirmware, session: Session) -> Session:
+def writing_a_name(robot: HostFirmware, session: Session, name: bytes = b"A LONG NAME") -> Session:
     """Return another session of a robot that holds what is stored, and writes its name."""
     broken_upload(robot, session)
     other = computer(3)
     assert robot.until(other, other.hello()) == OK
-    other.name(b"A LONG NAME")
+    other.name(name)
     robot.talk(other, 5)
     return other
 
 
-def test_a_program_is_fetched_whole_while_a_name_is_written() -> None:
+def test_a_program_is_fetched_whole_and_started_while_a_name_is_written() -> None:
     text = "SB|" + "F(0.2, 80); " * 30
     robot, session = holding(text)
     writing_a_name(robot, session)
     another = computer(4)
     assert robot.done(another, another.fetch()).image == bytes_of(text)
+    robot.talk(another, 1000)
+    other = writing_a_name(robot, another, b"ANOTHER ONE")
+    robot.push(1)
+    robot.talk(other, 7000)
+    assert happened(robot)[0] == "MOTORS 80 80" and happened(robot)[-1] == "FINISHED"
 
 
 def test_a_robot_that_writes_says_busy_to_fetch() -> None:
@@ -300,14 +300,6 @@ def test_a_robot_that_writes_says_busy_to_fetch() -> None:
     assert robot.until(other, naming) == STATUSES["SAVING"]
     request = other._add(single(Request("FETCH", {"offset": 0}), FetchReply))
     assert robot.until(other, request) == STATUSES["BUSY"]
-
-
-def test_the_button_starts_the_program_while_something_is_written() -> None:
-    robot, session = holding()
-    other = writing_a_name(robot, session)
-    robot.push(1)
-    robot.talk(other, 500)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 def test_a_stop_ends_a_start_that_waits_for_the_memory() -> None:

@@ -240,8 +240,11 @@ def test_a_counter_at_its_end_begins_another_seal() -> None:
 
 
 def test_a_seal_that_has_expired_is_made_again_for_the_same_request() -> None:
+    """Behind more requests than numbers: AUTHENTICATE has one after those of the sealed ones."""
     table, session, _ = opened()
     before = session._sealing.seal
+    for _ in range(200):
+        assert table.outcome(session, session.trim()) == "OK"
     table.pass_time(None, 2100)
     table.robot.did.clear()
     request = session.live(image_of(SHORT).code)
@@ -257,15 +260,6 @@ def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
     later.robot.now_ms = table.robot.now_ms
     assert later.outcome(session, session.status()) == "OK"
     assert session._sealing.seal
-
-
-def test_more_requests_than_numbers_and_an_expiry() -> None:
-    """AUTHENTICATE has a number after those of the sealed requests."""
-    table, session, _ = opened()
-    for _ in range(200):
-        assert table.outcome(session, session.trim()) == "OK"
-    table.pass_time(None, 2100)
-    assert table.outcome(session, session.trim()) == "OK"
 
 
 def test_another_session_with_the_same_numbers_is_another_seal() -> None:

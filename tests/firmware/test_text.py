@@ -229,15 +229,21 @@ def test_a_program_of_frames_replaces_sb() -> None:
 
 
 @pytest.mark.parametrize(
-    "line",
-    ["FOO(1)\n", "SI|F(1,\n", "F(1,500)\n", "SB|X=\n", "F(1,50)~0\n", "\x01\x02\n",
-     "SI|LOOP(2);\nBAD\n", "9" * 300 + "\n"],
+    ("line", "ends"),
+    [
+        ("FOO(1)\n", False), ("SI|F(1,\n", False), ("F(1,500)\n", False), ("SB|X=\n", False),
+        ("F(1,50) R(1,50)\n", False), ("F(1,50)~0\n", False), ("\x01\x02\n", False),
+        ("9" * 300 + "\n", False), ("HELP\n", False), ("// no\n", False),
+        ("PING|CHECK_CONNECTION\n", False),
+        ("SI|LOOP(2);\nBAD\n", True), ("F(1,50); F(1,500)\n", True),
+    ],
 )  # fmt: skip
-def test_a_bad_line_leaves_what_runs(line: str) -> None:
+def test_a_bad_line_ends_what_runs_only_behind_a_whole_instruction(line: str, ends: bool) -> None:
+    """And only where there is no room for two programs."""
     robot = switched_on()
     typed(robot, "SI|F(30,50)\n", 300)
     typed(robot, line, 2000)
-    assert happened(robot) == ["MOTORS 50 50"]
+    assert happened(robot) == ["MOTORS 50 50"] + ["MOTORS 0 0"] * (ends and not robot.has_draft)
 
 
 # -- what ends a run that text has started --------------------------------------------------------
@@ -320,13 +326,9 @@ def test_a_fault_is_told_recorded_and_kept() -> None:
     assert (again.fault, again.fault_at) == (2, values.fault_at)
     assert again.fault_program == values.fault_program
     assert typed(robot, "F(0.2,50)\n") == ["// It had a fault. Begin with SI|"]
-
-
-def test_a_fault_names_the_image_of_the_text() -> None:
-    """Where the plain code and the compiler's are the same, so are the checksums."""
-    robot, session = switched_on(), computer()
-    image = image_of("SI|W(TIME / (TIME - TIME))")
+    # where the plain code and the compiler's are the same, so are the checksums
     typed(robot, "SI|W(TIME/(TIME-TIME))\n")
+    image = image_of("SI|W(TIME / (TIME - TIME))")
     assert status(robot, session).fault_program == image.checksum
 
 
@@ -359,16 +361,13 @@ def test_a_word_that_begins_like_s_in_an_open_block_may_be_typed_slowly(
     assert typed(robot, "\nEND_LOOP\n", 300)[-1] == "// DONE"
 
 
-@pytest.mark.parametrize("how", [b"\0", b"\x01\x02\0"])
-def test_a_program_that_is_cut_is_told_and_not_called_late(how: bytes) -> None:
+def test_a_program_that_is_cut_or_comes_late_is_told() -> None:
     robot = switched_on()
-    typed(robot, "SI|LOOP(2)\n")
-    typed(robot, "F(0.1")
-    assert typed(robot, how, 100) == ["// Bytes were lost. Begin again."]
-
-
-def test_a_program_that_comes_late_is_told() -> None:
-    robot = switched_on()
+    for how in (b"\0", b"\x01\x02\0"):
+        typed(robot, "SI|LOOP(2)\n")
+        typed(robot, "F(0.1")
+        assert typed(robot, how, 100) == ["// Bytes were lost. Begin again."], how
+        robot.wait(1500)
     typed(robot, "SI|LOOP(2)\n", 1100)
     assert robot.wait(60_000) == b"// Too late. Begin again.\r\n"
 
@@ -539,18 +538,9 @@ def test_help_with_a_device_of_a_long_name(letters: int) -> None:
     assert words[-2:] == ["DISTANCE", "A" * min(letters, LINE_LETTERS - len("// "))]
 
 
-def test_a_name_cannot_end_its_line() -> None:
-    """Else an echo of it would be a program."""
-    robot, session = switched_on(), computer()
-    robot.until(session, session.hello())
-    robot.until(session, session.name(b"\r\nS;\x1b[2J\xc3\xb1\x00\x7f"))
-    robot.wait(4000)
-    (answer,) = typed(robot, "PING|CHECK_CONNECTION\n")
-    assert answer.encode("latin-1").startswith(b"// ??S;?[2J\xc3\xb1??, kit ")
-
-
 @pytest.mark.parametrize("seed", range(4))
-def test_a_robot_without_a_name_says_its_number(seed: int) -> None:
+def test_a_robot_says_its_number_or_a_name_which_cannot_end_its_line(seed: int) -> None:
+    """Else an echo of it would be a program."""
     robot, session = HostFirmware(KIT, EMPTY, seed=0x9F0FFE8D + seed), computer()
     robot.wait(200)
     robot.until(session, session.hello())
@@ -558,6 +548,10 @@ def test_a_robot_without_a_name_says_its_number(seed: int) -> None:
     robot.wait(4000)
     (answer,) = typed(robot, "PING|CHECK_CONNECTION\n")
     assert answer.startswith(f"// {session.robot.id:08x}, kit {KIT.fingerprint:04x}, ")
+    robot.until(session, session.name(b"\r\nS;\x1b[2J\xc3\xb1\x00\x7f"))
+    robot.wait(4000)
+    (answer,) = typed(robot, "PING|CHECK_CONNECTION\n")
+    assert answer.encode("latin-1").startswith(b"// ??S;?[2J\xc3\xb1??, kit ")
 
 
 @pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])

@@ -38,11 +38,9 @@ LOST = "// OK. The old program is lost."
 OTHERWISE = {  # tests of robots that have room for two programs
     "test_the_program_that_it_holds_is_untouched",
     "test_sb_waits_for_the_button_and_is_gone_with_the_power",
-    "test_a_bad_line_leaves_what_runs",
-    "test_anything_and_then_a_line",
 }
 
-for name, test in vars(test_text).items():
+for name, test in {**vars(test_text), **vars(test_text_fuzz)}.items():
     if name.startswith("test_") and name not in OTHERWISE:
         globals()[name] = test
 
@@ -50,15 +48,6 @@ for name, test in vars(test_text).items():
 @pytest.fixture(autouse=True)
 def _is_small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(HostFirmware, "has_draft", False)
-
-
-@pytest.mark.parametrize("seed", range(test_text_fuzz.SEEDS))
-def test_anything_and_then_a_line(seed: int) -> None:
-    test_text_fuzz.run(seed)
-
-
-def test_these_are_all_tests_that_differ() -> None:
-    assert set(vars(test_text)) | set(vars(test_text_fuzz)) >= OTHERWISE
 
 
 # -- the program that it holds --------------------------------------------------------------------
@@ -111,23 +100,6 @@ def test_a_new_line_ends_what_runs_when_its_first_instruction_has_been_read() ->
     assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
     assert typed(robot, "\n", 400) == ["// OK", "// DONE"]
     assert happened(robot)[2:] == ["MOTORS 40 -40", "MOTORS 0 0", "FINISHED"]
-
-
-@pytest.mark.parametrize(
-    ("line", "ends"),
-    [
-        ("FOO(1)\n", False), ("SI|F(1,\n", False), ("F(1,500)\n", False), ("SB|X=\n", False),
-        ("F(1,50) R(1,50)\n", False), ("F(1,50)~0\n", False), ("\x01\x02\n", False),
-        ("9" * 300 + "\n", False), ("HELP\n", False), ("// no\n", False),
-        ("PING|CHECK_CONNECTION\n", False),
-        ("SI|LOOP(2);\nBAD\n", True), ("F(1,50); F(1,500)\n", True),
-    ],
-)  # fmt: skip
-def test_a_bad_line_ends_what_runs_only_behind_a_whole_instruction(line: str, ends: bool) -> None:
-    robot = switched_on()
-    typed(robot, "SI|F(30,50)\n", 300)
-    typed(robot, line, 2000)
-    assert happened(robot) == ["MOTORS 50 50"] + ["MOTORS 0 0"] * ends
 
 
 def test_a_long_first_instruction_needs_its_room_before_its_end() -> None:

@@ -10,7 +10,7 @@ import random
 
 import pytest
 
-from tests.firmware.test_button_states import OTHER, SAVED, STATES, SmallRobot, Table
+from tests.firmware.test_button_states import OTHER, SAVED, STATES, Table
 from tests.firmware.test_host_firmware import (
     KIT,
     LONG,
@@ -58,12 +58,6 @@ def undo(robot: HostFirmware, session: Session) -> int:
 
 
 # -- refused --------------------------------------------------------------------------------------
-
-
-def test_a_robot_without_any_program_has_none_before() -> None:
-    robot, session = switched_on(), computer()
-    assert undo(robot, session) == NO_PREVIOUS
-    assert saved(robot, session) == "NOTHING"
 
 
 def with_byte(text: str, at: int, value: int) -> bytes:
@@ -144,6 +138,8 @@ def test_a_program_that_is_not_saved_makes_way_for_the_saved_one() -> None:
 
 def test_a_program_that_is_not_saved_stays_where_nothing_is() -> None:
     robot, session = switched_on(), computer()
+    assert undo(robot, session) == NO_PREVIOUS
+    assert saved(robot, session) == "NOTHING"
     send(robot, session, A, saves=False)
     assert undo(robot, session) == NO_PREVIOUS
     assert held(robot, session) == bytes_of(A)
@@ -355,7 +351,3 @@ def test_a_stranger_brings_nothing_back() -> None:
     assert undo(table.robot, stranger) == NOT_OWNER
     table.robot.wait(2000)
     assert after_power_off(table) == before
-
-
-def test_the_small_robot_is_one() -> None:
-    assert isinstance(begun("runs text", has_draft=False)[0].robot, SmallRobot)

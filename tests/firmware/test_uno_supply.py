@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_uno_robot import NAMES, computer, image_of, saved, send
+from tests.firmware.test_board_tasks import each_board
+from tests.firmware.test_uno_robot import NAMES, computer, saved, send
 from tests.machines.wired import Wired
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
 from tiniscript.link.requests import OK
@@ -29,10 +30,11 @@ def until_saved(wired: Wired, limit_ms: int = 4000) -> int:
     raise AssertionError("still saving")
 
 
+@each_board
 @pytest.mark.parametrize(("volts", "found"), [(5, STORED), (4.05, STORED), (3.95, LOW), (3, LOW)])
-def test_it_saves_from_four_volts_on(uno: Uno, volts: float, found: int) -> None:
-    wired = computer(uno)
-    uno.supply(volts)
+def test_it_saves_from_four_volts_on(robot: Uno, volts: float, found: int) -> None:
+    wired = computer(robot)
+    robot.supply(volts)
     send(wired, SAVES)
     assert until_saved(wired) == found
 
@@ -113,18 +115,6 @@ def test_a_program_that_drives_in_short_pushes_is_saved_in_between(uno: Uno) -> 
         after = [change.cycle for change in driving if change.cycle > cycle]
         assert not after or after[0] - cycle >= 1.5 * CYCLES_PER_MS
     assert wired.session.is_running
-
-
-def test_a_mega_measures_its_supply_too(sketches: Callable[[str], Path]) -> None:
-    with Uno(sketches("mega"), board="mega", baud=9600) as mega:
-        mega.run_ms(300)
-        wired = computer(mega)
-        mega.supply(3.9)
-        assert wired.until(wired.session.upload(image_of("SI|W(0.1)"))) == OK
-        assert until_saved(wired) == LOW
-        mega.supply(4.1)
-        wired.run(1000)
-        assert until_saved(wired) == STORED
 
 
 LOOKS = "SI|LOOP(FOREVER);SHOW(DISTANCE);SHOW(LIGHT_L);SHOW(LIGHT_R);END_LOOP"
