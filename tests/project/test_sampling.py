@@ -56,7 +56,9 @@ class Plugin:
         for config.option.sample in self.commits:
             left = list(items)
             sampling.leave_out(config, left)
-            self.found.append(([item.name for item in left], sampling.said(config)))
+            letters = sampling.some_of(config, "letters", "abcd", 2)
+            names = [item.name for item in left]
+            self.found.append(([*names, *letters], sampling.said(config)))
 
 
 def collected(
@@ -86,10 +88,12 @@ def test_each_value_is_in_each_sample_and_each_row_in_one(tmp_path: Path) -> Non
         kits = {name.split("[")[1][0] for name in found if "same_kit" in name}
         kits |= {name[:-1].split("-")[1] for name in found if "test_kit" in name}
         assert count["test_kit"] == 5 and len(kits) == 1
+        assert sum(count[letter] for letter in "abcd") == 2
         seen.update(found)
     assert sum("_case" in name for name in seen) > 55
     assert sum("board" in name for name in seen) == 3
     assert sum("same_kit" in name for name in seen) == 4
+    assert set("abcd") <= set(seen)
     assert drawn[7] == drawn[15]
     ((asked, said),) = collected(tmp_path, "-k", "not usual")  # which asks for none
     assert sum("_case" in name for name in asked) == 20 and said
@@ -101,6 +105,7 @@ def test_each_value_is_in_each_sample_and_each_row_in_one(tmp_path: Path) -> Non
 def test_what_is_asked_for_has_all_its_rows(words: list[str], of: str, tmp_path: Path) -> None:
     ((found, said),) = collected(tmp_path, *words, of=of)
     assert sum("_case" in name for name in found) == 60 and said == ""
+    assert found[-4:] == [*"abcd"]
 
 
 def test_all_rows_of_one_test_run_and_each_that_fails_is_named() -> None:

@@ -132,13 +132,13 @@ SCREENS: dict[str, See] = {
 }
 
 
-def each_screen(page: Page, sizes: Iterable[Size]) -> Iterator[tuple[str, Size]]:
-    """See each screen of a page, from its start on, at each size; yield which one it is."""
+def each_screen(page: Page, sizes: Callable[[str], Iterable[Size]]) -> Iterator[tuple[str, Size]]:
+    """See each screen of a page, from its start on, at its sizes; yield which one it is."""
     for screen, see in SCREENS.items():
         page.set_viewport_size({"width": 1366, "height": 768})
         page.evaluate(SETTLED)
         see(page)
-        for width, height in sizes:
+        for width, height in sizes(screen):
             page.set_viewport_size({"width": width, "height": height})
             if screen not in STARTS:
                 turn(page, "robot" if screen in BESIDE else "program")

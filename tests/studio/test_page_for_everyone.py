@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import pytest
 
-from tests.studio.screens import each_screen
+from tests.studio import screens
 from tests.support import studio
 from tests.support.needs import need
+from tests.support.sampling import some_of
 from tests.support.studio import Pages, axe, checked, enter, image, speak, write
 from tiniscript import check, compile
 from tiniscript.base.languages import SOURCE, languages
@@ -104,14 +105,16 @@ THEMES = {"dark": "[data-dark]", "light": ":not([data-dark])"}
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_each_screen_is_seen_whole_and_axe_finds_nothing(
-    page: Page, theme: Literal["light", "dark"], language: str
+    page: Page, theme: Literal["light", "dark"], language: str, pytestconfig: pytest.Config
 ) -> None:
-    """At each size; of the class there is `test_page_class.py`."""
-    axed = SCREENS[0], SCREENS[2 if theme == "light" else 3]
+    """At half of the sizes, others in each commit; of the class there is `test_page_class.py`."""
+    usual = {screen: some_of(pytestconfig, screen, SCREENS, 2) for screen in screens.SCREENS}
+    low = {screen: some_of(pytestconfig, f"low {screen}", LOW, 2) for screen in screens.SCREENS}
+    axed = {screen: some_of(pytestconfig, screen, usual[screen]) for screen in usual}
     page.emulate_media(color_scheme=theme)
     speak(page, language)
     page.click("#home")
-    for screen, size in each_screen(page, (*SCREENS, *LOW)):
+    for screen, size in screens.each_screen(page, lambda name: (*usual[name], *low[name])):
         assert page.locator("#stop").is_visible()
         if screen not in ("teacher", "programs"):  # one is scrolled, one in front of all
             for end in (0,) if size in SCREENS else (0, 10_000):
@@ -131,7 +134,7 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
                 page.click(f"#share_{how}")
                 page.locator("#programs:not([data-shared=asked])").wait_for()
                 assert page.evaluate(DIALOG) == [], (how, size)
-        if size in axed:
+        if size in axed[screen]:
             assert axe(page) == [], (screen, size)
     page.emulate_media(color_scheme="null")
     page.set_viewport_size({"width": 1366, "height": 768})

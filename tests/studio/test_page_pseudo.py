@@ -88,7 +88,7 @@ def test_longer_texts_fit_into_every_screen(browser: Browser) -> None:
         page.evaluate("document.querySelector('#start_title').lastChild.remove()")
         cut = {}
         plain = {}
-        for screen, size in each_screen(page, SIZES):
+        for screen, size in each_screen(page, lambda screen: SIZES):
             cut[screen, size] = page.evaluate(CUT)
             if size == SIZES[0]:
                 plain[screen] = page.evaluate(PLAIN)

@@ -4,7 +4,8 @@ A test marked `sampled("chip")` keeps, of the rows that differ in `chip` alone, 
 draws: every other value is in each run, each chip as often as the others, and every row in some.
 `sampled("chip", keep=2)` keeps two. `sampled(of="bootloaders", keep=2)` keeps two of all tests that
 are marked so, with their rows. Tests with the same `draw` keep the same rows: of what is built for
-them less is built. `--whole` runs all, and what `-k` or a name asks for is run.
+them less is built. `some_of` draws of what one test goes through by itself. `--whole` runs all, and
+what `-k` or a name asks for is run.
 """
 
 from __future__ import annotations
@@ -12,13 +13,16 @@ from __future__ import annotations
 import random
 import subprocess
 from collections import defaultdict
+from collections.abc import Sequence
 from functools import lru_cache
+from typing import TypeVar
 
 import pytest
 
 from tests.support.casefile import ROOT
 
 MARK = "sampled"
+Row = TypeVar("Row")
 
 
 def add_options(parser: pytest.Parser) -> None:
@@ -55,6 +59,14 @@ def _mark(rows: list[pytest.Item]) -> pytest.Mark:
     mark = rows[0].get_closest_marker(MARK)
     assert mark is not None
     return mark
+
+
+def some_of(config: pytest.Config, draw: str, rows: Sequence[Row], keep: int = 1) -> Sequence[Row]:
+    """Return so many rows of those that one test goes through by itself, in their order."""
+    if config.getoption("--whole") or is_narrowed(config):
+        return rows
+    kept = random.Random(f"{seed(config)} {draw}").sample(range(len(rows)), keep)
+    return [rows[k] for k in sorted(kept)]
 
 
 def said(config: pytest.Config) -> str:
