@@ -9,13 +9,13 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
-from http.client import HTTPConnection
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.sharing.test_peers import linux, pair
+from tests.support import page_server
 from tests.support.page_server import serves
 from tests.support.waiting import HANGS_S, until
 from tiniscript.link.sharing import peers
@@ -166,13 +166,8 @@ def enter(own: str, code: str) -> tuple[int, Any]:
 
 
 def post(own: str, token: str, request: object, path: str = serving.ROBOTS) -> tuple[int, Any]:
-    connection = HTTPConnection(own, timeout=HANGS_S)
-    headers = {"Origin": f"http://{own}", serving.TOKEN: token}
-    connection.request("POST", path, json.dumps(request), headers)
-    answer = connection.getresponse()
-    data = answer.read()
-    connection.close()
-    return answer.status, json.loads(data) if answer.status == 200 else data.decode()
+    status, data = page_server.post(own, token, json.dumps(request).encode(), path)
+    return status, json.loads(data) if status == 200 else data.decode()
 
 
 @linux

@@ -5,13 +5,12 @@ from __future__ import annotations
 import signal
 import socket
 from collections.abc import Iterator
-from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
 
 import pytest
 
 from tests.support.command import Command, Tsc
-from tests.support.page_server import serves
+from tests.support.page_server import ask, serves
 from tests.support.waiting import HANGS_S
 from tiniscript.studio import serving
 from tiniscript.studio.serving import POLICY
@@ -37,16 +36,10 @@ def server(folder: Path) -> Iterator[serving.Server]:
         yield made
 
 
-def ask(
-    server: serving.Server, path: str, method: str = "GET", headers: dict[str, str] | None = None
-) -> tuple[HTTPResponse, bytes]:
-    connection = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
-    try:
-        connection.request(method, path, headers=headers or {})
-        response = connection.getresponse()
-        return response, response.read()
-    finally:
-        connection.close()
+@pytest.fixture
+def own(server: serving.Server) -> str:
+    """The name of the server in a request."""
+    return f"{serving.HOST}:{server.server_port}"
 
 
 def test_the_next_studio_has_the_port_as_soon_as_the_last_one_has_ended(folder: Path) -> None:
@@ -61,17 +54,17 @@ def test_the_next_studio_has_the_port_as_soon_as_the_last_one_has_ended(folder: 
     serving.Server(page, first.server_port).server_close()
 
 
-def test_the_page_comes_with_its_policy(server: serving.Server) -> None:
-    response, data = ask(server, "/?anything=1")
+def test_the_page_comes_with_its_policy(own: str) -> None:
+    response, data = ask(own, "/?anything=1")
     assert (response.status, data) == (200, b"<!doctype html>")
     policy = response.getheader("Content-Security-Policy") or ""
     assert policy.startswith(POLICY) and "frame-ancestors 'none'" in policy
     assert "unsafe-inline" not in policy and "unsafe-eval'" not in policy.replace("wasm-unsafe", "")
     assert response.getheader("X-Content-Type-Options") == "nosniff"
     assert response.getheader("Access-Control-Allow-Origin") is None
-    response, data = ask(server, "/main.js")
+    response, data = ask(own, "/main.js")
     assert response.getheader("Content-Type") == "text/javascript; charset=utf-8"
-    response, data = ask(server, "/main.js", "HEAD")
+    response, data = ask(own, "/main.js", "HEAD")
     assert (response.status, data, response.getheader("Content-Length")) == (200, b"", "1")
 
 
@@ -80,8 +73,8 @@ def test_the_page_comes_with_its_policy(server: serving.Server) -> None:
     ["/../secret.txt", "/%2e%2e/secret.txt", "//etc/passwd", "/inside/deep.js", "/build.json",
      "/notes.unknown", "/nothing", "/..\\secret.txt"],
 )  # fmt: skip
-def test_nothing_but_the_page_is_given(server: serving.Server, path: str) -> None:
-    response, data = ask(server, path)
+def test_nothing_but_the_page_is_given(own: str, path: str) -> None:
+    response, data = ask(own, path)
     assert response.status == 404 and b"secret" not in data
 
 
@@ -97,35 +90,30 @@ def test_nothing_but_the_page_is_given(server: serving.Server, path: str) -> Non
         {"Origin": "http://127.0.0.1:1"},
     ],
 )
-def test_another_page_gets_nothing(server: serving.Server, headers: dict[str, str]) -> None:
-    filled = {
-        name: value.replace("PORT", str(server.server_port)) for name, value in headers.items()
-    }
-    response, data = ask(server, "/", headers=filled)
+def test_another_page_gets_nothing(own: str, headers: dict[str, str]) -> None:
+    port = own.partition(":")[2]
+    filled = {name: value.replace("PORT", port) for name, value in headers.items()}
+    response, data = ask(own, "/", headers=filled)
     assert response.status == 403 and b"doctype" not in data
 
 
-@pytest.mark.parametrize("name", ["127.0.0.1", "localhost"])
-def test_its_own_page_gets_it(server: serving.Server, name: str) -> None:
-    own = f"{name}:{server.server_port}"
-    response, _ = ask(server, "/", headers={"Host": own, "Origin": f"http://{own}"})
-    assert response.status == 200
+def test_its_own_page_gets_it(own: str) -> None:
+    for name in (own, own.replace(serving.HOST, "localhost")):
+        response, _ = ask(own, headers={"Host": name, "Origin": f"http://{name}"})
+        assert response.status == 200, name
 
 
-@pytest.mark.parametrize("method", ["PUT", "DELETE", "OPTIONS", "TRACE"])
-def test_nothing_can_be_sent_to_it(server: serving.Server, method: str) -> None:
-    assert ask(server, "/", method)[0].status == 501
+def test_nothing_can_be_sent_to_it(server: serving.Server, own: str) -> None:
+    """And it listens on this computer alone."""
+    for method in ("PUT", "DELETE", "OPTIONS", "TRACE"):
+        assert ask(own, "/", method)[0].status == 501, method
+    assert server.server_address[0] == "127.0.0.1"
 
 
-def test_two_names_of_a_host_are_none(server: serving.Server) -> None:
-    own = f"127.0.0.1:{server.server_port}"
+def test_two_names_of_a_host_are_none(server: serving.Server, own: str) -> None:
     with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
         client.sendall(f"GET / HTTP/1.1\r\nHost: {own}\r\nHost: evil.example\r\n\r\n".encode())
         assert client.recv(100).startswith(b"HTTP/1.1 403")
-
-
-def test_it_listens_on_this_computer_alone(server: serving.Server) -> None:
-    assert server.server_address[0] == "127.0.0.1"
 
 
 def test_it_goes_on_until_it_is_ended(folder: Path) -> None:

@@ -10,15 +10,16 @@ import json
 import os
 from collections.abc import Iterator
 from contextlib import ExitStack
-from http.client import HTTPConnection, HTTPResponse
+from http.client import HTTPConnection
 from pathlib import Path
 from threading import active_count
 
 import pytest
 
+from tests.support import page_server
 from tests.support.command import Tsc
 from tests.support.crowd import HALF_A_REQUEST, crowd
-from tests.support.page_server import serves
+from tests.support.page_server import ask, serves
 from tests.support.studio import Class
 from tests.support.waiting import HANGS_S
 from tiniscript.studio import serving
@@ -47,15 +48,10 @@ def own(taught: Class) -> str:
     return f"{HOST}:{taught.server.server_port}"
 
 
-def post(taught: Class, request: object, **headers: str) -> int:
+def post(taught: Class, request: object, token: str = "", **headers: str) -> int:
     """Post as a page of the class does; return the status."""
-    connection = HTTPConnection(own(taught), timeout=HANGS_S)
-    given = {"Host": own(taught), "Origin": f"http://{own(taught)}", serving.TOKEN: ""}
-    try:
-        connection.request("POST", serving.ROBOTS, json.dumps(request), {**given, **headers})
-        return connection.getresponse().status
-    finally:
-        connection.close()
+    body = json.dumps(request).encode()
+    return page_server.post(own(taught), token, body, headers=headers)[0]
 
 
 def joins(taught: Class) -> str:
@@ -73,17 +69,8 @@ def test_the_host_is_the_shown_address_exactly(taught: Class, host: str) -> None
             continue
         assert post(taught, {"do": "join"}, Host=name) == 403
         assert post(taught, {"do": "join"}, Origin=f"http://{name}") == 403
-        assert page_of(taught, {"Host": name}).status == 403
+        assert ask(own(taught), headers={"Host": name})[0].status == 403
     assert post(taught, {"do": "join", "code": "", "name": ""}) == 200
-
-
-def page_of(taught: Class, headers: dict[str, str]) -> HTTPResponse:
-    connection = HTTPConnection(own(taught), timeout=HANGS_S)
-    connection.request("GET", "/", headers=headers)
-    found = connection.getresponse()
-    found.read()
-    connection.close()
-    return found
 
 
 def test_the_page_is_packed_marked_and_fetched_once(taught: Class) -> None:
@@ -107,12 +94,12 @@ def test_the_page_is_packed_marked_and_fetched_once(taught: Class) -> None:
 
 def test_a_token_opens_its_own_door_alone(taught: Class) -> None:
     ana, teacher = joins(taught), taught.server.entrances.token
-    assert post(taught, {"do": "here"}, **{serving.TOKEN: ana}) == 200
-    assert post(taught, {"do": "class"}, **{serving.TOKEN: ana}) == 400
-    assert post(taught, {"do": "class"}, **{serving.TOKEN: teacher}) == 200
-    assert post(taught, {"do": "here"}, **{serving.TOKEN: teacher}) == 400
+    assert post(taught, {"do": "here"}, ana) == 200
+    assert post(taught, {"do": "class"}, ana) == 400
+    assert post(taught, {"do": "class"}, teacher) == 200
+    assert post(taught, {"do": "here"}, teacher) == 400
     assert post(taught, {"do": "class"}) == 400
-    assert post(taught, {"do": "class"}, **{serving.TOKEN: "0" * 32}) == 403
+    assert post(taught, {"do": "class"}, "0" * 32) == 403
     assert post(taught, {"do": "here"}, **{serving.TOKEN: f"{ana}, {teacher}"}) == 403
 
 
@@ -120,8 +107,8 @@ def test_who_has_no_token_sends_little(taught: Class) -> None:
     request = {"do": "join", "code": "", "name": "x" * 2000}
     assert post(taught, request) == 400
     ana = joins(taught)
-    assert post(taught, {"do": "here", "text": "x" * 150_000}, **{serving.TOKEN: ana}) == 200
-    assert post(taught, {"do": "here", "text": "x" * 300_000}, **{serving.TOKEN: ana}) == 400
+    assert post(taught, {"do": "here", "text": "x" * 150_000}, ana) == 200
+    assert post(taught, {"do": "here", "text": "x" * 300_000}, ana) == 400
 
 
 @pytest.mark.parametrize("is_same", [False, True], ids=["another computer", "the same"])
@@ -144,7 +131,7 @@ def test_many_connections_keep_nobody_out(taught: Class, is_same: bool) -> None:
             strangers.enter_context(some)
             pupil.request("POST", serving.ROBOTS, '{"do": "here"}', headers)
             assert pupil.getresponse().read()
-            assert page_of(taught, {}).status == 200
+            assert ask(own(taught))[0].status == 200
         assert pupil.sock is kept
         assert active_count() - before <= serving.CLASS_CONNECTIONS + 30
     pupil.close()
@@ -157,7 +144,7 @@ def test_a_slow_stranger_does_not_close_who_loads_the_page(taught: Class) -> Non
     with crowd(
         taught.server.server_port, count=serving.CLASS_CONNECTIONS + 50, host=HOST, source=ELSEWHERE
     ):
-        assert page_of(taught, {}).status == 200  # so all of them have come
+        assert ask(own(taught))[0].status == 200  # so all of them have come
         early.request("GET", "/")
         assert early.getresponse().status == 200
     early.close()

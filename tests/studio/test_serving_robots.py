@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from tests.support.crowd import HALF_A_REQUEST, crowd
-from tests.support.page_server import serves
+from tests.support.page_server import ask, post, serves
 from tests.support.waiting import HANGS_S
 from tiniscript.studio import serving
 from tiniscript.studio.robot_link import BadRequest
@@ -45,29 +45,21 @@ def server(tmp_path: Path, robots: Recorder) -> Iterator[serving.Server]:
         yield made
 
 
-def post(
-    server: serving.Server, body: bytes = b'{"do": "ports"}', path: str = serving.ROBOTS,
-    headers: dict[str, str | None] | None = None,
-) -> tuple[int, bytes]:  # fmt: skip
-    """Post as the page does, with other headers or without (None)."""
-    own = f"127.0.0.1:{server.server_port}"
-    given = {"Host": own, "Origin": f"http://{own}", serving.TOKEN: server.entrances.token}
-    kept = {name: value for name, value in {**given, **(headers or {})}.items()
-            if value is not None}  # fmt: skip
-    connection = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
-    try:
-        connection.request("POST", path, body, kept)
-        response = connection.getresponse()
-        return response.status, response.read()
-    finally:
-        connection.close()
+@pytest.fixture
+def own(server: serving.Server) -> str:
+    """The name of the server in a request."""
+    return f"{serving.HOST}:{server.server_port}"
 
 
-def test_its_own_page_is_answered(server: serving.Server, robots: Recorder) -> None:
-    status, data = post(server)
+PORTS = b'{"do": "ports"}'
+
+
+def test_its_own_page_is_answered(server: serving.Server, own: str, robots: Recorder) -> None:
+    status, data = post(own, server.entrances.token, PORTS)
     assert (status, json.loads(data)) == (200, {"ports": []})
-    own = f"localhost:{server.server_port}"
-    assert post(server, headers={"Host": own, "Origin": f"http://{own}"})[0] == 200
+    name = f"localhost:{server.server_port}"
+    headers = {"Host": name, "Origin": f"http://{name}"}
+    assert post(own, server.entrances.token, PORTS, headers=headers)[0] == 200
     assert len(robots.asked) == 2
 
 
@@ -89,9 +81,9 @@ def test_its_own_page_is_answered(server: serving.Server, robots: Recorder) -> N
     ids=str,
 )
 def test_nobody_else_is(
-    server: serving.Server, robots: Recorder, headers: dict[str, str | None]
+    server: serving.Server, own: str, robots: Recorder, headers: dict[str, str | None]
 ) -> None:
-    assert post(server, headers=headers)[0] == 403
+    assert post(own, server.entrances.token, PORTS, headers=headers)[0] == 403
     assert robots.asked == []
 
 
@@ -101,75 +93,64 @@ def test_nobody_else_is(
      b'{"do": "ports"}' + b" " * serving.REQUEST_BYTES],
     ids=lambda body: repr(body[:12]),
 )  # fmt: skip
-def test_what_is_no_request_is_refused(server: serving.Server, body: bytes) -> None:
-    assert post(server, body)[0] == 400
-    assert post(server)[0] == 200
+def test_what_is_no_request_is_refused(server: serving.Server, own: str, body: bytes) -> None:
+    assert post(own, server.entrances.token, body)[0] == 400
+    assert post(own, server.entrances.token, PORTS)[0] == 200
 
 
 @pytest.mark.parametrize(
-    "length", ["-1", "1e3", "99999999999999999999", "٣", "", "5\r\nContent-Length: 6"]
-)
-def test_a_wrong_length_is_refused(server: serving.Server, robots: Recorder, length: str) -> None:
-    own = f"127.0.0.1:{server.server_port}"
+    ("field", "status"),
+    [("Content-Length: -1", 400), ("Content-Length: 1e3", 400), ("Content-Length: ٣", 400),
+     ("Content-Length: 99999999999999999999", 400), ("Content-Length: ", 400),
+     ("Content-Length: 5\r\nContent-Length: 6", 400),
+     (f"{serving.TOKEN}: x\r\nContent-Length: 5", 403)],
+)  # fmt: skip
+def test_a_wrong_length_and_two_tokens_are_refused(
+    server: serving.Server, own: str, robots: Recorder, field: str, status: int
+) -> None:
     head = (
         f"POST {serving.ROBOTS} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://{own}\r\n"
-        f"{serving.TOKEN}: {server.entrances.token}\r\nContent-Length: {length}\r\n\r\n"
+        f"{serving.TOKEN}: {server.entrances.token}\r\n{field}\r\n\r\n"
     )
     with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
         client.sendall(head.encode() + b'{"do"')
-        assert client.recv(100).startswith(b"HTTP/1.1 400")
+        assert client.recv(100).startswith(f"HTTP/1.1 {status}".encode())
     assert robots.asked == []
 
 
-def test_two_tokens_are_none(server: serving.Server, robots: Recorder) -> None:
-    own = f"127.0.0.1:{server.server_port}"
-    head = (
-        f"POST {serving.ROBOTS} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://{own}\r\n"
-        f"{serving.TOKEN}: {server.entrances.token}\r\n{serving.TOKEN}: x\r\n"
-        "Content-Length: 2\r\n\r\n{}"
-    )
-    with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
-        client.sendall(head.encode())
-        assert client.recv(100).startswith(b"HTTP/1.1 403")
-    assert robots.asked == []
-
-
-def test_other_addresses_take_nothing(server: serving.Server, robots: Recorder) -> None:
-    assert post(server, path="/")[0] == 404
-    assert post(server, path="/robots/")[0] == 404
+def test_other_addresses_take_nothing(server: serving.Server, own: str, robots: Recorder) -> None:
+    for path in ("/", "/robots/"):
+        assert post(own, server.entrances.token, PORTS, path)[0] == 404
     assert robots.asked == []
 
 
 def test_the_token_is_another_one_each_time_and_in_no_file(
-    server: serving.Server, tmp_path: Path, robots: Recorder
+    server: serving.Server, own: str, tmp_path: Path, robots: Recorder
 ) -> None:
     assert server.entrances.token not in server.entrance()
     assert len(server.entrances.token) == 32
     other = serving.Server(serving.files(tmp_path), 0, robots.answer)
     other.server_close()
     assert other.entrances.token != server.entrances.token
-    connection = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
-    connection.request("GET", "/")
-    response = connection.getresponse()
-    assert server.entrances.token not in response.read().decode() + str(response.getheaders())
-    connection.close()
+    response, data = ask(own)
+    assert server.entrances.token not in data.decode() + str(response.getheaders())
 
 
 def test_a_server_without_robots_has_none(tmp_path: Path) -> None:
     (tmp_path / "index.html").write_text("<!doctype html>")
     with serves(serving.Server(serving.files(tmp_path), 0)) as made:
-        assert post(made)[0] == 404
+        own = f"{serving.HOST}:{made.server_port}"
+        assert post(own, made.entrances.token, PORTS)[0] == 404
         assert made.entrance() == made.address
 
 
-def test_a_thousand_connections_keep_nobody_out(server: serving.Server) -> None:
+def test_a_thousand_connections_keep_nobody_out(server: serving.Server, own: str) -> None:
     """They say nothing, or half a request; the page's own connection stays."""
-    own = f"127.0.0.1:{server.server_port}"
     headers = {"Origin": f"http://{own}", serving.TOKEN: server.entrances.token}
     page = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
 
     def ask() -> int:
-        page.request("POST", serving.ROBOTS, b'{"do": "ports"}', headers)
+        page.request("POST", serving.ROBOTS, PORTS, headers)
         response = page.getresponse()
         response.read()
         return response.status
@@ -188,7 +169,7 @@ def test_a_thousand_connections_keep_nobody_out(server: serving.Server) -> None:
 
 
 @pytest.mark.parametrize("line", [b"X-More: " + b"x" * 1000 + b"\r\n", b"x" * 70_000, b"X: y\r\n"])
-def test_a_head_ends_at_16_kilobytes(server: serving.Server, line: bytes) -> None:
+def test_a_head_ends_at_16_kilobytes(server: serving.Server, own: str, line: bytes) -> None:
     """However its bytes are divided into lines, and whether it ends or not."""
     with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
         client.sendall(b"GET / HTTP/1.1\r\n")
@@ -205,21 +186,20 @@ def test_a_head_ends_at_16_kilobytes(server: serving.Server, line: bytes) -> Non
                 break
         assert heard[:12] in (b"HTTP/1.1 431", b""), heard  # nothing: it was reset
         assert sent <= serving.HEAD_BYTES + len(line)
-    assert post(server)[0] == 200
+    assert post(own, server.entrances.token, PORTS)[0] == 200
 
 
 def test_the_page_that_has_asked_last_is_kept(
-    server: serving.Server, monkeypatch: pytest.MonkeyPatch
+    server: serving.Server, own: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where all have shown the token, the one is closed that has asked nothing for longest."""
     monkeypatch.setattr(serving._Handler, "timeout", 10 * HANGS_S)  # none is left as silent
     server.most_connections = 2
-    own = f"127.0.0.1:{server.server_port}"
     headers = {"Origin": f"http://{own}", serving.TOKEN: server.entrances.token}
     pages = [HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S) for _ in range(3)]
     kept = []
     for k in (0, 1, 0, 2, 0):
-        pages[k].request("POST", serving.ROBOTS, b'{"do": "ports"}', headers)
+        pages[k].request("POST", serving.ROBOTS, PORTS, headers)
         pages[k].getresponse().read()
         kept.append(pages[k].sock)
     assert kept[0] is kept[2] is kept[4]

@@ -1,11 +1,13 @@
-"""A server of the studio's page in a thread of the test."""
+"""A server of the studio's page in a thread of the test, and who asks it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from http.client import HTTPConnection, HTTPResponse
 from threading import Thread
 
+from tests.support.waiting import HANGS_S
 from tiniscript.studio import serving
 
 
@@ -19,3 +21,28 @@ def serves(made: serving.Server) -> Iterator[serving.Server]:
         made.shutdown()
         made.server_close()
         thread.join()
+
+
+def ask(
+    own: str, path: str = "/", method: str = "GET", body: bytes | None = None,
+    headers: Mapping[str, str | None] | None = None,
+) -> tuple[HTTPResponse, bytes]:  # fmt: skip
+    """Ask the server at `own`, a host and its port. A header that is None is left out."""
+    kept = {name: value for name, value in (headers or {}).items() if value is not None}
+    connection = HTTPConnection(own, timeout=HANGS_S)
+    try:
+        connection.request(method, path, body, kept)
+        response = connection.getresponse()
+        return response, response.read()
+    finally:
+        connection.close()
+
+
+def post(
+    own: str, token: str, body: bytes, path: str = serving.ROBOTS,
+    headers: Mapping[str, str | None] | None = None,
+) -> tuple[int, bytes]:  # fmt: skip
+    """Post as the page at `own` does, but for some headers; return the status and the answer."""
+    given = {"Host": own, "Origin": f"http://{own}", serving.TOKEN: token, **(headers or {})}
+    response, data = ask(own, path, "POST", body, given)
+    return response.status, data
