@@ -63,24 +63,18 @@ def test_the_first_value_of_a_variable_is_offered_in_place_of_its_declaration() 
     assert changed_by(program, finding.repair) == "vel = 0\nF(2, 80)"
 
 
-def test_a_line_with_a_checksum_is_not_repaired() -> None:
+def test_some_mistakes_are_not_repaired() -> None:
+    """Of a line with a checksum none is, and of very many only the first."""
     found = checking.check(b"SI|F(2, 80~1A2B", "tinibot", "en")
     assert found.findings and not any(each.repair for each in found.findings)
-
-
-def test_only_so_many_repairs_are_tried() -> None:
-    program = "SI|" + "F(2, 80\n" * 90
-    found = checking.check(program.encode(), "tinibot", "en")
+    found = checking.check(b"SI|" + b"F(2, 80\n" * 90, "tinibot", "en")
     assert sum(bool(each.repair) for each in found.findings) <= 20 < len(found.findings)
 
 
-@pytest.mark.parametrize("data", [b"\xff\xfe", b"F(2\0, 80)", b"x" * 1_000_001])
-def test_a_file_that_is_no_program_gets_a_sentence(data: bytes) -> None:
-    found = checking.opened(data, "tinibot", "es")
-    assert isinstance(found, Message) and found.message
-
-
-def test_a_file_is_read_as_the_command_reads_it() -> None:
+def test_a_file_is_read_as_the_command_reads_it_or_gets_a_sentence() -> None:
+    for data in (b"\xff\xfe", b"F(2\0, 80)", b"x" * 1_000_001):
+        found = checking.opened(data, "tinibot", "es")
+        assert isinstance(found, Message) and found.message, data[:9]
     assert checking.opened("\ufeffSI|F(2, 80)\r\n".encode(), "liner", "en") == "SI|F(2, 80)\r\n"
 
 

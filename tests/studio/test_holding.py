@@ -39,14 +39,11 @@ def steps(text: str, simulation: Simulation, most: int = 100) -> Iterable[str]:
         simulation.step(5000)
 
 
-def test_steps_go_through_every_part_in_their_order() -> None:
+def test_steps_go_through_every_part_and_into_words_of_ones_own() -> None:
     simulation = begun(COUNT, is_held=True)
     assert simulation.state()["events"] == [[simulation.robot.now_ms, "START"]]
     assert list(steps(COUNT, simulation)) == STEPS
     assert not simulation.robot.is_running
-
-
-def test_a_step_goes_into_a_word_of_ones_own() -> None:
     text = "DEF HOP;\n  F(0.1, 80);\nEND_DEF;\nHOP;\nSHOW(1)"
     wanted = ["DEF HOP;", "HOP", "F(0.1, 80)", "SHOW(1)"]
     assert list(steps(text, begun(text, is_held=True))) == wanted

@@ -10,6 +10,7 @@ import pytest
 
 from tests.support.command import FOREVER, process
 from tests.support.pty_robot import PtyRobot
+from tests.support.rows import each_row
 from tests.support.shared_pty_robot import Shared
 from tests.support.waiting import HANGS_S, until
 from tiniscript import compile, robots
@@ -57,7 +58,7 @@ class Page:
             time.sleep(BEAT_S)
             self.beat()
 
-    def ask(self, do: str, **fields: object) -> dict[str, Any]:
+    def ask(self, do: object, **fields: object) -> dict[str, Any]:
         self._count += 1
         number = self._count
         self.beat({"do": do, "id": number, **fields})
@@ -89,6 +90,11 @@ def page(hosting: Hosting, robot: PtyRobot) -> Page:
     about = found.until(lambda each: "connected" in each)["connected"]
     assert (about["robot"], about["owner"], about["is_running"]) == ("tinibot", "free", False)
     return found
+
+
+def drives(page: Page, robot: PtyRobot) -> None:
+    page.upload(FOREVER)
+    robot.until(lambda: robot.moves, "it drives")
 
 
 def test_a_program_runs_and_what_it_shows_arrives(page: Page, robot: PtyRobot) -> None:
@@ -176,36 +182,28 @@ def test_nobody_pings_for_a_page_that_is_silent(
     page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Not even where the thread that should stop the robot hangs."""
-    page.upload(FOREVER)
-    robot.until(lambda: robot.moves, "it drives")
+    drives(page, robot)
     monkeypatch.setattr(attending.Attending, "attend", lambda *_: time.sleep(0.1))
     page.beat()
     assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS  # by its dead-man timer
 
 
-def test_stop_stops_and_says_so(page: Page, robot: PtyRobot) -> None:
-    page.upload(FOREVER)
-    robot.until(lambda: robot.moves, "it drives")
+def test_stop_stops_and_says_so(hosting: Hosting, page: Page, robot: PtyRobot) -> None:
+    """Also one that counts wrongly, before it is refused."""
+    drives(page, robot)
     page.beat(do="stop")
     assert page.until(lambda each: each.get("event") == "STOPPED")["cause"] == "SEQUENCE"
     assert not robot.moves
-
-
-@pytest.mark.parametrize("stops", [-1, 0.5, "1", 2**40])
-def test_a_stop_that_counts_wrongly_stops_before_it_is_refused(
-    hosting: Hosting, page: Page, robot: PtyRobot, stops: object
-) -> None:
-    page.upload(FOREVER)
-    robot.until(lambda: robot.moves, "it drives")
-    with pytest.raises(BadRequest):
-        hosting.answer({"do": "stop", "page": "page", "stops": stops})
-    page.until(lambda each: each.get("event") == "STOPPED")
-    assert not robot.moves
+    for stops in (-1, 0.5, "1", 2**40):
+        drives(page, robot)
+        with pytest.raises(BadRequest):
+            hosting.answer({"do": "stop", "page": "page", "stops": stops})
+        page.until(lambda each: each.get("event") == "STOPPED")
+        assert not robot.moves, stops
 
 
 def test_another_command_stops_it_meanwhile(page: Page, robot: PtyRobot) -> None:
-    page.upload(FOREVER)
-    robot.until(lambda: robot.moves, "it drives")
+    drives(page, robot)
     from threading import Thread
 
     thread = Thread(target=lambda: process("stop", "--port", robot.port))
@@ -215,17 +213,16 @@ def test_another_command_stops_it_meanwhile(page: Page, robot: PtyRobot) -> None
     assert not robot.moves
 
 
-def test_a_page_that_leaves_stops_its_robot(page: Page, robot: PtyRobot) -> None:
-    page.upload(FOREVER)
-    robot.until(lambda: robot.moves, "it drives")
-    page.beat(do="leave")
-    robot.until(lambda: not robot.moves, "it stands")
-
-
-def test_the_end_of_the_server_stops_robots(hosting: Hosting, page: Page, robot: PtyRobot) -> None:
-    page.upload(FOREVER)
-    robot.until(lambda: robot.moves, "it drives")
-    hosting.close()
+@pytest.mark.parametrize("leaves", [True, False], ids=["page", "server"])
+def test_the_end_of_a_page_and_of_the_server_stops_robots(
+    hosting: Hosting, page: Page, robot: PtyRobot, leaves: bool
+) -> None:
+    drives(page, robot)
+    if leaves:
+        page.beat(do="leave")
+        robot.until(lambda: not robot.moves, "it stands")
+    else:
+        hosting.close()
     assert not robot.moves
 
 
@@ -234,11 +231,12 @@ def test_a_port_has_one_page(
 ) -> None:
     monkeypatch.setattr(attending, "LATCH_S", 3600.0)
     monkeypatch.setattr(attending, "LEFT_S", 3600.0)  # the page is silent while the command begins
+    found = hosting.answer({"do": "ports"})["ports"]
+    assert all(set(each) == {"port", "name", "description", "virtual"} for each in found)
     other = Page(hosting, "other")
     assert other.connect(robot.port) == {"failure": "other_tab"}
     assert page.connect(robot.port) == {"failure": "connected"}
-    page.upload(FOREVER)
-    robot.until(lambda: robot.moves, "it drives")
+    drives(page, robot)
     # STOP of a page without a robot
     told = {"name": robot.port, "stop": "asked"}
     assert hosting.answer({"do": "stop_all"}) == {"robots": [told]}
@@ -272,8 +270,7 @@ def test_it_shares_a_port_that_a_command_holds(hosting: Hosting) -> None:
         page = Page(hosting)
         page.connect(robot.port)
         assert page.until(lambda each: "connected" in each)["held_by"] == "link"
-        page.upload(FOREVER)
-        robot.until(lambda: robot.moves, "it drives")
+        drives(page, robot)
         page.beat()
         assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS
         hosting.close()
@@ -291,24 +288,22 @@ def test_a_refusal_has_its_sentence(page: Page) -> None:
     assert page.ask("trim")["trim"] == {**trim, "pace": unmeasured}
 
 
-@pytest.mark.parametrize("port", ["/dev/nothing", "socket://127.0.0.1:1", "no such port"])
-def test_a_port_that_does_not_open_is_a_sentence(hosting: Hosting, port: str) -> None:
-    page = Page(hosting)
-    page.connect(port)
-    over = page.until(lambda each: "over" in each)
-    assert over["over"].startswith("port_") and port in over["said"]
-
-
-def test_a_cable_that_is_pulled_is_a_sentence(page: Page, robot: PtyRobot) -> None:
+def test_a_port_that_does_not_open_or_is_pulled_out_is_a_sentence(
+    hosting: Hosting, page: Page, robot: PtyRobot
+) -> None:
+    for port in ("/dev/nothing", "socket://127.0.0.1:1", "no such port"):
+        other = Page(hosting, port)
+        other.connect(port)
+        over = other.until(lambda each: "over" in each)
+        assert over["over"].startswith("port_") and port in over["said"]
     page.upload(FOREVER)
     robot.pull()
     over = page.until(lambda each: "over" in each)
     assert over["over"] == "port_gone" and "cable" in over["said"]
 
 
-@pytest.mark.parametrize(
-    "request_",
-    [
+def test_what_is_no_request_is_refused(hosting: Hosting) -> None:
+    wrong: list[dict[str, Any]] = [
         {},
         {"do": "fly"},
         {"do": "connect"},
@@ -318,14 +313,14 @@ def test_a_cable_that_is_pulled_is_a_sentence(page: Page, robot: PtyRobot) -> No
         {"do": "connect", "page": "p" * 1000, "port": "/dev/x", "robot": "tinibot"},
         {"do": "beat", "page": ["p"]},
         {"do": "beat", "page": 0},
-    ],
-)
-def test_what_is_no_request_is_refused(hosting: Hosting, request_: dict[str, Any]) -> None:
-    with pytest.raises(BadRequest):
-        hosting.answer(request_)
+    ]
+    for request in wrong:
+        with pytest.raises(BadRequest):
+            hosting.answer(request)
+            pytest.fail(f"not refused: {request}")
 
 
-@pytest.mark.parametrize(
+@each_row(
     "asked",
     [
         {"do": "upload"},
@@ -341,9 +336,8 @@ def test_what_is_no_request_is_refused(hosting: Hosting, request_: dict[str, Any
     ],
 )
 def test_a_wrong_request_harms_nothing(page: Page, asked: dict[str, Any]) -> None:
-    page.beat({"id": 1, **asked}, {"id": 2, "do": "identify"})
-    assert page.until(lambda each: each.get("id") == 1)["failure"] == "bad_request"
-    assert page.until(lambda each: each.get("id") == 2)["ok"]
+    assert page.ask(**asked)["failure"] == "bad_request"
+    assert page.ask("identify")["ok"]
 
 
 def test_what_was_asked_before_a_stop_and_comes_after_it_is_void(
@@ -379,10 +373,3 @@ def test_what_a_page_does_not_fetch_is_bounded() -> None:
     news = robot.attending.on_requests([], 0)
     assert len(news) == attending.KEPT and news[-1]["event"] == "DONE"
     robot.join(HANGS_S)
-
-
-def test_ports_are_listed_without_opening_any(
-    hosting: Hosting, robot: PtyRobot, page: Page
-) -> None:
-    found = hosting.answer({"do": "ports"})["ports"]
-    assert all(set(each) == {"port", "name", "description", "virtual"} for each in found)

@@ -32,14 +32,11 @@ def test_readings_of_the_recording_are_those_of_the_virtual_sensors() -> None:
     assert parting(*LINES) == Parting("same", 5)
 
 
-def test_the_first_value_that_differs_is_told_with_its_line() -> None:
+def test_the_first_value_or_time_that_differs_is_told_with_its_line() -> None:
     found = parting(*LINES[:3], (2060, "SHOW 9"), LINES[4])
     assert (found.what, found.agreed, found.line) == ("value", 3, 5)
     assert found.robot == (2060, "SHOW 9")
     assert found.virtual is not None and found.virtual.event == "SHOW 8"
-
-
-def test_the_first_time_that_differs_is_told() -> None:
     late = [(ms + 900 * (ms > 2000), event) for ms, event in LINES]
     found = parting(*late)
     assert (found.what, found.agreed, found.line) == ("time", 2, 3)

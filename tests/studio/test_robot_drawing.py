@@ -69,10 +69,20 @@ def test_wheels_turn_as_far_as_they_have_rolled() -> None:
     assert treads(turned, False) == treads(still, False)
 
 
-def test_a_lamp_that_a_program_turns_on_is_lit() -> None:
-    states = after("LED(TRUE);W(1)", "grabber", 300), after("W(1)", "grabber", 300)
-    lit, dark = pictures(*(("grabber", state, STILL) for state in states))
+def test_what_is_on_is_seen() -> None:
+    """A lamp, the robot's own light where its button would start it, and the buzzer's sound."""
+    of_rows = (
+        ("grabber", after("LED(TRUE);W(1)", "grabber", 300), STILL),
+        ("grabber", after("W(1)", "grabber", 300), STILL),
+        ("tinibot", after("SB|F(1, 80)", "tinibot", 300), STILL),
+        ("tinibot", after("F(1, 80)", "tinibot", 300), STILL),
+        ("tinibot", None, {**STILL, "isBeeping": True}),
+        ("tinibot", None, STILL),
+    )
+    lit, dark, waiting, driving, loud, silent = pictures(*of_rows)
     assert of(lit, "fill", LIT) and not of(dark, "fill", LIT)
+    assert of(waiting, "fill", "#ffd84d") and not of(driving, "fill", "#ffd84d")
+    assert of(loud, "stroke", WAVE) and not of(silent, "stroke", WAVE)
 
 
 def test_the_jaws_are_as_open_as_they_are() -> None:
@@ -84,19 +94,6 @@ def test_the_jaws_are_as_open_as_they_are() -> None:
     closed, half, wide = map(gap, pictures(*(("grabber", state, STILL) for state in states)))
     assert closed < half < wide
     assert half - closed == pytest.approx(wide - half)
-
-
-def test_the_buzzer_is_seen_while_it_sounds() -> None:
-    loud, silent = pictures(
-        ("tinibot", None, {**STILL, "isBeeping": True}), ("tinibot", None, STILL)
-    )
-    assert of(loud, "stroke", WAVE) and not of(silent, "stroke", WAVE)
-
-
-def test_its_own_light_is_on_where_its_button_would_start_it() -> None:
-    states = after("SB|F(1, 80)", "tinibot", 300), after("F(1, 80)", "tinibot", 300)
-    waiting, driving = pictures(*(("tinibot", state, STILL) for state in states))
-    assert of(waiting, "fill", "#ffd84d") and not of(driving, "fill", "#ffd84d")
 
 
 def test_a_cone_is_as_long_as_what_is_read() -> None:

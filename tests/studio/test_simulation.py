@@ -164,10 +164,7 @@ def test_a_fault_is_named() -> None:
     found = check(b"W(1); X = 0; SHOW(1 / X)", "tinibot", "en")
     place = max(place for place in found.places if place.offset <= state["fault_at"])
     assert (place.line, place.column) == (1, 14)
-
-
-def test_a_fault_at_once_is_named_too() -> None:
-    state = begun("X = 0; SHOW(1 / X)").state()
+    state = begun("X = 0; SHOW(1 / X)").state()  # at once
     assert state["fault"] == "DIVIDE_BY_ZERO" and state["fault_at"] is not None
 
 

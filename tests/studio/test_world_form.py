@@ -121,20 +121,15 @@ def test_any_name_of_a_file_can_be_opened_and_written(name: str) -> None:
     assert read(answer["text"], "own").start == (30, 30, 0)
 
 
-def test_a_robot_that_does_not_fit_is_told() -> None:
+def test_a_robot_that_does_not_fit_or_is_off_its_floor_is_told() -> None:
     world = opened(GOOD.replace(b"x_cm = 30", b"x_cm = 3"))["world"]
     request = {"do": "write_world", "form": world, "robot": "tinibot", "language": "en"}
     assert json.loads(worker.answer(json.dumps(request)))["is_blocked"]
     start = {"do": "power_on", "robot": "tinibot", "world": {"form": world}, "language": "en"}
     assert "does not fit" in json.loads(worker.answer(json.dumps(start)))["refused"][0]
-
-
-def test_a_robot_off_its_floor_is_told() -> None:
-    world = opened(GOOD)["world"]
     world["start"]["x_cm"] = 100.1
     for language, said in (("en", "starts outside the floor"), ("es", "empieza fuera del piso")):
-        request = {"do": "write_world", "form": world, "robot": "tinibot", "language": language}
-        answer = json.loads(worker.answer(json.dumps(request)))
+        answer = json.loads(worker.answer(json.dumps({**request, "language": language})))
         assert set(answer) == {"refused"} and said in answer["refused"][0]
 
 
