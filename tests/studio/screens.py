@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from tests.support.studio import SETTLED, shown, turn, write
+from tests.support.studio import SETTLED, in_phase, shown, turn, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -17,10 +17,6 @@ BESIDE = {"running", "paused", "driven", "trace", "plot", "floor", "drawing", "b
 STARTS = {"start", "own programs"}  # which have no halves
 WRONG = "SI|" + "F(-2, 80);\nIF(DISTANCE < 10;\n" * 6
 See = Callable[["Page"], None]
-
-
-def _in_phase(page: Page, phase: str) -> None:
-    page.locator(f"html[data-phase={phase}]").wait_for(state="attached")
 
 
 def _write(page: Page, text: str) -> None:
@@ -45,19 +41,19 @@ def _running(page: Page) -> None:
     page.select_option("#world", "maze")
     page.select_option("#speed", "0.1")
     page.click("#run")
-    _in_phase(page, "running")
+    in_phase(page, "running")
 
 
 def _paused(page: Page) -> None:
     page.click("#pause")
-    _in_phase(page, "paused")
+    in_phase(page, "paused")
 
 
 def _driven(page: Page) -> None:
     """A fault, and a score."""
     page.select_option("#speed", "20")
     page.click("#pause")
-    _in_phase(page, "ended")
+    in_phase(page, "ended")
 
 
 def _part(index: int) -> See:

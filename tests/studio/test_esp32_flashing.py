@@ -140,7 +140,7 @@ def at_the_teachers(browser: Browser, folder: Path) -> Iterator[Page]:
     context.expose_function("unpacked", lambda data: list(zlib.decompress(bytes(data))))
     context.add_init_script(ROM.read_text(encoding="utf-8") + PORT)
     try:
-        with studio.served(page=page) as server:
+        with studio.served(page) as server:
             found = context.new_page()
             enter(found, server.address)
             found.click("#side_real")

@@ -12,15 +12,15 @@ import pytest
 
 from tests.oracle import programs as oracle_programs
 from tests.studio.programs import programs
+from tests.studio.random_in_page import compare, round_trip, without_places
 from tests.studio.test_page_for_everyone import SCREENS
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tests.support.needs import need
-from tests.support.studio import SETTLED, Pages, image, shown, speak, write
+from tests.support.studio import SETTLED, Pages, hears, image, in_phase, shown, speak, write
 from tiniscript import check, compile, robots
 from tiniscript.studio.block_form import data_of
 from tiniscript.studio.block_reading import read
-from tiniscript.studio.serving import files
 from tools.builds.page_texts import page_texts
 from tools.builds.studio import BLOCKLY, stale
 
@@ -30,19 +30,7 @@ if TYPE_CHECKING:
 PROGRAM = "#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas"  # no toolbox
 FLYOUT = ".blocklyFlyout:visible .blocklyBlockCanvas > .blocklyDraggable"  # no numbers in blocks
 PATIENCE_MS = 90_000
-# The blocks of the page, made of forms and read again, without the page around them.
-ROUND = """async ({name, forms}) => {
-  const {Blocks} = await import(new URL(name, location.href).href);
-  const place = document.createElement('div');
-  place.hidden = true;  // nothing is measured
-  document.body.append(place);
-  const blocks = new Blocks(place, 'tinibot', 'all', {changed() {}});
-  const found = forms.map((form) => { blocks.show(form); return blocks.read().form; });
-  place.remove();
-  return found;
-}"""
-
-
+SAMPLE = 8  # random programs
 # Whether a field of text keeps the key of undo.
 KEPT_KEY = """field => field.dispatchEvent(new KeyboardEvent('keydown',
   {key: 'z', ctrlKey: true, bubbles: true, cancelable: true, composed: true}))"""
@@ -104,28 +92,22 @@ def path_of(block: Locator) -> Locator:
 
 
 def drag(
-    page: Page, group: str, words: str, target: Locator, off: tuple[int, int] = (0, 0)
+    page: Page, group: str, words: str, target: Locator | None, off: tuple[int, int] = (0, 0)
 ) -> None:
-    """Drag a block out of a group of the toolbox, below another one, or so many pixels off."""
+    """Drag a block out of a group of the toolbox, below another one and so many pixels off, or, in
+    place of a target, to where it hangs on nothing."""
     page.locator(".blocklyToolboxCategory", has_text=group).click()
     source = page.locator(FLYOUT).filter(has_text=words).first
     source.wait_for()
     a = box_of(source)
     page.mouse.move(a["x"] + 8, a["y"] + 10)
     page.mouse.down()
-    page.mouse.move(700, 400, steps=8)
-    b = box_of(target)  # once the toolbox is no longer over it
-    page.mouse.move(b["x"] + 10 + off[0], b["y"] + b["height"] + 8 + off[1], steps=8)
+    page.mouse.move(700, 330, steps=8)
+    if target is not None:
+        b = box_of(target)  # once the toolbox is no longer over it
+        page.mouse.move(b["x"] + 10 + off[0], b["y"] + b["height"] + 8 + off[1], steps=8)
     page.mouse.up()
     page.locator("#blocks[data-state=shown]").wait_for()
-
-
-def without_places(form: Any) -> Any:
-    if isinstance(form, list):
-        return [without_places(each) for each in form]
-    if isinstance(form, dict):
-        return {key: without_places(value) for key, value in form.items() if key != "place"}
-    return form
 
 
 @pytest.mark.sampled("part")
@@ -133,30 +115,42 @@ def without_places(form: Any) -> Any:
 def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None:
     """Every tenth program of the documents and 30 random ones: what is shown is what is read.
 
-    In a page of its own: what it makes there takes the keys of undo from the page's blocks.
+    In a page of its own: what it makes there takes the keys of undo from the page's blocks. And
+    random programs get the image of the command.
     """
+    page = pages.open()
+    start(page, "SI|LOOP(6)\n  F(FOREVER, 80) UNTIL(DISTANCE < 15)\n  BEEP(0.1, 880)\nEND_LOOP\n")
+    first = box_of(block(page, "when it starts"))  # a program is seen from its beginning
+    pane, words = (page.locator(one).bounding_box() for one in ("#blocks", ".blocklyToolbox"))
+    assert pane is not None and words is not None
+    assert first["x"] > words["x"] + words["width"] and first["y"] > pane["y"]
     forms = [read(each.text, robots.load(each.robot).kit) for each in programs()[part::10]]
     for seed in range(part, 300, 10):
         theirs, kit = KITS[seed % len(KITS)]
         forms.append(read(oracle_programs.program(random.Random(seed), theirs), kit))
     data = json.loads(json.dumps([without_places(data_of(form)) for form in forms]))
-    (name,) = [name for name in files() if name.startswith("blocks-")]
-    found = pages.open().evaluate(ROUND, {"name": name, "forms": data})
-    for k, (want, got) in enumerate(zip(data, found, strict=True)):
+    for k, (want, got) in enumerate(zip(data, round_trip(page, data), strict=True)):
         assert got == want, k
+    assert compare(page, SAMPLE, seed=1000) > SAMPLE * 0.9
 
 
-def test_a_program_is_seen_from_its_beginning(pages: Pages) -> None:
-    page = pages.open("text")
-    start(page, "SI|LOOP(6)\n  F(FOREVER, 80) UNTIL(DISTANCE < 15)\n  BEEP(0.1, 880)\nEND_LOOP\n")
-    first = box_of(block(page, "when it starts"))
-    pane, words = (page.locator(one).bounding_box() for one in ("#blocks", ".blocklyToolbox"))
-    assert pane is not None and words is not None
-    assert first["x"] > words["x"] + words["width"] and first["y"] > pane["y"]
+def finger(page: Page, source: Any, target: Any) -> None:
+    """Drag a block from its box to below another one's with a finger."""
+    session = page.context.new_cdp_session(page)
+    x, y = source["x"] + 8, source["y"] + 10
+    to_x, to_y = target["x"] + 10, target["y"] + target["height"] + 8
+    way = [(x + (to_x - x) * k / 12, y + (to_y - y) * k / 12) for k in range(13)]
+    for k, place in enumerate([*way, None]):
+        kind = "touchEnd" if place is None else "touchMove" if k else "touchStart"
+        points = [{"x": place[0], "y": place[1]}] if place else []
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    session.detach()
+    page.locator("#blocks[data-state=shown]").wait_for()
 
 
 def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
-    page = pages.open(view="blocks", locale="es-PE")
+    """With the mouse, and on a small screen with a finger."""
+    page = pages.open(view="blocks", locale="es-PE", has_touch=True)
     page.locator("#level").wait_for()
     assert block(page, "al empezar").count() == 1
     drag(page, "Moverse", "avanza", block(page, "gira a la derecha"))
@@ -171,8 +165,14 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     page.locator(".blocklyWidgetDiv input").wait_for(state="detached")
     shown(page)
     page.click("#run")
-    page.locator("html[data-phase=ended]").wait_for(state="attached")
+    in_phase(page, "ended")
     assert image(page) == compile(text_of(page)).image
+    page.set_viewport_size({"width": 1024, "height": 600})
+    page.locator(".blocklyToolboxCategory", has_text="Moverse").tap()
+    source = page.locator(FLYOUT).nth(1)
+    source.wait_for()
+    finger(page, box_of(source), box_of(block(page, "gira a la derecha")))
+    assert "B(2, 80)" in text_of(page)
 
 
 def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
@@ -247,11 +247,6 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
     shown(page)
 
 
-def test_a_block_that_is_dropped_near_its_place_is_joined(page: Page) -> None:
-    drag(page, "Move", "back", block(page, "stop"), off=(20, 24))
-    becomes(page, "SI|F(2, 80);\nS;\nB(2, 80);\n")
-
-
 def test_looking_at_blocks_changes_no_text(page: Page) -> None:
     text = "// mine\nsi|f( 2,80 )\n\n\n  s // stop"
     start(page, text)
@@ -278,21 +273,13 @@ def test_an_undo_while_a_block_is_dragged_does_nothing(page: Page) -> None:
     becomes(page, "SI|F(2, 80);\nS;\n")
 
 
-def drag_out(page: Page, group: str, said: str) -> None:
-    """Drag a block of the toolbox to where it hangs on nothing."""
-    page.locator(".blocklyToolboxCategory", has_text=group).click()
-    found = page.locator(".blocklyFlyout:visible .blocklyDraggable", has_text=said)
-    source = found.first.bounding_box()
-    assert source is not None
-    page.mouse.move(source["x"] + 8, source["y"] + 10)
-    page.mouse.down()
-    page.mouse.move(700, 330, steps=10)
-    page.mouse.up()
-    page.locator("#blocks[data-state=shown]").wait_for()
-
-
-def test_a_block_without_values_stays_where_it_hangs_on_nothing(page: Page) -> None:
-    drag_out(page, "Repeat", "forever")
+def test_a_block_is_joined_near_its_place_and_stays_where_it_hangs_on_nothing(page: Page) -> None:
+    """Also one without values."""
+    drag(page, "Move", "back", block(page, "stop"), off=(20, 24))
+    becomes(page, "SI|F(2, 80);\nS;\nB(2, 80);\n")
+    page.click("#undo")
+    becomes(page, "SI|F(2, 80);\nS;\n")
+    drag(page, "Repeat", "forever", None)
     place = box_of(block(page, "forever"))
     page.click("#undo")
     becomes(page, "SI|F(2, 80);\nS;\n")
@@ -302,7 +289,7 @@ def test_a_block_without_values_stays_where_it_hangs_on_nothing(page: Page) -> N
 
 
 def test_a_block_that_hangs_on_nothing_is_kept(page: Page) -> None:
-    drag_out(page, "Move", "forward")
+    drag(page, "Move", "forward", None)
     becomes(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
     assert image(page) == compile("SI|F(2, 80);S").image
     assert page.inner_text("#status") == "1 loose block does not run"
@@ -378,41 +365,37 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     assert icons.count() == 0
 
 
-@pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)])
-def test_a_message_stands_on_no_block(page: Page, size: tuple[int, int]) -> None:
-    page.set_viewport_size({"width": size[0], "height": size[1]})
-    start(page, "SI|S;\nF(-2);\nF(2, 80);\n")  # the block below it is wider
+def test_a_message_stands_on_no_block(page: Page) -> None:
+    """And one for which no room is left is put away."""
     bubble = page.locator("#blocks .blocklyBubble")
-    bubble.wait_for()
-    page.evaluate(SETTLED)
-    said = bubble.evaluate("e => e.getBoundingClientRect().toJSON()")
-    program = page.locator(f"{PROGRAM} .blocklyBlock").first
-    whole = program.evaluate("e => e.getBoundingClientRect().toJSON()")
-    assert said["left"] > whole["right"] - 2 or said["top"] > whole["bottom"] - 2
-
-
-def test_a_message_for_which_no_room_is_left_is_put_away(page: Page) -> None:
+    for width, height in ((1366, 768), (1024, 600), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        start(page, "SI|S;\nF(-2);\nF(2, 80);\n")  # the block below it is wider
+        bubble.wait_for()
+        page.evaluate(SETTLED)
+        said = bubble.evaluate("e => e.getBoundingClientRect().toJSON()")
+        program = page.locator(f"{PROGRAM} .blocklyBlock").first
+        whole = program.evaluate("e => e.getBoundingClientRect().toJSON()")
+        is_beside = said["left"] > whole["right"] - 2 or said["top"] > whole["bottom"] - 2
+        assert is_beside, (width, height)
+    page.set_viewport_size({"width": 1366, "height": 768})
     start(page, "SI|S;\nF(-2, 80);\n" + 9 * "F(2, 80);\n")
-    page.locator("#blocks .blocklyBubble").wait_for()
+    bubble.wait_for()
     page.set_viewport_size({"width": 900, "height": 560})
-    page.locator("#blocks .blocklyBubble").wait_for(state="detached")
+    bubble.wait_for(state="detached")
 
 
-def test_the_block_that_runs_is_marked(page: Page) -> None:
+def test_the_block_of_each_task_that_runs_is_marked(page: Page) -> None:
     start(page, "SI|S;\nF(FOREVER, 20) UNTIL(FALSE);\nW(1);\n", "all")
     page.click("#run")
     running = page.locator("#blocks .blocklyDraggable.running")
     running.wait_for()
     assert "until" in (running.text_content() or "")
     page.click("#stop")
-    page.locator("html[data-phase=ended]").wait_for(state="attached")
-
-
-def test_a_block_of_each_task_is_marked(page: Page) -> None:
+    in_phase(page, "ended")
     page.select_option("#robot", "tinibot32")
     start(page, "SI|W(9);\nTASK;\n  LOOP(9);\n    W(9);\n  END_LOOP;\nEND_TASK;\n", "all")
     page.click("#run")
-    running = page.locator("#blocks .blocklyDraggable.running")
     running.nth(1).wait_for()
     assert running.count() == 2
     page.click("#stop")
@@ -479,8 +462,13 @@ def test_a_move_is_so_long_or_so_far(page: Page) -> None:
         assert said_by(page) == {"when it starts", "at", "%", *says}
 
 
-def test_the_names_of_the_program_are_blocks(page: Page) -> None:
+def test_the_names_of_the_program_are_blocks_unless_it_is_too_long(page: Page) -> None:
+    page.click("#view_text")
+    write(page, "S;" * 1600)
+    page.click("#view_blocks")
+    page.locator("#blocks_note", has_text="too long").wait_for()
     start(page, "SI|SPEED = 5;\nDEF HOP;\n  F(1, SPEED);\nEND_DEF;\nHOP;\n", "usual")
+    assert page.inner_text("#blocks_note") == ""
     assert "SPEED" in flyout(page, "Variables")
     assert "HOP" in flyout(page, "My words")
 
@@ -530,15 +518,6 @@ def test_more_cases_of_an_if(page: Page) -> None:
         becomes(page, f"SI|{wanted}")
 
 
-def test_a_long_program_stays_text(page: Page) -> None:
-    page.click("#view_text")
-    write(page, "S;" * 1600)
-    page.click("#view_blocks")
-    page.locator("#blocks_note", has_text="too long").wait_for()
-    start(page, "SI|S\n")
-    assert page.inner_text("#blocks_note") == ""
-
-
 def test_keys_alone_add_a_block(page: Page) -> None:
     page.locator("#redo").focus()
     page.keyboard.press("Tab")
@@ -546,33 +525,7 @@ def test_keys_alone_add_a_block(page: Page) -> None:
     for key in ("ArrowRight", "Enter", "ArrowDown", "Enter"):
         page.keyboard.press(key)
         page.wait_for_timeout(100)  # as quick as fingers
-    for _ in range(100):
-        if text_of(page).count("F(2, 80)") == 2:
-            return
-        page.wait_for_timeout(50)
-    assert text_of(page).count("F(2, 80)") == 2
-
-
-def test_a_finger_drags_a_block(pages: Pages) -> None:
-    page = pages.open(view="blocks", has_touch=True, viewport={"width": 1024, "height": 600})
-    page.locator(".blocklyToolboxCategory", has_text="Move").tap()
-    source = page.locator(FLYOUT).nth(1)
-    source.wait_for()
-    a, b = box_of(source), box_of(block(page, "turn right"))
-    session = page.context.new_cdp_session(page)
-
-    def touch(kind: str, x: float, y: float) -> None:
-        points = [] if kind == "touchEnd" else [{"x": x, "y": y}]
-        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
-
-    x, y = a["x"] + 8, a["y"] + 10
-    to_x, to_y = b["x"] + 10, b["y"] + b["height"] + 8
-    touch("touchStart", x, y)
-    for k in range(1, 13):
-        touch("touchMove", x + (to_x - x) * k / 12, y + (to_y - y) * k / 12)
-    touch("touchEnd", to_x, to_y)
-    page.locator("#blocks[data-state=shown]").wait_for()
-    assert "B(2, 80)" in text_of(page)
+    hears(page, lambda: text_of(page).count("F(2, 80)") == 2, "another block")
 
 
 # -- sentences -------------------------------------------------------------------------------------

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_robot import in_phase, running, value
-from tests.support.studio import checked, noted, shown, write
+from tests.studio.test_page_robot import running, value
+from tests.support.studio import checked, in_phase, noted, shown, write
 from tiniscript import run
 
 if TYPE_CHECKING:
@@ -61,7 +61,13 @@ def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> 
 
 
 def test_a_breakpoint_of_a_line_with_nothing_on_it_is_that_of_the_next_part(page: Page) -> None:
+    """And only the left button sets one."""
     write(page, COUNT)
+    numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
+    numbers.filter(has_text="5").last.click(button="right")
+    numbers.filter(has_text="3").last.click(button="middle")
+    numbers.filter(has_text="5").last.click(modifiers=["Control"])  # a Mac has its menu by that
+    assert points(page) == 0
     press_margin(page, 4)
     assert page.locator(".cm-breakpoint").all_inner_texts() == ["S"]  # of SHOW
     press_margin(page, 5)
@@ -178,17 +184,6 @@ def test_a_breakpoint_is_taken_away_from_a_program_whose_text_has_changed(page: 
         state="attached"
     )
     page.keyboard.press("Escape")
-
-
-def test_only_the_left_button_sets_a_breakpoint(page: Page) -> None:
-    write(page, COUNT)
-    numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
-    numbers.filter(has_text="5").last.click(button="right")
-    numbers.filter(has_text="3").last.click(button="middle")
-    numbers.filter(has_text="5").last.click(modifiers=["Control"])  # a Mac has its menu by that
-    assert points(page) == 0
-    press_margin(page, 5)
-    assert points(page) == 1
 
 
 def test_a_breakpoint_in_every_line_is_no_hurdle(page: Page) -> None:

@@ -40,7 +40,7 @@ def test_a_new_board_becomes_a_robot(
         file.name: serving.File(file.read_bytes(), "text/plain"),
     }
     with (
-        studio.served(page=page) as server,
+        studio.served(page) as server,
         new_board(bootloader("uno")) as uno,
         studio_serial.context(playwright, tmp_path, uno.pty, server.address) as context,
     ):

@@ -221,9 +221,9 @@ TRY = """async (address) => {
 }"""
 
 
-def test_the_policy_holds(pages: Pages) -> None:
+def test_the_policy_holds(page: Page, only_page: tuple[Pages, Page]) -> None:
     """The page does not reach another address, and no text becomes code."""
-    page = pages.open()
+    wrong = only_page[0].wrong
     with socket.create_server(("127.0.0.1", 0)) as other:
         address = f"http://127.0.0.1:{other.getsockname()[1]}/"
         tried: dict[str, Any] = page.evaluate(TRY, address)
@@ -231,8 +231,8 @@ def test_the_policy_holds(pages: Pages) -> None:
         other.setblocking(False)
         with pytest.raises(BlockingIOError):
             other.accept()
-    assert sum("Content Security Policy" in each for each in pages.wrong) >= 5
-    pages.wrong.clear()
+    assert sum("Content Security Policy" in each for each in wrong) >= 5
+    wrong.clear()
 
 
 # Waits until files of a language are kept.
@@ -275,7 +275,7 @@ def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
     need(studio.missing())
     page = serving.files()
     context = browser.new_context()
-    with studio.served(page=page) as server:
+    with studio.served(page) as server:
         tab = context.new_page()
         enter(tab, server.address)
         tab.evaluate("navigator.serviceWorker.ready.then(() => 1)")

@@ -24,6 +24,8 @@ from tests.support.studio import (
     drives,
     enter,
     hang,
+    hears,
+    shown,
     speak,
     turn,
     write,
@@ -33,7 +35,7 @@ from tiniscript.link import known_ports
 from tiniscript.studio import serving
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, Page, Route
 
 KIT = robots.load("tinibot").kit
 PATIENCE_MS = 90_000
@@ -112,15 +114,7 @@ def page(first: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     assert not wrong
 
 
-@pytest.fixture
-def own_page(pages: Pages, robot: PtyRobot) -> Page:
-    """The same for one test, which does to the page what it does not outlive."""
-    found = pages.open()
-    connect(found, robot)
-    return found
-
-
-def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
+def test_a_program_and_a_line_are_sent_and_run(page: Page, robot: PtyRobot) -> None:
     text = "SHOW(2.5);\nF(0.2, 80);\nSHOW(1 < 2)"
     write(page, text)
     before = len(robot.did)
@@ -130,9 +124,6 @@ def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
     assert "MOTORS 80 80" in robot.did[before:]
     page.click("#link_send")
     said(page, f"program {compile(text).checksum:08x}, ")
-
-
-def test_a_line_is_done_now(page: Page, robot: PtyRobot) -> None:
     page.fill("#link_line", "SHOW(6 * 7)")
     page.keyboard.press("Enter")
     said(page, "Done.")
@@ -141,9 +132,6 @@ def test_a_line_is_done_now(page: Page, robot: PtyRobot) -> None:
     page.keyboard.press("Enter")
     said(page, "Try: ")
     assert not robot.moves
-
-
-def test_a_fault_is_shown_at_its_line(page: Page) -> None:
     write(page, "X = 0;\nF(0.1, 50);\nSHOW(1 / X)")
     page.click("#link_upload")
     said(page, "Line 3: something is divided by 0.")
@@ -162,34 +150,29 @@ def test_a_robot_that_restarts_is_told(page: Page, robot: PtyRobot) -> None:
     said(page, "Stopped: the robot has confirmed it.")
 
 
-@pytest.mark.parametrize("way", ["button", "escape"])
-def test_stop_stops(page: Page, robot: PtyRobot, way: str) -> None:
-    drives(page, robot)
-    if way == "button":
-        page.click("#stop")
-    else:
-        page.locator(".cm-content").focus()
-        page.keyboard.press("Escape")
-    said(page, "Stopped: the robot has confirmed it.")
-    assert not robot.moves
+def test_stop_stops(page: Page, robot: PtyRobot) -> None:
+    """By its button, by a key in the editor, and while the virtual robot is seen."""
+    for way in ("button", "Escape", "virtual"):
+        drives(page, robot)
+        if way == "Escape":
+            page.locator(".cm-content").focus()
+            page.keyboard.press("Escape")
+        else:
+            page.click("#side_virtual" if way == "virtual" else "#side_real")
+            page.click("#stop")
+        robot.until(lambda: not robot.moves, f"it stands: {way}")
+        page.click("#side_real")
+        said(page, "Stopped: the robot has confirmed it.")
 
 
-def test_stop_works_while_the_virtual_robot_is_seen(page: Page, robot: PtyRobot) -> None:
-    drives(page, robot)
-    page.click("#side_virtual")
-    page.click("#stop")
-    robot.until(lambda: not robot.moves, "it stands")
-
-
-def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
+def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
+    first: tuple[Pages, Page], page: Page, robot: PtyRobot
+) -> None:
     drives(page, robot)
     began_ms = robot.robot_ms
     hang(page, HUNG_MS)
     assert robot.stands_after_ms(began_ms) < 0.9 * HUNG_MS
     said(page, "Stopped")  # and it is told when it is back
-
-
-def test_a_page_that_is_hidden_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     drives(page, robot)
     page.evaluate(
         "Object.defineProperty(document, 'visibilityState', {value: 'hidden', configurable: true});"
@@ -198,18 +181,6 @@ def test_a_page_that_is_hidden_stops_its_robot(page: Page, robot: PtyRobot) -> N
     robot.until(lambda: not robot.moves, "it stands")
     said(page, "this page was hidden")
     page.evaluate("delete document.visibilityState")
-
-
-def test_a_page_that_is_closed_stops_its_robot(own_page: Page, robot: PtyRobot) -> None:
-    drives(own_page, robot)
-    began_ms = robot.robot_ms
-    own_page.close()
-    assert robot.stands_after_ms(began_ms) < 0.9 * HUNG_MS
-
-
-def test_a_page_that_reaches_nothing_stops_its_robot(
-    first: tuple[Pages, Page], page: Page, robot: PtyRobot
-) -> None:
     drives(page, robot)
     page.context.set_offline(True)
     robot.until(lambda: not robot.moves, "it stands")
@@ -285,9 +256,6 @@ def test_everything_is_seen_and_axe_finds_nothing(page: Page) -> None:
             page.locator("#link_connect").wait_for()
 
 
-HOSTILE = "<img src=x onerror=1>"
-
-
 def test_nothing_that_a_robot_says_becomes_markup(page: Page, robot: PtyRobot) -> None:
     page.evaluate("window.before = document.querySelectorAll('*').length")
     robot.say(b"<script>window.taken = 1</script>\r\n<b>\x1b[2J\xe2\x80\xae\r\n")
@@ -299,13 +267,10 @@ def test_nothing_that_a_robot_says_becomes_markup(page: Page, robot: PtyRobot) -
     said(page, "The robot is called <b>x</b> now.")
     assert page.evaluate("document.querySelectorAll('*').length === window.before")
     assert not page.evaluate("'taken' in window")
-
-
-def test_hostile_names_of_robots_are_text(page: Page, robot: PtyRobot) -> None:
     page.click("#link_leave")
-    known_ports.remember(robot.port, HOSTILE)
+    known_ports.remember(robot.port, "<img src=x onerror=1>")
     page.click("#link_look")
-    page.locator("#link_port option").filter(has_text=HOSTILE).wait_for(state="attached")
+    page.locator("#link_port option").filter(has_text="<img").wait_for(state="attached")
     assert page.locator("#link_port option use").first.get_attribute("href") == "#drawn_plug"
     assert page.locator("#link img").count() == 0
 
@@ -313,20 +278,18 @@ def test_hostile_names_of_robots_are_text(page: Page, robot: PtyRobot) -> None:
 def test_why_there_is_no_connection(pages: Pages) -> None:
     with PtyRobot(KIT) as robot:
         known_ports.remember(robot.port, "TINI")
-        says_why(pages.open(locale="es-AR"), robot)
-
-
-def says_why(page: Page, robot: PtyRobot) -> None:
-    robot.switch_off()
-    page.click("#side_real")
-    page.locator("#link_port option").first.wait_for(state="attached")
-    page.click("#link_connect")
-    page.locator("#link_said").filter(has_text="Nada responde.").wait_for()
-    robot.switch_on()
-    page.click("#link_connect")
-    page.locator("#link_said").filter(has_text="Conectado").wait_for()
-    robot.pull()
-    page.locator("#link_said").filter(has_text="cable").wait_for()
+        page = pages.open()
+        speak(page, "es")
+        robot.switch_off()
+        page.click("#side_real")
+        page.locator("#link_port option").first.wait_for(state="attached")
+        page.click("#link_connect")
+        said(page, "Nada responde.")
+        robot.switch_on()
+        page.click("#link_connect")
+        said(page, "Conectado")
+        robot.pull()
+        said(page, "cable")
 
 
 def test_the_token_is_not_in_the_address(page: Page, server: serving.Server) -> None:
@@ -346,7 +309,10 @@ def test_run_with_a_mistake_stops_what_runs(page: Page, robot: PtyRobot) -> None
     said(page, "The robot was stopped. Fix the program first.")
 
 
-def test_an_address_opens_the_robots_once_and_says_so(pages: Pages, server: serving.Server) -> None:
+def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
+    pages: Pages, server: serving.Server, robot: PtyRobot
+) -> None:
+    """And a page that is closed stops its robot."""
     entrance = server.entrance()
     first, second = pages.visit(entrance), pages.visit(entrance)
     studio.noted(second, "This address was opened before")
@@ -354,14 +320,15 @@ def test_an_address_opens_the_robots_once_and_says_so(pages: Pages, server: serv
     for page, has_robots in ((first, True), (second, False)):
         page.click("#side_real")
         assert page.locator("#link_ports").is_visible() is has_robots
-
-
-def test_another_run_of_tsc_studio_is_said(pages: Pages, server: serving.Server) -> None:
-    page = pages.open()
-    page.evaluate("sessionStorage.setItem('tiniscript.token', '0'.repeat(32))")
-    enter(page, server.address)
-    page.click("#side_real")
-    said(page, "tsc studio was started again meanwhile,")
+    connect(first, robot)
+    drives(first, robot)
+    began_ms = robot.robot_ms
+    first.close()
+    assert robot.stands_after_ms(began_ms) < 0.9 * HUNG_MS
+    second.evaluate("sessionStorage.setItem('tiniscript.token', '0'.repeat(32))")
+    enter(second, server.address)
+    second.click("#side_real")
+    said(second, "tsc studio was started again meanwhile,")
     assert [each for each in pages.wrong if "403" not in each] == []
     pages.wrong.clear()
 
@@ -449,3 +416,89 @@ def test_a_run_is_recorded_and_compared_with_the_virtual_robot(page: Page, tmp_p
     write(page, "SHOW(5)")
     page.click("#record_compare")
     told.filter(has_text="of another program").wait_for()
+
+
+# -- the line and the block that the robot runs now
+
+
+DRIVE = "F(3, 80);\nR(3, 60)"  # parts that differ, and longer than a busy page is late
+
+
+def marked(page: Page, part: str) -> None:
+    page.locator(".cm-running", has_text=part).wait_for(state="attached")
+
+
+def unmarked(page: Page) -> None:
+    page.locator(".cm-running").wait_for(state="detached")
+    assert page.locator("#blocks .running").count() == 0
+
+
+def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
+    write(page, DRIVE)
+    page.click("#view_blocks")
+    shown(page)
+    page.click("#link_upload")
+    for part in DRIVE.split(";\n"):
+        marked(page, part)
+        assert page.locator("#blocks .blocklyDraggable.running").count() == 1
+    page.click("#view_text")
+    said(page, "Done.")
+    unmarked(page)
+
+
+def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> None:
+    write(page, "F(60, 80)")
+    page.click("#link_upload")
+    page.locator(".cm-running").wait_for()
+    page.locator(".cm-content").focus()
+    page.keyboard.press("Control+End")
+    page.keyboard.insert_text(";\nW(1)")
+    unmarked(page)
+    checked(page)
+    unmarked(page)
+    page.keyboard.press("Control+z")
+    page.locator(".cm-running").wait_for()
+    page.click("#link_leave")
+    unmarked(page)
+
+
+def upload_until_told(page: Page, at: int | None = None) -> None:
+    """Upload, and wait until the page was told a place of the robot, or `at` in its stead."""
+    told: list[int] = []
+
+    def changed(route: Route) -> None:
+        response = route.fetch()
+        answer = response.json()
+        for each in answer.get("news", []):
+            if each.get("event") == "PLACE":
+                each["at"] = each["at"] if at is None else at
+                told.append(each["at"])
+        route.fulfill(response=response, json=answer)
+
+    page.route("**/robots", changed)
+    page.click("#link_upload")
+    hears(page, lambda: told, "a place is told")
+    page.unroute_all(behavior="wait")
+    page.wait_for_timeout(200)
+
+
+def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:
+    write(page, "F(60, 80)")
+    upload_until_told(page, 60_000)
+    assert page.locator(".cm-running").count() == 0
+
+
+def test_a_breakpoint_keeps_its_mark_while_the_robot_runs(page: Page) -> None:
+    """The virtual robot waits at the first line; the real one is at the second one."""
+    write(page, "W(0.1);\nF(60, 80)")
+    page.click("#side_virtual")
+    page.locator(".cm-lineNumbers .cm-gutterElement").filter(has_text="1").last.click()
+    page.click("#run")
+    marked(page, "W(0.1)")
+    page.locator("#doing").filter(has_text="Stopped before line 1.").wait_for()
+    page.click("#side_real")
+    upload_until_told(page)
+    assert page.locator(".cm-running").all_inner_texts() == ["W(0.1)"]
+    page.click("#side_virtual")
+    page.click("#pause")  # goes on
+    marked(page, "F(60, 80)")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.studio import Pages, axe, shown, turn, write
+from tests.support.studio import Pages, axe, in_phase, shown, turn, write
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -84,24 +84,23 @@ def test_run_and_stop_are_on_both_screens(phone: Page, size: tuple[int, int]) ->
     for where in ("program", "robot"):
         turn(phone, "program")
         phone.click("#run")
-        phone.locator("html[data-phase=running]").wait_for(state="attached")
+        in_phase(phone, "running")
         assert half(phone) == "robot"
         assert phone.locator("#arena").is_visible() and not phone.locator("#writing").is_visible()
         turn(phone, where)
         phone.click("#stop")
-        phone.locator("html[data-phase=ended]").wait_for(state="attached")
+        in_phase(phone, "ended")
         assert half(phone) == where
 
 
-def test_run_shows_the_virtual_robot(phone: Page) -> None:
+def test_run_shows_the_virtual_robot_unless_the_real_one_is_seen(phone: Page) -> None:
     write(phone, "SI|F(0.2, 80)")
     turn(phone, "robot")
     phone.click("#side_lessons")
     phone.click("#run")
     assert phone.locator("#arena").is_visible() and phone.locator("#lesson_page").is_visible()
-
-
-def test_run_beside_a_real_robot_is_not_the_virtual_one(phone: Page) -> None:
+    phone.keyboard.press("Escape")
+    turn(phone, "program")
     write(phone, "SI|F(9, 80)")
     turn(phone, "robot")
     phone.click("#side_real")
@@ -111,14 +110,15 @@ def test_run_beside_a_real_robot_is_not_the_virtual_one(phone: Page) -> None:
     assert phone.locator("#link").is_visible()
     phone.click("#side_virtual")
     phone.click("#run")
-    phone.locator("html[data-phase=running]").wait_for(state="attached")
+    in_phase(phone, "running")
 
 
 def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
+    """On a tablet, a second tap is not for what comes to the place of the first."""
     page = pages.open("start", viewport={"width": 390, "height": 844}, has_touch=True)
     assert page.locator("#bar button:visible").evaluate_all("all => all.map(e => e.id)") == ["stop"]
     page.tap("[data-begin=dance]")
-    page.locator("html[data-phase=running]").wait_for(state="attached")
+    in_phase(page, "running")
     assert half(page) == "robot" and page.locator("#arena").is_visible()
     page.tap("#home")
     page.tap("#start_lessons")
@@ -126,12 +126,21 @@ def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
     page.tap("#home")
     page.tap("#start_write")
     assert half(page) == "program" and page.locator("#writing").is_visible()
+    page.tap("#home")
+    page.set_viewport_size({"width": 1366, "height": 768})
+    page.locator("html:not([data-phone])").wait_for(state="attached")
+    box = page.locator("#start_write").bounding_box()
+    assert box
+    for _ in range(2):
+        page.touchscreen.tap(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    shown(page)
+    assert page.get_attribute("#side_real", "aria-pressed") == "false"
 
 
 def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
     write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     phone.click("#run")
-    phone.locator("html[data-phase=running]").wait_for(state="attached")
+    in_phase(phone, "running")
     for width, height in ((844, 390), (390, 844), (844, 390)):
         phone.set_viewport_size({"width": width, "height": height})
         ratio = phone.evaluate(
@@ -143,7 +152,7 @@ def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
         assert phone.evaluate("document.documentElement.dataset.phase") == "running"
     phone.evaluate("scrollTo(0, document.documentElement.scrollHeight)")
     phone.click("#stop")
-    phone.locator("html[data-phase=ended]").wait_for(state="attached")
+    in_phase(phone, "ended")
 
 
 def test_what_is_chosen_and_runs_is_seen_without_backgrounds(page: Page) -> None:

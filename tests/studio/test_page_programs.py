@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.studio.programs import programs
-from tests.support.studio import Pages, asked, checked, image, noted, write
+from tests.support.rows import each_row
+from tests.support.studio import Pages, asked, checked, image, in_phase, noted, write
 from tiniscript import check, compile
 from tiniscript.studio.building import MODULES
 from tiniscript.studio.checking import line
@@ -164,7 +165,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("name", WRONG)
+@each_row("name", WRONG)
 def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
     write(page, "SI|F(4, 80)")
     before = image(page)
@@ -177,13 +178,29 @@ def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
     assert page.locator("img").count() == 0
 
 
-def test_a_program_that_is_too_long_for_a_link_says_so(page: Page) -> None:
+def test_what_cannot_be_shared_says_why(page: Page) -> None:
+    """A program that is too long for a link, one that the robot cannot read in a line, a wrong one,
+    and one that is too long for a picture of a line."""
     chance = random.Random(1)
     noise = "".join(f"// {chance.randbytes(40).hex()}\n" for _ in range(200))  # nothing packs it
     write(page, noise)
     assert share(page) == ""
     assert "too long for a link" in page.inner_text("#shared_told")
     assert not page.locator("#shared_picture, #shared, #copy").filter(visible=True).count()
+    page.keyboard.press("Escape")
+    write(page, "DEF TURN\nR(1, 60)\nEND_DEF\nTURN")
+    assert share(page, "line") == ""
+    assert "uno" in page.inner_text("#shared_told") and "DEF" in page.inner_text("#shared_told")
+    page.click("#programs_close")
+    write(page, "F(2")
+    assert share(page, "line") == ""
+    assert check("F(2")[0].message in page.inner_text("#shared_told")
+    page.keyboard.press("Escape")
+    page.select_option("#robot", "tinibot32")  # it has the memory for such names
+    write(page, "SI|" + "".join(f"{letter * 190}=1;" for letter in "BCDEG"))
+    assert len(share(page, "line")) > 900
+    assert page.locator("#shared_picture").is_hidden()
+    assert "too long for a QR code" in page.inner_text("#shared_told")
     page.keyboard.press("Escape")
 
 
@@ -203,17 +220,6 @@ def test_every_line_is_that_of_the_command(page: Page, part: int) -> None:
             refused += 1
             assert answer == {"message": wanted.message, "fix": wanted.fix}, program.name
     assert 0 < refused < len(found)
-
-
-def test_a_line_that_the_robot_cannot_read_says_why(page: Page) -> None:
-    write(page, "DEF TURN\nR(1, 60)\nEND_DEF\nTURN")
-    assert share(page, "line") == ""
-    assert "uno" in page.inner_text("#shared_told") and "DEF" in page.inner_text("#shared_told")
-    page.click("#programs_close")
-    write(page, "F(2")
-    assert share(page, "line") == ""
-    assert check("F(2")[0].message in page.inner_text("#shared_told")
-    page.keyboard.press("Escape")
 
 
 # Reads the modules of the code as a camera would see them: another package than the one that draws.
@@ -253,13 +259,6 @@ def test_the_pictures_hold_what_is_shared(page: Page) -> None:
     for how in ("link", "line"):
         shared = share(page, how)
         assert pictured(page) == shared != ""
-    page.click("#programs_close")
-    page.select_option("#robot", "tinibot32")  # it has the memory for such names
-    # more than a camera reads
-    write(page, "SI|" + "".join(f"{letter * 190}=1;" for letter in "BCDEG"))
-    assert len(share(page, "line")) > 900
-    assert page.locator("#shared_picture").is_hidden()
-    assert "too long for a QR code" in page.inner_text("#shared_told")
     page.keyboard.press("Escape")
 
 
@@ -296,26 +295,25 @@ def colours(page: Page, data: bytes) -> tuple[int, int, dict[str, int]]:
 MOVE = "11,79,158"  # the colour of blocks that move, as blocks/colours.js has it
 
 
-@pytest.mark.parametrize("view", ["text", "blocks"])
-def test_the_blocks_are_saved_as_a_picture(page: Page, view: str) -> None:
-    write(page, "SI|F(2, 80)")
-    page.click(f"#view_{view}")
-    page.click("#my_programs")
-    small = picture_of_blocks(page)
-    page.click("#programs_close")
-    assert page.locator("#blocks").is_visible() == (view == "blocks")
-    page.click("#view_text")
-    write(page, "SI|" + "F(2, 80);" * 5)
-    page.click("#my_programs")
-    large = picture_of_blocks(page)
-    page.keyboard.press("Escape")
-    assert large[1] > small[1] * 1.8  # rows
-    assert large[2][MOVE] > 4 * small[2][MOVE] > 4000  # the blocks are filled
-    assert small[2]["255,255,255"] > small[0] * small[1] / 10  # letters and what is around
-    assert not {each for each in small[2] if each in ("0,0,0",)}  # nothing lacks its colour
-
-
-def test_without_blocks_there_is_no_picture(page: Page) -> None:
+def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
+    """From the text, too; unless there are too many of them."""
+    for view in ("text", "blocks"):
+        page.click("#view_text")
+        write(page, "SI|F(2, 80)")
+        page.click(f"#view_{view}")
+        page.click("#my_programs")
+        small = picture_of_blocks(page)
+        page.click("#programs_close")
+        assert page.locator("#blocks").is_visible() == (view == "blocks")
+        page.click("#view_text")
+        write(page, "SI|" + "F(2, 80);" * 5)
+        page.click("#my_programs")
+        large = picture_of_blocks(page)
+        page.keyboard.press("Escape")
+        assert large[1] > small[1] * 1.8, view  # rows
+        assert large[2][MOVE] > 4 * small[2][MOVE] > 4000, view  # the blocks are filled
+        assert small[2]["255,255,255"] > small[0] * small[1] / 10  # letters and what is around
+        assert "0,0,0" not in small[2], view  # nothing lacks its colour
     write(page, "S;" * 1600)
     page.click("#my_programs")
     page.click("#share_picture")
@@ -390,7 +388,7 @@ DAMAGED = ("no JSON", "null", "7", '{"length": 3}', '[null, 1, {"text": 5}]',
            '[{"text": "S", "robot": "tinibot", "name": "", "at_ms": 1e300}]')  # fmt: skip
 
 
-@pytest.mark.parametrize("kept", DAMAGED)
+@each_row("kept", DAMAGED)
 def test_damaged_programs_do_no_harm(page: Page, kept: str) -> None:
     write(page, "SI|F(6, 60)")
     page.evaluate("kept => localStorage.setItem('tiniscript.versions', kept)", kept)
@@ -416,13 +414,13 @@ def test_a_stop_is_in_reach(page: Page) -> None:
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     for stop in ("click", "Escape"):
         page.click("#run")
-        page.locator("html[data-phase=running]").wait_for(state="attached")
+        in_phase(page, "running")
         page.click("#my_programs")
         if stop == "click":
             page.click("#programs_stop")
         else:
             page.keyboard.press("Escape")
-        page.locator("html[data-phase=ended]").wait_for(state="attached")
+        in_phase(page, "ended")
         if page.locator("#programs").is_visible():
             page.click("#programs_close")
 

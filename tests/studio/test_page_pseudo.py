@@ -13,7 +13,7 @@ from tests.support.pseudo import pseudo
 from tests.support.studio import SETTLED, Pages
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Route
+    from playwright.sync_api import Browser, Page, Route
 
 SIZES = ((1366, 768), (390, 844), (844, 390))
 WINDOWS = (("#class_come", "#big_code"), ("#wall .see >> nth=0", "#big_pupil"),
@@ -73,28 +73,28 @@ def _answer(route: Route) -> None:
 
 
 @pytest.mark.sampled(of="longer texts")
-def test_longer_texts_fit_into_every_screen(browser: Browser) -> None:
-    with studio.served() as server:
-        pages = Pages(browser, server.address)
-        page = pages.open("start", reduced_motion="reduce")
-        page.route("**/texts.en.json", _answer)
-        page.reload()
-        page.locator("#start_title", has_text="lóñg").wait_for()
-        page.evaluate("document.querySelector('#start_write').style.width = '3em'")
-        assert page.evaluate(CUT) != []  # it would be noticed
-        page.evaluate("document.querySelector('#start_write').style.width = ''")
-        page.evaluate("document.querySelector('#start_title').append(' in English')")
-        assert page.evaluate(PLAIN) == [" in English"]
-        page.evaluate("document.querySelector('#start_title').lastChild.remove()")
-        cut = {}
-        plain = {}
-        for screen, size in each_screen(page, lambda screen: SIZES):
-            cut[screen, size] = page.evaluate(CUT)
-            if size == SIZES[0]:
-                plain[screen] = page.evaluate(PLAIN)
-        assert {where: each for where, each in cut.items() if each} == {}
-        assert {screen: each for screen, each in plain.items() if each} == {}
-        pages.close()
+def test_longer_texts_fit_into_every_screen(pages: Pages) -> None:
+    page = pages.blank(reduced_motion="reduce")
+    page.route("**/texts.en.json", _answer)
+    page.goto(pages.address)
+    page.locator("#start_title", has_text="lóñg").wait_for()
+    would_be_noticed(page, "#start_write")
+    page.evaluate("document.querySelector('#start_title').append(' in English')")
+    assert page.evaluate(PLAIN) == [" in English"]
+    page.evaluate("document.querySelector('#start_title').lastChild.remove()")
+    wrong = {}
+    for screen, size in each_screen(page, lambda screen: SIZES):
+        wrong[screen, size] = page.evaluate(CUT)
+        if size == SIZES[0]:
+            wrong[screen, size] += page.evaluate(PLAIN)
+    assert {where: each for where, each in wrong.items() if each} == {}
+
+
+def would_be_noticed(page: Page, button: str) -> None:
+    """A button that is too narrow for its text."""
+    page.evaluate("(button) => { document.querySelector(button).style.width = '3em'; }", button)
+    assert page.evaluate(CUT) != []
+    page.evaluate("(button) => { document.querySelector(button).style.width = ''; }", button)
 
 
 @pytest.mark.sampled(of="longer texts")
@@ -107,14 +107,12 @@ def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
             token = made.room.answer("", f"192.0.2.{number}", join)["token"]
             made.room.answer(token, f"192.0.2.{number}", WANTS)
         pages = Pages(browser, made.server.address)
-        page = pages.visit(made.server.entrance(), "wall", is_alone=True)
+        page = pages.blank()
         page.route("**/texts.en.json", _answer)
-        page.reload()
+        page.goto(made.server.entrance())
         page.locator("#class_settings", has_text="Cläss").wait_for()
         page.locator("#wall li").nth(9).wait_for()
-        page.evaluate("document.querySelector('#class_settings').style.width = '3em'")
-        assert page.evaluate(CUT) != []  # it would be noticed
-        page.evaluate("document.querySelector('#class_settings').style.width = ''")
+        would_be_noticed(page, "#class_settings")
         cut = {}
         for width, height in SIZES:
             page.set_viewport_size({"width": width, "height": height})

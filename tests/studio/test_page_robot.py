@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -10,7 +11,17 @@ import pytest
 from tests.studio.test_page_for_everyone import SCREENS
 from tests.studio.test_simulation import DANCE
 from tests.support.casefile import ROOT
-from tests.support.studio import SETTLED, asked, checked, runs_like_the_command, speak, turn, write
+from tests.support.rows import each_row
+from tests.support.studio import (
+    SETTLED,
+    asked,
+    checked,
+    in_phase,
+    runs_like_the_command,
+    speak,
+    turn,
+    write,
+)
 from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
@@ -19,10 +30,6 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 FOREVER = "LOOP(FOREVER);\n  F(1, 80);\n  R(1, 60);\nEND_LOOP"
-
-
-def in_phase(page: Page, phase: str) -> None:
-    page.locator(f"html[data-phase={phase}]").wait_for(state="attached")
 
 
 def value(page: Page, name: str) -> str:
@@ -82,8 +89,7 @@ def test_the_list_is_the_trace_of_the_command(page: Page) -> None:
     page.click("#seen_arena")
 
 
-@pytest.mark.parametrize("is_paused", [False, True], ids=["driving", "paused"])
-@pytest.mark.parametrize("how", ["button", "Escape", "Escape in the editor"])
+@each_row("how, is_paused", product(("button", "Escape", "Escape in the editor"), (False, True)))
 def test_stop_stops_it(page: Page, how: str, is_paused: bool) -> None:
     write(page, FOREVER)
     page.click("#run")
@@ -115,10 +121,7 @@ def test_step_goes_to_the_next_part_of_the_program(page: Page) -> None:
         page.click("#step")
     in_phase(page, "ended")
     assert value(page, "Time") == "2.5 s"
-
-
-def test_stop_comes_through_in_the_middle_of_a_long_step(page: Page) -> None:
-    write(page, "W(50);\nS")
+    write(page, "W(50);\nS")  # STOP comes through in the middle of a long step
     page.click("#step")
     in_phase(page, "paused")
     page.locator(".cm-running").wait_for()

@@ -10,9 +10,8 @@ import pytest
 
 from tests.studio.test_page_link import said
 from tests.support import studio, studio_serial
-from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import HUNG_MS, enter, hang, write
+from tests.support.studio import HUNG_MS, drives, enter, hang, write
 from tiniscript import robots
 
 if TYPE_CHECKING:
@@ -76,18 +75,14 @@ def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
 
 
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
-    write(page, FOREVER)
-    page.click("#link_upload")
-    robot.until(lambda: robot.moves, "it drives")
+    drives(page, robot)
     page.keyboard.press("Escape")
     said(page, "Stopped: the robot has confirmed it.")
     assert not robot.moves
 
 
 def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
-    write(page, FOREVER)
-    page.click("#link_upload")
-    robot.until(lambda: robot.moves, "it drives")
+    drives(page, robot)
     began_ms = robot.robot_ms
     hang(page, HUNG_MS)
     assert robot.stands_after_ms(began_ms) < HUNG_MS  # its dead-man timer stops it
@@ -107,9 +102,7 @@ def test_two_tabs_do_not_fight(context: BrowserContext, page: Page, robot: PtyRo
 def test_a_page_that_is_closed_stops_its_robot(
     context: BrowserContext, page: Page, robot: PtyRobot
 ) -> None:
-    write(page, FOREVER)
-    page.click("#link_upload")
-    robot.until(lambda: robot.moves, "it drives")
+    drives(page, robot)
     address = page.url
     page.goto("about:blank")
     robot.until(lambda: not robot.moves, "it stands")

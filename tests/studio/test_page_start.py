@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.test_page_programs import GOOD
-from tests.support.studio import Pages, checked, image, noted, shown, write
+from tests.support.studio import Pages, checked, hears, image, in_phase, noted, shown, write
 from tiniscript import compile
 
 if TYPE_CHECKING:
@@ -20,20 +20,13 @@ START = "html[data-screen=start]"
 
 
 @pytest.fixture
-def start(pages: Pages) -> Page:
-    """The page as somebody finds it who has never been here."""
-    page = pages.open("start")
-    checked(page)
-    return page
-
-
-@pytest.fixture
-def again(page: Page) -> Iterator[Page]:
-    """The same screen of a page that was here before; no earlier program is kept."""
+def start(page: Page) -> Iterator[Page]:
+    """The screen of a page that was here before; no earlier program is kept."""
     page.set_viewport_size({"width": 1366, "height": 768})
+    page.click("#view_blocks")
     page.click("#home")
     page.click("[data-begin=dance]")  # what the page has brought is not kept
-    page.locator("html[data-phase=running]").wait_for(state="attached")
+    in_phase(page, "running")
     page.evaluate("localStorage.clear()")
     page.click("#home")
     page.locator(START).wait_for(state="attached")
@@ -47,51 +40,45 @@ def screen(page: Page) -> str:
     return str(page.evaluate("document.documentElement.dataset.screen"))
 
 
-def test_one_click_moves_the_robot(again: Page) -> None:
-    assert again.locator("[data-begin]").count() == len(PICTURES)
+def test_one_click_moves_the_robot(start: Page) -> None:
+    assert start.locator("[data-begin]").count() == len(PICTURES)
     for name in PICTURES:
-        again.click(f"[data-begin={name}]")
-        again.locator("html[data-phase=running]").wait_for(state="attached")
-        motors = again.locator("#values div").filter(has_text="Motors")
+        start.click(f"[data-begin={name}]")
+        in_phase(start, "running")
+        motors = start.locator("#values div").filter(has_text="Motors")
         motors.filter(has_text=re.compile("[1-9]")).wait_for()
-        assert again.inner_text("#status").startswith("The program is correct"), name
-        assert again.locator("#arena").is_visible()
-        again.click("#home")
-        again.locator("html[data-phase=ended]").wait_for(state="attached")
-    assert again.locator("#start_programs li").count() == 0  # the page has brought all of them
+        assert start.inner_text("#status").startswith("The program is correct"), name
+        assert start.locator("#arena").is_visible()
+        start.click("#home")
+        in_phase(start, "ended")
+    assert start.locator("#start_programs li").count() == 0  # the page has brought all of them
 
 
-def test_the_robot_moves_before_the_blocks_are_fetched(pages: Pages) -> None:
-    page = pages.open("start", is_alone=True).context.new_page()
-    pages.watch(page)
+def test_what_comes_late_leaves_a_run_alone(pages: Pages) -> None:
+    """The robot moves before the blocks are fetched, and goes on when the lessons come."""
+    page = pages.blank()
     fetched: list[str] = []
     page.on("request", lambda request: fetched.append(request.url))
-    held = []
-    page.route("**/tiniscript.zip", lambda route: held.append(route))
+    held: list[Route] = []
+    for name in ("tiniscript.zip", "lessons.zip"):
+        page.route(f"**/{name}", lambda route: held.append(route))
     page.goto(pages.address)
     page.click("[data-begin=dance]")
     page.locator("#doing", has_text="The compiler is still working").wait_for()
-    while not held:
-        page.wait_for_timeout(20)
+    hears(page, lambda: held, "the compiler is asked for")
     assert not any("/blocks-" in each for each in fetched)
-    held[0].continue_()
-    page.locator("html[data-phase=running]").wait_for(state="attached")
+    held.pop().continue_()
+    in_phase(page, "running")
     shown(page)
     assert any("/blocks-" in each for each in fetched)
-
-
-def test_lessons_that_come_late_leave_a_run_alone(pages: Pages) -> None:
-    page = pages.open("start")
-    held: list[Route] = []
-    page.route("**/lessons.zip", lambda route: held.append(route))
+    page.click("#home")
     page.click("#start_lessons")
-    while not held:
-        page.wait_for_timeout(20)
+    hears(page, lambda: held, "the lessons are asked for")
     assert not page.locator("#lesson_hint").is_visible()
     page.click("#home")
     page.click("[data-begin=obstacle]")
-    page.locator("html[data-phase=running]").wait_for(state="attached")
-    held[0].continue_()
+    in_phase(page, "running")
+    held.pop().continue_()
     page.locator("#lesson_page[data-lesson]").wait_for(state="attached")
     assert page.get_attribute("html", "data-phase") == "running"
     assert page.input_value("#world") == "obstacles"
@@ -99,46 +86,47 @@ def test_lessons_that_come_late_leave_a_run_alone(pages: Pages) -> None:
     page.locator("#world option:checked", has_text="Lesson 1").wait_for(state="attached")
 
 
-def test_who_gets_no_compiler_is_told_so_beside_the_robot(pages: Pages) -> None:
-    page = pages.open("start", is_alone=True).context.new_page()
-    page.route("**/tiniscript.zip", lambda route: route.abort())
-    page.goto(pages.address)
-    page.click("[data-begin=dance]")
-    page.locator("#doing", has_text="The compiler did not start. Reload the page").wait_for()
-    page.click("#side_lessons")
-    page.locator("#lesson_said", has_text="The compiler did not start.").wait_for()
-
-
-def test_nothing_empty_is_seen_before_the_texts_come(pages: Pages) -> None:
-    page = pages.open("start", is_alone=True).context.new_page()
+def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> None:
+    """Not before the texts come; and who gets no compiler is told so beside the robot."""
+    page = pages.blank()
     held: list[Route] = []
     page.route("**/texts.*.json", lambda route: held.append(route))
+    page.route("**/tiniscript.zip", lambda route: route.abort())
     page.goto(pages.address, wait_until="domcontentloaded")
-    while not held:
-        page.wait_for_timeout(20)
+    hears(page, lambda: held, "the texts are asked for")
     seen = page.locator("header :is(button, select):visible")
     assert seen.all_inner_texts() == ["STOP"]
     held[0].continue_()
     page.locator(START).wait_for(state="attached")
     assert seen.count() > 3
+    page.click("[data-begin=dance]")
+    page.locator("#doing", has_text="The compiler did not start. Reload the page").wait_for()
+    page.click("#side_lessons")
+    page.locator("#lesson_said", has_text="The compiler did not start.").wait_for()
+    assert pages.wrong  # of the compiler
+    pages.wrong.clear()
 
 
-def test_the_address_says_which_screen_is_seen(again: Page) -> None:
-    again.click("#start_write")
-    assert (screen(again), again.evaluate("location.hash")) == ("program", "#editor")
-    again.reload()
-    again.locator("html[data-screen=program]").wait_for(state="attached")
-    again.go_back()
-    again.locator(START).wait_for(state="attached")
-    again.go_forward()
-    again.locator("html[data-screen=program]").wait_for(state="attached")
-    again.click("#home")
-    assert screen(again) == "start"
-    again.click("#start_lessons")
-    assert again.locator("#lessons").is_visible()
-    again.click("#home")
-    again.click("#start_robot")
-    assert again.locator("#link").is_visible()
+def test_the_address_says_which_screen_is_seen(start: Page) -> None:
+    start.click("#start_write")
+    assert (screen(start), start.evaluate("location.hash")) == ("program", "#editor")
+    start.reload()
+    start.locator("html[data-screen=program]").wait_for(state="attached")
+    start.go_back()
+    start.locator(START).wait_for(state="attached")
+    start.go_forward()
+    start.locator("html[data-screen=program]").wait_for(state="attached")
+    assert start.locator("#home").is_visible()
+    start.evaluate("document.documentElement.dataset.class = 'pupil'")
+    assert not start.locator("#home").is_visible()  # a class has no start
+    start.evaluate("delete document.documentElement.dataset.class")
+    start.click("#home")
+    assert screen(start) == "start"
+    start.click("#start_lessons")
+    assert start.locator("#lessons").is_visible()
+    start.click("#home")
+    start.click("#start_robot")
+    assert start.locator("#link").is_visible()
 
 
 def test_a_link_opens_its_program_and_not_the_start(pages: Pages, start: Page) -> None:
@@ -150,13 +138,6 @@ def test_a_link_opens_its_program_and_not_the_start(pages: Pages, start: Page) -
     other = pages.visit(f"{pages.address}#program={GOOD[:-8]}")
     noted(other, "The link is incomplete")
     assert screen(other) == "program"
-
-
-def test_a_class_has_no_start(page: Page) -> None:
-    assert page.locator("#home").is_visible()
-    page.evaluate("document.documentElement.dataset.class = 'pupil'")
-    assert not page.locator("#home").is_visible()
-    page.evaluate("delete document.documentElement.dataset.class")
 
 
 def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:
@@ -187,37 +168,27 @@ def test_a_second_press_is_not_for_what_comes_to_the_place_of_the_first(start: P
     start.dblclick("[data-begin=dance]", position={"x": 40, "y": 100})
     assert screen(start) == "program"
     assert start.locator(".blocklyToolboxSelected").count() == 0
-    start.locator("html[data-phase=running]").wait_for(state="attached")
+    in_phase(start, "running")
     start.click("#home")
     start.dblclick("#start_write")  # and STOP is heard at once
     start.dblclick("#run")
-    start.locator("html[data-phase=running]").wait_for(state="attached")
+    in_phase(start, "running")
     start.click("#stop")
-    start.locator("html[data-phase=ended]").wait_for(state="attached")
+    in_phase(start, "ended")
 
 
-def test_nor_is_a_second_tap(pages: Pages) -> None:
-    page = pages.open("start", has_touch=True)
-    box = page.locator("#start_write").bounding_box()
-    assert box
-    for _ in range(2):
-        page.touchscreen.tap(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    shown(page)
-    assert page.get_attribute("#side_real", "aria-pressed") == "false"
-
-
-def test_the_keyboard_alone_is_enough(again: Page) -> None:
-    again.locator("#language").focus()
+def test_the_keyboard_alone_is_enough(start: Page) -> None:
+    start.locator("#language").focus()
     visited = []
     for _ in range(6 + len(PICTURES)):
-        again.keyboard.press("Tab")
-        visited.append(again.evaluate("(e => e.dataset.begin ?? e.id)(document.activeElement)"))
+        start.keyboard.press("Tab")
+        visited.append(start.evaluate("(e => e.dataset.begin ?? e.id)(document.activeElement)"))
     assert visited == [
         "theme", "open", "stop", *PICTURES, "start_write", "start_lessons", "start_robot",
     ]  # fmt: skip
-    again.locator("[data-begin=square]").focus()
-    again.keyboard.press("Enter")
-    again.locator("html[data-phase=running]").wait_for(state="attached")
-    assert again.evaluate("document.activeElement.id") == "stop"
-    again.keyboard.press("Space")
-    again.locator("html[data-phase=ended]").wait_for(state="attached")
+    start.locator("[data-begin=square]").focus()
+    start.keyboard.press("Enter")
+    in_phase(start, "running")
+    assert start.evaluate("document.activeElement.id") == "stop"
+    start.keyboard.press("Space")
+    in_phase(start, "ended")

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from time import monotonic
 from typing import TYPE_CHECKING
 
 from tests.studio.test_page_worlds import drag, put, said, saved
 from tests.studio.test_page_worlds_kept import NO_BORDER, draw_wall
-from tests.support.studio import Pages, checked, enter, image, noted, write
-from tests.support.waiting import HANGS_S
+from tests.support.studio import Pages, checked, enter, hears, image, in_phase, noted, write
 from tiniscript import compile
 from tiniscript.virtual.worlds import read
 
@@ -45,36 +43,11 @@ def second(pages: Pages, page: Page) -> Page:
     return other
 
 
-def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:
-    page = pages.open()
-    other = second(pages, page)
-    for k in (1, 2):
-        write(page, f"SI|F({k}, 10)")
-        write(other, f"SI|B({k}, 20)")
-    draw_wall(page)
-    other.locator("#world_draw:enabled").wait_for()
-    other.click("#world_draw")
-    for count in (1, 2):  # the second change does not forget what the first one has found
-        other.click("#world_add_walls")
-        drag(other, [(150, 30), (190, 60)])
-        other.locator("#world_part option", has_text=f"Wall {count}").wait_for(state="attached")
-        assert len(saved(other).walls) == count
-    other.click("#world_done")
-    with page.expect_event("close"):
-        page.close(run_before_unload=True)
-    end_s = monotonic() + HANGS_S
-    while "SI|F(2, 10)" not in other.evaluate("localStorage['tiniscript.versions'] ?? ''"):
-        assert monotonic() < end_s, "the closed tab has kept nothing"
-        other.wait_for_timeout(20)  # one tab sees a little later what another one has kept
-    assert "B(2, 20)" in other.evaluate("localStorage['tiniscript.work']")  # for the next tab
-    newest, before = other.evaluate(
-        "[localStorage['tiniscript.world'], JSON.parse(localStorage['tiniscript.worlds_before'])]"
-    )
-    assert [each.count("[[walls]]") for each in (newest, *before)] == [2, 1]
-
-
-def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
-    """They come behind this tab's own worlds before, and push none of them out."""
+def test_changes_in_another_tab_are_one_world_before(
+    page: Page, only_page: tuple[Pages, Page]
+) -> None:
+    """They come behind this tab's own worlds before, and push none of them out. It is the first of
+    these tests: no world of one's own is there yet."""
 
     def opens(tab: Page, width_cm: int) -> None:
         name = f"w{width_cm}.toml"
@@ -82,12 +55,11 @@ def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
         said(tab, f"Opened: {name}")
         saved(tab)
 
-    page = pages.open()
     page.locator("#world_draw:enabled").wait_for()
     page.click("#world_draw")
     opens(page, 100)
     opens(page, 101)
-    other = second(pages, page)
+    other = second(only_page[0], page)
     other.locator("#world_draw:enabled").wait_for()
     other.click("#world_draw")
     opens(other, 102)
@@ -108,6 +80,34 @@ def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
     theirs = read(other.evaluate(kept, "localStorage")[-1], "theirs")
     assert (newest.width_cm, newest.start.x_cm) == (102, 45)
     assert theirs.start.x_cm == 45  # and no earlier step
+    other.close()
+    page.click("#world_done")
+
+
+def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:
+    page = pages.open()
+    other = second(pages, page)
+    for k in (1, 2):
+        write(page, f"SI|F({k}, 10)")
+        write(other, f"SI|B({k}, 20)")
+    draw_wall(page)
+    other.locator("#world_draw:enabled").wait_for()
+    other.click("#world_draw")
+    for count in (1, 2):  # the second change does not forget what the first one has found
+        other.click("#world_add_walls")
+        drag(other, [(150, 30), (190, 60)])
+        other.locator("#world_part option", has_text=f"Wall {count}").wait_for(state="attached")
+        assert len(saved(other).walls) == count
+    other.click("#world_done")
+    with page.expect_event("close"):
+        page.close(run_before_unload=True)
+    kept = "(localStorage['tiniscript.versions'] ?? '').includes('SI|F(2, 10)')"
+    hears(other, lambda: other.evaluate(kept), "the closed tab has kept its program")
+    assert "B(2, 20)" in other.evaluate("localStorage['tiniscript.work']")  # for the next tab
+    newest, before = other.evaluate(
+        "[localStorage['tiniscript.world'], JSON.parse(localStorage['tiniscript.worlds_before'])]"
+    )
+    assert [each.count("[[walls]]") for each in (newest, *before)] == [2, 1]
 
 
 def test_a_program_of_a_tab_that_is_hidden_is_kept(page: Page) -> None:
@@ -140,7 +140,7 @@ def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Page
     noted(page, "This browser keeps nothing for this page")
     assert image(page) == compile("SI|F(0.1, 80)").image
     page.click("#run")
-    page.locator("html[data-phase=ended]").wait_for(state="attached")
+    in_phase(page, "ended")
     page.click("#my_programs")
     page.locator("#programs[data-shared=done]").wait_for()
 

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from PIL import Image
 
-from tests.studio.test_page_robot import in_phase
-from tests.support.studio import Pages, checked, shown, write
+from tests.support.studio import Pages, checked, enter, in_phase, shown, write
 from tests.support.waiting import until
 
 if TYPE_CHECKING:
@@ -85,7 +84,7 @@ def run(page: Page, program: str) -> None:
     in_phase(page, "ended")
 
 
-def test_the_buzzer_is_heard_unless_it_is_muted(listening: Page) -> None:
+def test_the_buzzer_is_heard_unless_it_is_muted_or_there_is_none(listening: Page) -> None:
     page = listening
     run(page, "BEEP(0.1, 440);W(0.1);BEEP(0.2, 880)")
     assert page.evaluate("window.heard") == [440, 880]
@@ -96,26 +95,20 @@ def test_the_buzzer_is_heard_unless_it_is_muted(listening: Page) -> None:
     page.reload()
     checked(page)
     assert page.get_attribute("#sound", "aria-pressed") == "false"  # it is remembered
-    page.evaluate(NOTING)
     page.click("#sound")
+    page.evaluate("() => { window.AudioContext = function () { throw new DOMException('no'); }; }")
+    run(page, "BEEP(0.1, 440); SHOW(7)")  # a computer without sound
+    assert "SHOW 7" in (page.locator("#trace").text_content() or "")
+    page.evaluate(NOTING)
     run(page, "BEEP(0.1, 550)")
     assert page.evaluate("window.heard") == [550]
 
 
-def test_a_computer_without_sound_runs_a_program(pages: Pages) -> None:
-    page = pages.open()
-    page.evaluate("() => { window.AudioContext = function () { throw new DOMException('no'); }; }")
-    write(page, "BEEP(0.1, 440); SHOW(7)")
-    page.click("#run")
-    page.locator("html[data-phase=ended]").wait_for(state="attached")
-    assert "SHOW 7" in (page.locator("#trace").text_content() or "")
-
-
 def test_no_sound_is_open_at_rest(pages: Pages) -> None:
     """An open one works all the time, and empties a battery. To close it, a page waits."""
-    page = pages.open("blocks", is_alone=True)
+    page = pages.blank(is_alone=True)
     page.context.add_init_script(OPENED)
-    page.reload()
+    enter(page, pages.address)
     shown(page)
     assert page.evaluate("window.opened.length") == 0
     page.click("#view_text")
@@ -134,22 +127,28 @@ def test_stop_and_pause_silence_it(listening: Page) -> None:
         before = page.evaluate("window.stopped")
         page.click("#run")
         in_phase(page, "running")
-        while not page.evaluate("window.heard.length"):
-            page.wait_for_timeout(20)
+        until(lambda: page.evaluate("window.heard.length"), "a sound")
         page.evaluate("window.heard = []")
         page.click(f"#{button}")
         in_phase(page, phase)
         assert page.evaluate("window.stopped") == before + 1
 
 
-def test_a_crash_is_heard_and_shakes(listening: Page) -> None:
+def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page) -> None:
     page = listening
     noted = "[window.heard.length, window.started, window.shaken]"
-    run(page, "W(1)")
-    assert page.evaluate(noted) == [0, 0, 0]
+    page.evaluate(
+        "() => { window.told = []; new MutationObserver(([row]) => window.told.push("
+        "row.target.textContent)).observe(document.querySelector('#where'), {childList: true}); }"
+    )
     run(page, CRASH)
     assert page.evaluate(noted) == [1, 1, 1]
     assert count(page, "ffd84d") > 20  # the star where it touches the box
+    first, *_, last = page.evaluate("window.told")
+    assert first.startswith("It bumps into something. The robot is ")
+    assert last.startswith("Collisions: 1. The robot is ") and last.endswith("to the right.")
+    run(page, "W(1)")
+    assert page.evaluate(noted) == [1, 1, 1]
 
 
 def test_nothing_shakes_for_who_wants_it_still(listening: Page) -> None:
@@ -211,14 +210,3 @@ def test_flags_points_and_stars_are_seen_and_heard(listening: Page) -> None:
     assert "cm from the left and 50 cm from the bottom, and looks to the right." in heard
     page.select_option("#world", "obstacles")
     assert not page.locator("#score").is_visible()
-
-
-def test_a_crash_is_said_with_where_it_was(listening: Page) -> None:
-    listening.evaluate(
-        "() => { window.told = []; new MutationObserver(([row]) => window.told.push("
-        "row.target.textContent)).observe(document.querySelector('#where'), {childList: true}); }"
-    )
-    run(listening, CRASH)
-    first, *_, last = listening.evaluate("window.told")
-    assert first.startswith("It bumps into something. The robot is ")
-    assert last.startswith("Collisions: 1. The robot is ") and last.endswith("to the right.")

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_robot import in_phase
 from tests.studio.test_page_worlds import drag, on_screen, put, read_start, rest, said, saved
-from tests.support.studio import Pages, checked, speak, write
+from tests.support.studio import checked, in_phase, speak, write
 from tiniscript.virtual import worlds
 
 if TYPE_CHECKING:
@@ -54,8 +53,8 @@ def walls_of(page: Page, label: str) -> int:
     return found
 
 
-def test_a_world_is_not_lost_to_the_next_one(pages: Pages) -> None:
-    page = pages.open()
+def test_a_world_is_not_lost_to_the_next_one(page: Page) -> None:
+    """It is the first of these tests: no other world of one's own is there yet."""
     draw_wall(page)
     page.select_option("#world", "obstacles")
     drag(page, [OBSTACLES_START, (56, 90)])  # no pencil, and another world of one's own

@@ -15,7 +15,7 @@ import threading
 import time
 from contextlib import ExitStack
 
-from tests.support.simulated_port import SimulatedPort, simulated
+from tests.support.simulated_port import PtyPort, simulated
 from tests.support.simulated_wire import OtherEnd, garbled
 
 _SPEEDS = {
@@ -25,20 +25,12 @@ _SPEEDS = {
 BEHIND_S = 1.0  # more than that behind, its clock goes slower
 
 
-class PtyEnd:
+class PtyEnd(PtyPort):
     def __init__(self, end: OtherEnd, has_speed: bool = True) -> None:
-        import pty
-        import tty
-
+        super().__init__()
         self.end = end
         self.has_speed = has_speed
-        self.heard = b""
-        self.simulated: SimulatedPort | None = None
         self._in_here = ExitStack()
-        self._lock = threading.Lock()
-        self._ours, self._theirs = pty.openpty()
-        tty.setraw(self._theirs)
-        self.port = os.ttyname(self._theirs)
         self._is_over = False
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -57,8 +49,7 @@ class PtyEnd:
             return
         self._is_over = True
         self._thread.join()
-        for each in (self._ours, self._theirs):
-            os.close(each)
+        self._close()
 
     def _baud(self) -> int:
         """Return the speed that the computer has set."""
@@ -67,7 +58,6 @@ class PtyEnd:
         return _SPEEDS.get(termios.tcgetattr(self._ours)[5], 0) or self.end.baud
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
-        """Let time pass, at whose beginning bytes arrive at the port; return what it has sent."""
         said = b""
         with self._lock:
             self.heard += data

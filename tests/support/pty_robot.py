@@ -18,23 +18,11 @@ from pathlib import Path
 from tests.machines.host_firmware import EMPTY, POWER_ON, HostFirmware
 from tests.support import waiting
 from tests.support.command import FOREVER, Command, Done, inside
-from tests.support.simulated_port import STRIDE_MS, SimulatedPort, simulated
+from tests.support.simulated_port import STRIDE_MS, PtyPort, simulated
 from tiniscript.base.kit import Kit
 
 PUSHED, RELEASED, HELD = 1, 2, 32  # flags of a step
 BEHIND_MS = 50  # more than that behind, the robot's clock goes slower
-
-
-def damaged(data: bytes, every: int, passed: int) -> bytes:
-    """Return bytes of which one of `every` changes on its way, after so many have passed.
-
-    Where `every` is 0, none does.
-    """
-    noisy = bytearray(data)
-    for k in range(len(noisy)):
-        if every and (passed + k + 1) % every == 0:
-            noisy[k] ^= 0x24
-    return bytes(noisy)
 
 
 def drives_now(did: Sequence[str]) -> bool:
@@ -43,28 +31,18 @@ def drives_now(did: Sequence[str]) -> bool:
     return bool(driven) and driven[-1] != "MOTORS 0 0"
 
 
-class PtyRobot:
+class PtyRobot(PtyPort):
     """A robot and its port; its UART takes and sends `bytes_per_ms`, 1 at 9600 baud."""
 
     def __init__(self, kit: Kit, memory: bytes = EMPTY, bytes_per_ms: int = 12) -> None:
-        import pty
-        import tty
-
+        super().__init__()
         self.kit = kit
         self.bytes_per_ms = bytes_per_ms
-        self.heard = b""  # all that has come to the port
-        self.damages = 0  # of so many bytes one changes on its way; 0: none does
         self.off_after: int | None = None  # so many bytes more, and its battery is empty
-        self._ours, self._theirs = pty.openpty()
-        tty.setraw(self._theirs)
-        self.port = os.ttyname(self._theirs)
-        self._lock = threading.Lock()
         self._memory = memory
         self._robot: HostFirmware | None = self._made()
         self._flags: list[int] = []  # what happens to the button, for each of the next steps
-        self._passed = 0  # bytes, through the noise
         self._there, self._back = b"", b""  # bytes on their way
-        self.simulated: SimulatedPort | None = None
         self._is_over = False
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -130,8 +108,7 @@ class PtyRobot:
         """Pull the cable out: the port is not there any more."""
         self._is_over = True
         self._thread.join()
-        for end in (self._ours, self._theirs):
-            os.close(end)
+        self._close()
 
     def clear_away(self) -> None:
         if not self._is_over:
@@ -156,10 +133,6 @@ class PtyRobot:
         """Return a robot that starts with what its memory has kept."""
         return HostFirmware(self.kit, self._memory, reset, seed)
 
-    def _through_noise(self, data: bytes) -> bytes:
-        self._passed += len(data)
-        return damaged(data, self.damages, self._passed - len(data))
-
     def _take_power(self) -> None:
         if self._robot:
             self._memory = self._robot.memory()
@@ -167,7 +140,6 @@ class PtyRobot:
         self._robot = None
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
-        """Let time pass, at whose beginning bytes arrive at the port; return what it has sent."""
         most = self.bytes_per_ms * milliseconds
         with self._lock:
             self._there += data

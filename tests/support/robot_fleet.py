@@ -15,32 +15,23 @@ from contextlib import ExitStack
 
 from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
 from tests.support import waiting
-from tests.support.pty_robot import damaged, drives_now
-from tests.support.simulated_port import SimulatedPort, simulated
+from tests.support.pty_robot import drives_now
+from tests.support.simulated_port import PtyPort, simulated
 from tiniscript.base.kit import Kit
 
 STEP_MS = 10  # between two steps of a robot for which nothing comes
 
 
-class Pupil:
+class Pupil(PtyPort):
     """A robot and its port. What is wrong with it is chosen before something is sent."""
 
     def __init__(self, kit: Kit, number: int) -> None:
-        import pty
-        import tty
-
+        super().__init__()
+        self.ours = self._ours
         self.number = number
         self.robot = HostFirmware(kit, EMPTY, seed=0x1000 + number)
-        self.ours, self._theirs = pty.openpty()
-        tty.setraw(self._theirs)
-        self.port = os.ttyname(self._theirs)
-        self.damages = 0  # of so many bytes one changes on its way; 0: none does
         self.babble = b""  # what it says again and again, as fast as its port takes it
         self.deaf_after: int | None = None  # so many bytes more, and it hears and says nothing
-        self.heard = b""
-        self._passed = 0
-        self.simulated: SimulatedPort | None = None
-        self._lock = threading.Lock()
 
     @property
     def did(self) -> list[str]:
@@ -69,12 +60,7 @@ class Pupil:
 
     def close(self) -> None:
         self.robot.close()
-        os.close(self.ours)
-        os.close(self._theirs)
-
-    def _through_noise(self, data: bytes) -> bytes:
-        self._passed += len(data)
-        return damaged(data, self.damages, self._passed - len(data))
+        self._close()
 
 
 class RobotFleet:

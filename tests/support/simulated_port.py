@@ -5,10 +5,12 @@ The port itself is real: it is opened, locked and pulled out as any other.
 
 from __future__ import annotations
 
+import os
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 from unittest import mock
 
 from tiniscript.cli.robot import recorder, run_monitor
@@ -20,21 +22,46 @@ if TYPE_CHECKING:
 STRIDE_MS = 5  # so long nobody looks at a robot for which nothing comes
 
 
-class PortEnd(Protocol):
-    """What is behind a port. While `simulated` is set, its own thread leaves its time alone."""
+class PtyPort:
+    """A pseudo-terminal, and what is behind it; what a computer opens is `port`.
 
-    port: str
-    simulated: SimulatedPort | None
+    While `simulated` is set, its own thread leaves its time alone.
+    """
+
+    def __init__(self) -> None:
+        import pty
+        import tty
+
+        self._ours, self._theirs = pty.openpty()
+        tty.setraw(self._theirs)
+        self.port = os.ttyname(self._theirs)
+        self.simulated: SimulatedPort | None = None
+        self.heard = b""  # all that has come to the port
+        self.damages = 0  # of so many bytes one changes on its way; 0: none does
+        self._passed = 0  # bytes, through the noise
+        self._lock = threading.Lock()
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
         """Let time pass, at whose beginning bytes arrive; return what it has sent meanwhile."""
-        ...
+        raise NotImplementedError
+
+    def _through_noise(self, data: bytes) -> bytes:
+        noisy = bytearray(data)
+        for k in range(len(noisy)):
+            self._passed += 1
+            if self.damages and self._passed % self.damages == 0:
+                noisy[k] ^= 0x24
+        return bytes(noisy)
+
+    def _close(self) -> None:
+        for end in (self._ours, self._theirs):
+            os.close(end)
 
 
 class SimulatedPort:
     """An open port of pyserial: time goes on behind it while it is read, and at no other time."""
 
-    def __init__(self, end: PortEnd, device: serial.SerialBase) -> None:
+    def __init__(self, end: PtyPort, device: serial.SerialBase) -> None:
         self._end, self._device = end, device
         self.timeout: float = device.timeout
         self._now_ms = int(time.monotonic() * 1000)
@@ -80,7 +107,7 @@ class SimulatedPort:
 
 
 @contextmanager
-def simulated(*ends: PortEnd) -> Iterator[None]:
+def simulated(*ends: PtyPort) -> Iterator[None]:
     """Within it, what this process opens keeps the time of its end."""
     actual = serial_transport._open
     by_port = {end.port: end for end in ends}

@@ -13,12 +13,14 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from tests.support.command import FOREVER
 from tests.support.needs import need
 from tests.support.page_server import serves
+from tests.support.waiting import HANGS_S
 from tiniscript import run
 from tiniscript.studio import serving
 from tiniscript.studio.attending import LEFT_S
@@ -79,9 +81,9 @@ def headless() -> str | None:
 
 
 @contextmanager
-def served(port: int = 0, page: dict[str, serving.File] | None = None) -> Iterator[serving.Server]:
+def served(page: dict[str, serving.File] | None = None) -> Iterator[serving.Server]:
     """The built page, or another one, at an address of this computer."""
-    with serves(serving.Server(page or serving.files(), port)) as server:
+    with serves(serving.Server(page or serving.files(), 0)) as server:
         yield server
 
 
@@ -183,10 +185,8 @@ class Pages:
         """
         return self.visit(self.entrance(), view, **options)
 
-    def visit(
-        self, address: str, view: str = "text", *, is_alone: bool = False, **options: Any
-    ) -> Page:
-        """Open an address of the page, for a new visitor; the teacher's has the view `wall`.
+    def blank(self, *, is_alone: bool = False, **options: Any) -> Page:
+        """Return a tab of a new visitor, in which nothing is open yet.
 
         With `is_alone`, or options of Playwright's, in a context that no other visitor gets.
         """
@@ -195,6 +195,14 @@ class Pages:
         context.on("request", self._asked)
         page = context.new_page()
         self.watch(page)
+        return page
+
+    def visit(self, address: str, view: str = "text", **options: Any) -> Page:
+        """Open an address of the page, for a new visitor; the teacher's has the view `wall`.
+
+        `options` are those of `blank`.
+        """
+        page = self.blank(**options)
         if view == "start":
             page.goto(address)
             page.locator("html[data-screen=start]").wait_for(state="attached")  # with its texts
@@ -274,6 +282,19 @@ def turn(page: Page, half: str) -> None:
     page.evaluate(SETTLED)
     if page.locator(f"html[data-phone]:not([data-half={half}])").count():
         page.click("#other")
+
+
+def in_phase(page: Page, phase: str) -> None:
+    """Wait until the virtual robot's run is there: `off`, `running`, `paused` or `ended`."""
+    page.locator(f"html[data-phase={phase}]").wait_for(state="attached")
+
+
+def hears(page: Page, is_so: Callable[[], object], what: str) -> None:
+    """Wait until something is so that a page tells of while it is waited for."""
+    end_s = monotonic() + HANGS_S
+    while not is_so():
+        assert monotonic() < end_s, f"not after {HANGS_S} s: {what}"
+        page.wait_for_timeout(20)
 
 
 def checked(page: Page) -> None:
@@ -400,7 +421,7 @@ def runs_like_the_command(page: Page, program: str) -> list[str]:
     write(page, program)
     page.select_option("#speed", "20")
     page.click("#run")
-    page.locator("html[data-phase=ended]").wait_for(state="attached")
+    in_phase(page, "ended")
     wanted = [f"{each.ms} {each.text}" for each in run(program).events]
     assert (page.locator("#trace").text_content() or "").split("\n") == wanted
     return wanted

@@ -96,7 +96,7 @@ def main() -> None:
             print("{:44} {:>14}  {:>12}".format(*row), flush=True)
         for row in _drawn(browser, server.address):
             print("{:44} {:>14}  {:>12}".format(*row), flush=True)
-    with studio.served(page=_packed()) as server:
+    with studio.served(_packed()) as server:
         for name, points in _rated(server.address).items():
             print(f"{'Lighthouse: ' + name:44} {points:14.0f}  {'>= 95':>12}")
     packed = size_rows(PAGE)[-1].split()[1]

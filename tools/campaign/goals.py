@@ -81,7 +81,7 @@ GOALS: tuple[Goal, ...] = (
     Goal("ways", "Programs that go by centimetres and degrees, half of them with tasks, do the same on the machines in Python and in C++ and in the interpreter written from the language reference.",
          "programs", 100_000, 5_000, "tests.oracle.test_ways {count} --seed {seed}", 10_000),
     Goal("page", "From a program's text, and from its blocks, the studio's page makes the same bytecode as tsc compile.",
-         "programs", 1_000, 100, "tests.studio.test_page_random {count} --seed {seed}", 100),
+         "programs", 1_000, 100, "tests.studio.random_in_page {count} --seed {seed}", 100),
     Goal("reader", "The robot's reader makes the same of a text as the compiler.",
          "programs, and twenty changed texts of each", 100_000, 1_000, "tests.text.test_reader_agreement {count} --seed {seed}", 10_000),
     Goal("text", "A robot obeys a line of text, whatever was thrown at it before.",
