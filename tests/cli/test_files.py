@@ -25,11 +25,6 @@ from tiniscript.link.sharing import registry
 HERE = Path(files.__file__).parent
 
 
-@pytest.fixture
-def cache() -> Path:
-    return files.cache_folder()
-
-
 def test_the_folders_are_where_platformdirs_has_them(monkeypatch: pytest.MonkeyPatch) -> None:
     """Though on Linux they are found without that."""
     chosen = (None, "", "part", "/elsewhere", "/elsewhere/", "~/cache")
@@ -143,7 +138,7 @@ def test_the_name_of_a_new_file_is_another_each_time(
     assert not any(str(os.getpid()) == part for name in names for part in name.split("."))
 
 
-def test_a_link_stays_a_link(tmp_path: Path) -> None:
+def test_a_link_stays_a_link_and_a_circle_of_them_ends(tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
     target, link = tmp_path / "folder" / "x", tmp_path / "link"
     target.write_bytes(b"1")
@@ -151,22 +146,24 @@ def test_a_link_stays_a_link(tmp_path: Path) -> None:
     files.replace(link, b"2")
     assert link.is_symlink() and target.read_bytes() == b"2"
     assert [each.name for each in (tmp_path / "folder").iterdir()] == ["x"]
+    (tmp_path / "a").symlink_to("b")
+    (tmp_path / "b").symlink_to("a")
+    with pytest.raises(OSError, match="symbolic links"):
+        files.replace(tmp_path / "a", b"x")
 
 
-@pytest.mark.parametrize("failure", [OSError(28, "No space left on device"), KeyboardInterrupt()])
-def test_what_goes_wrong_leaves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failure: BaseException
-) -> None:
+def test_what_goes_wrong_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "x").write_bytes(b"1")
+    for failure in (OSError(28, "No space left on device"), KeyboardInterrupt()):
 
-    def fail(*_: object) -> None:
-        raise failure
+        def fail(*_: object, failure: BaseException = failure) -> None:
+            raise failure
 
-    monkeypatch.setattr(Path, "replace", fail)
-    with pytest.raises(type(failure)):
-        files.replace(tmp_path / "x", b"2")
-    assert [each.name for each in tmp_path.iterdir()] == ["x"]
-    assert (tmp_path / "x").read_bytes() == b"1"
+        monkeypatch.setattr(Path, "replace", fail)
+        with pytest.raises(type(failure)):
+            files.replace(tmp_path / "x", b"2")
+        assert [each.name for each in tmp_path.iterdir()] == ["x"]
+        assert (tmp_path / "x").read_bytes() == b"1"
 
 
 def test_an_output_is_on_the_disk_before_it_replaces_the_old_one(
@@ -221,8 +218,8 @@ def test_one_place_replaces_files() -> None:
 # -- what killed commands leave -----------------------------------------------------------------
 
 
-def test_abandoned_files_of_the_cache_go(tsc: Tsc, cache: Path, tmp_path: Path) -> None:
-    folder = cache / "maps"
+def test_abandoned_files_of_the_cache_go(tsc: Tsc, tmp_path: Path) -> None:
+    folder = files.cache_folder() / "maps"
     folder.mkdir(parents=True)
     old, new = folder / ".x.json.00.new", folder / ".y.json.00.new"
     older = folder / "0badcafe.1234"  # as older versions called them
@@ -234,14 +231,10 @@ def test_abandoned_files_of_the_cache_go(tsc: Tsc, cache: Path, tmp_path: Path) 
     left = {each.name for each in folder.iterdir()}
     assert {old.name, older.name} & left == set()
     assert new.name in left, "another command may be writing it now"
-
-
-def test_an_empty_map_goes(cache: Path) -> None:
-    path = cache / "maps" / "00000001.json"
-    path.parent.mkdir(parents=True)
-    path.write_bytes(b"")
+    empty = folder / "00000001.json"
+    empty.write_bytes(b"")
     assert source_map.recall(1) is None
-    assert not path.exists()
+    assert not empty.exists()
 
 
 def free_number() -> int:
@@ -339,10 +332,3 @@ def test_another_user_s_link_in_a_shared_folder_leads_nowhere(
             assert precious.read_bytes() == b"now" and link.is_symlink()
     finally:
         link.unlink()
-
-
-def test_links_that_lead_in_a_circle_end(tmp_path: Path) -> None:
-    (tmp_path / "a").symlink_to("b")
-    (tmp_path / "b").symlink_to("a")
-    with pytest.raises(OSError, match="symbolic links"):
-        files.replace(tmp_path / "a", b"x")

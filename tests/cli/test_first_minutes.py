@@ -53,7 +53,7 @@ def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None
 
 
 def test_a_program_with_a_button_ends_when_it_is_told() -> None:
-    """By the time of `--for`, to the millisecond; by Ctrl-C as others do."""
+    """By the time of `--for`, to the millisecond. Only bringing a program pushes no button."""
     text = FOREVER.replace("SI", "SB")
     done = inside("upload", "--virtual", "-e", text, "--for", "3", "--hurry", "max", "--json")
     assert done.code == 0
@@ -61,15 +61,17 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     assert [row["event"] for row in rows] == ["RECEIPT", "TIME_OVER", "SAVED"]
     assert rows[0]["is_pushed"] is True
     assert "drove 0 cm in 3.0 s" in done.err
-
-
-def test_what_only_brings_a_program_pushes_no_button() -> None:
     done = inside("upload", "--virtual", "--no-run", "-e", "SB|F(1, 80)")
     assert (done.code, done.err) == (0, "")
     assert "SB: waits for the button" in done.out
     done = inside("upload", "--virtual", "--detach", "-e", "SI|F(1, 80)")
     assert done.code == 2
     assert "Leave --detach out" in done.err
+    lines = b"F(0.1, 50)\nSHOW(1)\nLOOP(FOREVER);F(1, 50);END_LOOP\nSHOW(2)\n"
+    done = inside("live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines)
+    assert done.code == 0
+    assert done.out.splitlines()[:2] == ["SHOW 1", "The time of --for is over."]
+    assert "SHOW 2" not in done.out
 
 
 @pytest.mark.parametrize("hurry", ["1", "50", "max"])
@@ -81,14 +83,6 @@ def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
         "The time of --for is over.", "Saved in slot 0.",
         "The virtual robot drove 90 cm in 2.5 s and touched nothing.",
     ]  # fmt: skip
-
-
-def test_a_live_session_ends_with_the_robots_time() -> None:
-    lines = b"F(0.1, 50)\nSHOW(1)\nLOOP(FOREVER);F(1, 50);END_LOOP\nSHOW(2)\n"
-    done = inside("live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines)
-    assert done.code == 0
-    assert done.out.splitlines()[:2] == ["SHOW 1", "The time of --for is over."]
-    assert "SHOW 2" not in done.out
 
 
 @pytest.mark.parametrize("hurry", [1.0, 20.0, 0.0])

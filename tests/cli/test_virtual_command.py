@@ -286,8 +286,7 @@ def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path)
 
 def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
     """The one of `tsc robot`; without one they say how to have one."""
-    verbs = ("ping", "info", "trim", "monitor", "doctor", "selftest")
-    for verb in verbs:
+    for verb in ("ping", "info", "trim", "monitor", "doctor", "selftest"):
         done = inside(verb, "--virtual")
         assert done.code == 3, verb
         assert "Start one in another terminal:  tsc robot" in done.err, verb
