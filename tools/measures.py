@@ -17,8 +17,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from tools import ROOT
-
+ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "compiler" / "tiniscript"
 Graph = dict[str, set[str]]
 Import = ast.Import | ast.ImportFrom

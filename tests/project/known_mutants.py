@@ -1,7 +1,7 @@
 """Mutants that no test noticed once, and the test that notices each now.
 
-`test_mutation.py` tries a third of them on a commit: such a gap does not open again in silence. A
-row whose code is gone goes with it.
+`test_mutation.py` tries each one at each run: such a gap does not open again in silence. A row
+whose code is gone goes with it.
 """
 
 from __future__ import annotations

@@ -14,8 +14,6 @@ from tests.support.exchanged import Try
 from tools import mutation
 from tools.mutation import MODULES, Copy, Module, Mutant, equivalent, mutants
 
-PARTS = 3  # of the known mutants: a commit tries one
-
 
 @pytest.mark.sampled("module", keep=len(MODULES) // 3)
 @pytest.mark.parametrize("module", MODULES, ids=lambda module: module.name)
@@ -56,13 +54,11 @@ def test_known_mutants_are_of_code_and_tests_that_are_there() -> None:
         assert f"def {name}(" in (ROOT / file).read_text(encoding="utf-8"), each.test
 
 
-@pytest.mark.sampled("part")
-@pytest.mark.parametrize("part", range(PARTS))
-def test_known_mutants_are_noticed(tmp_path: Path, part: int) -> None:
-    copy, known = Copy(tmp_path), KNOWN[part::PARTS]
-    tries = [tried(each) for each in known]
+def test_known_mutants_are_noticed(tmp_path: Path) -> None:
+    copy = Copy(tmp_path)
+    tries = [tried(each) for each in KNOWN]
     answers = exchanged.answers(tries, tmp_path)
-    for each, one, answer in zip(known, tries, answers, strict=True):
+    for each, one, answer in zip(KNOWN, tries, answers, strict=True):
         assert answer != exchanged.PASSES, f"no test notices {each.missing}"
         if answer != exchanged.FAILS:
             mutant = Mutant(each.file, 0, each.was, each.becomes, one.text)
