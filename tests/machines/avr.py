@@ -6,10 +6,7 @@ its flash waits for it, and lets `simavr` run that. What comes out of the UART i
 
 from __future__ import annotations
 
-import re
-import shutil
 import subprocess
-import tempfile
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -18,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from tests.machines.host import SOURCES, WARNINGS, Ran, contents, kept, ran, run_request
 from tiniscript.base.kit import Kit
+from tools.bench import avr_bench
 
 if TYPE_CHECKING:
     from tests.machines import Senses
@@ -29,14 +27,7 @@ BUILT = {
     MEGA: ("atmega2560",),
 }
 FLAGS = ("-std=c++11", "-Os", "-flto", "-fno-exceptions", "-fno-rtti")
-MARK = b"TiniScript: here is the request"
-REQUEST_BYTES = 8192
-
-
-def missing() -> str:
-    """Return why there is no simulated chip, or nothing."""
-    wanted = [name for name in ("avr-g++", "simavr") if not shutil.which(name)]
-    return f"no {' and no '.join(wanted)} on this computer: no simulated ATmega" if wanted else ""
+missing = avr_bench.missing
 
 
 @lru_cache(maxsize=3)
@@ -80,17 +71,5 @@ def ran_on(
 
 def answer(chip: str, request: bytes, most_seconds: int = 120) -> str:
     """Return what the program says about a request. Raises TimeoutExpired."""
-    elf = program(chip)
-    at = elf.index(MARK)
-    assert len(request) <= REQUEST_BYTES
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "machine.elf"
-        path.write_bytes(elf[:at] + request + elf[at + len(request) :])
-        done = subprocess.run(
-            ["simavr", "-m", BUILT[chip][0], "-f", "16000000", str(path)],
-            capture_output=True,
-            timeout=most_seconds,
-        )
-    said = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", done.stdout + done.stderr)
-    assert said, (done.stdout + done.stderr)[-2000:]
-    return "".join(f"{line.decode()}\n" for line in said)
+    said = avr_bench.run(program(chip), request, BUILT[chip][0], most_seconds)
+    return "".join(f"{line}\n" for line in said)

@@ -23,7 +23,7 @@ USUAL = (
 FLAGS = (*USUAL, "-flto", "-mrelax", "-mcall-prologues")  # the first ones of platformio.ini
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
 MARK = b"TiniScript: here is the request"
-REQUEST_BYTES = 1024
+REQUEST_BYTES = 8192
 PACKAGES = "apt-get install gcc-avr avr-libc binutils-avr simavr"
 
 
@@ -47,6 +47,7 @@ def built(name: str, sources: Path = SOURCES, *more: str) -> bytes:
     """Return `bench/NAME.cpp` with the machine of `sources`, an ELF file; `more` are flags."""
     code = [
         sources / "extras" / "bench" / f"{name}.cpp",
+        sources / "extras" / "chip" / "text.cpp",
         *sorted((sources / "src" / "vm").glob("*.[cS]*")),
     ]
     code += [sources / "src" / each for each in MORE.get(name, ())]
@@ -62,15 +63,17 @@ def built(name: str, sources: Path = SOURCES, *more: str) -> bytes:
         return program.read_bytes()
 
 
-def run(program: bytes, request: bytes) -> list[str]:
-    """Return the lines that a built program says about a request."""
+def run(program: bytes, request: bytes, chip: str = CHIP, limit_s: int = 120) -> list[str]:
+    """Return the lines that a built program says about a request. Raises TimeoutExpired."""
     at = program.index(MARK)
     assert len(request) <= REQUEST_BYTES, len(request)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "program.elf"
         path.write_bytes(program[:at] + request + program[at + len(request) :])
         done = subprocess.run(
-            ["simavr", "-m", CHIP, "-f", "16000000", str(path)], capture_output=True, timeout=120
+            ["simavr", "-m", chip, "-f", "16000000", str(path)],
+            capture_output=True,
+            timeout=limit_s,
         )
     said = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", done.stdout + done.stderr)
     lines = [line.decode() for line in said]

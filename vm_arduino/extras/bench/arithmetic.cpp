@@ -8,10 +8,11 @@
 #include "../../src/vm/crc32.h"
 #include "../../src/vm/number.h"
 #include "../../src/vm/vm.h"
+#include "../avr/simulated.h"
 #include "quiet_robot.h"
-#include "simulated.h"
 
 using namespace tiniscript;
+using simulated::request;
 
 namespace {
 
@@ -82,15 +83,15 @@ Fault calculated(uint8_t op, int32_t a, int32_t b, int32_t* result) {
 }
 
 void answer() {
-  state = simulated::next_long();
-  const uint16_t blocks = simulated::next_word();
-  const uint16_t block = simulated::next_word();  // operations of each
+  state = request.u32();
+  const uint16_t blocks = request.u16();
+  const uint16_t block = request.u16();  // operations of each
   const uint16_t detailed =
-      simulated::next_word();  // this one result by result, and none behind it
-  op_count = simulated::next_byte();
-  for (uint8_t k = 0; k < op_count; k++) ops[k] = simulated::next_byte();
-  edge_count = simulated::next_byte();
-  for (uint8_t k = 0; k < edge_count; k++) edges[k] = static_cast<int32_t>(simulated::next_long());
+      request.u16();  // this one result by result, and none behind it
+  op_count = request.u8();
+  for (uint8_t k = 0; k < op_count; k++) ops[k] = request.u8();
+  edge_count = request.u8();
+  for (uint8_t k = 0; k < edge_count; k++) edges[k] = static_cast<int32_t>(request.u32());
   uint8_t next_op = 0;
   for (uint16_t number = 0; number < blocks && number <= detailed; number++) {
     uint32_t checksum = 0;
@@ -105,15 +106,15 @@ void answer() {
                               static_cast<uint8_t>(bits >> 16), static_cast<uint8_t>(bits >> 24)};
       checksum = crc32(checksum, said, sizeof said);
       if (number == detailed) {
-        simulated::put_number(fault);
-        simulated::put(' ');
-        simulated::put_number(result);
-        simulated::put('\n');
+        put_number(fault);
+        put(' ');
+        put_number(result);
+        put('\n');
       }
     }
     if (number != detailed) {
-      simulated::put_size(checksum);
-      simulated::put('\n');
+      put_size(checksum);
+      put('\n');
     }
   }
 }

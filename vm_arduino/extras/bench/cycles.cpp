@@ -4,11 +4,13 @@
 // to nothing: readings are numbers in memory, and what is shown is told at the end.
 
 #include "../../src/vm/vm.h"
+#include "../avr/simulated.h"
 #include "counter.h"
 #include "quiet_robot.h"
-#include "simulated.h"
 
 using namespace tiniscript;
+using simulated::request;
+using simulated::say;
 
 namespace {
 
@@ -19,11 +21,11 @@ Machine machine;
 int32_t kept[8];
 
 void run() {
-  const uint8_t budget = simulated::next_byte();
-  const uint8_t count = simulated::next_byte();
-  for (uint8_t k = 0; k < count; k++) readings[k] = static_cast<int32_t>(simulated::next_long());
-  const uint16_t length = simulated::next_word();
-  for (uint16_t k = 0; k < length; k++) code[k] = simulated::next_byte();
+  const uint8_t budget = request.u8();
+  const uint8_t count = request.u8();
+  for (uint8_t k = 0; k < count; k++) readings[k] = static_cast<int32_t>(request.u32());
+  const uint16_t length = request.u16();
+  for (uint16_t k = 0; k < length; k++) code[k] = request.u8();
   for (uint8_t k = 0; k < kEndBytes; k++) code[length + k] = static_cast<uint8_t>(Op::kEnd);
   machine.start(code, length, kept, 8, 1, 0);
 
@@ -42,11 +44,11 @@ void run() {
     if (cycles > longest) longest = cycles;
     if (status == Status::kWaiting) now_ms++;
   } while (status < Status::kDone && longest < counter::kLongest);
-  for (uint8_t k = 0; k < shows; k++) simulated::say("SHOW", shown[k]);
-  simulated::say("LONGEST", static_cast<int32_t>(longest));
-  simulated::say("JUMPS", static_cast<int32_t>(jumps));
-  simulated::say("CYCLES", static_cast<int32_t>(total));
-  simulated::say("STATUS", static_cast<uint8_t>(status));
+  for (uint8_t k = 0; k < shows; k++) say("SHOW", shown[k]);
+  say("LONGEST", static_cast<int32_t>(longest));
+  say("JUMPS", static_cast<int32_t>(jumps));
+  say("CYCLES", static_cast<int32_t>(total));
+  say("STATUS", static_cast<uint8_t>(status));
 }
 
 }  // namespace

@@ -9,10 +9,12 @@
 #include "../../src/text/kit_words.h"
 #include "../../src/vm/crc32.h"
 #include "../../src/vm/small.h"
+#include "../avr/simulated.h"
 #include "quiet_robot.h"
-#include "simulated.h"
 
 using namespace tiniscript;
+using simulated::request;
+using simulated::say;
 
 namespace {
 
@@ -27,24 +29,24 @@ uint16_t tiniscript::robot_language() { return 0; }
 
 int main() {
   simulated::begin();
-  const uint16_t room = simulated::next_word();
-  const uint16_t words = simulated::next_word();
-  words_at = simulated::reading_at;
-  simulated::reading_at += words;
+  const uint16_t room = request.u16();
+  const uint16_t words = request.u16();
+  words_at = static_cast<uint16_t>(request.place());
+  request.skip(words);
   Reader* const its = near(&reader);
-  for (uint16_t left = simulated::next_word(); left != 0; left = simulated::next_word()) {
+  for (uint16_t left = request.u16(); left != 0; left = request.u16()) {
     its->begin(buffer, room);
     Text found = Text::kNothing;
     for (; left != 0; left--) {
-      const Text now = its->put(simulated::next_byte());
+      const Text now = its->put(request.u8());
       if (now != Text::kGoesOn && found != Text::kProblem) found = now;
     }
     const bool is_problem = found == Text::kProblem;
-    simulated::say("found", static_cast<uint8_t>(found));
-    simulated::say("what", is_problem ? static_cast<uint8_t>(its->problem()) : its->start());
-    simulated::say("how much", is_problem ? its->column() : its->length());
+    say("found", static_cast<uint8_t>(found));
+    say("what", is_problem ? static_cast<uint8_t>(its->problem()) : its->start());
+    say("how much", is_problem ? its->column() : its->length());
     const uint8_t length = is_problem ? 0 : its->length();
-    simulated::say("checksum", static_cast<int32_t>(crc32(0, buffer, length)));
+    say("checksum", static_cast<int32_t>(crc32(0, buffer, length)));
   }
   simulated::end();
   return 0;

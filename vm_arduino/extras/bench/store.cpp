@@ -10,9 +10,11 @@
 #include "../../src/store/nvm.h"
 #include "../../src/vm/crc32.h"
 #include "../../src/vm/image.h"
-#include "simulated.h"
+#include "../avr/simulated.h"
 
 using namespace tiniscript;
+using simulated::request;
+using simulated::say;
 
 namespace {
 
@@ -25,8 +27,8 @@ uint32_t longest_start;
 uint32_t longest_save;
 
 void read_image() {
-  length = simulated::next_word();
-  for (uint16_t at = 0; at < length; at++) image[at] = simulated::next_byte();
+  length = request.u16();
+  for (uint16_t at = 0; at < length; at++) image[at] = request.u8();
 }
 
 // Ticks so many times, or to the end.
@@ -55,16 +57,16 @@ void start() {
     crc = crc32(crc, &byte, 1);
     count++;
   }
-  simulated::say("KEPT", count);
-  simulated::put_text("CRC ");
-  simulated::put_size(crc);
-  simulated::put('\n');
+  say("KEPT", count);
+  put_text("CRC ");
+  put_size(crc);
+  put('\n');
 }
 
 void save(uint16_t ticks) {
-  if (!store.begin_save(image)) simulated::put_text("REFUSED\n");
+  if (!store.begin_save(image)) put_text("REFUSED\n");
   run(ticks, &longest_save);
-  simulated::say("STATE", static_cast<uint8_t>(store.state()));
+  say("STATE", static_cast<uint8_t>(store.state()));
 }
 
 }  // namespace
@@ -72,23 +74,23 @@ void save(uint16_t ticks) {
 int main() {
   simulated::begin();
   TCCR1B = _BV(CS11);  // a count in eight cycles
-  const uint16_t ticks = simulated::next_word();
-  const uint16_t first = simulated::reading_at;
+  const uint16_t ticks = request.u16();
+  const Request first = request;
   start();
   read_image();
   save(0xffff);
   start();
-  simulated::reading_at = first;
+  request = first;
   read_image();
   read_image();
   save(ticks);
   start();
-  simulated::reading_at = first;
+  request = first;
   read_image();
   read_image();
   save(0xffff);
   start();
-  simulated::say("LONGEST_START", static_cast<int32_t>(longest_start));
-  simulated::say("LONGEST_SAVE", static_cast<int32_t>(longest_save));
+  say("LONGEST_START", static_cast<int32_t>(longest_start));
+  say("LONGEST_SAVE", static_cast<int32_t>(longest_save));
   simulated::end();
 }
