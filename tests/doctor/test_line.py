@@ -270,26 +270,12 @@ def test_on_a_cable(end: OtherEnd, cause: str, is_sure: bool) -> None:
     [
         (Echo(), "echo", True),
         (Sketch(), "other_sketch", False),
-        (Babble(), "module_baud", False),
+        (Babble(), "module_baud", False),  # the module's wire garbles what the radio carries
         (Nobody(), "crossed", False),
     ],
 )
 def test_by_radio(end: OtherEnd, cause: str, is_sure: bool) -> None:
     assert only(end, is_radio=True) == (cause, is_sure)
-
-
-def test_a_robot_behind_a_module_of_another_speed() -> None:
-    """The radio carries bytes; it is the module's wire that garbles them."""
-
-    class Behind(Nobody):
-        def __init__(self) -> None:
-            super().__init__()
-            self.wire = SimulatedWire(Sketch(115200), 9600)
-
-        def answer(self, data: bytes) -> bytes:
-            return self.wire.heard(1)
-
-    assert only(Behind(), is_radio=True) == ("module_baud", False)
 
 
 def test_what_a_sketch_prints_is_told_in_part_and_as_text() -> None:

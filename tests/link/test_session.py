@@ -19,7 +19,7 @@ from tiniscript.link.messages import BY_NAME, BY_NUMBER, PLACES, STATUSES
 from tiniscript.link.outcomes import CANCELLED, LOST, PlaceEvent, TextEvent
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.requests import SHORT_BYTES
-from tiniscript.link.session import HEARTBEAT_MS, IDLE_HEARTBEAT_MS, Session
+from tiniscript.link.session import IDLE_HEARTBEAT_MS, Session
 from tiniscript.link.transmission import CONFIRM_MS, STOP_MS
 
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
@@ -95,22 +95,7 @@ def test_times_of_retries_come_from_the_baud_rate(baud: int, first: int) -> None
     assert len(sent) + 1 <= 30
     sending(session, 2 * DEADLINE_MS)
     assert request.outcome and request.outcome.status == LOST
-
-
-def test_the_heartbeat() -> None:
-    assert Session(1).wakes_at() is None
-    session = greeted()
-    session.is_attached = False
     assert session.wakes_at() is None
-    session = greeted()
-    assert session.wakes_at() == IDLE_HEARTBEAT_MS
-    session.live(FORWARD)
-    session.receive(answer(session.poll(5), receipt(1)), 5)
-    assert session.is_running and session.wakes_at() == 5 + HEARTBEAT_MS
-    data = session.poll(5 + HEARTBEAT_MS)
-    assert len(data) == 9
-    session.receive(answer(data, {"state": 1, "run": 1}), 300)
-    assert session.wakes_at() == 5 + 2 * HEARTBEAT_MS
 
 
 def test_a_robot_that_is_silent_is_lost() -> None:
@@ -352,14 +337,6 @@ def test_a_stop_between_makes_what_waits_stale() -> None:
     session.receive(answer(session.poll(1), receipt(1), epoch=11), 1)
     assert first.outcome and first.outcome.status == 0
     assert second.outcome and second.outcome.status == STATUSES["STALE"]
-
-
-def test_a_short_program_takes_few_bytes() -> None:
-    compiled = compile_text("SI|F(5,80)", robots.load("tinibot").kit)
-    assert compiled.image
-    session = greeted()
-    session.upload(unpack(compiled.image))
-    assert len(session.poll(0)) == 13  # at most 14
 
 
 def lost_at(session: Session, now_ms: int = 0) -> int:
