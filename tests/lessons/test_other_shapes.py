@@ -59,57 +59,32 @@ BY_HEART = [
 PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
     1: {
         "right": {
-            "SI|F(2.5, 80)": "",
             "M(80, 80); W(2.5); S": "",
             "LOOP(5); F(0.5, 80); END_LOOP": "",
-            "SI|F(5, 40)": "",
             "F(1, 80); W(1); F(1.5, 80)": "",
             "SI|F(2.2, 80)": "",
             "SI|F(2.95, 80)": "",
             "F(2.9, 80); B(0.3, 80)": "",
             "R(0.83, 60); B(2.5, 80)": "",
         },
-        "rote": {
-            "SI|F(1, 80)": "The robot stopped 54 cm before the middle of the garage",
-            "SI|F(2, 80)": "The robot stopped 18 cm before the middle of the garage",
-            "SI|F(2, 40)": "The robot stopped 54 cm before the middle of the garage",
-        },
         "wrong": {
-            "SI|F(25, 80)": "The robot touched the wall after 3.0 s",
-            "SI|F(90, 80)": "The robot touched the wall after 3.0 s",
             "SI|B(2.5, 80)": "The robot touched the edge of the floor after 0.6 s",
             "SI|M(80, 80)": "here it ended before the robot could move",
-            "M(80, 80); S": "here it ended before the robot could move",
-            "SI|W(2.5)": "The robot did not move. Give it a move with time and power: F(2, 80)",
         },
     },
     2: {
         "right": {
-            "F(2.78, 80); W(2); B(2.78, 80)": "",
             "F(2.78, 80); W(3); R(0.84, 60); F(2.78, 80)": "",
             "M(80, 80); W(2.78); S; W(2); M(-80, -80); W(2.78); S": "",
-            "F(5.56, 40); W(2.5); B(2.22, 100)": "",
             "F(2.78, 80); W(1); W(1); B(2.78, 80)": "",
             "DEF WAY; F(2.78, 80); END_DEF; WAY; W(2); B(2.78, 80)": "",
         },
-        "rote": {
-            "SI|F(1, 80); B(1, 80)": "The closest the robot came to the shop was 64 cm; the task asks for 10 cm or less",
-            "F(1, 80); W(1); B(1, 80)": "The closest the robot came to the shop was 64 cm; the task asks for 10 cm or less",
-            "F(1, 80); W(2); B(1, 80)": "The closest the robot came to the shop was 64 cm; the task asks for 10 cm or less",
-        },
         "wrong": {
-            "F(2.78, 80); B(2.78, 80)": "The robot did not wait between its moves. Put W(2) between two moves.",
-            "W(2); F(2.78, 80); B(2.78, 80)": "The robot did not wait between its moves. Put W(2) between two moves.",
-            "F(2.78, 80); W(2)": "The robot did not come back: at the end it was 100 cm from the door of the house",
             "F(2.78, 80); W(2); B(2.78, 100)": "The robot touched the edge of the floor after 7.5 s",
-            "F(2.3, 80); W(2); F(0.48, 80); B(2.78, 80)": "The robot waited 2.0 s, but 17 cm from the shop; 10 cm or less is right",
-            "F(2.78, 80); W(1); B(2.78, 80)": "The robot waited 1.0 s; the task asks for 2 s",
-            "M(80, 80); W(2.78); M(-80, -80); W(2.78); S; W(2)": "The robot did not wait between its moves. Put W(2) between two moves.",
         },
     },
     3: {
         "right": {
-            "F(3.7, 60); L(0.42, 60); F(3.7, 60)": "",
             "M(60, 60); W(3.7); M(-60, 60); W(0.417); M(60, 60); W(3.7); S": "",
             "F(3.7, 60); LOOP(3); R(0.417, 60); END_LOOP; F(3.7, 60)": "",
             "F(2.78, 80); L(0.42, 60); F(2.78, 80); W(1)": "",
@@ -117,21 +92,15 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
         "rote": {
             "SI|L(0.3, 60)": "The robot only turned on the spot. Forward is F: F(2, 80)",
-            "F(1, 80); L(0.3, 60); F(1, 80)": "The robot touched a box after 1.9 s",
             "F(2.78, 80); W(2); B(2.78, 80)": "At the end the robot was 141 cm from the school",
         },
         "wrong": {
-            "F(3.7, 60); L(90, 60); F(3.7, 60)": "After 20.0 s the robot was still moving when the time was over",
-            "F(3.7, 60); R(0.42, 60); F(3.7, 60)": "The robot touched the edge of the floor after 5.1 s",
-            "L(0.42, 60); F(3.7, 60); R(0.42, 60); F(3.7, 60)": "The robot touched a box after 1.1 s",
             "F(3.7, 60); L(0.42, 60); F(3.7, 60); L(0.42, 60)": "At the end the robot looks 91 degrees too far to the left",
             "F(3.7, 60); L(0.42, 60)": "At the end the robot was 100 cm from the school",
-            "F(3.7, 60); L(0.42, 60); F(2.6, 60)": "At the end the robot was 30 cm from the school",
         },
     },
     4: {
         "right": {
-            "SI|LOOP(4); F(2.96, 60); L(0.417, 60); END_LOOP": "",
             "L(0.417, 60); LOOP(4); F(2.96, 60); R(0.417, 60); END_LOOP": "",
             "DEF SIDE; F(2.22, 80); L(0.417, 60); END_DEF; LOOP(4); SIDE; END_LOOP": "",
             "LOOP(4); M(60, 60); W(2.96); M(-60, 60); W(0.417); END_LOOP; S": "",
@@ -141,22 +110,9 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "R(0.833, 60); LOOP(4); B(2.96, 60); L(0.417, 60); END_LOOP": "",
         },
         "rote": {
-            "SI|LOOP(4); F(1, 60); L(0.42, 60); END_LOOP": "The robot touched a box after 1.7 s",
-            "F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60)": "The program does not use LOOP. It helps here: LOOP(3) ... END_LOOP",
-            "LOOP(4); W(0.1); END_LOOP; F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60)": "The LOOP of the program repeats nothing",
             "LOOP(4); BEEP(0.1, 440); END_LOOP; F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60)": "The program has 4 moves that go ahead or back; 1 will do",
-            "LOOP(1); F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60); END_LOOP": "The LOOP of the program repeats nothing",
-            "LOOP(2); F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); END_LOOP": "The program has 2 moves that go ahead or back; 1 will do",
-            "LOOP(2); F(0.01, 1); END_LOOP; F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60)": "The program has 5 moves that go ahead or back; 1 will do",
-            "F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60); LOOP(4); L(0.1, 60); END_LOOP": "The program has 4 moves that go ahead or back; 1 will do",
         },
         "wrong": {
-            "LOOP(3); F(2.96, 60); L(0.417, 60); END_LOOP": "At the end the robot was 80 cm from its place",
-            "LOOP(4); F(2.96, 60); END_LOOP": "The robot touched the edge of the floor after 4.4 s",
-            "LOOP(4); F(2.96, 60); L(0.3, 60); END_LOOP": "The robot touched the edge of the floor after 8.3 s",
-            "LOOP(4); F(2.96, 60); L(0.5, 60); END_LOOP": "The robot touched a box after 4.8 s",
-            "LOOP(4); F(1.48, 60); L(0.417, 60); END_LOOP": "The robot touched a box after 2.2 s",
-            "LOOP(4); F(2.96, 60); R(0.417, 60); END_LOOP": "The robot touched the edge of the floor after 4.4 s",
             "LOOP(4); F(3.6, 60); L(0.417, 60); END_LOOP": "The robot went 17 cm past corner 1 before it stopped or turned",
         },
     },
@@ -170,19 +126,10 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF DIAG; L(0.2, 60); F(1.8, 60); B(1.8, 60); R(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; LOOP(3); DIAG; END_LOOP": "",
         },
         "rote": {
-            "DEF HOP; F(0.2, 60); B(0.2, 60); BEEP(0.2, 440); END_DEF; HOP; HOP": "After it beeps 2 times, the robot should move once more, but it does not",
-            "F(0.2, 60); BEEP(0.2, 440); B(0.2, 60); BEEP(0.2, 880); F(0.2, 60); BEEP(0.2, 440); B(0.2, 60); BEEP(0.2, 880)": "The program does not use DEF. It helps here: DEF STEP ... END_DEF",
             "DEF HOP; W(0.1); END_DEF; HOP; HOP; HOP; LOOP(3); F(0.2, 60); BEEP(0.2, 440); B(0.2, 60); BEEP(0.2, 880); END_LOOP": "The robot does the task just as well without the word HOP",
-            "DEF HOP; BEEP(0.1, 440); END_DEF; HOP; F(0.2, 60); BEEP(0.2, 440); B(0.2, 60); BEEP(0.2, 880); F(0.2, 60); BEEP(0.2, 440); B(0.2, 60)": "The robot does the task just as well without the word HOP",
-            "DEF HOP; F(0.2, 60); B(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; HOP; LOOP(3); F(0.2, 60); BEEP(0.2, 440); END_LOOP": "The robot does the task just as well without the word HOP",
         },
         "wrong": {
-            "DEF HOP; F(0.2, 60); B(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF": "The program teaches the word HOP and never calls it",
-            "DEF HOP; F(0.2, 60); B(0.2, 60); BEEP(0.2, 440); END_DEF; LOOP(4); HOP; END_LOOP": "The robot beeped at 1 of 2 pitches",
-            "DEF HOP; F(0.6, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; LOOP(4); HOP; END_LOOP": "After 2.5 s the robot left the dance floor",
-            "DEF HOP; F(0.2, 60); B(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; LOOP(FOREVER); HOP; END_LOOP": "After 30.0 s the program was still running",
             "DEF HOP; F(0.2, 60); B(0.2, 60); L(0.2, 60); R(0.2, 60); L(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; LOOP(4); HOP; END_LOOP": "The program has 5 moves; 4 will do",
-            "DEF HOP; F(0.2, 60); B(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; HOP; HOP": "After it beeps 2 times, the robot should move once more, but it does not",
             "DEF HOP; F(0.2, 60); B(0.2, 60); END_DEF; HOP; HOP; HOP; HOP": "The robot did not beep. Give it a sound: BEEP(0.2, 440)",
         },
     },
@@ -194,23 +141,14 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "SHOW(DISTANCE); F(FOREVER, 40) UNTIL(DISTANCE < 20); SHOW(DISTANCE); B(0.5, 40); SHOW(DISTANCE)": "",
             "SHOW(DISTANCE); SHOW(DISTANCE); F(1, 60); SHOW(DISTANCE)": "",
         },
-        "rote": {
-            "SHOW(DISTANCE); F(0.5, 60); SHOW(DISTANCE)": "The robot showed 2 of 3 values",
-            "SHOW(107); F(1, 60); SHOW(80); F(0.5, 60); SHOW(66)": "The robot showed 66, but DISTANCE was about 41.3 then",
-            "LOOP(5); SHOW(DISTANCE); END_LOOP": "The robot did not move. Give it a move with time and power: F(2, 80)",
-            "D = 107; LOOP(3); SHOW(D); F(0.5, 60); D = D - 13.5; END_LOOP; SHOW(D)": "The robot showed 66.5, but DISTANCE was about 41.4 then",
-        },
         "wrong": {
             "SHOW(DISTANCE); F(6, 60); SHOW(DISTANCE); SHOW(DISTANCE)": "The robot touched the wall after 3.1 s",
-            "D = DISTANCE; SHOW(D); F(0.8, 60); SHOW(D); F(0.2, 60); SHOW(D)": "The robot showed 81.4, but DISTANCE was about 54.8 then",
             "SHOW(DISTANCE); F(0.3, 60); SHOW(DISTANCE); F(0.3, 60); SHOW(DISTANCE)": "The robot drove 16 cm; the task asks for at least 20 cm",
-            "SHOW(1); F(1, 60); SHOW(1); SHOW(1)": "The robot showed 1, but DISTANCE was about 54.9 then",
             "SHOW(DISTANCE); SHOW(DISTANCE); SHOW(DISTANCE); F(1, 60)": "After it stops, the robot should show a value, but it does not",
         },
     },
     7: {
         "right": {
-            "SI|F(FOREVER, 60) UNTIL(DISTANCE < 15)": "",
             "M(40, 40); W(FOREVER) UNTIL(DISTANCE < 12); S": "",
             "F(FOREVER, 80) UNTIL(DISTANCE < 50); F(FOREVER, 20) UNTIL(DISTANCE < 10)": "",
             "NEAR = 14; F(20, 50) UNTIL(NOT (DISTANCE > NEAR))": "",
@@ -219,18 +157,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "F(FOREVER, 60) UNTIL(DISTANCE < 18); BEEP(0.2, 440)": "",
         },
         "rote": {
-            "SI|F(5, 60) UNTIL(DISTANCE < 30)": "The robot stood 30 cm before the obstacle; the task asks for 5 to 20 cm",
             "SI|L(0.42, 60); F(1.05, 60); W(1) UNTIL(TRUE)": "At the end the robot was not in front of the wall",
-            "SI|F(4.1, 60) UNTIL(FALSE)": "The robot touched the wall after 3.4 s",
-            "SI|F(FOREVER, 60) UNTIL(TIME > 4.1)": "The robot touched the wall after 3.4 s",
-            "F(4.1, 60); W(1) UNTIL(DISTANCE < 20)": "The robot touched the wall after 3.4 s",
-            "L(0.42, 60); F(FOREVER, 60) UNTIL(DISTANCE < 12)": "At the end the robot was not in front of the wall",
-        },
-        "wrong": {
-            "SI|F(FOREVER, 60) UNTIL(DISTANCE > 15)": "The robot did not move",
-            "SI|F(FOREVER, 60) UNTIL(DISTANCE < 1)": "The robot touched the wall after 3.4 s",
-            "SI|F(FOREVER, 60) UNTIL(DISTANCE < 25)": "The robot stood 25 cm before the obstacle; the task asks for 5 to 20 cm",
-            "SI|F(1, 60) UNTIL(DISTANCE < 15)": "The robot stood 63 cm before the obstacle; the task asks for 5 to 20 cm",
         },
     },
     8: {
@@ -241,14 +168,9 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "F(2.59, 60); R(0.417, 60); SEEN = DISTANCE; L(0.417, 60); IF(SEEN < 60); L(0.417, 60); ELSE; R(0.417, 60); END_IF; F(2.4, 60)": "",
         },
         "rote": {
-            "F(2.59, 60); R(0.417, 60); F(2.4, 60)": "The robot touched a box after 4.1 s",
-            "F(2.59, 60); IF(DISTANCE < 30); BEEP(0.3, 220); ELSE; BEEP(0.3, 880); ENDIF; L(0.417, 60); F(2.4, 60)": "The robot touched a box after 4.4 s",
             "SI|IF(DISTANCE < 30); BEEP(0.3, 220); ELSE; BEEP(0.3, 880); ENDIF": "The robot did not move. Give it a move with time and power: F(2, 80)",
         },
         "wrong": {
-            "F(2.59, 60); IF(DISTANCE < 60); L(0.417, 60); ELSE; R(0.417, 60); END_IF; F(2.4, 60)": "The robot touched a box after 4.1 s",
-            "F(2.59, 60); R(0.417, 60); IF(DISTANCE > 60); L(0.833, 60); END_IF; F(2.4, 60)": "The robot touched a box after 4.1 s",
-            "F(2.59, 60); R(0.417, 60); IF(DISTANCE < 60); L(0.417, 60); END_IF; F(2.4, 60)": "The robot touched the edge of the floor after 4.4 s",
             "F(2.59, 60); R(0.417, 60); IF(DISTANCE < 60); L(0.833, 60); END_IF; F(1, 60)": "At the end the robot was 38 cm from the exit",
         },
     },
@@ -262,19 +184,9 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF PATROL; F(FOREVER, 60) UNTIL(DISTANCE < 20); R(0.42, 60); R(0.42, 60); END_DEF; LOOP(5); PATROL; END_LOOP": "",
         },
         "rote": {
-            "LOOP(FOREVER); F(1, 80); IF(DISTANCE < 10); R(0.83, 60); ENDIF; END_LOOP": "The robot touched the wall after 6.6 s",
-            "LOOP(FOREVER); F(3, 60); R(0.833, 60); END_LOOP": "The robot touched the wall after 3.0 s",
-            "SI|F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.83, 60)": "The program ended before the robot got to wall 2 of 3",
             "F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60)": "The program does not use LOOP. It helps here: LOOP(3) ... END_LOOP",
             "LOOP(2); BEEP(0.1, 440); END_LOOP; F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60)": "The robot does the task just as well when each LOOP is done only once",
             "LOOP(1); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); END_LOOP": "The LOOP of the program repeats nothing",
-            "F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); LOOP(3); L(0.2, 60); R(0.2, 60); END_LOOP": "The robot does the task just as well when each LOOP is done only once",
-        },
-        "wrong": {
-            "LOOP(2); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); END_LOOP": "The program ended before the robot got to wall 3 of 3",
-            "LOOP(FOREVER); F(FOREVER, 60) UNTIL(DISTANCE < 70); R(0.833, 60); END_LOOP": "The robot did not get to wall 1 of 3. Look at the move before it.",
-            "LOOP(FOREVER); F(FOREVER, 60) UNTIL(DISTANCE > 25); R(0.833, 60); END_LOOP": "The robot only turned on the spot",
-            "LOOP(FOREVER); F(FOREVER, 60) UNTIL(DISTANCE < 25); END_LOOP; R(0.833, 60)": "The robot did not get to wall 2 of 3. Look at the move before it.",
         },
     },
     10: {
@@ -287,15 +199,9 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
         "rote": {
             "SI|LOOP(100); DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 - DIFFERENCE, 35 + DIFFERENCE); W(0.05); END_LOOP": "The program ended when the lamp was still 53 cm away",
-            "SHOW(LIGHT_L); SHOW(LIGHT_R); F(4.8, 60)": "The closest the robot came to the lamp was 35 cm; the task asks for 20 cm or less",
-            "SI|LOOP(20); SHOW(LIGHT_L); SHOW(LIGHT_R); W(0.5); END_LOOP": "The robot did not move. Give it a move with time and power: F(2, 80)",
-            "SHOW(LIGHT_L); SHOW(LIGHT_R); F(5, 60); L(0.42, 60); F(2, 60); R(0.833, 60); F(4, 60)": "The closest the robot came to the lamp was 32 cm; the task asks for 20 cm or less",
         },
         "wrong": {
-            "LOOP(FOREVER); DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 + DIFFERENCE, 35 - DIFFERENCE); W(0.05); END_LOOP": "The robot touched the edge of the floor after 6.5 s",
             "DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 - DIFFERENCE, 35 + DIFFERENCE)": "here it ended before the robot could move",
-            "LOOP(FOREVER); M(35, 35 + LIGHT_L / 10); W(0.05); END_LOOP": "The robot touched the edge of the floor after 6.2 s",
-            "D = (LIGHT_L - LIGHT_R) / 10; LOOP(FOREVER); M(35 - D, 35 + D); W(0.05); END_LOOP": "The closest the robot came to the lamp was 114 cm; the task asks for 20 cm or less",
             "LOOP(FOREVER); D = (LIGHT_L - LIGHT_R) / 10; M(8 - D, 8 + D); W(0.05); END_LOOP": "After 25.0 s the time was over, and the robot was still on its way, 43 cm from the lamp",
         },
     },
@@ -306,18 +212,8 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "LOOP(3); M(40, 40); W(0.3); W(FOREVER) UNTIL(LINE_L OR LINE_R); S; BEEP(1, 660); W(1); END_LOOP": "",
             "LOOP(3); F(0.3, 30); F(FOREVER, 30) UNTIL(LINE_R); W(1.5); BEEP(0.5, 880); END_LOOP": "",
         },
-        "rote": {
-            "SI|F(FOREVER, 40) UNTIL(LINE_L OR LINE_R); BEEP(0.2, 440)": "The robot stopped 152 cm before the middle of the third stop",
-            "LOOP(3); F(FOREVER, 40) UNTIL(LINE_L OR LINE_R); BEEP(0.2, 440); W(1); END_LOOP": "The robot stopped 152 cm before the middle of the third stop",
-            "F(2.4, 40); BEEP(0.2, 440); W(1); LOOP(2); F(2.5, 40); BEEP(0.2, 440); W(1); END_LOOP": "The robot stopped 15 cm before the middle of the third stop",
-        },
         "wrong": {
             "LOOP(3); F(FOREVER, 40) UNTIL(LINE_L OR LINE_R); BEEP(0.2, 440); W(1); F(1, 40); END_LOOP": "The robot went 15 cm past the middle of the third stop",
-            "BEEP(0.2, 440); BEEP(0.2, 440); BEEP(0.2, 440); LOOP(3); F(0.3, 40); F(FOREVER, 40) UNTIL(LINE_L OR LINE_R); W(1); END_LOOP": "The robot did not beep at stop 1: its nearest beep was 50 cm away; 12 cm or less is right",
-            "LOOP(3); F(0.3, 40); F(FOREVER, 40) UNTIL(LINE_L OR LINE_R); W(1); B(0.7, 40); BEEP(0.2, 440); F(0.7, 40); END_LOOP": "The robot did not beep at stop 1: its nearest beep was 26 cm away; 12 cm or less is right",
-            "LOOP(3); F(0.3, 40); F(FOREVER, 40) UNTIL(LINE_L OR LINE_R); BEEP(0.2, 440); W(0.3); END_LOOP": "The robot waited 0.5 s; the task asks for 1 s",
-            "LOOP(3); F(0.3, 40); F(FOREVER, 40) UNTIL(LINE_L OR LINE_R); BEEP(0.2, 440); B(0.7, 40); W(1); F(0.7, 40); END_LOOP": "The robot did not wait 1 s at stop 1: its nearest wait was 25 cm away; 12 cm or less is right",
-            "LOOP(2); F(0.3, 40); F(FOREVER, 40) UNTIL(LINE_L OR LINE_R); BEEP(0.2, 440); W(1); END_LOOP": "The robot stopped 83 cm before the middle of the third stop",
         },
     },
     12: {
@@ -330,11 +226,9 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         "rote": {
             "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; STRAIGHT; S": "Is the question of UNTIL TRUE from the start?",
             "DEF HOP; W(0.1) UNTIL(TRUE); END_DEF; HOP; WHILE(NOT BUTTON); M(30, 30); IF(LINE_L); M(0, 35); ENDIF; IF(LINE_R); M(35, 0); ENDIF; W(0.02); END_WHILE; S; SHOW(TIME)": "The robot does the task just as well without the word HOP",
-            "DEF GO; F(FOREVER, 40) UNTIL(BUTTON); END_DEF; R(0.2, 40); GO; SHOW(TIME)": "After 0.2 s the robot left the black line",
         },
         "wrong": {
             "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S": "The robot showed nothing. Write what it should show: SHOW(TIME)",
-            "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(41, 5); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(5, 41); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S; SHOW(TIME)": "After 1.1 s the robot left the black line",
             "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; LOOP(FOREVER); STRAIGHT; TO_LEFT; TO_RIGHT; END_LOOP; SHOW(TIME)": "s the robot did more than 200000 things without a rest. Put W(0.05) into the loop.",
             "SHOW(TIME); DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S": "After it stops, the robot should show a value, but it does not",
             "DEF WIG; L(0.05, 20); R(0.05, 20); END_DEF; LOOP(FOREVER); WIG; END_LOOP": "In 60.0 s the robot followed only 10 cm of the black line; the task asks for 240 cm",
@@ -346,17 +240,8 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "SI|LOOP(FOREVER); M(50, 40); W(1); M(40, 50); W(1); END_LOOP\nWHEN(DISTANCE < 35); M(-50, 50); W(0.3); END_WHEN": "",
             "SI|LOOP(FOREVER); M(60, 60); W(0.5); END_LOOP\nWHEN(DISTANCE < 35); R(0.2, 60); END_WHEN\nTASK; LOOP(FOREVER); BEEP(0.1, 440); W(2); END_LOOP; END_TASK": "",
         },
-        "rote": {
-            "SI|LOOP(FOREVER)\n  F(2, 60)\n  IF(DISTANCE < 30); B(0.4, 60); ENDIF\n  L(0.2, 60)\nEND_LOOP": "The robot touched the wall after 3.3 s. Look at what it does just before.",
-            "SI|LOOP(3); F(1, 50); L(0.2, 50); END_LOOP\nWHEN(DISTANCE < 30)\n  S\nEND_WHEN": "The robot drove 42 cm; the task asks for at least 450 cm. Make it drive more.",
-            "SI|LOOP(FOREVER); L(4, 60); END_LOOP\nWHEN(DISTANCE < 30); S; END_WHEN": "The robot drove 4 cm; the task asks for at least 450 cm. Make it drive more.",
-            "SI|LOOP(FOREVER); M(60, 30); W(1); END_LOOP\nWHEN(FALSE); S; END_WHEN": "The robot does the task just as well without the WHEN. Let WHEN do a part of the task.",
-        },
         "wrong": {
-            "SI|F(FOREVER, 60)\nWHEN(DISTANCE < 30); SHOW(DISTANCE); END_WHEN": "The robot touched the wall after 3.8 s. Look at what it does just before.",
             "SI|W(1)\nWHEN(DISTANCE < 30); B(0.4, 60); R(0.5, 60); END_WHEN": "The robot did not move. Does the question of WHEN ever become TRUE? See what the robot reads: SHOW(DISTANCE)",
-            "SI|F(FOREVER, 60)\nWHEN(DISTANCE < 30); F(0.4, 60); END_WHEN": "The robot touched the wall after 3.9 s. Look at what it does just before.",
-            "SI|F(4, 60)\nWHEN(DISTANCE < 30); B(0.4, 60); R(0.5, 60); END_WHEN": "The robot drove 118 cm; the task asks for at least 450 cm. Make it drive more.",
         },
     },
     14: {
@@ -367,12 +252,9 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
         "rote": {
             "SI|LOOP(3)\n  LED(TRUE); W(0.3)\n  LED(FALSE); W(0.3)\nEND_LOOP\nF(1, 60)": "The robot stopped 125 cm before the middle of the hospital. Make it go further.",
-            "SI|F(2, 60)\nTASK\n  LOOP(3); BEEP(0.2, 440); W(0.2); END_LOOP\nEND_TASK": "At the end the robot was 108 cm from the hospital. Look at which way it went, and change one thing only.",
             "SI|LOOP(13); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.19); END_LOOP; S; L(0.51, 60); LOOP(9); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.17); END_LOOP; S\nTASK; BEEP(0.1, 440); END_TASK": "The robot does the task just as well without the TASK. Let TASK do a part of the task.",
         },
         "wrong": {
-            "SI|F(5, 60); L(0.51, 60); F(3.33, 60)\nTASK; W(9); LOOP(12); LED(TRUE); W(0.1); LED(FALSE); W(0.1); END_LOOP; END_TASK": "LED went on 0 of 10 times while the robot moved. Let a TASK blink: it goes on beside the moves.",
-            "SI|F(5, 60); L(0.51, 60); F(3.33, 60)\nTASK; LOOP(12); LED(TRUE); W(0.2); END_LOOP; END_TASK": "LED went on 1 of 10 times while the robot moved. Let a TASK blink: it goes on beside the moves.",
             "SI|F(4, 60); L(0.51, 60); F(2, 60)\nTASK; LOOP(12); LED(TRUE); W(0.2); LED(FALSE); W(0.2); END_LOOP; END_TASK": "The robot stopped 40 cm before the middle of the hospital. Make it go further.",
         },
     },
@@ -385,11 +267,9 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         "rote": {
             "SI|F(20 CM, 40)\nW(1)\nF(20 CM, 80)": "The program ended before the robot got to corner 2 of 3",
             "L(90 DEG, 60); R(45 DEG, 60)": "The robot only turned on the spot",
-            "SI|LOOP(4); F(1, 60); L(0.42, 60); END_LOOP": "The robot did not get to corner 2 of 3",
         },
         "wrong": {
             "LOOP(3); F(30 CM, 60); L(90 DEG, 60); END_LOOP": "At the end the robot was 30 cm from its place",
-            "LOOP(4); F(20 CM, 60); L(90 DEG, 60); END_LOOP": "The robot did not get to corner 1 of 3",
             "LOOP(4); F(30 CM, 60); L(0.42, 60); END_LOOP": "The program does not use DEG",
         },
     },
@@ -401,22 +281,18 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
         "rote": {
             "SI|SHOW(DISTANCE)": "The robot did not move",
-            "SHOW(DISTANCE); F(30 CM, 60); SHOW(DISTANCE)": "The robot stood 51 cm before the obstacle; the task asks for 17 to 23 cm",
             "X = 10; F(X + 5 CM, 60)": "The robot showed nothing",
         },
         "wrong": {
-            "D = DISTANCE; SHOW(D); F(D - 40 CM, 60); SHOW(DISTANCE)": "The robot stood 40 cm before the obstacle; the task asks for 17 to 23 cm",
             "D = DISTANCE; F(D - 20 CM, 60); SHOW(D); SHOW(D)": "The robot showed 81.4, but DISTANCE was about 20 then",
-            "D = DISTANCE; SHOW(D); F(D - 20, 60); SHOW(DISTANCE)": "The robot touched the wall after 3.1 s",
         },
     },
 }  # fmt: skip
-GROUPS = ("right", "rote", "wrong")
 EACH = [
     pytest.param(number, program, what, id=f"{number}-{group}-{k}")
     for number, groups in PROGRAMS.items()
-    for group in GROUPS
-    for k, (program, what) in enumerate(groups[group].items(), 1)
+    for group, programs in groups.items()
+    for k, (program, what) in enumerate(programs.items(), 1)
 ]
 
 
@@ -428,13 +304,11 @@ def lesson_of(number: int) -> Lesson:
     return catalogue.load(catalogue.folders()[number - 1])
 
 
-def test_every_lesson_has_three_of_each() -> None:
+def test_every_lesson_has_some() -> None:
     assert [*PROGRAMS] == [*range(1, len(catalogue.folders()) + 1)]
-    for number, groups in PROGRAMS.items():
-        assert all(len(groups[group]) >= 3 for group in GROUPS), number
 
 
-@pytest.mark.sampled("number", "program", "what", keep=len(EACH) // 16)
+@pytest.mark.sampled("number", "program", "what", keep=len(EACH) // 8)
 @pytest.mark.parametrize(("number", "program", "what"), EACH)
 def test_what_a_pupil_wrote_is_marked_fairly(number: int, program: str, what: str) -> None:
     """In all worlds of the task: nothing is said of a right one, and the cause of another one."""
