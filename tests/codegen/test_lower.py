@@ -29,31 +29,7 @@ def instructions(text: str) -> list[str]:
     "text, expected",
     [
         # a disassembly has numbers as they are in the code: whole ones, thousandths, tenths.
-        # A pushed number: 0 to 10 and tens up to 100 in the opcode; 8 bits; tenths in 8 bits;
-        # 16 bits; thousandths in 16 bits, thousandths in 32 bits
-        ("SHOW(0)", ["PUSH_NUM_0", "SHOW"]),
-        ("SHOW(10)", ["PUSH_NUM_10", "SHOW"]),
-        ("SHOW(11)", ["PUSH8 11", "SHOW"]),
-        ("SHOW(20)", ["PUSH_NUM_20", "SHOW"]),
-        ("SHOW(100)", ["PUSH_NUM_100", "SHOW"]),
-        ("SHOW(110)", ["PUSH8 110", "SHOW"]),
-        ("SHOW(255)", ["PUSH8 255", "SHOW"]),
-        ("SHOW(256)", ["PUSH16 256", "SHOW"]),
-        ("SHOW(-12)", ["PUSH_TENTHS -120", "SHOW"]),
-        ("SHOW(-13)", ["PUSH16 -13", "SHOW"]),
-        ("SHOW(0.5)", ["PUSH_TENTHS 5", "SHOW"]),
-        ("SHOW(12.7)", ["PUSH_TENTHS 127", "SHOW"]),
-        ("SHOW(12.8)", ["PUSH_MILLI 12800", "SHOW"]),
-        ("SHOW(-12.8)", ["PUSH_TENTHS -128", "SHOW"]),
-        ("SHOW(-12.9)", ["PUSH_MILLI -12900", "SHOW"]),
-        ("SHOW(32767)", ["PUSH16 32767", "SHOW"]),
-        ("SHOW(32768)", ["PUSH32 32768000", "SHOW"]),
-        ("SHOW(-32768)", ["PUSH16 -32768", "SHOW"]),
-        ("SHOW(-32769)", ["PUSH32 -32769000", "SHOW"]),
-        ("SHOW(32.767)", ["PUSH_MILLI 32767", "SHOW"]),
-        ("SHOW(32.768)", ["PUSH32 32768", "SHOW"]),
-        ("SHOW(-32.768)", ["PUSH_MILLI -32768", "SHOW"]),
-        ("SHOW(-32.769)", ["PUSH32 -32769", "SHOW"]),
+        # What pushes a number, `tests/text/test_plain.py` has.
         # a variable that gets a number, and one that a number is added to
         ("X = -128; SHOW(X)", ["SET_VAR8 v0 -128", "PUSH_VAR_0", "SHOW"]),
         ("X = 11; SHOW(X)", ["SET_VAR8 v0 11", "PUSH_VAR_0", "SHOW"]),

@@ -13,6 +13,7 @@ from tests.oracle import programs
 from tests.support.casefile import ROOT
 from tests.support.images import image_for
 from tests.support.kits import KITS
+from tests.support.rows import each_row
 from tests.vm.test_agreement import MAX_MS, MAX_STEPS, same
 from tests.vm.test_cases import CASES, compiled, having, robot_and_senses
 from tiniscript import Compiled, compile_text, robots
@@ -45,8 +46,8 @@ def names(text: str, kit: Kit = TINIBOT) -> str:
     return " ".join(row[25:].split()[0] for row in rows)
 
 
-@pytest.mark.parametrize(
-    ("text", "says"),
+@each_row(
+    "text, says",
     [
         # what the optimiser would fold, fuse or drop
         ("X = 2 + 3; SHOW(X)", "PUSH_NUM_2 PUSH_NUM_3 ADD SET_VAR_0 PUSH_VAR_0 SHOW"),
@@ -100,19 +101,26 @@ def test_each_word_is_its_own_instruction(text: str, says: str) -> None:
     assert names(text) == says
 
 
-@pytest.mark.parametrize(
-    ("number", "code"),
-    [
-        ("0", "b0"), ("10", "ba"), ("11", "01 0b"), ("20", "bb"), ("100", "c3"), ("110", "01 6e"),
-        ("255", "01 ff"), ("256", "02 00 01"), ("-1", "0c f6"), ("-12.8", "0c 80"),
-        ("-13", "02 f3 ff"), ("12.7", "0c 7f"), ("12.8", "03 00 32"), ("0.001", "03 01 00"),
-        ("-32.768", "03 00 80"), ("32.768", "04 00 80 00 00"), ("32767", "02 ff 7f"),
-        ("32768", "04 00 00 f4 01"), ("-32768", "02 00 80"), ("300.5", "04 d4 95 04 00"),
-        ("2147483.647", "04 ff ff ff 7f"), ("1.0005", "03 e9 03"),
-    ],
-)  # fmt: skip
+NUMBERS = [
+    ("0", "b0"), ("-0", "b0"), ("10", "ba"), ("11", "01 0b"), ("20", "bb"), ("90", "c2"),
+    ("100", "c3"), ("110", "01 6e"), ("255", "01 ff"), ("256", "02 00 01"), ("-1", "0c f6"),
+    ("-12.8", "0c 80"), ("-12.9", "03 9c cd"), ("-13", "02 f3 ff"), ("12.7", "0c 7f"),
+    ("12.8", "03 00 32"), ("0.001", "03 01 00"), ("32.767", "03 ff 7f"), ("-32.768", "03 00 80"),
+    ("32.768", "04 00 80 00 00"), ("-32.769", "04 ff 7f ff ff"), ("32767", "02 ff 7f"),
+    ("32768", "04 00 00 f4 01"), ("-32768", "02 00 80"), ("-32769", "04 18 fc 0b fe"),
+    ("300.5", "04 d4 95 04 00"), ("2147483.647", "04 ff ff ff 7f"),
+    ("-2147483.6484", "04 00 00 00 80"),
+    # what is behind the third decimal is rounded
+    ("1.0005", "03 e9 03"), ("0.0995", "0c 01"), ("0.9995", "b1"), ("0.0004999", "b0"),
+    ("-0.0005", "03 ff ff"), ("000000000000000005.000000000", "b5"),
+]  # fmt: skip
+
+
+@each_row("number, code", NUMBERS)
 def test_a_number_has_the_first_push_that_says_it(number: str, code: str) -> None:
+    """In optimised code, too."""
     assert plain_of(f"SHOW({number})").code.hex(" ") == f"{code} 39"
+    assert compile_text(f"SHOW({number})", TINIBOT).code.hex(" ") == f"{code} 39"
 
 
 def test_operands_to_7_are_part_of_the_code() -> None:

@@ -9,8 +9,10 @@ import pytest
 from tests.machines.text_reader import NO_DEFS, Answer, TextReader, read_lines
 from tests.support.casefile import all_cases
 from tests.support.kits import KITS
+from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
+from tests.text.test_plain import NUMBERS
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.codegen.text.problems import LONGEST, PROBLEMS
@@ -278,23 +280,9 @@ def test_what_lies_in_the_buffer() -> None:
 # -- code ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("number", "instruction"),
-    [
-        ("10", "PUSH_NUM_10"), ("11", "PUSH8 11"), ("90", "PUSH_NUM_90"), ("100", "PUSH_NUM_100"),
-        ("101", "PUSH8 101"), ("110", "PUSH8 110"), ("255", "PUSH8 255"), ("256", "PUSH16 256"),
-        ("12.7", "PUSH_TENTHS 127"), ("12.8", "PUSH_MILLI 12800"), ("-12.8", "PUSH_TENTHS -128"),
-        ("-12.9", "PUSH_MILLI -12900"), ("-1", "PUSH_TENTHS -10"), ("-13", "PUSH16 -13"),
-        ("32767", "PUSH16 32767"), ("32768", "PUSH32 32768000"), ("-32768", "PUSH16 -32768"),
-        ("-32769", "PUSH32 -32769000"), ("32.767", "PUSH_MILLI 32767"), ("-0", "PUSH_NUM_0"),
-        ("32.768", "PUSH32 32768"), ("-32.768", "PUSH_MILLI -32768"), ("0.0995", "PUSH_TENTHS 1"),
-        ("0.9995", "PUSH_NUM_1"), ("0.0004999", "PUSH_NUM_0"), ("-0.0005", "PUSH_MILLI -1"),
-        ("2147483.647", "PUSH32 2147483647"), ("-2147483.648", "PUSH32 -2147483648"),
-        ("-2147483.6484", "PUSH32 -2147483648"), ("000000000000000005.000000000", "PUSH_NUM_5"),
-    ],
-)  # fmt: skip
-def test_shortest_push(number: str, instruction: str) -> None:
-    assert code_of(f"X = {number}") == [instruction, "SET_VAR_0"]
+@each_row("number, code", NUMBERS)
+def test_shortest_push(number: str, code: str) -> None:
+    assert one(f"SHOW({number})").code.hex(" ") == f"{code} 39"
 
 
 @pytest.mark.parametrize("number", ["2147483.6475", "-2147483.6485", "9999999999999999999999"])
