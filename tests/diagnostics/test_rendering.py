@@ -71,12 +71,6 @@ def first(text: str, lang: str = "en") -> tuple[Message, Source]:
     return message(found.diagnostics[0], found.source, lang), found.source
 
 
-def shown(text: str, lang: str = "en") -> list[str]:
-    """Return the rows that the first diagnostic of a text is shown in."""
-    said, source = first(text, lang)
-    return as_text(said, source, lang).split("\n")
-
-
 # -- the table ------------------------------------------------------------------------------------
 
 
@@ -185,103 +179,7 @@ def test_long_pieces_of_a_program_are_shortened() -> None:
     assert len(said.message) < 200
 
 
-# -- whole messages -------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("text", "en", "es"),
-    [
-        (
-            "SI|F(1,5, 80)",
-            [
-                "line 1:  SI|F(1,5, 80)",
-                "               ^",
-                "A decimal number has a point, not a comma.   Try:  F(1.5, 80)   [TS012]",
-            ],
-            [
-                "línea 1:  SI|F(1,5, 80)",
-                "                ^",
-                "Los decimales se escriben con punto, no con coma.   Prueba:  F(1.5, 80)   [TS012]",
-            ],
-        ),
-        (
-            "SI|\nF 2 80\n",
-            [
-                "line 2:  F 2 80",
-                "          ^^^^^",
-                "After F come brackets: ( )   Try:  F(2, 80)   [TS015]",
-            ],
-            [
-                "línea 2:  F 2 80",
-                "           ^^^^^",
-                "Después de F van paréntesis: ( )   Prueba:  F(2, 80)   [TS015]",
-            ],
-        ),
-        (
-            "IF(DISTENCE < 10);S;ENDIF",
-            [
-                "line 1:  IF(DISTENCE < 10);S;ENDIF",
-                "            ^^^^^^^^",
-                "There is no variable or sensor DISTENCE. Did you mean DISTANCE?   "
-                "Try:  DISTANCE   [TS103]",
-            ],
-            [
-                "línea 1:  IF(DISTENCE < 10);S;ENDIF",
-                "             ^^^^^^^^",
-                "No hay ninguna variable ni sensor DISTENCE. ¿Quisiste decir DISTANCE?   "
-                "Prueba:  DISTANCE   [TS103]",
-            ],
-        ),
-        (
-            "SI|SI(DISTANCE < 10);S;ENDIF",
-            [
-                "line 1:  SI|SI(DISTANCE < 10);S;ENDIF",
-                "            ^^",
-                "SI starts a program. To ask a question the word is IF.   "
-                "Try:  IF(DISTANCE < 10)   [TS045]",
-            ],
-            [
-                "línea 1:  SI|SI(DISTANCE < 10);S;ENDIF",
-                "             ^^",
-                "SI sirve para empezar el programa. Para preguntar se usa IF.   "
-                "Prueba:  IF(DISTANCE < 10)   [TS045]",
-            ],
-        ),
-        (
-            "SI|F(0, 80)",
-            [
-                "line 1:  SI|F(0, 80)",
-                "            ^^^^^^^^",
-                "Warning: This F takes 0 seconds, so nothing happens.   "
-                "Try:  Write a time above 0, such as 1 or 0.5.   [TS803]",
-            ],
-            [
-                "línea 1:  SI|F(0, 80)",
-                "             ^^^^^^^^",
-                "Aviso: Este F dura 0 segundos, así que no pasa nada.   "
-                "Prueba:  Escribe un tiempo mayor que 0, como 1 o 0.5.   [TS803]",
-            ],
-        ),
-        (
-            "IF(DISTANCE);S;ENDIF",
-            [
-                "line 1:  IF(DISTANCE);S;ENDIF",
-                "            ^^^^^^^^",
-                "IF needs a yes or no, and DISTANCE is a number.   "
-                "Try:  Compare it with a number, as in DISTANCE < 10   [TS202]",
-            ],
-            [
-                "línea 1:  IF(DISTANCE);S;ENDIF",
-                "             ^^^^^^^^",
-                "IF necesita un sí o no, y DISTANCE es un número.   "
-                "Prueba:  Compáralo con un número, como DISTANCE < 10   [TS202]",
-            ],
-        ),
-    ],
-)
-def test_whole_messages(text: str, en: list[str], es: list[str]) -> None:
-    assert shown(text, "en") == en
-    assert shown(text, "es") == es
+# -- whole messages: `tests/cases` has them as text -----------------------------------------------
 
 
 def test_colors_change_nothing_but_colors() -> None:
