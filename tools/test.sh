@@ -40,7 +40,7 @@ beside() {
     run coverage run --branch --include="compiler/tiniscript/bytecode/verify.py,compiler/tiniscript/bytecode/image.py" \
         -m pytest tests/bytecode/test_image.py tests/bytecode/test_verify.py tests/vm/test_cases.py \
         -p no:xdist -p no:cacheprovider \
-        -k "test_image or test_verify and not random and not up_to_two or test_disassembly_runs and python"
+        -k "test_image or test_verify or test_disassembly_runs and python"
     run coverage report --show-missing --fail-under=100
 }
 beside &

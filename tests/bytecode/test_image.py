@@ -60,12 +60,6 @@ def test_what_is_packed_is_read_back(start: str, code: bytes, later: bytes) -> N
 
 
 @pytest.mark.parametrize("image", [IMAGE, pack("SI", 0, CODE, LATER)], ids=["", "later"])
-def test_every_shorter_one_is_truncated(image: bytes) -> None:
-    for length in range(len(image)):
-        assert refusal(image[:length]) == ("TRUNCATED" if length else "NOT_AN_IMAGE")
-
-
-@pytest.mark.parametrize("image", [IMAGE, pack("SI", 0, CODE, LATER)], ids=["", "later"])
 def test_every_changed_bit_is_noticed(image: bytes) -> None:
     for offset in range(len(image)):
         for bit in range(8):
@@ -79,19 +73,6 @@ def test_every_changed_bit_is_noticed(image: bytes) -> None:
             elif offset in (5, 8, 9):
                 expected = {"BAD_HEADER", "TRUNCATED", "TRAILING"}
             assert refusal(bytes(data)) in expected
-
-
-def test_each_reason() -> None:
-    assert refusal(b"") == "NOT_AN_IMAGE"
-    assert refusal(b"SI|F(2,80)") == "NOT_AN_IMAGE"
-    assert refusal(IMAGE + b"\0") == "TRAILING"
-    assert refusal(changed(2, 1)) == refusal(changed(2, 3)) == "OTHER_VERSION"
-    assert refusal(changed(3, ISA_MINOR + 1)) == "OTHER_VERSION"
-    assert refusal(changed(4, 3)) == "UNKNOWN_START"
-    assert refusal(changed(5, 14)) == refusal(changed(5, 0)) == "BAD_HEADER"
-    assert refusal(changed(9, 0x80)) == "BAD_HEADER"
-    assert refusal(changed(4, 2)) == "PING_WITH_CODE"
-    assert refusal(changed(14, 4)) == "UNKNOWN_NEEDS"
 
 
 def test_the_first_reason_that_applies_is_said() -> None:
@@ -245,7 +226,9 @@ def test_a_reader_made_from_the_specification_gives_the_same_reasons() -> None:
         )
         for _ in range(rng.randrange(4)):
             if data:
-                data[rng.randrange(min(len(data), 20))] = rng.choice((0, 1, 2, rng.randrange(256)))
+                data[rng.randrange(min(len(data), 20))] = rng.choice(
+                    (0, 1, 2, 3, rng.randrange(256))
+                )
         image = bytes(data[: rng.choice((len(data), rng.randrange(len(data) + 1)))])
         if len(image) >= HEADER_BYTES and rng.randrange(2):
             image = sealed(image)
