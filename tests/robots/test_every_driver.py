@@ -8,7 +8,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.wiring.test_wiring import DEVICES, DISCS, MOTORS, robot_with, with_discs
-from tiniscript import compile_text, robots
+from tiniscript import compile_text
 from tiniscript.base.kit import Device
 from tiniscript.codegen.sketch.wiring import SketchPlan
 from tiniscript.codegen.sketch.writing import sketch_of
@@ -92,25 +92,11 @@ def test_discs_are_counted_by_the_firmware(name: str, chip: str) -> None:
             assert re.search(rf"#define tiniscript_disc_{side.lower()} INT\d_vect\n", header)
 
 
-@pytest.mark.parametrize("table", ["motors", "sensors", "actuators"])
-def test_a_driver_that_nothing_is_said_of_is_named(table: str) -> None:
+def test_motors_that_the_firmware_does_not_know_are_named() -> None:
     robot = robot_with("l298n", DEVICES)
-    board = robot.board
-    if table == "motors":
-        board = board._replace(motors=board.motors._replace(driver="new"))
-    elif table == "sensors":
-        board = board._replace(sensors=tuple(e._replace(driver="new") for e in board.sensors))
-    else:
-        board = board._replace(actuators=tuple(e._replace(driver="new") for e in board.actuators))
+    board = robot.board._replace(motors=robot.board.motors._replace(driver="new"))
     with pytest.raises(LookupError, match="robots/drivers has no driver new"):
         firmware.header([robot._replace(board=board)], "a test.")
-
-
-def test_shipped_robots_have_drivers_of_the_table() -> None:
-    known = {driver.name for driver in DEVICES}
-    for name in robots.names():
-        board = robots.load(name).board
-        assert {each.driver for each in (*board.sensors, *board.actuators)} <= known
 
 
 def test_a_driver_without_a_sketch_cannot_be_made() -> None:

@@ -207,11 +207,6 @@ def test_board_refuses_what_it_cannot_read(tsc: Tsc) -> None:
     assert tsc("board", "nobody").code == 2
 
 
-def test_every_board_has_firmware() -> None:
-    """Where one has none, `tsc board` and `tsc wiring` say so."""
-    assert set(firmware.BOARDS) == set(CHIPS)
-
-
 def test_the_header_of_an_esp32(tsc: Tsc) -> None:
     said = tsc("board", "tinibotc3").out
     for line in (

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from tests.robots.test_robots import TEXTS, edited
+from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES, said
 from tiniscript import robots
-from tiniscript.base.words import WORDS
 from tiniscript.robots.boards import NEEDS
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
@@ -137,7 +137,7 @@ REFUSED = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("code", "name", "old", "new", "path"), REFUSED)
+@each_row("code, name, old, new, path", REFUSED)
 def test_refusals(code: str, name: str, old: str, new: str, path: str | None) -> None:
     refused = refusal(edited(name, old, new))
     if path is None:
@@ -315,11 +315,6 @@ def test_a_refusal_says_what_to_do() -> None:
     assert "Did you mean baud?" in describe(refused, "en")[0]
 
 
-@pytest.mark.parametrize("word", sorted(WORDS))
-def test_no_device_takes_a_word_of_the_language(word: str) -> None:
-    assert "name_is_word" in codes(refusal(TEXTS["tinibot"].replace("LIGHT_R", word.lower())))
-
-
 @pytest.mark.parametrize(
     ("name", "old", "new", "sentences"),
     [
@@ -427,6 +422,7 @@ def mutated(text: str, chance: random.Random) -> str:
     return "\n".join(lines)
 
 
+@pytest.mark.sampled("seed", keep=10)
 @pytest.mark.parametrize("seed", range(40))
 def test_nothing_but_a_refusal_comes_of_a_broken_profile(seed: int) -> None:
     chance = random.Random(seed)

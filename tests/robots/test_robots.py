@@ -37,18 +37,10 @@ def test_the_default_comes_first_and_every_toml_is_shipped() -> None:
 
 @pytest.mark.parametrize("name", sorted(TEXTS))
 def test_a_shipped_robot_is_what_its_toml_says(name: str) -> None:
-    assert robots.load(name) == robots.load(str(FOLDER / f"{name}.toml"))
-    assert robots.load(name.upper()) == read(TEXTS[name], name)
-
-
-@pytest.mark.parametrize("name", sorted(TEXTS))
-def test_fingerprints_of_shipped_robots_are_promises(name: str) -> None:
-    assert robots.load(name).kit.fingerprint == FINGERPRINTS[name]
-
-
-@pytest.mark.parametrize("name", sorted(TEXTS))
-def test_a_shipped_robot_is_labelled_and_placed(name: str) -> None:
     robot = robots.load(name)
+    assert robot == robots.load(str(FOLDER / f"{name}.toml"))
+    assert robots.load(name.upper()) == read(TEXTS[name], name)
+    assert robot.kit.fingerprint == FINGERPRINTS[name], "it is a promise"
     devices = (*robot.kit.sensors, *robot.kit.actuators)
     for language in LANGUAGES:
         assert set(robot.labels[language]) == {"robot", *(device.name for device in devices)}
