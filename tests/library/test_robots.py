@@ -76,26 +76,24 @@ def test_a_line_is_done_at_once_and_the_program_stays(
     assert [each.values for each in virtual.events() if each.name == "SHOW"] == [{"value": 7}]
 
 
-def test_a_line_after_a_stop_runs(virtual: tiniscript.VirtualRobotConnection) -> None:
-    virtual.upload(FOREVER, save=False)
-    virtual.stop()
-    assert virtual.wait() == tiniscript.Ending("STOPPED", cause="SEQUENCE")
-    virtual.live("SHOW(1)")
-    assert virtual.wait().name == "DONE"
-
-
 def test_a_program_may_wait_for_the_button(virtual: tiniscript.VirtualRobotConnection) -> None:
     assert not virtual.upload("SB|SHOW(3)").is_running
     virtual.push_button()
     assert [each.values for each in virtual.events() if each.name == "SHOW"] == [{"value": 3}]
 
 
-def test_a_program_that_goes_on_is_no_ending(virtual: tiniscript.VirtualRobotConnection) -> None:
+def test_a_program_that_goes_on_is_no_ending_and_a_line_after_its_stop_runs(
+    virtual: tiniscript.VirtualRobotConnection,
+) -> None:
     virtual.upload(FOREVER, save=False)
     with pytest.raises(tiniscript.RobotError) as raised:
         virtual.wait(0.05)
     assert raised.value.reason == "still_running"
     assert list(virtual.events(0)) == []
+    virtual.stop()
+    assert virtual.wait() == tiniscript.Ending("STOPPED", cause="SEQUENCE")
+    virtual.live("SHOW(1)")
+    assert virtual.wait().name == "DONE"
 
 
 def test_a_time_limit_ends_a_stream_without_end(
@@ -188,10 +186,24 @@ def test_without_a_port_the_virtual_robot_of_another_process_is_found() -> None:
 # -- a robot on a port -----------------------------------------------------------------------------
 
 
-def test_leaving_stops_the_robot(pty_robot: PtyRobot) -> None:
+def test_button_command_and_leaving_stop_the_robot(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
-        robot.upload(FOREVER)
-        pty_robot.until(lambda: pty_robot.moves, "it drives")
+
+        def drive() -> None:
+            robot.upload(FOREVER)
+            pty_robot.until(lambda: pty_robot.moves, "it drives")
+
+        drive()
+        pty_robot.push()
+        assert robot.wait() == tiniscript.Ending("STOPPED", cause="BUTTON")
+        drive()
+        done = process("stop", "--port", pty_robot.port)
+        assert (done.code, pty_robot.moves) == (0, False)
+        assert robot.wait() == tiniscript.Ending("STOPPED", cause="SEQUENCE")
+        with pytest.raises(tiniscript.RobotError) as raised:
+            robot.upload(tiniscript.compile("GRIPPER(30)", "grabber"))
+        assert raised.value.reason == "WRONG_KIT"
+        drive()
     assert not pty_robot.moves
 
 
@@ -321,18 +333,16 @@ def test_a_reset_of_a_robot_that_stands_is_noticed_by_nobody(pty_robot: PtyRobot
             pty_robot.switch_on()
 
 
-def test_an_uploaded_program_is_saved_when_waiting_is_over(pty_robot: PtyRobot) -> None:
+def test_a_program_is_saved_when_waiting_is_over_or_its_connection_is_left(
+    pty_robot: PtyRobot,
+) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         receipt = robot.upload("SI|" + "SHOW(1);" * 120)
         assert receipt.saved == "SAVING"
         robot.live("W(0.01)")
         assert robot.wait().name == "DONE"
         assert robot.start().saved == "STORED"
-
-
-def test_a_program_is_saved_when_its_connection_is_left(pty_robot: PtyRobot) -> None:
-    with tiniscript.connect(pty_robot.port) as robot:
-        program = robot.upload("SB|" + "SHOW(1);" * 120)
+        program = robot.upload("SB|" + "SHOW(2);" * 120)
     pty_robot.switch_off()
     pty_robot.switch_on()
     with tiniscript.connect(pty_robot.port) as robot:
@@ -345,6 +355,10 @@ def test_the_program_before_comes_back(pty_robot: PtyRobot) -> None:
         for power in (30, 40):
             programs.append(robot.upload(f"SI|F(0.05, {power})"))
             robot.wait()
+            if power == 30:
+                with pytest.raises(tiniscript.RobotError, match="tsc upload") as refused:
+                    robot.undo()
+                assert refused.value.reason == "NO_PREVIOUS"
         receipt = robot.undo()
         assert (receipt.checksum, receipt.is_running) == (programs[0].checksum, False)
         with pytest.raises(tiniscript.UsageError) as raised:
@@ -356,16 +370,6 @@ def test_the_program_before_comes_back(pty_robot: PtyRobot) -> None:
         assert robot.start().checksum == programs[0].checksum
         assert robot.wait().name == "DONE"
         assert robot.undo().checksum == programs[1].checksum
-
-
-def test_a_program_that_is_the_first_one_has_none_before(pty_robot: PtyRobot) -> None:
-    with tiniscript.connect(pty_robot.port) as robot:
-        robot.upload("SI|SHOW(1)")
-        robot.wait()
-        with pytest.raises(tiniscript.RobotError) as raised:
-            robot.undo()
-        assert raised.value.reason == "NO_PREVIOUS"
-        assert "tsc upload" in str(raised.value)
 
 
 def test_a_way_through_another_command_is_a_way(pty_robot: PtyRobot, link: Command) -> None:
@@ -388,30 +392,6 @@ def test_a_cable_that_is_pulled_is_told_twice(pty_robot: PtyRobot) -> None:
     before = raised.value.__context__
     assert isinstance(before, tiniscript.RobotError)
     assert before.reason == "port_gone"
-
-
-def test_tsc_stop_gets_through(pty_robot: PtyRobot) -> None:
-    with tiniscript.connect(pty_robot.port) as robot:
-        robot.upload(FOREVER)
-        pty_robot.until(lambda: pty_robot.moves, "it drives")
-        done = process("stop", "--port", pty_robot.port)
-        assert (done.code, pty_robot.moves) == (0, False)
-        assert robot.wait() == tiniscript.Ending("STOPPED", cause="SEQUENCE")
-
-
-def test_a_button_ends_a_program(pty_robot: PtyRobot) -> None:
-    with tiniscript.connect(pty_robot.port) as robot:
-        robot.upload(FOREVER)
-        pty_robot.until(lambda: pty_robot.moves, "it drives")
-        pty_robot.push()
-        assert robot.wait() == tiniscript.Ending("STOPPED", cause="BUTTON")
-
-
-def test_a_program_of_another_kit_is_refused(pty_robot: PtyRobot) -> None:
-    with tiniscript.connect(pty_robot.port) as robot:
-        with pytest.raises(tiniscript.RobotError) as raised:
-            robot.upload(tiniscript.compile("GRIPPER(30)", "grabber"))
-        assert raised.value.reason == "WRONG_KIT"
 
 
 def test_nobody_answers(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) -> None:
