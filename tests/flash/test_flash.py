@@ -16,7 +16,7 @@ import serial
 from tests.machines.bootloaders import FOLDER, Bootloader, bootloader, optiboot
 from tests.machines.uno import built, needed
 from tests.support.casefile import ROOT
-from tests.support.command import Done
+from tests.support.command import Done, Tsc
 from tests.support.copies import linked
 from tests.support.needs import need
 from tests.support.platformio import firmware, prepared, shared
@@ -353,6 +353,6 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
     (["--port", "x", "--robot", "mine.toml"], "There is no file mine.toml"),
     (["--build", "--robot", "nobody"], "nobody"),
 ])  # fmt: skip
-def test_wrong_use_is_said(words: list[str], said: str, package: Path) -> None:
-    done = tsc(package, *words)
+def test_wrong_use_is_said(words: list[str], said: str, tsc: Tsc) -> None:
+    done = tsc("firmware", "--yes", *words)
     assert done.code in (2, 3) and said in done.err

@@ -246,6 +246,12 @@ def _is_line(said: str, asked: str, apart: float) -> bool:
     return not asked[-1:].isalpha() and abs(float(said) - float(asked)) <= apart
 
 
+def sketch(text: str, robot: Robot, language: str = "en") -> str:
+    compiled = compile_text(text, robot.kit, "prog.ts")
+    assert compiled.program is not None and compiled.is_right, compiled.diagnostics
+    return sketch_of(compiled.source, compiled.program, robot, language)
+
+
 # -- random programs
 
 
@@ -289,8 +295,7 @@ def check(example: Example, robot: Robot, language: str = "en") -> None:
     """The sketch of a random program does what the oracle says."""
     found = compile_text(example.text, robot.kit, "prog.ts")
     assert found.program is not None and found.is_right
-    sketch = sketch_of(found.source, found.program, robot, language)
-    board = SketchBoard(robot, sketch)
+    board = SketchBoard(robot, sketch_of(found.source, found.program, robot, language))
     pins = {
         each.name: wiring.pins
         for each, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True)

@@ -22,6 +22,7 @@ from tests.sketch.agreement import (
     example,
     nearness,
     shifted,
+    sketch,
     spans,
     wanted,
     with_wide_kit,
@@ -52,12 +53,6 @@ ANSWERS = [
 ]
 START_MS = 0.5
 FAR, NEAR = 0.0, 8 * 2 / 0.0343  # echoes: none, and that of 8 cm
-
-
-def sketch(text: str, robot: Robot, language: str = "en") -> str:
-    compiled = compile_text(text, robot.kit, "prog.ts")
-    assert compiled.program is not None and compiled.is_right, compiled.diagnostics
-    return sketch_of(compiled.source, compiled.program, robot, language)
 
 
 def ran(text: str, ms: float, robot: Robot | None = None) -> Ran:

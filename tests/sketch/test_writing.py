@@ -8,20 +8,17 @@ from pathlib import Path
 import pytest
 
 from tests.machines.sketch_board import built
+from tests.sketch.agreement import sketch as sketch_for
 from tests.support.casefile import ROOT, example_robot, sketch_examples
 from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tiniscript import compile_text, robots
 from tiniscript.cli.paths import is_foreign
 from tiniscript.codegen.sketch.names import IDENTIFIERS, LOCALS, RESERVED, Names, called, counter
-from tiniscript.codegen.sketch.writing import sketch_of
 
 
 def sketch(text: str, language: str = "en", robot: str = "tinibot") -> str:
-    profile = robots.load(robot)
-    compiled = compile_text(text, profile.kit, "prog.ts")
-    assert compiled.program is not None and compiled.is_right, compiled.diagnostics
-    return sketch_of(compiled.source, compiled.program, profile, language)
+    return sketch_for(text, robots.load(robot), language)
 
 
 def part(text: str, header: str) -> list[str]:

@@ -49,38 +49,20 @@ END_LOOP;
 """
 
 LAYOUTS: dict[str, tuple[str, str]] = {
-    "the obstacle program, as the paper prints it": (
-        OBSTACLES.removesuffix(";\n"),
-        OBSTACLES,
-    ),
     "the obstacle program with no layout": (
         "si|\nloop (forever)\nf(1,80)\ndistance\nif(distance<10)\nstop\nr(1,60)\nend_if\nendloop",
         OBSTACLES,
-    ),
-    "the obstacle program on one line": (
-        "SI|START;LOOP(FOREVER);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP",
-        "SI|START;LOOP(FOREVER);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP\n",
     ),
     "one line with ends and spaces to spare": (
         "\n\n si | ;; loop ( 3 ) ;; f( 2,50 ) ; endloop ; ; //square\n\n",
         "SI|LOOP(3);F(2, 50);END_LOOP  // square\n",
     ),
-    "a program without SETUP": ("L(1,50); B(1,80); W(1); S;", "L(1, 50);B(1, 80);W(1);S\n"),
-    "one instruction over several lines": (
-        "SB|\n\nR(\n  3,\n\n  60) UNTIL (TRUE)",
-        "SB|R(3, 60) UNTIL(TRUE)\n",
-    ),
-    "START is an instruction": ("SI|\nSTART\nS\n", "SI|START;\nS;\n"),
-    "PING is one line": ("ping | check_connection ;\n;\n", "PING|CHECK_CONNECTION\n"),
     "PING with comments around it": (
         "//a\nPING|check_connection //b\n//c",
         "// a\nPING|CHECK_CONNECTION  // b\n// c\n",
     ),
     "nothing": ("", ""),
-    "nothing but empty lines and instructions": ("\r\n ;;\n\u00a0\n", ""),
     "SETUP alone": ("\n sb | ;\n\n", "SB|\n"),
-    "SETUP and comments": ("SI| //a\n\n\n//b\n\n", "SI|  // a\n\n// b\n"),
-    "comments alone": ("\n//a\n\n\n //b\n//\n//   \n", "// a\n\n// b\n//\n//\n"),
     "operators": (
         "X=1+2*-3/(4-.5)%7\nY=X>=1 and not(X<>2)or(true)=false\nX=-X\nX=- - 5--.5",
         "X = 1 + 2 * -3 / (4 - 0.5) % 7;\n"
@@ -93,10 +75,7 @@ LAYOUTS: dict[str, tuple[str, str]] = {
         "M(-50, -(X));\nX = MAX(-1, -ABS(-X));\nIF(NOT -X < 3 AND -X > 1);\nENDIF;\n",
     ),
     "numbers stay as written": ("SHOW(007.500+.5)", "SHOW(007.500 + 0.5)\n"),
-    "brackets stay as written": ("X = ( ( 5 ) )", "X = ((5))\n"),
     "dashes of a phone": ("X=5\u20133\u2212\u20141 // a\u2013b", "X = 5 - 3 - -1  // a\u2013b\n"),
-    "UNTIL": ("f(1,80)until(distance<10)", "F(1, 80) UNTIL(DISTANCE < 10)\n"),
-    "names that nobody knows": ("frobnicate ( a,c )\nzap", "FROBNICATE(A, C);\nZAP;\n"),
     "DEF, calls and every end in its spelling": (
         "SI|DEF dance\nloop(2)\nwhile(true)\nif(true)\nbreak\n"
         "end_if\nendwhile\nendloop\nenddef\n\ndance",
@@ -112,41 +91,11 @@ LAYOUTS: dict[str, tuple[str, str]] = {
         "\n"
         "DANCE;\n",
     ),
-    "ELSEIF and ELSE": (
-        "IF(X<1);S\nELSEIF(X<2);W(1);ELSE\nIF(TRUE)\nELSE;ENDIF\nENDIF",
-        "IF(X < 1);\n"
-        "  S;\n"
-        "ELSEIF(X < 2);\n"
-        "  W(1);\n"
-        "ELSE;\n"
-        "  IF(TRUE);\n"
-        "  ELSE;\n"
-        "  ENDIF;\n"
-        "ENDIF;\n",
-    ),
-    "empty lines": (
-        "\n\nSI|LOOP(3)\n\n\nF(1, 50)\n\n \n\t\nIF(TRUE)\n\nS\n\n"
-        "ELSE\n\nW(1)\n\nENDIF\n\nS\n\n\nEND_LOOP\n\n",
-        "SI|LOOP(3);\n"
-        "  F(1, 50);\n"
-        "\n"
-        "  IF(TRUE);\n"
-        "    S;\n"
-        "  ELSE;\n"
-        "    W(1);\n"
-        "  ENDIF;\n"
-        "\n"
-        "  S;\n"
-        "END_LOOP;\n",
-    ),
     "a line with only an empty instruction is no empty line": ("S\n;\nS", "S;\nS;\n"),
     "empty lines and comments": (
         "S\n\n// a\n\n\n// b\nLOOP(3)\n\n// c\n\nS\n\n// d\n\nEND_LOOP\n\n// e\n\n",
         "S;\n\n// a\n\n// b\nLOOP(3);\n  // c\n\n  S;\n\n// d\nEND_LOOP;\n\n// e\n",
     ),
-    "an empty line after SETUP": ("SI|\n\n\nF(1,80)\nS", "SI|\n\nF(1, 80);\nS;\n"),
-    "a comment behind SETUP": ("SI|//a\nF(1,80)\nS", "SI|  // a\nF(1, 80);\nS;\n"),
-    "a comment below SETUP": ("SI|\n//a\nF(1,80);S", "SI|\n// a\nF(1, 80);\nS;\n"),
     "a comment between SETUP and the one instruction": (
         "SI|\n//a\nF(1,80)",
         "SI|\n// a\nF(1, 80);\n",
@@ -175,11 +124,6 @@ LAYOUTS: dict[str, tuple[str, str]] = {
         "END_LOOP;  // 13\n"
         "// 14\n",
     ),
-    "a comment inside an instruction swallows no code": (
-        "SI|LOOP(3);F(2, // ) 9\n50);END_LOOP",
-        "SI|LOOP(3);\n  F(2, 50);  // ) 9\nEND_LOOP;\n",
-    ),
-    "a comment inside the one instruction": ("SI|F(2, // a\n50)\n", "SI|F(2, 50)  // a\n"),
     "spaces of comments": (
         "//a  \n//  b\t\n//\tc\n//\n///// d /////\n// e //\n//¿?",
         "// a\n//  b\n//\tc\n//\n///// d /////\n// e //\n// ¿?\n",
@@ -300,7 +244,7 @@ def laid_out_anew(rng: random.Random, text: str) -> str:
     return "".join(out)
 
 
-@pytest.mark.sampled("chunk", keep=2)
+@pytest.mark.sampled("chunk")
 @pytest.mark.parametrize("chunk", range(CHUNKS))
 def test_every_program_stays_the_same_program(chunk: int) -> None:
     """Same image, same comments; as written by the generator and in a wilder layout."""

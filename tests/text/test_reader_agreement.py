@@ -21,13 +21,14 @@ from tests.oracle import programs
 from tests.support.casefile import Case, all_cases
 from tests.support.kits import KITS
 from tests.support.rows import each_row
-from tiniscript import check_text, compile_text, robots
+from tiniscript import compile_text, robots
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Unreadable, decode
 from tiniscript.base.words import WORDS
 from tiniscript.bytecode.verify import verify
 from tiniscript.codegen.text.line import plain_code
 from tiniscript.codegen.text.memory import Reader as Model
+from tiniscript.library.compiling import analyzed
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS, LONGEST_WORD, UNREAD
 from tiniscript.syntax.lexer import scan
 from tiniscript.vm.runner import run
@@ -55,7 +56,7 @@ def reader_of(kit: Kit, room: int = LARGEST_ROOM) -> TextReader:
 def is_right(data: bytes, kit: Kit) -> bool:
     """Whether the compiler takes these bytes for a program."""
     try:
-        return check_text(decode(data), kit).is_right
+        return analyzed(decode(data), kit).is_right  # what it says of a wrong one takes longest
     except Unreadable:
         return False
 
@@ -162,6 +163,17 @@ def soup(seed: int) -> tuple[Kit, bytes]:
                         "F(1,{})UNTIL(TOUCH)", "BEEP({})", "M({},{})"))  # fmt: skip
     text = frame.format(*(["".join(t + " " * rng.randint(0, 1) for t in tokens)] * 2))
     return KITS[1][1], text.encode()
+
+
+def some_texts(soups: int, count: int) -> list[bytes]:
+    """Return so many lines of any tokens, and random programs with a slip of each."""
+    found = [soup(seed)[1] for seed in range(soups)]
+    for seed in range(count):
+        rng = random.Random(seed)
+        text = programs.program(rng, KITS[1][0])
+        slip = programs.broken(rng, text).encode("utf-8", "surrogatepass")
+        found += [text.encode(), damaged(rng, slip)]
+    return found
 
 
 # -- in the tests -------------------------------------------------------------------------------

@@ -5,16 +5,14 @@ There an int has 16 bits, and tables lie in another memory.
 
 from __future__ import annotations
 
-import random
 from struct import pack
 from zlib import crc32
 
 import pytest
 
 from tests.machines.text_reader import NO_DEFS, Answer, TextReader
-from tests.oracle import programs
 from tests.support.kits import KITS
-from tests.text.test_reader_agreement import damaged, soup
+from tests.text.test_reader_agreement import some_texts
 from tiniscript.bytecode.image import STARTS
 from tiniscript.codegen.text.problems import NAMES
 from tiniscript.robots.kit_words import kit_words
@@ -22,7 +20,7 @@ from tools.bench import avr_bench
 
 REASON = avr_bench.missing()
 ROOM = 389
-ORACLE_KIT, KIT = KITS[1]
+KIT = KITS[1][1]
 # Where one instruction that pushes a number ends, and a longer one begins.
 NUMBERS = (
     *range(23), *range(30, 121, 10), 99, 127, 128, 129, 250, 255, 256, 3276, 3277, 32767, 32768,
@@ -44,12 +42,7 @@ def said(answer: Answer) -> list[int]:
 
 
 def texts() -> list[bytes]:
-    found = [soup(seed)[1] for seed in range(400)]
-    for seed in range(150):
-        rng = random.Random(seed)
-        text = programs.program(rng, ORACLE_KIT)
-        slip = programs.broken(rng, text).encode("utf-8", "surrogatepass")
-        found += [text.encode(), damaged(rng, slip)]
+    found = some_texts(400, 150)
     found += [
         f"{sign}{number}".join(("F(1, ABS(", "))")).encode()
         for number in NUMBERS

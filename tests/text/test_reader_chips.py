@@ -5,19 +5,16 @@ There a char may be unsigned, and a word must lie at an address that four divide
 
 from __future__ import annotations
 
-import random
-
 import pytest
 
 from tests.machines.qemu import emulated, missing
 from tests.machines.text_reader import LARGEST_ROOM, TextReader
-from tests.oracle import programs
 from tests.support.casefile import all_cases
 from tests.support.kits import KITS
-from tests.text.test_reader_agreement import damaged, soup
+from tests.text.test_reader_agreement import some_texts
 from tools.builds import chips
 
-ORACLE_KIT, KIT = KITS[1]
+KIT = KITS[1][1]
 EACH = [
     pytest.param(name, marks=pytest.mark.skipif(bool(why), reason=why or "there is a chip"))
     for name in chips.CHIPS
@@ -29,13 +26,7 @@ def texts() -> list[bytes]:
     found = [
         case.parts["tiniscript"].encode() for case in all_cases() if "tiniscript" in case.parts
     ]
-    found += [soup(seed)[1] for seed in range(3000)]
-    for seed in range(1000):
-        rng = random.Random(seed)
-        text = programs.program(rng, ORACLE_KIT)
-        slip = programs.broken(rng, text).encode("utf-8", "surrogatepass")
-        found += [text.encode(), damaged(rng, slip)]
-    return [each for each in found if each.strip()]
+    return [each for each in found + some_texts(3000, 1000) if each.strip()]
 
 
 @pytest.mark.sampled("name")

@@ -120,7 +120,7 @@ def test_disassembly_runs_or_is_refused(case: Case, chip: str) -> None:
     assert ("Refused" in ending) == ("refused" in case.parts)
 
 
-@one_chip
+@pytest.mark.sampled("chip", "seed", keep=2)
 @each_chip
 @pytest.mark.parametrize("seed", range(4))
 def test_random_programs(chip: str, seed: int) -> None:
@@ -190,7 +190,7 @@ def test_a_robot_that_is_not_ready_is_asked_again(chip: str) -> None:
         assert avr.ran_on(avr.UNO, image, kit, Senses(readings), not_ready).trace == want
 
 
-@one_chip
+@pytest.mark.sampled("chip", "seed")
 @each_emulated
 @pytest.mark.parametrize("seed", range(2))
 def test_random_codes(chip: str, seed: int) -> None:

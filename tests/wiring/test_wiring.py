@@ -154,7 +154,7 @@ def test_every_board_that_has_firmware_is_drawn_with_all_its_pins() -> None:
 
 @each_robot
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_every_pin_of_the_board_is_in_the_table_and_in_the_drawing(
+def test_every_pin_is_in_the_table_and_in_the_drawing_and_every_wire_has_a_row(
     robot: Robot, language: str
 ) -> None:
     plan = plan_of(robot, language)
@@ -164,10 +164,23 @@ def test_every_pin_of_the_board_is_in_the_table_and_in_the_drawing(
     assert {row[1] for row in wire_rows(plan)[1:]} == names
     shown = [text.split(" ")[0] for text in texts_of(drawing_of(plan))]
     assert names <= set(shown)
-    wires = [wire.number for wire in plan.wires]
-    assert wires == list(range(1, len(names) + (not plan.has_lamp)))
-    for number in wires:
+    numbers = [wire.number for wire in plan.wires]
+    assert numbers == list(range(1, len(names) + (not plan.has_lamp)))
+    for number in numbers:
         assert shown.count(str(number)) >= 2, "a wire has its number at both ends"
+    page = page_of(plan)
+    # Of pins, of power and of GND: each end that is joined has its own row to tick.
+    wires, rails = (block.rows[1:] for block in page if block.kind == "ticks")
+    assert len(wires) == len(plan.wires) + plan.has_lamp
+    joined = [row[2] for row in rails]
+    assert len(joined) == len(set(zip((row[0] for row in rails), joined, strict=True)))
+    for part in plan.parts:
+        for end in part.ends:
+            if end.rail:
+                assert (end.rail, f"{part.title}: {end.name}") in {(r[0], r[2]) for r in rails}
+    assert html_of(plan).count('<td data-head="') == sum(len(row) for row in (*wires, *rails))
+    (checks,) = (block for block in page if block.kind == "checks")
+    assert "tsc trim" in checks.rows[-1][0], "it mends a wheel that turns the wrong way"
 
 
 @each_robot
@@ -196,30 +209,6 @@ def test_both_languages_have_the_same_rows(robot: Robot) -> None:
     assert [row[1] for row in wires[1:]] == [row[1] for row in same[1:]]
     assert [row[0].split(" ")[0] for row in wires[1:]] == [row[0].split(" ")[0] for row in same[1:]]
     assert {"5V", "GND"} <= {row[0] for row in rails}
-
-
-@each_robot
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_every_wire_has_a_row_to_tick(robot: Robot, language: str) -> None:
-    """The wires of pins, and those of power and GND: each end that is joined has its own row."""
-    plan = plan_of(robot, language)
-    wires, rails = (block.rows[1:] for block in page_of(plan) if block.kind == "ticks")
-    assert len(wires) == len(plan.wires) + plan.has_lamp
-    joined = [row[2] for row in rails]
-    assert len(joined) == len(set(zip((row[0] for row in rails), joined, strict=True)))
-    for part in plan.parts:
-        for end in part.ends:
-            if end.rail:
-                assert (end.rail, f"{part.title}: {end.name}") in {(r[0], r[2]) for r in rails}
-    page = html_of(plan)
-    assert page.count('<td data-head="') == sum(len(row) for row in (*wires, *rails))
-
-
-@each_robot
-def test_a_wheel_that_turns_the_wrong_way_is_mended_by_trim(robot: Robot) -> None:
-    for language in LANGUAGES:
-        (checks,) = (each for each in page_of(plan_of(robot, language)) if each.kind == "checks")
-        assert "tsc trim" in checks.rows[-1][0]
 
 
 def test_what_a_robot_does_not_have_is_not_said() -> None:
@@ -278,6 +267,10 @@ def texts_of(svg: str) -> list[str]:
 @each_robot
 def test_wires_never_lie_upon_each_other_nor_on_parts(robot: Robot) -> None:
     layout = layout_of(plan_of(robot, "en"))
+    assert layout.board[2] == BOARD_WIDTH
+    for box, near in combinations(_solid(layout), 2):
+        is_apart = box[2] <= near[0] or near[2] <= box[0] or box[3] <= near[1] or near[3] <= box[1]
+        assert is_apart, "parts have room"
     lines = [
         (route.wire.number, *start, *end)
         for route in layout.routes
@@ -288,6 +281,7 @@ def test_wires_never_lie_upon_each_other_nor_on_parts(robot: Robot) -> None:
         if one[0] != other[0]:
             assert not _lie_upon_each_other(one[1:], other[1:]), f"wires {one[0]} and {other[0]}"
     for left, top, right, bottom in _solid(layout):
+        assert min(left, top) >= 0 and right <= layout.width and bottom <= layout.height
         for number, x1, y1, x2, y2 in lines:
             is_outside = (
                 max(x1, x2) <= left or min(x1, x2) >= right or max(y1, y2) <= top
@@ -310,22 +304,6 @@ def _solid(layout: Layout) -> list[tuple[int, int, int, int]]:
     left, top, width, height = layout.board
     boxes = [(box.x, box.y, box.x + PART_WIDTH, box.y + box.height) for box in layout.boxes]
     return [(left, top, left + width, top + height), *boxes]
-
-
-@each_robot
-def test_parts_have_room_and_stay_on_the_sheet(robot: Robot) -> None:
-    layout = layout_of(plan_of(robot, "en"))
-    for one, other in combinations(_solid(layout), 2):
-        is_apart = (
-            one[2] <= other[0] or other[2] <= one[0] or one[3] <= other[1] or other[3] <= one[1]
-        )
-        assert is_apart
-    for left, top, right, bottom in _solid(layout):
-        assert left >= 0
-        assert top >= 0
-        assert right <= layout.width
-        assert bottom <= layout.height
-    assert layout.board[2] == BOARD_WIDTH
 
 
 # -- hostile profiles
