@@ -135,12 +135,6 @@ def test_drivers_of_motors(name: str) -> None:
     assert lasting == POWERS
 
 
-@pytest.mark.parametrize("name", ["tinibot", "liner", "grabber"])
-def test_shipped_robots(name: str) -> None:
-    found = shifted(ran(MOVES, 400, robots.load(name)).motors, START_MS, (0, 0))
-    assert [value for at, until, value in spans(found, 399) if until - at > 5] == POWERS
-
-
 def test_a_tb6612_is_awake_while_it_drives() -> None:
     robot = robots.load("liner")
     board = SketchBoard(robot, sketch("SI|F(0.1, 80)", robot))
