@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from tests.support.cpp_tasks import FAR
+from tests.support.cpp_checks import FAR
 
 WRAP = 2**32  # of the clock
 SOON = 600

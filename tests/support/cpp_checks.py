@@ -9,31 +9,56 @@ from __future__ import annotations
 import operator
 import random
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import product
 
 from tests.machines import Senses
 from tests.machines.host import Process
+from tests.machines.python import ran_python
 from tests.oracle import programs
+from tests.oracle.task_programs import task_program
 from tests.support.images import image_for
 from tests.support.kits import KITS
-from tests.support.random_codes import EDGES, any_number, random_codes
+from tests.support.random_codes import (
+    EDGES,
+    any_number,
+    changed_kit,
+    images_of_programs,
+    likely_code,
+    mutated,
+    random_codes,
+    random_images,
+    simple,
+    task_codes,
+)
 from tiniscript import compile_text
 from tiniscript.base import fixed_point
 from tiniscript.base.kit import Kit
 from tiniscript.base.trace import Ending, TracedRobot
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.base.words import COMPARATORS
-from tiniscript.bytecode.image import unpack
-from tiniscript.bytecode.opcodes import BY_NAME, FAULTS
-from tiniscript.bytecode.verify import Refused, verify
+from tiniscript.bytecode.image import (
+    EVERYTHING,
+    GO,
+    HEADER_BYTES,
+    REFUSALS,
+    TASKS,
+    ImageRefused,
+    pack,
+    sealed,
+    unpack,
+)
+from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ESCAPED, FAULTS
+from tiniscript.bytecode.verify import Refused, loaded, verify
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.runner import MachineOf, run
-from tiniscript.vm.state import WAITING
+from tiniscript.vm.state import DONE, FAULT, WAITING
+from tiniscript.vm.tasks import machine_of
 
-WIDE = KITS[1][1]
+KIT, WIDE = KITS[0][1], KITS[1][1]
 SIZES = len(WIDE.sensors), len(WIDE.actuators)
 MAX_MS, MAX_STEPS = 3000, 300  # of the random codes that are accepted
+TASK_MS = 600  # of programs with tasks
 
 
 def python_verdict(code: bytes, sensors: int, actuators: int, needs: int = 0) -> tuple[int, int]:
@@ -188,3 +213,208 @@ def check_arithmetic(machine: Process, name: str, count: int) -> None:
     for (a, b), result in zip(pairs, theirs, strict=True):
         ours = python_result(name, a, b)
         assert ours == result, f"{name} {a} {b}: {ours}, not {result}"
+
+
+# -- tasks --------------------------------------------------------------------------------------
+
+FAR = f"A = 0;N = 0;IF(N > 0);{'SHOW(8);' * 140}ENDIF;"  # more than 256 bytes
+
+
+def some_task_programs(first: int, count: int, before: str = "") -> Iterator[tuple[bytes, Senses]]:
+    """Yield images of random programs with tasks, and what their sensors read.
+
+    All that a program does lies behind the code of the text `before`.
+    """
+    for seed in range(first, first + count):
+        text, readings = task_program(random.Random(seed))
+        yield compile_text(before + text, KIT).image, Senses(readings, TASK_MS, seed=seed + 1)
+
+
+def check_task_codes(machine: Process, seed: int, count: int) -> None:
+    """Code with tasks has the same verdict, in images that may have some and in others."""
+    rng = random.Random(seed)
+    codes = list(task_codes(seed, count))
+    codes += [mutated(rng, code, rng.choice(codes)) for code in codes]
+    rules = set()
+    for needs in (0, TASKS):
+        accepted = compare_verdicts(machine, codes, *SIZES, needs)
+        assert bool(accepted) == bool(needs) or len(accepted) < len(codes) / 4
+        rules |= {rule for rule, _ in machine.verdicts(codes, *SIZES, needs)}
+    # accepted, UNKNOWN_OPCODE, STACK_NOT_EMPTY, NOT_OPEN, STILL_OPEN, BAD_DEF, INSIDE_CHECK,
+    # TOO_MANY_TASKS
+    assert {0, 21, 27, 32, 33, 35, 38, 40} <= rules, rules
+
+
+def check_task_programs(machine: Process, first: int, count: int) -> None:
+    for image, senses in some_task_programs(first, count):
+        assert machine.run(image, KIT, senses) == ran_python(image, KIT, senses), first
+
+
+class SlowRobot(TracedRobot):
+    """A robot that is not ready each `not_ready`th time that it is asked."""
+
+    asked = 0
+    not_ready = 0
+
+    def is_ready(self) -> bool:
+        self.asked += 1
+        return not self.not_ready or self.asked % self.not_ready != 0
+
+    def read(self, sensor: int) -> int | None:
+        return super().read(sensor) if self.is_ready() else None
+
+    def show(self, value: int, is_yes_no: bool) -> bool:
+        return self.is_ready() and super().show(value, is_yes_no)
+
+
+def slow_run(image: bytes, senses: Senses, not_ready: int, late_ms: int = 0) -> str:
+    """Return the trace of Python's machine on a robot that is not always ready.
+
+    Its clock moves by more than a millisecond at once, so that ticks come up to `late_ms` late.
+    """
+    step_ms = late_ms + 1
+    lists = {k: senses.readings.get(each.name, ()) for k, each in enumerate(KIT.sensors)}
+    robot = SlowRobot(KIT, Lists(KIT, lists))
+    robot.not_ready = not_ready
+    machine = machine_of(unpack(image).code, robot, len(KIT.sensors), senses.seed)
+    end = ""
+    while not end:
+        status = machine.tick(robot.now_ms, LATE_BUDGET)
+        if status in (DONE, FAULT):
+            end = f"{robot.now_ms} {status.upper()} {machine.fault}".strip()
+        elif status == WAITING:
+            robot.now_ms = -(-machine.wake_ms // step_ms) * step_ms
+            if robot.now_ms > senses.max_ms:
+                end = f"{senses.max_ms} LIMIT"
+    return "".join(f"{event}\n" for event in robot.events) + end + "\n"
+
+
+# -- ways ---------------------------------------------------------------------------------------
+
+WAYS = [op.opcode for op in ESCAPED.values()]
+
+
+def way_code(rng: random.Random) -> bytes:
+    """Return a move by any way and power, mostly right; with an UNTIL or without."""
+    values = (any_number(rng), rng.choice((any_number(rng), rng.randrange(-5, 105) * 1000)))
+    pushes = [simple("PUSH32") + each.to_bytes(4, "little", signed=True) for each in values]
+    code = b"".join(pushes) + rng.choice(WAYS)
+    if (code[-1] & 8) and rng.random() < 0.9:
+        code += simple(rng.choice(("PUSH_TRUE", "PUSH_FALSE"))) + simple("UNTIL")
+    return code
+
+
+def way_codes(seed: int, count: int) -> list[bytes]:
+    """Return code with ways, a part of it changed: second bytes that are none, and cut ones."""
+    rng = random.Random(seed)
+    tasks = list(task_codes(seed, count))
+    codes = []
+    for number in range(count):
+        code = way_code(rng) + (likely_code(rng) if rng.random() < 0.3 else b"")
+        if number % 3 == 0:
+            code = tasks[number] + way_code(rng)
+        if number % 4 == 1:
+            code = mutated(rng, code, rng.choice(tasks))
+        if number % 8 == 2:
+            code = (
+                code[: rng.randrange(len(code))]
+                + bytes((ESCAPE, rng.randrange(256)))[: rng.choice((1, 2))]
+            )
+        codes.append(code)
+    return codes
+
+
+def check_way_codes(machine: Process, seed: int, count: int) -> None:
+    """The same verdicts, whatever the image needs; what is accepted and has no tasks runs alike."""
+    ends: Counter[str] = Counter()
+    codes = way_codes(seed, count)
+    codes += [bytes(each) for each in ((ESCAPE,), *((ESCAPE, second) for second in range(256)))]
+    pushed = simple("PUSH_NUM_2") * 2
+    codes += [pushed + bytes((ESCAPE, second)) for second in range(256)]
+    for needs in (0, TASKS, GO, EVERYTHING):
+        accepted = compare_verdicts(machine, codes, *SIZES, needs)
+        if needs != GO:
+            continue
+        for code in accepted:
+            ends[compare_runs(machine, code, WIDE, Senses({}, MAX_MS, MAX_STEPS))] += 1
+    assert {"DONE", "LIMIT", "NO_POWER", "OVERFLOW"} <= set(ends), ends
+    assert "BAD_CODE" not in ends
+
+
+def check_way_programs(machine: Process, first: int, count: int) -> None:
+    """Random programs with ways, with tasks and without, run alike to the last step."""
+    ends: Counter[str] = Counter()
+    for image, kit, senses in some_way_programs(first, count):
+        ran = machine.run(image, kit, senses)
+        assert ran == ran_python(image, kit, senses), image.hex(" ")
+        ends[ran.trace.split()[-1]] += 1
+    assert {"DONE", "LIMIT", "NO_POWER"} <= set(ends), ends
+
+
+def some_way_programs(first: int, count: int) -> list[tuple[bytes, Kit, Senses]]:
+    """Return images of random programs whose moves go by ways, each second one with tasks."""
+    found = []
+    for seed in range(first, first + count):
+        rng = random.Random(seed)
+        theirs, kit = KITS[seed // 2 % 2]
+        if seed % 2:
+            text, readings = task_program(rng, ways=True)
+            kit, max_ms = KIT, TASK_MS
+        else:
+            text = programs.program(rng, theirs, ways=True)
+            readings, max_ms = programs.senses(rng, theirs), MAX_MS
+        image = compile_text(text, kit).image
+        found.append((image, kit, Senses(readings, max_ms, 2000, seed + 1)))
+    return found
+
+
+# -- images -------------------------------------------------------------------------------------
+
+
+def python_refusal(data: bytes, has: int = EVERYTHING) -> int:
+    try:
+        unpack(data, has)
+    except ImageRefused as refused:
+        return refused.number
+    return 0
+
+
+def short_headers() -> Iterator[bytes]:
+    """Yield images whose headers are too short by each number of bytes, with all else in order."""
+    whole = pack("SI", 0, b"")
+    for length in range(HEADER_BYTES):
+        yield sealed(whole[:5] + bytes([length]) + whole[6:])
+
+
+def check_images(machine: Process, seed: int, count: int, has: int = EVERYTHING) -> None:
+    """Headers are refused for the same reasons, and each for some image."""
+    images = [*random_images(seed, count), b"", b"T", b"TS", b"S", b"TX", *short_headers()]
+    theirs = machine.refusals(images)
+    for image, reason in zip(images, theirs, strict=True):
+        ours = python_refusal(image, has)
+        assert ours == reason, f"{image.hex(' ')}: {ours}, not {reason}"
+    headers = {number for name, (number, _) in REFUSALS.items() if name != "OTHER_KIT"}
+    assert {*theirs} == {0, *headers}
+
+
+def refusal_of(load: Callable[[], object]) -> str:
+    """Return why an image is refused with its offset, or nothing."""
+    try:
+        load()
+    except (ImageRefused, Refused) as refused:
+        return f"{refused.number} {refused}"
+    return ""
+
+
+def check_whole_images(machine: Process, seed: int, count: int, has: int = EVERYTHING) -> None:
+    """Programs with a change in them, for robots of which some have other devices."""
+    rng = random.Random(seed)
+    senses = Senses(max_ms=100, max_steps=20)
+    seen = set()
+    for image, kit in images_of_programs(seed, count):
+        for robot in (kit, changed_kit(rng, kit)):
+            ours = refusal_of(lambda data=image, kit=robot: loaded(data, kit, has))  # type: ignore[misc]
+            theirs = refusal_of(lambda data=image, kit=robot: machine.run(data, kit, senses))  # type: ignore[misc]
+            assert ours == theirs, f"{image.hex(' ')}: {ours!r}, not {theirs!r}"
+            seen.add(ours.partition(" ")[2].partition(" ")[0])
+    assert {"", "OTHER_KIT", "NO_SUCH_DEVICE", "OTHER_VERSION", "DAMAGED"} <= seen, seen

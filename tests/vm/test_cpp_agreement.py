@@ -19,9 +19,10 @@ import pytest
 
 from tests.machines import Senses
 from tests.machines.host import host
-from tests.support import cpp_images, cpp_tasks, cpp_ways
+from tests.support import cpp_checks
 from tests.support.casefile import Case
 from tests.support.cpp_checks import (
+    KIT,
     MAX_MS,
     MAX_STEPS,
     OPERATIONS,
@@ -34,8 +35,8 @@ from tests.support.cpp_checks import (
     compare_verdicts,
     python_verdict,
     run_late,
+    some_task_programs,
 )
-from tests.support.cpp_tasks import KIT, some_task_programs
 from tests.support.random_codes import random_codes, simple, some_programs
 from tests.support.rows import each_row
 from tests.vm.test_cases import disassemblies_alone, robot_and_senses
@@ -200,13 +201,13 @@ def test_a_robot_that_is_not_ready_is_asked_again() -> None:
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(2))
 def test_random_codes_with_tasks(seed: int) -> None:
-    cpp_tasks.check_task_codes(host(), seed, 5000)
+    cpp_checks.check_task_codes(host(), seed, 5000)
 
 
 @pytest.mark.sampled("first", keep=2)
 @pytest.mark.parametrize("first", range(0, 2000, 250))
 def test_random_programs_with_tasks(first: int) -> None:
-    cpp_tasks.check_task_programs(host(), first, 250)
+    cpp_checks.check_task_programs(host(), first, 250)
 
 
 def test_the_clock_of_tasks_may_begin_anywhere_and_wrap_around() -> None:
@@ -239,7 +240,7 @@ def test_a_task_whose_reading_is_not_ready_lets_the_others_go_on(not_ready: int)
     """The same where a SHOW is not ready."""
     for image, senses in some_task_programs(0, 200):
         ran = host().run(image, KIT, senses, not_ready=not_ready)
-        assert ran.trace == cpp_tasks.slow_run(image, senses, not_ready), ran.trace
+        assert ran.trace == cpp_checks.slow_run(image, senses, not_ready), ran.trace
 
 
 # -- ways ---------------------------------------------------------------------------------------
@@ -248,13 +249,13 @@ def test_a_task_whose_reading_is_not_ready_lets_the_others_go_on(not_ready: int)
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(2))
 def test_random_codes_with_ways(seed: int) -> None:
-    cpp_ways.check_way_codes(host(), seed, 3000)
+    cpp_checks.check_way_codes(host(), seed, 3000)
 
 
 @pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, 1600, 200))
 def test_random_programs_with_ways(first: int) -> None:
-    cpp_ways.check_way_programs(host(), first, 200)
+    cpp_checks.check_way_programs(host(), first, 200)
 
 
 # -- images and arithmetic ----------------------------------------------------------------------
@@ -263,14 +264,14 @@ def test_random_programs_with_ways(first: int) -> None:
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(8))
 def test_images(seed: int) -> None:
-    cpp_images.check_images(host(), seed, BATCH)
+    cpp_checks.check_images(host(), seed, BATCH)
 
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(2))
 def test_images_of_programs(seed: int) -> None:
     """Header, code and devices, in this order, for robots of which some have other devices."""
-    cpp_images.check_whole_images(host(), seed, 2000)
+    cpp_checks.check_whole_images(host(), seed, 2000)
 
 
 def test_long_images() -> None:
@@ -283,7 +284,7 @@ def test_long_images() -> None:
             image = sealed(bytes(head) + bytes(header_length - HEADER_BYTES + length))
             images = [image, image[:-1], image + b"x"]
             said = host().refusals(images)
-            assert said == [cpp_images.python_refusal(each) for each in images]
+            assert said == [cpp_checks.python_refusal(each) for each in images]
             names = ["", "TRUNCATED", "TRAILING"] if length == CODE_BYTES else ["BAD_HEADER"] * 3
             assert said == [REFUSALS[name][0] if name else 0 for name in names], length
 

@@ -21,7 +21,7 @@ from tests.machines.python import ran_python
 from tests.machines.qemu import emulated
 from tests.machines.qemu import missing as emulator_missing
 from tests.oracle import programs
-from tests.support import avr_tasks, cpp_checks, cpp_images, cpp_tasks, cpp_ways
+from tests.support import avr_tasks, cpp_checks
 from tests.support.casefile import Case
 from tests.support.images import image_for, needs_of
 from tests.support.kits import KITS
@@ -203,27 +203,27 @@ def test_random_codes(chip: str, seed: int) -> None:
 @one_chip
 @each_emulated
 def test_programs_with_tasks(chip: str) -> None:
-    cpp_tasks.check_task_codes(emulated(chip), 4, 2000)
-    cpp_tasks.check_task_programs(emulated(chip), 2000, 100)
+    cpp_checks.check_task_codes(emulated(chip), 4, 2000)
+    cpp_checks.check_task_programs(emulated(chip), 2000, 100)
 
 
 @some_chips(avr.UNO, avr.MEGA)
 def test_programs_with_tasks_in_assembly(chip: str) -> None:
-    for number, (image, senses) in enumerate(cpp_tasks.some_task_programs(3000, 60)):
-        same_on_the_chip(chip, image, cpp_tasks.KIT, senses)
-        ran = avr.ran_on(chip, image, cpp_tasks.KIT, senses, 2 + number % 3)
-        assert ran.trace == cpp_tasks.slow_run(image, senses, 2 + number % 3), ran.trace
+    for number, (image, senses) in enumerate(cpp_checks.some_task_programs(3000, 60)):
+        same_on_the_chip(chip, image, cpp_checks.KIT, senses)
+        ran = avr.ran_on(chip, image, cpp_checks.KIT, senses, 2 + number % 3)
+        assert ran.trace == cpp_checks.slow_run(image, senses, 2 + number % 3), ran.trace
 
 
 @some_chips(avr.UNO, avr.MEGA)
 @pytest.mark.parametrize("name", avr_tasks.PROGRAMS)
 def test_hard_programs_with_tasks(chip: str, name: str) -> None:
     program = avr_tasks.PROGRAMS[name]
-    image = compile_text(program.text, cpp_tasks.KIT).image
+    image = compile_text(program.text, cpp_checks.KIT).image
     for not_ready, late_ms, begin_ms, max_ms in program.how:
         senses = Senses(program.readings, max_ms)
-        ran = avr.ran_on(chip, image, cpp_tasks.KIT, senses, not_ready, late_ms, begin_ms)
-        assert ran.trace == cpp_tasks.slow_run(image, senses, not_ready, late_ms), ran.trace
+        ran = avr.ran_on(chip, image, cpp_checks.KIT, senses, not_ready, late_ms, begin_ms)
+        assert ran.trace == cpp_checks.slow_run(image, senses, not_ready, late_ms), ran.trace
 
 
 @some_chips(avr.UNO, avr.MEGA)
@@ -231,30 +231,30 @@ def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
     """Nothing else ends a tick there. They lie at all low bytes of an address, in a long loop."""
     calls = "D;" * 130
     text = f"A = 0;DEF D;A = A + 1;END_DEF;TASK;LOOP(2);{calls}END_LOOP;SHOW(A);END_TASK"
-    image = compile_text(text, cpp_tasks.KIT).image
+    image = compile_text(text, cpp_checks.KIT).image
     for most, want in ((100, ("0 LIMIT\n", 100)), (150, ("1 SHOW 260\n1 DONE\n", 261))):
-        ran = avr.ran_on(chip, image, cpp_tasks.KIT, Senses(max_steps=most))
+        ran = avr.ran_on(chip, image, cpp_checks.KIT, Senses(max_steps=most))
         assert (ran.trace, ran.steps) == want
 
 
 @some_chips(avr.UNO, avr.MEGA)
 def test_late_tasks_behind_byte_256(chip: str) -> None:
-    for number, (image, senses) in enumerate(cpp_tasks.some_task_programs(0, 40, cpp_tasks.FAR)):
+    for number, (image, senses) in enumerate(cpp_checks.some_task_programs(0, 40, cpp_checks.FAR)):
         late_ms = (0, 7, 36)[number % 3]
-        ran = avr.ran_on(chip, image, cpp_tasks.KIT, senses, late_ms=late_ms, begin_ms=2**32 - 100)
-        assert ran.trace == cpp_tasks.slow_run(image, senses, 0, late_ms), ran.trace
+        ran = avr.ran_on(chip, image, cpp_checks.KIT, senses, late_ms=late_ms, begin_ms=2**32 - 100)
+        assert ran.trace == cpp_checks.slow_run(image, senses, 0, late_ms), ran.trace
 
 
 @one_chip
 @each_emulated
 def test_programs_with_ways(chip: str) -> None:
-    cpp_ways.check_way_codes(emulated(chip), 5, 1500)
-    cpp_ways.check_way_programs(emulated(chip), 2000, 100)
+    cpp_checks.check_way_codes(emulated(chip), 5, 1500)
+    cpp_checks.check_way_programs(emulated(chip), 2000, 100)
 
 
 @some_chips(avr.UNO, avr.MEGA)
 def test_programs_with_ways_in_assembly(chip: str) -> None:
-    for image, kit, senses in cpp_ways.some_way_programs(3000, 60):
+    for image, kit, senses in cpp_checks.some_way_programs(3000, 60):
         if len(image) <= CHIPS[chip].most_bytes:
             same_on_the_chip(chip, image, kit, senses)
 
@@ -262,8 +262,8 @@ def test_programs_with_ways_in_assembly(chip: str) -> None:
 @one_chip
 @each_emulated
 def test_images(chip: str) -> None:
-    cpp_images.check_images(emulated(chip), 0, 10_000)
-    cpp_images.check_whole_images(emulated(chip), 0, 300)
+    cpp_checks.check_images(emulated(chip), 0, 10_000)
+    cpp_checks.check_whole_images(emulated(chip), 0, 300)
 
 
 @one_chip
