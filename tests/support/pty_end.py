@@ -55,7 +55,7 @@ class PtyEnd(PtyPort):
         """Return the speed that the computer has set."""
         if not self.has_speed:
             return self.end.baud
-        return _SPEEDS.get(termios.tcgetattr(self._ours)[5], 0) or self.end.baud
+        return _SPEEDS.get(termios.tcgetattr(self.ours)[5], 0) or self.end.baud
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
         said = b""
@@ -72,9 +72,9 @@ class PtyEnd(PtyPort):
         next_s = time.monotonic()
         while not self._is_over:
             next_s = max(next_s + 0.001, time.monotonic() - BEHIND_S)
-            ready, _, _ = select.select([self._ours], [], [], 0)
+            ready, _, _ = select.select([self.ours], [], [], 0)
             if self.simulated is None:
-                said = self.pass_ms(1, os.read(self._ours, 4096) if ready else b"")
+                said = self.pass_ms(1, os.read(self.ours, 4096) if ready else b"")
                 if said:
-                    os.write(self._ours, said)
+                    os.write(self.ours, said)
             time.sleep(max(0.0, next_s - time.monotonic()))

@@ -74,7 +74,7 @@ class PtyRobot(PtyPort):
 
     def say(self, data: bytes) -> None:
         """Let something else than the robot write to the port."""
-        os.write(self._ours, data)
+        os.write(self.ours, data)
 
     def ask(self, what: Callable[[HostFirmware], object]) -> None:
         with self._lock:
@@ -166,7 +166,7 @@ class PtyRobot(PtyPort):
         last_s = time.monotonic()
         while not self._is_over:
             is_busy = self._there or self._back or self._flags
-            ready, _, _ = select.select([self._ours], [], [], (1 if is_busy else STRIDE_MS) / 1000)
+            ready, _, _ = select.select([self.ours], [], [], (1 if is_busy else STRIDE_MS) / 1000)
             passed_ms = int((time.monotonic() - last_s) * 1000)
             if self.simulated or not passed_ms:
                 time.sleep(0.001)
@@ -174,9 +174,9 @@ class PtyRobot(PtyPort):
                 continue
             last_s += passed_ms / 1000
             sent = self.pass_ms(min(passed_ms, BEHIND_MS) - 1)
-            sent += self.pass_ms(1, os.read(self._ours, 4096) if ready else b"")
+            sent += self.pass_ms(1, os.read(self.ours, 4096) if ready else b"")
             if sent:
-                os.write(self._ours, sent)
+                os.write(self.ours, sent)
 
 
 def on(pty_robot: PtyRobot, *arguments: str | Path, data: bytes = b"") -> Done:

@@ -27,7 +27,6 @@ class Pupil(PtyPort):
 
     def __init__(self, kit: Kit, number: int) -> None:
         super().__init__()
-        self.ours = self._ours
         self.number = number
         self.robot = HostFirmware(kit, EMPTY, seed=0x1000 + number)
         self.babble = b""  # what it says again and again, as fast as its port takes it

@@ -32,7 +32,7 @@ class PtyPort:
         import pty
         import tty
 
-        self._ours, self._theirs = pty.openpty()
+        self.ours, self._theirs = pty.openpty()
         tty.setraw(self._theirs)
         self.port = os.ttyname(self._theirs)
         self.simulated: SimulatedPort | None = None
@@ -54,7 +54,7 @@ class PtyPort:
         return bytes(noisy)
 
     def _close(self) -> None:
-        for end in (self._ours, self._theirs):
+        for end in (self.ours, self._theirs):
             os.close(end)
 
 
