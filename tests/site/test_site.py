@@ -17,6 +17,7 @@ from tests.machines.host import once
 from tests.support import studio
 from tests.support.casefile import ROOT
 from tests.support.platformio import shared
+from tests.support.rows import each_row
 from tools.builds import site
 from tools.builds import studio as studio_build
 from tools.site.documents import PARTS, documents
@@ -77,15 +78,14 @@ def visitor(browser: Browser, address: str) -> Iterator[Page]:
     assert wrong == []
 
 
-def test_every_document_is_on_the_site() -> None:
-    there = {source for each in documents(ROOT) for source in each.sources.values()}
+def test_every_document_is_on_the_site_and_in_a_part_of_it(built: Path) -> None:
+    found = documents(ROOT)
+    there = {source for each in found for source in each.sources.values()}
     paths = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"),
              *ROOT.glob("compiler/tiniscript/lessons/*/*.md")]  # fmt: skip
     assert {path.relative_to(ROOT).as_posix() for path in paths} == there
-
-
-def test_every_page_is_there(built: Path) -> None:
-    for each in documents(ROOT):
+    assert {each.part for each in found} == set(PARTS)
+    for each in found:
         for language in each.sources:
             assert (built / language / f"{each.name}.html").is_file()
 
@@ -175,37 +175,30 @@ def test_nothing_is_wider_than_a_phone(visitor: Page, address: str, part: int) -
     assert wide == []
 
 
-@pytest.mark.parametrize(
-    "size", [(1366, 768), (1024, 600)], ids=lambda size: f"{size[0]}x{size[1]}"
-)
-def test_nothing_is_wider_than_the_screen(
-    visitor: Page, address: str, size: tuple[int, int]
-) -> None:
-    visitor.set_viewport_size({"width": size[0], "height": size[1]})
+def test_nothing_is_wider_than_the_screen(visitor: Page, address: str) -> None:
     for name in ("en/index", "es/index", "en/guarantees", "en/wiring/tinibot", "es/language"):
         visitor.goto(f"{address}{name}.html")
-        assert not _is_too_wide(visitor), name
+        for width, height in ((1366, 768), (1024, 600)):
+            visitor.set_viewport_size({"width": width, "height": height})
+            assert not _is_too_wide(visitor), (name, width)
 
 
 def _is_too_wide(page: Page) -> bool:
     return bool(page.evaluate("document.documentElement.scrollWidth > window.innerWidth"))
 
 
-@pytest.mark.parametrize(
-    ("language", "word", "title"),
-    [
+def test_a_word_is_found(visitor: Page, address: str) -> None:
+    for language, word, title in (
         ("en", "heartbeat", "The link"),
         ("es", "obstáculos", "lenguaje"),
         ("en", "END_LOOP", "language"),
         ("en", "UNTIL", "Stop before the wall: UNTIL"),
         ("es", "SI", "lenguaje"),
-    ],
-)
-def test_a_word_is_found(visitor: Page, address: str, language: str, word: str, title: str) -> None:
-    visitor.goto(f"{address}{language}/index.html")
-    visitor.fill("input[name=q]", word)
-    visitor.press("input[name=q]", "Enter")
-    visitor.wait_for_selector(f"ul.search li a:has-text('{title}')")
+    ):
+        visitor.goto(f"{address}{language}/index.html")
+        visitor.fill("input[name=q]", word)
+        visitor.press("input[name=q]", "Enter")
+        visitor.wait_for_selector(f"ul.search li a:has-text('{title}')")
 
 
 def test_each_half_leads_to_the_other(visitor: Page, address: str) -> None:
@@ -218,7 +211,7 @@ def test_each_half_leads_to_the_other(visitor: Page, address: str) -> None:
     assert visitor.url == f"{address}es/index.html"
 
 
-@pytest.mark.parametrize("name", ["class", "index", "search", "lessons/01_first_line_pupil"])
+@each_row("name", ["class", "index", "search", "lessons/01_first_line_pupil"])
 def test_what_is_around_a_spanish_page_is_spanish(built: Path, name: str) -> None:
     english, spanish = (_around(built / each / f"{name}.html") for each in ("en", "es"))
     assert len(english) > 15
@@ -263,7 +256,3 @@ def test_a_sphinx_that_is_missing_is_said(
     monkeypatch.setattr(site, "find_spec", lambda name: None)
     assert site.main([str(tmp_path / "site"), "--no-studio"]) == 2
     assert 'pip install -e ".[site]"' in capsys.readouterr().err
-
-
-def test_every_part_of_a_half_has_documents() -> None:
-    assert {each.part for each in documents(ROOT)} == set(PARTS)

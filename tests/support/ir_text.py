@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from tiniscript.base.fixed_point import as_text
 from tiniscript.semantics.ir import Body, Expression, If, Loop, Move, Program, While, values_of
 
+SHOWN = ("direction", "unit", "sensor", "actuator", "variable", "procedure", "reads")
+
 
 def expression_text(expression: Expression) -> str:
     """Return `n5 v0 ADD`: an expression for people who debug the compiler."""
@@ -45,15 +47,7 @@ def _body_lines(body: Body, indent: str) -> Iterator[str]:
                 words.append("FOREVER")
             elif name in values:
                 words.append(expression_text(value))
-            elif name in (
-                "direction",
-                "unit",
-                "sensor",
-                "actuator",
-                "variable",
-                "procedure",
-                "reads",
-            ):
+            elif name in SHOWN:
                 words.append(str(value))
         yield indent + " ".join(words)
         if isinstance(statement, Move) and statement.until is not None:
