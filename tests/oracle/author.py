@@ -4,19 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tests.oracle.author_values import (
-    LONG,
-    MAX_CALLS,
-    MAX_DEFS,
-    MAX_NESTING,
-    MAX_STACK,
-    MAX_VARIABLES,
-    SMALL,
-    WIDE,
-    Tokens,
-    ValueAuthor,
-    plain,
-)
+from tests.oracle.author_values import LONG, SMALL, WIDE, Tokens, ValueAuthor, plain
+from tests.oracle.words import MAX_CALLS, MAX_DEFS, MAX_NESTING, MAX_STACK, MAX_VARIABLES
 
 
 class Author(ValueAuthor):

@@ -11,11 +11,6 @@ Tokens = list[str]
 
 VARIABLES = ("X", "Y", "Z", "COUNT", "SPEED", "D", "A1", "T_2", "NEAR", "FOUND", "I", "OLD__D_")
 PROCEDURES = ("TURN", "LOOK", "DANCE", "SQUARE", "P1", "GO_ON", "BACK_OFF", "TELL", "Q")
-MAX_VARIABLES = 32
-MAX_DEFS = 16
-MAX_NESTING = 16
-MAX_CALLS = 8
-MAX_STACK = 16
 
 TIMES = ("0", "0.02", "0.05", ".1", "0.25", "0.033", "0.5", "1", "1.5", "0.001", "2.0")
 SMALL = ("0", "1", "2", "3", "4", "5", "7", "10", "0.5", ".25", "1.5", "2.75", "0.1", "0.2", "0.3")

@@ -103,7 +103,7 @@ def test_codes_of_up_to_two_bytes() -> None:
     compare(bytes(each) for size in range(3) for each in product(range(256), repeat=size))
 
 
-@pytest.mark.sampled("seed", keep=2)
+@pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(4))
 def test_random_codes_break_every_rule(seed: int) -> None:
     broken = compare(random_codes(1000 + seed, 5000))

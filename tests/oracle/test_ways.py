@@ -48,7 +48,7 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
         assert machine.TOO_MANY in got or same(want, got), f"seed {seed}, the page:\n{text}"
     laid_out = formatted(Source(text))
     assert compile_text(laid_out, kit).image == both[0].image, f"seed {seed}"
-    return want.split(" ", 1)[1].split("\n")[-2].split(" ", 1)[1] if want.count("\n") > 1 else ""
+    return want.splitlines()[-1].split(" ", 1)[1]
 
 
 @pytest.mark.sampled("first")

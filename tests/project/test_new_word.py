@@ -15,6 +15,7 @@ from tests.oracle.interpreter import run as run_by_reference
 from tests.oracle.words import FIXED
 from tests.support.casefile import ROOT
 from tests.support.new_word import HORN, SAID, with_texts
+from tests.support.rows import each_row
 from tiniscript import compile_text, robots
 from tiniscript.base import languages
 from tiniscript.base.source import Source
@@ -51,8 +52,8 @@ def test_it_does_what_it_stands_for() -> None:
     assert str(tiniscript.run(PROGRAM)) == run_by_reference(PROGRAM)
 
 
-@pytest.mark.parametrize(
-    ("program", "code"),
+@each_row(
+    "program, code",
     [
         ("HORN = 5", codes.RESERVED),
         ("HORN(2)", codes.NO_BRACKETS_HERE),
@@ -79,7 +80,7 @@ def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
     assert HORN.text in [each["text"] for each in description()["words"]]
 
 
-@pytest.mark.parametrize("level", LEVELS.values(), ids=LEVELS.keys())
+@each_row("level", LEVELS.values())
 def test_a_robot_that_reads_text_gets_what_it_stands_for(level: Level) -> None:
     compiled = compile_text(PROGRAM, KIT)
     assert compiled.program is not None
@@ -145,8 +146,8 @@ def test_a_page_that_is_full_is_an_error(monkeypatch: pytest.MonkeyPatch) -> Non
         poster.page("en")
 
 
-@pytest.mark.parametrize(
-    ("document", "language", "says"),
+@each_row(
+    "document, language, says",
     [
         ("language.en.md", "en", "With fixed values"),
         ("lenguaje.es.md", "es", "Con valores fijos"),

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from fnmatch import fnmatch
 
-import pytest
-
 import tiniscript
 from tests.support.casefile import ROOT
+from tests.support.rows import each_row
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.messages import MAJOR, MINOR
 from tools.generate.__main__ import OUTPUTS
@@ -32,7 +31,7 @@ def marks() -> list[str]:
     return [row.split()[0] for row in rows if row.endswith("linguist-generated")]
 
 
-@pytest.mark.parametrize("pattern", marks())
+@each_row("pattern", marks())
 def test_a_mark_is_of_generated_files(pattern: str) -> None:
     names = [path.relative_to(ROOT).as_posix() for path, _ in OUTPUTS]
     assert any(fnmatch(name, pattern) for name in names), "nothing is generated there"

@@ -21,10 +21,9 @@ class FakeComputer(System):
         self.user_name = "somebody"
         self.asked: list[tuple[str, ...]] = []
 
-    def add_port(self, port: str, description: str = "", exists: bool = True) -> None:
+    def add_port(self, port: str, description: str = "") -> None:
         self.listed.append(Found(port, description))
-        if exists:
-            self.owners.setdefault(port, (20, True))
+        self.owners.setdefault(port, (20, True))
 
     def write(self, path: str, text: str) -> None:
         file = self.root / path.lstrip("/")

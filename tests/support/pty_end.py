@@ -26,10 +26,9 @@ BEHIND_S = 1.0  # more than that behind, its clock goes slower
 
 
 class PtyEnd(PtyPort):
-    def __init__(self, end: OtherEnd, has_speed: bool = True) -> None:
+    def __init__(self, end: OtherEnd) -> None:
         super().__init__()
         self.end = end
-        self.has_speed = has_speed
         self._in_here = ExitStack()
         self._is_over = False
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -53,8 +52,6 @@ class PtyEnd(PtyPort):
 
     def _baud(self) -> int:
         """Return the speed that the computer has set."""
-        if not self.has_speed:
-            return self.end.baud
         return _SPEEDS.get(termios.tcgetattr(self.ours)[5], 0) or self.end.baud
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
