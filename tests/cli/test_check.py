@@ -168,7 +168,7 @@ def test_a_file_keeps_its_line_ends_and_its_mark(folder: Path, tsc: Tsc) -> None
         last = end if has_last else ""
         text = f"SI|F(2 80) // ñandú{end}{end}\tR(1,5, 60){last}"
         (folder / "b.ts").write_bytes(bom + text.encode())
-        assert tsc("check", "--fix", "b.ts").code == 0
+        assert tsc("check", "--fix", "b.ts").code == 0, (end, bom, last)
         right = f"SI|F(2, 80) // ñandú{end}{end}\tR(1.5, 60){last}"
         assert (folder / "b.ts").read_bytes() == bom + right.encode()
 

@@ -133,7 +133,7 @@ def test_who_has_no_key_sees_and_stops(
     as_another(monkeypatch, tmp_path)
     for data in (b"wrong\n", b"\n", b""):
         done = process("class", *room.access, data=data)
-        assert done.code in (2, 3) and done.out == "" and "assword" in done.err
+        assert done.code in (2, 3) and done.out == "" and "assword" in done.err, data
     done = process("class", *room.place)
     assert done.code == 3 and "does not let this computer in" in done.err
     assert "no deja entrar" in process("class", *room.place, "--lang", "es").err

@@ -217,7 +217,7 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
     for text in ("SI|F(2, 80)\n", report.MARK + " of mine\n", "x" * 100_000):
         file.write_text(text, encoding="utf-8")
         done = tsc("doctor", "--port", "/dev/not-there", "--report", file)
-        assert done.code == 2
+        assert done.code == 2, text[:50]
         assert "tsc has not made it" in done.err
         assert file.read_text(encoding="utf-8") == text
     for place in (tmp_path, tmp_path / "no" / "report.txt", Path("/dev/full")):

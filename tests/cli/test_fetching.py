@@ -198,7 +198,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
         started.append(person)
         person.sees("[y/N]")
         person.types(answer)
-        assert person.ended() == 2
+        assert person.ended() == 2, answer
         assert "nothing was downloaded" in person.seen and not clone.page.exists()
     person = Person(clone, clone.studio(*words))
     started.append(person)

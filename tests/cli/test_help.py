@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shlex
 import shutil
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import PROGRAM, Tsc, inside
 from tests.support.rows import each_row
+from tests.support.terminal import Terminal
 from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tests.support.verbs import parsers
@@ -30,9 +29,6 @@ from tiniscript.robots.ports import AVRS
 from tiniscript.virtual import worlds
 from tools.generate.command_pages import DOCUMENTED
 from tools.site.documents import name_in
-
-if TYPE_CHECKING:
-    from tests.support.shell import Shell
 
 PARSERS = parsers()
 FLAG = r"(?<![\w-])--?[a-zA-Z][a-z0-9-]*"
@@ -234,17 +230,15 @@ def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) 
 # -- a page at a time -----------------------------------------------------------------------------
 
 
-def on_terminal(rows: int, words: str, **environ: str) -> Shell:
-    from tests.support.shell import Shell
-
-    hidden = ("PAGER", "LESS", "COLUMNS", "LINES")
-    plain = {name: value for name, value in os.environ.items() if name not in hidden}
-    command = [sys.executable, "-m", "tiniscript", *shlex.split(words)]
-    return Shell(command, {**plain, "TERM": "xterm", **environ}, rows)
+@pytest.fixture(autouse=True)
+def no_pager(monkeypatch: pytest.MonkeyPatch) -> None:
+    """None that the person who runs this has chosen."""
+    for name in ("PAGER", "LESS"):
+        monkeypatch.delenv(name, raising=False)
 
 
-def printed(said: str) -> str:
-    return said.replace("\r\n", "\n")
+def on_terminal(words: str, **environ: str) -> Terminal:
+    return Terminal(*words.split(), size=(80, 12), env=environ)
 
 
 @pytest.mark.skipif(not shutil.which("less"), reason="there is no less")
@@ -253,13 +247,14 @@ def printed(said: str) -> str:
 )
 def test_long_help_is_shown_a_page_at_a_time(language: str, keys: str) -> None:
     assert keys.isascii()  # less spoils other letters there
-    shell = on_terminal(12, f"help upload --lang {language}")
-    first = shell.until(f"{keys}$")
-    assert "tsc upload" in first and "--seed" not in first
-    shell.type("G")
-    shell.until(r"--seed N(.|\n)*-h, --help")
-    shell.type("q")
-    assert shell.end() == 0
+    terminal = on_terminal(f"help upload --lang {language}")
+    terminal.until(f"{keys}$")
+    assert b"tsc upload" in terminal.written and b"--seed" not in terminal.written
+    terminal.type("G")
+    terminal.until("-h, --help")
+    assert b"--seed N" in terminal.written
+    terminal.type("q")
+    assert terminal.end() == 0
 
 
 @pytest.mark.parametrize(
@@ -277,7 +272,6 @@ def test_help_is_printed_where_there_is_no_pager(
     capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
     rows: int, environ: dict[str, str],
 ) -> None:  # fmt: skip
-    monkeypatch.delenv("PAGER", raising=False)
     for name, value in {"TERM": "xterm", "COLUMNS": "80", "LINES": str(rows), **environ}.items():
         monkeypatch.setenv(name, value)
     for stream in (sys.stdin, sys.stdout):
@@ -316,7 +310,7 @@ time.sleep(1000)
 
 
 @pytest.mark.parametrize(
-    ("how", "said"), [("dies", ""), ("waits", "caught\nleft\n")], ids=["dies", "waits"]
+    ("how", "said"), [("dies", ""), ("waits", "caught\r\nleft\r\n")], ids=["dies", "waits"]
 )
 def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
     tmp_path: Path, how: str, said: str
@@ -324,11 +318,12 @@ def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
     """`less` goes on after Ctrl-C, `more` ends. A shell between would miss a signal sometimes."""
     (tmp_path / "pager.py").write_text(PAGER)
     words = shlex.join([sys.executable, str(tmp_path / "pager.py"), how])
-    shell = on_terminal(12, "help upload --lang en", PAGER=f"exec {words}")
-    shell.until("begun\r\n")
-    shell.type("\x03")
-    assert shell.end() == 0
-    assert printed(shell.written).replace("^C", "") == said
+    terminal = on_terminal("help upload --lang en", PAGER=f"exec {words}")
+    terminal.until("begun")
+    terminal.type("\x03")
+    assert terminal.end() == 0
+    behind = terminal.written.decode().partition("begun\r\n")[2]
+    assert behind.replace("^C", "") == said
 
 
 @each_row("words, english, spanish", [

@@ -178,7 +178,7 @@ def test_what_a_comparison_does_not_take_is_refused(tsc: Tsc, tmp_path: Path) ->
     ):  # fmt: skip
         for language, said in (("en", "does not go with --replay"), ("es", "no va con --replay")):
             done = tsc("run", "-e", TEXT, "--replay", file, *words, "--lang", language)
-            assert (done.code, done.out) == (2, "")
+            assert (done.code, done.out) == (2, ""), words
             assert f"{words[0]} {said}" in done.err
 
 

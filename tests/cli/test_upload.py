@@ -64,7 +64,7 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
         assert (done.code, pty_robot.did) == (0, [])
         assert "in RAM only   SI: waits" in done.out
         assert on(pty_robot, "fetch", "-o", theirs).code == 0
-        assert theirs.read_bytes() == ours.read_bytes()
+        assert theirs.read_bytes() == ours.read_bytes(), damages
         fields = json.loads(on(pty_robot, "info", "--json").out)
         assert bool(fields["damaged"]) == bool(damages)
     listing = on(pty_robot, "fetch").out
@@ -175,13 +175,13 @@ def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: 
     naming, trimming = ("name", "ANA"), ("trim", "--balance", "5")
     for words in (naming, trimming):
         done = on(pty_robot, *words)
-        assert done.code == 3 and not done.out
+        assert done.code == 3 and not done.out, words
         assert "keeps it as soon as its motors have stopped" in done.err
     assert "lo guarda en" in on(pty_robot, *naming, "--lang", "es").err
     assert pty_robot.moves, "nothing has stopped it"
     interrupted(command)
     for words in (naming, trimming):
-        assert on(pty_robot, *words).code == 0
+        assert on(pty_robot, *words).code == 0, words
     pty_robot.switch_off()
     pty_robot.switch_on()
     assert json.loads(on(pty_robot, "info", "--json").out)["name"] == "ANA"
