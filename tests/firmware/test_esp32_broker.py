@@ -247,6 +247,11 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
     stranger.publish(f"{ROOT}/aula/stop", bytes(3))
     talk(robot, ends, 200)
     assert motors(robot) == "MOTORS 80 80", "none of these is a stop"
+    for length in (513, 20_000):
+        stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(length))
+    talk(robot, ends, 500)
+    assert motors(robot) == "MOTORS 80 80", "nor is what is too long, which is skipped"
+    assert ended(robot, ends, owner.ping()) == "OK"
     stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(STOP_BYTES))
     talk(robot, ends, 100)
     assert motors(robot) == "MOTORS 0 0"
@@ -415,13 +420,3 @@ def test_what_strangers_say_of_robots_is_bounded(broker: Mosquitto) -> None:
     for topic in topics:
         stranger._client.publish(topic, b"", retain=True)
     in_time(lambda: teacher.present("many") == [], "they are forgotten")
-
-
-def test_a_message_that_is_too_long_is_skipped(broker: Mosquitto) -> None:
-    robot, _, owner, ends = driving(broker)
-    stranger = broker.connected()
-    for length in (513, 20_000):
-        stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(length))
-    talk(robot, ends, 500)
-    assert motors(robot) == "MOTORS 80 80", "neither has it stopped, nor is the run over"
-    assert ended(robot, ends, owner.ping()) == "OK"

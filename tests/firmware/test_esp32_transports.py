@@ -230,18 +230,13 @@ def test_what_a_congested_stack_does_not_take_comes_later() -> None:
         talk(robot, ends, 3)
     frame = decoded(once.heard.strip(b"\0"))
     assert frame and len(end.lengths) == 2, "whole, and never asked for again"
-
-
-def test_what_waits_for_one_client_is_not_told_to_the_next_one() -> None:
-    robot = booted()
-    first = LowEnergy(robot)
     robot.radio("k", b"\1")
-    talk(robot, [(first, session(1, robot))], 40)
-    first.leave()
+    talk(robot, [(end, session(1, robot))], 40)
+    end.leave()
     second = LowEnergy(robot)
     robot.radio("k", b"\0")
     talk(robot, [(second, Bytes())], 100)
-    assert not second.lengths
+    assert not second.lengths, "what waits for one client is not told to the next one"
 
 
 def test_a_client_that_takes_nothing_stops_nobody() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from typing import Any
 
 import pytest
 
@@ -22,6 +23,7 @@ from tests.support.esp32_radio import (
 from tests.support.owners import Keys
 from tiniscript.link import wifi
 from tiniscript.link.authority import RobotKey
+from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, WIFI_RESTS, written
 from tiniscript.link.payloads import WifiReply
@@ -121,24 +123,34 @@ def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
     assert radios(third).joins == 0
 
 
+def overheard(
+    robot: Esp32Robot, end: LowEnergy | None, who: Session, request: PendingRequest[Any]
+) -> tuple[bytes, bytes]:
+    """Let somebody talk until a request is over; return all bytes to the robot, and those back."""
+    there = back = b""
+    while request.outcome is None:
+        data = who.poll(robot.now_ms)
+        there += data
+        if end is None:
+            said = robot.step(data)
+        else:
+            end.send(data)
+            robot.step()
+            said = end.taken()
+        back += said
+        who.receive(said, robot.now_ms)
+    return there, back
+
+
 def test_the_password_is_not_readable_on_the_line() -> None:
     """Not the password: who listens to Bluetooth LE hears all bytes. The replies have the name."""
     keys = Keys()
     robot, _ = owned(keys)
     talk(robot, [], 2500)
     over = remote(robot, keys)
-    end = LowEnergy(robot)
-    there = back = b""
     request = over.join(SCHOOL)
-    while request.outcome is None:
-        data = over.poll(robot.now_ms)
-        there += data
-        end.send(data)
-        robot.step()
-        said = end.taken()
-        back += said
-        over.receive(said, robot.now_ms)
-    assert request.outcome.status == 0
+    there, back = overheard(robot, LowEnergy(robot), over, request)
+    assert request.outcome and request.outcome.status == 0
     assert radios(robot).password.encode() == SCHOOL.password
     for text, heard in ((SCHOOL.name, there), (SCHOOL.password, there + back)):
         assert all(text[k : k + 4] not in heard for k in range(len(text) - 3))
@@ -147,16 +159,12 @@ def test_the_password_is_not_readable_on_the_line() -> None:
 def test_a_robot_without_an_owner_takes_none() -> None:
     robot = booted()
     client = session(1, robot)
-    ends: Ends = [(None, client)]
-    there = b""
     for request in (client.join(SCHOOL), client.forget_wifi(), client.wifi()):
-        while request.outcome is None:
-            data = client.poll(robot.now_ms)
-            there += data
-            client.receive(robot.step(data), robot.now_ms)
-        assert request.outcome.status != 0
-    assert radios(robot).joins == 0 and SCHOOL.password[:8] not in there
-    assert ended(robot, ends, client.ping()) == "OK"
+        there, _ = overheard(robot, None, client, request)
+        assert request.outcome and request.outcome.status != 0
+        assert SCHOOL.password[:8] not in there
+    assert radios(robot).joins == 0
+    assert ended(robot, [(None, client)], client.ping()) == "OK"
 
 
 def test_a_stranger_takes_none_away() -> None:

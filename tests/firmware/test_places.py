@@ -88,21 +88,23 @@ def told(events: list[Event]) -> list[PlaceEvent]:
     return [each for each in events if isinstance(each, PlaceEvent)]
 
 
-def test_a_session_that_wants_it_hears_each_place_once() -> None:
-    robot, session = switched_on(), listener()
+def test_a_session_that_wants_it_hears_each_place_of_each_run_once() -> None:
+    robot, session = switched_on(), computer()
     image = image_of(DRIVE)
     assert robot.until(session, session.upload(image, saves=False)) == OK
+    assert told(heard(robot, session, 3000)) == [], "it has not asked"
+    session.tells_places = True
+    assert robot.until(session, session.start()) == OK
     events = heard(robot, session, 3000)
     found = told(events)
     assert [each.at for each in found] == sorted({each.at for each in found})
-    assert len(found) == 3 and all(each[:2] == (1, image.checksum) for each in found)
+    assert len(found) == 3 and all(each[:2] == (2, image.checksum) for each in found)
     assert [each.name for each in events].count("DONE") == 1
-
-
-def test_who_has_not_asked_hears_of_no_place() -> None:
-    robot, session = switched_on(), computer()
-    assert robot.until(session, session.upload(image_of(DRIVE), saves=False)) == OK
-    assert told(heard(robot, session, 1000)) == []
+    for run in (3, 4):
+        assert robot.until(session, session.start()) == OK
+        assert told(heard(robot, session, 500))[0].run == run
+        session.stop(robot.now_ms)
+        assert told(heard(robot, session, 1500)) == [], "after a stop there is none"
 
 
 def test_what_the_button_starts_and_a_line_have_places_too() -> None:
@@ -115,17 +117,6 @@ def test_what_the_button_starts_and_a_line_have_places_too() -> None:
     line = image_of("SI|L(3, 20)")
     assert robot.until(session, session.live(line.code)) == OK
     assert told(heard(robot, session, 500))[0].program == line.checksum
-
-
-def test_after_a_stop_there_is_no_place_and_the_next_run_has_its_own() -> None:
-    robot, session = switched_on(), listener()
-    image = image_of(DRIVE)
-    assert robot.until(session, session.upload(image, saves=False)) == OK
-    assert told(heard(robot, session, 500))
-    session.stop(robot.now_ms)
-    assert told(heard(robot, session, 1500)) == []
-    assert robot.until(session, session.start()) == OK
-    assert told(heard(robot, session, 500))[0].run == 2
 
 
 def test_a_sealed_session_hears_places_sealed() -> None:

@@ -156,6 +156,12 @@ def begun(state: str) -> Table:
     return table
 
 
+def after_power_off(table: Table) -> HostFirmware:
+    again = HostFirmware(KIT, table.robot.memory())
+    again.wait(100)
+    return again
+
+
 @pytest.mark.parametrize(("state", "way"), PAIRS)
 def test_a_stop_in_every_state(state: str, way: str) -> None:
     table = begun(state)
@@ -169,24 +175,17 @@ def test_a_stop_in_every_state(state: str, way: str) -> None:
     table.talk(1500)
     later = [line for line in happened(robot)[before:] if line.startswith("MOTORS")]
     assert set(later) <= {"MOTORS 0 0"}, "nothing begins by itself"
+    if state == "saves its program":
+        again = after_power_off(table)
+        again.push()
+        again.wait(50)
+        assert happened(again)[-1] == f"MOTORS {table.program} {table.program}"
     robot.push()
     table.talk(50)
     if table.program:
         assert happened(robot)[-1] == f"MOTORS {table.program} {table.program}"
     else:
         assert robot.is_latched
-
-
-@pytest.mark.parametrize("way", WAYS)
-def test_a_program_that_is_being_saved_is_saved_all_the_same(way: str) -> None:
-    table = begun("saves its program")
-    WAYS[way](table.robot)
-    table.robot.wait(1500)
-    later = HostFirmware(KIT, table.robot.memory())
-    later.wait(100)
-    later.push()
-    later.wait(50)
-    assert happened(later)[-1] == f"MOTORS {table.program} {table.program}"
 
 
 @pytest.mark.parametrize("after_ms", [0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89])
@@ -198,8 +197,7 @@ def test_a_stop_at_any_time_of_a_save(state: Callable[[Table], None], after_ms: 
     table.robot.step(ZEROS)
     assert table.robot.is_latched
     table.robot.wait(1500)
-    later = HostFirmware(KIT, table.robot.memory())
-    later.wait(100)
+    later = after_power_off(table)
     session = computer(7)
     if state is keeps_trim:
         request = session.trim()

@@ -175,29 +175,13 @@ def low_for(uno: Uno, ms: float) -> None:
 
 
 def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: Uno) -> None:
+    """Not a glitch, neither one alone nor one after the other: high or low for 50 ms counts."""
     uno.drive("radio", True)
     wired = computer(uno)
     send(wired, AWAY)
     low_for(uno, 49)
     wired.run(150)
     assert states(uno) == FORWARD
-    left = uno.cycle + CYCLES_PER_MS
-    low_for(uno, 51)
-    wired.run(100)
-    assert states(uno) == OFF
-    off = max(uno.pins[name].cycle for name in MOTORS)
-    assert 49.5 * CYCLES_PER_MS <= off - left < 53 * CYCLES_PER_MS
-    wired.run(300)
-    stops = [event.cause for event in wired.session.events() if event.name == "STOPPED"]
-    assert stops == [CABLE]
-    assert states(uno) == OFF
-
-
-def test_a_glitch_of_the_radio_ends_nothing(uno: Uno) -> None:
-    """Neither one alone nor one after the other: high or low for 50 ms is what counts."""
-    uno.drive("radio", True)
-    wired = computer(uno)
-    send(wired, AWAY)
     for pause_ms in (1, 5, 30, 49, 60):
         for _ in range(4):
             low_for(uno, 0.3)
@@ -210,6 +194,18 @@ def test_a_glitch_of_the_radio_ends_nothing(uno: Uno) -> None:
     uno.drive("radio", False)
     wired.run(40)
     assert states(uno) == FORWARD
+    uno.drive("radio", True)
+    wired.run(60)
+    left = uno.cycle + CYCLES_PER_MS
+    low_for(uno, 51)
+    wired.run(100)
+    assert states(uno) == OFF
+    off = max(uno.pins[name].cycle for name in MOTORS)
+    assert 49.5 * CYCLES_PER_MS <= off - left < 53 * CYCLES_PER_MS
+    wired.run(300)
+    stops = [event.cause for event in wired.session.events() if event.name == "STOPPED"]
+    assert stops == [CABLE]
+    assert states(uno) == OFF
 
 
 def test_a_radio_that_is_not_there_ends_nothing(uno: Uno) -> None:
