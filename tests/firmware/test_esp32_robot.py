@@ -113,7 +113,9 @@ def shown(robot: Esp32Robot, text: str) -> list[int]:
 @pytest.mark.sampled("name", "major", draw="ESP32s", keep=2)
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("name", KITS)
-def test_a_program_drives(name: str, major: int) -> None:
+def test_a_program_drives_and_sounds_and_a_panic_turns_the_motors_off(
+    name: str, major: int
+) -> None:
     robot = switched_on(Esp32Robot(robots.load(name), major=major))
     session = computer()
     send(robot, session, "SI|F(1, 80);B(0.5, 100)")
@@ -122,6 +124,22 @@ def test_a_program_drives(name: str, major: int) -> None:
     first, second = (int(line.split()[0]) for line in robot.did[:2])
     assert second - first == 1000
     assert [event.name for event in session.events()] == ["DONE"]
+    for hertz in (31, 37, 76, 880, 999, 1000, 20000):
+        robot.did.clear()
+        send(robot, session, f"SI|BEEP(0.2, {hertz});F(1, 50)")
+        robot.talk(session, 100)
+        assert f"TONE {hertz}" in happened(robot)
+        assert robot.output(robot.robot.board.buzzer) in (127, 128), hertz
+        robot.talk(session, 200)
+        assert happened(robot)[-1] == "TONE 0"
+        assert robot.output(robot.robot.board.buzzer) == 0, hertz
+    send(robot, session, AWAY)
+    robot.wait(50)
+    assert happened(robot)[-1] == "MOTORS 80 80"
+    robot.stick_ledc()
+    robot.panic()  # before it prints or dumps anything, by registers alone
+    pins = robot.robot.board.motors.pins.values()
+    assert [robot.output(pin) for pin in pins] == [0] * len(pins)
 
 
 def test_a_window_of_large_frames_waits_for_a_main_loop_that_writes() -> None:
@@ -207,21 +225,6 @@ def test_other_motors(motors: str) -> None:
         assert robot.output(25) == robot.output(26) == 0
 
 
-@pytest.mark.sampled("name", "major", draw="ESP32s", keep=2)
-@pytest.mark.parametrize("major", [2, 3])
-@pytest.mark.parametrize("name", KITS)
-def test_a_panic_turns_the_motors_off_first(name: str, major: int) -> None:
-    """Before it prints or dumps anything, by registers alone."""
-    robot = switched_on(Esp32Robot(robots.load(name), major=major))
-    send(robot, computer(), AWAY)
-    robot.wait(50)
-    assert happened(robot) == ["MOTORS 80 80"]
-    robot.stick_ledc()
-    robot.panic()
-    pins = robot.robot.board.motors.pins.values()
-    assert [robot.output(pin) for pin in pins] == [0] * len(pins)
-
-
 def test_actuators_and_what_a_stop_makes_of_them() -> None:
     robot = wired(TWO_WIRE)
     assert (robot.output(13), robot.output(16), robot.output(17)) == (0, 0, 255)
@@ -261,23 +264,6 @@ def test_an_echo_that_comes_while_a_page_is_erased_is_asked_for_again() -> None:
     shown = [event.value for event in session.events() if event.name == "SHOW"]
     assert len(shown) > 10
     assert all(49_000 < each < 51_000 for each in shown), shown
-
-
-@pytest.mark.sampled("name", "major", draw="ESP32s", keep=2)
-@pytest.mark.parametrize("major", [2, 3])
-@pytest.mark.parametrize("name", KITS)
-def test_every_tone_that_a_program_may_ask_for(name: str, major: int) -> None:
-    robot = switched_on(Esp32Robot(robots.load(name), major=major))
-    session = computer()
-    for hertz in (31, 37, 76, 880, 999, 1000, 20000):
-        robot.did.clear()
-        send(robot, session, f"SI|BEEP(0.2, {hertz});F(1, 50)")
-        robot.talk(session, 100)
-        assert f"TONE {hertz}" in happened(robot)
-        assert robot.output(robot.robot.board.buzzer) in (127, 128), hertz
-        robot.talk(session, 200)
-        assert happened(robot)[-1] == "TONE 0"
-        assert robot.output(robot.robot.board.buzzer) == 0, hertz
 
 
 def test_nvs_is_written_only_while_the_motors_stand() -> None:

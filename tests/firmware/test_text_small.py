@@ -23,7 +23,6 @@ from tests.firmware.test_text import (
     LINE,
     SAVED_BACK,
     SAVED_MEMORY,
-    done_after,
     fetched,
     holding,
     read_back,
@@ -92,45 +91,23 @@ def test_sb_keeps_the_button_until_the_next_line() -> None:
 
 
 def test_a_new_line_ends_what_runs_when_its_first_instruction_has_been_read() -> None:
-    robot = switched_on()
-    typed(robot, "SI|F(30,50)\n", 300)
+    """Or when that needs the room of what runs."""
+    robot, session = holding()
+    send(robot, session, "SI|F(30, 60)", saves=False, is_detached=True)
+    robot.wait(4000)
     typed(robot, "SI|R(0.2, 40)")
-    assert happened(robot) == ["MOTORS 50 50"]
+    assert happened(robot)[-1] == "MOTORS 60 60"
     typed(robot, ";")
-    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
-    assert typed(robot, "\n", 400) == ["// OK", "// DONE"]
-    assert happened(robot)[2:] == ["MOTORS 40 -40", "MOTORS 0 0", "FINISHED"]
-
-
-def test_a_long_first_instruction_needs_its_room_before_its_end() -> None:
-    robot = switched_on()
+    assert happened(robot)[-2:] == ["MOTORS 60 60", "MOTORS 0 0"]
+    assert typed(robot, "\n", 400) == [LOST, "// DONE"]
+    assert happened(robot)[-3:] == ["MOTORS 40 -40", "MOTORS 0 0", "FINISHED"]
     typed(robot, "SI|F(30,50)\n", 300)
     typed(robot, "SI|X = " + "1.2345 + " * 12)
-    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert happened(robot)[-2:] == ["MOTORS 50 50", "MOTORS 0 0"]
     assert typed(robot, "0; SHOW(X)\n", 100) == ["// OK", "// 14.82", "// DONE"]
 
 
-def test_a_line_of_frames_that_runs_is_ended_by_the_next_line() -> None:
-    robot, session = holding()
-    send(robot, session, "SI|F(30, 60)", saves=False)
-    robot.wait(100)
-    typed(robot, "SI|F(0.2,50);")
-    assert happened(robot)[-2:] == ["MOTORS 60 60", "MOTORS 0 0"]
-
-
 # -- what comes in between ------------------------------------------------------------------------
-
-
-def test_the_button_while_a_block_is_open_starts_the_stored_program() -> None:
-    robot, _ = holding()
-    typed(robot, "SI|LOOP(3)\n F(0.1,50)\n", 1500)
-    robot.push()
-    robot.wait(400)
-    assert happened(robot) == SAVED_BACK
-    robot.did.clear()
-    typed(robot, "END_LOOP\n", 1500)
-    assert happened(robot) == []
-    assert done_after(robot, "SI|F(0.2,50)\n") == LINE
 
 
 def test_a_request_while_a_block_is_open_finds_the_stored_program() -> None:
@@ -179,27 +156,23 @@ def test_a_line_while_a_program_is_saved_says_so_also_after_a_stop() -> None:
 
 
 @pytest.mark.parametrize(
-    "line", ["S\n", "s;\r\n", " STOP ; \n", "stop\r"], ids=lambda line: repr(line)[1:-1]
-)
-def test_s_stops_what_tsc_live_runs(line: str) -> None:
+    ("line", "stops"),
+    [
+        ("S\n", True), ("s;\r\n", True), (" STOP ; \n", True), ("stop\r", True),
+        ("ST\n", False), ("STO;P(\n", False), ("SS\n", False), ("STOPP\n", False),
+        ("X\n", False), (";\n", False), ("F(1,50)\n", False),
+    ],
+    ids=lambda each: repr(each)[1:-1],
+)  # fmt: skip
+def test_s_alone_stops_what_tsc_live_runs(line: str, stops: bool) -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.live(image_of("SI|F(5, 60)").code)) == OK
     assert happened(robot) == ["MOTORS 60 60"]
     typed(robot, line, 0)
     for _ in range(300):
         robot.talk(session, 1)
-    assert happened(robot)[:2] == ["MOTORS 60 60", "MOTORS 0 0"]
-    assert status(robot, session).state == STATE_STOPPED
-
-
-@pytest.mark.parametrize("line", ["ST\n", "STO;P(\n", "SS\n", "STOPP\n", "X\n", ";\n", "F(1,50)\n"])
-def test_other_lines_leave_what_tsc_live_runs(line: str) -> None:
-    robot, session = switched_on(), computer()
-    assert robot.until(session, session.live(image_of("SI|F(5, 60)").code)) == OK
-    typed(robot, line, 0)
-    for _ in range(300):
-        robot.talk(session, 1)
-    assert happened(robot) == ["MOTORS 60 60"]
+    assert happened(robot)[:2] == ["MOTORS 60 60"] + ["MOTORS 0 0"] * stops
+    assert (status(robot, session).state == STATE_STOPPED) == stops
 
 
 def test_texts_and_frames_in_any_order() -> None:
