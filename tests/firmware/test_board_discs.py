@@ -1,15 +1,25 @@
-"""What an Uno and a Mega count of their discs' edges, on simulated chips: each, and no glitch."""
+"""What an Uno and a Mega count of their discs' edges, on simulated chips: each, and no glitch.
+
+And how far a tinibot2 goes whose wheels turn discs.
+"""
 
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
 from tests.machines.board import Board
+from tests.support.casefile import ROOT
+from tests.support.uno_with_discs import ENVIRONMENT, ROBOT, Driven
 from tests.wiring.test_wiring import with_discs
-from tiniscript import robots
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import unpack
+from tiniscript.link.requests import OK
 from tiniscript.robots.profile import Robot
+from tiniscript.virtual.wheels import Roughness
 
 BOARDS = ("uno", "mega")
 each_board = pytest.mark.parametrize("name", BOARDS)
@@ -100,3 +110,35 @@ def test_two_channels_count_back(name: str) -> None:
     board.ran(150)
     assert counts(board, 90) == (8, 0)
     assert counts(board, 145) == (3, 0)
+
+
+# -- how far a tinibot2 goes whose wheels turn discs ----------------------------------------------
+
+
+def test_it_goes_and_turns_as_far_as_was_said(sketches: Callable[[str], Path]) -> None:
+    robot = Driven(sketches(ENVIRONMENT), 1, (107.5, 92.5), Roughness(0.005))
+    with robot.uno:
+        assert robot.drive("F(30 CM, 60); R(90 DEG, 60)") == "DONE"
+        pose = robot.pose
+    assert abs(pose.x_cm - 30) <= 1.5 and abs(pose.y_cm) <= 2 and abs(pose.heading + 90) <= 6
+
+
+def test_a_nano_with_discs_has_tasks(sketches: Callable[[str], Path]) -> None:
+    """The reader of text has left room for them: it backs away from what comes near."""
+    robot = Driven(sketches("nano_tinibot2"), 1, (100, 100), Roughness())
+    pins = ROBOT.board.sensors[2].pins
+    eye = f"D{pins['trigger']}", f"D{pins['echo']}"
+    text = (ROOT / "examples" / "away.ts").read_text(encoding="utf-8")
+    with robot.uno:
+        robot.uno.sonar(*eye, 50)
+        assert robot.until(robot.session.hello()) == OK
+        image = unpack(compile_text(text, ROBOT.kit).image)
+        assert robot.until(robot.session.upload(image)) == OK
+        seen = []
+        for distance_cm, milliseconds in ((50, 500), (9, 300), (50, 500), (50, 500)):
+            robot.uno.sonar(*eye, distance_cm)
+            robot.run(milliseconds)
+            seen.append(
+                tuple((wheel.wanted > 0) - (wheel.wanted < 0) for wheel in robot.wheels.both)
+            )
+    assert seen == [(1, 1), (-1, -1), (1, -1), (1, 1)]

@@ -107,11 +107,28 @@ def in_memory(table: Table) -> None:
     table.is_ready(MEMORY, is_saved=False)
 
 
-def typed_one(table: Table) -> None:
-    table.is_ready(SAVED)
-    table.quiet()
-    typed(table.robot, f"SB|F(600, {TYPED})\n")
-    table.program = TYPED
+def types(text: str, power: int = SAVED) -> Callable[[Table], None]:
+    """Have a person type; `power` is that of the program which the button starts then."""
+
+    def enter(table: Table) -> None:
+        table.is_ready(SAVED)
+        table.quiet()
+        typed(table.robot, text)
+        table.program = power
+
+    return enter
+
+
+def runs(line: str, milliseconds: int = 0) -> Callable[[Table], None]:
+    """Have a computer send a live line, and go on."""
+
+    def enter(table: Table) -> None:
+        table.is_ready(SAVED)
+        request = table.session.live(image_of(line).code)
+        assert table.robot.until(table.session, request) == OK
+        table.talk(milliseconds)
+
+    return enter
 
 
 def runs_memory(table: Table) -> None:
@@ -125,34 +142,9 @@ def runs_saved(table: Table) -> None:
     assert table.robot.until(table.session, table.session.start()) == OK
 
 
-def runs_line(table: Table) -> None:
-    table.is_ready(SAVED)
-    request = table.session.live(image_of(f"SI|F(600, {LINE})").code)
-    assert table.robot.until(table.session, request) == OK
-
-
-def runs_text(table: Table) -> None:
-    table.is_ready(SAVED)
-    table.quiet()
-    typed(table.robot, f"SI|F(600, {TYPED})\n")
-
-
-def open_block(table: Table) -> None:
-    table.is_ready(SAVED)
-    table.quiet()
-    typed(table.robot, f"SI|LOOP(2)\nF(600, {TYPED})\n")
-
-
 def was_stopped(table: Table) -> None:
     table.is_ready(SAVED)
     table.session.stop(table.robot.now_ms)
-    table.talk(300)
-
-
-def has_fault(table: Table) -> None:
-    table.is_ready(SAVED)
-    request = table.session.live(image_of("SI|X = 0; SHOW(5 / X)").code)
-    assert table.robot.until(table.session, request) == OK
     table.talk(300)
 
 
@@ -213,14 +205,14 @@ STATES: dict[str, Callable[[Table], None]] = {
     "holds no program": empty,
     "holds a saved program": saved,
     "holds a program in memory only": in_memory,
-    "holds a program that was typed": typed_one,
+    "holds a program that was typed": types(f"SB|F(600, {TYPED})\n", TYPED),
     "runs a program in memory": runs_memory,
     "runs the saved program": runs_saved,
-    "runs a live line": runs_line,
-    "runs text": runs_text,
-    "has an open block of text": open_block,
+    "runs a live line": runs(f"SI|F(600, {LINE})"),
+    "runs text": types(f"SI|F(600, {TYPED})\n"),
+    "has an open block of text": types(f"SI|LOOP(2)\nF(600, {TYPED})\n"),
     "was stopped": was_stopped,
-    "has a fault": has_fault,
+    "has a fault": runs("SI|X = 0; SHOW(5 / X)", 300),
     "receives an upload": receives,
     "saves its program": saves,
     "brings the program before back": brings_back,
@@ -304,7 +296,7 @@ def test_the_button(state: str, press: str) -> None:
 def test_text_is_lost_by_a_start_alone(press: str, has_draft: bool) -> None:
     """A block that is open goes on after presses that start nothing."""
     table = Table(has_draft)
-    open_block(table)
+    STATES["has an open block of text"](table)
     played(table, press)
     answers = " ".join(typed(table.robot, "END_LOOP\n", 100))
     if SHORT in PRESSES[press][1]:

@@ -149,8 +149,7 @@ def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_p
     assert left == CORE | OF_VERSION[major] | {"setup", "loop"} & left
 
 
-@pytest.mark.parametrize("chip", sorted(ESP32S))
-def test_every_file_says_for_which_chip_it_is(chip: str) -> None:
+def test_every_file_says_for_which_chip_it_is() -> None:
     """The Arduino IDE compiles all files for any board: those of other families are empty."""
     for folder, condition in (("avr", "__AVR__"), ("esp32", "ARDUINO_ARCH_ESP32")):
         for path in (BOARD / folder).glob("*.cpp"):

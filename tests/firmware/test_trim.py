@@ -57,11 +57,6 @@ def test_every_level_of_every_trim(robot: HostFirmware) -> None:
         assert robot.levels(trim_of(wheels, balance, least)) == ours, (wheels, balance, least)
 
 
-def test_every_wiring(robot: HostFirmware) -> None:
-    for wheels in range(8):
-        assert robot.levels(trim_of(wheels, 10, 5))[1] == levels(wheels, 10, 5)
-
-
 def test_what_is_beyond_its_numbers_is_not_sound(robot: HostFirmware) -> None:
     for balance in range(-128, 128):
         assert robot.levels(trim_of(0, balance, 0))[0] == (abs(balance) <= MOST), balance
