@@ -49,7 +49,7 @@ def meant(program: str) -> Candidate | None:
 
 
 class Answer(NamedTuple):
-    """`code` is the first mistake that today's messages name; `seconds` the search took."""
+    """`code` is the first mistake that today's messages name."""
 
     entry: Entry
     mark: str

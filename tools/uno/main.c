@@ -14,6 +14,7 @@
 //       --no-sleep        say nothing of sleeping
 
 #define _GNU_SOURCE
+#include <getopt.h>
 #include <poll.h>
 #include <signal.h>
 #include <simavr/sim_elf.h>
@@ -235,42 +236,34 @@ static void load(const char* firmware, const char* bootloader) {
 }
 
 int main(int count, char** words) {
-  const char *firmware = NULL, *eeprom = NULL, *bootloader = NULL;
-  bool resets_on_open = false, watches_stack = false, watches_masked = false;
+  const char *eeprom = NULL, *bootloader = NULL;
+  int resets_on_open = false, watches_stack = false, watches_masked = false, is_silent = false;
   int baud = 115200;
-  for (int k = 1; k < count; k++) {
-    const char* word = words[k];
-    const char* value = k + 1 < count ? words[k + 1] : NULL;
-    bool takes_value = value != NULL;
-    if (value && strcmp(word, "--run") == 0) {
+  const struct option options[] = {
+      {"run", required_argument, NULL, 'r'},
+      {"baud", required_argument, NULL, 's'},
+      {"eeprom", required_argument, NULL, 'e'},
+      {"board", required_argument, NULL, 'b'},
+      {"bootloader", required_argument, NULL, 'l'},
+      {"reset-on-open", no_argument, &resets_on_open, true},
+      {"watch-stack", no_argument, &watches_stack, true},
+      {"watch-masked", no_argument, &watches_masked, true},
+      {"no-sleep", no_argument, &is_silent, true},
+      {0},
+  };
+  for (int found; (found = getopt_long(count, words, "", options, NULL)) != -1;) {
+    if (found == 'r') {
       is_paused = false;
-      run_speed = atof(value);
-    } else if (value && strcmp(word, "--baud") == 0) {
-      baud = atoi(value);
-    } else if (value && strcmp(word, "--eeprom") == 0) {
-      eeprom = value;
-    } else if (value && strcmp(word, "--board") == 0) {
-      if (!board_choose(value)) give_up("there is no board %s", value);
-    } else if (value && strcmp(word, "--bootloader") == 0) {
-      bootloader = value;
-    } else {
-      takes_value = false;
-      if (strcmp(word, "--reset-on-open") == 0) {
-        resets_on_open = true;
-      } else if (strcmp(word, "--watch-stack") == 0) {
-        watches_stack = true;
-      } else if (strcmp(word, "--watch-masked") == 0) {
-        watches_masked = true;
-      } else if (strcmp(word, "--no-sleep") == 0) {
-        tells_sleep = false;
-      } else if (word[0] != '-' && !firmware) {
-        firmware = word;
-      } else {
-        give_up("what is %s?", word);
-      }
+      run_speed = atof(optarg);
     }
-    k += takes_value;
+    if (found == 's') baud = atoi(optarg);
+    if (found == 'e') eeprom = optarg;
+    if (found == 'b' && !board_choose(optarg)) give_up("there is no board %s", optarg);
+    if (found == 'l') bootloader = optarg;
+    if (found == '?') exit(2);
   }
+  tells_sleep = !is_silent;
+  const char* firmware = optind < count ? words[optind] : NULL;
   if (!firmware) give_up("which firmware?");
   if (baud <= 0) give_up("which baud?");
   // What libsimavr prints is no JSON.

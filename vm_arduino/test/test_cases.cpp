@@ -1,6 +1,7 @@
 // The robot does what `tsc run` prints, and what breaks a rule is refused with the rule and the
 // offset.
 
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest.h>
 
 #include "../extras/chip/runner.h"

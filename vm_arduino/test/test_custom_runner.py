@@ -1,4 +1,4 @@
-"""How PlatformIO runs the tests: it counts the lines PASS and FAIL that `test_main.cpp` prints.
+"""How PlatformIO runs the tests: it takes the counts of test cases that doctest ends with.
 
 A run that ends early, or in which no test case runs, is an error. PlatformIO's own runner for
 doctest counts what it finds in the printed assertions, and lets both pass.
@@ -13,8 +13,7 @@ from platformio.test.exception import UnitTestError, UnitTestSuiteError
 from platformio.test.result import TestCase, TestStatus
 from platformio.test.runners.base import TestRunnerBase
 
-CASE = re.compile(r"(PASS|FAIL) (.+)")
-END = "[doctest] Status:"
+END = re.compile(r"\[doctest\] test cases: .*\b(\d+) passed .*\b(\d+) failed")
 
 
 class CustomTestRunner(TestRunnerBase):  # type: ignore[misc] # PlatformIO has no types
@@ -26,16 +25,14 @@ class CustomTestRunner(TestRunnerBase):  # type: ignore[misc] # PlatformIO has n
             raise UnitTestSuiteError("these tests are for a computer: pio test -e native")
 
     def on_testing_line_output(self, line: str) -> None:
-        found = CASE.fullmatch(line.rstrip())
-        if found:
-            status = TestStatus.PASSED if found[1] == "PASS" else TestStatus.FAILED
-            case = TestCase(found[2], status, stdout=line)
-            self.test_suite.add_case(case)
-            click.echo(case.humanize())
-            return
         click.echo(line, nl=False)
-        if END in line:
+        if found := END.match(line):
             self.has_ended = True
+            for status, count in zip(
+                (TestStatus.PASSED, TestStatus.FAILED), found.groups(), strict=True
+            ):
+                for number in range(int(count)):
+                    self.test_suite.add_case(TestCase(f"{status.name} {number + 1}", status))
 
     def stage_testing(self) -> None:
         if self.options.without_testing:

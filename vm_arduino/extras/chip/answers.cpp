@@ -3,6 +3,7 @@
 #include "../../src/vm/image.h"
 #include "../../src/vm/number.h"
 #include "../../src/vm/verify.h"
+#include "runner.h"
 
 namespace tiniscript {
 
@@ -41,8 +42,7 @@ Fault result_of(Op op, int32_t a, int32_t b, int32_t* result) {
   return fault;
 }
 
-}  // namespace
-
+// Verdicts of the codes that the request ends with: the rule (1 byte) and the offset (2).
 void answer_verdicts(Request request, size_t end) {
   const uint8_t sensors = request.u8();
   const uint8_t actuators = request.u8();
@@ -56,6 +56,7 @@ void answer_verdicts(Request request, size_t end) {
   }
 }
 
+// What is wrong with the headers of images: the refusal (1 byte).
 void answer_images(Request request, size_t end) {
   while (request.place() < end) {
     const Bytes data = next_bytes(&request);
@@ -65,6 +66,8 @@ void answer_images(Request request, size_t end) {
   }
 }
 
+// Results of operations: the fault (1 byte) and the result (4), which is 0 where there is a fault.
+// Op::kEnd stands for `whole`.
 void answer_arithmetic(Request request, size_t end) {
   while (request.place() < end) {
     const Op op = static_cast<Op>(request.u8());
@@ -74,6 +77,27 @@ void answer_arithmetic(Request request, size_t end) {
     const Fault fault = result_of(op, a, b, &result);
     put_bytes(static_cast<uint8_t>(fault), 1);
     put_bytes(fault == Fault::kNone ? static_cast<uint32_t>(result) : 0, 4);
+  }
+}
+
+}  // namespace
+
+bool answer_any(Request request, size_t end) {
+  switch (request.u8()) {
+    case 'R':
+      answer_run(request);
+      return true;
+    case 'V':
+      answer_verdicts(request, end);
+      return true;
+    case 'I':
+      answer_images(request, end);
+      return true;
+    case 'A':
+      answer_arithmetic(request, end);
+      return true;
+    default:
+      return false;
   }
 }
 

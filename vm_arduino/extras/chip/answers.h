@@ -1,4 +1,4 @@
-// Answers about many codes, images or numbers at once: fields in a row, numbers little-endian.
+// Answers of every machine but the smallest: fields in a row, numbers little-endian.
 
 #ifndef TINISCRIPT_CHIP_ANSWERS_H_
 #define TINISCRIPT_CHIP_ANSWERS_H_
@@ -7,15 +7,10 @@
 
 namespace tiniscript {
 
-// Verdicts of the codes that the request ends with: the rule (1 byte) and the offset (2).
-void answer_verdicts(Request request, size_t end);
-
-// What is wrong with the headers of images: the refusal (1 byte).
-void answer_images(Request request, size_t end);
-
-// Results of operations: the fault (1 byte) and the result (4), which is 0 where there is a fault.
-// Op::kEnd stands for `whole`.
-void answer_arithmetic(Request request, size_t end);
+// Answers a request that begins with the letter of what it asks: R to run an image, or about many
+// at once: V for verdicts of codes, I for headers of images, A for arithmetic. False: it is another
+// one.
+bool answer_any(Request request, size_t end);
 
 }  // namespace tiniscript
 

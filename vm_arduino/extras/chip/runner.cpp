@@ -3,7 +3,6 @@
 #include "../../src/vm/image.h"
 #include "../../src/vm/verify.h"
 #include "../../src/vm/vm.h"
-#include "answers.h"
 #include "text.h"
 #include "traced_robot.h"
 
@@ -122,25 +121,6 @@ void answer_run(Request request, bool is_verified, uint32_t late_ms) {
   }
   const uint32_t steps = run(image, limits);
   end("RAN", machine.at(), steps);
-}
-
-bool answer_any(Request request, size_t request_end) {
-  switch (request.u8()) {
-    case 'R':
-      answer_run(request);
-      return true;
-    case 'V':
-      answer_verdicts(request, request_end);
-      return true;
-    case 'I':
-      answer_images(request, request_end);
-      return true;
-    case 'A':
-      answer_arithmetic(request, request_end);
-      return true;
-    default:
-      return false;
-  }
 }
 
 }  // namespace tiniscript

@@ -14,10 +14,6 @@ namespace tiniscript {
 // comes `late_ms` late.
 void answer_run(Request request, bool is_verified = true, uint32_t late_ms = 0);
 
-// Answers a request that begins with the letter of what it asks: R for `answer_run`, V, I and A for
-// those of `answers.h`. False: it is another one.
-bool answer_any(Request request, size_t request_end);
-
 }  // namespace tiniscript
 
 #endif  // TINISCRIPT_CHIP_RUNNER_H_

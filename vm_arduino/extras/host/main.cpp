@@ -1,7 +1,7 @@
 // Runs the machine on a computer, for tests: many requests to one process.
 //
 // A request is four bytes of length and a letter with what it asks; an answer is four bytes of
-// length and what was found. Requests are those of `../chip/runner.h`, and three more.
+// length and what was found. Requests are those of `../chip/answers.h`, and three more.
 // `tests/machines/host.py` is the other side. Ends with its input.
 
 #include <stdio.h>
@@ -12,6 +12,7 @@
 #include "../../src/vm/image.h"
 #include "../../src/vm/verify.h"
 #include "../../src/vm/vm.h"
+#include "../chip/answers.h"
 #include "../chip/runner.h"
 #include "../chip/traced_robot.h"
 #include "wire.h"

@@ -1,8 +1,8 @@
 // Runs the machine on an emulated chip, for tests: many requests to one emulator.
 //
-// Requests and answers are those of `../chip/runner.h`. Ends with its input.
+// Requests and answers are those of `../chip/answers.h`. Ends with its input.
 
-#include "../chip/runner.h"
+#include "../chip/answers.h"
 #include "host.h"
 #include "reading.h"
 
