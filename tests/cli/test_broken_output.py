@@ -186,6 +186,6 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
     monkeypatch.setattr("tiniscript.library.client.PATIENCE_MS", 600)
     for language, said in (("en", "still saving"), ("es", "está guardando")):
         for words in (["upload", "-e", PROGRAM], ["start"]):
-            done = on(pty_robot, *words, "--lang", language)
+            done = inside(*words, "--port", pty_robot.port, "--lang", language)
             assert done.code == 3
             assert said in done.err and "lost" not in done.err and "perdió" not in done.err
