@@ -14,7 +14,7 @@ from pathlib import Path
 from tests.machines.wired import Wired
 from tiniscript import robots
 from tools.bench.firmware_stack import connected, image_of, must, pin
-from tools.bench.workloads import Work, WrongResult, expected
+from tools.bench.workloads import Work, check
 from tools.uno import Uno
 
 ROBOT = robots.load(robots.DEFAULT)
@@ -47,8 +47,7 @@ def per_iteration(firmware: Path, work: Work) -> float:
         if work.readings:
             board.analog(SENSOR_PIN, work.readings[0])
         with_loop, shown = _cycles(wired, text_of(work))
-        if tuple(shown) != expected(work).shown:
-            raise WrongResult(f"the sketch, work {work.name}: {shown}, not {expected(work).shown}")
+        check("the sketch", work, shown)
         without, _ = _cycles(wired, text_of(work, has_loop=False))
         return (with_loop - without) / work.times
 

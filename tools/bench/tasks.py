@@ -89,7 +89,7 @@ def turns_cycles(tasks: int) -> int:
     """Return the cycles of the machine while each task goes so often around an empty loop."""
     text = f"TASK;LOOP({TURNS});END_LOOP;END_TASK;" * tasks + "W(1.2)"
     code = image_of(text, ROBOT.kit).code
-    return count(code, (), BUDGET, WITH_TASKS).cycles
+    return count(code, (), BUDGET, WITH_TASKS)[1]
 
 
 def jitter_ms(firmware: Path, others: int) -> float:

@@ -31,7 +31,6 @@ void run() {
 
   const uint32_t nothing = counter::begin();
   uint32_t total = 0;
-  uint32_t jumps = 0;  // back, and calls
   uint32_t longest = 0;
   uint32_t now_ms = 0;
   Status status;
@@ -40,13 +39,10 @@ void run() {
     status = machine.tick(now_ms, budget);
     const uint32_t cycles = counter::cycles() - nothing;
     total += cycles;
-    jumps += static_cast<uint8_t>(budget - machine.left());
     if (cycles > longest) longest = cycles;
     if (status == Status::kWaiting) now_ms++;
   } while (status < Status::kDone && longest < counter::kLongest);
   for (uint8_t k = 0; k < shows; k++) say("SHOW", shown[k]);
-  say("LONGEST", static_cast<int32_t>(longest));
-  say("JUMPS", static_cast<int32_t>(jumps));
   say("CYCLES", static_cast<int32_t>(total));
   say("STATUS", static_cast<uint8_t>(status));
 }
