@@ -70,7 +70,7 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     assert inside("upload", "-e", LONG, "--no-run", "--port", PLACE).code == 0
 
 
-def test_a_robot_out_of_reach_stops_and_the_command_says_so(
+def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
     ble: BleRobot, bluez: FakeBluez
 ) -> None:
     command = uploading(ble)
@@ -80,11 +80,6 @@ def test_a_robot_out_of_reach_stops_and_the_command_says_so(
     assert f"the Bluetooth connection to {PLACE} has ended" in done.err
     stops_by_itself(ble)
     assert inside("upload", "-e", DRIVE, "--port", NAME).code == 0
-
-
-def test_the_end_of_a_connection_is_heard_by_who_only_reads(
-    ble: BleRobot, bluez: FakeBluez
-) -> None:
     port = ports.opened(PLACE, 9600)
     assert port.read(1) == b""
     bluez.part(ble)
