@@ -151,15 +151,14 @@ def test_signs_without_a_code_become_plain_ones() -> None:
     assert encoded("línea ñ", "cp850") == "línea ñ"
 
 
-@pytest.mark.parametrize("encoding", ["cp1252", "cp850"])
-def test_a_wiring_list_goes_through_a_pipe_of_windows(encoding: str) -> None:
-    environment = {"PYTHONPATH": str(ROOT / "compiler"), "PYTHONIOENCODING": encoding}
+def test_a_wiring_list_goes_through_a_pipe_of_windows() -> None:
+    environment = {"PYTHONPATH": str(ROOT / "compiler"), "PYTHONIOENCODING": "cp850"}
     done = subprocess.run(
         [sys.executable, "-m", "tiniscript", "wiring", "--lang", "es"],
         capture_output=True, env=environment,
     )  # fmt: skip
     assert done.returncode == 0
-    said = done.stdout.decode(encoding)
+    said = done.stdout.decode("cp850")
     assert "kohm" in said
     assert "\\u" not in said
 
