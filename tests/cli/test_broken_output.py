@@ -22,7 +22,6 @@ from tiniscript.link.messages import STATUSES, STOP_RUN
 from tiniscript.link.payloads import SentReply
 from tiniscript.link.requests import Reply, reply_of
 
-KIT = robots.load("tinibot").kit
 SHOWS = "SI|LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP"
 
 
@@ -87,7 +86,7 @@ def test_what_goes_on_alone_goes_on(pty_robot: PtyRobot) -> None:
 
 def test_many_robots_are_stopped() -> None:
     """At once, and not only by themselves a second later."""
-    with RobotFleet([KIT] * 3) as room:
+    with RobotFleet([robots.load("tinibot").kit] * 3) as room:
         ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
         code, _ = after_lines(4, "upload", "-e", SHOWS, *ports)
         assert code == CLOSED

@@ -22,8 +22,6 @@ from tiniscript.diagnostics.codes import CODES
 
 BASH = shutil.which("bash") or ""
 ZSH = shutil.which("zsh") or ""
-needs_bash = pytest.mark.skipif(not BASH, reason="there is no bash")
-needs_zsh = pytest.mark.skipif(not ZSH, reason="there is no zsh")
 
 
 def offered(tsc: Tsc, *words: str) -> set[str]:
@@ -74,7 +72,7 @@ def words(tmp_path: Path) -> dict[str, str]:
     return {**os.environ, "PATH": path, "HOME": str(tmp_path), "TERM": "dumb", "PS1": "> "}
 
 
-@needs_bash
+@pytest.mark.skipif(not BASH, reason="there is no bash")
 def test_tab_in_bash(tmp_path: Path) -> None:
     (tmp_path / "my program.ts").write_text("S")
     (tmp_path / "rc").write_text(f'PS1="> "; cd {shlex.quote(str(tmp_path))}\n'
@@ -94,7 +92,7 @@ def test_tab_in_bash(tmp_path: Path) -> None:
     assert shell.end() == 0
 
 
-@needs_zsh
+@pytest.mark.skipif(not ZSH, reason="there is no zsh")
 def test_tab_in_zsh(tmp_path: Path) -> None:
     (tmp_path / ".zshrc").write_text(
         'PS1="> "; unsetopt zle_bracketed_paste; autoload -Uz compinit && compinit -u -D\n'

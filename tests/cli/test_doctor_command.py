@@ -191,13 +191,9 @@ def test_the_question_before_a_cable_is_opened(
 # -- the report ---------------------------------------------------------------------------------
 
 
-def words_of_this_computer() -> list[str]:
-    found = [getpass.getuser(), socket.gethostname(), str(Path.home()), str(Path.cwd())]
-    return [each for each in found if len(each) > 2]
-
-
 def test_a_report_has_the_findings_and_no_names(tsc: Tsc, tmp_path: Path) -> None:
     file = tmp_path / "report.txt"
+    own = (getpass.getuser(), socket.gethostname(), str(Path.home()), str(Path.cwd()))
     with PtyEnd(Firmware(name=b"ANA 6B", kit=0x1234)) as pty_end:
         done = tsc("doctor", "--port", pty_end.port, "--report", file)
         assert (done.code, str(file) in done.out) == (3, True)
@@ -205,7 +201,7 @@ def test_a_report_has_the_findings_and_no_names(tsc: Tsc, tmp_path: Path) -> Non
         assert text.startswith(report.MARK + "\n")
         assert "unknown_kit sure" in text and "next: Name its profile once" in text
         assert f"port: {pty_end.port}" in text
-        for word in ("ANA", "6B", "12347f3a", str(tmp_path), *words_of_this_computer()):
+        for word in ("ANA", "6B", "12347f3a", str(tmp_path), *(x for x in own if len(x) > 2)):
             assert not re.search(rf"\b{re.escape(word)}\b", text), word
         # one of its own it replaces
         tsc("doctor", "--port", "/dev/not-there", "--report", file)

@@ -237,12 +237,6 @@ def test_abandoned_files_of_the_cache_go(tsc: Tsc, tmp_path: Path) -> None:
     assert not empty.exists()
 
 
-def free_number() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
 def names() -> set[str]:
     return {each.name for each in registry._folder().iterdir()}
 
@@ -261,10 +255,11 @@ def test_a_lock_goes_with_its_command() -> None:
 
 def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
     """They are forgotten by the next command that looks."""
+    with socket.create_server(("127.0.0.1", 0)) as gone:
+        number = gone.getsockname()[1]
     code = (
         "from tiniscript.link.sharing import registry; lock = registry.claimed('socket://x:1');"
-        "registry.write(registry.Registration("
-        f"'socket://x:1', {free_number()}, 't', 'a', 'link', 1, 2));"
+        f"registry.write(registry.Registration('socket://x:1', {number}, 't', 'a', 'link', 1, 2));"
         "print('held', flush=True); input()"
     )
     command = Command(code=code)

@@ -24,7 +24,6 @@ from tiniscript.link.messages import RESETS
 
 LIGHT, DISTANCE = 500_000, 42_000  # thousandths
 GOOD = (LIGHT, LIGHT, DISTANCE)
-KINDS = [name for name, _ in RESETS]
 
 
 def found_by(pty_robot: PtyRobot, *words: str) -> tuple[int, dict[str, dict[str, object]]]:
@@ -34,13 +33,6 @@ def found_by(pty_robot: PtyRobot, *words: str) -> tuple[int, dict[str, dict[str,
     return done.code, {
         f"{each['what']} {each['values'].get('name', '')}".strip(): each for each in rows
     }
-
-
-def started_after(pty_robot: PtyRobot, reset: str) -> None:
-    """Let the robot have restarted for this reason."""
-    with pty_robot._lock:
-        pty_robot._take_power()
-        pty_robot._robot = HostFirmware(pty_robot.kit, EMPTY, KINDS.index(reset))
 
 
 def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
@@ -89,7 +81,10 @@ def test_another_kit_than_was_said() -> None:
 
 @pytest.mark.parametrize(("reset", "finding"), [("BROWN_OUT", "supply_low"), ("WATCHDOG", "hung")])
 def test_a_robot_that_has_restarted(pty_robot: PtyRobot, reset: str, finding: str) -> None:
-    started_after(pty_robot, reset)
+    with pty_robot._lock:
+        pty_robot._take_power()
+        number = [name for name, _ in RESETS].index(reset)
+        pty_robot._robot = HostFirmware(pty_robot.kit, EMPTY, number)
     code, found = found_by(pty_robot)
     assert code == 3
     assert (found["supply"]["verdict"], found["supply"]["finding"]) == ("wrong", finding)
