@@ -84,24 +84,13 @@ def reported(text: str) -> list[str]:
 # -- instructions ---------------------------------------------------------------------------------
 
 CONSTRUCTS = {
-    "SI|": "",
-    "F(2, 80)": "F [2]! [80]! «F(2, 80)»",
     "f ( 2 ,\n\n -80 )": "F [2]! [-80]! «f ( 2 , -80 )»",
-    "S": "S «S»",
-    "SI|START;STOP": "START «START»\nSTOP «STOP»",
-    "DISTANCE": "DISTANCE «DISTANCE»",
     "LED(TRUE)": "LED [TRUE] «LED(TRUE)»",
     "F()": "F () «F()»",
     "F(FOREVER, 80) UNTIL(DISTANCE < 10)": (
         "F [FOREVER] [80]! UNTIL [DISTANCE 10 LT] «F(FOREVER, 80) UNTIL(DISTANCE < 10)»"
     ),
-    "X = 3 * -Y": "X = [3 Y NEG MUL] «X = 3 * -Y»",
     "S;;\n;\r\nS": "S «S»\nS «S»",
-    "SB|S // stop": "S «S»",
-    "IF(X < 1);S;ENDIF": """\
-        if «IF(X < 1);S;ENDIF»
-          arm [X 1 LT] «IF(X < 1)»
-            S «S»""",
     "IF(A)\nS\nELSEIF(Q)\nELSE\nW(1)\nEND_IF": """\
         if «ELSE W(1) END_IF»
           arm [A] «IF(A)»
@@ -222,11 +211,9 @@ MISTAKES: dict[str, tuple[list[str], str]] = {
     "F(2, 80;S": (["TS016 ("], "S «S»"),
     "F 2 80;S": (["TS015 F"], "S «S»"),
     "F(2, 80));S": (["TS041 )"], "F [2]! [80]! «F(2, 80)»\nS «S»"),
-    "* 5;S": (["TS042 *"], "S «S»"),
     "X = 1 < 2 < 3;S": (["TS037 <"], "X = ? «X»\nS «S»"),
     "S = 5;S": (["TS105 S"], "S «S»"),
     "S S S": (["TS013 S"], "S «S»"),
-    "F(2, 80) HASTA(A)": (["TS013 HASTA"], "F [2]! [80]! «F(2, 80)»"),
     "F(2, 80);UNTIL(A)": (["TS029 UNTIL"], "F [2]! [80]! «F(2, 80)»"),
     "PING|F(2, 80)": (["TS035 PING"], ""),
     "GO|S": (["TS034 GO"], "S «S»"),
@@ -238,12 +225,7 @@ MISTAKES: dict[str, tuple[list[str], str]] = {
         "if «IF DISTANCE < 10;S;ENDIF»\n  arm ? «IF»\n    S «S»",
     ),
     "LOOP();S;END_LOOP": (["TS020 ()"], "loop forever «LOOP();S;END_LOOP»\n  S «S»"),
-    "WHILE(;S;END_WHILE": (["TS018 ;"], "while ? «WHILE(;S;END_WHILE»\n  S «S»"),
     "DEF;S;END_DEF": (["TS040 DEF"], ""),
-    "IF(A);ELSE IF(Q);S;ENDIF": (
-        ["TS014 IF"],
-        "if «ELSE IF(Q);S;ENDIF»\n  arm [A] «IF(A)»\n  else\n    S «S»",
-    ),
     # ends that belong to no block, or to another one
     "S;ENDIF;S": (["TS025 ENDIF"], "S «S»\nS «S»"),
     "IF(A);S": (["TS024 IF(A)"], "if «IF(A);S»\n  arm [A] «IF(A)»\n    S «S»"),
@@ -251,10 +233,6 @@ MISTAKES: dict[str, tuple[list[str], str]] = {
         ["TS026 END_LOOP"],
         "loop [2]! «LOOP(2);IF(A);S;END_LOOP»\n  if «IF(A);S;END_LOOP»\n    arm [A] «IF(A)»\n"
         "      S «S»\nS «S»",
-    ),
-    "LOOP(2);S;ENDIF;END_LOOP": (
-        ["TS025 ENDIF"],
-        "loop [2]! «LOOP(2);S;ENDIF;END_LOOP»\n  S «S»",
     ),
     "ELSE;S": (["TS025 ELSE"], "S «S»"),
     "LOOP(I = 1);S;END_LOOP": (["TS063 I"], "loop forever «LOOP(I = 1);S;END_LOOP»\n  S «S»"),
