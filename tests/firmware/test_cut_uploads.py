@@ -10,7 +10,7 @@ from argparse import ArgumentParser
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT, computer, happened, held, image_of, send, stored
+from tests.firmware.test_host_firmware import KIT, computer, happened, held, holding, image_of
 from tests.machines.host_firmware import HostFirmware
 from tiniscript.bytecode.image import Image, pack, unpack
 from tiniscript.link.requests import OK
@@ -36,15 +36,6 @@ NEW = largest()
 
 def bytes_of(image: Image) -> bytes:
     return pack(image.start, image.devices, image.code)
-
-
-def with_old() -> bytes:
-    """Return the EEPROM of a robot that holds the old program."""
-    robot, session = HostFirmware(KIT), computer()
-    robot.wait(200)
-    send(robot, session, OLD)
-    stored(robot, session)
-    return robot.memory()
 
 
 def sent_until(robot: HostFirmware, session: Session, count: int) -> bytes:
@@ -94,7 +85,7 @@ def is_over_at(memory: bytes, kind: str, count: int) -> bool:
 
 def break_off(kind: str, first: int, stride: int) -> int:
     """Break uploads off at each so many bytes; return how many."""
-    memory = with_old()
+    memory = holding(OLD)[0].memory()
     count = 0
     while not is_over_at(memory, kind, first + count * stride):
         count += 1

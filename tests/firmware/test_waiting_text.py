@@ -10,6 +10,7 @@ from itertools import cycle
 
 import pytest
 
+from tests.firmware.test_button_states import SmallRobot
 from tests.firmware.test_host_firmware import KIT, computer, happened, image_of
 from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import wanted
@@ -31,13 +32,7 @@ OTHER = ("HELP", "FOO", "F(1,500)", "SI|LOOP(2)", "IF(TRUE)", "ENDWHILE", "SI|F(
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
 
 
-class Small(HostFirmware):
-    """A robot as an Uno, which reads the begin of a line where the image of LIVE lies."""
-
-    has_draft = False
-
-
-def new(kind: type[HostFirmware] = Small) -> HostFirmware:
+def new(kind: type[HostFirmware] = SmallRobot) -> HostFirmware:
     robot = kind(KIT)
     robot.wait(1400)
     return robot
@@ -59,7 +54,7 @@ class Trials:
     def __init__(self, seed: int) -> None:
         self.rng = random.Random(seed)
         self.lines = {line: plain(line) for line in WHOLE}
-        self.kinds = cycle((Small, HostFirmware))
+        self.kinds = cycle((SmallRobot, HostFirmware))
         self.lives = 0
         self.ran = 0
 
