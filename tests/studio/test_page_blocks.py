@@ -168,11 +168,13 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     in_phase(page, "ended")
     assert image(page) == compile(text_of(page)).image
     page.set_viewport_size({"width": 1024, "height": 600})
+    page.evaluate(SETTLED)
     page.locator(".blocklyToolboxCategory", has_text="Moverse").tap()
     source = page.locator(FLYOUT).nth(1)
     source.wait_for()
+    page.evaluate(SETTLED)
     finger(page, box_of(source), box_of(block(page, "gira a la derecha")))
-    assert "B(2, 80)" in text_of(page)
+    hears(page, lambda: "B(2, 80)" in text_of(page), "a finger has dragged a block")
 
 
 def test_undo_is_one_for_blocks_and_text(page: Page) -> None:

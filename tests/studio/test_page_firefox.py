@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.test_page_programs import MOVE, colours, content, opened, share
-from tests.studio.test_simulation import DANCE
 from tests.support import studio
 from tests.support.needs import need
 from tests.support.studio import (
     Pages,
     checked,
+    dances_like_the_command,
     enter,
     image,
-    runs_like_the_command,
     shown,
     speak,
     write,
@@ -100,7 +99,7 @@ def test_a_mistake_is_said_in_spanish_and_repaired(page: Page) -> None:
 
 @pytest.mark.sampled(of="Firefox", keep=2)
 def test_a_run_is_that_of_the_command(page: Page) -> None:
-    runs_like_the_command(page, DANCE)
+    dances_like_the_command(page)
 
 
 @pytest.mark.sampled(of="Firefox", keep=2)

@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.studio.test_page_for_everyone import SCREENS
-from tests.studio.test_simulation import DANCE
 from tests.support.casefile import ROOT
 from tests.support.rows import each_row
 from tests.support.studio import (
     SETTLED,
     asked,
     checked,
+    dances_like_the_command,
     in_phase,
-    runs_like_the_command,
     speak,
     turn,
     write,
@@ -80,7 +79,7 @@ def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, 
 
 
 def test_the_list_is_the_trace_of_the_command(page: Page) -> None:
-    wanted = runs_like_the_command(page, DANCE)
+    wanted = dances_like_the_command(page)
     assert page.inner_text("#doing") == "It has ended."
     page.click("#seen_trace")
     with page.expect_download() as saved:

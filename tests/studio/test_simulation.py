@@ -9,15 +9,13 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.virtual_robot import Talk, trace
-from tiniscript import compile, run
+from tiniscript import compile
 from tiniscript.robots import load
 from tiniscript.studio import worker
 from tiniscript.studio.checking import check
 from tiniscript.studio.simulation import Marks, Simulation
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import VirtualRobot
-
-DANCE = "F(1, 80);R(0.5, 60);BEEP(0.1, 440);SHOW(5);B(0.2, 50)"
 
 
 def lines(simulation: Simulation) -> list[str]:
@@ -33,12 +31,6 @@ def begun(
     parts = tuple(place.offset for place in found.places)
     marks = Marks(parts, tuple(parts[k] for k in at), len(found.variables), is_held)
     return Simulation(robot, worlds.load("obstacles"), found.image, marks)
-
-
-def test_a_run_is_that_of_the_command() -> None:
-    simulation = Simulation("tinibot", worlds.load("obstacles"), compile(DANCE).image)
-    simulation.go(5000)
-    assert lines(simulation) == [f"{each.ms} {each.text}" for each in run(DANCE).events]
 
 
 @pytest.mark.parametrize(
@@ -141,15 +133,6 @@ def test_a_stop_is_confirmed_and_the_motors_are_off() -> None:
     assert state["events"][-1][1] == "STOP" and simulation.robot.now_ms - before < 200
     simulation.go(1000)
     assert simulation.state()["events"] == []
-
-
-def test_a_program_can_wait_for_its_button() -> None:
-    simulation = Simulation("tinibot", worlds.load("obstacles"), compile("SB|F(1, 80)").image)
-    simulation.go(3000)
-    assert simulation.state()["is_waiting"]
-    simulation.push()
-    simulation.go(500)
-    assert simulation.state()["is_running"]
 
 
 def test_a_fault_is_named() -> None:

@@ -416,12 +416,15 @@ def asked(page: Page, requests: Sequence[dict[str, Any]]) -> list[dict[str, Any]
     return found
 
 
-def runs_like_the_command(page: Page, program: str) -> list[str]:
-    """Run a program that takes no reading to its end: the list is the trace of `tsc run`."""
-    write(page, program)
+DANCE = "F(1, 80);R(0.5, 60);BEEP(0.1, 440);SHOW(5);B(0.2, 50)"  # takes no reading
+
+
+def dances_like_the_command(page: Page) -> list[str]:
+    """Run a program to its end: the list is the trace of `tsc run`, which is returned."""
+    write(page, DANCE)
     page.select_option("#speed", "20")
     page.click("#run")
     in_phase(page, "ended")
-    wanted = [f"{each.ms} {each.text}" for each in run(program).events]
+    wanted = [f"{each.ms} {each.text}" for each in run(DANCE).events]
     assert (page.locator("#trace").text_content() or "").split("\n") == wanted
     return wanted
