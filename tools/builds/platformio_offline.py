@@ -26,7 +26,6 @@ import urllib.request
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 from tools import ROOT
@@ -214,8 +213,8 @@ def add_doctest(folder: Path, project: Path) -> None:
     text = DOCTEST.read_text(encoding="utf-8")
     parts = [re.search(rf"DOCTEST_VERSION_{part}\s+(\d+)", text) for part in PARTS]
     version = ".".join(found[1] for found in parts if found)
-    runner = load(project / "test" / "test_custom_runner.py").CustomTestRunner
-    wanted = next(PackageSpec(each) for each in runner.EXTRA_LIB_DEPS if "doctest" in each)
+    runner = (project / "test" / "test_custom_runner.py").read_text(encoding="utf-8")
+    wanted = PackageSpec(re.findall(r'"(doctest/doctest@.*?)"', runner)[0])
     if Version(version) not in wanted.requirements:
         raise CannotStandIn(
             f"doctest-dev is doctest {version}, the tests want {wanted.requirements}"
@@ -232,17 +231,6 @@ def add_doctest(folder: Path, project: Path) -> None:
 
 
 PARTS = ("MAJOR", "MINOR", "PATCH")
-
-
-def load(path: Path) -> Any:
-    """Return a Python file as a module, from its text.
-
-    An import would take the bytecode of an older text of the same length and the same second.
-    """
-    module = ModuleType(path.stem)
-    module.__file__ = str(path)
-    exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
-    return module
 
 
 # -- what is made -------------------------------------------------------------------------------
