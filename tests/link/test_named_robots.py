@@ -240,10 +240,7 @@ def test_a_hostile_name_is_shown_without_what_a_terminal_obeys(
     listing: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(ports, "listed", list)
-    with (
-        robot("--listen", "0") as found,
-        announced("\u202ex", "127.0.0.1", number_of(found.port)),
-    ):
+    with robot("--listen", "0") as found, announced("\u202ex", "127.0.0.1", number_of(found.port)):
         done = inside("ports", "--ask")
         assert (done.code, found.port in done.out) == (0, True)
         assert "\u202e" not in done.out

@@ -18,7 +18,6 @@ from tiniscript.link.session import Session
 PREFIXES = 100_000  # in the tests
 FRAMES = 1_000_000
 LINES = 200  # asked for at a time; a line has 1,024 frames
-PER_LINE = 1024
 SEED = 7
 
 
