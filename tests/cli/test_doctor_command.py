@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import FOREVER, Command, Tsc, inside
+from tests.support.command import FOREVER, Command, Tsc, inside, process
 from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.simulated_ends import Firmware
@@ -110,7 +110,7 @@ def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> No
     command = Command("doctor", "--port", pty_robot.port, "--watch", "60")
     pty_robot.until(lambda: registry.found(pty_robot.port) is not None, "it is watched")
     assert pty_robot.moves
-    assert inside("stop", "--port", pty_robot.port).code == 0  # its time is also the doctor's
+    assert process("stop", "--port", pty_robot.port).code == 0  # its time is also the doctor's
     assert not pty_robot.moves
     command.signal(signal.SIGINT)
     done = command.ended()

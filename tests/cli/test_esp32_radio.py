@@ -10,7 +10,7 @@ import pytest
 from tests.cli.test_owner_commands import as_another, claimed
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
-from tests.support.command import FOREVER, LONG, Command, inside
+from tests.support.command import FOREVER, LONG, Command, inside, process
 from tests.support.esp32_announced import Announced
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.esp32_radio import in_reach, port_of, radios
@@ -153,7 +153,7 @@ def test_over_a_bad_network(joined: Esp32PtyRobot, tmp_path: Path) -> None:
     assert inside("fetch", "-o", theirs, "--port", place).code == 0
     assert ours.read_bytes() == theirs.read_bytes()
     command = driving(joined, place)
-    assert inside("stop", "--port", place).code == 0
+    assert process("stop", "--port", place).code == 0
     assert not joined.moves
     command.ended()
     command = driving(joined, place)
@@ -177,10 +177,10 @@ def is_listed() -> bool:
 def test_a_robot_is_found_and_driven_by_its_name(joined: Esp32PtyRobot) -> None:
     with Announced(joined):
         for place in (f"{PLACE}.local", PLACE):  # the last one is remembered
-            assert inside("ping", "--port", place, "--count", "1").code == 0
+            assert process("ping", "--port", place, "--count", "1").code == 0
         joined.until(is_listed, "it is listed")  # a busy computer misses what comes after 2 s
         command = driving(joined, PLACE)
-        assert inside("stop", "--port", PLACE).code == 0
+        assert process("stop", "--port", PLACE).code == 0
         assert not joined.moves
         command.ended()
         assert on(joined, "wifi", "--forget").code == 0
