@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from functools import partial
@@ -23,11 +24,20 @@ HALF = "Reading | ### |\\nWriting | " + "#" * 25
 
 
 def ended(folder: Path, body: str) -> tuple[Ended, list[Seen | None]]:
-    """Let this avrdude write a firmware; return how it ended and what was seen of it."""
+    """Let this avrdude write a firmware; return how it ended and what was seen of it.
+
+    There is a file `seen` as soon as anything was.
+    """
     program = folder / "avrdude.py"
     program.write_text(body, encoding="utf-8")
     found: list[Seen | None] = []
-    return avrdude.write([sys.executable, str(program)], UNO, "x", folder, found.append), found
+
+    def look(seen: Seen | None) -> None:
+        found.append(seen)
+        if seen:
+            (folder / "seen").touch()
+
+    return avrdude.write([sys.executable, str(program)], UNO, "x", folder, look), found
 
 
 @pytest.mark.parametrize("said", ["avrdude: warning\n", "x" * 4096, "\x1b[31m", "#"])
@@ -36,7 +46,8 @@ def test_one_that_writes_for_ever(tmp_path: Path, said: str) -> None:
 
 
 def test_its_progress_is_kept_until_then(tmp_path: Path) -> None:
-    body = f'print("{HALF}", flush=True)\n' + WRITES.format(said=" waiting\n")
+    waits = f"import os\nwhile not os.path.exists({str(tmp_path / 'seen')!r}): pass\n"
+    body = f'print("{HALF}", flush=True)\n' + waits + WRITES.format(said=" waiting\n")
     how, found = ended(tmp_path, body)
     assert how.how == avrdude.ENDLESS
     assert Seen(avrdude.WRITING, 50) in found
@@ -108,3 +119,20 @@ def test_its_children_end_with_it(tmp_path: Path, rest: str) -> None:
 def test_the_sentence_says_what_to_do() -> None:
     for said in in_all("flash_endless"):
         assert "avrdude" in said and "{port}" in said
+
+
+def test_ctrl_c_while_one_is_started_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The signal is heard before anybody knows the program."""
+    made: list[subprocess.Popen[bytes]] = []
+    begin = subprocess.Popen
+
+    def interrupted(*arguments: object, **options: object) -> subprocess.Popen[bytes]:
+        made.append(begin(*arguments, **options))  # type: ignore[call-overload]
+        signal.raise_signal(signal.SIGINT)
+        return made[0]
+
+    monkeypatch.setattr(subprocess, "Popen", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        children.run([sys.executable, "-c", "import time; time.sleep(600)"], None, print)
+    assert made[0].poll() is not None
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

@@ -10,10 +10,10 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from threading import Thread
+from threading import Thread, current_thread, main_thread
 
 LOG_BYTES = 1 << 20  # of what a program says; the last ones
 LOOK_S = 0.1
@@ -39,18 +39,19 @@ def run(
     first. Raises CannotStart, and TimeoutExpired where it has not ended `leave_s` after its last
     output.
     """
-    try:
-        running = subprocess.Popen(
-            command,
-            cwd=folder,
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,  # it has children, which end with it
-        )
-    except OSError as why:
-        raise CannotStart(*why.args) from why
+    with _held_back() as pressed:
+        try:
+            running = subprocess.Popen(
+                command,
+                cwd=folder,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,  # it has children, which end with it
+            )
+        except OSError as why:
+            raise CannotStart(*why.args) from why
     assert running.stdout
     pipe, said = running.stdout, bytearray()
 
@@ -62,6 +63,8 @@ def run(
 
     reader = Thread(target=read, daemon=True)
     try:
+        if pressed:
+            signal.raise_signal(signal.SIGINT)
         reader.start()
         while reader.is_alive():
             reader.join(LOOK_S)
@@ -72,9 +75,28 @@ def run(
             _end(running)
         else:
             running.wait()
+        if reader.is_alive():  # a thread that reads while Python ends can take it down
+            reader.join(KILLED_AFTER_S)
         raise
     _kill(running)  # what it has started may go on, and hold a port
     return code, said.decode(errors="replace")
+
+
+@contextmanager
+def _held_back() -> Iterator[list[int]]:
+    """Keep Ctrl-C until a program that is being started is known: nobody would end it.
+
+    Yields where it is noted. Only the main thread hears of it.
+    """
+    pressed: list[int] = []
+    if current_thread() is not main_thread():
+        yield pressed
+        return
+    before = signal.signal(signal.SIGINT, lambda number, frame: pressed.append(number))
+    try:
+        yield pressed
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _end(running: subprocess.Popen[bytes]) -> None:
