@@ -53,9 +53,9 @@ def test_a_stranger_looks_and_stops_and_nothing_else() -> None:
 
 
 def test_every_request_has_a_side() -> None:
-    """Whatever acts and is not listed here needs authority."""
+    """Whatever acts and is not listed here needs authority, and the owner's run goes on."""
     table, keys = Owned(), Keys()
-    table.claimed(keys)
+    assert table.tries(table.claimed(keys)) == "OK"
     stranger = table.session(nonce=3)
     assert owner_of(table, stranger) == OF_ANOTHER
     for message in BY_NAME.values():
@@ -66,6 +66,7 @@ def test_every_request_has_a_side() -> None:
         has_it = message.number <= LAST_WITHOUT_RADIO  # `test_esp32_wifi.py` asks who has a radio
         wanted = STATUSES["NOT_OWNER" if has_it else "UNKNOWN_MESSAGE"]
         assert status == wanted, message.name
+    assert state_of(table, stranger) == STATE_RUNNING
 
 
 @pytest.mark.parametrize("how", ["silence", "STATE", "HELLO"])

@@ -7,9 +7,13 @@ from typing import TypeVar
 
 import pytest
 
-from tests.firmware.test_uno_robot import FORWARD, OFF, computer, send, states
+from tests.firmware.test_host_firmware import outcome
+from tests.firmware.test_uno_robot import FORWARD, MOTORS, OFF, computer, send, states
 from tests.firmware.test_uno_trace import OFF_MS, Setting, check_pins, last_zero, program, seen
 from tests.support.casefile import ROOT, Case, read
+from tests.vm.test_tasks import STATES
+from tiniscript.link.messages import STATE_STOPPED
+from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 Test = TypeVar("Test", bound=Callable[..., None])
@@ -114,3 +118,26 @@ def test_a_stop_in_the_middle_of_busy_tasks(robot: Uno) -> None:
     wired.run(300)
     assert states(robot) == OFF
     assert wired.session.events()[-1].name == "STOPPED"
+
+
+@pytest.mark.sampled("state", "board", keep=2)
+@BOARDS
+@pytest.mark.parametrize("state", STATES)
+def test_a_stop_ends_all_tasks(state: str, robot: Uno) -> None:
+    """None goes on afterwards, nor in the next program."""
+    wired = computer(robot)
+    send(wired, STATES[state], is_detached=True)
+    wired.run(300)
+    assert (states(robot) == OFF) == (state == "a task waits")
+    robot.send(STOP)
+    robot.run_ms(20)
+    assert states(robot) == OFF
+    stopped = robot.cycle
+    wired.run(2000)
+    assert not [name for name in MOTORS if robot.pins.history(name)[-1].cycle > stopped]
+    status = wired.session.status()
+    assert wired.until(status) == OK
+    assert outcome(status).values.state == STATE_STOPPED
+    send(wired, "F(600, 80)", is_detached=True)
+    wired.run(100)
+    assert states(robot) == FORWARD

@@ -196,7 +196,7 @@ def has_owner(table: Table) -> None:
 def reset_down(table: Table) -> None:
     table.is_ready(SAVED)
     memory = table.robot.memory()
-    table.robot = HostFirmware(KIT, memory)
+    table.robot = type(table.robot)(KIT, memory)
     table.talks = None
     table.is_reset_down = True
 

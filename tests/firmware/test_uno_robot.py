@@ -208,7 +208,7 @@ def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: 
     assert states(uno) == OFF
 
 
-def test_a_radio_that_is_not_there_ends_nothing(uno: Uno) -> None:
+def test_a_radio_that_is_not_there_ends_nothing_and_a_second_of_silence_does(uno: Uno) -> None:
     """Nothing is wired to the pin, or a radio that nobody has been connected to."""
     assert uno.pins["radio"].state == "pullup"
     wired = computer(uno)
@@ -223,6 +223,10 @@ def test_a_radio_that_is_not_there_ends_nothing(uno: Uno) -> None:
     send(wired, AWAY)
     wired.run(300)
     assert states(uno) == FORWARD
+    last = max(byte.cycle for byte in uno.received)
+    uno.run_ms(1500)
+    assert states(uno) == OFF
+    assert max(uno.pins[name].cycle for name in MOTORS) - last <= 1050 * CYCLES_PER_MS
 
 
 @pytest.mark.parametrize("starts", ["detached", "button"])

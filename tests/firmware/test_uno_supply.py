@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_board_tasks import each_board
+from tests.firmware.test_board_tasks import BOARDS
 from tests.firmware.test_uno_robot import NAMES, computer, saved, send
 from tests.machines.wired import Wired
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
@@ -30,7 +30,7 @@ def until_saved(wired: Wired, limit_ms: int = 4000) -> int:
     raise AssertionError("still saving")
 
 
-@each_board
+@BOARDS
 @pytest.mark.parametrize(("volts", "found"), [(5, STORED), (4.05, STORED), (3.95, LOW), (3, LOW)])
 def test_it_saves_from_four_volts_on(robot: Uno, volts: float, found: int) -> None:
     wired = computer(robot)

@@ -22,7 +22,7 @@ from urllib.request import urlopen
 
 import pytest
 
-from tests.sharing.test_strangers import driven, registration_of
+from tests.sharing.test_strangers import driven, registration_of, say_all
 from tests.support.command import process
 from tests.support.waiting import HANGS_S
 from tiniscript.studio.serving import CONNECTIONS
@@ -35,13 +35,14 @@ TESTED = 400  # connections of a test
 FILES = 140  # that a listener may have open more than before: those who have not said anything yet
 GROWN_KB = 8_000  # of memory; a Python that has handled errors has more than one that has not
 # Who comes and how: `open` are there at once. Each says something, and hears nothing.
-KINDS = ("closed", "silent", "half-open", "slow", "half a frame", "browser")
+KINDS = ("closed", "silent", "half-open", "slow", "half a frame", "half a greeting", "browser")
 VISITORS = """
 import contextlib, socket, sys, time
 port, kind, count = int(sys.argv[1]), sys.argv[2], int(sys.argv[3])
 REQUEST = b"GET / HTTP/1.1\\r\\nHost: robot\\r\\n\\r\\n"
-SAYS = {"slow": b"P", "half a frame": b"\\0", "browser": REQUEST}.get(kind, b"")
-GOES_ON = {"slow": b"O", "half a frame": b""}.get(kind, SAYS)  # two zeros are a computer's
+HALVES = {"half a frame": b"\\0", "half a greeting": b'{"tsc"'}
+SAYS = {**HALVES, "slow": b"P", "browser": REQUEST}.get(kind, b"")
+GOES_ON = {**dict.fromkeys(HALVES, b""), "slow": b"O"}.get(kind, SAYS)
 peers = []
 for k in range(count):
     peer = socket.socket()
@@ -107,11 +108,12 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
 
     Before, while they are there, and when they have gone.
     """
-    with driven() as (robot, port, command):
+    with driven() as (robot, port, command, _):
         places = [
             ("virtual robot", robot.pid, int(port.rpartition(":")[2])),
             ("shared port", command.pid, registration_of(port).number),
         ]
+        say_all(port, 15, 100)
         found = []
         for name, pid, number in places:
             before = had(pid)
@@ -133,7 +135,7 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
     return found
 
 
-@pytest.mark.sampled("kind", keep=2)
+@pytest.mark.sampled("kind", keep=3)
 @pytest.mark.parametrize("kind", KINDS)
 def test_nothing_grows_and_a_stop_gets_through(kind: str) -> None:
     for name, before, meanwhile, after in attack(kind, TESTED):

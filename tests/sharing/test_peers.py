@@ -158,11 +158,11 @@ def test_a_pseudo_terminal_is_for_its_user_alone(monkeypatch: pytest.MonkeyPatch
 @linux
 def test_the_token_is_in_one_private_file() -> None:
     """In no command line, no environment, no output and no other file."""
-    with driven() as (virtual, port, command):
+    with driven() as (virtual, port, command, receipt):
         registration = registration_of(port)
         secrets = [each.encode() for each in (registration.token, registration.answer)]
         assert process("info", "--port", port).code == 0
-        seen = []
+        seen = [receipt]
         for pid in (virtual.pid, command.pid):
             seen += [Path(f"/proc/{pid}/{name}").read_bytes() for name in ("cmdline", "environ")]
         having = []
@@ -173,7 +173,7 @@ def test_the_token_is_in_one_private_file() -> None:
                 seen.append(str(path).encode())
         assert process("stop", "--port", port).code == 0
         seen += command.communicate(timeout=HANGS_S)
-    assert len(having) == 1 and len(seen) > 6
+    assert len(having) == 1 and len(seen) > 7
     assert not [each for each in seen for secret in secrets if secret in each]
 
 
@@ -246,3 +246,26 @@ def test_a_folder_that_others_can_read_is_closed_and_what_was_in_it_is_not_belie
     registry.write(registration)
     assert folder.stat().st_mode & 0o777 == 0o700
     assert registry.found("/dev/x") == registration
+
+
+def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The port was taken again between looking at the note and removing it."""
+    before, now = (
+        Registration("/dev/x", number, "a" * 32, "b" * 32, "link", 9600, os.getpid())
+        for number in (1, 2)
+    )
+    registry.write(now)
+    real = registry._read
+    asked = []
+
+    def read(path: Path) -> Registration | None:
+        asked.append(path)
+        return before if len(asked) == 1 else real(path)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(registry, "_read", read)
+        registry.remove(before)
+    assert len(asked) == 2
+    assert registry.found("/dev/x") == now

@@ -126,12 +126,13 @@ def few(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
 
 
 @contextmanager
-def driven() -> Iterator[tuple[subprocess.Popen[bytes], str, subprocess.Popen[bytes]]]:
-    """A virtual robot, its port, and the command that drives it."""
+def driven() -> Iterator[tuple[subprocess.Popen[bytes], str, subprocess.Popen[bytes], bytes]]:
+    """A virtual robot, its port, and the command that drives it with what that has said."""
     with few("robot") as robot:
         assert robot.stdout
         port = robot.stdout.readline().decode().strip()
         with few("upload", "--port", port, "-e", FOREVER) as command:
             assert command.stdout
-            assert b"running" in command.stdout.readline()
-            yield robot, port, command
+            receipt = command.stdout.readline()
+            assert b"running" in receipt
+            yield robot, port, command, receipt
