@@ -26,6 +26,7 @@ from tiniscript.syntax.lexer import Scan, scan
 )
 def test_a_note_keeps_all_and_changes_nothing(program: str) -> None:
     text = program
+    assert check(text)
     while found := check(text):
         assert found[0].code is codes.WORDS_BEHIND
         edits = edits_of(found[0])
