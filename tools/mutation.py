@@ -76,7 +76,7 @@ MODULES = (
     _python("robots", "tests/robots", "tests/wiring"), _python("flash"),
     _python("lessons", "tests/lessons", "tests/cli/test_lesson_command.py"),
     _python("studio"), _python("cli", "tests/cli", "tests/wiring", "tests/project/test_windows.py"),
-    Module("machine", (f"{_CPP}/vm/*.cpp",), ("tests/vm/test_cases.py", "tests/vm/test_cpp_agreement.py", "tests/vm/test_cpp_chips.py")),
+    Module("machine", (f"{_CPP}/vm/*.cpp",), ("tests/vm/test_cases.py", "tests/vm/test_cpp_edges.py", "tests/vm/test_cpp_agreement.py", "tests/vm/test_cpp_chips.py")),
     Module("machine-avr", (f"{_CPP}/vm/*.S",), ("tests/vm/test_cases.py", "tests/vm/test_cpp_chips.py", "tests/vm/test_cpp_avr_arithmetic.py")),
     Module("reader", (f"{_CPP}/text/*.cpp", f"{_CPP}/text/*.S"), ("tests/text/test_reader.py", "tests/text", "tests/firmware/test_text_small.py")),
     Module("robot-link", (f"{_CPP}/link/*.cpp",), ("tests/link/test_link_cases.py", "tests/link", _HOST, "tests/firmware/test_owners.py", "tests/firmware/test_text.py")),

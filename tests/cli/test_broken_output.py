@@ -135,7 +135,7 @@ def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
     [["explain"], ["--help"], ["compile", "-e", PROGRAM, "-o", "-"], ["check", "-e", "F(1"],
      ["complie"]],
 )  # fmt: skip
-def test_every_verb_has_the_same_exit_code(words: list[str]) -> None:
+def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
     """Nothing is read of what it prints: text, bytes, not even what is wrong."""
     ours, theirs = os.pipe()
     os.close(ours)

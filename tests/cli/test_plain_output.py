@@ -15,6 +15,7 @@ from tests.cli.test_outputs import PROFILE, WORLD
 from tests.link.test_session import DESCRIPTION
 from tests.support.command import PROGRAM, Tsc
 from tests.support.rows import each_row
+from tests.support.sampling import some_of
 from tests.support.verbs import parsers, values_of
 from tiniscript.base.source import printable
 from tiniscript.cli.errors import CommandError
@@ -40,6 +41,7 @@ ENDS = {  # what keeps a verb from waiting for something
     "firmware": ["--port", "/none"], "studio": ["--listen", "none"],
     "wifi": ["--port", "/none"], "class": ["--broker", "127.0.0.1:1"],
 }  # fmt: skip
+LANGUAGES = ("en", "es")  # a commit draws one for each row
 CASES = [(verb, dest) for verb, parser in PARSERS.items() for dest in values_of(parser)]
 
 
@@ -57,18 +59,20 @@ def alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @each_row("verb, dest", CASES)
-def test_no_argument_of_any_verb_reaches_the_terminal_raw(tsc: Tsc, verb: str, dest: str) -> None:
+def test_no_argument_of_any_verb_reaches_the_terminal_raw(
+    tsc: Tsc, verb: str, dest: str, pytestconfig: pytest.Config
+) -> None:
     option = values_of(PARSERS[verb])[dest]
     ends = ENDS.get(verb, [])
     if dest in ("port", "ports", "listen") and ends:
         ends = ends[:-2]
     if dest in ("name", "line", "texts", "program", "text"):
         ends = [each for each in ends if each not in ("X", "-e", PROGRAM, "F(1, 80)")]
-    language = ("en", "es")[CASES.index((verb, dest)) % 2]
-    for evil in (EVIL, f"DISTANCE={EVIL}", f"{EVIL}.toml", f"/{EVIL}/x"):
-        words = [option, evil] if option else [evil]
-        done = tsc(verb, *words, *ends, "--lang", language)
-        assert_plain(done.out, done.err)
+    for language in some_of(pytestconfig, f"{verb} {dest}", LANGUAGES):
+        for evil in (EVIL, f"DISTANCE={EVIL}", f"{EVIL}.toml", f"/{EVIL}/x"):
+            words = [option, evil] if option else [evil]
+            done = tsc(verb, *words, *ends, "--lang", language)
+            assert_plain(done.out, done.err)
 
 
 @pytest.mark.parametrize("words", [
@@ -95,7 +99,9 @@ def spoiled(toml: str) -> list[str]:
 
 
 @pytest.mark.parametrize("verb", ["check", "run", "wiring", "board", "robot"])
-def test_no_string_of_a_profile_reaches_the_terminal_raw(tsc: Tsc, verb: str) -> None:
+def test_no_string_of_a_profile_reaches_the_terminal_raw(
+    tsc: Tsc, verb: str, pytestconfig: pytest.Config
+) -> None:
     texts = spoiled(PROFILE)
     assert len(texts) > 30
     for number, toml in enumerate(texts):
@@ -104,8 +110,9 @@ def test_no_string_of_a_profile_reaches_the_terminal_raw(tsc: Tsc, verb: str) ->
         Path("evil.toml").write_text(toml, encoding="utf-8")
         words = ["evil.toml"] if verb == "board" else ["--robot", "evil.toml"]
         words += ["-e", "X = DISTANCE"] if verb in ("check", "run") else []
-        done = tsc(verb, *words, *ENDS.get(verb, []), "--lang", ("en", "es")[number % 2])
-        assert_plain(done.out, done.err)
+        for language in some_of(pytestconfig, f"{verb} {number}", LANGUAGES):
+            done = tsc(verb, *words, *ENDS.get(verb, []), "--lang", language)
+            assert_plain(done.out, done.err)
 
 
 def test_no_string_of_a_world_reaches_the_terminal_raw(tsc: Tsc) -> None:

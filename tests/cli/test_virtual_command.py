@@ -291,6 +291,7 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
         assert done.code == 3, verb
         assert "Start one in another terminal:  tsc robot" in done.err, verb
         assert "--virtual" in inside(verb, "--help").out, verb
+    assert "Without a robot:  --virtual" in inside("upload", "-e", "SI|S").err
     with robot() as running:
         for verb in ("ping", "doctor"):
             done = inside(verb, "--virtual")

@@ -306,6 +306,7 @@ def lesson_of(number: int) -> Lesson:
 
 def test_every_lesson_has_some() -> None:
     assert [*PROGRAMS] == [*range(1, len(catalogue.folders()) + 1)]
+    assert all(groups.get("right") for groups in PROGRAMS.values())
 
 
 @pytest.mark.sampled("number", "program", "what", keep=len(EACH) // 8)

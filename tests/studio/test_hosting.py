@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from itertools import count
 from typing import Any
 
 import pytest
@@ -320,6 +321,9 @@ def test_what_is_no_request_is_refused(hosting: Hosting) -> None:
             pytest.fail(f"not refused: {request}")
 
 
+NUMBERS = count(1, 2)  # of requests: a page counts on
+
+
 @each_row(
     "asked",
     [
@@ -336,8 +340,11 @@ def test_what_is_no_request_is_refused(hosting: Hosting) -> None:
     ],
 )
 def test_a_wrong_request_harms_nothing(page: Page, asked: dict[str, Any]) -> None:
-    assert page.ask(**asked)["failure"] == "bad_request"
-    assert page.ask("identify")["ok"]
+    """Nor the one behind it in the same beat."""
+    wrong = next(NUMBERS)
+    page.beat({"id": wrong, **asked}, {"id": wrong + 1, "do": "identify"})
+    assert page.until(lambda each: each.get("id") == wrong)["failure"] == "bad_request"
+    assert page.until(lambda each: each.get("id") == wrong + 1)["ok"]
 
 
 def test_what_was_asked_before_a_stop_and_comes_after_it_is_void(

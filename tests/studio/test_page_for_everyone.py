@@ -107,14 +107,13 @@ THEMES = {"dark": "[data-dark]", "light": ":not([data-dark])"}
 def test_each_screen_is_seen_whole_and_axe_finds_nothing(
     page: Page, theme: Literal["light", "dark"], language: str, pytestconfig: pytest.Config
 ) -> None:
-    """At half of the sizes, others in each commit; of the class there is `test_page_class.py`."""
+    """At half of the usual sizes, others in each commit; the class is in `test_page_class.py`."""
     usual = {screen: some_of(pytestconfig, screen, SCREENS, 2) for screen in screens.SCREENS}
-    low = {screen: some_of(pytestconfig, f"low {screen}", LOW, 2) for screen in screens.SCREENS}
     axed = {screen: some_of(pytestconfig, screen, usual[screen]) for screen in usual}
     page.emulate_media(color_scheme=theme)
     speak(page, language)
     page.click("#home")
-    for screen, size in screens.each_screen(page, lambda name: (*usual[name], *low[name])):
+    for screen, size in screens.each_screen(page, lambda name: (*usual[name], *LOW)):
         assert page.locator("#stop").is_visible()
         if screen not in ("teacher", "programs"):  # one is scrolled, one in front of all
             for end in (0,) if size in SCREENS else (0, 10_000):

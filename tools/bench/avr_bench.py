@@ -1,4 +1,4 @@
-"""Builds a program of `vm_arduino/extras/bench`, and runs it on a simulated ATmega328P.
+"""Builds a program of `vm_arduino/extras/bench` or `extras/avr`, and runs it on a simulated chip.
 
 Knows avr-g++, simavr, and the flags that users build with; nothing of what the programs do.
 """

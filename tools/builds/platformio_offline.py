@@ -22,9 +22,12 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 import urllib.request
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from http.client import HTTPException
 from pathlib import Path
 from typing import Any
 
@@ -142,16 +145,24 @@ def registry_answers() -> bool:
     """Return whether a host of the registry describes one of its packages in time."""
     from platformio import __registry_mirror_hosts__ as hosts
 
-    def answers(host: str) -> bool:
-        url = f"https://api.{host}/v3/packages/platformio/platform/native"
-        try:
-            with urllib.request.urlopen(url, timeout=REGISTRY_SECONDS) as answer:
-                return bool(json.load(answer)["name"] == "native")
-        except (OSError, ValueError, KeyError, TypeError):
-            return False
+    answers: list[str] = []
 
-    with ThreadPoolExecutor() as pool:
-        return any(pool.map(answers, hosts))
+    def ask(host: str) -> None:
+        url = f"https://api.{host}/v3/packages/platformio/platform/native"
+        with (
+            suppress(OSError, HTTPException, ValueError, KeyError, TypeError),
+            urllib.request.urlopen(url, timeout=REGISTRY_SECONDS) as answer,
+        ):
+            if json.load(answer)["name"] == "native":
+                answers.append(host)
+
+    asking = [threading.Thread(target=ask, args=(host,), daemon=True) for host in hosts]
+    for thread in asking:
+        thread.start()
+    end = time.monotonic() + REGISTRY_SECONDS  # the search for a host's address has no limit
+    while not answers and any(thread.is_alive() for thread in asking) and time.monotonic() < end:
+        time.sleep(0.02)
+    return bool(answers)
 
 
 # -- what Debian has ----------------------------------------------------------------------------
@@ -214,7 +225,10 @@ def add_doctest(folder: Path, project: Path) -> None:
     parts = [re.search(rf"DOCTEST_VERSION_{part}\s+(\d+)", text) for part in PARTS]
     version = ".".join(found[1] for found in parts if found)
     runner = (project / "test" / "test_custom_runner.py").read_text(encoding="utf-8")
-    wanted = PackageSpec(re.findall(r'"(doctest/doctest@.*?)"', runner)[0])
+    named = re.search(r"doctest/doctest@[^\"']+", runner)
+    if named is None:
+        raise CannotStandIn("vm_arduino/test/test_custom_runner.py names no doctest/doctest@")
+    wanted = PackageSpec(named[0])
     if Version(version) not in wanted.requirements:
         raise CannotStandIn(
             f"doctest-dev is doctest {version}, the tests want {wanted.requirements}"

@@ -251,7 +251,10 @@ int main(int count, char** words) {
       {"no-sleep", no_argument, &is_silent, true},
       {0},
   };
-  for (int found; (found = getopt_long(count, words, "", options, NULL)) != -1;) {
+  const char* firmware = NULL;
+  for (int found; (found = getopt_long(count, words, "-", options, NULL)) != -1;) {
+    if (found == 1 && firmware) give_up("what is %s?", optarg);
+    if (found == 1) firmware = optarg;
     if (found == 'r') {
       is_paused = false;
       run_speed = atof(optarg);
@@ -263,7 +266,6 @@ int main(int count, char** words) {
     if (found == '?') exit(2);
   }
   tells_sleep = !is_silent;
-  const char* firmware = optind < count ? words[optind] : NULL;
   if (!firmware) give_up("which firmware?");
   if (baud <= 0) give_up("which baud?");
   // What libsimavr prints is no JSON.

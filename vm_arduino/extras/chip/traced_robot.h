@@ -35,7 +35,7 @@ struct TracedRobot {
     bool is_yes_no;
   };
 
-  unsigned long now_ms;  // does not wrap around on a computer
+  unsigned long now_ms;  // on Linux and macOS it does not wrap around
   uint32_t not_ready;  // every so many questions the robot is not ready; 0: always ready
   uint32_t asked;
   uint32_t speed;
