@@ -174,7 +174,10 @@ def is_listed() -> bool:
     return any("announced in the network" in row and "robot tinibot (yours)" in row for row in rows)
 
 
-def test_a_robot_is_found_and_driven_by_its_name(joined: Esp32PtyRobot) -> None:
+def test_a_robot_is_found_and_driven_by_its_name(
+    joined: Esp32PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("serial.tools.list_ports.comports", list)  # which take ten seconds each
     with Announced(joined):
         for place in (f"{PLACE}.local", PLACE):  # the last one is remembered
             assert process("ping", "--port", place, "--count", "1").code == 0

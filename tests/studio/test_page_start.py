@@ -103,7 +103,7 @@ def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> N
     page.locator("#doing", has_text="The compiler did not start. Reload the page").wait_for()
     page.click("#side_lessons")
     page.locator("#lesson_said", has_text="The compiler did not start.").wait_for()
-    assert pages.wrong  # of the compiler
+    hears(page, lambda: pages.wrong, "what the compiler lacks")
     pages.wrong.clear()
 
 

@@ -120,7 +120,7 @@ def test_disassembly_runs_or_is_refused(case: Case, chip: str) -> None:
     assert ("Refused" in ending) == ("refused" in case.parts)
 
 
-@pytest.mark.sampled("chip", "seed", keep=2)
+@one_chip
 @each_chip
 @pytest.mark.parametrize("seed", range(4))
 def test_random_programs(chip: str, seed: int) -> None:
