@@ -66,9 +66,11 @@ def run(
         if pressed:
             signal.raise_signal(signal.SIGINT)
         reader.start()
-        while reader.is_alive():
+        while True:  # one look at least, also at what has ended meanwhile
             reader.join(LOOK_S)
             look(said.decode(errors="replace"))
+            if not reader.is_alive():
+                break
         code = running.wait(leave_s)
     except BaseException:
         if may_end(said.decode(errors="replace")):
