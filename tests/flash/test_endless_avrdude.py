@@ -128,8 +128,9 @@ def test_ctrl_c_while_one_is_started_ends_it(monkeypatch: pytest.MonkeyPatch) ->
 
     def interrupted(*arguments: object, **options: object) -> subprocess.Popen[bytes]:
         made.append(begin(*arguments, **options))  # type: ignore[call-overload]
-        signal.raise_signal(signal.SIGINT)
-        return made[0]
+        if len(made) == 1:  # Windows starts another program to end it
+            signal.raise_signal(signal.SIGINT)
+        return made[-1]
 
     monkeypatch.setattr(subprocess, "Popen", interrupted)
     with pytest.raises(KeyboardInterrupt):

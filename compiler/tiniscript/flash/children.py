@@ -39,7 +39,7 @@ def run(
     first. Raises CannotStart, and TimeoutExpired where it has not ended `leave_s` after its last
     output.
     """
-    with _held_back() as pressed:
+    with _held_back() as let_through:
         try:
             running = subprocess.Popen(
                 command,
@@ -52,53 +52,59 @@ def run(
             )
         except OSError as why:
             raise CannotStart(*why.args) from why
-    assert running.stdout
-    pipe, said = running.stdout, bytearray()
+        assert running.stdout
+        pipe, said = running.stdout, bytearray()
 
-    def read() -> None:
-        with pipe:
-            while data := os.read(pipe.fileno(), 1 << 16):
-                said.extend(data)
-                del said[:-LOG_BYTES]
+        def read() -> None:
+            with pipe:
+                while data := os.read(pipe.fileno(), 1 << 16):
+                    said.extend(data)
+                    del said[:-LOG_BYTES]
 
-    reader = Thread(target=read, daemon=True)
-    try:
-        if pressed:
-            signal.raise_signal(signal.SIGINT)
-        reader.start()
-        while True:  # one look at least, also at what has ended meanwhile
-            reader.join(LOOK_S)
-            look(said.decode(errors="replace"))
-            if not reader.is_alive():
-                break
-        code = running.wait(leave_s)
-    except BaseException:
-        if may_end(said.decode(errors="replace")):
-            _end(running)
-        else:
-            running.wait()
-        if reader.is_alive():  # a thread that reads while Python ends can take it down
-            reader.join(KILLED_AFTER_S)
-        raise
+        reader = Thread(target=read, daemon=True)
+        try:
+            let_through()
+            reader.start()
+            while True:  # one look at least, also at what has ended meanwhile
+                reader.join(LOOK_S)
+                look(said.decode(errors="replace"))
+                if not reader.is_alive():
+                    break
+            code = running.wait(leave_s)
+        except BaseException:
+            if may_end(said.decode(errors="replace")):
+                _end(running)
+            else:
+                running.wait()
+            if reader.is_alive():  # a thread that reads while Python ends can take it down
+                reader.join(KILLED_AFTER_S)
+            raise
     _kill(running)  # what it has started may go on, and hold a port
     return code, said.decode(errors="replace")
 
 
 @contextmanager
-def _held_back() -> Iterator[list[int]]:
-    """Keep Ctrl-C until a program that is being started is known: nobody would end it.
+def _held_back() -> Iterator[Callable[[], None]]:
+    """Keep Ctrl-C until what is yielded is called: nobody would end a program that just starts.
 
-    Yields where it is noted. Only the main thread hears of it.
+    Only the main thread hears of it.
     """
-    pressed: list[int] = []
     if current_thread() is not main_thread():
-        yield pressed
+        yield lambda: None
         return
+    pressed: list[int] = []
     before = signal.signal(signal.SIGINT, lambda number, frame: pressed.append(number))
-    try:
-        yield pressed
-    finally:
+
+    def let_through() -> None:
         signal.signal(signal.SIGINT, before)
+        if pressed:
+            pressed.clear()
+            signal.raise_signal(signal.SIGINT)
+
+    try:
+        yield let_through
+    finally:
+        let_through()
 
 
 def _end(running: subprocess.Popen[bytes]) -> None:
