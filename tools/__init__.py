@@ -1,4 +1,4 @@
-"""What developers run. Knows where the repository is, and has its package found beside it."""
+"""What developers run. Knows where the repository is, and puts its package on the path."""
 
 import sys
 from pathlib import Path

@@ -177,7 +177,7 @@ def is_listed() -> bool:
 def test_a_robot_is_found_and_driven_by_its_name(
     joined: Esp32PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("serial.tools.list_ports.comports", list)  # which take ten seconds each
+    monkeypatch.setattr("serial.tools.list_ports.comports", list)  # to ask one takes ten seconds
     with Announced(joined):
         for place in (f"{PLACE}.local", PLACE):  # the last one is remembered
             assert process("ping", "--port", place, "--count", "1").code == 0

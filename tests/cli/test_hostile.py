@@ -16,6 +16,10 @@ import pytest
 from tests.support.command import PROGRAM, TSC, Command, Tsc
 from tiniscript.bytecode.image import unpack
 from tiniscript.cli import help, main
+from tiniscript.library import source_map
+from tiniscript.link import known_ports
+from tiniscript.link.sharing import registry
+from tiniscript.virtual import directory
 
 # -- anything whatever --------------------------------------------------------------------------
 
@@ -178,11 +182,6 @@ def test_input_that_is_no_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.parametrize("kind", ["pipe", "folder", "device", "circle", "huge"])
 def test_files_of_the_cache_may_be_anything(kind: str) -> None:
     """No command waits for them, or reads for ever: they say nothing."""
-    from tiniscript.library import source_map
-    from tiniscript.link import known_ports
-    from tiniscript.link.sharing import registry
-    from tiniscript.virtual import directory
-
     port = "socket://127.0.0.1:4000"
     robot = directory._folder() / "4000.json"
     paths = [known_ports._path(), robot, registry._path(port), source_map._path(5)]
@@ -207,16 +206,12 @@ def test_files_of_the_cache_may_be_anything(kind: str) -> None:
 
 @pytest.mark.parametrize("number", ["0000801234", "99999", "00000", "٣٣٣٣", "-1", "4" * 5000])
 def test_a_number_that_no_port_has_is_no_robot(number: str) -> None:
-    from tiniscript.virtual import directory
-
     assert not directory._is_listening(f"socket://127.0.0.1:{number}")
 
 
 def test_a_cache_that_is_damaged_or_cannot_be_written_is_no_trouble(
     tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tiniscript.library import source_map
-
     image = program.with_suffix(".bin")
     tsc("compile", program)
     path = source_map._path(unpack(image.read_bytes()).checksum)

@@ -14,7 +14,6 @@ from tests.machines import host
 from tests.machines.host import SOURCES, WARNINGS, missing
 from tests.support.rows import each_row
 
-MACHINE = SOURCES / "src" / "vm"
 EXTRAS = SOURCES / "extras"
 MODULES = [SOURCES / "src" / name for name in ("vm", "link", "store", "text", "firmware")]
 PORTABLE = sorted(

@@ -34,7 +34,7 @@ pytestmark = pytest.mark.skipif(
 TESTED = 400  # connections of a test
 FILES = 140  # that a listener may have open more than before: those who have not said anything yet
 GROWN_KB = 8_000  # of memory; a Python that has handled errors has more than one that has not
-# Who comes and how: `open` are there at once. Each says something, and hears nothing.
+# Who comes and how. Each says something, and hears nothing.
 KINDS = ("closed", "silent", "half-open", "slow", "half a frame", "half a greeting", "browser")
 VISITORS = """
 import contextlib, socket, sys, time
@@ -128,7 +128,7 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
         assert command.returncode == 3
         assert b"was stopped from a computer" in out + err
         # Nobody holds it: a caller is let in behind those who came before, 256 a second at most.
-        # Half a greeting is text to it, and who types holds it.
+        # Half a greeting is text to it, and whoever types holds the robot.
         with visitors(places[0][2], kind, min(count, TESTED)):
             done = process("stop", "--port", port)
             assert kind == "half a greeting" or (done.code, done.err) == (0, "")

@@ -12,9 +12,16 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support import studio
+from tiniscript.studio import serving
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
+
+
+@pytest.fixture
+def own(server: serving.Server) -> str:
+    """The name in a request of the `server` that a file has."""
+    return f"{serving.HOST}:{server.server_port}"
 
 
 @pytest.fixture(scope="package")

@@ -26,7 +26,6 @@ from tiniscript.syntax.formatter import formatted
 from tiniscript.syntax.lexer import scan
 
 TINIBOT = robots.load("tinibot").kit
-GRABBER = robots.load("grabber").kit
 
 
 def kinds(text: str, kit: Kit = TINIBOT) -> list[str]:

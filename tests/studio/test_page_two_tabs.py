@@ -43,11 +43,8 @@ def second(pages: Pages, page: Page) -> Page:
     return other
 
 
-def test_changes_in_another_tab_are_one_world_before(
-    page: Page, only_page: tuple[Pages, Page]
-) -> None:
-    """They come behind this tab's own worlds before, and push none of them out. It is the first of
-    these tests: no world of one's own is there yet."""
+def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
+    """They come behind this tab's own worlds before, and push none of them out."""
 
     def opens(tab: Page, width_cm: int) -> None:
         name = f"w{width_cm}.toml"
@@ -55,11 +52,12 @@ def test_changes_in_another_tab_are_one_world_before(
         said(tab, f"Opened: {name}")
         saved(tab)
 
+    page = pages.open()
     page.locator("#world_draw:enabled").wait_for()
     page.click("#world_draw")
     opens(page, 100)
     opens(page, 101)
-    other = second(only_page[0], page)
+    other = second(pages, page)
     other.locator("#world_draw:enabled").wait_for()
     other.click("#world_draw")
     opens(other, 102)
@@ -80,8 +78,6 @@ def test_changes_in_another_tab_are_one_world_before(
     theirs = read(other.evaluate(kept, "localStorage")[-1], "theirs")
     assert (newest.width_cm, newest.start.x_cm) == (102, 45)
     assert theirs.start.x_cm == 45  # and no earlier step
-    other.close()
-    page.click("#world_done")
 
 
 def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:

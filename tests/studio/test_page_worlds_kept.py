@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.test_page_worlds import drag, on_screen, put, read_start, rest, said, saved
-from tests.support.studio import checked, in_phase, speak, write
+from tests.support.studio import Pages, checked, in_phase, speak, write
 from tiniscript.virtual import worlds
 
 if TYPE_CHECKING:
@@ -53,8 +53,8 @@ def walls_of(page: Page, label: str) -> int:
     return found
 
 
-def test_a_world_is_not_lost_to_the_next_one(page: Page) -> None:
-    """It is the first of these tests: no other world of one's own is there yet."""
+def test_a_world_is_not_lost_to_the_next_one(pages: Pages) -> None:
+    page = pages.open()
     draw_wall(page)
     page.select_option("#world", "obstacles")
     drag(page, [OBSTACLES_START, (56, 90)])  # no pencil, and another world of one's own
@@ -126,6 +126,7 @@ def test_nothing_is_drawn_before_the_kept_world_is_there(page: Page) -> None:
     page.reload()
     try:
         assert page.locator("#world_draw").is_disabled()
+        page.locator("#arena").wait_for()
         drag(page, [OBSTACLES_START, (56, 120)])
         assert page.input_value("#world") == "obstacles"
         assert held

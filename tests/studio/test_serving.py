@@ -36,12 +36,6 @@ def server(folder: Path) -> Iterator[serving.Server]:
         yield made
 
 
-@pytest.fixture
-def own(server: serving.Server) -> str:
-    """The name of the server in a request."""
-    return f"{serving.HOST}:{server.server_port}"
-
-
 def test_the_next_studio_has_the_port_as_soon_as_the_last_one_has_ended(folder: Path) -> None:
     page = serving.files(folder)
     with serves(serving.Server(page, 0)) as first:

@@ -45,12 +45,6 @@ def server(tmp_path: Path, robots: Recorder) -> Iterator[serving.Server]:
         yield made
 
 
-@pytest.fixture
-def own(server: serving.Server) -> str:
-    """The name of the server in a request."""
-    return f"{serving.HOST}:{server.server_port}"
-
-
 PORTS = b'{"do": "ports"}'
 
 

@@ -8,7 +8,6 @@ import pytest
 
 from tests.machines.text_reader import NO_DEFS, Answer, TextReader, read_lines
 from tests.support.casefile import all_cases
-from tests.support.kits import KITS
 from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
@@ -18,7 +17,6 @@ from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.codegen.text.problems import LONGEST, PROBLEMS
 
 KIT = robots.load("tinibot").kit
-WIDE = KITS[1][1]
 MORE = Answer()
 BLOCK_BYTES = 3 + 3 * 4  # with a bit for each of 32 sensors
 

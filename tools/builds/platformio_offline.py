@@ -159,7 +159,7 @@ def registry_answers() -> bool:
     asking = [threading.Thread(target=ask, args=(host,), daemon=True) for host in hosts]
     for thread in asking:
         thread.start()
-    end = time.monotonic() + REGISTRY_SECONDS  # the search for a host's address has no limit
+    end = time.monotonic() + REGISTRY_SECONDS  # looking up a host's address has no timeout
     while not answers and any(thread.is_alive() for thread in asking) and time.monotonic() < end:
         time.sleep(0.02)
     return bool(answers)

@@ -1,9 +1,9 @@
-// Runs one image, or code, on a simulated ATmega328P, for tests, and reports over the UART what the robot
+// Runs one image, or code, on a simulated ATmega, for tests, and reports over the UART what the robot
 // did.
 //
 // The request begins with R for an image, with L and 4 bytes for an image whose ticks after a wait
 // come so many milliseconds late, and with U for code that is not verified. The clock is simulated
-// as in `run.py`.
+// as in `vm/runner.py`.
 
 #include "../../src/vm/vm.h"
 #include "../chip/runner.h"

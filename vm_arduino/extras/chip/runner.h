@@ -7,7 +7,7 @@
 
 namespace tiniscript {
 
-// Reads and verifies the image of a request, and runs it with a simulated clock as `run.py` does.
+// Reads and verifies the image of a request, and runs it with a simulated clock as `vm/runner.py` does.
 // The answer is the trace, and a last line: RAN and where the code was at the end and how many
 // instructions ran; REFUSED and the reason; BREAKS and the rule and the offset; or NO ROOM. If it
 // is not verified, the request has code in place of an image, whatever it is. A tick after a wait
