@@ -15,8 +15,8 @@ from tests.machines import board as boards
 from tests.machines.board import ARDUINO, CONNECTIONS, CONTROLS, CPP, HERTZ, MS, PORTS, run
 from tests.machines.host import kept
 from tiniscript.robots.boards import CHIPS
+from tiniscript.robots.driver import Bridge
 from tiniscript.robots.drivers import motors_of
-from tiniscript.robots.drivers.motors import Bridge
 from tiniscript.robots.profile import Robot
 
 FLAGS = ("-Os", "-flto", "-ffunction-sections", "-fdata-sections", "-DF_CPU=16000000L",

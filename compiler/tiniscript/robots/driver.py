@@ -1,6 +1,6 @@
 """What a driver says of a part that a robot may have: pins, firmware, sketch, wiring, sentences.
 
-Knows what every driver must say; the drivers themselves are in `drivers/`. Knows no
+Knows what every driver must say; the drivers themselves are the files of `drivers/`. Knows no
 robot: `board_reader` asks for a driver's pins and settings, `firmware` for its C++, the sketch for
 its lines, and the wiring page for what it looks like.
 """
@@ -261,6 +261,28 @@ class ActuatorDriver(Driver):
 # -- what several drivers share
 
 
+def in_limits(device: Device, low: int, high: int) -> list[str]:
+    """Return the line that keeps values from `low` to `high` in the device's range."""
+    if device.low <= low and high <= device.high:
+        return []
+    return [f"      *value = in_limits(*value, {device.low}, {device.high});"]
+
+
+def module(output: str, need: str, *notes: str) -> Shape:
+    """Return the shape of a sensor on a small board with three pins."""
+    terminals = (
+        Terminal("VCC", rail=BOARD_5V),
+        Terminal(output, "pin"),
+        Terminal("GND", rail=GROUND),
+    )
+    return Shape("module", need, terminals, notes=notes)
+
+
+def photoresistor() -> Shape:
+    terminals = (Terminal("leg_1", rail=BOARD_5V), Terminal("leg_2", "pin", to_ground=PULL_DOWN))
+    return Shape("light", "need_light", terminals, notes=("mind_light",))
+
+
 def switch() -> Shape:
     return Shape(
         "switch", "need_switch", (Terminal("leg_1", "pin"), Terminal("leg_2", rail=GROUND))
@@ -280,3 +302,48 @@ def lamp(is_on_low: bool) -> Shape:
             Terminal("short_leg", rail=GROUND),
         )
     return Shape("lamp", "need_lamp", terminals, notes=("mind_lamp",))
+
+
+class Bridge(MotorDriver):
+    """A chip that takes PWM and two directions for each motor."""
+
+    module = "motors_bridge"
+    profile = "left_pwm, left_forward, left_backward and the same for right"
+    pins = tuple(
+        PinKey(f"{side}_{key}", need)
+        for side in SIDES
+        for key, need in (("pwm", "pwm"), ("forward", "output"), ("backward", "output"))
+    )
+    drive = """\
+void $drive_motor(int pwmPin, int forwardPin, int backwardPin, int percent) {
+  digitalWrite(forwardPin, percent > 0 ? HIGH : LOW);
+  digitalWrite(backwardPin, percent < 0 ? HIGH : LOW);
+  analogWrite(pwmPin, abs(percent) * 255L / 100);
+}"""
+
+    def firmware(self, part: Part, wiring: Wiring) -> list[str]:
+        lines = []
+        for side in SIDES:
+            pwm = part.pins.pwm(wiring.pins[f"{side}_pwm"])
+            forward, backward = (part.pins.pin(wiring.pins[f"{side}_{way}"]) for way in WAYS)
+            lines.append(f"constexpr Bridge k{side.capitalize()}Motor =")
+            lines.append(f"    {{{pwm}, {forward}, {backward}}};")
+        standby = part.pins.pin(wiring.pins.get("standby"))
+        return [*lines, f"constexpr Pin kStandby = {standby};"]
+
+    def sketch(self, plan: Plan, wiring: Wiring) -> list[str]:
+        lines = [driven_line(plan, wiring, side, ("pwm", *WAYS)) for side in SIDES]
+        if "standby" in wiring.pins:
+            plan.pin("$STANDBY_$PIN", wiring.pins["standby"], "OUTPUT")
+            is_on = "left != 0 || right != 0 ? HIGH : LOW"
+            lines.insert(0, f"  digitalWrite($STANDBY_$PIN, {is_on});")
+        return lines
+
+
+def driven_line(plan: Plan, wiring: Wiring, side: str, keys: tuple[str, ...]) -> str:
+    """Return the line of a sketch that drives one motor by pins with these keys."""
+    names = [
+        plan.pin(f"${side.upper()}_${key.upper()}_$PIN", wiring.pins[f"{side}_{key}"], "OUTPUT")
+        for key in keys
+    ]
+    return f"  $drive_motor({', '.join(names)}, {side});"

@@ -1,20 +1,23 @@
-"""The drivers, with all that is known of each. `robots/driver.py` says what that is."""
+"""The drivers: each file is one, with all that is known of it. `robots/driver.py` says what that is."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TypeVar
+from importlib import import_module
+from pkgutil import iter_modules
 
 from tiniscript.robots.driver import ActuatorDriver, DiscDriver, Driver, MotorDriver, SensorDriver
-from tiniscript.robots.drivers import actuators, discs, motors, sensors
 from tiniscript.robots.profile import Wiring
 
-# By the table and kind of [board] that uses each.
-DRIVERS: dict[tuple[str, str], Driver] = {
-    (driver.used_by, driver.name): driver
-    for driver in (*motors.DRIVERS, *discs.DRIVERS, *sensors.DRIVERS, *actuators.DRIVERS)
-}
-D = TypeVar("D", bound=Driver)
+
+def _found() -> dict[tuple[str, str], Driver]:
+    """Return the drivers of this folder, by the table and kind of [board] that uses them."""
+    made: list[Driver] = [
+        import_module(f"{__name__}.{each.name}").DRIVER for each in iter_modules(__path__)
+    ]
+    return {(driver.used_by, driver.name): driver for driver in made}
+
+
+DRIVERS = _found()
 
 
 def drivers_for(used_by: str) -> tuple[str, ...]:
@@ -22,29 +25,37 @@ def drivers_for(used_by: str) -> tuple[str, ...]:
     return tuple(name for use, name in DRIVERS if use == used_by)
 
 
-def _of(drivers: Iterable[D], used_by: str, wiring: Wiring) -> D:
-    """Return the driver of a wiring. Raises LookupError where there is none."""
-    for each in drivers:
-        if (each.used_by, each.name) == (used_by, wiring.driver):
-            return each
-    raise LookupError(f"robots/drivers has no driver {wiring.driver} for {used_by}")
-
-
 def driver_of(used_by: str, wiring: Wiring) -> Driver:
-    return _of(DRIVERS.values(), used_by, wiring)
+    """Return the driver of a wiring. Raises LookupError where no file has it."""
+    found = DRIVERS.get((used_by, wiring.driver))
+    if found is None:
+        raise LookupError(f"robots/drivers has no driver {wiring.driver} for {used_by}")
+    return found
 
 
 def motors_of(wiring: Wiring) -> MotorDriver:
-    return _of(motors.DRIVERS, "motors", wiring)
+    """Return the driver of a robot's motors. Raises LookupError where no file has it."""
+    found = driver_of("motors", wiring)
+    assert isinstance(found, MotorDriver)
+    return found
 
 
 def discs_of(wiring: Wiring) -> DiscDriver:
-    return _of(discs.DRIVERS, "discs", wiring)
+    """Return the driver of the discs on a robot's wheels. Raises LookupError where there is none."""
+    found = driver_of("discs", wiring)
+    assert isinstance(found, DiscDriver)
+    return found
 
 
 def sensor_of(kind: str, wiring: Wiring) -> SensorDriver:
-    return _of(sensors.DRIVERS, f"sensors {kind}", wiring)
+    """Return the driver of a sensor of a kind. Raises LookupError where no file has it."""
+    found = driver_of(f"sensors {kind}", wiring)
+    assert isinstance(found, SensorDriver)
+    return found
 
 
 def actuator_of(kind: str, wiring: Wiring) -> ActuatorDriver:
-    return _of(actuators.DRIVERS, f"actuators {kind}", wiring)
+    """Return the driver of an actuator of a kind. Raises LookupError where no file has it."""
+    found = driver_of(f"actuators {kind}", wiring)
+    assert isinstance(found, ActuatorDriver)
+    return found

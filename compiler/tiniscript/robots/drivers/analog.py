@@ -1,0 +1,95 @@
+"""A voltage that the board measures: a light sensor, a battery, a module with three pins."""
+
+from __future__ import annotations
+
+import re
+
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import Device
+from tiniscript.base.words import concept_of
+from tiniscript.robots.driver import (
+    FULL_COUNT,
+    MOTOR_BATTERY,
+    PULL_DOWN,
+    Part,
+    PinKey,
+    Plan,
+    SensorDriver,
+    Setting,
+    Shape,
+    Terminal,
+    in_limits,
+    module,
+    photoresistor,
+)
+from tiniscript.robots.profile import Wiring
+
+
+class Analog(SensorDriver):
+    """`zero` and `full` are the values at 0 V and at the highest voltage, in thousandths.
+
+    0 and 1023 keep the raw reading.
+    """
+
+    name = "analog"
+    profile = "pin; zero and full: what 0 V and the highest voltage mean (0 and 1023)"
+    used_by = "sensors number"
+    pins = (PinKey("pin", "analog"),)
+    settings = (
+        Setting("zero", "number", 0, -1_000_000_000, 1_000_000_000),
+        Setting("full", "number", 1_023_000, -1_000_000_000, 1_000_000_000),
+    )
+
+    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+        zero, full = wiring.settings["zero"], wiring.settings["full"]
+        step, rest = divmod(full - zero, FULL_COUNT)
+        lowest, highest = sorted((zero, full))
+        return [
+            part.analog_read(wiring),
+            f"      *value = analog_scaled(*value, {zero}, {step}, {rest});",
+            *in_limits(device, lowest, highest),
+            "      return true;",
+        ]
+
+    def sketch(
+        self, plan: Plan, device: Device, wiring: Wiring, name: str, beside: str
+    ) -> list[str]:
+        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", beside)
+        if self.is_count(device, wiring):
+            return [f"{name} = analogRead({pin});"]
+        zero, full = wiring.settings["zero"], wiring.settings["full"]
+        step, rest = divmod(full - zero, FULL_COUNT)
+        lowest, highest = sorted((zero, full))
+        value = f"{zero} + $counted * {step} + ($counted * {rest} + 511) / {FULL_COUNT}"
+        if device.low <= lowest and highest <= device.high:
+            return [f"long $counted = analogRead({pin});", f"{name} = {plan.value(value)};"]
+        limits = f"constrain($value, {device.low}, {device.high})"
+        return [
+            f"long $counted = analogRead({pin});",
+            f"long $value = {value};",
+            f"{name} = {plan.value(limits)};",
+        ]
+
+    def is_count(self, device: Device, wiring: Wiring) -> bool:
+        is_plain = (wiring.settings["zero"], wiring.settings["full"]) == (0, FULL_COUNT * ONE)
+        return is_plain and device.low <= 0 and device.high >= FULL_COUNT * ONE
+
+    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
+        if sees == "light":
+            return photoresistor()
+        full = wiring.settings["full"]
+        if device and device.unit == "V" and wiring.settings["zero"] == 0 and full > pin_volts:
+            return _divided_voltage(device, full, pin_volts)
+        return module("OUT", "need_analog", "mind_analog")
+
+
+def _divided_voltage(device: Device, full: int, pin_volts: int) -> Shape:
+    """Two resistors: the lower one has what a pin takes when the whole has `full` thousandths."""
+    upper = f"{10 * (full - pin_volts) / pin_volts:g} kΩ"
+    is_battery = concept_of(re.split("[_0-9]", device.name)[0]) == "BATTERY"
+    name = MOTOR_BATTERY if is_battery else "what_is_measured"
+    source = Terminal(name, "pin", to_ground=PULL_DOWN, beyond=upper)
+    return Shape("voltage", "", (source,), notes=("mind_voltage",))
+
+
+DRIVER = Analog()

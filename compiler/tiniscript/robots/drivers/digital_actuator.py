@@ -1,0 +1,37 @@
+"""A pin that is set high or low: a lamp."""
+
+from __future__ import annotations
+
+from tiniscript.base.kit import Device
+from tiniscript.robots.driver import ActuatorDriver, Part, PinKey, Plan, Setting, Shape, lamp
+from tiniscript.robots.profile import Wiring
+
+
+class DigitalActuator(ActuatorDriver):
+    name = "digital"
+    profile = "pin; yes_is_low = true"
+    used_by = "actuators yes/no"
+    pins = (PinKey("pin", "output"),)
+    settings = (Setting("yes_is_low", "yes/no"),)
+
+    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+        pin, is_on_low = part.pins.pin(wiring.pins["pin"]), wiring.settings["yes_is_low"]
+        off = "true" if is_on_low else "false"
+        part.begin.append(f"begin_output({pin}, {off});")
+        part.off.append(f"write({pin}, {off});  // {device.name}")
+        condition = "value == 0" if is_on_low else "value != 0"
+        return [f"      write({pin}, {condition});", "      return;"]
+
+    def sketch(self, plan: Plan, device: Device, wiring: Wiring, function: str, beside: str) -> str:
+        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", beside)
+        on, off = ("LOW", "HIGH") if wiring.settings["yes_is_low"] else ("HIGH", "LOW")
+        plan.off.append(f"digitalWrite({pin}, {off});")
+        if off == "HIGH":  # before the pin is an output, so that the part stays off
+            plan.begin.insert(-1, f"digitalWrite({pin}, {off});")
+        return f"void {function}(bool isOn) {{\n  digitalWrite({pin}, isOn ? {on} : {off});\n}}"
+
+    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
+        return lamp(bool(wiring.settings.get("yes_is_low")))
+
+
+DRIVER = DigitalActuator()

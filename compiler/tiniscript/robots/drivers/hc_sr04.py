@@ -1,0 +1,74 @@
+"""The ultrasonic sensor HC-SR04. Its distances are thousandths of a centimetre."""
+
+from __future__ import annotations
+
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import Device
+from tiniscript.robots.driver import (
+    BOARD_5V,
+    GROUND,
+    Part,
+    PinKey,
+    Plan,
+    SensorDriver,
+    Shape,
+    Terminal,
+    in_limits,
+)
+from tiniscript.robots.profile import Wiring
+
+FARTHEST = 400 * ONE  # reading without an echo
+
+
+class HcSr04(SensorDriver):
+    name = "hc_sr04"
+    profile = "trigger, echo; in cm"
+    used_by = "sensors number"
+    pins = (PinKey("trigger", "output"), PinKey("echo", "echo"))
+    looks = Shape(
+        "sonar",
+        "need_hc_sr04",
+        (
+            Terminal("VCC", rail=BOARD_5V),
+            Terminal("TRIG", "trigger"),
+            Terminal("ECHO", "echo"),
+            Terminal("GND", rail=GROUND),
+        ),
+        "HC-SR04",
+        notes=("mind_hc_sr04",),
+        needs_5v=True,
+    )
+
+    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+        trigger = part.pins.pin(wiring.pins["trigger"])
+        part.begin.append(f"begin_output({trigger}, false);")
+        part.ultrasonics.append(f"{{{trigger}, {part.pins.echo(wiring.pins['echo'])}}}")
+        return [
+            f"      if (!ultrasonic_read({len(part.ultrasonics) - 1}, value)) return false;",
+            *in_limits(device, 0, FARTHEST),
+            "      return true;",
+        ]
+
+    def sketch(
+        self, plan: Plan, device: Device, wiring: Wiring, name: str, beside: str
+    ) -> list[str]:
+        trigger = f"{device.name}_$TRIGGER_$PIN"
+        plan.pin(trigger, wiring.pins["trigger"], "OUTPUT", beside)
+        echo = plan.pin(f"{device.name}_$ECHO_$PIN", wiring.pins["echo"], "INPUT")
+        drivers = [each.driver for each in plan.robot.board.sensors]
+        first, again, last = [], "", []
+        if drivers.count(self.name) > 1:
+            first = ["static unsigned long $own_ping = -60;"]
+            again = " && millis() - $own_ping < 58"
+            last = ["$own_ping = $last_ping;"]
+        farthest = min(FARTHEST, device.high)
+        return [
+            *first,
+            f"if (millis() - $last_ping < 30{again}) return {name};",
+            f"long $value = $ping_ms({trigger}, {echo}) * 4390UL >> 8;",
+            *last,
+            f"{name} = {plan.value(f'constrain($value, {max(0, device.low)}, {farthest})')};",
+        ]
+
+
+DRIVER = HcSr04()

@@ -1,0 +1,29 @@
+"""A slotted disc on each wheel and a sensor with one channel, as a FC-03 has."""
+
+from __future__ import annotations
+
+from tiniscript.robots.driver import BOARD_5V, GROUND, DiscDriver, Shape, Terminal
+
+
+class Slotted(DiscDriver):
+    name = "slotted"
+    profile = (
+        "left, right: pins that count, on an uno and a nano 2 and 3, on a mega also 18 to 21; "
+        "holes of a disc, 20; wheel_cm, the diameter of a wheel, 6.5"
+    )
+    looks = Shape(
+        "disc",
+        "need_slotted",
+        (
+            Terminal("left_d0", "left"),
+            Terminal("right_d0", "right"),
+            Terminal("VCC", rail=BOARD_5V),
+            Terminal("GND", rail=GROUND),
+        ),
+        "FC-03",
+        notes=("mind_slotted", "mind_no_text"),
+        checks=("check_slotted",),
+    )
+
+
+DRIVER = Slotted()
