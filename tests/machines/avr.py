@@ -24,7 +24,8 @@ UNO, NANO, MEGA = "uno", "nano", "mega"
 BUILT = {
     UNO: ("atmega328p", "-Dtiniscript_with_tasks"),
     NANO: ("atmega328p",),
-    MEGA: ("atmega2560",),
+    # some of the variables lie behind a border of 256 bytes
+    MEGA: ("atmega2560", "-Wl,--section-start=.data=0x8002d5"),
 }
 FLAGS = ("-std=c++11", "-Os", "-flto", "-fno-exceptions", "-fno-rtti")
 missing = avr_bench.missing

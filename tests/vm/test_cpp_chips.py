@@ -10,11 +10,14 @@ does 210,000 operations.
 from __future__ import annotations
 
 import random
+import re
 from functools import partial
+from pathlib import Path
 
 import pytest
 
 from tests.machines import Senses, avr
+from tests.machines import board as boards
 from tests.machines.chips import Chip
 from tests.machines.host import Ran, ran, run_request
 from tests.machines.python import ran_python
@@ -56,6 +59,7 @@ def some_chips(*names: str) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("chip", [pytest.param(n, marks=marks[n]) for n in names])
 
 
+VARIABLES_AT = 37  # bytes: where `execute_avr.h` says that the variables of a machine begin
 SENSORS = 3  # of the kit of code that no verifier accepts: there is room for that many
 # What the AVR does not look at: a statement on an empty stack empties it, the second of two values
 # that is not there means nothing, and so does what NEXT counts without a loop.
@@ -173,6 +177,19 @@ def test_loops_count_beyond_65535(chip: str) -> None:
         same_on_the_chip(chip, image, kit, Senses())
         got = avr.ran_on(chip, image, kit, Senses(), not_ready=2)
         assert got.trace == ran_python(image, kit, Senses()).trace, body
+
+
+@some_chips(avr.MEGA)
+def test_variables_behind_a_border_of_256_bytes(chip: str, tmp_path: Path) -> None:
+    """Some of those that short and long instructions use lie there, others before it."""
+    names = [f"V{k}" for k in range(8)]
+    text = "".join(f"{name} = {k}; {name} = {name} + 1; " for k, name in enumerate(names))
+    image = compile_text(text + "; ".join(f"SHOW({name})" for name in names), KITS[0][1]).image
+    assert same_on_the_chip(chip, image, KITS[0][1], Senses()) == "0 DONE"
+    (tmp_path / "program.elf").write_bytes(avr.program(chip))
+    symbols = boards.run("avr-nm", tmp_path / "program.elf")
+    (machine,) = re.findall(r"^(\S+) \S \S*7machineE", symbols, re.M)
+    assert 0 < -(int(machine, 16) + VARIABLES_AT) % 256 < 4 * len(names)
 
 
 @some_chips(avr.UNO)
