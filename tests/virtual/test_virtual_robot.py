@@ -289,7 +289,7 @@ def test_a_running_robot_goes_on_by_itself() -> None:
         asked += name == "run"
         return run_on(name, *values)
 
-    robot._firmware.call = counted  # type: ignore[method-assign]
+    robot._firmware.call = counted
     robot.step(robot.now_ms + 40_000)
     assert asked == 1
 

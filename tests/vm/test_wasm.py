@@ -144,6 +144,7 @@ def test_python_runs_without_wasmtime() -> None:
 
 
 WAT = """(module (import "" "look" (func $look)) (export "look" (func $look))
+  (memory (export "memory") 1)
   (func (export "sum") (param i64 i32) (result i64)
     (i64.add (local.get 0) (i64.extend_i32_s (local.get 1))))
   (func (export "negative") (param i32) (result i32) (i32.sub (i32.const 0) (local.get 0)))
@@ -154,9 +155,9 @@ WAT = """(module (import "" "look" (func $look)) (export "look" (func $look))
 def test_functions_are_called_alike_where_wasmtime_is_known_inside_or_not(
     is_known: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from wasmtime import Func, FuncType, Instance, Trap, _ffi
+    from wasmtime import Trap, _ffi
 
-    from tiniscript.vm import wasm_store
+    from tiniscript.vm.wasm_store import Instance
 
     def look() -> None:
         raise KeyError("seen")
@@ -164,14 +165,8 @@ def test_functions_are_called_alike_where_wasmtime_is_known_inside_or_not(
     if not is_known:
         monkeypatch.delattr(_ffi, "wasmtime_func_call_unchecked")
     (tmp_path / "module.wat").write_text(WAT, encoding="utf-8")
-    store = wasm_store.store()
-    imports = [Func(store, FuncType([], []), look)]
-    made = Instance(store, wasm_store.module(tmp_path / "module.wat"), imports).exports(store)
-    calls = {}
-    for name in ("sum", "negative", "look", "trap"):
-        function = made[name]
-        assert isinstance(function, Func)
-        calls[name] = wasm_store.called(store, function)
+    instance = Instance(tmp_path / "module.wat", {"look": look})
+    calls = instance.functions
     assert isinstance(calls["sum"], partial) != is_known
     assert calls["sum"](1 << 40, -1) == (1 << 40) - 1
     assert calls["negative"](1) == -1 and calls["negative"](-(1 << 31)) == -(1 << 31)
@@ -180,7 +175,7 @@ def test_functions_are_called_alike_where_wasmtime_is_known_inside_or_not(
     with pytest.raises(Trap, match="unreachable"):
         calls["trap"]()
     assert calls["sum"](-2, -3) == -5
-    store.close()
+    instance.close()
     with pytest.raises(ValueError, match="closed"):
         calls["negative"](1)
 

@@ -10,7 +10,6 @@ what a robot does in its world: a `Board` is told.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from struct import pack
 from typing import NamedTuple, Protocol
@@ -96,16 +95,11 @@ class Firmware:
         """Raises NoWebAssembly."""
         try:
             if sys.platform == "emscripten":  # in a page
-                from tiniscript.vm import page_wasm as wasm_store
-                from tiniscript.vm.page_wasm import Func, FuncType, Instance, Memory
+                from tiniscript.vm.page_wasm import Instance
             else:
-                from wasmtime import Func, FuncType, Instance, Memory
-
-                from tiniscript.vm import wasm_store
+                from tiniscript.vm.wasm_store import Instance
         except (ImportError, OSError, RuntimeError) as why:
             raise NoWebAssembly(str(why)) from None
-        self._store = wasm_store.store()
-        module = wasm_store.module(path)
         looks = WeakMethod(self._look)  # `wasm_store` says why
 
         def look_now() -> None:
@@ -113,32 +107,24 @@ class Firmware:
             assert look is not None, "switched off"
             look()
 
-        look = Func(self._store, FuncType([], []), look_now)
-        exports = Instance(self._store, module, [look]).exports(self._store)
-        self._functions: dict[str, Callable[..., int | None]] = {}
-        for each in module.exports:
-            found = exports[each.name]
-            if isinstance(found, Func):
-                self._functions[each.name] = wasm_store.called(self._store, found)
-        found = exports["memory"]
-        assert isinstance(found, Memory)
-        self._memory = found
+        self._instance = Instance(path, {"look": look_now})
+        self.call = self._instance.call
+        self._numbers = self._instance.numbers
         self._inbox, self._outbox = self.call("inbox"), self.call("outbox")
         self._room = self.call("box_bytes")
         self._eeprom, size = self.call("memory_at"), self.call("memory_bytes")
         self.memory_bytes = size
         self._waiting = bytearray()  # bytes behind those in the inbox
-        self._numbers = wasm_store.numbers(self._store, found)
         self._notes, self._noted = self.call("notes") // 4, self.call("noted") // 4
         self._reading = self.call("reading") // 4
         self.is_watched = False  # its program may be held
         self._told = [(getattr(board, name), count) for name, count in _WHAT]
         whole = ((memory or b"") + bytes(size).replace(b"\0", b"\xff"))[:size]
-        self._memory.write(self._store, whole, self._eeprom)
+        self._instance.write(whole, self._eeprom)
         hashes = pack(f"<{len(what.hashes)}H", *what.hashes)
-        self._memory.write(self._store, hashes, self.call("hashes"))
+        self._instance.write(hashes, self.call("hashes"))
         if len(what.words) <= self.call("word_bytes"):  # else it knows none of them
-            self._memory.write(self._store, what.words, self.call("words"))
+            self._instance.write(what.words, self.call("words"))
         self.call("begin", *map(int, what[2:]))
         self._look()
 
@@ -153,13 +139,13 @@ class Firmware:
             if self._waiting and not self.call("unheard"):
                 part = bytes(self._waiting[: self._room])
                 del self._waiting[: self._room]
-                self._memory.write(self._store, part, self._inbox)
+                self._instance.write(part, self._inbox)
                 self.call("put", len(part))
             has_more = bool(self._waiting)
             count = self.call("run", until_us, int(has_more))
             self._look()
             if count:
-                sent += self._memory.read(self._store, self._outbox, self._outbox + count)
+                sent += self._instance.read(self._outbox, self._outbox + count)
             if self.is_watched or has_more or count == self._room:  # it may have ended earlier
                 if self.call("now_us") < until_us and self.held_at is None:
                     continue
@@ -171,7 +157,7 @@ class Firmware:
         """Set the marks of the offsets of a program's code from 0 on: bits for each."""
         size = self.call("marks_bytes")
         whole = marks[:size] + bytes(size - len(marks[:size]))
-        self._memory.write(self._store, whole, self.call("marks"))
+        self._instance.write(whole, self.call("marks"))
 
     def want(self, bits: int) -> None:
         """Hold a program from now on in front of what has a mark with one of these bits."""
@@ -212,18 +198,12 @@ class Firmware:
 
     def memory(self) -> bytes:
         """Return the content of the EEPROM."""
-        end = self._eeprom + self.memory_bytes
-        return bytes(self._memory.read(self._store, self._eeprom, end))
-
-    def call(self, name: str, *values: int) -> int:
-        return int(self._functions[name](*values) or 0)
+        return self._instance.read(self._eeprom, self._eeprom + self.memory_bytes)
 
     def close(self) -> None:
         """Switch it off, and free its memory. It cannot run again."""
-        self._functions = {}
-        self._numbers.release()  # its memory is about to be freed
         self._told = []
-        self._store.close()
+        self._instance.close()
 
     def press(self) -> None:
         """The start button goes down."""

@@ -10,18 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 from struct import pack
-from types import TracebackType
-from typing import Any
 from weakref import ref
-
-from wasmtime import Func, FuncType, Instance, Memory
 
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import REFUSALS, ImageRefused
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.bytecode.verify import RULES, Refused
-from tiniscript.vm import wasm_store
 from tiniscript.vm.state import CLOCK_MS, DONE, FAULT, RUNNING, WAITING, Robot
+from tiniscript.vm.wasm_store import Instance
 
 MODULE = Path(__file__).with_name("machine.wasm")
 
@@ -50,8 +46,10 @@ class WasmImage:
         Raises ImageRefused or Refused with the name of the reason.
         """
         self.robot: Robot | None = None
-        self.exchange: memoryview[int] | None = None
-        self._store = wasm_store.store()
+        self._instance = Instance(MODULE, self._robot_functions())
+        self.call, self.tick = self._instance.call, self._instance.functions["tick"]
+        first = self.call("exchange") // 4
+        self.exchange = self._instance.numbers[first : first + _NUMBERS]
         try:
             self._load(data, kit)
         except BaseException:
@@ -59,22 +57,12 @@ class WasmImage:
             raise
 
     def _load(self, data: bytes, kit: Kit) -> None:
-        module = wasm_store.module(MODULE)
-        functions = self._robot_functions()
-        imports = [functions[each.name or ""] for each in module.imports]
-        self._exports = Instance(self._store, module, imports).exports(self._store)
         if len(data) > self.call("room_bytes"):
             raise ImageRefused("TRAILING")  # longer than any image
-        memory = self._exports["memory"]
-        assert isinstance(memory, Memory)
-        memory.write(self._store, data, self.call("room"))
-        first = self.call("exchange") // 4
-        numbers = wasm_store.numbers(self._store, memory)
-        self.exchange = numbers[first : first + _NUMBERS]
-        hashes = kit.hashes
-        memory.write(self._store, pack(f"<{len(hashes)}H", *hashes), self.call("hashes"))
-        speeds = pack("<II", kit.speed, kit.turn)
-        memory.write(self._store, speeds, self.call("speeds"))
+        write = self._instance.write
+        write(data, self.call("room"))
+        write(pack(f"<{len(kit.hashes)}H", *kit.hashes), self.call("hashes"))
+        write(pack("<II", kit.speed, kit.turn), self.call("speeds"))
         refusal = self.call("unpack", len(data))
         if refusal:
             raise ImageRefused(_REFUSAL_NAMES[refusal])
@@ -94,98 +82,65 @@ class WasmImage:
         """
         self.robot = robot
         self.call("start", sensors, seed, now_ms % CLOCK_MS)
-        assert self.exchange is not None, "the image is closed"
-        return WasmMachine(self, self.exchange, now_ms)
+        return WasmMachine(self, now_ms)
 
     def close(self) -> None:
         """Free its memory. It cannot be used again."""
-        if self.exchange is not None:
-            self.exchange.release()  # its memory is about to be freed
-            self.exchange = None
-        self._store.close()
+        self.exchange.release()  # its memory is about to be freed
+        self._instance.close()
 
     def __enter__(self) -> WasmImage:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        raised: BaseException | None,
-        where: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
-    def call(self, name: str, *values: int) -> int:
-        return int(self.function(name)(*values) or 0)
-
-    def function(self, name: str) -> Callable[..., Any]:
-        """Return an exported function, ready to call."""
-        function = self._exports[name]
-        assert isinstance(function, Func)
-        return wasm_store.called(self._store, function)
-
-    def _robot_functions(self) -> dict[str, Func]:
+    def _robot_functions(self) -> dict[str, Callable[[], None]]:
         """Return what the module imports: `robot.h`, under the names of `state.Robot`."""
         owner = ref(self)  # no more: else it would live for ever, `wasm_store` says why
 
-        def asked() -> tuple[Robot, memoryview[int]]:
-            image = owner()
-            assert image is not None and image.robot is not None, "nothing runs yet"
-            assert image.exchange is not None
-            return image.robot, image.exchange
+        def asking(ask: Callable[[Robot, memoryview[int]], object]) -> Callable[[], None]:
+            def asked() -> None:
+                image = owner()
+                assert image is not None and image.robot is not None, "nothing runs yet"
+                ask(image.robot, image.exchange)
 
-        def motors() -> None:
-            robot, numbers = asked()
-            robot.motors(numbers[_FIRST], numbers[_SECOND])
+            return asked
 
-        def off() -> None:
-            asked()[0].off()
-
-        def read() -> None:
-            robot, numbers = asked()
+        def read(robot: Robot, numbers: memoryview[int]) -> None:
             value = robot.read(numbers[_FIRST])
             numbers[_IS_ANSWERED] = value is not None
             numbers[_ANSWER] = value or 0
 
-        def beep() -> None:
-            robot, numbers = asked()
-            robot.beep(numbers[_FIRST], numbers[_SECOND])
-
-        def show() -> None:
-            robot, numbers = asked()
+        def show(robot: Robot, numbers: memoryview[int]) -> None:
             numbers[_IS_ANSWERED] = robot.show(numbers[_FIRST], bool(numbers[_SECOND]))
 
-        def set_actuator() -> None:
-            robot, numbers = asked()
-            robot.set(numbers[_FIRST], numbers[_SECOND])
-
-        table: dict[str, Callable[[], None]] = {
-            "motors": motors, "off": off, "read": read, "beep": beep, "show": show,
-            "set": set_actuator,
-        }  # fmt: skip
         return {
-            name: Func(self._store, FuncType([], []), function) for name, function in table.items()
+            "motors": asking(lambda robot, its: robot.motors(its[_FIRST], its[_SECOND])),
+            "off": asking(lambda robot, its: robot.off()),
+            "read": asking(read),
+            "beep": asking(lambda robot, its: robot.beep(its[_FIRST], its[_SECOND])),
+            "show": asking(show),
+            "set": asking(lambda robot, its: robot.set(its[_FIRST], its[_SECOND])),
         }
 
 
 class WasmMachine:
     """The same as `vm.Machine` from outside."""
 
-    def __init__(self, image: WasmImage, exchange: memoryview[int], now_ms: int) -> None:
+    def __init__(self, image: WasmImage, now_ms: int) -> None:
         self.status = RUNNING
         self.wake_ms = now_ms
         self.steps = 0  # instructions that have run
         self._image = image
-        self._exchange = exchange
-        self._tick = image.function("tick")
 
     def tick(self, now_ms: int, budget: int) -> str:
         """Run at most `budget` instructions at the time `now_ms`; return the status."""
         budget = min(budget, _BUDGET)
-        numbers = self._exchange
+        numbers = self._image.exchange
         numbers[_NOW_MS] = (now_ms + _HALF) % CLOCK_MS - _HALF
         numbers[_LEFT] = budget
-        self._tick()
+        self._image.tick()
         self.wake_ms = now_ms + ((numbers[_WAKE_MS] - now_ms + _HALF) % CLOCK_MS - _HALF)
         self.steps += budget - numbers[_LEFT]
         self.status = _STATUSES[numbers[_STATUS]]
