@@ -199,7 +199,7 @@ class Handshake:
         return reply
 
     def start(self, is_detached: bool) -> Exchange[ReceiptReply]:
-        return (yield from requests.start(is_detached, self._state.is_latched))
+        return requests.start(is_detached, self._state.is_latched)
 
     def live(self, code: bytes, kit: int) -> Exchange[ReceiptReply]:
         robot = yield from self._speak_for(kit)
@@ -259,10 +259,10 @@ EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
     "disown": Handshake.disown,
     "hold_back": Handshake.hold_back,
     "allow_text": Handshake.allow_text,
-    "wifi": lambda its: wifi.tell(),
+    "wifi": lambda its: wifi.tell("TELL"),
     "join": lambda its, network: wifi.give(network),
     "forget_wifi": lambda its: wifi.forget(),
-    "broker": lambda its: wifi.tell_broker(),
+    "broker": lambda its: wifi.tell("TELL_BROKER"),
     "use_broker": lambda its, broker: wifi.use_broker(broker),
 }
 NEED_NO_HELLO = ("ping", "status", "fetch")

@@ -180,12 +180,8 @@ def live(code: bytes, is_latched: bool, kit: int, robot: DeviceInfo) -> Exchange
         return Reply(STATUSES["TOO_LARGE"], short_bytes(robot))
     if kit not in (0, robot.kit):
         return Reply(STATUSES["WRONG_KIT"], robot.kit)
-    if is_latched:
-        cleared = yield from clear()
-        if cleared.status != OK:
-            return refused(cleared)
     request = Request("LIVE", {"mode": RUN, "code": code})
-    reply = yield from patient(request, ReceiptReply)
+    reply = yield from _unlatched(is_latched, patient(request, ReceiptReply))
     is_older = robot.isa < (ISA_MAJOR, ISA_MINOR)
     if is_older and reply.status == RULES["UNKNOWN_OPCODE"][0]:  # LIVE names no version
         return _other_machine(robot)
@@ -198,17 +194,22 @@ def _other_machine(robot: DeviceInfo) -> Reply[Any]:
 
 def clear() -> Exchange[EmptyReply]:
     """Release the latch."""
-    return (yield from single(Request("CLEAR"), EmptyReply))
+    return single(Request("CLEAR"), EmptyReply)
 
 
 def start(is_detached: bool, is_latched: bool) -> Exchange[ReceiptReply]:
     """Start the program that the robot holds."""
+    request = Request("START", {"mode": DETACHED * is_detached})
+    return _unlatched(is_latched, patient(request, ReceiptReply))
+
+
+def _unlatched(is_latched: bool, exchange: Exchange[T]) -> Exchange[T]:
+    """Release the latch, if a stop has set it, before an exchange."""
     if is_latched:
         cleared = yield from clear()
         if cleared.status != OK:
             return refused(cleared)
-    request = Request("START", {"mode": DETACHED * is_detached})
-    return (yield from patient(request, ReceiptReply))
+    return (yield from exchange)
 
 
 def mode_of(image: Image, runs: bool, saves: bool, is_detached: bool) -> int:
@@ -229,16 +230,12 @@ def upload(
         return _other_machine(robot)
     if len(image.later) + len(image.code) > robot.room:
         return Reply(STATUSES["TOO_LARGE"], robot.room)
-    if is_latched:
-        cleared = yield from clear()
-        if cleared.status != OK:
-            return refused(cleared)
     is_short = len(image.code) <= short_bytes(robot) and image.isa == isa and not image.later
     if is_short and is_its_kit:
         request = Request("PROGRAM", {"mode": mode, "code": image.code})
-        reply = yield from patient(request, ReceiptReply)
+        reply = yield from _unlatched(is_latched, patient(request, ReceiptReply))
     else:
-        reply = yield from _in_pieces(image, mode, robot)
+        reply = yield from _unlatched(is_latched, _in_pieces(image, mode, robot))
         if not is_its_kit and reply.status == RULES["NO_SUCH_DEVICE"][0]:
             return Reply(STATUSES["WRONG_KIT"], robot.kit)
     if reply.status == OK and reply.values.program != image.checksum:

@@ -86,8 +86,9 @@ def is_class(name: str) -> bool:
     return re.fullmatch(rf"[a-z0-9-]{{1,{CLASS_BYTES}}}", name) is not None
 
 
-def tell() -> Exchange[WifiReply]:
-    return requests.single(_request("TELL"), WifiReply)
+def tell(step: str) -> Exchange[WifiReply]:
+    """TELL: ask what the WiFi is set to; TELL_BROKER: what the broker is."""
+    return requests.single(_request(step), WifiReply)
 
 
 def forget() -> Exchange[WifiReply]:
@@ -97,11 +98,7 @@ def forget() -> Exchange[WifiReply]:
 def give(network: Network) -> Exchange[WifiReply]:
     """Give the robot a network, in the parts that find room in a frame, and have it kept."""
     steps = [_request("NETWORK", network.name), *_parts("PASSWORD", network.password)]
-    return (yield from _given(steps, "HOST" if network.is_access_point else "JOIN"))
-
-
-def tell_broker() -> Exchange[WifiReply]:
-    return requests.single(_request("TELL_BROKER"), WifiReply)
+    return _given(steps, "HOST" if network.is_access_point else "JOIN")
 
 
 def use_broker(broker: BrokerSettings | None) -> Exchange[WifiReply]:
@@ -114,7 +111,7 @@ def use_broker(broker: BrokerSettings | None) -> Exchange[WifiReply]:
         if broker.tls is not None:
             steps.append(_request("BROKER_TLS", broker.tls.date.to_bytes(4, "little")))
             steps += _parts("BROKER_TRUST", broker.tls.trust)
-    return (yield from _given(steps, "USE_BROKER"))
+    return _given(steps, "USE_BROKER")
 
 
 def address(reply: WifiReply) -> str:

@@ -99,34 +99,22 @@ def message_of(line: bytes) -> JsonMessage:
     return found
 
 
-def word(message: JsonMessage, name: str) -> str:
-    """Return a field of text. Raises BadMessage where it is something else."""
+def field(message: JsonMessage, name: str, kind: type[T]) -> T:
+    """Return a field of this kind. Raises BadMessage where it is something else."""
     found = message.get(name)
-    if not isinstance(found, str):
+    if type(found) is not kind:  # True is no whole number
         raise BadMessage
     return found
 
 
 def number(message: JsonMessage, name: str) -> int:
-    """Return a field that is a whole number. Raises BadMessage where it is something else."""
-    found = message.get(name)
-    if type(found) is not int:
-        raise BadMessage
-    return found
-
-
-def answer(message: JsonMessage, name: str) -> bool:
-    """Return a field that is true or false. Raises BadMessage where it is something else."""
-    found = message.get(name)
-    if type(found) is not bool:
-        raise BadMessage
-    return found
+    return field(message, name, int)
 
 
 def data(message: JsonMessage, name: str) -> bytes:
     """Return a field of bytes in hex. Raises BadMessage where it is something else."""
     try:
-        return bytes.fromhex(word(message, name))
+        return bytes.fromhex(field(message, name, str))
     except ValueError:
         raise BadMessage from None
 
@@ -161,7 +149,7 @@ def reply(message: JsonMessage, kind: type[T]) -> Reply[T]:
 def event(message: JsonMessage) -> tuple[int, Event]:
     """Return the time (ms) and the event of a message. Raises BadMessage."""
     try:
-        return number(message, "ms"), event_of(word(message, "event"), values(message))
+        return number(message, "ms"), event_of(field(message, "event", str), values(message))
     except Malformed:
         raise BadMessage from None
 

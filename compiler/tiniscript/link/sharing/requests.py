@@ -61,7 +61,7 @@ def _fields(given: Mapping[str, object]) -> JsonMessage:
 
 def asked_for(message: JsonMessage, limit_ms: int) -> Callable[[Requester], PendingRequest[Any]]:
     """Return the function that makes a message's request to a session. Raises BadMessage."""
-    name = protocol.word(message, "do")
+    name = protocol.field(message, "do", str)
     if name not in _GIVEN:
         raise BadMessage
     given = _GIVEN[name](message)
@@ -113,7 +113,7 @@ def _network(message: JsonMessage) -> Network:
         raise BadMessage
     if not LEAST_PASSWORD <= len(password) <= PASSWORD_BYTES or b"\0" in name + password:
         raise BadMessage
-    return Network(name, password, protocol.answer(message, "is_access_point"))
+    return Network(name, password, protocol.field(message, "is_access_point", bool))
 
 
 def _broker(message: JsonMessage) -> BrokerSettings | None:
@@ -125,7 +125,7 @@ def _broker(message: JsonMessage) -> BrokerSettings | None:
     broker = BrokerSettings(
         protocol.data(message, "address"),
         protocol.number(message, "port"),
-        protocol.word(message, "group"),
+        protocol.field(message, "group", str),
         protocol.data(message, "user"),
         protocol.data(message, "password"),
         protocol.data(message, "name"),
@@ -137,7 +137,7 @@ def _broker(message: JsonMessage) -> BrokerSettings | None:
 
 
 def _image(message: JsonMessage) -> Image:
-    start = protocol.word(message, "start")
+    start = protocol.field(message, "start", str)
     code, isa, later = (protocol.data(message, name) for name in ("code", "isa", "later"))
     devices, checksum = protocol.number(message, "devices"), protocol.number(message, "checksum")
     is_sound = start in STARTS[:2] and len(code) <= CODE_BYTES and len(isa) == 2
@@ -152,7 +152,7 @@ def _image(message: JsonMessage) -> Image:
 
 
 def _upload(message: JsonMessage) -> tuple[object, ...]:
-    flags = (protocol.answer(message, name) for name in ("runs", "saves", "is_detached"))
+    flags = (protocol.field(message, name, bool) for name in ("runs", "saves", "is_detached"))
     return (_image(message), *flags, _kit(message))
 
 
@@ -166,8 +166,8 @@ _GIVEN: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
     "trim": lambda message: (_trim(message),),
     "claim": lambda message: (_which(message),),
     "disown": lambda message: (_which(message),),
-    "allow_text": lambda message: (protocol.answer(message, "is_allowed"),),
-    "start": lambda message: (protocol.answer(message, "is_detached"),),
+    "allow_text": lambda message: (protocol.field(message, "is_allowed", bool),),
+    "start": lambda message: (protocol.field(message, "is_detached", bool),),
     "live": lambda message: (protocol.data(message, "code"), _kit(message)),
     "upload": _upload,
     "join": lambda message: (_network(message),),

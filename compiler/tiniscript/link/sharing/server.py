@@ -216,7 +216,7 @@ class Server:
             self._drop(client)
 
     def _take(self, client: ConnectedClient, message: JsonMessage) -> None:
-        action = protocol.word(message, "do")
+        action = protocol.field(message, "do", str)
         if action == "stop":
             self._line.stop()
         elif action == "beat":

@@ -140,7 +140,7 @@ class SharedConnection(LinkConnection):
     def _take(self, message: JsonMessage) -> None:
         if "over" in message:
             is_server = message["over"] != "gone"
-            self._over = ConnectionLost(protocol.word(message, "why"), is_server)
+            self._over = ConnectionLost(protocol.field(message, "why", str), is_server)
         elif "event" in message:
             self._events.append(protocol.event(message))
         elif "id" in message:
@@ -155,7 +155,7 @@ class SharedConnection(LinkConnection):
             request.done_bytes = protocol.number(message, "done_bytes")
             return
         self.heard = protocol.number(message, "heard")
-        self.is_echoed = protocol.answer(message, "is_echoed")
+        self.is_echoed = protocol.field(message, "is_echoed", bool)
         self._boot = protocol.number(message, "boot")
         reply = protocol.reply(message, request.kind)
         request.outcome = reply
@@ -202,9 +202,9 @@ def _joined(registration: Registration, verb: str) -> SharedConnection | None:
         )
         rest = protocol.MessageReader(protocol.LINE_BYTES)
         found = _first(peer, rest)
-        if protocol.word(found[0], "answer") != registration.answer:
+        if protocol.field(found[0], "answer", str) != registration.answer:
             raise BadMessage  # another program listens there now
-        version = protocol.word(found[0], "tsc")
+        version = protocol.field(found[0], "tsc", str)
         if version != __version__ and verb != "stop":
             raise OtherVersion(registration, version)
         client = SharedConnection(peer, registration, rest)
