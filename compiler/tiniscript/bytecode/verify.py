@@ -10,6 +10,7 @@ in C++. Same names, same order, same verdict at the same offset: change all thre
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple, NoReturn
 
 from tiniscript.base.kit import Kit
@@ -171,7 +172,7 @@ class _Verifier:
             self.operands(op)
             self.stack(op)
             self.place(op)
-            _STEP_OF[op.control_role](self)
+            _STEPS[op.control_role](self)
             self.at = self.after
         self.arrive()
         self.finish()
@@ -327,12 +328,6 @@ class _Verifier:
 
     # -- a step for each role -----------------------------------------------------------------
 
-    def end(self) -> None:
-        self.refuse("BAD_END")
-
-    def value(self) -> None:
-        pass
-
     def join(self) -> None:
         if len(self.joins) == JOINS:
             self.refuse("TOO_DEEP")
@@ -342,25 +337,13 @@ class _Verifier:
             self.refuse("BAD_TARGET")
         self.joins.append(_Join(self.target, self.depth + 1))
 
-    def read(self) -> None:
-        pass
-
-    def until(self) -> None:
-        self.end_check(_UNTIL)
-
-    def look(self) -> None:
-        self.end_check(_WHEN)
+    def watch(self) -> None:
+        self.check = _UNTIL
 
     def end_check(self, whose: str) -> None:
         if self.check != whose:
             self.refuse("NOT_OPEN")
         self.check = ""
-
-    def plain(self) -> None:
-        pass
-
-    def watch(self) -> None:
-        self.check = _UNTIL
 
     def if_(self) -> None:
         if self.innermost == _REPEAT and self.target == self.blocks[-1].end:
@@ -373,41 +356,10 @@ class _Verifier:
         self.blocks.pop()
         self.open(_IF, self.target)
 
-    def forever(self) -> None:
-        self.open(_REPEAT, 0)
-
-    def count(self) -> None:
-        self.open(_COUNT, 0)
-
-    def while_(self) -> None:
-        self.open(_REPEAT, self.target)
-
-    def loop(self) -> None:
-        self.open(_COUNT, self.target)
-
-    def again(self) -> None:
-        self.close(_REPEAT)
-
-    def next(self) -> None:
-        self.close(_COUNT)
-
-    def break_(self) -> None:
-        self.leave(_REPEAT)
-
-    def drop(self) -> None:
-        self.leave(_COUNT)
-
-    def def_(self) -> None:
-        self.begin(_DEF, len(self.closed) == DEFS, "TOO_MANY_DEFS")
-
-    def task(self) -> None:
-        self.begin(_TASK, len(self.tasks) > TASKS, "TOO_MANY_TASKS")
+    def task(self, kind: str) -> None:
+        self.begin(kind, len(self.tasks) > TASKS, "TOO_MANY_TASKS")
         self.tasks.append(self.routine)
-
-    def when(self) -> None:
-        self.begin(_WHEN, len(self.tasks) > TASKS, "TOO_MANY_TASKS")
-        self.tasks.append(self.routine)
-        self.check = _WHEN
+        self.check = _WHEN if kind == _WHEN else ""
 
     def begin(self, kind: str, is_one_too_many: bool, rule: str) -> None:
         """Open a routine."""
@@ -416,15 +368,6 @@ class _Verifier:
         if is_one_too_many:
             self.refuse(rule)
         self.routine = _Routine(kind, self.after, self.target)
-
-    def return_(self) -> None:
-        self.closed.append(self.ended(_DEF))
-
-    def end_task(self) -> None:
-        self.ended(_TASK)
-
-    def end_when(self) -> None:
-        self.ended(_WHEN)
 
     def ended(self, kind: str) -> _Routine:
         """Close the open routine, and return it."""
@@ -444,11 +387,34 @@ class _Verifier:
         self.opens(self.counters + called.counters, called.calls + 1)
 
 
+_STEPS: dict[str, Callable[[_Verifier], object]] = {
+    "end": lambda it: it.refuse("BAD_END"),
+    **dict.fromkeys(("value", "read", "plain"), lambda it: None),
+    "join": _Verifier.join,
+    "until": lambda it: it.end_check(_UNTIL),
+    "watch": _Verifier.watch,
+    "if": _Verifier.if_,
+    "else": _Verifier.else_,
+    "forever": lambda it: it.open(_REPEAT, 0),
+    "count": lambda it: it.open(_COUNT, 0),
+    "while": lambda it: it.open(_REPEAT, it.target),
+    "loop": lambda it: it.open(_COUNT, it.target),
+    "again": lambda it: it.close(_REPEAT),
+    "next": lambda it: it.close(_COUNT),
+    "break": lambda it: it.leave(_REPEAT),
+    "drop": lambda it: it.leave(_COUNT),
+    "call": _Verifier.call,
+    "def": lambda it: it.begin(_DEF, len(it.closed) == DEFS, "TOO_MANY_DEFS"),
+    "return": lambda it: it.closed.append(it.ended(_DEF)),
+    "task": lambda it: it.task(_TASK),
+    "end_task": lambda it: it.ended(_TASK),
+    "when": lambda it: it.task(_WHEN),
+    "end_when": lambda it: it.ended(_WHEN),
+    "look": lambda it: it.end_check(_WHEN),
+}
+assert _STEPS.keys() == CONTROL_ROLES.keys()
 _IN_EXPRESSIONS = ("end", "value", "join")
 _IN_CHECKS = ("read", "until", "look")
-_STEP_OF = {
-    role: getattr(_Verifier, role, None) or getattr(_Verifier, role + "_") for role in CONTROL_ROLES
-}
 
 
 def loaded(data: bytes, kit: Kit, has: int = EVERYTHING) -> Image:
