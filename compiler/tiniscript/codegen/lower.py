@@ -23,30 +23,7 @@ from tiniscript.codegen.lower_expression import (
     stops,
     tests,
 )
-from tiniscript.semantics.ir import (
-    Assign,
-    Beep,
-    Body,
-    Break,
-    Call,
-    Expression,
-    If,
-    Loop,
-    Motors,
-    Move,
-    Procedure,
-    Program,
-    Read,
-    Set,
-    Show,
-    Statement,
-    Stop,
-    Task,
-    Term,
-    Until,
-    While,
-    goes_on,
-)
+from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import constant
 
 
@@ -64,13 +41,13 @@ class Lowered(NamedTuple):
     places: tuple[SourceLocation, ...]
 
 
-def lower(program: Program, plain: bool = False) -> Lowered:
+def lower(program: ir.Program, plain: bool = False) -> Lowered:
     """Return the code bytes of a program, and where in the text they come from.
 
     `plain` code is made from a program as it is written, not from an optimised one.
     """
     lowering = _Lowering(plain)
-    waiting: list[Procedure | Task] = [*program.procedures, *program.tasks]
+    waiting: list[ir.Procedure | ir.Task] = [*program.procedures, *program.tasks]
     if plain:
         waiting.sort(key=lambda each: each.span)
     waiting.reverse()
@@ -95,11 +72,11 @@ class _Lowering:
         self.entries: list[int] = []  # the label of each DEF's first instruction
         self.loops: list[_LoopEnd] = []
 
-    def routine(self, routine: Procedure | Task) -> None:
+    def routine(self, routine: ir.Procedure | ir.Task) -> None:
         out = self.out
         out.span = routine.span
         end = out.new_label()
-        if isinstance(routine, Procedure):
+        if isinstance(routine, ir.Procedure):
             out.add("DEF", to=end)
             self.entries.append(out.mark_here())
             last = "RETURN"
@@ -120,53 +97,53 @@ class _Lowering:
         for sensor in sensors:
             self.out.add("READ", sensor)
 
-    def body(self, body: Body) -> None:
+    def body(self, body: ir.Body) -> None:
         for statement in body:
             self.statement(statement)
 
-    def statement(self, statement: Statement) -> None:
+    def statement(self, statement: ir.Statement) -> None:
         out = self.out
         out.span = statement.span
-        if isinstance(statement, Read):
+        if isinstance(statement, ir.Read):
             out.add("READ", statement.sensor)
-        elif isinstance(statement, Move):
+        elif isinstance(statement, ir.Move):
             self.move(statement)
-        elif isinstance(statement, Stop):
+        elif isinstance(statement, ir.Stop):
             out.add("STOP")
-        elif isinstance(statement, Assign):
+        elif isinstance(statement, ir.Assign):
             self.assign(statement)
-        elif isinstance(statement, If):
+        elif isinstance(statement, ir.If):
             self.if_(statement)
-        elif isinstance(statement, Loop):
+        elif isinstance(statement, ir.Loop):
             self.loop(statement)
-        elif isinstance(statement, While):
+        elif isinstance(statement, ir.While):
             self.while_(statement)
-        elif isinstance(statement, Break):
+        elif isinstance(statement, ir.Break):
             loop = self.loops[-1]
             out.add("BREAK_LOOP" if loop.counts else "BREAK", to=loop.label)
-        elif isinstance(statement, Call):
+        elif isinstance(statement, ir.Call):
             out.add("CALL", to=self.entries[statement.procedure])
-        elif isinstance(statement, Motors):
+        elif isinstance(statement, ir.Motors):
             self.motors(statement)
-        elif isinstance(statement, Beep):
+        elif isinstance(statement, ir.Beep):
             self.beep(statement)
-        elif isinstance(statement, Show):
+        elif isinstance(statement, ir.Show):
             add_value(out, statement.value)
             out.add("SHOW_YES_NO" if statement.is_yes_no else "SHOW")
-        elif isinstance(statement, Set):
+        elif isinstance(statement, ir.Set):
             add_value(out, statement.value)
             out.add("SET", statement.actuator)
 
     # -- moves --------------------------------------------------------------------------------
 
-    def move(self, move: Move) -> None:
+    def move(self, move: ir.Move) -> None:
         out = self.out
         time = None if move.time is None else self.at_least_0(move.time)
         power = None if move.power is None else self.percentage(move.power, 0)
         name = "WAIT" if power is None else move.direction
         until = move.until
         if until is None and time is None:  # a move for ever, beside other tasks
-            until = Until((), (Term("YES_NO", 0),))
+            until = ir.Until((), (ir.Term("YES_NO", 0),))
         if until is None and time is not None and not move.unit:
             time_ms = self.fixed(time)
             byte = None if time_ms is None else time8(time_ms)
@@ -187,7 +164,7 @@ class _Lowering:
         self.reads(until.reads)
         stops(out, until.condition)
 
-    def beep(self, beep: Beep) -> None:
+    def beep(self, beep: ir.Beep) -> None:
         time_ms, hertz = self.fixed(self.at_least_0(beep.time)), self.fixed(beep.hertz)
         byte = None if time_ms is None else time8(time_ms)
         if byte is not None and hertz is not None:
@@ -197,7 +174,7 @@ class _Lowering:
         add_value(self.out, beep.hertz)
         self.out.add("BEEP")
 
-    def motors(self, motors: Motors) -> None:
+    def motors(self, motors: ir.Motors) -> None:
         left, right = self.percentage(motors.left, -100), self.percentage(motors.right, -100)
         left_value, right_value = self.fixed(left), self.fixed(right)
         if left_value is not None and right_value is not None:
@@ -209,7 +186,7 @@ class _Lowering:
 
     # -- variables ----------------------------------------------------------------------------
 
-    def assign(self, assign: Assign) -> None:
+    def assign(self, assign: ir.Assign) -> None:
         """`X = 5`, `X = X + 5`, `X = X + Y` have instructions of their own."""
         out, variable, value = self.out, assign.variable, assign.value
         if not self.plain and self.assigned_at_once(variable, value):
@@ -217,7 +194,7 @@ class _Lowering:
         add_value(out, value)
         out.add("SET_VAR", variable)
 
-    def assigned_at_once(self, variable: int, value: Expression) -> bool:
+    def assigned_at_once(self, variable: int, value: ir.Expression) -> bool:
         """Add the one instruction that does it; return whether there is one."""
         out = self.out
         if len(value) == 1 and value[0].op == "NUMBER":
@@ -246,7 +223,7 @@ class _Lowering:
 
     # -- blocks -------------------------------------------------------------------------------
 
-    def if_(self, statement: If) -> None:
+    def if_(self, statement: ir.If) -> None:
         out = self.out
         end = out.new_label()
         for k, arm in enumerate(statement.arms):
@@ -258,13 +235,13 @@ class _Lowering:
             tests(out, arm.condition, following)
             self.body(arm.body)
             if not is_last:
-                if self.plain or goes_on(arm.body):
+                if self.plain or ir.goes_on(arm.body):
                     out.add("ELSE", to=end)
                 out.mark(following)
         self.body(statement.otherwise)
         out.mark(end)
 
-    def loop(self, loop: Loop) -> None:
+    def loop(self, loop: ir.Loop) -> None:
         out = self.out
         end = out.new_label()
         if loop.times is None:
@@ -279,7 +256,7 @@ class _Lowering:
                 out.add("LOOP", to=end)
         self.repeated(loop.body, end, loop.times is not None, loop.span)
 
-    def while_(self, loop: While) -> None:
+    def while_(self, loop: ir.While) -> None:
         out = self.out
         end = out.new_label()
         out.add("WHILE", to=end)
@@ -289,7 +266,7 @@ class _Lowering:
         self.repeated(loop.body, end, False, loop.span, start)
 
     def repeated(
-        self, body: Body, end: int, counts: bool, span: Span, start: int | None = None
+        self, body: ir.Body, end: int, counts: bool, span: Span, start: int | None = None
     ) -> None:
         """Add a loop's body, the jump back to `start` (here if None) and the label `end`."""
         out = self.out
@@ -304,15 +281,15 @@ class _Lowering:
 
     # -- numbers that the text says -----------------------------------------------------------
 
-    def fixed(self, expression: Expression) -> int | None:
+    def fixed(self, expression: ir.Expression) -> int | None:
         """Return the value that an operand may hold; in plain code numbers are pushed."""
         return None if self.plain else constant(expression)
 
-    def at_least_0(self, time: Expression) -> Expression:
+    def at_least_0(self, time: ir.Expression) -> ir.Expression:
         value = self.fixed(time)
         return (time[0]._replace(value=0),) if value is not None and value < 0 else time
 
-    def percentage(self, power: Expression, low: int) -> Expression:
+    def percentage(self, power: ir.Expression, low: int) -> ir.Expression:
         value = self.fixed(power)
         if value is None:
             return power

@@ -10,22 +10,7 @@ from typing import NamedTuple
 
 from tiniscript.base.fixed_point import Fault, whole
 from tiniscript.base.kit import Kit
-from tiniscript.semantics.ir import (
-    Beep,
-    Body,
-    Call,
-    Expression,
-    If,
-    Loop,
-    Move,
-    Program,
-    Statement,
-    Stop,
-    While,
-    bodies,
-    loops_end,
-    walk,
-)
+from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import constant, fold
 from tiniscript.semantics.ways import way_ms
 
@@ -45,7 +30,7 @@ _NONE = Duration(0, 0)
 _UNKNOWN = Duration(0, None)
 
 
-def duration(program: Program, kit: Kit) -> Duration:
+def duration(program: ir.Program, kit: Kit) -> Duration:
     """Return how long `program`, best an optimised one, runs.
 
     Of several tasks it is known how long they run where no more than one moves: a move waits for
@@ -67,7 +52,7 @@ def duration(program: Program, kit: Kit) -> Duration:
 class _Durations:
     """Those of the bodies of one program."""
 
-    def __init__(self, program: Program, kit: Kit) -> None:
+    def __init__(self, program: ir.Program, kit: Kit) -> None:
         self.kit = kit
         self.turn_ms = 1 if program.tasks else 0  # what a turn of a loop takes that has no wait
         self.known: list[Duration] = []
@@ -75,16 +60,16 @@ class _Durations:
         for procedure in program.procedures:
             self.known.append(self.of(procedure.body))
 
-    def drives(self, body: Body) -> bool:
+    def drives(self, body: ir.Body) -> bool:
         """Whether a body has a move or an S, or calls something that has one."""
         return any(
-            isinstance(each, Stop)
-            or (isinstance(each, Move) and each.power is not None)
-            or (isinstance(each, Call) and self.drives(self.procedures[each.procedure].body))
-            for each in walk(body)
+            isinstance(each, ir.Stop)
+            or (isinstance(each, ir.Move) and each.power is not None)
+            or (isinstance(each, ir.Call) and self.drives(self.procedures[each.procedure].body))
+            for each in ir.walk(body)
         )
 
-    def of(self, body: Body) -> Duration:
+    def of(self, body: ir.Body) -> Duration:
         least, most = 0, 0
         for statement in body:
             this = self.statement(statement)
@@ -97,27 +82,27 @@ class _Durations:
                 most += this.most
         return Duration(least, None if most < 0 else most)
 
-    def statement(self, statement: Statement) -> Duration:
-        if isinstance(statement, Move):
+    def statement(self, statement: ir.Statement) -> Duration:
+        if isinstance(statement, ir.Move):
             if statement.time is None and statement.until is None:
                 return Duration(0, None, True)
             longest = self.way(statement) if statement.unit else _time(statement.time)
             return longest if statement.until is None else Duration(0, longest.most)
-        if isinstance(statement, Beep):
+        if isinstance(statement, ir.Beep):
             return _time(statement.time)
-        if isinstance(statement, Call):
+        if isinstance(statement, ir.Call):
             return self.known[statement.procedure]
-        if isinstance(statement, If):
-            arms = [self.of(body) for body in bodies(statement)]
+        if isinstance(statement, ir.If):
+            arms = [self.of(body) for body in ir.bodies(statement)]
             bounds = [arm.most for arm in arms if arm.most is not None]
             most = max(bounds) if len(bounds) == len(arms) else None
             never_ends = all(arm.never_ends for arm in arms)
             return Duration(min(arm.least for arm in arms), most, never_ends)
-        if isinstance(statement, (Loop, While)):
+        if isinstance(statement, (ir.Loop, ir.While)):
             return self.loop(statement)
         return _NONE
 
-    def way(self, move: Move) -> Duration:
+    def way(self, move: ir.Move) -> Duration:
         """How long a move takes by its way; one that faults ends the program."""
         try:
             time_ms = way_ms(move, self.kit)
@@ -125,23 +110,23 @@ class _Durations:
             time_ms = None
         return _UNKNOWN if time_ms is None else Duration(time_ms, time_ms)
 
-    def loop(self, loop: Loop | While) -> Duration:
+    def loop(self, loop: ir.Loop | ir.While) -> Duration:
         body = self.of(loop.body)
-        if isinstance(loop, Loop) and loop.times is None:
-            return _UNKNOWN if loops_end(loop.body) else Duration(0, None, True)
-        value = None if isinstance(loop, While) or loop.times is None else fold(loop.times)
+        if isinstance(loop, ir.Loop) and loop.times is None:
+            return _UNKNOWN if ir.loops_end(loop.body) else Duration(0, None, True)
+        value = None if isinstance(loop, ir.While) or loop.times is None else fold(loop.times)
         count = None if value is None else constant(value)
         if body.least == 0 and body.most is not None:
             body = body._replace(most=body.most + self.turn_ms)
         if count is None:
-            return _UNKNOWN if isinstance(loop, While) or body.most != 0 else _NONE
+            return _UNKNOWN if isinstance(loop, ir.While) or body.most != 0 else _NONE
         times = max(whole(count), 0)
-        if body.never_ends and times and not loops_end(loop.body):
+        if body.never_ends and times and not ir.loops_end(loop.body):
             return Duration(body.least, None, True)
         most = None if body.most is None else times * body.most
-        return Duration(0 if loops_end(loop.body) else times * body.least, most)
+        return Duration(0 if ir.loops_end(loop.body) else times * body.least, most)
 
 
-def _time(time: Expression | None) -> Duration:
+def _time(time: ir.Expression | None) -> Duration:
     value = None if time is None else constant(fold(time))
     return _UNKNOWN if value is None else Duration(max(value, 0), max(value, 0))

@@ -15,42 +15,31 @@ from tiniscript.base.source import Source, Span
 from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.semantics.ir import (
-    Body,
-    Break,
-    If,
-    Loop,
-    Program,
-    Read,
-    Statement,
-    While,
-    bodies,
-    routines,
-)
+from tiniscript.semantics import ir
 
 _NOTE_BEHIND = re.compile(r"[ \t;]{0,99}//")
 MANY = 12  # instructions that an example has
 
 
-def empty_blocks(program: Program, source: Source) -> list[Diagnostic]:
+def empty_blocks(program: ir.Program, source: Source) -> list[Diagnostic]:
     """Return the warnings for a program that has no mistakes."""
-    rest = list(reversed(routines(program)))
+    rest = list(reversed(ir.routines(program)))
     found: list[Diagnostic] = []
     while rest:
         body = rest.pop()
         found += _empty_in(body, source)
-        rest += [inner for statement in body for inner in bodies(statement)]
+        rest += [inner for statement in body for inner in ir.bodies(statement)]
     return found
 
 
-def _empty_in(body: Body, source: Source) -> Iterator[Diagnostic]:
+def _empty_in(body: ir.Body, source: Source) -> Iterator[Diagnostic]:
     for k, statement in enumerate(body):
         if not _is_empty(statement):
             continue
         text = source[statement.span]
         if "//" in text or _NOTE_BEHIND.match(source.text, statement.span.end):
             continue
-        word = "IF" if isinstance(statement, If) else "LOOP"
+        word = "IF" if isinstance(statement, ir.If) else "LOOP"
         span = Span(statement.span.start, statement.span.start + _end_of_head(text))
         behind = _said(body[k + 1 :], source)
         before = [] if behind else _said(body[k - 1 :: -1] if k else (), source)[::-1]
@@ -74,15 +63,17 @@ def _end_of_head(text: str) -> int:
     return len(text)
 
 
-def _is_empty(statement: Statement) -> bool:
-    if isinstance(statement, Loop):
+def _is_empty(statement: ir.Statement) -> bool:
+    if isinstance(statement, ir.Loop):
         return statement.times is not None and not statement.body
-    if isinstance(statement, If):
+    if isinstance(statement, ir.If):
         return len(statement.arms) == 1 and not statement.arms[0].body and not statement.has_else
     return False
 
 
-def _said(statements: Sequence[Statement], source: Source) -> list[str]:
+def _said(statements: Sequence[ir.Statement], source: Source) -> list[str]:
     """Return the instructions at the beginning of a row that are no blocks, as written."""
-    plain = takewhile(lambda each: not isinstance(each, (If, Loop, While, Break)), statements)
-    return [source[each.span] for each in plain if not isinstance(each, Read)]
+    plain = takewhile(
+        lambda each: not isinstance(each, (ir.If, ir.Loop, ir.While, ir.Break)), statements
+    )
+    return [source[each.span] for each in plain if not isinstance(each, ir.Read)]

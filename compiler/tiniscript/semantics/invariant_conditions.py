@@ -15,6 +15,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
+from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import (
     TIME,
     Comparison,
@@ -24,26 +25,6 @@ from tiniscript.semantics.comparisons import (
     comparison,
     is_between,
     looks_ahead,
-)
-from tiniscript.semantics.ir import (
-    Arm,
-    Assign,
-    Body,
-    Call,
-    Expression,
-    If,
-    Loop,
-    Motors,
-    Move,
-    Program,
-    Show,
-    Statement,
-    Term,
-    While,
-    every,
-    expressions,
-    loops_end,
-    walk,
 )
 from tiniscript.semantics.optimizer import constant, fold
 from tiniscript.semantics.written_conditions import written_condition
@@ -58,25 +39,25 @@ _MOST_ARMS = 50  # of an IF whose conditions are compared
 _REACHED = {"F": "LE", "B": "GE"}  # what is sure to come true, by the way that the robot goes
 
 
-def _is_endless(loop: Loop | While) -> bool:
+def _is_endless(loop: ir.Loop | ir.While) -> bool:
     """Whether a loop counts nothing: what counts may do what was decided before it."""
-    return not isinstance(loop, Loop) or loop.times is None
+    return not isinstance(loop, ir.Loop) or loop.times is None
 
 
 class InvariantConditions:
     """Looks at the statements of one program; `found` are its warnings."""
 
-    def __init__(self, program: Program, kit: Kit, source: Source) -> None:
+    def __init__(self, program: ir.Program, kit: Kit, source: Source) -> None:
         self._program = program
         self._kit = kit
         self._source = source
-        self._set_to: dict[int, list[Expression]] = {}
-        for statement in every(program):
-            if isinstance(statement, Assign):
+        self._set_to: dict[int, list[ir.Expression]] = {}
+        for statement in ir.every(program):
+            if isinstance(statement, ir.Assign):
                 self._set_to.setdefault(statement.variable, []).append(statement.value)
         # By a loop's start, the variables that get a value in it; None where it takes no time.
         self._in_loops: dict[int, set[int] | None] = {}
-        self._used: dict[int, set[Term]] = {}  # by a loop's start
+        self._used: dict[int, set[ir.Term]] = {}  # by a loop's start
         self._sets: list[set[int]] = []  # for each DEF, the variables that it gives a value
         for procedure in program.procedures:
             self._sets.append(self._set_in(procedure.body))
@@ -84,26 +65,26 @@ class InvariantConditions:
 
     def look_at(
         self,
-        statement: Statement,
+        statement: ir.Statement,
         is_repeated: bool,
         asked: Collection[int],
-        outermost: Loop | While | None,
+        outermost: ir.Loop | ir.While | None,
     ) -> None:
         """Look at one statement.
 
         It is in a loop or a DEF where `is_repeated`; `outermost` is the loop around all others. The
         conditions around it ask the sensors `asked`: an answer may be known there.
         """
-        if isinstance(statement, Move) and statement.until is not None:
+        if isinstance(statement, ir.Move) and statement.until is not None:
             self._until(statement, statement.until.condition, is_repeated, asked)
-        elif isinstance(statement, While):
+        elif isinstance(statement, ir.While):
             self._while(statement)
             head = Span(statement.span.start, statement.span.start + len("WHILE"))
             self._known(self._comparison(statement.condition), head)
             self._known_of_both(statement.condition, head)
-        elif isinstance(statement, Show) and outermost is not None:
+        elif isinstance(statement, ir.Show) and outermost is not None:
             self._frozen_show(statement, outermost)
-        elif isinstance(statement, If):
+        elif isinstance(statement, ir.If):
             self._late_arms(statement)
             for arm in statement.arms:
                 self._subtracted(arm.condition, arm.span)
@@ -116,7 +97,7 @@ class InvariantConditions:
     # -- UNTIL --------------------------------------------------------------------------------
 
     def _until(
-        self, move: Move, condition: Expression, is_repeated: bool, asked: Collection[int]
+        self, move: ir.Move, condition: ir.Expression, is_repeated: bool, asked: Collection[int]
     ) -> None:
         self._known_of_both(condition, move.span)
         variables = _variables(condition)
@@ -147,7 +128,7 @@ class InvariantConditions:
             self._report(codes.EXACT, move.span, sensor=device.name, number=as_text(number),
                          word="UNTIL", fix=fix)  # fmt: skip
 
-    def _frozen(self, move: Move, condition: Expression, variables: list[int]) -> None:
+    def _frozen(self, move: ir.Move, condition: ir.Expression, variables: list[int]) -> None:
         held = self._sensors_of(variables)
         name = self._program.variables[variables[0]]
         sign = ">" if move.direction == "B" else "<"
@@ -159,7 +140,7 @@ class InvariantConditions:
                 values["fix"] = self._with(move, written) if written else ""
         self.found.append(Diagnostic(codes.FROZEN_UNTIL, move.span, values))
 
-    def _with(self, move: Move, written: str) -> str:
+    def _with(self, move: ir.Move, written: str) -> str:
         """Return a move as it is written, with another condition behind UNTIL."""
         text = self._source[move.span]
         end = max((each.start() for each in re.finditer(r"(?i)\bUNTIL\b", text)), default=0)
@@ -167,12 +148,16 @@ class InvariantConditions:
 
     # -- WHILE and IF -------------------------------------------------------------------------
 
-    def _while(self, loop: While) -> None:
+    def _while(self, loop: ir.While) -> None:
         condition = loop.condition
         variables = _variables(condition)
         if not variables or any(term.op in _CHANGING for term in condition):
             return
-        if len(condition) == 1 or loops_end(loop.body) or self._set_in(loop.body) & set(variables):
+        if (
+            len(condition) == 1
+            or ir.loops_end(loop.body)
+            or self._set_in(loop.body) & set(variables)
+        ):
             return
         held = self._sensors_of(variables)
         if not held and condition[-1].op not in ("LT", "LE", "GT", "GE", "NE"):
@@ -190,17 +175,17 @@ class InvariantConditions:
             values["step"] = f"{name} = {name} {'-' if is_down else '+'} 1"
         self.found.append(Diagnostic(codes.FROZEN_WHILE, head, values))
 
-    def _set_in(self, body: Body) -> set[int]:
+    def _set_in(self, body: ir.Body) -> set[int]:
         """Return the variables that a body, or a DEF that it calls, gives a value."""
         found = set()
-        for statement in walk(body):
-            if isinstance(statement, Assign):
+        for statement in ir.walk(body):
+            if isinstance(statement, ir.Assign):
                 found.add(statement.variable)
-            elif isinstance(statement, Call) and statement.procedure < len(self._sets):
+            elif isinstance(statement, ir.Call) and statement.procedure < len(self._sets):
                 found |= self._sets[statement.procedure]
         return found
 
-    def _frozen_if(self, arm: Arm, outermost: Loop | While) -> None:
+    def _frozen_if(self, arm: ir.Arm, outermost: ir.Loop | ir.While) -> None:
         """`D = DISTANCE; LOOP(FOREVER); IF(D < 20) …`: it moves, and looks at what was before."""
         variables = _variables(arm.condition)
         held = self._sensors_of(variables)
@@ -216,7 +201,7 @@ class InvariantConditions:
         fix = f"{word}({written})" if is_good else ""
         self._report(codes.FROZEN_WHILE, arm.span, name=name, sensor=held[name], fix=fix)
 
-    def _frozen_show(self, show: Show, outermost: Loop | While) -> None:
+    def _frozen_show(self, show: ir.Show, outermost: ir.Loop | ir.While) -> None:
         """`D = DISTANCE; LOOP(5); SHOW(D); W(1); END_LOOP`: each round shows the same."""
         variables = _variables(show.value) if len(show.value) == 1 else []
         if variables and self._thrown_once(show, variables[0], outermost):
@@ -227,12 +212,14 @@ class InvariantConditions:
             return
         name = self._program.variables[variables[0]]
         sensor = next(k for k, each in enumerate(self._kit.sensors) if each.name == held[name])
-        if {Term("SENSOR", sensor), Term("VARIABLE", variables[0])} & self._used_in(outermost):
+        if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & self._used_in(
+            outermost
+        ):
             return  # it is shown beside what is measured now, or the rounds need it
         fix = f"SHOW({held[name]})"
         self._report(codes.FROZEN_WHILE, show.span, name=name, sensor=held[name], fix=fix)
 
-    def _thrown_once(self, show: Show, variable: int, loop: Loop | While) -> bool:
+    def _thrown_once(self, show: ir.Show, variable: int, loop: ir.Loop | ir.While) -> bool:
         """`DICE = RANDOM(1, 6); LOOP(5); SHOW(DICE); END_LOOP`: five times the same number.
 
         It is said where the loop shows it in each round, shows nothing else that changes, and
@@ -241,19 +228,21 @@ class InvariantConditions:
         sets = [
             each
             for each in self._program.body
-            if isinstance(each, Assign) and each.variable == variable
+            if isinstance(each, ir.Assign) and each.variable == variable
         ]
         if len(sets) != 1 or self._set_to[variable] != [sets[0].value]:
             return False
         if all(term.op != "RANDOM" for term in sets[0].value) or _goes_once(loop):
             return False
-        term = Term("VARIABLE", variable)
+        term = ir.Term("VARIABLE", variable)
         is_only_shown = all(
-            isinstance(each, Show)
-            for each in every(self._program)
-            if any(term in expression for expression in expressions(each))
+            isinstance(each, ir.Show)
+            for each in ir.every(self._program)
+            if any(term in expression for expression in ir.expressions(each))
         )
-        shown = {term for each in walk(loop.body) if isinstance(each, Show) for term in each.value}
+        shown = {
+            term for each in ir.walk(loop.body) if isinstance(each, ir.Show) for term in each.value
+        }
         others = [each for each in shown if each.op in _CHANGING or each.op == "VARIABLE"]
         is_before = sets[0].span.end <= loop.span.start
         if not (is_before and is_only_shown and others == [term] and show in _each_round(loop)):
@@ -264,28 +253,28 @@ class InvariantConditions:
             self._report(codes.FROZEN_WHILE, show.span, thrown=name, within=within)
         return True
 
-    def _changed_in(self, loop: Loop | While) -> set[int] | None:
+    def _changed_in(self, loop: ir.Loop | ir.While) -> set[int] | None:
         """Return the variables that get a value in a loop; None where nothing drives in it."""
         place = loop.span.start
         if place not in self._in_loops:
-            drives = any(isinstance(each, (Move, Motors)) for each in walk(loop.body))
+            drives = any(isinstance(each, (ir.Move, ir.Motors)) for each in ir.walk(loop.body))
             self._in_loops[place] = self._set_in(loop.body) if drives else None
         return self._in_loops[place]
 
-    def _used_in(self, loop: Loop | While) -> set[Term]:
+    def _used_in(self, loop: ir.Loop | ir.While) -> set[ir.Term]:
         """Return the terms of a loop: all sensors, and what statements other than SHOW use."""
         place = loop.span.start
         if place not in self._used:
             self._used[place] = {
                 term
-                for each in walk((loop,))
-                for expression in expressions(each)
+                for each in ir.walk((loop,))
+                for expression in ir.expressions(each)
                 for term in expression
-                if term.op == "SENSOR" or not isinstance(each, Show)
+                if term.op == "SENSOR" or not isinstance(each, ir.Show)
             }
         return self._used[place]
 
-    def _late_arms(self, statement: If) -> None:
+    def _late_arms(self, statement: ir.If) -> None:
         """`IF(DISTANCE < 60) … ELSEIF(DISTANCE < 20)`: what is below 20 is below 60, too."""
         widest: dict[tuple[str, str], Comparison] = {}  # by sensor and the way of the sign
         for k, arm in enumerate(statement.arms[:_MOST_ARMS]):
@@ -311,13 +300,13 @@ class InvariantConditions:
                          high=as_text(device.high), answer=answer)  # fmt: skip
         return bool(answer)
 
-    def _known_of_both(self, condition: Expression, span: Span) -> None:
+    def _known_of_both(self, condition: ir.Expression, span: Span) -> None:
         """`DISTANCE < 10 AND DISTANCE > 40`: no distance is both, and OR was meant."""
         answer, meant = answer_of_both(condition, self._kit)
         if answer:
             self._report(codes.KNOWN_ANSWER, span, answer=answer, either=meant)
 
-    def _subtracted(self, condition: Expression, span: Span) -> None:
+    def _subtracted(self, condition: ir.Expression, span: Span) -> None:
         """`DISTANCE = 5-20`: no distance is -15, and between is asked with two signs."""
         asked = [term.op for term in condition]
         if asked != ["SENSOR", "NUMBER", "NUMBER", "SUB", "EQ"]:
@@ -330,7 +319,7 @@ class InvariantConditions:
             self._report(codes.KNOWN_ANSWER, span, sensor=name, low=low, high=high,
                          answer="answer_no", between=between)  # fmt: skip
 
-    def _exact_if(self, arm: Arm) -> None:
+    def _exact_if(self, arm: ir.Arm) -> None:
         compared = self._comparison(arm.condition)
         if compared is not None:
             device, op, number = compared
@@ -340,14 +329,16 @@ class InvariantConditions:
 
     # -- what is in them ----------------------------------------------------------------------
 
-    def _comparison(self, condition: Expression) -> Comparison | None:
+    def _comparison(self, condition: ir.Expression) -> Comparison | None:
         return comparison(condition, self._kit)
 
-    def _is_good(self, condition: Expression, held: Mapping[str, str], direction: str = "") -> bool:
+    def _is_good(
+        self, condition: ir.Expression, held: Mapping[str, str], direction: str = ""
+    ) -> bool:
         """Whether a condition is one to write where it asks the sensors themselves."""
         numbers = {device.name: k for k, device in enumerate(self._kit.sensors)}
         asking = tuple(
-            Term("SENSOR", numbers[held[self._program.variables[term.value]]])
+            ir.Term("SENSOR", numbers[held[self._program.variables[term.value]]])
             if term.op == "VARIABLE"
             else term
             for term in condition
@@ -371,28 +362,28 @@ class InvariantConditions:
         self.found.append(Diagnostic(code, span, values))
 
 
-def _goes_once(loop: Loop | While) -> bool:
-    times = loop.times if isinstance(loop, Loop) else None
+def _goes_once(loop: ir.Loop | ir.While) -> bool:
+    times = loop.times if isinstance(loop, ir.Loop) else None
     return times is not None and constant(fold(times)) == 1000
 
 
-def _each_round(loop: Loop | While) -> list[Statement]:
+def _each_round(loop: ir.Loop | ir.While) -> list[ir.Statement]:
     """Return the statements of a loop that no IF is around."""
-    found: list[Statement] = []
-    rest: list[Loop | While] = [loop]
+    found: list[ir.Statement] = []
+    rest: list[ir.Loop | ir.While] = [loop]
     while rest:
         for each in rest.pop().body:
             found.append(each)
-            if isinstance(each, (Loop, While)):
+            if isinstance(each, (ir.Loop, ir.While)):
                 rest.append(each)
     return found
 
 
-def _variables(condition: Expression) -> list[int]:
+def _variables(condition: ir.Expression) -> list[int]:
     return [term.value for term in condition if term.op == "VARIABLE"]
 
 
-def _sensors(condition: Expression) -> set[int]:
+def _sensors(condition: ir.Expression) -> set[int]:
     return {term.value for term in condition if term.op == "SENSOR"}
 
 

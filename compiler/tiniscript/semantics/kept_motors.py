@@ -11,26 +11,11 @@ from collections.abc import Iterator
 from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.semantics.ir import (
-    Beep,
-    Body,
-    Break,
-    Call,
-    If,
-    Loop,
-    Motors,
-    Move,
-    Program,
-    Statement,
-    Stop,
-    While,
-    bodies,
-    walk,
-)
+from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import constant, fold
 
 
-def kept_motors(program: Program, source: Source) -> list[Diagnostic]:
+def kept_motors(program: ir.Program, source: Source) -> list[Diagnostic]:
     """Return a warning for each task that waits for a higher TASK, or never drives again."""
     motors = _Motors(program)
     higher = [each.body for each in program.tasks if each.look is not None]
@@ -38,7 +23,9 @@ def kept_motors(program: Program, source: Source) -> list[Diagnostic]:
     lower = [*(each.body for each in tasks), program.body]
     for task in tasks:
         del lower[0]
-        is_stopped = any(isinstance(each, Stop) for body in higher for each in motors.all_of(body))
+        is_stopped = any(
+            isinstance(each, ir.Stop) for body in higher for each in motors.all_of(body)
+        )
         if not is_stopped and motors.are_kept(task.body):
             line = str(source.position(task.span.start)[0])
             waiting = [next(filter(_drives, motors.all_of(_endless(body))), None) for body in lower]
@@ -48,7 +35,7 @@ def kept_motors(program: Program, source: Source) -> list[Diagnostic]:
     return _waiting(program, [each.body for each in tasks], source)
 
 
-def _waiting(program: Program, tasks: list[Body], source: Source) -> list[Diagnostic]:
+def _waiting(program: ir.Program, tasks: list[ir.Body], source: Source) -> list[Diagnostic]:
     """`TASK;F(4, 60);END_TASK;TASK;R(4, 60);END_TASK`: they take turns, and make no curve."""
     begin = [body[0] for body in (*tasks, program.body) if body and _drives(body[0])]
     if len(begin) < 2 or not tasks[0] or begin[0] is not tasks[0][0]:
@@ -58,45 +45,47 @@ def _waiting(program: Program, tasks: list[Body], source: Source) -> list[Diagno
 
 
 class _Motors:
-    def __init__(self, program: Program) -> None:
+    def __init__(self, program: ir.Program) -> None:
         self._procedures = program.procedures
 
-    def all_of(self, body: Body) -> Iterator[Statement]:
+    def all_of(self, body: ir.Body) -> Iterator[ir.Statement]:
         """Yield every statement of a body, those of its calls too."""
-        for each in walk(body):
+        for each in ir.walk(body):
             yield each
-            if isinstance(each, Call):
+            if isinstance(each, ir.Call):
                 yield from self.all_of(self._procedures[each.procedure].body)
 
-    def are_kept(self, body: Body) -> bool:
+    def are_kept(self, body: ir.Body) -> bool:
         """Whether a task surely drives for ever at its end, and never lets the motors go there."""
         rest = _endless(body)
-        if not any(isinstance(each, Motors) or (_drives(each) and _lasts(each)) for each in rest):
+        if not any(
+            isinstance(each, ir.Motors) or (_drives(each) and _lasts(each)) for each in rest
+        ):
             return False
         return self._repeated(rest, False) is not None or self._repeated(rest, True) is True
 
-    def _after(self, body: Body, wants: bool) -> bool | None:
+    def _after(self, body: ir.Body, wants: bool) -> bool | None:
         """Return whether the motors are wanted behind a body, None where it may let them go."""
         found: bool | None = wants
         for each in body:
-            if found is None or isinstance(each, Break):
+            if found is None or isinstance(each, ir.Break):
                 return None
-            if isinstance(each, Motors):
+            if isinstance(each, ir.Motors):
                 found = True
-            elif isinstance(each, Stop) or _drives(each):
+            elif isinstance(each, ir.Stop) or _drives(each):
                 found = False
-            elif isinstance(each, (Move, Beep)):
+            elif isinstance(each, (ir.Move, ir.Beep)):
                 found = found or None
-            elif isinstance(each, Call):
+            elif isinstance(each, ir.Call):
                 found = self._after(self._procedures[each.procedure].body, found)
-            elif isinstance(each, If):
-                arms = [self._after(arm, found) for arm in bodies(each)]
+            elif isinstance(each, ir.If):
+                arms = [self._after(arm, found) for arm in ir.bodies(each)]
                 found = None if None in arms else all(arms)
-            elif isinstance(each, (Loop, While)):
+            elif isinstance(each, (ir.Loop, ir.While)):
                 found = self._repeated(each.body, found)
         return found
 
-    def _repeated(self, body: Body, wants: bool) -> bool | None:
+    def _repeated(self, body: ir.Body, wants: bool) -> bool | None:
         once = self._after(body, wants)
         if once is None or self._after(body, once) is None:
             return None
@@ -104,26 +93,26 @@ class _Motors:
         return wants and once if takes_time else None
 
 
-def _endless(body: Body) -> Body:
+def _endless(body: ir.Body) -> ir.Body:
     """Return what a body does for ever at its end: a move, or what a loop repeats."""
     last = body[-1] if body else None
-    if isinstance(last, Loop) and last.times is None:
+    if isinstance(last, ir.Loop) and last.times is None:
         return last.body
-    is_move = isinstance(last, Move) and last.time is None and last.until is None
+    is_move = isinstance(last, ir.Move) and last.time is None and last.until is None
     return body[-1:] if is_move else ()
 
 
-def _drives(statement: Statement) -> bool:
-    return isinstance(statement, Motors) or (
-        isinstance(statement, Move) and statement.power is not None
+def _drives(statement: ir.Statement) -> bool:
+    return isinstance(statement, ir.Motors) or (
+        isinstance(statement, ir.Move) and statement.power is not None
     )
 
 
-def _lasts(statement: Statement) -> bool:
+def _lasts(statement: ir.Statement) -> bool:
     """Whether a statement surely takes time."""
-    if not isinstance(statement, (Move, Beep)):
+    if not isinstance(statement, (ir.Move, ir.Beep)):
         return False
-    if isinstance(statement, Move) and (statement.time is None or statement.until is not None):
+    if isinstance(statement, ir.Move) and (statement.time is None or statement.until is not None):
         return statement.until is None
     assert statement.time is not None
     return (constant(fold(statement.time)) or 0) > 0

@@ -11,66 +11,50 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import asks_if_near, comes_true, is_distance, looks_ahead
-from tiniscript.semantics.ir import (
-    Assign,
-    Beep,
-    Body,
-    Expression,
-    If,
-    Loop,
-    Motors,
-    Move,
-    Program,
-    Read,
-    Show,
-    Statement,
-    Stop,
-    While,
-    every,
-)
 from tiniscript.semantics.optimizer import constant, fold
 from tiniscript.semantics.written_conditions import written_condition
 from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
 
 LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
 LONG_STEP = 1000  # ms: in a WHILE it is looked at again after so long
-_PASSED_OVER = (Read, Assign, Show, Beep)  # they leave the robot where it is
+_PASSED_OVER = (ir.Read, ir.Assign, ir.Show, ir.Beep)  # they leave the robot where it is
 _GREATER = ("GT", "GE")
 
 
 class LateConditions:
     """Looks at the bodies of one program; `found` are its warnings."""
 
-    def __init__(self, program: Program, kit: Kit, source: Source) -> None:
+    def __init__(self, program: ir.Program, kit: Kit, source: Source) -> None:
         self._kit = kit
         self._source = source
         # Without M the motors stand between two instructions.
-        self._stands = not any(isinstance(each, Motors) for each in every(program))
+        self._stands = not any(isinstance(each, ir.Motors) for each in ir.every(program))
         self.found: list[Diagnostic] = []
 
-    def look_at(self, body: Body, loop: Loop | While | None) -> None:
+    def look_at(self, body: ir.Body, loop: ir.Loop | ir.While | None) -> None:
         """Look at the statements of a body, which `loop` repeats; not at those within them."""
         late = self._in_loop(body) if loop is not None else set()
-        if isinstance(loop, While):
+        if isinstance(loop, ir.While):
             self._in_while(loop)
         for k, statement in enumerate(body):
-            if isinstance(statement, If) and k not in late:
+            if isinstance(statement, ir.If) and k not in late:
                 self._idle_stop(body, k, statement, loop)
 
-    def _in_loop(self, body: Body) -> set[int]:
+    def _in_loop(self, body: ir.Body) -> set[int]:
         """Find a long move, then a look at a distance: the robot drives blind in between.
 
         Return the places of the conditions.
         """
         late = set()
         for k, statement in enumerate(body):
-            if not isinstance(statement, Move) or not self._is_blind(statement, LONG_MOVE):
+            if not isinstance(statement, ir.Move) or not self._is_blind(statement, LONG_MOVE):
                 continue
             after = range(k + 1, len(body))
-            place = next((at for at in after if not isinstance(body[at], Read)), k)
+            place = next((at for at in after if not isinstance(body[at], ir.Read)), k)
             branch = body[place]
-            if not isinstance(branch, If):
+            if not isinstance(branch, ir.If):
                 continue
             condition = branch.arms[0].condition
             sensor = self._distance_in(condition)
@@ -81,7 +65,7 @@ class LateConditions:
                 late.add(place)
         return late
 
-    def _in_while(self, loop: While) -> None:
+    def _in_while(self, loop: ir.While) -> None:
         """`WHILE(DISTANCE > 20); F(5, 60); END_WHILE`: it looks every 5 s."""
         body = [each for each in loop.body if not isinstance(each, _PASSED_OVER)]
         condition = loop.condition
@@ -89,7 +73,7 @@ class LateConditions:
             return
         (move,) = body
         sensor = self._distance_in(condition[:1])
-        if sensor is None or condition[1].op != "NUMBER" or not isinstance(move, Move):
+        if sensor is None or condition[1].op != "NUMBER" or not isinstance(move, ir.Move):
             return
         if move.direction == "F" and self._is_blind(move, LONG_STEP):
             sign = OPPOSITES[SIGN_OF[condition[2].op]]
@@ -97,7 +81,7 @@ class LateConditions:
             if looks_ahead(device) and device.low < number <= device.high:
                 self._late(move, sensor, f"{device.name} {sign} {as_text(number)}")
 
-    def _late(self, move: Move, sensor: int, asked: str) -> None:
+    def _late(self, move: ir.Move, sensor: int, asked: str) -> None:
         name = self._kit.sensors[sensor].name
         written = self._source[move.span]
         values = {
@@ -109,7 +93,9 @@ class LateConditions:
         }
         self.found.append(Diagnostic(codes.LATE_CHECK, move.span, values))
 
-    def _idle_stop(self, body: Body, k: int, branch: If, loop: Loop | While | None) -> None:
+    def _idle_stop(
+        self, body: ir.Body, k: int, branch: ir.If, loop: ir.Loop | ir.While | None
+    ) -> None:
         """`F(5, 60); IF(DISTANCE < 20); S; ENDIF`: its S stops what stands."""
         stop = _only_stop(branch)
         condition = branch.arms[0].condition
@@ -117,13 +103,13 @@ class LateConditions:
             return
         before = _nearest(body, range(k - 1, -1, -1))
         after = _nearest(body, range(k + 1, len(body)))
-        stands = [each for each in branch.arms[0].body if isinstance(each, (Move, Beep))]
-        if any(isinstance(each, Move) and each.direction == "W" for each in stands):
+        stands = [each for each in branch.arms[0].body if isinstance(each, (ir.Move, ir.Beep))]
+        if any(isinstance(each, ir.Move) and each.direction == "W" for each in stands):
             return  # S with its wait is a pause
         pauses = bool(stands)
         for move, place in ((before, "move"), (after, "next")):
             if (
-                isinstance(move, Move)
+                isinstance(move, ir.Move)
                 and move.direction in "FB"
                 and self._is_blind(move, LONG_MOVE)
             ):
@@ -137,13 +123,18 @@ class LateConditions:
                 if place == "move" or not pauses:
                     self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
                 return
-        again = before if isinstance(before, Move) else after
-        if loop is not None and isinstance(again, Move) and self._is_blind(again, 1) and not pauses:
+        again = before if isinstance(before, ir.Move) else after
+        if (
+            loop is not None
+            and isinstance(again, ir.Move)
+            and self._is_blind(again, 1)
+            and not pauses
+        ):
             values = {"found": self._source[stop.span], "next": ""}
             values["again"] = self._source[again.span]
             self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
 
-    def _idle(self, stop: Stop, move: Move, place: str, branch: If) -> dict[str, str]:
+    def _idle(self, stop: ir.Stop, move: ir.Move, place: str, branch: ir.If) -> dict[str, str]:
         """Return the words for an S before or after a move, with a repair where one is sure."""
         found, written = self._source[stop.span], self._source[move.span]
         condition = branch.arms[0].condition
@@ -157,7 +148,7 @@ class LateConditions:
             values["needless" if place == "move" else "behind"] = written
         return values
 
-    def _instead(self, body: Body, move: Move, branch: If) -> dict[str, str]:
+    def _instead(self, body: ir.Body, move: ir.Move, branch: ir.If) -> dict[str, str]:
         """Return what the move with its UNTIL takes the place of: all of it, or the move alone."""
         first, last = sorted((move.span, branch.span))
         begin, there, end = (
@@ -171,20 +162,20 @@ class LateConditions:
         text = self._source.text
         beside = text[: first.start].rpartition("\n")[2] + text[last.end :].partition("\n")[0]
         is_alone = begin == end or not beside.partition("//")[0].strip()
-        if any(not isinstance(each, Read) for each in between) or not is_alone:
+        if any(not isinstance(each, ir.Read) for each in between) or not is_alone:
             return {"of": of, "out": there}
         if begin == end:
             return {"all": self._source[Span(first.start, last.end)]}
         return {"first": begin, "last": end}
 
-    def _is_blind(self, move: Move, least: int) -> bool:
+    def _is_blind(self, move: ir.Move, least: int) -> bool:
         """Whether a move lasts long, and looks at nothing."""
         time = _time(move)
         if move.direction not in ("F", "B") or move.until is not None:
             return False
         return time is not None and time >= least
 
-    def _distance_in(self, condition: Expression) -> int | None:
+    def _distance_in(self, condition: ir.Expression) -> int | None:
         """Return the first sensor of a distance that a condition looks at."""
         for op, value in condition:
             if op == "SENSOR" and is_distance(self._kit.sensors[value]):
@@ -192,34 +183,34 @@ class LateConditions:
         return None
 
 
-def _nearest(body: Body, places: range) -> Statement | None:
+def _nearest(body: ir.Body, places: range) -> ir.Statement | None:
     """Return the first statement there that may move the robot."""
     return next((body[at] for at in places if not isinstance(body[at], _PASSED_OVER)), None)
 
 
-def _time(move: Move) -> int | None:
+def _time(move: ir.Move) -> int | None:
     return None if move.time is None or move.unit else constant(fold(move.time))
 
 
-def _can_change(condition: Expression) -> bool:
+def _can_change(condition: ir.Expression) -> bool:
     """Whether an answer may be another one while the robot moves: only sensors and numbers."""
     ops = [term.op for term in condition]
     return "SENSOR" in ops and "VARIABLE" not in ops and "RANDOM" not in ops
 
 
-def _only_stop(branch: If) -> Stop | None:
+def _only_stop(branch: ir.If) -> ir.Stop | None:
     """Return the S of an IF that does nothing else with the motors, and has no ELSE."""
     if len(branch.arms) != 1 or branch.has_else:
         return None
-    stop: Stop | None = None
+    stop: ir.Stop | None = None
     for statement in branch.arms[0].body:
-        if isinstance(statement, Stop):
+        if isinstance(statement, ir.Stop):
             stop = stop or statement
         elif not _is_talk(statement):
             return None
     return stop
 
 
-def _is_talk(statement: Statement) -> bool:
-    is_wait = isinstance(statement, Move) and statement.direction == "W"
-    return is_wait or isinstance(statement, (Read, Show, Beep))
+def _is_talk(statement: ir.Statement) -> bool:
+    is_wait = isinstance(statement, ir.Move) and statement.direction == "W"
+    return is_wait or isinstance(statement, (ir.Read, ir.Show, ir.Beep))

@@ -11,25 +11,7 @@ from typing import Any
 
 from tiniscript.base import fixed_point
 from tiniscript.base.fixed_point import Fault, whole
-from tiniscript.semantics.ir import (
-    Arm,
-    Body,
-    Call,
-    Expression,
-    If,
-    Loop,
-    Move,
-    Procedure,
-    Program,
-    Read,
-    Statement,
-    Task,
-    Term,
-    While,
-    goes_on,
-    values_of,
-    walk,
-)
+from tiniscript.semantics import ir
 
 _BINARY: dict[str, Callable[[int, int], int]] = {
     "ADD": fixed_point.add, "SUB": fixed_point.subtract, "MUL": fixed_point.multiply,
@@ -47,10 +29,10 @@ SAFE = frozenset(("NUMBER", "YES_NO", "VARIABLE", "SENSOR", "EQ", "NE", "LT", "L
                   "NOT", "AND", "OR", "AND_LEFT", "OR_LEFT", "MIN", "MAX"))  # fmt: skip
 
 
-_Operand = tuple[list[Term], bool]
+_Operand = tuple[list[ir.Term], bool]
 
 
-def optimized(program: Program) -> Program:
+def optimized(program: ir.Program) -> ir.Program:
     """Return a program with the same traces and faults, no longer than `program`.
 
     A calculated constant of 32 bits, such as 100/3, may take two bytes more than its parts: it is
@@ -64,7 +46,7 @@ def optimized(program: Program) -> Program:
     return _without_unused(made)
 
 
-def fold(expression: Expression) -> Expression:
+def fold(expression: ir.Expression) -> ir.Expression:
     """Return an expression whose constant parts are calculated, where they do not fault."""
     if len(expression) == 1:
         return expression
@@ -100,17 +82,17 @@ def fold(expression: Expression) -> Expression:
     return tuple(stack[0][0])
 
 
-def constant(expression: Expression) -> int | None:
+def constant(expression: ir.Expression) -> int | None:
     """Return the value of a folded expression, or None where only the robot knows it."""
     return expression[0].value if _is_constant(expression) else None
 
 
-def is_safe(terms: Expression) -> bool:
+def is_safe(terms: ir.Expression) -> bool:
     """Return whether evaluating these terms is free of faults and side effects."""
     return all(term.op in SAFE for term in terms)
 
 
-def sure_fault(expression: Expression) -> str:
+def sure_fault(expression: ir.Expression) -> str:
     """Return the fault that a folded expression is sure to make when it is reached, or ""."""
     stack: list[int | None] = []
     for term in expression:
@@ -133,11 +115,11 @@ def sure_fault(expression: Expression) -> str:
     return ""
 
 
-def _is_constant(terms: Expression | list[Term]) -> bool:
+def _is_constant(terms: ir.Expression | list[ir.Term]) -> bool:
     return len(terms) == 1 and terms[0].op in ("NUMBER", "YES_NO")
 
 
-def _calculated(op: str, left: list[Term], right: list[Term] | None) -> list[Term] | None:
+def _calculated(op: str, left: list[ir.Term], right: list[ir.Term] | None) -> list[ir.Term] | None:
     """Return the result of an operator on constants, or None where it faults."""
     try:
         if right is None:
@@ -146,7 +128,7 @@ def _calculated(op: str, left: list[Term], right: list[Term] | None) -> list[Ter
             value = _BINARY[op](left[0].value, right[0].value)
     except Fault:
         return None
-    return [Term("YES_NO" if op in _YES_NO else "NUMBER", int(value))]
+    return [ir.Term("YES_NO" if op in _YES_NO else "NUMBER", int(value))]
 
 
 def _decided(op: str, left: _Operand, right: _Operand) -> _Operand:
@@ -160,43 +142,43 @@ def _decided(op: str, left: _Operand, right: _Operand) -> _Operand:
             return left
         if left_safe:
             return right
-    terms.append(Term(op + "_LEFT"))
+    terms.append(ir.Term(op + "_LEFT"))
     terms.extend(right_terms)
-    terms.append(Term(op))
+    terms.append(ir.Term(op))
     return terms, left_safe and right_safe
 
 
-def _body(body: Body) -> Body:
-    made: list[Statement] = []
+def _body(body: ir.Body) -> ir.Body:
+    made: list[ir.Statement] = []
     for statement in body:
         made += _statement(statement)
-        if made and not goes_on(tuple(made[-1:])):
+        if made and not ir.goes_on(tuple(made[-1:])):
             break
     return tuple(made)
 
 
-def _task(task: Task) -> Task:
+def _task(task: ir.Task) -> ir.Task:
     look = task.look
     if look is not None:
         look = look._replace(condition=fold(look.condition))
     return task._replace(look=look, body=_body(task.body))
 
 
-def _statement(statement: Statement) -> tuple[Statement, ...]:
-    if isinstance(statement, If):
+def _statement(statement: ir.Statement) -> tuple[ir.Statement, ...]:
+    if isinstance(statement, ir.If):
         return _if(statement)
-    if isinstance(statement, Loop):
+    if isinstance(statement, ir.Loop):
         return _loop(statement)
-    if isinstance(statement, While):
+    if isinstance(statement, ir.While):
         return _while(statement)
-    folded: dict[str, Any] = {name: fold(value) for name, value in values_of(statement).items()}
-    if isinstance(statement, Move) and statement.until is not None:
+    folded: dict[str, Any] = {name: fold(value) for name, value in ir.values_of(statement).items()}
+    if isinstance(statement, ir.Move) and statement.until is not None:
         folded["until"] = statement.until._replace(condition=fold(statement.until.condition))
     return (statement._replace(**folded) if folded else statement,)
 
 
-def _if(statement: If) -> tuple[Statement, ...]:
-    arms: list[Arm] = []
+def _if(statement: ir.If) -> tuple[ir.Statement, ...]:
+    arms: list[ir.Arm] = []
     otherwise = _body(statement.otherwise)
     for arm in statement.arms:
         condition = fold(arm.condition)
@@ -207,23 +189,23 @@ def _if(statement: If) -> tuple[Statement, ...]:
         if value == 1 and not arm.reads:
             otherwise = body
             break
-        arms.append(Arm(arm.reads, condition, body, arm.span))
+        arms.append(ir.Arm(arm.reads, condition, body, arm.span))
         if value == 1:
             otherwise = ()
             break
     if not arms:
         return otherwise
     if arms[0].reads:  # an ELSEIF that has become the IF: its readings come first
-        reads = tuple(Read(sensor, arms[0].span) for sensor in arms[0].reads)
-        rest = If((arms[0]._replace(reads=()), *arms[1:]), otherwise, statement.span)
+        reads = tuple(ir.Read(sensor, arms[0].span) for sensor in arms[0].reads)
+        rest = ir.If((arms[0]._replace(reads=()), *arms[1:]), otherwise, statement.span)
         return (*reads, *_if(rest))
     if not otherwise and not any(arm.body or arm.reads for arm in arms):
         if all(is_safe(arm.condition) for arm in arms):
             return ()
-    return (If(tuple(arms), otherwise, statement.span),)
+    return (ir.If(tuple(arms), otherwise, statement.span),)
 
 
-def _loop(loop: Loop) -> tuple[Statement, ...]:
+def _loop(loop: ir.Loop) -> tuple[ir.Statement, ...]:
     if loop.times is None:
         return (loop._replace(body=_body(loop.body)),)
     count = fold(loop.times)
@@ -233,31 +215,31 @@ def _loop(loop: Loop) -> tuple[Statement, ...]:
     return (loop._replace(times=count, body=_body(loop.body)),)
 
 
-def _while(loop: While) -> tuple[Statement, ...]:
+def _while(loop: ir.While) -> tuple[ir.Statement, ...]:
     condition = fold(loop.condition)
     value = constant(condition)
     if value == 0:
-        return tuple(Read(sensor, loop.span) for sensor in loop.reads)
+        return tuple(ir.Read(sensor, loop.span) for sensor in loop.reads)
     if value == 1:
-        reads = tuple(Read(sensor, loop.span) for sensor in loop.reads)
-        return (Loop(None, _body((*reads, *loop.body)), loop.span),)
+        reads = tuple(ir.Read(sensor, loop.span) for sensor in loop.reads)
+        return (ir.Loop(None, _body((*reads, *loop.body)), loop.span),)
     return (loop._replace(condition=condition, body=_body(loop.body)),)
 
 
-def _without_unused(program: Program) -> Program:
+def _without_unused(program: ir.Program) -> ir.Program:
     """Drop the DEFs that are never called, and number the others again."""
     called: set[int] = set()
     waiting = [program.body, *(task.body for task in program.tasks)]
     while waiting:
-        for statement in walk(waiting.pop()):
-            if isinstance(statement, Call) and statement.procedure not in called:
+        for statement in ir.walk(waiting.pop()):
+            if isinstance(statement, ir.Call) and statement.procedure not in called:
                 called.add(statement.procedure)
                 waiting.append(program.procedures[statement.procedure].body)
     if len(called) == len(program.procedures):
         return program
     numbers = {old: new for new, old in enumerate(sorted(called))}
     procedures = tuple(
-        Procedure(each.name, _renumbered(each.body, numbers), each.span)
+        ir.Procedure(each.name, _renumbered(each.body, numbers), each.span)
         for number, each in enumerate(program.procedures)
         if number in called
     )
@@ -266,18 +248,18 @@ def _without_unused(program: Program) -> Program:
     return program._replace(procedures=procedures, body=body, tasks=tasks)
 
 
-def _renumbered(body: Body, numbers: dict[int, int]) -> Body:
-    made: list[Statement] = []
+def _renumbered(body: ir.Body, numbers: dict[int, int]) -> ir.Body:
+    made: list[ir.Statement] = []
     for statement in body:
-        if isinstance(statement, Call):
+        if isinstance(statement, ir.Call):
             statement = statement._replace(procedure=numbers[statement.procedure])
-        elif isinstance(statement, If):
+        elif isinstance(statement, ir.If):
             arms = tuple(
                 arm._replace(body=_renumbered(arm.body, numbers)) for arm in statement.arms
             )
             otherwise = _renumbered(statement.otherwise, numbers)
             statement = statement._replace(arms=arms, otherwise=otherwise)
-        elif isinstance(statement, (Loop, While)):
+        elif isinstance(statement, (ir.Loop, ir.While)):
             statement = statement._replace(body=_renumbered(statement.body, numbers))
         made.append(statement)
     return tuple(made)

@@ -9,29 +9,29 @@ from tiniscript.base.fixed_point import as_text
 from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.semantics.ir import Assign, Body, If, Motors, Move, Read, Set, Show, Statement, Stop
+from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import constant, fold
 
-_TAKE_NO_TIME = (Read, Assign, Show, Set)
+_TAKE_NO_TIME = (ir.Read, ir.Assign, ir.Show, ir.Set)
 _TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
 _POWERS = range(20_000, 100_001)  # and a power
 
 
-def unseen(body: Body, ends: bool, source: Source) -> list[Diagnostic]:
+def unseen(body: ir.Body, ends: bool, source: Source) -> list[Diagnostic]:
     """Return the warnings for each M of a body; the program ends with the body where `ends`."""
     found = []
     for k, motors in enumerate(body):
-        if not isinstance(motors, Motors) or _is_still(motors):
+        if not isinstance(motors, ir.Motors) or _is_still(motors):
             continue
         rest = (body[at] for at in range(k + 1, len(body)))
         after = next((each for each in rest if not isinstance(each, _TAKE_NO_TIME)), None)
-        if isinstance(after, If) and all(map(_takes_no_time, (after, *rest))):
+        if isinstance(after, ir.If) and all(map(_takes_no_time, (after, *rest))):
             after = None
-        if isinstance(after, Motors) and after[:2] == motors[:2]:
+        if isinstance(after, ir.Motors) and after[:2] == motors[:2]:
             continue  # they are set again to the same
         values = {"found": source[motors.span]}
-        if isinstance(after, (Motors, Stop)) or (
-            isinstance(after, Move) and after.direction != "W" and after.until is None
+        if isinstance(after, (ir.Motors, ir.Stop)) or (
+            isinstance(after, ir.Move) and after.direction != "W" and after.until is None
         ):
             values["next"] = source[after.span]
         elif after is not None or not ends:
@@ -44,14 +44,16 @@ def unseen(body: Body, ends: bool, source: Source) -> list[Diagnostic]:
     return found
 
 
-def _takes_no_time(statement: Statement) -> bool:
+def _takes_no_time(statement: ir.Statement) -> bool:
     """Also an IF that is over at once, whatever the answer is."""
-    if not isinstance(statement, If):
+    if not isinstance(statement, ir.If):
         return isinstance(statement, _TAKE_NO_TIME)
     bodies = (statement.otherwise, *(arm.body for arm in statement.arms))
-    return all(isinstance(each, Stop) or _takes_no_time(each) for body in bodies for each in body)
+    return all(
+        isinstance(each, ir.Stop) or _takes_no_time(each) for body in bodies for each in body
+    )
 
 
-def _is_still(motors: Motors) -> bool:
+def _is_still(motors: ir.Motors) -> bool:
     """`M(0, 0)` is a way to stop."""
     return not constant(fold(motors.left)) and not constant(fold(motors.right))
