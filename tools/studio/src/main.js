@@ -3,7 +3,8 @@
 import { element } from './page/elements.js';
 import { Checking } from './writing/checking.js';
 import { Editor } from './writing/editor.js';
-import { bytesOf, download } from './page/files.js';
+import { bugSaid } from './page/faults.js';
+import { bytesOf, download, whenChosen } from './page/files.js';
 import { Lessons } from './lesson/lessons.js';
 import { showMessages, summary, whole } from './writing/messages.js';
 import { whenOffline } from './page/offline.js';
@@ -94,9 +95,7 @@ const panel = new RobotPanel({
 new Lessons({
   python,
   put: (program) => programs.replace({ ...program, name: '' }),
-  showWorld: (lesson, seed, label) => driving.showLesson(lesson, seed, label),
-  play: (run) => driving.play(run),
-  stop: () => driving.stop(),
+  driving,
 });
 chooseSide();
 so.language.watch(() => {
@@ -106,7 +105,7 @@ so.language.watch(() => {
   remember();
 });
 const checking = new Checking(python, (why) => {
-  sayStatus(text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' }), 'wrong');
+  sayStatus(bugSaid(why), 'wrong');
 });
 const phone = new Phone(() => panel.run());
 beginScreens(whyOutside !== '' || bringsProgram(location.hash), !('class' in document.documentElement.dataset));
@@ -213,10 +212,7 @@ words.addEventListener('click', () => so.areWordsShown.say(!work.words));
 
 element('open', HTMLButtonElement).addEventListener('click', () => file.click());
 
-file.addEventListener('change', async () => {
-  const chosen = file.files?.[0];
-  file.value = '';
-  if (!chosen) return;
+whenChosen('file', async (chosen) => {
   let answer;
   try {
     const data = await bytesOf(chosen);

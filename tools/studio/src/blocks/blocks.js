@@ -41,13 +41,11 @@ export class Blocks {
   #isTouched = false; // by somebody, who may have scrolled
   /** @type {import('./form.js').Stood} */
   #stood = new Map();
-  /** @type {Blockly.BlockSvg[]} */
-  #loose = []; // the first blocks of what is not joined
   /** @type {Blockly.icons.WarningIcon | null} */
   #opening = null;
   #closed = ''; // the message that somebody has put away
-  /** @type {Set<string>} */
-  #running = new Set();
+  /** The ids of the blocks with each look. @type {Record<string, Set<string>>} */
+  #marked = {};
   #fault = { id: '', said: '' };
   /** @type {Finding[]} */
   #findings = [];
@@ -197,7 +195,7 @@ export class Blocks {
     const focus = this.hasFocus ? this.#places.findIndex(([id]) => id === this.#focused()?.id) : null;
     if (focus !== null) Blockly.getFocusManager().focusNode(workspace); // else a block that goes gives it to a neighbour, later
     Blockly.hideChaff();
-    this.#running = new Set();
+    this.#marked = {};
     this.#fault = { id: '', said: '' };
     const ids = showForm(this.#workspace, form, this.#stood);
     this.placed(ids, inOrder(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
@@ -234,9 +232,7 @@ export class Blocks {
 
   /** What is not joined to the program looks it, and is found where it is now. */
   #greyLoose() {
-    for (const block of this.#loose) block.removeClass('loose');
-    this.#loose = this.#workspace.getTopBlocks(false).filter((block) => block.type !== 'program');
-    for (const block of this.#loose) block.addClass('loose');
+    this.#mark('loose', this.#workspace.getTopBlocks(false).filter((block) => block.type !== 'program').map(({ id }) => id));
     if (this.#stood.size > MOST_STOOD) this.#stood.clear();
     keepPlaces(this.#workspace, this.#stood);
   }
@@ -334,20 +330,20 @@ export class Blocks {
 
   /** Marks the blocks that run now, one in each task. @param {{line: number, column: number}[]} ranges */
   showRunning(ranges) {
-    const ids = new Set(ranges.map(({ line, column }) => this.#blockAt(line, column) ?? ''));
-    for (const id of this.#running) if (!ids.has(id)) this.#workspace.getBlockById(id)?.removeClass('running');
-    for (const id of ids) if (!this.#running.has(id)) this.#workspace.getBlockById(id)?.addClass('running');
-    this.#running = ids;
+    this.#mark('running', ranges.map(({ line, column }) => this.#blockAt(line, column) ?? ''));
+  }
+
+  /** Gives a look to these blocks, and to no others. @param {string} look @param {string[]} ids */
+  #mark(look, ids) {
+    const before = this.#marked[look] ?? new Set(), now = new Set(ids);
+    for (const id of before) if (!now.has(id)) this.#workspace.getBlockById(id)?.removeClass(look);
+    for (const id of now) if (!before.has(id)) this.#workspace.getBlockById(id)?.addClass(look);
+    this.#marked[look] = now;
   }
 
   /** @param {{line: number, column: number}[]} breakpoints */
   showBreakpoints(breakpoints) {
-    const ids = new Set(breakpoints.map(({ line, column }) => this.#blockAt(line, column)));
-    for (const [id] of this.#places) {
-      const block = this.#workspace.getBlockById(id);
-      if (ids.has(id)) block?.addClass('breakpoint');
-      else block?.removeClass('breakpoint');
-    }
+    this.#mark('breakpoint', breakpoints.map(({ line, column }) => this.#blockAt(line, column) ?? ''));
   }
 
   /**
@@ -358,8 +354,7 @@ export class Blocks {
   showFault(range, said) {
     const id = range ? this.#blockAt(range.line, range.column) ?? '' : '';
     if (id === this.#fault.id && said === this.#fault.said) return;
-    this.#workspace.getBlockById(this.#fault.id)?.removeClass('fault');
-    this.#workspace.getBlockById(id)?.addClass('fault');
+    this.#mark('fault', [id]);
     this.#fault = { id, said };
     this.showFindings(this.#findings);
   }

@@ -1,6 +1,8 @@
 // A picture of blocks as a file. What they look like is written into a copy of them, since a picture
 // knows no style sheets; letters are those of this device.
 
+import { drawn } from '../page/made.js';
+
 const MARGIN = 16;
 const SHARP = 2; // pixels of the picture for one of the screen at its usual size
 const MOST_SIDE = 8000; // pixels
@@ -19,11 +21,8 @@ export async function pictureOf(canvas, { left, right, top, bottom }) {
   const width = right - left + 2 * MARGIN, height = bottom - top + 2 * MARGIN;
   if (!(right > left && bottom > top)) return null;
   const scale = Math.min(SHARP, MOST_SIDE / width, MOST_SIDE / height, Math.sqrt(MOST_PIXELS / (width * height)));
-  const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
-  svg.setAttribute('viewBox', [left - MARGIN, top - MARGIN, width, height].join(' '));
-  svg.setAttribute('width', String(Math.ceil(width * scale)));
-  svg.setAttribute('height', String(Math.ceil(height * scale)));
-  svg.append(copyOf(canvas));
+  const viewBox = [left - MARGIN, top - MARGIN, width, height].join(' ');
+  const svg = drawn('svg', { viewBox, width: Math.ceil(width * scale), height: Math.ceil(height * scale) }, copyOf(canvas));
   const whole = new XMLSerializer().serializeToString(svg);
   const address = URL.createObjectURL(new Blob([whole], { type: 'image/svg+xml' }));
   try {
@@ -63,11 +62,7 @@ function copyOf(canvas) {
     if (each.localName !== 'image') continue;
     gone.push(each);
     if (hrefOf(original).endsWith('dropdown-arrow.svg') && look.display !== 'none') {
-      const arrow = document.createElementNS('http://www.w3.org/2000/svg', 'path');
-      arrow.setAttribute('d', ARROW);
-      arrow.setAttribute('fill', '#fff');
-      arrow.setAttribute('transform', original.getAttribute('transform') ?? '');
-      each.before(arrow);
+      each.before(drawn('path', { d: ARROW, fill: '#fff', transform: original.getAttribute('transform') ?? '' }));
     }
   }
   for (const each of gone) each.remove();

@@ -2,6 +2,7 @@
 // table of words, and of the robot.
 
 import description from '../../made/description.json';
+import { devicesOf } from '../page/words.js';
 
 /** @typedef {{low: number, high: number, sample: string}} Range */
 
@@ -17,9 +18,7 @@ let actuators = new Map();
 
 /** @param {string} robot */
 export function setActuators(robot) {
-  const found = description.robots.find((each) => each.name === robot);
-  actuators = new Map((found?.devices ?? []).filter((device) => device.role === 'actuator')
-    .map((device) => [device.text, /** @type {Range} */ (device.arguments[0])]));
+  actuators = new Map(devicesOf(robot, 'actuator').map((device) => [device.text, /** @type {Range} */ (device.arguments[0])]));
 }
 
 /**

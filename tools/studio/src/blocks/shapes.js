@@ -5,7 +5,7 @@ import * as Blockly from 'blockly/core';
 import { LineField, NameField, NumberField, UnitField } from './fields.js';
 import { rangeOf } from './places.js';
 import { called } from '../page/texts.js';
-import { KINDS, nameOf, onBlock, ROBOTS, tipOf } from '../page/words.js';
+import { devicesOf, KINDS, nameOf, onBlock, tipOf } from '../page/words.js';
 
 /** @typedef {import('../page/words.js').Place} Place */
 /** @typedef {import('../page/words.js').Kind} Kind */
@@ -21,8 +21,7 @@ export function setRobot(name) {
 
 /** @param {'sensor' | 'actuator'} role */
 export function devices(role) {
-  const devices = ROBOTS.find((each) => each.name === robot)?.devices ?? [];
-  return devices.filter((device) => device.role === role);
+  return devicesOf(robot, role);
 }
 
 /** Lets what a text says stand anywhere: the compiler says what does not fit. */

@@ -1,10 +1,9 @@
 // What is shown on the big screen: a pupil's program, or how to come into the class.
 
 import { correction, generate } from 'lean-qr';
-import { button, made } from './made.js';
-import { put } from './wall.js';
+import { button, made } from '../page/made.js';
 import { sign } from './signs.js';
-import { element } from '../page/elements.js';
+import { element, say } from '../page/elements.js';
 import { text } from '../page/texts.js';
 
 const QUIET = 4; // white modules around a QR code
@@ -36,15 +35,15 @@ class Big {
   }
 }
 
-/** @typedef {{key: string, title: string, said: string, picture: string, text: string, drives: boolean, hand: boolean, here: boolean}} Shown */
-/** @typedef {{step: (by: number) => void, stop: (key: string) => void, next: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void, closed: () => void}} Told */
+/** @typedef {{key: string, title: string, said: string, picture: string, text: string, drives: boolean, hand: boolean}} Shown */
+/** @typedef {{step: (by: number) => void, stop: (key: string) => void, next: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void}} Told */
 
 export class BigPupil extends Big {
   key = '';
   #said = made('p');
   #picture = made('img');
   #text = made('pre');
-  #stop; #next; #lower; #remove;
+  #stop; #next; #lower;
 
   /** @param {Told} told */
   constructor(told) {
@@ -53,20 +52,17 @@ export class BigPupil extends Big {
     this.#lower = act('class_lower_hand', told.lower);
     this.#stop = act('stop', told.stop);
     this.#next = act('class_next', told.next);
-    this.#remove = act('class_remove', told.remove);
     const step = (/** @type {'left' | 'right'} */ name, /** @type {number} */ by) => {
-      const found = made('button', '', sign(name));
-      found.type = 'button';
+      const found = button('', () => told.step(by), sign(name));
       found.dataset['label'] = `class_${name}`;
       found.setAttribute('aria-label', text(`class_${name}`));
-      found.addEventListener('click', () => told.step(by));
       return found;
     };
     this.#said.setAttribute('role', 'status');
     this.#text.tabIndex = 0;
     this.#text.setAttribute('translate', 'no');
     this.title.before(step('left', -1));
-    this.head.append(step('right', 1), this.#said, this.#lower, this.#stop, this.#next, this.#remove);
+    this.head.append(step('right', 1), this.#said, this.#lower, this.#stop, this.#next, act('class_remove', told.remove));
     this.finish();
     this.#picture.alt = '';
     const paper = made('div', '', this.#picture);
@@ -79,23 +75,21 @@ export class BigPupil extends Big {
     });
     this.window.addEventListener('close', () => {
       this.key = '';
-      told.closed();
     });
   }
 
   /** @param {Shown} shown */
-  show({ key, title, said, picture, text: program, drives, hand, here }) {
+  show({ key, title, said, picture, text: program, drives, hand }) {
     this.key = key;
-    put(this.title, title);
-    put(this.#said, said);
-    put(this.#text, program);
+    say(this.title, title);
+    say(this.#said, said);
+    say(this.#text, program);
     this.#text.setAttribute('aria-label', text('class_program_of', { name: title }));
     const paper = /** @type {HTMLElement} */ (this.#picture.parentElement);
     paper.hidden = !picture;
     if (picture && this.#picture.src !== picture) this.#picture.src = picture;
     this.#lower.hidden = !hand;
     this.#stop.hidden = this.#next.hidden = !drives;
-    this.#remove.hidden = !here;
     if (!this.window.open) this.window.showModal();
   }
 }
@@ -110,7 +104,7 @@ export class BigCode extends Big {
     this.head.append(made('span'));
     this.finish();
     this.title.dataset['text'] = 'class_come';
-    put(this.title, text('class_come'));
+    say(this.title, text('class_come'));
     this.#picture.setAttribute('role', 'img');
     this.#picture.dataset['label'] = 'class_picture';
     this.#picture.setAttribute('aria-label', text('class_picture'));
@@ -124,12 +118,12 @@ export class BigCode extends Big {
 
   /** @param {string} code */
   show(code) {
-    this.put(code);
+    this.change(code);
     this.window.showModal();
   }
 
   /** @param {string} code */
-  put(code) {
-    put(this.#code, code);
+  change(code) {
+    say(this.#code, code);
   }
 }

@@ -3,8 +3,8 @@
 //
 // The page asks once a second for its place. That keeps no robot going: only a page that drives does.
 
-import { button, labelled, made } from './made.js';
-import { element } from '../page/elements.js';
+import { button, labelled, made } from '../page/made.js';
+import { element, say } from '../page/elements.js';
 import { askAs, post } from '../robot/host.js';
 import { keepDone, lessonsDone } from '../lesson/progress.js';
 import { shown } from '../robot/plain_text.js';
@@ -13,7 +13,7 @@ import { sign } from './signs.js';
 import { clock } from './wall.js';
 import { text } from '../page/texts.js';
 import { CLASS, isRobot } from '../page/words.js';
-import { forgetAll } from '../programs/work.js';
+import { forgetAll, keepAt, kept } from '../page/kept.js';
 
 const PLACE = 'tiniscript.pupil';
 const LOOK_MS = 1000;
@@ -35,7 +35,10 @@ export class Pupil {
   #quit = button('class_quit', () => this.#want(false));
   /** What is told at the next look. @type {boolean | null} */
   #wants = null;
-  #hands = made('button', '', sign('hand', 26));
+  #hands = button('', () => {
+    this.#hand = !this.#isUp;
+    this.#look();
+  }, sign('hand', 26));
   /** Whether help is wanted, told at the next look. @type {boolean | null} */
   #hand = null;
   #isUp = false;
@@ -51,13 +54,8 @@ export class Pupil {
     this.#page = page;
     this.#panel = page.panel;
     this.#work = page.work;
-    this.#hands.type = 'button';
     this.#hands.id = 'class_hand';
     this.#hands.hidden = true;
-    this.#hands.addEventListener('click', () => {
-      this.#hand = !this.#isUp;
-      this.#look();
-    });
     element('stop', HTMLButtonElement).before(this.#hands);
     this.#showHand(false);
     for (const field of [this.#code, this.#name]) {
@@ -76,8 +74,8 @@ export class Pupil {
     });
     this.#box.append(this.#join, this.#said, made('p', '', this.#ask, this.#quit));
     this.#box.hidden = false;
-    const kept = keptToken();
-    if (kept) this.#begin(kept);
+    const token = kept(PLACE, 'sessionStorage');
+    if (token) this.#begin(token);
     else this.#leave('class_welcome');
   }
 
@@ -97,7 +95,7 @@ export class Pupil {
   /** @param {string} token */
   #begin(token) {
     askAs(token);
-    keepToken(token);
+    keepAt(PLACE, token, 'sessionStorage'); // without a storage, a reload joins anew
     this.#told = {};
     this.#join.hidden = true;
     this.#hands.hidden = false;
@@ -108,7 +106,7 @@ export class Pupil {
   #leave(why) {
     clearTimeout(this.#timer);
     askAs('');
-    keepToken('');
+    keepAt(PLACE, '', 'sessionStorage');
     this.#join.hidden = false;
     this.#ask.hidden = this.#quit.hidden = this.#hands.hidden = true;
     this.#say(why);
@@ -213,26 +211,7 @@ export class Pupil {
 
   /** @param {import('../page/texts.js').Key} key @param {Record<string, string | number>} values */
   #say(key, values = {}) {
-    const said = text(key, values);
-    if (this.#said.textContent !== said) this.#said.textContent = said;
+    say(this.#said, text(key, values));
     document.documentElement.dataset['pupil'] = key;
-  }
-}
-
-function keptToken() {
-  try {
-    return sessionStorage.getItem(PLACE) ?? '';
-  } catch {
-    return '';
-  }
-}
-
-/** @param {string} token */
-function keepToken(token) {
-  try {
-    if (token) sessionStorage.setItem(PLACE, token);
-    else sessionStorage.removeItem(PLACE);
-  } catch {
-    // no storage here: a reload joins anew
   }
 }

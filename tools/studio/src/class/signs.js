@@ -1,6 +1,6 @@
 // Signs of a class: drawn with lines, in the color of what is around them.
 
-const SVG = 'http://www.w3.org/2000/svg';
+import { drawn } from '../page/made.js';
 
 /** What is drawn in 24 by 24. @type {Record<string, string>} */
 const LINES = {
@@ -15,10 +15,6 @@ const LINES = {
 
 /** @param {string} name @param {number} [size] */
 export function sign(name, size = 24) {
-  const svg = document.createElementNS(SVG, 'svg');
-  const path = document.createElementNS(SVG, 'path');
-  for (const [key, value] of Object.entries({ viewBox: '0 0 24 24', width: size, height: size, 'aria-hidden': 'true' })) svg.setAttribute(key, String(value));
-  for (const [key, value] of Object.entries({ d: LINES[name] ?? '', fill: 'none', stroke: 'currentColor', 'stroke-width': '2.2', 'stroke-linecap': 'round', 'stroke-linejoin': 'round' })) path.setAttribute(key, value);
-  svg.append(path);
-  return svg;
+  return drawn('svg', { viewBox: '0 0 24 24', width: size, height: size, 'aria-hidden': 'true' },
+    drawn('path', { d: LINES[name] ?? '', fill: 'none', stroke: 'currentColor', 'stroke-width': 2.2, 'stroke-linecap': 'round', 'stroke-linejoin': 'round' }));
 }

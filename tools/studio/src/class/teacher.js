@@ -4,11 +4,11 @@
 
 import { BigCode, BigPupil } from './big.js';
 import { openWork, saveWork, workOfAll } from './keeping.js';
-import { button, labelled, made } from './made.js';
+import { button, labelled, made } from '../page/made.js';
 import { Pictures } from './pictures.js';
 import { sign } from './signs.js';
-import { clock, put, Wall } from './wall.js';
-import { element } from '../page/elements.js';
+import { clock, Wall } from './wall.js';
+import { element, say } from '../page/elements.js';
 import { hostPorts, post } from '../robot/host.js';
 import { shown } from '../robot/plain_text.js';
 import { so } from '../page/so.js';
@@ -26,7 +26,7 @@ const SURE_MS = 5000;
 const MOST_NAMED = 4; // hands that are named above the wall
 
 export class Teacher {
-  #wall = new Wall({ see: (key) => this.#see(key), remove: (key) => this.#remove(key), lower: (key) => this.#ofPupil('class_hand', key) });
+  #wall = new Wall({ see: (key) => this.#showBig(key), remove: (key) => this.#remove(key), lower: (key) => this.#ofPupil('class_hand', key) });
   #pictures;
   #big = new BigPupil({
     step: (by) => this.#step(by),
@@ -37,7 +37,6 @@ export class Teacher {
       this.#big.window.close();
     },
     lower: (key) => this.#ofPupil('class_hand', key),
-    closed: () => {},
   });
   #bigCode = new BigCode();
   #code = made('strong');
@@ -98,10 +97,8 @@ export class Teacher {
     const stop = element('stop', HTMLButtonElement);
     stop.dataset['text'] = 'class_stop_all';
     stop.textContent = text('class_stop_all');
-    const come = made('button', '', made('span', 'class_address'), made('strong', '', location.origin), made('span', 'class_code'), this.#code);
-    come.type = 'button';
+    const come = button('', () => this.#bigCode.show(this.#code.textContent ?? ''), made('span', 'class_address'), made('strong', '', location.origin), made('span', 'class_code'), this.#code);
     come.id = 'class_come';
-    come.addEventListener('click', () => this.#bigCode.show(this.#code.textContent ?? ''));
     const studio = button('class_studio', () => {
       this.#showWall(false);
       element('side_virtual', HTMLButtonElement).click();
@@ -143,8 +140,7 @@ export class Teacher {
 
   /** @param {boolean} isWall else the program and the virtual robot */
   #showWall(isWall) {
-    if (isWall) document.documentElement.dataset['wall'] = '';
-    else delete document.documentElement.dataset['wall'];
+    document.documentElement.toggleAttribute('data-wall', isWall);
     dispatchEvent(new Event('resize'));
   }
 
@@ -226,8 +222,8 @@ export class Teacher {
   /** @param {State} state */
   #show(state) {
     const { code, turn_s, places, over, goes_on, lessons, kept, pupils, robots } = this.#state = state;
-    put(this.#code, code);
-    this.#bigCode.put(code);
+    say(this.#code, code);
+    this.#bigCode.change(code);
     if (document.activeElement !== this.#minutes) this.#minutes.value = String(Math.round(turn_s / 60));
     if (document.activeElement !== this.#places) this.#places.value = String(places);
     if (over) {
@@ -240,7 +236,7 @@ export class Teacher {
     const hands = pupils.filter(({ hand }) => hand).sort((one, other) => one.hand - other.hand);
     const named = hands.slice(0, MOST_NAMED).map(({ name }) => shown(name)).join(', ') + (hands.length > MOST_NAMED ? ` +${hands.length - MOST_NAMED}` : '');
     const count = text('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place }) => place).length });
-    put(this.#said, [count, hands.length ? text('class_hands', { names: named }) : '', this.#told || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
+    say(this.#said, [count, hands.length ? text('class_hands', { names: named }) : '', this.#told || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
     document.documentElement.dataset['teacher'] = 'class_count';
     const back = kept.filter(({ name }) => pupils.some((each) => each.name === name)).length;
     this.#giveBack.hidden = !back;
@@ -282,7 +278,7 @@ export class Teacher {
       }));
       this.#chips.hidden = !rows.length;
     }
-    rows.forEach(({ said }, k) => put(/** @type {HTMLElement} */ (this.#chips.children[k]?.lastElementChild), said));
+    rows.forEach(({ said }, k) => say(/** @type {HTMLElement} */ (this.#chips.children[k]?.lastElementChild), said));
     const ports = JSON.stringify(robots.map(({ port, name }) => [port, name]));
     if (this.#robots.dataset['seen'] === ports) return;
     this.#robots.dataset['seen'] = ports;
@@ -313,11 +309,6 @@ export class Teacher {
   }
 
   /** @param {string} key */
-  #see(key) {
-    this.#showBig(key);
-  }
-
-  /** @param {string} key */
   #showBig(key) {
     const tile = this.#tiles().find((each) => each.key === key);
     if (!tile) {
@@ -330,7 +321,7 @@ export class Teacher {
     const done = text('class_lessons', { done: tile.lessons.length, all: this.#state?.lessons ?? 0 });
     this.#big.show({
       key, title: shown(tile.name), said: [drives, done].filter(Boolean).join(', '), picture: this.#wall.pictureOf(key), text: known?.text || text('class_empty'),
-      drives: Boolean(drives), hand: Boolean(pupil?.hand), here: true,
+      drives: Boolean(drives), hand: Boolean(pupil?.hand),
     });
   }
 
@@ -344,7 +335,7 @@ export class Teacher {
 
   /** @param {import('../page/texts.js').Key} key */
   #say(key) {
-    put(this.#said, text(key));
+    say(this.#said, text(key));
     document.documentElement.dataset['teacher'] = key;
   }
 }

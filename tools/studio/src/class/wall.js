@@ -2,7 +2,8 @@
 // hand that is up, and the robot or the place in the queue. All tiles are as large as fits the window.
 // Names and robots are put there as text, never as markup.
 
-import { made } from './made.js';
+import { say } from '../page/elements.js';
+import { button, made } from '../page/made.js';
 import { sign } from './signs.js';
 import { shown } from '../robot/plain_text.js';
 import { text } from '../page/texts.js';
@@ -71,24 +72,14 @@ export class Wall {
 
   /** @param {Seen} of @returns {Tile} */
   #made({ key }) {
-    const button = (/** @type {string} */ name, /** @type {(key: string) => void} */ act, /** @type {Node[]} */ ...inside) => {
-      const found = made('button', '', ...inside);
-      found.type = 'button';
-      found.className = name;
-      found.addEventListener('click', () => act(key));
-      return found;
-    };
-    const see = button('see', this.#told.see);
-    const hand = button('hand', this.#told.lower, sign('hand', 26));
-    const out = button('out', this.#told.remove, sign('out', 20));
+    const see = button('', () => this.#told.see(key));
+    const hand = button('', () => this.#told.lower(key), sign('hand', 26));
+    const out = button('', () => this.#told.remove(key), sign('out', 20));
     const name = made('strong'), picture = made('img'), empty = made('span', 'class_empty');
     const badge = made('span'), pips = made('span'), said = made('span');
+    for (const [looks, each] of Object.entries({ see, hand, out, badge, pips, said, empty })) each.className = looks;
     picture.alt = '';
     picture.hidden = true;
-    badge.className = 'badge';
-    pips.className = 'pips';
-    said.className = 'said';
-    empty.className = 'empty';
     empty.hidden = true; // until its program is known
     const item = made('li', '', name, made('div', '', picture, empty), made('p', '', pips, said), badge, see, hand, out);
     return { item, see, name, hand, out, picture, empty, badge, pips, said };
@@ -100,8 +91,8 @@ export class Wall {
     const state = !pupil ? 'gone' : pupil.silent_s > SILENT_S ? 'away' : pupil.is_right ? 'right' : 'wrong';
     const drives = pupil?.robot ? shown(pupil.robot) : '';
     if (tile.item.dataset['state'] !== state) tile.item.dataset['state'] = state;
-    put(tile.name, plain);
-    put(tile.said, state === 'right' ? '✓' : text(`class_is_${state}`));
+    say(tile.name, plain);
+    say(tile.said, state === 'right' ? '✓' : text(`class_is_${state}`));
     tile.hand.hidden = !pupil?.hand;
     const badge = drives ? `${drives} ${clock(pupil?.left_s ?? 0)}` : pupil?.place ? text('class_place_short', { place: pupil.place }) : '';
     tile.badge.hidden = !badge;
@@ -149,11 +140,6 @@ export class Wall {
 /** @param {number} seconds */
 export function clock(seconds) {
   return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;
-}
-
-/** @param {HTMLElement} place @param {string} said */
-export function put(place, said) {
-  if (place.textContent !== said) place.textContent = said;
 }
 
 /** @param {HTMLElement} place @param {string} said */

@@ -4,6 +4,8 @@
 // ended and nothing else has to wait for it. Then the run that was judged is seen.
 
 import { element } from '../page/elements.js';
+import { button, made } from '../page/made.js';
+import { bugSaid } from '../page/faults.js';
 import { elementOf, filled } from './page.js';
 import { keepDone, lessonsDone } from './progress.js';
 import { offer, pictured, worldPicture } from '../page/pictures.js';
@@ -26,9 +28,7 @@ import { isSecond } from '../page/twice.js';
  * @typedef {object} Page what the lessons need of the page
  * @property {import('../python.js').Python} python
  * @property {(program: {text: string, robot: string}) => void} put another program into the editor
- * @property {(lesson: number, seed: number, label: () => string) => Promise<void>} showWorld
- * @property {(run: JudgedRun) => Promise<void>} play resolves when it has been seen, or was stopped
- * @property {() => void} stop
+ * @property {import('../virtual/simulator_panel.js').SimulatorPanel} driving
  */
 
 /** What is said of each verdict, where a lesson has one world, and where it has several. */
@@ -73,7 +73,7 @@ export class Lessons {
     this.#check.addEventListener('click', () => this.#begin());
     this.#end.addEventListener('click', () => {
       if (this.#isPlaying) {
-        this.#page.stop(); // which shows the verdict
+        this.#page.driving.stop(); // which shows the verdict
         return;
       }
       this.#forget();
@@ -184,19 +184,14 @@ export class Lessons {
     this.#hint.hidden = !hint;
     element('lesson_hint_said', HTMLElement).replaceChildren(filled('span', hint));
     element('lesson_steps', HTMLElement).replaceChildren(...this.#steps.map((_, k) => {
-      const row = document.createElement('li');
-      const button = document.createElement('button');
       const isTask = k === this.#steps.length - 1;
-      button.type = 'button';
-      button.textContent = isTask ? '★' : String(k + 1);
-      button.ariaLabel = isTask ? text('lesson_task') : text('lesson_step', { number: k + 1 });
-      if (k === step) button.setAttribute('aria-current', 'step');
-      button.addEventListener('click', () => {
+      const found = button('', () => {
         this.#go(k);
         element('lesson_steps', HTMLElement).querySelectorAll('button')[k]?.focus();
-      });
-      row.append(button);
-      return row;
+      }, isTask ? '★' : String(k + 1));
+      found.ariaLabel = isTask ? text('lesson_task') : text('lesson_step', { number: k + 1 });
+      if (k === step) found.setAttribute('aria-current', 'step');
+      return made('li', '', found);
     }));
     this.#lay();
   }
@@ -216,7 +211,7 @@ export class Lessons {
     const { worlds, robot } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
     const values = { number: this.#number, seed };
     if (robot !== so.robot.value) so.robot.say(robot);
-    await this.#page.showWorld(values.number, seed,
+    await this.#page.driving.showLesson(values.number, seed,
       () => text(worlds > 1 ? 'world_of_lessons' : 'world_of_lesson', values));
   }
 
@@ -260,13 +255,13 @@ export class Lessons {
     this.#said.textContent = text('lesson_playing', { seed, worlds });
     this.#end.textContent = text('lesson_skip');
     await this.#seeWorld(seed);
-    if (check === this.#checks) await this.#page.play({ lesson: this.#number, seed, until_ms });
+    if (check === this.#checks) await this.#page.driving.play({ lesson: this.#number, seed, until_ms });
   }
 
   /** @param {unknown} why */
   #fail(why) {
     this.#forget();
-    this.#said.textContent = text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' });
+    this.#said.textContent = bugSaid(why);
   }
 
   /** @param {Answer & {verdict: keyof typeof SAID}} answer */
@@ -286,11 +281,7 @@ export class Lessons {
       const stars = verdict === 'passed' ? worlds : Math.max(0, seed - 1);
       element('lesson_stars', HTMLElement).textContent = '★'.repeat(stars) + '☆'.repeat(worlds - stars);
     }
-    this.#findings.replaceChildren(...said.map((sentence) => {
-      const row = document.createElement('li');
-      row.textContent = sentence;
-      return row;
-    }));
+    this.#findings.replaceChildren(...said.map((sentence) => made('li', '', sentence)));
     this.#hint.open = false;
     element('lesson_page', HTMLElement).scrollTop = 0;
     if (!isKept) so.note.say(text('not_kept'));

@@ -1,6 +1,6 @@
 // A step of a lesson: its paragraphs and programs become elements. Knows no lesson.
 
-import { text } from '../page/texts.js';
+import { button, made } from '../page/made.js';
 
 /** @typedef {{kind: string, rows: string[][]}} Block */
 
@@ -19,34 +19,20 @@ export function elementOf({ kind, rows }, use) {
  * @param {(program: string) => void} use
  */
 function programOf(program, use) {
-  const place = document.createElement('div');
-  const lines = document.createElement('pre');
-  const button = document.createElement('button');
+  const place = made('div', '', made('pre', '', program), button('lesson_use', () => use(`${program}\n`)));
   place.className = 'program';
-  lines.textContent = program;
-  button.type = 'button';
-  button.textContent = text('lesson_use');
-  button.addEventListener('click', () => use(`${program}\n`));
-  place.append(lines, button);
   return place;
 }
 
 /**
  * An element with a line of a page, in which `**` is around what is bold, and a back quote around code.
- * @param {string} kind
+ * @param {'p' | 'span'} kind
  * @param {string} line
  */
 export function filled(kind, line) {
-  const found = document.createElement(kind);
-  for (const part of line.split(/(\*\*.+?\*\*|`[^`]+`)/)) {
+  return made(kind, '', ...line.split(/(\*\*.+?\*\*|`[^`]+`)/).map((part) => {
     const mark = part.startsWith('**') ? 2 : part.startsWith('`') ? 1 : 0;
-    if (!mark || part.length <= 2 * mark) {
-      found.append(part);
-      continue;
-    }
-    const inner = document.createElement(mark === 2 ? 'strong' : 'code');
-    inner.textContent = part.slice(mark, -mark);
-    found.append(inner);
-  }
-  return found;
+    if (!mark || part.length <= 2 * mark) return part;
+    return made(mark === 2 ? 'strong' : 'code', '', part.slice(mark, -mark));
+  }));
 }

@@ -1,4 +1,4 @@
-// What is said of a fault of a program, on the virtual robot and on a real one.
+// What is said of a fault of a program, on the virtual robot and on a real one, and of a mistake of ours.
 
 import { shown } from '../robot/plain_text.js';
 import { hasText, text } from './texts.js';
@@ -8,4 +8,9 @@ export function faultSaid(fault) {
   const name = shown(String(fault));
   const key = `fault_${name}`;
   return text(hasText(key) ? key : 'fault_other', { name });
+}
+
+/** @param {unknown} why a mistake of ours: the last line of it is said */
+export function bugSaid(why) {
+  return text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' });
 }

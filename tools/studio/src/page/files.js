@@ -1,7 +1,19 @@
 // Files of programs: chosen by a person, and saved as any download. Knows no program.
 
+import { element } from './elements.js';
+
 // One more than the compiler reads: it says that the file is too large.
 const MOST_BYTES = 1_000_001;
+
+/** @param {string} id of the input @param {(file: File) => void} act with each file that a person chooses there */
+export function whenChosen(id, act) {
+  const input = element(id, HTMLInputElement);
+  input.addEventListener('change', () => {
+    const chosen = input.files?.[0];
+    input.value = ''; // the same one can be chosen again
+    if (chosen) act(chosen);
+  });
+}
 
 /**
  * @param {File} file

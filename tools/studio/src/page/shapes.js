@@ -7,15 +7,18 @@
  * @param {number[][]} points
  * @param {string} color
  * @param {number} width
- * @param {boolean} [isClosed]
+ * @param {string} [fill] the colour inside of a closed one
  */
-export function path(pen, points, color, width, isClosed = false) {
+export function path(pen, points, color, width, fill = '') {
   pen.beginPath();
   points.forEach(([x = 0, y = 0], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
-  if (isClosed) pen.closePath();
+  if (fill) pen.closePath();
   pen.strokeStyle = color;
   pen.lineWidth = width;
   pen.stroke();
+  if (!fill) return;
+  pen.fillStyle = fill;
+  pen.fill();
 }
 
 /**

@@ -32,6 +32,7 @@ class Fact {
 }
 
 export const so = {
+  screen: new Fact(/** @type {'' | 'start' | 'program'} */ ('')), // that is seen
   language: new Fact(''),
   areWordsShown: new Fact(false), // of the text, on blocks and at readings
   robot: new Fact(''), // its name

@@ -1,7 +1,7 @@
 // Light or dark: as the system has it, until somebody chooses, which this device keeps.
 
 import { element } from './elements.js';
-import { keepsNothing } from '../programs/work.js';
+import { keepAt, kept } from './kept.js';
 
 const PLACE = 'tiniscript.theme';
 const SYSTEM = matchMedia('(prefers-color-scheme: dark)');
@@ -11,23 +11,14 @@ export function beginTheme() {
   SYSTEM.addEventListener('change', show);
   addEventListener('storage', show); // another tab has chosen
   button.addEventListener('click', () => {
-    try {
-      if (!keepsNothing()) localStorage.setItem(PLACE, isDark() ? 'light' : 'dark');
-    } catch {
-      // no storage here: as the system has it
-    }
+    keepAt(PLACE, isDark() ? 'light' : 'dark');
     show();
   });
   show();
 }
 
 function isDark() {
-  let chosen = null;
-  try {
-    chosen = localStorage.getItem(PLACE);
-  } catch {
-    // no storage here
-  }
+  const chosen = kept(PLACE);
   return chosen === 'dark' || (chosen !== 'light' && SYSTEM.matches);
 }
 

@@ -11,6 +11,17 @@ import { called, hasText, text } from './texts.js';
 /** Words that stand for an instruction with its values. */
 export const FIXED = description.words.filter((word) => word.role === 'fixed');
 export const ROBOTS = description.robots;
+
+/** @param {string} name */
+export function robotOf(name) {
+  return ROBOTS.find((each) => each.name === name);
+}
+
+/** @param {string} robot @param {string} role `sensor` or `actuator` */
+export function devicesOf(robot, role) {
+  return robotOf(robot)?.devices.filter((device) => device.role === role) ?? [];
+}
+
 export const CLASS = description.class;
 export const WORLDS = /** @type {import('../world/parts.js').World[]} */ (/** @type {unknown} */ (description.worlds));
 export const WORLD_LIMITS = description.world_limits;

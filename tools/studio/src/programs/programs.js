@@ -3,16 +3,18 @@
 
 import { correction, generate } from 'lean-qr';
 import { element } from '../page/elements.js';
+import { bugSaid } from '../page/faults.js';
 import { downloadFile } from '../page/files.js';
+import { keepAt, kept } from '../page/kept.js';
+import { button, made } from '../page/made.js';
 import { linkOf, sharedIn } from './links.js';
-import { isAddress, keepPublic, publicAddress } from './public_address.js';
-import { reachOf } from './reach.js';
+import { isAddress, reachOf } from './reach.js';
 import { isGiven } from '../start/beginnings.js';
 import { showInstead } from '../start/screens.js';
 import { so } from '../page/so.js';
 import { called, currentLanguage, text } from '../page/texts.js';
 import { beginOf, keepVersion, MOST_CHARACTERS, versions } from './versions.js';
-import { ROBOTS } from '../page/words.js';
+import { robotOf } from '../page/words.js';
 import { keep } from './work.js';
 import { whole } from '../writing/messages.js';
 
@@ -20,6 +22,7 @@ import { whole } from '../writing/messages.js';
 /** @typedef {import('./work.js').Work} Work */
 /** @typedef {{text: string} | {wrong: string}} Given what is shared, or why it is not */
 
+const PUBLIC = 'tiniscript.public'; // where others find this page, as somebody has told it
 const MOST_PICTURED = 900; // bytes: a camera reads no picture with more from a screen
 const MARGIN = 4; // modules that must stay white around a code
 
@@ -65,7 +68,7 @@ export class Programs {
     element('share_picture', HTMLButtonElement).addEventListener('click', () => this.#savePicture());
     this.#name.addEventListener('input', () => this.#rename());
     this.#public.addEventListener('change', () => {
-      keepPublic(this.#public.value.trim());
+      keepAt(PUBLIC, this.#public.value.trim());
       this.#share('link');
     });
     this.#copy.addEventListener('click', () => this.#copyIt());
@@ -135,7 +138,7 @@ export class Programs {
     try {
       given = how === 'link' ? await this.#asLink() : await this.#asLine();
     } catch (why) {
-      given = { wrong: text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' }) };
+      given = { wrong: bugSaid(why) };
     }
     const told = how === 'line' ? 'share_line_told' : LINK_TOLD[reachOf(this.#address)];
     if (asked === this.#asked) this.#show(given, text(told));
@@ -143,8 +146,7 @@ export class Programs {
 
   /** Where others find the page. */
   get #address() {
-    const kept = publicAddress();
-    return isAddress(kept) ? kept : location.href;
+    return isAddress(publicAddress()) ? publicAddress() : location.href;
   }
 
   /** @returns {Promise<Given>} */
@@ -209,27 +211,24 @@ export class Programs {
     const language = currentLanguage();
     const time = new Intl.DateTimeFormat(language, { dateStyle: 'short', timeStyle: 'short' });
     const rows = versions().map((version) => {
-      const row = document.createElement('li');
-      const when = document.createElement('time');
-      const what = document.createElement('code');
-      const open = document.createElement('button');
       const at = new Date(version.at_ms);
+      const said = time.format(at);
+      const when = made('time', '', said);
       when.dateTime = at.toISOString();
-      when.textContent = time.format(at);
-      what.textContent = (version.name ? `${version.name}: ` : '') + beginOf(version.text);
-      open.type = 'button';
-      open.textContent = text('open_again');
-      open.setAttribute('aria-label', text('open_again_from', { time: when.textContent }));
-      open.addEventListener('click', () => {
+      const open = button('open_again', () => {
         this.replace(version);
         this.#window.close();
-        so.note.say(text('opened_again', { time: String(when.textContent) }));
+        so.note.say(text('opened_again', { time: said }));
       });
-      const robot = document.createElement('span');
-      robot.textContent = called(ROBOTS.find((each) => each.name === version.robot)?.labels ?? {}) || version.robot;
-      row.append(when, robot, what, open);
-      return row;
+      open.setAttribute('aria-label', text('open_again_from', { time: said }));
+      const what = (version.name ? `${version.name}: ` : '') + beginOf(version.text);
+      return made('li', '', when, made('span', '', called(robotOf(version.robot)?.labels ?? {}) || version.robot), made('code', '', what), open);
     });
     element('versions', HTMLElement).replaceChildren(...rows);
   }
+}
+
+/** Where others find this page, as somebody has told it; empty for nothing. */
+function publicAddress() {
+  return kept(PUBLIC).slice(0, 200);
 }

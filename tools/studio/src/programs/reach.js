@@ -1,7 +1,12 @@
-// From where an address can be opened.
+// Where others find a page, and from where an address can be opened.
 
 const HERE = /^(.*\.)?localhost$|^127(\.\d+){3}$|^\[::1\]$/;
 const NETWORK = /^(10\.\d+|192\.168|172\.(1[6-9]|2\d|3[01])|169\.254)(\.\d+){2}$|^\[f([cd]|e[89ab])|\.local$|^[^.[]+$/;
+
+/** @param {string} address */
+export function isAddress(address) {
+  return URL.canParse(address) && /^https?:$/.test(new URL(address).protocol);
+}
 
 /**
  * @param {string} address

@@ -3,7 +3,7 @@
 // What is kept may be damaged, or from another tab: it is read anew each time, and all is checked.
 
 import { isRobot } from '../page/words.js';
-import { keepsNothing } from './work.js';
+import { keepAt, keptForm } from '../page/kept.js';
 
 /** @typedef {{text: string, robot: string, name: string, at_ms: number}} Version */
 
@@ -13,12 +13,8 @@ export const MOST_CHARACTERS = 400_000; // in all; a browser keeps about five mi
 
 /** @returns {Version[]} */
 export function versions() {
-  try {
-    const found = JSON.parse(localStorage.getItem(PLACE) ?? '[]');
-    return Array.isArray(found) ? found.filter(isVersion).slice(0, MOST) : [];
-  } catch {
-    return []; // no storage here, or not what we have put there
-  }
+  const found = keptForm(PLACE);
+  return Array.isArray(found) ? found.filter(isVersion).slice(0, MOST) : [];
 }
 
 /**
@@ -29,20 +25,13 @@ export function versions() {
  * @returns {boolean}
  */
 export function keepVersion({ text, robot, name }, at_ms = Date.now()) {
-  if (!text.trim() || keepsNothing()) return true;
+  if (!text.trim()) return true;
   if (text.length > MOST_CHARACTERS) return false;
   const others = versions().filter((each) => each.text !== text || each.robot !== robot);
   const all = [{ text, robot, name, at_ms }, ...others].slice(0, MOST);
   while (all.length > 1 && all.reduce((sum, each) => sum + each.text.length, 0) > MOST_CHARACTERS) all.pop();
-  for (; all.length; all.pop()) {
-    try {
-      localStorage.setItem(PLACE, JSON.stringify(all));
-      return true;
-    } catch {
-      // full, or forbidden
-    }
-  }
-  return false;
+  while (all.length && !keepAt(PLACE, JSON.stringify(all))) all.pop();
+  return all.length > 0;
 }
 
 /** Its name, or else how it begins. @param {Version} version @returns {string} */

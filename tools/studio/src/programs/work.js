@@ -2,6 +2,7 @@
 //
 // What is kept may be damaged, or from somebody else on this device: all of it is checked.
 
+import { keepAt, kept, keptForm } from '../page/kept.js';
 import { languageOf } from '../page/texts.js';
 import { isRobot, WORLDS } from '../page/words.js';
 
@@ -11,70 +12,30 @@ const PLACE = 'tiniscript.work';
 const WORLD_PLACE = 'tiniscript.world'; // the text of the newest world that was drawn here
 const BEFORE_PLACE = 'tiniscript.worlds_before'; // the texts of those before it
 export const OWN_WORLD = ':own'; // no name of a shipped world
-const OURS = 'tiniscript.'; // all places of this page
 export const LONGEST = 1_000_000; // characters
-const STORES = /** @type {const} */ (['sessionStorage', 'localStorage']); // of this tab, and of the next one
 
 const MOST_OTHERS = 5;
 
-let isForgotten = false;
 /** The worlds of this tab that may be in the place: others there are of another tab. @type {Set<string>} */
 let ownWorlds = new Set();
 
-/** Deletes all that this page has kept on this device; it keeps nothing from then on. */
-export function forgetAll() {
-  isForgotten = true;
-  for (const name of STORES) {
-    try {
-      const storage = /** @type {any} */ (window)[name];
-      for (const place of Object.keys(storage)) if (place.startsWith(OURS)) storage.removeItem(place);
-    } catch {
-      // no storage here
-    }
-  }
-}
-
-export function keepsNothing() {
-  return isForgotten;
-}
-
 /** @returns {Work | null} */
 export function keptWork() {
-  return kept(PLACE, (found) => checked(JSON.parse(found)));
+  return checked(keptForm(PLACE, 'sessionStorage')) ?? checked(keptForm(PLACE));
 }
 
 /** Returns the texts of the worlds that were drawn here; who reads them checks them. @returns {{newest: string, before: string[]}} */
 export function keptWorlds() {
-  const newest = kept(WORLD_PLACE, (found) => found) ?? '';
-  const before = kept(BEFORE_PLACE, readWorlds) ?? [];
+  const newest = kept(WORLD_PLACE, 'sessionStorage') || kept(WORLD_PLACE);
+  const before = worldsBefore('sessionStorage') ?? worldsBefore() ?? [];
   ownWorlds = new Set([newest, ...before]);
   return { newest, before };
 }
 
-/** @param {string} found @returns {string[] | null} */
-function readWorlds(found) {
-  const texts = JSON.parse(found);
+/** @param {import('../page/kept.js').Store} [store] @returns {string[] | null} */
+function worldsBefore(store) {
+  const texts = keptForm(BEFORE_PLACE, store);
   return Array.isArray(texts) ? texts.filter((each) => typeof each === 'string' && each) : null;
-}
-
-/**
- * @template T
- * @param {string} place
- * @param {(found: string) => T | null} read
- * @param {readonly string[]} [stores] where it is looked for
- * @returns {T | null}
- */
-function kept(place, read, stores = STORES) {
-  for (const name of stores) {
-    try {
-      const found = /** @type {any} */ (window)[name].getItem(place);
-      const whole = found && read(found);
-      if (whole) return whole;
-    } catch {
-      // no storage here, or not what we have put there
-    }
-  }
-  return null;
 }
 
 /**
@@ -108,23 +69,13 @@ export function keepWorlds(newest, before) {
 
 /** Those that the next tab would find. @returns {string[]} */
 function lastingWorlds() {
-  const from = /** @type {const} */ (['localStorage']);
-  return [kept(WORLD_PLACE, (found) => found, from) ?? '', ...(kept(BEFORE_PLACE, readWorlds, from) ?? [])].filter(Boolean);
+  return [kept(WORLD_PLACE), ...(worldsBefore() ?? [])].filter(Boolean);
 }
 
 /** @param {string} place @param {string} whole @param {string} [lasting] for the next tab @returns {boolean} whether that is kept, too */
 function put(place, whole, lasting = whole) {
-  if (isForgotten) return true;
-  let isKept = false;
-  for (const name of STORES) {
-    try {
-      /** @type {any} */ (window)[name].setItem(place, name === 'localStorage' ? lasting : whole);
-      isKept = name === 'localStorage';
-    } catch {
-      isKept = false; // full, or forbidden
-    }
-  }
-  return isKept;
+  keepAt(place, whole, 'sessionStorage');
+  return keepAt(place, lasting);
 }
 
 /**

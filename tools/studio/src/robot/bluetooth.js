@@ -1,6 +1,6 @@
 // A robot that the browser reaches by Bluetooth LE: the Nordic UART service, or an HM-10's.
 
-import { Failed } from './transport.js';
+import { Failed, pause } from './transport.js';
 
 const BLUETOOTH = /** @type {any} */ (navigator).bluetooth;
 const NORDIC = '6e400001-b5a3-f393-e0a9-e50e24dcca9e';
@@ -101,7 +101,7 @@ export class BluetoothPort {
       const piece = data.slice(at, at + MOST);
       if (this.#in.properties.writeWithoutResponse) await this.#in.writeValueWithoutResponse(piece);
       else await this.#in.writeValueWithResponse(piece);
-      if (this.#pauseMs) await new Promise((resolve) => setTimeout(resolve, this.#pauseMs));
+      if (this.#pauseMs) await pause(this.#pauseMs);
     }
   }
 

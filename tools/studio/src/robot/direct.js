@@ -5,7 +5,7 @@
 // sleeps, nothing is sent, and the robot stops by itself.
 
 import { Failed, pause } from './transport.js';
-import { LINK, ROBOTS } from '../page/words.js';
+import { LINK, robotOf } from '../page/words.js';
 
 /** @typedef {import('./transport.js').Heard} Heard */
 /** @typedef {import('./transport.js').Answer} Answer */
@@ -48,7 +48,7 @@ export class DirectRobot {
    * @param {import('../python.js').Python} python
    * @param {Port} port
    * @param {Heard} heard
-   * @param {(keys: string) => void} keepKeys
+   * @param {(keys: string) => unknown} keepKeys
    */
   constructor(python, port, heard, keepKeys) {
     this.#python = python;
@@ -107,7 +107,7 @@ export class DirectRobot {
     if (this.#port.isRadio) answer = await this.ask({ do: 'hello', limit_ms: LINK.radio_answer_ms });
     else {
       // Bytes that come too early keep a board in its bootloader.
-      await pause(ROBOTS.find((each) => each.name === robot)?.quiet_ms ?? 0);
+      await pause(robotOf(robot)?.quiet_ms ?? 0);
       answer = await this.ask({ do: 'hello', limit_ms: LINK.cable_answer_ms });
       if (!answer.ok && !this.#bytes) {
         await pause(LINK.long_quiet_ms);

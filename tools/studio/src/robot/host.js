@@ -10,6 +10,7 @@
 /** @typedef {import('./transport.js').About} About */
 
 import { Failed } from './transport.js';
+import { keepAt, kept } from '../page/kept.js';
 
 /** @typedef {{port: string, name: string, description: string, virtual: string | null}} Port */
 
@@ -18,7 +19,7 @@ const BEAT_MS = 100;
 const SILENT_MS = 3000; // without an answer
 const ASK_MS = 2000;
 
-let token = keptToken();
+let token = kept(PLACE, 'sessionStorage');
 /** Why the code of the address has given no token, or nothing. */
 export const whyOutside = await enter();
 
@@ -34,14 +35,6 @@ export function askAs(own) {
   token = own;
 }
 
-function keptToken() {
-  try {
-    return sessionStorage.getItem(PLACE) ?? '';
-  } catch {
-    return '';
-  }
-}
-
 /** Takes the code out of the address, and gets the token for it. @returns {Promise<string>} */
 async function enter() {
   const code = /^#code=([0-9a-f]{32})$/.exec(location.hash)?.[1];
@@ -55,11 +48,7 @@ async function enter() {
   } catch {
     return 'host_gone';
   }
-  try {
-    sessionStorage.setItem(PLACE, token);
-  } catch {
-    // no storage here: a reload needs a new address
-  }
+  keepAt(PLACE, token, 'sessionStorage'); // without a storage, a reload needs a new address
   return '';
 }
 

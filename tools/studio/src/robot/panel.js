@@ -3,11 +3,10 @@
 
 import { element } from '../page/elements.js';
 import { faultSaid } from '../page/faults.js';
-import { bytesOf } from '../page/files.js';
+import { bytesOf, whenChosen } from '../page/files.js';
 import { chosenDevice, BluetoothPort, hasBluetooth } from './bluetooth.js';
 import { DirectRobot } from './direct.js';
 import { hasHost, hostPorts, HostRobot, isPupil, isTeacher } from './host.js';
-import { keepKeys, keptKeys } from './keys.js';
 import { Flashing } from './flashing.js';
 import { readTrim, showTrim } from './trim.js';
 import { chosenPort, hasSerial, knownPorts, SerialPort } from './serial.js';
@@ -15,10 +14,11 @@ import { refusal, shown } from './plain_text.js';
 import { stopAll } from './stops.js';
 import { Speech } from './speech.js';
 import { Failed } from './transport.js';
+import { keepAt, kept } from '../page/kept.js';
 import { drawnPicture, offer, pictured } from '../page/pictures.js';
 import { so } from '../page/so.js';
 import { called, currentLanguage, known, text } from '../page/texts.js';
-import { LINK, ROBOTS } from '../page/words.js';
+import { LINK, robotOf } from '../page/words.js';
 import { whole } from '../writing/messages.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
@@ -35,6 +35,10 @@ import { whole } from '../writing/messages.js';
  * @property {import('./recorder.js').Recorder} recorder of what the robot tells
  * @property {import('./place.js').RobotPlace} place where its program is
  */
+
+// The keys of robots that this browser keeps: the text of a file of keys, as `tsc keys` writes it. Who uses
+// this browser uses them; the page gives them to no one but the robot's session.
+const KEYS = 'tiniscript.link.keys';
 
 export class RobotPanel {
   #page;
@@ -76,7 +80,7 @@ export class RobotPanel {
       event.preventDefault();
       this.#live(this.#line.value);
     });
-    element('keys_file', HTMLInputElement).addEventListener('change', () => this.#import());
+    whenChosen('keys_file', (file) => this.#import(file));
     new Flashing({
       speech: this.#speech,
       port: () => this.#choices[this.#list.selectedIndex]?.serial,
@@ -103,7 +107,7 @@ export class RobotPanel {
   get #name() {
     const about = this.#about;
     if (!about) return '';
-    return shown(about.name) || called(ROBOTS.find((each) => each.name === about.robot)?.labels ?? {}) || about.id;
+    return shown(about.name) || called(robotOf(about.robot ?? '')?.labels ?? {}) || about.id;
   }
 
   /** Sends the program and runs it, or says that no robot is there. */
@@ -182,13 +186,13 @@ export class RobotPanel {
   }
 
   get #baud() {
-    return ROBOTS.find((each) => each.name === so.robot.value)?.baud ?? 9600;
+    return robotOf(so.robot.value)?.baud ?? 9600;
   }
 
   /** @param {import('./direct.js').Port} port @param {import('./transport.js').Heard} heard */
   #direct(port, heard) {
-    const way = new DirectRobot(this.#page.python, port, heard, keepKeys);
-    return { way, met: way.connect(so.robot.value, currentLanguage(), keptKeys()) };
+    const way = new DirectRobot(this.#page.python, port, heard, (keys) => keepAt(KEYS, keys));
+    return { way, met: way.connect(so.robot.value, currentLanguage(), kept(KEYS)) };
   }
 
   /** @param {(heard: import('./transport.js').Heard) => Promise<{way: Transport, met: Promise<About>}>} open */
@@ -318,18 +322,15 @@ export class RobotPanel {
     this.#ask({ do: 'claim' }, () => this.#speech.say(isHost ? 'say_claimed_here' : 'say_claimed'));
   }
 
-  async #import() {
-    const input = element('keys_file', HTMLInputElement);
-    const chosen = input.files?.[0];
-    input.value = '';
-    if (!chosen) return;
+  /** @param {File} file with keys */
+  async #import(file) {
     if (this.#way instanceof HostRobot) {
       this.#speech.say('say_keys_host');
       return;
     }
     try {
-      const found = await this.#page.python.ask({ do: 'import_keys', kept: keptKeys() }, await bytesOf(chosen));
-      if (found.count) keepKeys(found.keys);
+      const found = await this.#page.python.ask({ do: 'import_keys', kept: kept(KEYS) }, await bytesOf(file));
+      if (found.count) keepAt(KEYS, found.keys);
       this.#speech.say(found.count ? 'say_keys' : 'say_no_keys', { count: found.count });
     } catch {
       this.#speech.say('say_no_keys');

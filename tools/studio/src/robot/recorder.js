@@ -3,7 +3,8 @@
 // The form of a recording is that of `recordings.py`, which reads it.
 
 import { element } from '../page/elements.js';
-import { bytesOf, download } from '../page/files.js';
+import { bugSaid } from '../page/faults.js';
+import { bytesOf, download, whenChosen } from '../page/files.js';
 import { so } from '../page/so.js';
 import { currentLanguage, known, text } from '../page/texts.js';
 
@@ -31,14 +32,10 @@ export class Recorder {
    */
   constructor(page) {
     this.#page = page;
-    const file = element('record_file', HTMLInputElement);
     this.#save.addEventListener('click', () => download(text('record_name'), this.#whole()));
     this.#compare.addEventListener('click', () => this.#replay(new TextEncoder().encode(this.#whole())));
-    element('record_open', HTMLButtonElement).addEventListener('click', () => file.click());
-    file.addEventListener('change', async () => {
-      const chosen = file.files?.[0];
-      file.value = '';
-      if (!chosen) return;
+    element('record_open', HTMLButtonElement).addEventListener('click', () => element('record_file', HTMLInputElement).click());
+    whenChosen('record_file', async (chosen) => {
       try {
         this.#replay(await bytesOf(chosen));
       } catch {
@@ -123,7 +120,7 @@ export class Recorder {
       const found = await python.ask(request, data);
       this.#tell(() => said(found));
     } catch (why) {
-      this.#tell(() => text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' }));
+      this.#tell(() => bugSaid(why));
     }
   }
 }

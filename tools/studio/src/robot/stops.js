@@ -1,9 +1,10 @@
 // STOP for all robots of a `tsc studio`: how many have confirmed it, and in red which have not.
 
-import { made } from '../class/made.js';
 import { element } from '../page/elements.js';
+import { made } from '../page/made.js';
 import { isTeacher, post } from './host.js';
 import { shown } from './plain_text.js';
+import { pause } from './transport.js';
 import { text } from '../page/texts.js';
 import { LINK } from '../page/words.js';
 
@@ -27,14 +28,14 @@ export async function stopAll() {
       show(null, false);
       return;
     }
-    if (!robots) await pause();
+    if (!robots) await pause(LOOK_MS);
   }
   while (own === newest && robots) {
     const passed = performance.now() - began;
     const isOver = passed > 2 * LINK.confirm_ms || robots.every(({ stop }) => stop !== 'asked');
     show(robots, isOver || passed > LATE_MS);
     if (isOver) return;
-    await pause();
+    await pause(LOOK_MS);
     robots = (await asked('stops')) ?? robots;
   }
 }
@@ -46,10 +47,6 @@ async function asked(what) {
   } catch {
     return null;
   }
-}
-
-function pause() {
-  return new Promise((resolve) => setTimeout(resolve, LOOK_MS));
 }
 
 /** @param {Stop[] | null} robots @param {boolean} isLate */

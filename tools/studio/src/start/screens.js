@@ -1,12 +1,12 @@
 // Which screen is seen: the start, or the program and its robot. The address of the latter ends with
 // `#editor`: a reload stays there, Back leads to the start, and a page can be opened there at once.
 
+import { so } from '../page/so.js';
+
 /** @typedef {'start' | 'program'} Screen */
 
 const EDITOR = '#editor';
 const root = document.documentElement;
-/** @type {((screen: Screen) => void)[]} */
-const told = [];
 
 /** Whether the address is that of a screen, and of nothing else. */
 function isScreen() {
@@ -15,24 +15,19 @@ function isScreen() {
 
 /** @param {Screen} screen */
 function put(screen) {
-  if (root.dataset['screen'] === screen) return;
+  if (so.screen.value === screen) return;
   root.dataset['screen'] = screen;
-  for (const each of told) each(screen);
+  so.screen.say(screen);
 }
 
 /** @returns {boolean} */
 export function isStart() {
-  return root.dataset['screen'] === 'start';
-}
-
-/** @param {(screen: Screen) => void} act is told of each change from now on */
-export function whenScreen(act) {
-  told.push(act);
+  return so.screen.value === 'start';
 }
 
 /** @param {Screen} screen */
 export function show(screen) {
-  if (root.dataset['screen'] === screen) return;
+  if (so.screen.value === screen) return;
   history.pushState(null, '', location.pathname + location.search + (screen === 'start' ? '' : EDITOR));
   put(screen);
 }

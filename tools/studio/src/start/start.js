@@ -1,11 +1,12 @@
 // The start screen: pictures that begin with a robot that moves, earlier programs, and ways onward.
 
 import { element } from '../page/elements.js';
+import { button, made } from '../page/made.js';
 import { so } from '../page/so.js';
 import { currentLanguage, known, text } from '../page/texts.js';
 import { titleOf, versions } from '../programs/versions.js';
 import { BEGINNINGS } from './beginnings.js';
-import { isStart, show, whenScreen } from './screens.js';
+import { isStart, show } from './screens.js';
 import { thumbnail } from './thumbnail.js';
 
 /**
@@ -39,7 +40,7 @@ export class Start {
         element(place, HTMLElement).focus({ preventScroll: true });
       });
     }
-    whenScreen((screen) => {
+    so.screen.watch((screen) => {
       if (screen === 'start') this.#page.leave();
       else if (!this.#isBeginning) this.#page.see();
       this.#showPrograms();
@@ -70,17 +71,8 @@ export class Start {
     if (!isStart()) return;
     const time = new Intl.DateTimeFormat(currentLanguage(), { dateStyle: 'short', timeStyle: 'short' });
     const rows = versions().slice(0, MOST).map((version) => {
-      const row = document.createElement('li');
-      const open = document.createElement('button');
-      const title = document.createElement('strong');
-      const when = document.createElement('time');
-      open.type = 'button';
-      title.textContent = titleOf(version);
-      when.textContent = time.format(new Date(version.at_ms));
-      open.append(thumbnail(version.text, version.robot), title, when);
-      open.addEventListener('click', () => this.#page.put(version));
-      row.append(open);
-      return row;
+      const title = made('strong', '', titleOf(version)), when = made('time', '', time.format(new Date(version.at_ms)));
+      return made('li', '', button('', () => this.#page.put(version), thumbnail(version.text, version.robot), title, when));
     });
     element('start_programs_title', HTMLElement).hidden = !rows.length;
     element('start_programs', HTMLElement).replaceChildren(...rows);

@@ -2,9 +2,9 @@
 // text alone, so that it costs nothing and shows nothing that somebody else has written.
 
 import { COLOURS } from '../blocks/colours.js';
+import { drawn } from '../page/made.js';
 import { KINDS, wordsOf } from '../page/words.js';
 
-const SVG = 'http://www.w3.org/2000/svg';
 const MOST = 7; // bars
 const ROW = 9, HIGH = 7, STEP = 7, WIDEST = 60;
 const OPENS = /^(LOOP|REPEAT|WHILE|IF|DEF|TASK|WHEN)\b/i, TURNS = /^ELSE/i, CLOSES = /^END/i;
@@ -16,10 +16,9 @@ const OPENS = /^(LOOP|REPEAT|WHILE|IF|DEF|TASK|WHEN)\b/i, TURNS = /^ELSE/i, CLOS
  */
 export function thumbnail(program, robot) {
   const words = wordsOf(robot);
-  const picture = document.createElementNS(SVG, 'svg');
-  picture.setAttribute('viewBox', `0 0 96 ${MOST * ROW + 3}`);
-  picture.setAttribute('aria-hidden', 'true');
-  let depth = 0, row = 0;
+  /** @type {SVGElement[]} */
+  const bars = [];
+  let depth = 0;
   for (const part of program.replace(/\/\/.*$/gm, '').replace(/^\s*\w+\s*\|/, '').split(/[;\n]/)) {
     const line = part.trim();
     if (!line) continue;
@@ -27,18 +26,11 @@ export function thumbnail(program, robot) {
     if (!CLOSES.test(line)) {
       const role = words.get(/^\w*/.exec(line)?.[0].toUpperCase() ?? '')?.role ?? '';
       const colour = OPENS.test(line) || TURNS.test(line) ? COLOURS['control'] : COLOURS[KINDS[role === 'actuator' ? 'set' : role]?.colour ?? 'names'];
-      picture.append(bar(3 + depth * STEP, 3 + row * ROW, Math.min(WIDEST, 14 + 3 * line.length), colour ?? ''));
-      row += 1;
+      const width = Math.min(WIDEST, 14 + 3 * line.length);
+      bars.push(drawn('rect', { x: 3 + depth * STEP, y: 3 + bars.length * ROW, width, height: HIGH, rx: 2, fill: colour ?? '' }));
     }
     if (OPENS.test(line) || TURNS.test(line)) depth = Math.min(3, depth + 1);
-    if (row === MOST) break;
+    if (bars.length === MOST) break;
   }
-  return picture;
-}
-
-/** @param {number} x @param {number} y @param {number} width @param {string} fill */
-function bar(x, y, width, fill) {
-  const found = document.createElementNS(SVG, 'rect');
-  for (const [name, value] of Object.entries({ x, y, width, height: HIGH, rx: 2, fill })) found.setAttribute(name, String(value));
-  return found;
+  return drawn('svg', { viewBox: `0 0 96 ${MOST * ROW + 3}`, 'aria-hidden': 'true' }, ...bars);
 }

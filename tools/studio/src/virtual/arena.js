@@ -2,7 +2,7 @@
 
 import { drawRobot } from './robot_drawing.js';
 import { dot, path } from '../page/shapes.js';
-import { ROBOTS, WORLDS } from '../page/words.js';
+import { robotOf, ROBOTS, WORLDS } from '../page/words.js';
 import { drawWorld } from '../world/floor.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
@@ -68,7 +68,7 @@ export class Arena {
     if (world !== this.#world || robot !== this.#robot?.name) this.#ways = [];
     this.#world = world;
     this.#goals = goals;
-    this.#robot = ROBOTS.find((each) => each.name === robot) ?? ROBOTS[0];
+    this.#robot = robotOf(robot) ?? ROBOTS[0];
     this.#ways = [...this.#ways.filter((way) => way.length > 1), []].slice(-1 - MOST_WAYS);
     this.#rolled = [0, 0];
     this.#seen_ms = this.#beeps_until_ms = 0;
@@ -241,9 +241,7 @@ export class Arena {
       const angle = (k * Math.PI) / 8, far = k % 2 ? 2.4 : 6;
       return [x + far * Math.cos(angle), y + far * Math.sin(angle)];
     });
-    path(this.#pen, points, '#a8200f', 0.6, true);
-    this.#pen.fillStyle = '#ffd84d';
-    this.#pen.fill();
+    path(this.#pen, points, '#a8200f', 0.6, '#ffd84d');
   }
 
   #drawMark() {

@@ -1,5 +1,7 @@
 // Draws how values change over the robot's time. Knows numbers; what they mean, their names say.
 
+import { path } from '../page/shapes.js';
+
 const MOST = 2000; // samples; then every other one is forgotten
 const LEAST_ROW = 54; // pixels for one value
 const LEFT = 6;
@@ -75,14 +77,9 @@ export class Plot {
     const x = (at_ms) => LEFT + ((at_ms - from) / (until - from)) * wide;
     const step = niceStep((until - from) / Math.max(2, wide / 70));
     this.#colors = document.documentElement.hasAttribute('data-dark') ? DARK : LIGHT;
-    pen.strokeStyle = this.#colors.rule;
     pen.fillStyle = this.#colors.said;
-    pen.lineWidth = 1;
     for (let at = Math.ceil(from / step) * step; at <= until; at += step) {
-      pen.beginPath();
-      pen.moveTo(x(at), 0);
-      pen.lineTo(x(at), names.length * row);
-      pen.stroke();
+      path(pen, [[x(at), 0], [x(at), names.length * row]], this.#colors.rule, 1);
       const label = `${rounded(at / 1000)} s`;
       pen.fillText(label, Math.min(x(at) + 2, LEFT + wide - pen.measureText(label).width), names.length * row + 14);
     }
@@ -112,12 +109,7 @@ export class Plot {
     const middle = high === low ? 0.5 : 0;
     /** @param {number} value */
     const y = (value) => top + row - 6 - ((value - low) / span + middle) * (row - 26);
-    pen.strokeStyle = this.#colors.rule;
-    pen.lineWidth = 1;
-    pen.beginPath();
-    pen.moveTo(0, top + row - 0.5);
-    pen.lineTo(this.#canvas.clientWidth, top + row - 0.5);
-    pen.stroke();
+    path(pen, [[0, top + row - 0.5], [this.#canvas.clientWidth, top + row - 0.5]], this.#colors.rule, 1);
     pen.strokeStyle = color;
     pen.lineWidth = 1.8;
     pen.beginPath();

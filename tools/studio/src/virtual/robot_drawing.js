@@ -28,16 +28,12 @@ export function drawRobot(pen, robot, state, seen) {
   actuatorsOf(robot).forEach((device, k) => {
     if (!device.is_yes_no) drawJaws(pen, robot, (state?.actuators[k] ?? 0) / (device.arguments[0]?.high || 1));
   });
-  path(pen, robot.outline, '#0d4f38', 0.8, true);
-  pen.fillStyle = state?.fault ? '#c8372a' : '#2a9d6f';
-  pen.fill();
+  path(pen, robot.outline, '#0d4f38', 0.8, state?.fault ? '#c8372a' : '#2a9d6f');
   const side = robot.wheel_base_cm / 2;
   drawWheel(pen, side, seen.rolled[0]);
   drawWheel(pen, -side, seen.rolled[1]);
   drawEyes(pen, robot);
-  path(pen, [[6, 0], [1.5, 2.6], [1.5, -2.6]], '#fff', 0.4, true);
-  pen.fillStyle = '#fff';
-  pen.fill();
+  path(pen, [[6, 0], [1.5, 2.6], [1.5, -2.6]], '#fff', 0.4, '#fff');
   drawLamps(pen, robot, state);
   drawBuzzer(pen, seen.isBeeping);
 }

@@ -2,7 +2,8 @@
 //
 // The robot's time goes on only by what this page asks for, so a page that sleeps stands still.
 
-import { currentLanguage, text } from '../page/texts.js';
+import { bugSaid } from '../page/faults.js';
+import { currentLanguage } from '../page/texts.js';
 
 /** @typedef {import('../python.js').Python} Python */
 /** @typedef {import('../python.js').Checked} Checked */
@@ -157,7 +158,7 @@ export class Simulator {
     } catch (why) {
       this.phase = 'off';
       this.isStopping = false;
-      this.failure = text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' });
+      this.failure = bugSaid(why);
       this.#shown();
     } finally {
       this.#isAsking = false;

@@ -6,13 +6,14 @@ import { faultSaid } from '../page/faults.js';
 import { download } from '../page/files.js';
 import { offsetsOf, rangeAt } from '../writing/parts.js';
 import { dialPicture, offer, pictured } from '../page/pictures.js';
+import { made } from '../page/made.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
 import { so } from '../page/so.js';
 import { hasText, text } from '../page/texts.js';
 import { isSecond } from '../page/twice.js';
-import { nameOf, onBlock, ROBOTS } from '../page/words.js';
+import { devicesOf, nameOf, onBlock } from '../page/words.js';
 import { OWN_WORLD } from '../programs/work.js';
 import { WorldChoice } from '../world/choice.js';
 import { starsShown, Where } from './where.js';
@@ -84,9 +85,7 @@ export class SimulatorPanel {
     });
     this.#drawing = new WorldDrawing(python, this.#arena, {
       world: () => this.#shapes,
-      isOwn: () => this.#world.isOwn,
-      keepOwn: () => this.#world.keepOwn(),
-      write: (world) => this.#world.write(world),
+      choice: this.#world,
       robot: () => {
         const [x, y] = this.#simulator.state?.pose ?? [this.#shapes.start.x_cm, this.#shapes.start.y_cm];
         return [x, y];
@@ -120,9 +119,9 @@ export class SimulatorPanel {
       else this.#start(true);
     });
     this.#push.addEventListener('click', () => this.#simulator.push());
-    element('stop', HTMLButtonElement).addEventListener('click', () => this.#stop());
+    element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
     addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') this.#stop();
+      if (event.key === 'Escape') this.stop();
     }, { capture: true });
     const speed = element('speed', HTMLSelectElement);
     offer(speed, SPEEDS.map((each, k) => pictured(`× ${each}`, String(each), dialPicture(k / (SPEEDS.length - 1)))));
@@ -187,13 +186,9 @@ export class SimulatorPanel {
     if (this.#isDriving) await new Promise((resolve) => { this.#seenRun = () => resolve(undefined); });
   }
 
-  stop() {
-    this.#stop();
-  }
-
   /** Another screen is seen. */
   leave() {
-    this.#stop();
+    this.stop();
     this.#drawing.end();
   }
 
@@ -250,7 +245,7 @@ export class SimulatorPanel {
 
   /** Stops, and switches off. */
   #rest() {
-    this.#stop();
+    this.stop();
     this.#simulator.leave();
     this.#plot.begin();
     this.#variables = [];
@@ -326,7 +321,7 @@ export class SimulatorPanel {
     await this.#simulator.begin(program, so.robot.value, world, judged ? [] : this.#offsets, isPaused, least);
   }
 
-  #stop() {
+  stop() {
     this.#starts += 1;
     if (this.#isWaiting) {
       this.#isWaiting = false;
@@ -411,15 +406,10 @@ export class SimulatorPanel {
       this.#arena.say(this.#shown, shown[0]);
     }
     this.#plot.add(state.now_ms - state.began_ms, [
-      ...this.#sensors().map((device, k) => ({ name: nameOf(device), value: numberOf(state.readings[k]?.text) })),
+      ...devicesOf(so.robot.value, 'sensor').map((device, k) => ({ name: nameOf(device), value: numberOf(state.readings[k]?.text) })),
       ...this.#variables.map(({ name, is_yes_no }, k) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[k])) : state.variables[k] })),
       { name: 'SHOW', value: numberOf(this.#shown) },
     ]);
-  }
-
-  #sensors() {
-    const robot = ROBOTS.find((each) => each.name === so.robot.value);
-    return robot?.devices.filter((device) => device.role === 'sensor') ?? [];
   }
 
   #doing() {
@@ -464,14 +454,14 @@ export class SimulatorPanel {
       [text('time'), state ? `${seconds} s` : '–'],
       [text('motors'), state ? state.motors.map((power) => `${power} %`).join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
-      ...this.#sensors().map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–', partOf(device, state?.readings[k]?.value)]),
+      ...devicesOf(so.robot.value, 'sensor').map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–', partOf(device, state?.readings[k]?.value)]),
       ...this.#variables.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
       ...(this.#shown ? [['SHOW', this.#shown]] : []),
     ];
     const place = element('values', HTMLElement);
     while (place.children.length > rows.length) place.lastElementChild?.remove();
     rows.forEach(([name = '', value = '', part = ''], k) => {
-      const row = /** @type {HTMLElement} */ (place.children[k] ?? place.appendChild(valueRow()));
+      const row = /** @type {HTMLElement} */ (place.children[k] ?? place.appendChild(made('div', '', made('dt'), made('dd'))));
       row.classList.toggle('wide', name.length > SHORT || part !== '');
       if (part) row.style.setProperty('--part', part);
       else row.removeAttribute('style');
@@ -483,14 +473,7 @@ export class SimulatorPanel {
   }
 }
 
-/** A row of the values, still empty. */
-function valueRow() {
-  const row = document.createElement('div');
-  row.append(document.createElement('dt'), document.createElement('dd'));
-  return row;
-}
-
-/** How much of its range a reading is, for a bar. @param {typeof ROBOTS[number]['devices'][number]} device @param {number} [value] */
+/** How much of its range a reading is, for a bar. @param {ReturnType<typeof devicesOf>[number]} device @param {number} [value] */
 function partOf({ arguments: [range] }, value) {
   if (!range || value === undefined || range.high <= range.low) return '0%';
   return `${Math.round((100 * (value - range.low)) / (range.high - range.low))}%`;
@@ -498,7 +481,7 @@ function partOf({ arguments: [range] }, value) {
 
 /**
  * A reading with its unit, or with the most that it can be.
- * @param {typeof ROBOTS[number]['devices'][number]} device
+ * @param {ReturnType<typeof devicesOf>[number]} device
  * @param {string} value
  */
 function measured({ unit, arguments: [range] }, value) {

@@ -22,10 +22,8 @@ import { OWN_WORLD } from '../programs/work.js';
  * @property {() => World} world that is seen
  * @property {() => import('./parts.js').Place} robot where it is seen
  * @property {() => boolean} isDriving
- * @property {() => boolean} isOwn whether that world was drawn or opened here
+ * @property {WorldChoice} choice of it
  * @property {() => void} rest the robot is off, and its floor seen in place of curves
- * @property {(world: World) => Promise<{text?: string, is_blocked?: boolean, refused?: string[]}>} write it as a file has it, or why it is none
- * @property {() => Promise<boolean>} keepOwn what was drawn or opened here, if that is possible
  * @property {(world: World, isOther: boolean) => void} put a changed world, or another one, takes the place of the one that is seen
  * @property {(world: World) => void} preview the same, for as long as a finger is down
  * @property {() => void} tell something is to be shown anew

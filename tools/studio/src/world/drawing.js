@@ -2,7 +2,7 @@
 // only by `parts.js`.
 
 import { element } from '../page/elements.js';
-import { bytesOf, download } from '../page/files.js';
+import { bytesOf, download, whenChosen } from '../page/files.js';
 import { ownCopy } from './own.js';
 import { so } from '../page/so.js';
 import { currentLanguage, known, text } from '../page/texts.js';
@@ -36,7 +36,6 @@ export class WorldDrawing {
   #tools = element('world_tools', HTMLElement);
   #parts = element('world_part', HTMLSelectElement);
   #numbers = element('world_numbers', HTMLElement);
-  #file = element('world_file', HTMLInputElement);
   isOn = false;
   said = '';
   #chosen = FLOOR;
@@ -72,7 +71,7 @@ export class WorldDrawing {
       ['delete', () => this.#delete()],
       ['undo', () => this.#again(this.#before, this.#after)],
       ['redo', () => this.#again(this.#after, this.#before)],
-      ['open', () => this.#file.click()],
+      ['open', () => element('world_file', HTMLInputElement).click()],
       ['save', () => this.#save()],
     ];
     for (const [name, act] of buttons) {
@@ -90,7 +89,7 @@ export class WorldDrawing {
       const part = partsOf(this.#page.world())[this.#parts.selectedIndex];
       if (part) this.#choose(part);
     });
-    this.#file.addEventListener('change', () => this.#open());
+    whenChosen('world_file', (file) => this.#open(file));
     this.#canvas.addEventListener('pointerdown', (event) => this.#down(event));
     this.#canvas.addEventListener('pointermove', (event) => this.#move(event));
     this.#canvas.addEventListener('pointerup', () => this.#up());
@@ -175,7 +174,7 @@ export class WorldDrawing {
   /** A change that can be undone. @param {World} world */
   #change(world, before = this.#page.world()) {
     if (JSON.stringify(world) === JSON.stringify(before)) return;
-    const isOwn = this.#page.isOwn();
+    const isOwn = this.#page.choice.isOwn;
     this.#before.push(isOwn ? before : ownCopy(before));
     if (this.#before.length > KEPT) this.#before.shift();
     this.#after = [];
@@ -195,14 +194,14 @@ export class WorldDrawing {
   /** Keeps the world and asks whether the robot fits; returns its text, or says why it has none. @returns {Promise<string>} */
   async #write() {
     const asked = ++this.#written;
-    const { text: written = '', is_blocked = false, refused } = await this.#page.write(this.#page.world());
+    const { text: written = '', is_blocked = false, refused } = await this.#page.choice.write(this.#page.world());
     if (refused) this.#say(refused.join(' '));
     else if (asked === this.#written) {
       if (is_blocked !== this.#isBlocked) {
         this.#isBlocked = is_blocked;
         this.#say(is_blocked ? text('world_blocked') : this.#sentence());
       }
-      if (!(await this.#page.keepOwn())) this.#say(text('world_not_kept'));
+      if (!(await this.#page.choice.keepOwn())) this.#say(text('world_not_kept'));
     }
     return written;
   }
@@ -361,14 +360,12 @@ export class WorldDrawing {
     return isGivenUp;
   }
 
-  async #open() {
-    const chosen = this.#file.files?.[0];
-    this.#file.value = '';
-    if (!chosen) return;
-    const { name } = chosen;
+  /** @param {File} file */
+  async #open(file) {
+    const { name } = file;
     let why = text('unreadable');
     try {
-      const data = await bytesOf(chosen);
+      const data = await bytesOf(file);
       const answer = await this.#python.ask({ do: 'open_world', name, language: currentLanguage() }, data);
       if (answer.world) {
         this.#page.put(answer.world, true);

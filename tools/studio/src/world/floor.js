@@ -29,11 +29,7 @@ export function drawWorld(pen, world, goals, taken, isChanged) {
     dot(pen, x, y, 9, '#ffe9a3');
     dot(pen, x, y, 3, '#e08a1e');
   }
-  for (const box of world.boxes) {
-    path(pen, cornersOf(box), '#6b4a2f', 1, true);
-    pen.fillStyle = '#c79a6b';
-    pen.fill();
-  }
+  for (const box of world.boxes) path(pen, cornersOf(box), '#6b4a2f', 1, '#c79a6b');
   for (const wall of world.walls) path(pen, wall.points, '#6b4a2f', 2);
   if (world.has_border) {
     pen.strokeStyle = '#6b4a2f';
@@ -54,7 +50,7 @@ function drawGrid(pen, { width_cm, height_cm }) {
 /** @param {Pen} pen @param {Goal} goal */
 function drawGoal(pen, { x_cm: x, y_cm: y, is_flag, radius_cm, around }) {
   pen.setLineDash([4, 2.5]);
-  if (around) path(pen, around, '#0d6040', 0.8, true);
+  if (around) path(pen, around, '#0d6040', 0.8, 'transparent');
   else {
     dot(pen, x, y, radius_cm ?? 0, '#2a9d6f22');
     pen.strokeStyle = '#0d6040';
@@ -89,9 +85,7 @@ function drawFlag(pen, { x_cm: x, y_cm: y, reach_cm, rests }, behind, number) {
 
 /** @param {Pen} pen @param {number} x @param {number} y of its foot @param {string} color */
 function drawCloth(pen, x, y, color) {
-  path(pen, [[x, y], [x, y + 14], [x + 11, y + 10], [x, y + 6]], '#0d6040', 1);
-  pen.fillStyle = color;
-  pen.fill();
+  path(pen, [[x, y], [x, y + 14], [x + 11, y + 10], [x, y + 6]], '#0d6040', 1, color);
 }
 
 /** @param {Pen} pen @param {number} x @param {number} y its middle @param {string} number */

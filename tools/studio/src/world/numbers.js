@@ -1,5 +1,6 @@
 // The numbers of a part of a world, as inputs for whoever wants them exactly.
 
+import { labelled, made } from '../page/made.js';
 import { known, text } from '../page/texts.js';
 import { CHOICES, NUMBERS, valueOf, withChoice, withNumber } from './parts.js';
 
@@ -16,21 +17,21 @@ import { CHOICES, NUMBERS, valueOf, withChoice, withNumber } from './parts.js';
 export function showNumbers(place, world, part, change) {
   const value = valueOf(world, part);
   const rows = NUMBERS[part.kind].map(([key, low, high]) => {
-    const input = document.createElement('input');
+    const input = made('input');
     Object.assign(input, { type: 'number', min: String(low), max: String(high), step: 'any', value: String(value[key]), id: `world_${key}` });
     input.addEventListener('change', () => {
       const changed = withNumber(world, part, key, input.valueAsNumber);
       input.value = String(valueOf(changed, part)[key]); // what it was, where it was no number
       change(changed);
     });
-    return labelled(text(known(`world_${key}`)), input);
+    return labelled(known(`world_${key}`), input);
   });
   const choice = CHOICES[part.kind];
   if (choice) {
-    const input = document.createElement('input');
+    const input = made('input');
     Object.assign(input, { type: 'checkbox', checked: value[choice], id: `world_${choice}` });
     input.addEventListener('change', () => change(withChoice(world, part, choice, input.checked)));
-    rows.push(labelled(text(known(`world_${choice}`)), input));
+    rows.push(labelled(known(`world_${choice}`), input));
   }
   const focused = place.contains(document.activeElement) ? document.activeElement?.id : '';
   place.replaceChildren(...rows);
@@ -41,13 +42,4 @@ export function showNumbers(place, world, part, change) {
 export function nameOf({ kind, index }) {
   const name = text(`world_${kind}`);
   return kind === 'floor' || kind === 'start' ? name : `${name} ${index + 1}`;
-}
-
-/** @param {string} said @param {HTMLInputElement} input */
-function labelled(said, input) {
-  const label = document.createElement('label');
-  const words = document.createElement('span');
-  words.textContent = said;
-  label.append(words, ' ', input);
-  return label;
 }

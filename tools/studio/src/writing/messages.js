@@ -2,6 +2,7 @@
 // as markup. A screen reader hears the first one.
 
 import { element, say } from '../page/elements.js';
+import { button, made } from '../page/made.js';
 import { text } from '../page/texts.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
@@ -24,26 +25,21 @@ export function whole({ message = '', fix = '' }) {
 export function showMessages(list, findings, goTo, repair) {
   let first = '';
   const rows = findings.slice(0, MOST).map((finding) => {
-    const row = document.createElement('li');
-    row.className = finding.severity;
-    const place = button(text('line', { line: finding.line }), () => goTo(finding));
+    const place = button('', () => goTo(finding), text('line', { line: finding.line }));
     place.className = 'place';
     place.ariaLabel = text('say_fault', { line: finding.line, what: whole(finding) });
     first ||= place.ariaLabel;
-    row.append(place, ' ', whole(finding));
+    const row = made('li', '', place, ' ', whole(finding));
+    row.className = finding.severity;
     if (finding.repair.length) {
-      const does = button(text('repair'), () => repair(finding));
+      const does = button('repair', () => repair(finding));
       does.className = 'repair';
       does.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: finding.fix }));
       row.append(' ', does);
     }
     return row;
   });
-  if (findings.length > MOST) {
-    const row = document.createElement('li');
-    row.textContent = text('more', { count: findings.length - MOST });
-    rows.push(row);
-  }
+  if (findings.length > MOST) rows.push(made('li', '', text('more', { count: findings.length - MOST })));
   list.replaceChildren(...rows);
   say(element('first_message', HTMLElement), first);
 }
@@ -58,16 +54,4 @@ export function summary({ findings, bytes, loose }) {
   if (loose) parts.push(text('loose', { count: loose }));
   if (warnings) parts.push(text('warnings', { count: warnings }));
   return parts.join(mistakes || loose ? ', ' : ' ');
-}
-
-/**
- * @param {string} label
- * @param {() => void} pressed
- */
-function button(label, pressed) {
-  const made = document.createElement('button');
-  made.type = 'button';
-  made.textContent = label;
-  made.addEventListener('click', pressed);
-  return made;
 }

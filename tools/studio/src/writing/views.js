@@ -2,6 +2,7 @@
 // blocks are made of it when it changes, and it is made of them when they do.
 
 import { element } from '../page/elements.js';
+import { bugSaid } from '../page/faults.js';
 import { blocksPicture, offer, pictured } from '../page/pictures.js';
 import { so } from '../page/so.js';
 import { text } from '../page/texts.js';
@@ -313,7 +314,7 @@ export class Views {
 
   /** @param {unknown} why */
   #fail(why) {
-    this.#note.textContent = text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' });
+    this.#note.textContent = bugSaid(why);
   }
 
   /** @param {string} note */
