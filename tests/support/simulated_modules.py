@@ -6,7 +6,7 @@ Written from the modules' papers and from what their users report, not from the 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 SLOW_MS = 1000  # after so long a silence a module without line ends takes what it has for a command
 
@@ -14,15 +14,21 @@ SLOW_MS = 1000  # after so long a silence a module without line ends takes what 
 class SimulatedModule:
     """A module that waits for commands, on a wire; `name`, `pin` and `data_baud` are what it keeps.
 
-    `breaks_after` commands it is switched off, as by a plug that is pulled.
+    `answers` are patterns of commands, and what is said to the first one that fits. Groups of a
+    pattern are what the command sets: `name`, `pin`, or `speed`, in `bauds` a key; `reset` makes
+    the speed count. `breaks_after` commands it is switched off, as by a plug that is pulled.
     """
 
+    name, pin = "", "1234"
     ends_lines = True
+    answers: Sequence[tuple[str, str]] = ()
+    otherwise = ""  # what it says to any other command
+    bauds: Mapping[str, int] = {}  # none: a speed is its own name
+    is_quick = False  # a new speed counts at once
 
     def __init__(self, baud: int = 9600) -> None:
         self.baud = baud  # at which it listens now
         self.data_baud = baud
-        self.name, self.pin = "", "1234"
         self.is_on, self.is_asleep = True, False
         self.commands: list[str] = []
         self.breaks_after: int | None = None
@@ -62,187 +68,135 @@ class SimulatedModule:
         return self.answer(text).encode()
 
     def answer(self, command: str) -> str:
-        raise NotImplementedError
+        for pattern, said in self.answers:
+            match = re.fullmatch(pattern, command, re.DOTALL)
+            if match and self._keeps(**match.groupdict()):
+                return said.format(end=self)
+        return self.otherwise
+
+    def _keeps(
+        self, name: str | None = None, pin: str = "", speed: str = "", reset: str = ""
+    ) -> bool:
+        """Take what a command sets; False: there is no such speed."""
+        if speed and self.bauds and speed not in self.bauds:
+            return False
+        self.name = self.name if name is None else name
+        self.pin = pin or self.pin
+        if speed:
+            self.data_baud = self.bauds[speed] if self.bauds else int(speed)
+        if reset or (speed and self.is_quick):
+            self.baud = self.data_baud
+        return True
+
+    @property
+    def number(self) -> str:
+        """The name of its speed."""
+        return next(key for key, baud in self.bauds.items() if baud == self.data_baud)
 
 
 class Hc05(SimulatedModule):
     """With its button held: 38400, lines, and a PIN that may keep its quotes."""
 
+    name = "HC-05"
     version = "2.0-20100601"
+    answers: Sequence[tuple[str, str]] = (
+        (r"AT|AT\+RESET", "OK\r\n"),
+        (r"AT\+VERSION\?", "+VERSION:{end.version}\r\nOK\r\n"),
+        (r"AT\+ROLE\?", "+ROLE:0\r\nOK\r\n"),
+        (r"AT\+NAME\?", "+NAME:{end.name}\r\nOK\r\n"),
+        (r"AT\+PSWD\?", "+PSWD:{end.pin}\r\nOK\r\n"),
+        (r"AT\+UART\?", "+UART:{end.data_baud},0,0\r\nOK\r\n"),
+        (r"AT\+NAME=(?P<name>.{1,32}).*", "OK\r\n"),
+        (r"AT\+PSWD=(?P<pin>.+)", "OK\r\n"),  # whatever it is
+        (r"AT\+UART=(?P<speed>\d+),0,0", "OK\r\n"),
+    )
+    otherwise = "ERROR:(0)\r\n"
 
     def __init__(self, data_baud: int = 9600) -> None:
         super().__init__(38400)
         self.data_baud = data_baud
-        self.name = "HC-05"
-
-    def answer(self, command: str) -> str:
-        key, sign, value = command.partition("=")
-        if command == "AT":
-            return "OK\r\n"
-        if command == "AT+VERSION?":
-            return f"+VERSION:{self.version}\r\nOK\r\n"
-        if command == "AT+ROLE?":
-            return "+ROLE:0\r\nOK\r\n"
-        if command == "AT+NAME?":
-            return f"+NAME:{self.name}\r\nOK\r\n"
-        if command == "AT+PSWD?":
-            return self.tell_pin()
-        if command == "AT+UART?":
-            return f"+UART:{self.data_baud},0,0\r\nOK\r\n"
-        if command == "AT+RESET":
-            return "OK\r\n"
-        if sign and key == "AT+NAME" and value:
-            self.name = value[:32]
-            return "OK\r\n"
-        if sign and key == "AT+PSWD" and value:
-            return self.take_pin(value)
-        if sign and key == "AT+UART" and re.fullmatch(r"\d+,0,0", value):
-            self.data_baud = int(value.split(",")[0])
-            return "OK\r\n"
-        return "ERROR:(0)\r\n"
-
-    def tell_pin(self) -> str:
-        return f"+PSWD:{self.pin}\r\nOK\r\n"
-
-    def take_pin(self, value: str) -> str:
-        self.pin = value  # whatever it is
-        return "OK\r\n"
 
 
 class Hc05New(Hc05):
     """Firmware 3.0: the PIN wants quotes."""
 
     version = "3.0-20170601"
-
-    def tell_pin(self) -> str:
-        return f'+PIN:"{self.pin}"\r\nOK\r\n'
-
-    def take_pin(self, value: str) -> str:
-        if not re.fullmatch(r'"\d{1,16}"', value):
-            return "ERROR:(1D)\r\n"
-        self.pin = value.strip('"')
-        return "OK\r\n"
+    answers = (
+        (r"AT\+PSWD\?", '+PIN:"{end.pin}"\r\nOK\r\n'),
+        (r'AT\+PSWD="(?P<pin>\d{1,16})"', "OK\r\n"),
+        (r"AT\+PSWD=.+", "ERROR:(1D)\r\n"),
+        *Hc05.answers,
+    )
 
 
 class Hc06(SimulatedModule):
     """linvor 1.8: no line ends, a second of silence, and it never tells what it keeps."""
 
+    name = "linvor"
     ends_lines = False
+    is_quick = True
     bauds: Mapping[str, int] = {"4": 9600, "5": 19200, "6": 38400, "7": 57600, "8": 115200}
-
-    def __init__(self, baud: int = 9600) -> None:
-        super().__init__(baud)
-        self.name = "linvor"
-
-    def answer(self, command: str) -> str:
-        if command == "AT":
-            return "OK"
-        if command == "AT+VERSION":
-            return "OKlinvorV1.8"
-        if command.startswith("AT+NAME"):
-            self.name = command[7:27]
-            return "OKsetname"
-        if re.fullmatch(r"AT\+PIN\d{4}", command):
-            self.pin = command[6:]
-            return "OKsetPIN"
-        if re.fullmatch(r"AT\+BAUD[4-8]", command):
-            self.baud = self.data_baud = self.bauds[command[7]]
-            return f"OK{self.baud}"
-        return ""
+    answers = (
+        ("AT", "OK"),
+        (r"AT\+VERSION", "OKlinvorV1.8"),
+        (r"AT\+NAME(?P<name>.{,20}).*", "OKsetname"),
+        (r"AT\+PIN(?P<pin>\d{4})", "OKsetPIN"),
+        (r"AT\+BAUD(?P<speed>\d)", "OK{end.baud}"),
+    )
 
 
 class Hc06New(SimulatedModule):
     """Firmware 3.0-20170609: line ends, a colon, and a PIN in quotes; the new speed at once."""
 
-    def __init__(self, baud: int = 9600) -> None:
-        super().__init__(baud)
-        self.name = "HC-06"
-
-    def answer(self, command: str) -> str:
-        if command == "AT":
-            return "OK\r\n"
-        if command == "AT+VERSION":
-            return "VERSION:3.0-20170609\r\nOK\r\n"
-        if command.startswith("AT+NAME:"):
-            self.name = command[8:]
-            return "OK\r\n"
-        if re.fullmatch(r'AT\+PSWD:"\d{4}"', command):
-            self.pin = command[9:13]
-            return "OK\r\n"
-        if re.fullmatch(r"AT\+UART=\d+,0,0", command):
-            self.baud = self.data_baud = int(command[8:].split(",")[0])
-            return "OK\r\n"
-        return "ERROR:(0)\r\n"
+    name = "HC-06"
+    is_quick = True
+    answers = (
+        ("AT", "OK\r\n"),
+        (r"AT\+VERSION", "VERSION:3.0-20170609\r\nOK\r\n"),
+        (r"AT\+NAME:(?P<name>.*)", "OK\r\n"),
+        (r'AT\+PSWD:"(?P<pin>\d{4})"', "OK\r\n"),
+        (r"AT\+UART=(?P<speed>\d+),0,0", "OK\r\n"),
+    )
+    otherwise = "ERROR:(0)\r\n"
 
 
 class Hm10(SimulatedModule):
     """No line ends; a speed counts from the next restart on; 12 letters; PINs of 6 digits."""
 
+    name, pin = "HMSoft", "000000"
     ends_lines = False
     bauds: Mapping[str, int] = {"0": 9600, "1": 19200, "2": 38400, "3": 57600, "4": 115200}
-
-    def __init__(self, baud: int = 9600) -> None:
-        super().__init__(baud)
-        self.name, self.pin = "HMSoft", "000000"
-
-    def answer(self, command: str) -> str:
-        if command == "AT":
-            return "OK"
-        if command == "AT+VERR?":
-            return "HMSoft V540"
-        if command == "AT+RESET":
-            self.baud = self.data_baud
-            return "OK+RESET"
-        if command == "AT+NAME?":
-            return f"OK+NAME:{self.name}"
-        if command == "AT+PASS?":
-            return f"OK+Get:{self.pin}"
-        if command == "AT+BAUD?":
-            return "OK+Get:" + next(k for k, baud in self.bauds.items() if baud == self.data_baud)
-        if command.startswith("AT+NAME"):
-            self.name = command[7:19]
-            return f"OK+Set:{self.name}"
-        if re.fullmatch(r"AT\+PASS\d{6}", command):
-            self.pin = command[7:]
-            return f"OK+Set:{self.pin}"
-        if re.fullmatch(r"AT\+BAUD[0-4]", command):
-            self.data_baud = self.bauds[command[7]]
-            return f"OK+Set:{command[7]}"
-        return ""
+    answers = (
+        ("AT", "OK"),
+        (r"AT\+VERR\?", "HMSoft V540"),
+        (r"AT\+(?P<reset>RESET)", "OK+RESET"),
+        (r"AT\+NAME\?", "OK+NAME:{end.name}"),
+        (r"AT\+PASS\?", "OK+Get:{end.pin}"),
+        (r"AT\+BAUD\?", "OK+Get:{end.number}"),
+        (r"AT\+NAME(?P<name>.{,12}).*", "OK+Set:{end.name}"),
+        (r"AT\+PASS(?P<pin>\d{6})", "OK+Set:{end.pin}"),
+        (r"AT\+BAUD(?P<speed>\d)", "OK+Set:{end.number}"),
+    )
 
 
 class Cc41(SimulatedModule):
     """A clone of the HM-10: line ends, other answers, and other numbers for the same speeds."""
 
+    name, pin = "BT05", "123456"
     version = "Firmware V3.0.6,Bluetooth V4.0 LE"
     bauds: Mapping[str, int] = Hc06.bauds
-
-    def __init__(self, baud: int = 9600) -> None:
-        super().__init__(baud)
-        self.name, self.pin = "BT05", "123456"
-
-    def answer(self, command: str) -> str:
-        number = next(k for k, baud in self.bauds.items() if baud == self.data_baud)
-        if command == "AT":
-            return "OK\r\n"
-        if command == "AT+VERSION":
-            return f"+VERSION={self.version}\r\n"
-        if command == "AT+RESET":
-            self.baud = self.data_baud
-            return "+RESET\r\nOK\r\n"
-        for key, value in (("NAME", self.name), ("PIN", self.pin), ("BAUD", number)):
-            if command == f"AT+{key}":
-                return f"+{key}={value}\r\n"
-        if command.startswith("AT+NAME"):
-            self.name = command[7:]
-            return f"+NAME={self.name}\r\nOK\r\n"
-        if re.fullmatch(r"AT\+PIN\d{6}", command):
-            self.pin = command[6:]
-            return f"+PIN={self.pin}\r\nOK\r\n"
-        if command.startswith("AT+BAUD") and command[7:] in self.bauds:
-            self.data_baud = self.bauds[command[7:]]
-            return f"+BAUD={command[7:]}\r\nOK\r\n"
-        return "ERROR=101\r\n"
+    answers = (
+        ("AT", "OK\r\n"),
+        (r"AT\+VERSION", "+VERSION={end.version}\r\n"),
+        (r"AT\+(?P<reset>RESET)", "+RESET\r\nOK\r\n"),
+        (r"AT\+NAME", "+NAME={end.name}\r\n"),
+        (r"AT\+PIN", "+PIN={end.pin}\r\n"),
+        (r"AT\+BAUD", "+BAUD={end.number}\r\n"),
+        (r"AT\+NAME(?P<name>.+)", "+NAME={end.name}\r\nOK\r\n"),
+        (r"AT\+PIN(?P<pin>\d{6})", "+PIN={end.pin}\r\nOK\r\n"),
+        (r"AT\+BAUD(?P<speed>\d)", "+BAUD={end.number}\r\nOK\r\n"),
+    )
+    otherwise = "ERROR=101\r\n"
 
 
 class Bt05(Cc41):
