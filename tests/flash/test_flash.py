@@ -27,6 +27,7 @@ from tiniscript.cli.texts import has_text
 from tiniscript.flash import avrdude, ready
 from tiniscript.flash.bootloaders import BOARDS, UNO
 from tiniscript.robots.profile import answered
+from tools import CannotMake
 from tools.bench import firmware_size
 from tools.builds import firmware_files
 from tools.uno import Uno
@@ -324,7 +325,7 @@ def test_every_board_of_the_option_is_one_that_is_built() -> None:
 
 
 def test_the_licence_of_the_core_goes_with_it(tmp_path: Path) -> None:
-    with pytest.raises(firmware_files.CannotBuild, match="--licence"):
+    with pytest.raises(CannotMake, match="--licence"):
         firmware_files.build_all(tmp_path / "ready", tmp_path / "none")
     assert not (tmp_path / "ready").exists()
     assert firmware_files.LICENCE_NAME in firmware_files.NOTICE_TEXT

@@ -18,11 +18,12 @@ from tests.support import studio
 from tests.support.casefile import ROOT
 from tests.support.platformio import shared
 from tests.support.rows import each_row
+from tools import CannotMake
 from tools.builds import site
 from tools.builds import studio as studio_build
 from tools.site.documents import PARTS, documents
 from tools.site.lexer import TiniScriptLexer
-from tools.site.pages import Missing, page, shelf
+from tools.site.pages import page, shelf
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -110,11 +111,11 @@ def test_a_link_that_leads_nowhere_ends_the_build(
     for path in clone.rglob("*.md"):
         path.write_text(text, encoding="utf-8")
     store.write_text(f"{text}\n[no](nowhere.md)\n", encoding="utf-8")
-    with pytest.raises(Missing, match=r"^docs/store\.md: nowhere\.md$"):
+    with pytest.raises(CannotMake, match=r"^docs/store\.md: nowhere\.md$"):
         site.build(clone, tmp_path / "site", has_studio=False)
     # what Sphinx looks at itself
     store.write_text(f"{text}\n[no](link.md#elsewhere)\n\n```strange\nx\n```\n", encoding="utf-8")
-    with pytest.raises(site.CannotBuild) as why:
+    with pytest.raises(CannotMake) as why:
         site.build(clone, tmp_path / "site", has_studio=False)
     assert "elsewhere" in str(why.value)
     assert "strange" in str(why.value)
@@ -133,7 +134,7 @@ def test_a_dead_link_ends_the_build(
         (folder / "monday.html").touch()
 
     monkeypatch.setattr(site, "render", render)
-    with pytest.raises(site.CannotBuild, match="no such place on that page"):
+    with pytest.raises(CannotMake, match="no such place on that page"):
         site.build(ROOT, tmp_path / "site", has_studio=False)
 
 

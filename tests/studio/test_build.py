@@ -18,6 +18,7 @@ from tiniscript.flash import ready
 from tiniscript.studio import serving
 from tiniscript.studio.block_kinds import KINDS, SAYS
 from tiniscript.studio.serving import POLICY
+from tools import CannotMake
 from tools.builds import studio
 from tools.builds.page_texts import page_texts
 
@@ -194,7 +195,7 @@ def test_firmware_is_beside_the_page_and_in_no_count(
     brought.path.write_text(":0100000001FE\n:00000001FF\n")
     (tmp_path / "page").mkdir()
     monkeypatch.setattr(ready, "files", list)
-    with pytest.raises(studio.CannotBuild, match="firmware_files"):
+    with pytest.raises(CannotMake, match="firmware_files"):
         studio.bring_firmware(tmp_path / "page")
     monkeypatch.setattr(ready, "files", lambda: [brought])
     studio.bring_firmware(tmp_path / "page")

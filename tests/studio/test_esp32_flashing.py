@@ -25,7 +25,8 @@ from tests.support.waiting import until
 from tiniscript.flash import ready
 from tiniscript.studio import serving
 from tiniscript.studio.building import MODULES, SOURCES
-from tools.builds.studio import CannotBuild, found_tools
+from tools import CannotMake
+from tools.builds.studio import found_tools
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -47,7 +48,7 @@ def image(board: str, size: int = 70_001) -> bytes:
 def flashed(board: str, firmware: bytes, **how: Any) -> dict[str, Any]:
     try:
         node = found_tools().node
-    except CannotBuild as why:
+    except CannotMake as why:
         need(str(why))
     need("" if (MODULES / "esptool-js").is_dir() else "esptool-js is not fetched")
     case = {"board": board, "firmware": base64.b64encode(firmware).decode(), **how}

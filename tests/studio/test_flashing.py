@@ -19,7 +19,8 @@ from tests.support.command import process
 from tests.support.needs import need
 from tests.support.platformio import firmware, shared
 from tiniscript.studio.building import SOURCES
-from tools.builds.studio import CannotBuild, found_tools
+from tools import CannotMake
+from tools.builds.studio import found_tools
 
 SCRIPT = Path(__file__).with_name("flash_in_node.mjs")
 PAGE = 128
@@ -31,7 +32,7 @@ def flashed(port: str, board: str, file: Path, *cancelled: str) -> str:
     """Return how the page's code has ended; `cancelled`: at which part of the work."""
     try:
         node = found_tools().node
-    except CannotBuild as why:
+    except CannotMake as why:
         need(str(why))
     words = [*node, str(SCRIPT), str(SOURCES / "src"), port, board, str(file), *cancelled]
     done = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)

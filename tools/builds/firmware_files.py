@@ -22,8 +22,8 @@ from tiniscript.flash import building
 from tiniscript.flash.ready import FOLDER, NOTICE, name_of, title_of
 from tiniscript.library import install_advice
 from tiniscript.robots.profile import Robot, answered
-from tools import ROOT
-from tools.builds.platformio_offline import PROJECT, CannotStandIn, settings_for
+from tools import ROOT, CannotMake
+from tools.builds.platformio_offline import PROJECT, settings_for
 
 LICENCE = Path("/usr/share/common-licenses/LGPL-2.1")  # Debian's copy
 LICENCE_NAME = "LGPL-2.1.txt"
@@ -42,10 +42,6 @@ They are made from TiniScript's folder vm_arduino, which is under the MIT licenc
 To make them anew, with another core too: pio run -d vm_arduino, or
 tools/builds/firmware_files.py, which has made these, in TiniScript's source.
 """
-
-
-class CannotBuild(Exception):
-    """Something is missing; says what, and what to do."""
 
 
 def shipped() -> list[Robot]:
@@ -70,13 +66,13 @@ def build(robot: Robot, target: Path) -> Path:
 def build_all(target: Path, licence: Path) -> list[Path]:
     """Build everything into a folder that has nothing else then."""
     if not licence.is_file():
-        raise CannotBuild(
+        raise CannotMake(
             f"there is no {licence}: name a copy of the GNU LGPL 2.1 with --licence; "
             "https://www.gnu.org/licenses/old-licenses/lgpl-2.1.txt is one"
         )
     if building.platformio() is None:
         how = install_advice.command(install_advice.FIRMWARE)
-        raise CannotBuild(f"PlatformIO is not installed. Install it:  {how}")
+        raise CannotMake(f"PlatformIO is not installed. Install it:  {how}")
     os.environ.update(settings_for(PROJECT, offline=False))
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
@@ -97,11 +93,8 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         made = build_all(FOLDER, options.licence)
-    except building.CannotBuild as why:
-        print(f"build_firmware: {why.log or why}", file=sys.stderr)
-        return 2
-    except (CannotBuild, CannotStandIn) as why:
-        print(f"build_firmware: {why}", file=sys.stderr)
+    except (building.CannotBuild, CannotMake) as why:
+        print(f"build_firmware: {getattr(why, 'log', '') or why}", file=sys.stderr)
         return 2
     for path in made:
         print(path.relative_to(ROOT))

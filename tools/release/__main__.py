@@ -25,11 +25,11 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
-from tools import ROOT
-from tools.builds.studio import CannotBuild, found_tools
+from tools import ROOT, CannotMake
+from tools.builds.studio import found_tools
 from tools.release import facts
 from tools.release.packing import sha256
-from tools.release.parts import PARTS, CannotMake, Clone, chosen
+from tools.release.parts import PARTS, Clone, chosen
 
 SUMS = "SHA256SUMS"
 # Two folders of other depths and names: what has a path in it differs.
@@ -107,7 +107,7 @@ def lacks(parts: Sequence[str]) -> str:
     if "studio" in parts:
         try:
             found_tools()
-        except CannotBuild as why:
+        except CannotMake as why:
             return str(why)
     return ""
 

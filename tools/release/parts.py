@@ -14,6 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+from tools import CannotMake
 from tools.release.packing import pack
 
 _SETUPTOOLS = "import sys; from setuptools import build_meta; build_meta.build_{0}(sys.argv[1])"
@@ -23,10 +24,6 @@ studio.bring_firmware(studio.PAGE)
 """
 READY = "compiler/tiniscript/flash/ready"
 PAGE = "compiler/tiniscript/studio/page"
-
-
-class CannotMake(Exception):
-    """A part cannot be made; says which command said what."""
 
 
 class Clone(NamedTuple):

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.catalogue import filled
+from tools import CannotMake
 from tools.site.documents import Document
 
 _FENCED = re.compile(r"(^ *```.*?^ *```$)", re.DOTALL | re.MULTILINE)
@@ -31,10 +32,6 @@ class Place(NamedTuple):
     @property
     def address(self) -> str:
         return f"{self.language}/{self.name}.html"
-
-
-class Missing(Exception):
-    """A link leads nowhere."""
 
 
 @dataclass
@@ -60,7 +57,7 @@ def shelf(root: Path, found: list[Document]) -> Shelf:
 def page(source: str, on: Shelf, place: Place | None = None) -> str:
     """Return the Markdown of a document's page; note the files that it leads to.
 
-    `place` is where it is, if not where its source is. Raises Missing where a link leads to no
+    `place` is where it is, if not where its source is. Raises CannotMake where a link leads to no
     file.
     """
     found: list[str] = []
@@ -89,7 +86,7 @@ def _led(link: re.Match[str], source: str, here: Place, on: Shelf) -> str:
     if there is not None:
         return _plain(text, way(here.address, there.address) + anchor)
     if not (on.root / target).is_file():
-        raise Missing(f"{source}: {path}")
+        raise CannotMake(f"{source}: {path}")
     if mark:
         on.pictures.add(target)
         return f"![{text}](/{FILES}/{target})"

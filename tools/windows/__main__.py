@@ -25,7 +25,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from tools import ROOT
+from tools import ROOT, CannotMake
 from tools.windows import computer, tries
 
 
@@ -42,7 +42,7 @@ def main(words: Sequence[str] | None = None) -> int:
     try:
         windows = computer.make(folder)
         wheel = _wheel(folder)
-    except computer.CannotMake as why:
+    except CannotMake as why:
         print(f"tools.windows: {why}", file=sys.stderr)
         return 2
     try:
@@ -87,7 +87,7 @@ def _wheel(folder: Path) -> Path:
     done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
     found = sorted(place.glob("*.whl"))
     if done.returncode or not found:
-        raise computer.CannotMake(f"no wheel: {done.stderr.strip()[-300:]}")
+        raise CannotMake(f"no wheel: {done.stderr.strip()[-300:]}")
     return found[0]
 
 

@@ -21,6 +21,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple
 
+from tools import CannotMake
+
 HERE = Path(__file__).resolve().parent
 STAND_INS = HERE / "stand_ins"
 # CPython 3.11.9 of python.org with its standard library and pip, as PyPI has it; its programs are
@@ -32,10 +34,6 @@ LOCALE = "es_PE"
 TARGET = "x86_64-windows-gnu"
 CODEPAGE = "cp1252"  # of LOCALE
 MADE_S = 600.0
-
-
-class CannotMake(Exception):
-    """Says what is missing, and what to do."""
 
 
 class Done(NamedTuple):
