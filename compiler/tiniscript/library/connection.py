@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from time import monotonic
-from types import TracebackType
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from tiniscript import robots
@@ -90,17 +89,13 @@ class RobotConnection:
     def __enter__(self: Self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:  # fmt: skip
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         self._leave(is_clean=kind is None)
 
     @property
     def info(self) -> RobotInfo:
         """What the robot reports of itself."""
         device_info = self._client.device_info
-
         profile = of_kit(device_info.kit)
         name = None if profile is None else profile.name
         return RobotInfo(
@@ -137,9 +132,8 @@ class RobotConnection:
         self._check_open()
         ready = self._ready(line)
         if ready.start != "SI":
-            raise UsageError(
-                "live_button" if ready.start == "SB" else "ping_program", self.language
-            )
+            reason = "live_button" if ready.start == "SB" else "ping_program"
+            raise UsageError(reason, self.language)
         image, kit = ready._image, ready._profile.kit.fingerprint
         refused = refusal(image, ready._profile, self._client.device_info)
         if refused is not None:

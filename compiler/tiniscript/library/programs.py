@@ -162,7 +162,7 @@ def program_of(
         raise UsageError("bad_program", _checked(language), {"found": type(program).__name__})
     data = bytes(program)
     if robot is None:
-        profile = _robot_for(data, profile, language)
+        profile = fitting(_unpacked(data, language), profile) or profile
     parsed = _read(data, profile, language)
     return Program(None, data, parsed, profile, source_map.recall(parsed.checksum), ())
 
@@ -214,11 +214,6 @@ def _program(text: str, profile: Robot, name: str, optimize: bool, language: Lan
 
 def _data(text: str) -> bytes:
     return text.encode("utf-8", "surrogatepass")  # a lone surrogate becomes a mistake
-
-
-def _robot_for(data: bytes, default: Robot, language: Language) -> Robot:
-    """Return a known robot that has the devices of an image, else `default`."""
-    return fitting(_unpacked(data, language), default) or default
 
 
 def _read(data: bytes, profile: Robot, language: Language) -> Image:

@@ -57,9 +57,10 @@ class Simulation:
         self.marks = marks or Marks(())
         self._mark()
         self._want(is_stepping=self.marks.is_held)
-        self._upload = self.session.upload(unpack(image), runs=True, saves=True)
-        self._until(lambda: self._upload.outcome is not None or self.held_at is not None)
-        assert self.held_at is not None or self._is_taken(), "not taken"
+        upload = self.session.upload(unpack(image), runs=True, saves=True)
+        self._until(lambda: upload.outcome is not None or self.held_at is not None)
+        is_taken = upload.outcome is not None and upload.outcome.status == OK
+        assert self.held_at is not None or is_taken, "not taken"
         self._want(is_stepping=False)
         self.go(0)
 
@@ -110,11 +111,8 @@ class Simulation:
         self.robot.watched.mark(bytes(marks))
 
     def _want(self, is_stepping: bool) -> None:
-        breakpoint_bit = BREAKPOINT if self.marks.breakpoints else 0
-        self.robot.watched.want(breakpoint_bit | (PART if is_stepping else 0))
-
-    def _is_taken(self) -> bool:
-        return self._upload.outcome is not None and self._upload.outcome.status == OK
+        bits = BREAKPOINT * bool(self.marks.breakpoints) | PART * is_stepping
+        self.robot.watched.want(bits)
 
     def _go(self, duration_ms: int) -> None:
         for _ in range(duration_ms):

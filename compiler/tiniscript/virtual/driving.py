@@ -82,12 +82,8 @@ class Hull:
             angle = math.radians(pose.heading - 90) + math.pi * (
                 k / (corners // 2 - 1) if k < corners // 2 else (k - 1) / (corners // 2 - 1)
             )
-            found.append(
-                Point(
-                    middle.x + self.radius_cm * math.cos(angle),
-                    middle.y + self.radius_cm * math.sin(angle),
-                )
-            )
+            x, y = self.radius_cm * math.cos(angle), self.radius_cm * math.sin(angle)
+            found.append(Point(middle.x + x, middle.y + y))
         return found
 
 
@@ -114,15 +110,12 @@ class Driving:
         self._near_from: Pose | None = None  # to a robot that is here
         self._kept_ms = 0.0  # when it was there
         self._free_cm = 0.0  # no point of the body touches anything before it has gone so far
-        self._is_touching = self.is_touching(start)
+        self._is_touching = self.touched(start) is not None
 
     def is_blocked(self) -> bool:
         """Whether the robot is inside an obstacle."""
         found = self.hull.contact(self._pose, self.obstacles)
         return found is not None and found.gap_cm < 0
-
-    def is_touching(self, pose: Pose) -> bool:
-        return self.touched(pose) is not None
 
     def touched(self, pose: Pose) -> Point | None:
         """Return the place where a robot at `pose` touches an obstacle, or None."""
@@ -174,23 +167,16 @@ class Driving:
                 self.corners.append(pose)
         if len(self.corners) > KEPT:
             self.corners = [*self.corners[:-1:2], self.corners[-1]]
-        is_touching = self._free_cm < TOUCH_CM and self.is_touching(self._pose)
+        is_touching = self._free_cm < TOUCH_CM and self.touched(self._pose) is not None
         self.bumps += is_touching and not self._is_touching
         self._is_touching = is_touching
 
     @staticmethod
     def _is_straight(first: Pose, second: Pose, third: Pose) -> bool:
         """Return whether a corner lies on the straight line between its neighbours."""
-        return (
-            abs(
-                (second.x_cm - first.x_cm) * (third.y_cm - second.y_cm)
-                - (second.y_cm - first.y_cm) * (third.x_cm - second.x_cm)
-            )
-            < 1e-6
-            and (second.x_cm - first.x_cm) * (third.x_cm - second.x_cm)
-            + (second.y_cm - first.y_cm) * (third.y_cm - second.y_cm)
-            >= 0
-        )
+        ax, ay = second.x_cm - first.x_cm, second.y_cm - first.y_cm
+        bx, by = third.x_cm - second.x_cm, third.y_cm - second.y_cm
+        return abs(ax * by - ay * bx) < 1e-6 and ax * bx + ay * by >= 0
 
     def _driven(self, pose: Pose, free_cm: float, duration_ms: float) -> Drive:
         """Return the way from a pose on, of which `free_cm` are known to be free."""

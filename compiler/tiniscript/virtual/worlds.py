@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
@@ -21,6 +23,7 @@ PARTS = 100  # walls, and as many boxes, lines, lamps and flags
 MOST_S = 600 * ONE  # for its flags
 POINTS = 200  # of a wall or a line
 LABEL_CHARACTERS = 60
+T = TypeVar("T")
 
 
 def read(text: str, name: str) -> World:
@@ -83,23 +86,27 @@ def _read(root: Table, name: str) -> World:
         height_cm,
         has_border,
         pose,
-        tuple(_points(each) for each in _parts(root, "walls")),
-        tuple(_box(each) for each in _parts(root, "boxes")),
-        tuple(_line(each) for each in _parts(root, "lines")),
-        tuple(_lamp(each) for each in _parts(root, "lamps")),
+        _parts(root, "walls", _row),
+        _parts(root, "boxes", _box),
+        _parts(root, "lines", _line),
+        _parts(root, "lamps", _lamp),
         ambient,
-        tuple(_flag(each) for each in _parts(root, "flags")),
+        _parts(root, "flags", _flag),
         seconds,
     )
     root.finish()
     return world
 
 
-def _parts(root: Table, key: str) -> list[Table]:
+def _parts(root: Table, key: str, read: Callable[[Table], T]) -> tuple[T, ...]:
     tables = root.tables(key)
     if len(tables) > PARTS:
         root.complain("too_many_parts", key, found=str(len(tables)), most=str(PARTS))
-    return tables[:PARTS]
+    found = []
+    for table in tables[:PARTS]:
+        found.append(read(table))
+        table.finish()
+    return tuple(found)
 
 
 def _number(
@@ -122,16 +129,8 @@ def _row(table: Table) -> tuple[Point, ...]:
     return tuple(Point(x / ONE, y / ONE) for x, y in (pairs or ())[:POINTS])
 
 
-def _points(table: Table) -> tuple[Point, ...]:
-    found = _row(table)
-    table.finish()
-    return found
-
-
 def _line(table: Table) -> Line:
-    line = Line(_row(table), _number(table, "width_cm", ONE // 10, 100 * ONE, default=2))
-    table.finish()
-    return line
+    return Line(_row(table), _number(table, "width_cm", ONE // 10, 100 * ONE, default=2))
 
 
 def _box(table: Table) -> tuple[Point, ...]:
@@ -142,7 +141,6 @@ def _box(table: Table) -> tuple[Point, ...]:
         for key in ("length_cm", "width_cm")
     )
     turned = math.radians(_number(table, "heading", -360 * ONE, 360 * ONE))
-    table.finish()
     cos, sin = math.cos(turned), math.sin(turned)
     corners = ((1, 1), (-1, 1), (-1, -1), (1, -1))
     return tuple(
@@ -155,16 +153,12 @@ def _box(table: Table) -> tuple[Point, ...]:
 
 
 def _lamp(table: Table) -> Lamp:
-    lamp = Lamp(_place(table), _number(table, "reach_cm", ONE, LARGEST_CM, default=100))
-    table.finish()
-    return lamp
+    return Lamp(_place(table), _number(table, "reach_cm", ONE, LARGEST_CM, default=100))
 
 
 def _flag(table: Table) -> Flag:
     reach_cm = _number(table, "reach_cm", ONE, LARGEST_CM, default=12)
-    flag = Flag(_place(table), reach_cm, table.yes_no("rests", False))
-    table.finish()
-    return flag
+    return Flag(_place(table), reach_cm, table.yes_no("rests", False))
 
 
 def _labels(table: Table, name: str) -> dict[str, str]:

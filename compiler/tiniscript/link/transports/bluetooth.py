@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Coroutine
 from contextlib import suppress
+from functools import cache
 from typing import Any, NamedTuple, TypeVar
 
 from bleak import BleakClient
@@ -60,7 +61,6 @@ MODULES = (
         is_paced=True,
     ),
 )
-_turns: list[asyncio.Lock] = []
 _found: dict[str, BLEDevice] = {}  # by address: devices that a search has found
 
 
@@ -112,7 +112,7 @@ class BluetoothPort(PushedTransport):
 
     def connect(self, device: BLEDevice) -> None:
         """Raises PortError."""
-        self._client = BleakClient(device, self._part, timeout=CONNECT_S)
+        self._client = BleakClient(device, lambda _: self.end(ENDED), timeout=CONNECT_S)
         try:
             _run(self._loop, self._connect(self._client), QUEUE_S)
         except BaseException:
@@ -146,10 +146,12 @@ class BluetoothPort(PushedTransport):
                 continue
             writes = service.get_characteristic(module.writes)
             notifies = service.get_characteristic(module.notifies)
-            if writes is None or notifies is None or not _can(writes, "write"):
+            if writes is None or notifies is None:
+                continue
+            if not any(each.startswith("write") for each in writes.properties):
                 continue
             self._writes, self._is_paced = writes, module.is_paced
-            await client.start_notify(notifies, self._on_bytes)
+            await client.start_notify(notifies, lambda _, data: self.bring(data))
             return
         raise PortError(errors.NO_ROBOT)
 
@@ -172,12 +174,6 @@ class BluetoothPort(PushedTransport):
             if self._is_paced:
                 self._ready_s = time() + len(piece) * self._byte_s
 
-    def _on_bytes(self, _: BleakGATTCharacteristic, data: bytearray) -> None:
-        self.bring(data)
-
-    def _part(self, _: BleakClient) -> None:
-        self.end(ENDED)
-
 
 def _run(loop: EventLoop, work: Coroutine[Any, Any, T], limit_s: float) -> T:
     """Run a coroutine of bleak. Raises PortError for all that can go wrong there."""
@@ -193,12 +189,7 @@ def _run(loop: EventLoop, work: Coroutine[Any, Any, T], limit_s: float) -> T:
         raise PortError(search.reason_of(failure), str(failure)) from None
 
 
+@cache
 def _turn() -> asyncio.Lock:
     """Return the lock of all that connect; call it in the loop."""
-    if not _turns:
-        _turns.append(asyncio.Lock())
-    return _turns[0]
-
-
-def _can(characteristic: BleakGATTCharacteristic, ability: str) -> bool:
-    return any(each.startswith(ability) for each in characteristic.properties)
+    return asyncio.Lock()

@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 import sys
 from contextlib import suppress
+from functools import cache
 from typing import NamedTuple
 
 from bleak import BleakAdapter, BleakScanner
@@ -112,13 +113,9 @@ async def _connected() -> list[BLEDevice]:
     return list(await adapter.get_connected_devices(list(SERVICES)))
 
 
-_scans: list[_Scan] = []
-
-
+@cache
 def _scan() -> _Scan:
-    if not _scans:
-        _scans.append(_Scan())
-    return _scans[0]
+    return _Scan()
 
 
 async def found(name: str) -> BLEDevice:

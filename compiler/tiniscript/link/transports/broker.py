@@ -170,9 +170,8 @@ class Broker:
         end_s = monotonic() + LIST_S
         with self._news:
             self._here[group] = {}
-            asked = {
-                self._subscribed(f"{ROOT}/{group}/{rest}") for rest in ("+", f"+/out/{self.peer}")
-            }
+            topics = [f"{ROOT}/{group}/+", f"{ROOT}/{group}/+/out/{self.peer}"]
+            asked = {self._client.subscribe(topic)[1] or 0 for topic in topics}
             while monotonic() < end_s and not self.gone:
                 if asked <= self._acknowledged and monotonic() > self._told_s + QUIET_S:
                     break
@@ -182,12 +181,8 @@ class Broker:
             self._acknowledged -= asked
         if not is_whole:
             raise PortError(errors.UNREACHABLE, self.gone or "no answer of a broker")
-        self._client.unsubscribe([f"{ROOT}/{group}/+", f"{ROOT}/{group}/+/out/{self.peer}"])
+        self._client.unsubscribe(topics)
         return sorted(found, key=lambda each: (each.name.casefold(), each.id))
-
-    def _subscribed(self, topic: str) -> int:
-        """Ask for the messages of a topic; return the number of the request."""
-        return self._client.subscribe(topic)[1] or 0
 
     def stop(self, group: str) -> None:
         """Stop every robot of a class: one message for all. Nothing confirms it."""

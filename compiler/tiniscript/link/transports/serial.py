@@ -27,21 +27,15 @@ from tiniscript.link.errors import (
 from tiniscript.link.transports import READ_S, WRITE_S
 
 _REASONS = {
-    errno.ENOENT: MISSING,
-    errno.ENODEV: MISSING,
-    errno.ENXIO: MISSING,
-    errno.EACCES: FORBIDDEN,
-    errno.EPERM: FORBIDDEN,
-    errno.EBUSY: BUSY,
-    errno.EAGAIN: BUSY,  # the lock of another program
-    errno.ECONNREFUSED: UNREACHABLE,
-    errno.ETIMEDOUT: UNREACHABLE,
-    errno.EHOSTUNREACH: UNREACHABLE,
-    errno.ENETUNREACH: UNREACHABLE,
-    getattr(errno, "EHOSTDOWN", -1): UNREACHABLE,
-    errno.ENOTTY: NO_PORT,
-    errno.EISDIR: NO_PORT,
-    errno.EINVAL: NO_PORT,
+    getattr(errno, name, None): reason
+    for reason, names in (
+        (MISSING, "ENOENT ENODEV ENXIO"),
+        (FORBIDDEN, "EACCES EPERM"),
+        (BUSY, "EBUSY EAGAIN"),  # EAGAIN: the lock of another program
+        (UNREACHABLE, "ECONNREFUSED ETIMEDOUT EHOSTUNREACH ENETUNREACH EHOSTDOWN"),
+        (NO_PORT, "ENOTTY EISDIR EINVAL"),
+    )
+    for name in names.split()
 }
 
 
