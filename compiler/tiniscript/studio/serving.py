@@ -311,17 +311,11 @@ class _Handler(BaseHTTPRequestHandler):
             head = f"HTTP/1.1 {status.value} {status.phrase}\r\nConnection: close\r\n\r\n"
             self.wfile.write(head.encode())
 
-    def do_GET(self) -> None:
-        self._answer(has_body=True)
-
-    def do_HEAD(self) -> None:
-        self._answer(has_body=False)
-
     def do_POST(self) -> None:
         server = self.server
         origins = self.headers.get_all("Origin", [])
         if server.robots is None or self.path not in (ROBOTS, ENTER):
-            self._send(HTTPStatus.NOT_FOUND, _MISSING, True)
+            self._send(HTTPStatus.NOT_FOUND, _MISSING)
             return
         # A browser says of each POST where it is from.
         tokens = self.headers.get_all(TOKEN, [])
@@ -330,7 +324,7 @@ class _Handler(BaseHTTPRequestHandler):
         if self.path == ENTER:
             most = ENTER_BYTES
         if not self._is_own() or len(origins) != 1 or not most:
-            self._send(HTTPStatus.FORBIDDEN, _FOREIGN, True)
+            self._send(HTTPStatus.FORBIDDEN, _FOREIGN)
             return
         try:
             asked = self._request(most)
@@ -339,11 +333,11 @@ class _Handler(BaseHTTPRequestHandler):
             else:
                 answer = server.answer(token, self.connection, self.client_address[0], asked)
         except (BadRequest, OSError):
-            self._send(HTTPStatus.BAD_REQUEST, _NO_REQUEST, True)
+            self._send(HTTPStatus.BAD_REQUEST, _NO_REQUEST)
             return
         if token:
             server.trust(self.connection)
-        self._send(HTTPStatus.OK, File(json.dumps(answer).encode(), TYPES[".json"]), True)
+        self._send(HTTPStatus.OK, File(json.dumps(answer).encode(), TYPES[".json"]))
 
     def _request(self, most: int) -> Json:
         """Return the object of JSON in the body, of `most` bytes. Raises BadRequest, OSError."""
@@ -359,20 +353,23 @@ class _Handler(BaseHTTPRequestHandler):
         except BadMessage:
             raise BadRequest from None
 
-    def _answer(self, has_body: bool) -> None:
+    def do_GET(self) -> None:
         if not self._is_own():
-            self._send(HTTPStatus.FORBIDDEN, _FOREIGN, has_body)
+            self._send(HTTPStatus.FORBIDDEN, _FOREIGN)
             return
         name = urlsplit(self.path).path.removeprefix("/") or FIRST
         found = self.server.page.get(name)
         if found is None:
-            self._send(HTTPStatus.NOT_FOUND, _MISSING, has_body)
+            self._send(HTTPStatus.NOT_FOUND, _MISSING)
         elif found.tag in self.headers.get_all("If-None-Match", []):
-            self._send(HTTPStatus.NOT_MODIFIED, found._replace(data=b"", packed=b""), False)
+            self._send(HTTPStatus.NOT_MODIFIED, found._replace(data=b"", packed=b""))
         elif found.packed and "gzip" in self.headers.get("Accept-Encoding", ""):
-            self._send(HTTPStatus.OK, found._replace(data=found.packed), has_body, "gzip")
+            self._send(HTTPStatus.OK, found._replace(data=found.packed), "gzip")
         else:
-            self._send(HTTPStatus.OK, found, has_body)
+            self._send(HTTPStatus.OK, found)
+
+    def do_HEAD(self) -> None:
+        self.do_GET()  # sends all but the file
 
     def _is_own(self) -> bool:
         """Whether the request is for a page of this address: a name that somebody else has made for
@@ -382,7 +379,7 @@ class _Handler(BaseHTTPRequestHandler):
         origins = self.headers.get_all("Origin", [])
         return all(origin in {f"http://{name}" for name in self.server.own} for origin in origins)
 
-    def _send(self, status: HTTPStatus, file: File, has_body: bool, coding: str = "") -> None:
+    def _send(self, status: HTTPStatus, file: File, coding: str = "") -> None:
         self.send_response(status)
         self.send_header("Content-Type", file.kind)
         if status is not HTTPStatus.NOT_MODIFIED:
@@ -399,7 +396,7 @@ class _Handler(BaseHTTPRequestHandler):
             self.send_header("Connection", "close")
             self.close_connection = True
         self.end_headers()
-        if has_body:
+        if self.command != "HEAD":
             self.wfile.write(file.data)
 
     def log_message(self, format: str, *arguments: Any) -> None:

@@ -68,19 +68,14 @@ def misfit(wanted: Wanted, dialect: Dialect) -> str:
 
 def steps(wanted: Wanted, dialect: Dialect) -> list[Step]:
     """Return what is to be sent, in this order. Nothing is sent here."""
-    plan = []
-    if wanted.name is not None:
-        plan.append(_step(NAME, wanted.name, dialect.names, wanted.name))
-    if wanted.pin is not None:
-        plan.append(_step(PIN, wanted.pin, dialect.pins, wanted.pin))
-    if wanted.baud is not None:
-        written = dialect.bauds[wanted.baud]
-        plan.append(_step(BAUD, str(wanted.baud), dialect.speeds, written))
-    return plan
-
-
-def _step(what: str, value: str, forms: tuple[str, ...], written: str) -> Step:
-    return Step(what, value, tuple(form.format(written) for form in forms))
+    name, pin, baud = wanted
+    plan = (
+        (NAME, name, dialect.names, name),
+        (PIN, pin, dialect.pins, pin),
+        (BAUD, baud, dialect.speeds, None if baud is None else dialect.bauds[baud]),
+    )
+    return [Step(what, str(value), tuple(form.format(written) for form in forms))
+            for what, value, forms, written in plan if value is not None]  # fmt: skip
 
 
 def done(

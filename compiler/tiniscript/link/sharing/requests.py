@@ -79,18 +79,20 @@ def is_detached(message: JsonMessage) -> bool:
     return message.get("is_detached") is True
 
 
-def _which(message: JsonMessage) -> int:
-    which = protocol.number(message, "which")
-    if not 0 <= which < len(KEYS):
+def _below(message: JsonMessage, name: str, limit: int, usual: int | None = None) -> int:
+    """Return a number from 0 on, below the limit. Raises BadMessage."""
+    number = protocol.number(message if usual is None else {name: usual, **message}, name)
+    if not 0 <= number < limit:
         raise BadMessage
-    return which
+    return number
 
 
-def _name(message: JsonMessage) -> bytes:
-    name = protocol.data(message, "name")
-    if not 1 <= len(name) <= NAME_BYTES:
+def _bytes(message: JsonMessage, name: str, least: int, most: int) -> bytes:
+    """Return so many bytes. Raises BadMessage."""
+    data = protocol.data(message, name)
+    if not least <= len(data) <= most:
         raise BadMessage
-    return name
+    return data
 
 
 def _trim(message: JsonMessage) -> bytes:
@@ -101,17 +103,13 @@ def _trim(message: JsonMessage) -> bytes:
 
 
 def _kit(message: JsonMessage) -> int:
-    kit = protocol.number({"kit": 0, **message}, "kit")
-    if not 0 <= kit < 1 << 16:
-        raise BadMessage
-    return kit
+    return _below(message, "kit", 1 << 16, 0)
 
 
 def _network(message: JsonMessage) -> Network:
-    name, password = protocol.data(message, "name"), protocol.data(message, "password")
-    if not 1 <= len(name) <= NETWORK_BYTES:
-        raise BadMessage
-    if not LEAST_PASSWORD <= len(password) <= PASSWORD_BYTES or b"\0" in name + password:
+    name = _bytes(message, "name", 1, NETWORK_BYTES)
+    password = _bytes(message, "password", LEAST_PASSWORD, PASSWORD_BYTES)
+    if b"\0" in name + password:
         raise BadMessage
     return Network(name, password, protocol.field(message, "is_access_point", bool))
 
@@ -138,17 +136,18 @@ def _broker(message: JsonMessage) -> BrokerSettings | None:
 
 def _image(message: JsonMessage) -> Image:
     start = protocol.field(message, "start", str)
-    code, isa, later = (protocol.data(message, name) for name in ("code", "isa", "later"))
-    devices, checksum = protocol.number(message, "devices"), protocol.number(message, "checksum")
-    is_sound = start in STARTS[:2] and len(code) <= CODE_BYTES and len(isa) == 2
-    if not is_sound or len(later) > LATER_BYTES:
+    if start not in STARTS[:2]:
         raise BadMessage
-    if not 0 <= devices < 1 << 16 or not 0 <= checksum < 1 << 32:
-        raise BadMessage
-    needs = protocol.number(message, "needs") if "needs" in message else 0  # else it is of 2.0
-    if not 0 <= needs < 1 << 8:
-        raise BadMessage
-    return Image(start, devices, code, checksum, (isa[0], isa[1]), later, needs)
+    major, minor = _bytes(message, "isa", 2, 2)
+    return Image(
+        start,
+        _below(message, "devices", 1 << 16),
+        _bytes(message, "code", 0, CODE_BYTES),
+        _below(message, "checksum", 1 << 32),
+        (major, minor),
+        _bytes(message, "later", 0, LATER_BYTES),
+        _below(message, "needs", 1 << 8, 0),  # without it the image is of 2.0
+    )
 
 
 def _upload(message: JsonMessage) -> tuple[object, ...]:
@@ -162,10 +161,10 @@ _GIVEN: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
         ("hello", "ping", "status", "clear", "fetch", "undo", "identify", "hold_back", "wifi",
          "forget_wifi", "broker"), lambda message: (),
     ),
-    "name": lambda message: (_name(message),),
+    "name": lambda message: (_bytes(message, "name", 1, NAME_BYTES),),
     "trim": lambda message: (_trim(message),),
-    "claim": lambda message: (_which(message),),
-    "disown": lambda message: (_which(message),),
+    "claim": lambda message: (_below(message, "which", len(KEYS)),),
+    "disown": lambda message: (_below(message, "which", len(KEYS)),),
     "allow_text": lambda message: (protocol.field(message, "is_allowed", bool),),
     "start": lambda message: (protocol.field(message, "is_detached", bool),),
     "live": lambda message: (protocol.data(message, "code"), _kit(message)),
