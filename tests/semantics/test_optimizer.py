@@ -43,7 +43,7 @@ def short(text: str) -> str:
         ("WHILE(FALSE); S; END_WHILE", ""),
         ("WHILE(TRUE); S; END_WHILE; W(1)", "Loop FOREVER\n  Stop\n"),
         ("LOOP(2); BREAK; S; END_LOOP", "Loop 2\n  Break\n"),
-        ("DEF A; S; END_DEF; DEF B1; W(1); END_DEF; B1", "DEF B1\n  Move W 1\nCall 0\n"),
+        ("DEF A; S; END_DEF; DEF B1; W(1); END_DEF; B1", "DEF B1\n  Move W 1\nCall 1\n"),
         # readings stay, whatever becomes of what needs them
         ("WHILE(DISTANCE > 1 AND FALSE); S; END_WHILE", "Read 2\n"),
         ("IF(FALSE); S; ELSEIF(DISTANCE > 1); W(1); ENDIF",

@@ -8,6 +8,7 @@ Plain code is what one pass over the text can emit, as a robot does that reads t
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import limited, whole
@@ -46,8 +47,9 @@ def lower(program: ir.Program, plain: bool = False) -> Lowered:
 
     `plain` code is made from a program as it is written, not from an optimised one.
     """
-    lowering = _Lowering(plain)
-    waiting: list[ir.Procedure | ir.Task] = [*program.procedures, *program.tasks]
+    lowering = _Lowering(plain, [each.name for each in program.procedures])
+    called = (each for each in program.procedures if each.is_called)
+    waiting: list[ir.Procedure | ir.Task] = [*called, *program.tasks]
     if plain:
         waiting.sort(key=lambda each: each.span)
     waiting.reverse()
@@ -66,10 +68,11 @@ class _LoopEnd(NamedTuple):
 
 
 class _Lowering:
-    def __init__(self, plain: bool) -> None:
+    def __init__(self, plain: bool, procedures: Sequence[str]) -> None:
         self.plain = plain
+        self.procedures = procedures
         self.out = Emitter(plain)
-        self.entries: list[int] = []  # the label of each DEF's first instruction
+        self.entries: dict[str, int] = {}  # the label of each DEF's first instruction
         self.loops: list[_LoopEnd] = []
 
     def routine(self, routine: ir.Procedure | ir.Task) -> None:
@@ -78,7 +81,7 @@ class _Lowering:
         end = out.new_label()
         if isinstance(routine, ir.Procedure):
             out.add("DEF", to=end)
-            self.entries.append(out.mark_here())
+            self.entries[routine.name] = out.mark_here()
             last = "RETURN"
         elif routine.look is None:
             out.add("TASK", to=end)
@@ -122,7 +125,7 @@ class _Lowering:
             loop = self.loops[-1]
             out.add("BREAK_LOOP" if loop.counts else "BREAK", to=loop.label)
         elif isinstance(statement, ir.Call):
-            out.add("CALL", to=self.entries[statement.procedure])
+            out.add("CALL", to=self.entries[self.procedures[statement.procedure]])
         elif isinstance(statement, ir.Motors):
             self.motors(statement)
         elif isinstance(statement, ir.Beep):

@@ -63,10 +63,8 @@ class _Durations:
     def drives(self, body: ir.Body) -> bool:
         """Whether a body has a move or an S, or calls something that has one."""
         return any(
-            isinstance(each, ir.Stop)
-            or (isinstance(each, ir.Move) and each.power is not None)
-            or (isinstance(each, ir.Call) and self.drives(self.procedures[each.procedure].body))
-            for each in ir.walk(body)
+            isinstance(each, ir.Stop) or (isinstance(each, ir.Move) and each.power is not None)
+            for each in ir.with_calls(body, self.procedures)
         )
 
     def of(self, body: ir.Body) -> Duration:

@@ -6,7 +6,7 @@ TRUE is 1 and FALSE is 0. All mistakes have been reported before.
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from tiniscript.base.kit import Kit
@@ -132,9 +132,12 @@ Body = tuple[Statement, ...]
 
 
 class Procedure(NamedTuple):
+    """A DEF that is not `is_called` becomes no code."""
+
     name: str
     body: Body
     span: Span
+    is_called: bool = True
 
 
 class Task(NamedTuple):
@@ -178,6 +181,18 @@ def walk(body: Body) -> Iterator[Statement]:
         yield statement
         for inner in bodies(statement):
             yield from walk(inner)
+
+
+def with_calls(
+    body: Body, procedures: Sequence[Procedure], called: set[int] | None = None
+) -> Iterator[Statement]:
+    """Yield every statement of `body`, and behind a call those of its DEF: of each DEF once."""
+    called = set() if called is None else called
+    for statement in walk(body):
+        yield statement
+        if isinstance(statement, Call) and statement.procedure not in called:
+            called.add(statement.procedure)
+            yield from with_calls(procedures[statement.procedure].body, procedures, called)
 
 
 def every(program: Program) -> Iterator[Statement]:
@@ -245,6 +260,17 @@ def expressions(statement: Statement | Task) -> Iterator[Expression]:
     elif isinstance(statement, If):
         for arm in statement.arms:
             yield arm.condition
+
+
+def named(op: str, statements: Iterable[Statement | Task]) -> set[int]:
+    """Return the numbers of the variables or sensors that an expression of these has."""
+    return {
+        term.value
+        for statement in statements
+        for expression in expressions(statement)
+        for term in expression
+        if term.op == op
+    }
 
 
 def loops_end(body: Body) -> bool:

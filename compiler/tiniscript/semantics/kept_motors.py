@@ -6,7 +6,7 @@ before it is optimised.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from functools import partial
 
 from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
@@ -18,17 +18,16 @@ from tiniscript.semantics.optimizer import constant, fold
 def kept_motors(program: ir.Program, source: Source) -> list[Diagnostic]:
     """Return a warning for each task that waits for a higher TASK, or never drives again."""
     motors = _Motors(program)
+    all_of = partial(ir.with_calls, procedures=program.procedures)
     higher = [each.body for each in program.tasks if each.look is not None]
     tasks = [each for each in program.tasks if each.look is None]
     lower = [*(each.body for each in tasks), program.body]
     for task in tasks:
         del lower[0]
-        is_stopped = any(
-            isinstance(each, ir.Stop) for body in higher for each in motors.all_of(body)
-        )
+        is_stopped = any(isinstance(each, ir.Stop) for body in higher for each in all_of(body))
         if not is_stopped and motors.are_kept(task.body):
             line = str(source.position(task.span.start)[0])
-            waiting = [next(filter(_drives, motors.all_of(_endless(body))), None) for body in lower]
+            waiting = [next(filter(_drives, all_of(_endless(body))), None) for body in lower]
             return [Diagnostic(codes.NO_MOTORS, each.span, {"line": line})
                     for each in waiting if each is not None]  # fmt: skip
         higher.append(task.body)
@@ -47,13 +46,6 @@ def _waiting(program: ir.Program, tasks: list[ir.Body], source: Source) -> list[
 class _Motors:
     def __init__(self, program: ir.Program) -> None:
         self._procedures = program.procedures
-
-    def all_of(self, body: ir.Body) -> Iterator[ir.Statement]:
-        """Yield every statement of a body, those of its calls too."""
-        for each in ir.walk(body):
-            yield each
-            if isinstance(each, ir.Call):
-                yield from self.all_of(self._procedures[each.procedure].body)
 
     def are_kept(self, body: ir.Body) -> bool:
         """Whether a task surely drives for ever at its end, and never lets the motors go there."""

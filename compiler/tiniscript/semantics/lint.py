@@ -20,14 +20,10 @@ from tiniscript.semantics.kept_motors import kept_motors
 from tiniscript.semantics.late_conditions import LateConditions
 from tiniscript.semantics.named_values import use_of
 from tiniscript.semantics.optimizer import constant, fold, sure_fault
-from tiniscript.semantics.suspicious_values import (
-    of_beep,
-    of_ended_move,
-    of_move,
-    of_way,
-    swapped_names,
-)
+from tiniscript.semantics.suspicious_values import of_beep, of_move, of_way, swapped_names
 from tiniscript.semantics.unseen_motors import unseen
+
+_LASTING = (ir.Move, ir.Beep, ir.Motors)
 
 
 class _Around(NamedTuple):
@@ -51,24 +47,18 @@ class _Look:
         self.frozen = InvariantConditions(program, kit, source)
         self.found: list[Diagnostic] = []
 
-    @property
-    def all_found(self) -> list[Diagnostic]:
-        return [*self.found, *self.late.found, *self.frozen.found]
-
 
 def lint(program: ir.Program, kit: Kit, source: Source) -> list[Diagnostic]:
     """Return the warnings for a program that has no mistakes."""
     look = _Look(program, kit, source)
     for procedure in program.procedures:
-        look.found += swapped_names(procedure.body, program)
         _look_at(procedure.body, look, _Around(is_repeated=True))
     for task in program.tasks:
         _expressions(task, look.found)
-        look.found += swapped_names(task.body, program)
         _look_at(task.body, look, _Around(is_repeated=task.look is not None))
-    look.found += swapped_names(program.body, program)
     _look_at(program.body, look, _Around(is_last=True))
-    found = [*look.all_found, *kept_motors(program, source)]
+    found = [*look.found, *look.late.found, *look.frozen.found, *swapped_names(program)]
+    found += kept_motors(program, source)
     found += _unused(program, kit, [*ir.every(program), *program.tasks])
     return found
 
@@ -92,38 +82,31 @@ def _look_at(body: ir.Body, look: _Look, around: _Around) -> None:
         if isinstance(statement, ir.Move):
             if statement.unit:
                 found += of_way(statement, look.kit)
-            elif statement.until is None:
-                found += of_move(statement, look.kit, look.source)
             else:
-                found += of_ended_move(statement, look.kit, look.source)
+                found += of_move(statement, look.kit, look.source)
         if isinstance(statement, ir.Beep):
             found += of_beep(statement)
+        asks = isinstance(statement, (ir.If, ir.While))
         inside = around._replace(
             loop=None,
             is_last=around.is_last and isinstance(statement, ir.If) and statement is body[-1],
-            asked=around.asked | _asked(statement),
+            asked=around.asked | ir.named("SENSOR", [statement] if asks else []),
         )
         if isinstance(statement, (ir.Loop, ir.While)):
             outermost = around.outermost or statement
             inside = inside._replace(loop=statement, is_repeated=True, outermost=outermost)
             _odd_times(statement, found)
+            done = ir.with_calls(statement.body, program.procedures)
             if _is_forever(statement) and not (
                 program.tasks  # there each turn of a loop takes time
                 or ir.loops_end(statement.body)
-                or _takes_time(statement.body, program)
+                or any(isinstance(each, _LASTING) for each in done)
             ):
                 word = "LOOP(FOREVER)" if isinstance(statement, ir.Loop) else "WHILE"
                 head = Span(statement.span.start, statement.span.start + len(word))
                 _report(found, codes.BUSY_LOOP, head, word=word)
         for inner in ir.bodies(statement):
             _look_at(inner, look, inside)
-
-
-def _asked(statement: ir.Statement) -> frozenset[int]:
-    """Return the sensors that IF or WHILE asks before its body."""
-    if not isinstance(statement, (ir.If, ir.While)):
-        return frozenset()
-    return _named("SENSOR", [statement])
 
 
 def _never_reached(before: ir.Statement, after: ir.Statement, look: _Look) -> None:
@@ -161,32 +144,10 @@ def _is_forever(statement: ir.Loop | ir.While) -> bool:
     return constant(fold(statement.condition)) == 1
 
 
-def _takes_time(body: ir.Body, program: ir.Program) -> bool:
-    """Whether a body moves, waits or beeps, or calls something that does."""
-    for statement in ir.walk(body):
-        if isinstance(statement, (ir.Move, ir.Beep, ir.Motors)):
-            return True
-        if isinstance(statement, ir.Call):
-            if _takes_time(program.procedures[statement.procedure].body, program):
-                return True
-    return False
-
-
-def _named(op: str, statements: Sequence[ir.Statement | ir.Task]) -> frozenset[int]:
-    """Return the numbers of the variables or sensors that an expression of these has."""
-    return frozenset(
-        term.value
-        for statement in statements
-        for expression in ir.expressions(statement)
-        for term in expression
-        if term.op == op
-    )
-
-
 def _unused(
     program: ir.Program, kit: Kit, statements: Sequence[ir.Statement | ir.Task]
 ) -> Iterator[Diagnostic]:
-    used = set(_named("VARIABLE", statements))
+    used = ir.named("VARIABLE", statements)
     for statement in statements:
         if isinstance(statement, ir.Assign) and statement.variable not in used:
             used.add(statement.variable)  # said once
@@ -206,7 +167,7 @@ def _unused_readings(
     kit: Kit, statements: Sequence[ir.Statement | ir.Task]
 ) -> Iterator[Diagnostic]:
     """`SI|DISTANCE`, where nothing asks for the distance: it is measured, and nobody sees it."""
-    asked = set(_named("SENSOR", statements))
+    asked = ir.named("SENSOR", statements)
     for statement in statements:
         if isinstance(statement, ir.Read) and statement.sensor not in asked:
             asked.add(statement.sensor)  # said once

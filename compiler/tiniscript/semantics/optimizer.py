@@ -38,12 +38,12 @@ def optimized(program: ir.Program) -> ir.Program:
     A calculated constant of 32 bits, such as 100/3, may take two bytes more than its parts: it is
     pushed in a fraction of the time that a robot takes to calculate it.
     """
-    procedures = [
-        procedure._replace(body=_body(procedure.body)) for procedure in program.procedures
-    ]
-    tasks = tuple(_task(task) for task in program.tasks)
-    made = program._replace(procedures=tuple(procedures), tasks=tasks, body=_body(program.body))
-    return _without_unused(made)
+    body, tasks = _body(program.body), tuple(_task(task) for task in program.tasks)
+    procedures = [each._replace(body=_body(each.body)) for each in program.procedures]
+    done = ir.with_calls(sum((task.body for task in tasks), body), procedures)
+    called = {each.procedure for each in done if isinstance(each, ir.Call)}
+    used = tuple(each._replace(is_called=k in called) for k, each in enumerate(procedures))
+    return program._replace(procedures=used, tasks=tasks, body=body)
 
 
 def fold(expression: ir.Expression) -> ir.Expression:
@@ -224,42 +224,3 @@ def _while(loop: ir.While) -> tuple[ir.Statement, ...]:
         reads = tuple(ir.Read(sensor, loop.span) for sensor in loop.reads)
         return (ir.Loop(None, _body((*reads, *loop.body)), loop.span),)
     return (loop._replace(condition=condition, body=_body(loop.body)),)
-
-
-def _without_unused(program: ir.Program) -> ir.Program:
-    """Drop the DEFs that are never called, and number the others again."""
-    called: set[int] = set()
-    waiting = [program.body, *(task.body for task in program.tasks)]
-    while waiting:
-        for statement in ir.walk(waiting.pop()):
-            if isinstance(statement, ir.Call) and statement.procedure not in called:
-                called.add(statement.procedure)
-                waiting.append(program.procedures[statement.procedure].body)
-    if len(called) == len(program.procedures):
-        return program
-    numbers = {old: new for new, old in enumerate(sorted(called))}
-    procedures = tuple(
-        ir.Procedure(each.name, _renumbered(each.body, numbers), each.span)
-        for number, each in enumerate(program.procedures)
-        if number in called
-    )
-    body = _renumbered(program.body, numbers)
-    tasks = tuple(each._replace(body=_renumbered(each.body, numbers)) for each in program.tasks)
-    return program._replace(procedures=procedures, body=body, tasks=tasks)
-
-
-def _renumbered(body: ir.Body, numbers: dict[int, int]) -> ir.Body:
-    made: list[ir.Statement] = []
-    for statement in body:
-        if isinstance(statement, ir.Call):
-            statement = statement._replace(procedure=numbers[statement.procedure])
-        elif isinstance(statement, ir.If):
-            arms = tuple(
-                arm._replace(body=_renumbered(arm.body, numbers)) for arm in statement.arms
-            )
-            otherwise = _renumbered(statement.otherwise, numbers)
-            statement = statement._replace(arms=arms, otherwise=otherwise)
-        elif isinstance(statement, (ir.Loop, ir.While)):
-            statement = statement._replace(body=_renumbered(statement.body, numbers))
-        made.append(statement)
-    return tuple(made)

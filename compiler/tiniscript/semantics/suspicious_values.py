@@ -13,8 +13,8 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, Span
 from tiniscript.base.words import HERTZ, POWER, UNIT_OF, Argument
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.semantics.ir import Assign, Beep, Body, Expression, Move, Program, every, walk
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.semantics.ir import Assign, Beep, Expression, Move, Program, every
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import constant, fold
 from tiniscript.semantics.ways import way_ms
@@ -39,33 +39,33 @@ LITTLE_POWER = 10_000  # thousandths of a percent
 
 
 def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
-    """Return the warnings about the numbers of a move or a wait without UNTIL.
+    """Return the warnings about the numbers of a move or a wait by its time.
 
-    It is one thing at most, and for `R(03, 2)` what is said of its power, too.
+    It is one thing at most, and for `R(03, 2)` what is said of its power, too. With UNTIL a long
+    time is only how long it may last.
     """
     time, power = _number(move.time), _number(move.power)
-    found: list[Diagnostic] = []
+    text, is_ended = source[move.span], move.until is not None
+    zero = None if is_ended else _ZERO.match(text) or _ZERO_OF_TURN.match(text)
     if time is None:
-        return _measured(move, kit, source)
-    zero = _ZERO.match(source[move.span]) or _ZERO_OF_TURN.match(source[move.span])
-    if time <= 0:
-        _report(found, codes.MOVE_OF_NO_TIME, move.span, word=move.direction)
-    elif zero is not None:  # `L(039, 60)`
-        text = source[move.span]
+        return of_power(move) if is_ended else _measured(move, kit, source)
+    if time <= 0 and not is_ended:
+        return [Diagnostic(codes.MOVE_OF_NO_TIME, move.span, {"word": move.direction})]
+    if zero is not None:  # `L(039, 60)`
         fix = f"{text[: zero.start(1)]}0.{zero[1][1:]}{text[zero.end(1) :]}"
         is_sure = len(zero[1]) > 2 and not zero[1].startswith("00")
         values = {"found": zero[1], "right": as_text(time), "fix": fix if is_sure else ""}
         if len(zero[1]) == 2:  # 3 seconds or 0.3
             values["point"] = f"0.{zero[1][1:]}"
-        found.append(Diagnostic(codes.ZERO_BEFORE, move.span, values))
-        return found + of_power(move)
-    elif _is_swapped(time, power):
+        return [Diagnostic(codes.ZERO_BEFORE, move.span, values), *of_power(move)]
+    if _is_swapped(time, power):
         seconds, percent = as_text(time), as_text(power or 0)
-        fix = f"{move.direction}({percent}, {seconds})"
-        _report(found, codes.SWAPPED, move.span, time=seconds, power=percent, fix=fix)
-    else:
-        _long(move, time, power, kit, found)
-    return found or of_power(move)
+        until = _UNTIL.search(text) if is_ended else None
+        fix = f"{move.direction}({percent}, {seconds}){until[0] if until else ''}"
+        values = {"time": seconds, "power": percent, "fix": fix}
+        return [Diagnostic(codes.SWAPPED, move.span, values)]
+    may_last = is_ended and not (move.direction in ("L", "R") and kit.turn)
+    return ([] if may_last else _long(move, time, power, kit)) or of_power(move)
 
 
 def of_way(move: Move, kit: Kit) -> list[Diagnostic]:
@@ -82,21 +82,6 @@ def of_way(move: Move, kit: Kit) -> list[Diagnostic]:
     return of_power(move)
 
 
-def of_ended_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
-    """Return the warnings about the numbers of a move or a wait with UNTIL: one at most."""
-    time, power = _number(move.time), _number(move.power)
-    if time is None or not _is_swapped(time, power):
-        found: list[Diagnostic] = []
-        if time is not None and move.direction in ("L", "R") and kit.turn:
-            _long(move, time, power, kit, found)
-        return found or of_power(move)
-    seconds, percent = as_text(time), as_text(power or 0)
-    until = _UNTIL.search(source[move.span])
-    fix = f"{move.direction}({percent}, {seconds}){until[0] if until else ''}"
-    values = {"time": seconds, "power": percent, "fix": fix}
-    return [Diagnostic(codes.SWAPPED, move.span, values)]
-
-
 def _measured(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
     """`F(DISTANCE, 60)`, `F(TIME, 60)`: centimetres, or a clock, in the place of seconds."""
     time = move.time or ()
@@ -106,19 +91,16 @@ def _measured(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
     if is_clock:
         values = {"clock": "TIME", "seconds": seconds}
         return [Diagnostic(codes.LONG_TIME, move.span, values)]
-    is_sum = all(
-        part.op in ("SENSOR", "NUMBER", "ADD", "SUB") for part in time
-    )  # `F(DISTANCE - 5, 60)`
+    # `F(DISTANCE - 5, 60)`
+    is_sum = all(part.op in ("SENSOR", "NUMBER", "ADD", "SUB") for part in time)
     sensors = [kit.sensors[part.value] for part in time if part.op == "SENSOR"]
     if not is_sum or len(sensors) != 1 or sensors[0].unit not in _LENGTHS:
         return []
-    found: list[Diagnostic] = []
     name = sensors[0].name
     left = next((as_text(part.value) for part in time if part.op == "NUMBER"), "10")
     until = f"F(FOREVER,{power}) UNTIL({name} < {left})" if move.direction == "F" else ""
-    _report(found, codes.LONG_TIME, move.span, sensor=name, word=move.direction, until=until,
-            seconds=seconds)  # fmt: skip
-    return found
+    values = {"sensor": name, "word": move.direction, "until": until, "seconds": seconds}
+    return [Diagnostic(codes.LONG_TIME, move.span, values)]
 
 
 def of_power(move: Move) -> list[Diagnostic]:
@@ -140,7 +122,7 @@ def of_power(move: Move) -> list[Diagnostic]:
     return found
 
 
-def _long(move: Move, time: int, power: int | None, kit: Kit, found: list[Diagnostic]) -> None:
+def _long(move: Move, time: int, power: int | None, kit: Kit) -> list[Diagnostic]:
     """`R(90, 50)`, `F(90, 60)`, `W(1000)`: degrees, centimetres and milliseconds were meant."""
     word = move.direction
     shown = as_text(80_000 if power is None else power)
@@ -156,15 +138,15 @@ def _long(move: Move, time: int, power: int | None, kit: Kit, found: list[Diagno
     if turns and _is_turn(time, kit, is_long) and not (is_very_long and time % _PART):
         values = {"degrees": length, "word": word, "turn": usage}
         values |= {"way": way} if kit.turn else {}
-        _report(found, codes.LONG_TIME, move.span, **values)
     elif drives and (is_long or is_far) and not is_very_long:
         values = {"centimetres": length, "word": word, "drive": usage}
         values |= {"way": way} if kit.speed else {}
-        _report(found, codes.LONG_TIME, move.span, **values)
     elif _is_milliseconds(time) if word == "W" else is_very_long:
         power_shown = "" if word == "W" else f", {shown}"
-        fix = f"{word}({as_text(time // 1000)}{power_shown})"
-        _report(found, codes.LONG_TIME, move.span, time=length, fix=fix)
+        values = {"time": length, "fix": f"{word}({as_text(time // 1000)}{power_shown})"}
+    else:
+        return []
+    return [Diagnostic(codes.LONG_TIME, move.span, values)]
 
 
 def _is_turn(time: int, kit: Kit, is_long: bool) -> bool:
@@ -185,7 +167,7 @@ def of_beep(beep: Beep) -> list[Diagnostic]:
     time, hertz = _number(beep.time), _number(beep.hertz)
     found = _cut(beep.hertz, HERTZ, beep.span, "BEEP")
     if time is not None and time <= 0:
-        _report(found, codes.MOVE_OF_NO_TIME, beep.span, word="BEEP")
+        found.append(Diagnostic(codes.MOVE_OF_NO_TIME, beep.span, {"word": "BEEP"}))
     if time is None or hertz is None or time < LONG_BEEP:
         return found
     # of an Arduino: `tone(pin, hertz, milliseconds)`; or in this order, with milliseconds
@@ -196,18 +178,18 @@ def of_beep(beep: Beep) -> list[Diagnostic]:
         fix = fix if hertz % 100_000 else ""
     elif hertz <= LOW_HERTZ:  # `BEEP(440, 80)`: how long it lasts is not said
         fix, sound = "", f"BEEP(seconds, {as_text(time)})"
-    _report(found, codes.LONG_TIME, beep.span, time=as_text(time), fix=fix, sound=sound)
-    return found
+    values = {"time": as_text(time), "fix": fix, "sound": sound}
+    return [*found, Diagnostic(codes.LONG_TIME, beep.span, values)]
 
 
-def swapped_names(body: Body, program: Program) -> list[Diagnostic]:
+def swapped_names(program: Program) -> list[Diagnostic]:
     """`F(SPEED, TIME_S)`: variables that are set once, in the wrong order by name and number."""
     found: list[Diagnostic] = []
     set_to: dict[int, list[int | None]] = {}
     for statement in every(program):
         if isinstance(statement, Assign):
             set_to.setdefault(statement.variable, []).append(constant(fold(statement.value)))
-    for move in (each for each in walk(body) if isinstance(each, Move)):
+    for move in (each for each in every(program) if isinstance(each, Move)):
         if move.until is not None or move.time is None or move.power is None or move.unit:
             continue
         sides = (move.time, move.power)
@@ -223,8 +205,8 @@ def swapped_names(body: Body, program: Program) -> list[Diagnostic]:
             continue
         if _is_swapped(time, power):
             fix = f"{move.direction}({second}, {first})"
-            _report(found, codes.SWAPPED, move.span, fix=fix,
-                    time=as_text(time), power=as_text(power))  # fmt: skip
+            said = {"fix": fix, "time": as_text(time), "power": as_text(power)}
+            found.append(Diagnostic(codes.SWAPPED, move.span, said))
     return found
 
 
@@ -252,7 +234,3 @@ def _cut(expression: Expression, its: Argument, span: Span, word: str) -> list[D
 
 def _number(expression: Expression | None) -> int | None:
     return None if expression is None else constant(fold(expression))
-
-
-def _report(found: list[Diagnostic], code: Code, span: Span, **values: str) -> None:
-    found.append(Diagnostic(code, span, values))

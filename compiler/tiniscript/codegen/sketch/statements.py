@@ -159,19 +159,6 @@ class Statements:
     def call(self, key: str, said: str, values: Sequence[str]) -> None:
         self.line(f"{self.use(key)}({', '.join(values)});", said)
 
-    @staticmethod
-    def named_sensors(program: ir.Program) -> set[int]:
-        """Return the sensors whose names stand in expressions, read or not."""
-        bodies = (program.body, *(each.body for each in program.procedures))
-        return {
-            term.value
-            for body in bodies
-            for statement in ir.walk(body)
-            for expression in ir.expressions(statement)
-            for term in expression
-            if term.op == "SENSOR"
-        }
-
     # -- arguments
 
     def arguments(self, *parts: Part) -> list[str]:

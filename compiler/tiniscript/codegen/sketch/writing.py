@@ -301,7 +301,8 @@ class _Sketch:
             lines.append(
                 f"{'bool' if is_yes_no else '$N'} {name} = {'false' if is_yes_no else '0'};"
             )
-        for k in sorted(rows.read_sensors | rows.named_sensors(self.program)):
+        named = ir.named("SENSOR", ir.every(self.program))  # read or not
+        for k in sorted(rows.read_sensors | named):
             kind = self.plan.kind(k)
             lines.append(f"{kind} {self.named.sensors[k]} = {'false' if kind == 'bool' else '0'};")
         pieces = ["\n".join([f"// {self.says('values')}", *lines])] if lines else []
