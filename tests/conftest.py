@@ -164,5 +164,4 @@ def link(pty_robot: PtyRobot) -> Iterator[Command]:
     command = Command("link", "--port", pty_robot.port)
     command.until("share this port")
     yield command
-    command.process.kill()
-    command.process.communicate()
+    command.kill()

@@ -54,10 +54,8 @@ def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
     words = ["upload", "-e", f"SI|LOOP(FOREVER);{drives}SHOW(1);END_LOOP", "--port", pty_robot.port]
     code, said = after_lines(1, *words)
     assert code == CLOSED and said.count("\n") == 1 and "stopped the robot" in said
-    pty_robot.switch_off()
-    pty_robot.switch_on()
-    fetched = on(pty_robot, "fetch")
-    assert (fetched.code, "SHOW" in fetched.out) == (0, True), fetched.err
+    pty_robot.switch_off_and_on()
+    on(pty_robot, "fetch").gives(0, out="SHOW")
 
 
 def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
@@ -185,6 +183,5 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
     monkeypatch.setattr("tiniscript.library.client.PATIENCE_MS", 600)
     for language, said in (("en", "still saving"), ("es", "está guardando")):
         for words in (["upload", "-e", PROGRAM], ["start"]):
-            done = inside(*words, "--port", pty_robot.port, "--lang", language)
-            assert done.code == 3
+            done = inside(*words, "--port", pty_robot.port, "--lang", language).gives(3)
             assert said in done.err and "lost" not in done.err and "perdió" not in done.err

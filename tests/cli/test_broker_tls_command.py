@@ -125,8 +125,7 @@ def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_pat
 def test_options_that_make_no_sense(words: list[str], said: str, tmp_path: Path) -> None:
     file = str(Authority(tmp_path).file)
     words = [file if word == "CA" else word for word in words]
-    done = inside("wifi", *words, "--port", "/none")
-    assert done.code == 2 and said in done.err and not done.out
+    inside("wifi", *words, "--port", "/none").gives(2, said, out="")
 
 
 def test_every_state_of_a_broker_has_a_sentence() -> None:

@@ -32,8 +32,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_folder_has_a_line_for_each_program_and_a_table(folder: Path, tsc: Tsc) -> None:
-    done = tsc("check", ".", "--lang", "es")
-    assert done.code == 1
+    done = tsc("check", ".", "--lang", "es").gives(1)
     assert done.out == (
         "./a.ts: sin errores\n"
         "./b.ts: línea 1: Entre dos valores va una coma.   [TS017]\n"
@@ -55,8 +54,7 @@ def test_programs_that_are_right_give_zero_and_each_is_checked_once(folder: Path
     assert (done.code, (folder / "t.csv").exists()) == (2, False)
     assert "--csv is for several programs or a folder" in done.err
     (folder / "empty").mkdir()
-    done = tsc("check", "empty")
-    assert (done.code, done.out) == (2, "")
+    done = tsc("check", "empty").gives(2, out="")
     assert done.err.startswith("tsc: empty has no program in it. Their names end in .ts or .tini.")
 
 
@@ -83,8 +81,7 @@ def test_a_spreadsheet_in_spanish_has_semicolons_and_may_be_written_again(
     folder: Path, tsc: Tsc
 ) -> None:
     for _ in range(2):
-        done = tsc("check", "a.ts", "b.ts", "--lang", "es", "--csv", "tabla.csv")
-        assert done.code == 1
+        tsc("check", "a.ts", "b.ts", "--lang", "es", "--csv", "tabla.csv").gives(1)
     table = StringIO((folder / "tabla.csv").read_text("utf-8-sig"))
     first, second = csv.DictReader(table, delimiter=";")
     assert (first["archivo"], first["errores"], first["mensaje"]) == ("a.ts", "0", "")
@@ -106,8 +103,7 @@ def test_what_lies_in_a_folder_does_no_harm(folder: Path, tsc: Tsc) -> None:
     (folder / "loop").symlink_to(".")
     (folder / "dangling.ts").symlink_to("nowhere")
     os.mkfifo(folder / "pipe.ts")
-    done = tsc("check", ".")
-    assert done.code == 2
+    done = tsc("check", ".").gives(2)
     assert "\x1b" not in done.out
     assert ".hidden" not in done.out
     assert "./x??[31m.ts: no mistakes" in done.out
@@ -122,8 +118,7 @@ def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
         deep = deep / "d"
         deep.mkdir()
         (deep / f"p{k}.ts").write_text(WRONG if k % 2 else RIGHT, encoding="utf-8")
-    done = tsc("check", "d")
-    assert done.code == 1
+    done = tsc("check", "d").gives(1)
     assert done.out.endswith("programs: 30, without mistakes: 15\n")
 
 
@@ -132,8 +127,7 @@ def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
 
 def test_fix_writes_the_sure_repairs_and_says_what_is_left(folder: Path, tsc: Tsc) -> None:
     """Twice is once."""
-    done = tsc("check", "--fix", "sub/c.ts", "--lang", "es")
-    assert done.code == 1
+    done = tsc("check", "--fix", "sub/c.ts", "--lang", "es").gives(1)
     once = (folder / "sub" / "c.ts").read_bytes()
     assert once == b"SI|F(2, 80);girar(derecha, 90)\n"
     assert done.out == (
@@ -203,9 +197,7 @@ def test_a_file_that_cannot_be_written_is_as_it_was(
     done = tsc("check", "--fix", "b.ts")
     assert (done.code, (folder / "b.ts").read_text("utf-8")) == (2, WRONG)
     assert "b.ts cannot be written: No space left on device. The file stays as it was." in done.err
-    done = tsc("check", "--fix", "b.ts", "a.ts")
-    assert done.code == 2
-    assert "a.ts: no mistakes" in done.out
+    tsc("check", "--fix", "b.ts", "a.ts").gives(2, out="a.ts: no mistakes")
 
 
 def test_a_folder_is_repaired_with_a_column_of_its_own(folder: Path, tsc: Tsc) -> None:

@@ -50,8 +50,7 @@ class Class(list[Esp32PtyRobot]):
             near(robot)
             assert claimed(robot).code == 0
             assert on(robot, "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
-            done = on(robot, "wifi", *self.place, "--user", "robots", data=SECRET + b"\n")
-            assert done.code == 0, done.err
+            done = on(robot, "wifi", *self.place, "--user", "robots", data=SECRET + b"\n").gives(0)
             assert "in the class 3b" in done.out and SECRET.decode() not in done.out + done.err
 
     @property
@@ -134,8 +133,7 @@ def test_who_has_no_key_sees_and_stops(
     for data in (b"wrong\n", b"\n", b""):
         done = process("class", *room.access, data=data)
         assert done.code in (2, 3) and done.out == "" and "assword" in done.err, data
-    done = process("class", *room.place)
-    assert done.code == 3 and "does not let this computer in" in done.err
+    process("class", *room.place).gives(3, "does not let this computer in")
     assert "no deja entrar" in process("class", *room.place, "--lang", "es").err
     assert tsc(room, "list")[0] == 0
     code, said, _ = tsc(room, "upload", "-e", DRIVES)
@@ -236,19 +234,16 @@ def test_the_times_of_all_robots_count_from_one_start() -> None:
 
 def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
     """What a stranger retains reaches no terminal raw."""
-    done = inside("class", "--broker", "127.0.0.1:1")
-    assert done.code == 3 and "no MQTT broker answers" in done.err
+    inside("class", "--broker", "127.0.0.1:1").gives(3, "no MQTT broker answers")
     place = ("--broker", f"127.0.0.1:{broker.port}")
     for words in ([], ["stop"], ["upload", "-e", DRIVES], ["show"]):
-        done = inside("class", *words, *place)
-        assert done.code == 3 and "no robot of the class class" in done.err
+        inside("class", *words, *place).gives(3, "no robot of the class class")
     assert inside("class", "--tls", *place).code == 3
     stranger = broker.connected()
     for robot, data in (("00000001", b"+\x1b[2Jtsc: ok\n"), ("00000002", b"-\x9b2J\r")):
         stranger._client.publish(f"{ROOT}/class/{robot}", data, retain=True)
     stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)
-    done = process("class", *place)
-    assert done.code == 3
+    done = process("class", *place).gives(3)
     assert not set(done.out + done.err) & set("\x1b\x9b\r")
     assert "is not at the broker" in done.out
 

@@ -20,10 +20,9 @@ from tiniscript.cli.texts import has_text
 
 def test_compile_writes_the_image_and_nothing_else(tsc: Tsc, program: Path) -> None:
     target = program.with_name("out.bin")
-    done = tsc("compile", program, "-o", target)
-    assert done.code == 0
-    assert done.err == ""
-    assert "18 bytes (3 of code)   stack 0 of 16   runs 5 s" in done.out
+    tsc("compile", program, "-o", target).gives(
+        0, "", out="18 bytes (3 of code)   stack 0 of 16   runs 5 s"
+    )
     assert unpack(target.read_bytes()).code.hex() == "448c50"
     assert sorted(each.name for each in program.parent.glob("*.*")) == ["drive.ts", "out.bin"]
     assert tsc("compile", program).code == 0
@@ -50,9 +49,7 @@ def test_compile_says_how_long_it_runs(tsc: Tsc, tmp_path: Path, text: str, runs
 def test_a_failed_compile_leaves_the_old_image(tsc: Tsc, tmp_path: Path) -> None:
     target = tmp_path / "old.bin"
     target.write_bytes(b"TS\2 an old image")
-    done = tsc("compile", "-e", "S = 5", "-o", target)
-    assert done.code == 1
-    assert "TS" in done.err
+    tsc("compile", "-e", "S = 5", "-o", target).gives(1, "TS")
     assert target.read_bytes() == b"TS\2 an old image"
     assert [each.name for each in tmp_path.glob("*.*")] == ["old.bin"]
 
@@ -93,21 +90,16 @@ def test_each_fault_of_a_program_is_explained(tsc: Tsc) -> None:
 
 def test_the_board_has_less_memory_than_the_language(tsc: Tsc, tmp_path: Path) -> None:
     text = "SHOW(TIME * 1.234);" * 90
-    done = tsc("compile", "-e", text, "-o", tmp_path / "a.bin")
-    assert done.code == 1
-    assert "389" in done.err
+    done = tsc("compile", "-e", text, "-o", tmp_path / "a.bin").gives(1, "389")
     assert "151" in done.err  # by how much
     for verb in ("check", "run"):
-        done = tsc(verb, "-e", text)
-        assert done.code == 0
-        assert "151" in done.err
+        tsc(verb, "-e", text).gives(0, "151")
     assert tsc("compile", "-e", text, "-o", tmp_path / "a.bin", "--robot", "grabber").code == 0
 
 
 def test_code_has_a_limit_on_every_robot(tsc: Tsc, tmp_path: Path) -> None:
     for instructions, code in ((CODE_BYTES // 3, 0), (CODE_BYTES // 3 + 1, 1)):
-        done = tsc("run", "-e", "M(1,1);" * instructions, "--max-steps", "1")
-        assert done.code == code
+        tsc("run", "-e", "M(1,1);" * instructions, "--max-steps", "1").gives(code)
 
 
 # -- check --------------------------------------------------------------------------------------
@@ -125,8 +117,7 @@ def test_check_says_all_mistakes_in_both_languages(tsc: Tsc) -> None:
 
 
 def test_check_json(tsc: Tsc) -> None:
-    done = tsc("check", "--json", "-e", "W(1)\n  ñ = 5; F(1,5, 80)")
-    assert done.code == 1
+    done = tsc("check", "--json", "-e", "W(1)\n  ñ = 5; F(1,5, 80)").gives(1)
     first, second = json.loads(done.out)
     assert set(first) == {"code", "severity", "line", "column", "end_line", "end_column",
                           "message", "fix"}  # fmt: skip
@@ -147,8 +138,7 @@ def test_many_mistakes_are_cut_short(tsc: Tsc) -> None:
 
 
 def test_run_prints_the_trace_and_nothing_else(tsc: Tsc) -> None:
-    done = tsc("run", "-e", OBSTACLE, "--sensor", "distance=50,9", "--max-time", "2.5")
-    assert done.code == 0
+    done = tsc("run", "-e", OBSTACLE, "--sensor", "distance=50,9", "--max-time", "2.5").gives(0)
     assert done.out.splitlines() == [
         "0 MOTORS 80 80", "1000 MOTORS 0 0", "1000 READ DISTANCE 50", "1000 MOTORS 80 80",
         "2000 MOTORS 0 0", "2000 READ DISTANCE 9", "2000 MOTORS 0 0", "2000 MOTORS 60 -60",
@@ -194,15 +184,13 @@ def test_run_is_repeatable_and_seeded(tsc: Tsc) -> None:
 ])  # fmt: skip
 def test_wrong_use_of_run(tsc: Tsc, arguments: list[str]) -> None:
     for language in ([], ["--lang", "es"]):
-        done = tsc("run", "-e", "DISTANCE", *language, *arguments)
-        assert (done.code, done.out) == (2, "")
+        tsc("run", "-e", "DISTANCE", *language, *arguments).gives(2, out="")
 
 
 def test_sensor_of_another_robot(tsc: Tsc) -> None:
     done = tsc("run", "-e", "SHOW(LINE_L)", "--robot", "LINER", "--sensor", "LINE_L=TRUE")
     assert done.out == "0 READ LINE_L TRUE\n0 SHOW TRUE\n0 DONE\n"
-    wrong = tsc("run", "-e", "SHOW(LINE_L)", "--robot", "liner", "--sensor", "LINE_L=2")
-    assert wrong.code == 2
+    tsc("run", "-e", "SHOW(LINE_L)", "--robot", "liner", "--sensor", "LINE_L=2").gives(2)
 
 
 # -- images -------------------------------------------------------------------------------------
@@ -295,9 +283,7 @@ def test_fmt_leaves_what_is_wrong_and_what_it_would_make_too_large(
 
 
 def test_explain(tsc: Tsc) -> None:
-    done = tsc("explain", "TS012")
-    assert done.code == 0
-    assert "TS012" in done.out
+    done = tsc("explain", "TS012").gives(0, out="TS012")
     assert tsc("explain", "ts012", "--lang", "es").out != done.out
     assert tsc("explain").out.count("\nTS") > 50
     assert tsc("explain", "TS999").code == 2

@@ -26,8 +26,7 @@ ZSH = shutil.which("zsh") or ""
 
 def offered(tsc: Tsc, *words: str) -> set[str]:
     """Return what is offered for the last of these words."""
-    done = tsc("completion", "bash", "--", *words[:-1], f".{words[-1]}")
-    assert (done.code, done.err) == (0, "")
+    done = tsc("completion", "bash", "--", *words[:-1], f".{words[-1]}").gives(0, "")
     return {line.partition("\t")[0] for line in done.out.splitlines()[1:]}
 
 
@@ -133,9 +132,5 @@ def test_brackets_and_quotes_of_powershell_close() -> None:
 
 
 def test_a_shell_that_is_not_known(tsc: Tsc) -> None:
-    done = tsc("completion", "fish")
-    assert done.code == 2
-    assert "SHELL takes bash, zsh or powershell, not fish" in done.err
-    done = tsc("completion", "--lang", "es")
-    assert done.code == 2
-    assert "falta shell" in done.err
+    tsc("completion", "fish").gives(2, "SHELL takes bash, zsh or powershell, not fish")
+    tsc("completion", "--lang", "es").gives(2, "falta shell")

@@ -36,8 +36,7 @@ def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
     before: list[bytes] = []
     pty_robot.until(lambda: pty_robot.robot_ms > 500, "a new robot has kept its id")
     pty_robot.ask(lambda robot: before.append(robot.memory()))
-    done = on(pty_robot, "doctor")
-    assert (done.code, done.err) == (0, "")
+    done = on(pty_robot, "doctor").gives(0, "")
     assert done.out.splitlines() == [
         f"Port {pty_robot.port}",
         "1. tinibot is fine (sure)",
@@ -62,30 +61,25 @@ def test_a_run_goes_on(pty_robot: PtyRobot, is_others: bool) -> None:
     assert pty_robot.moves
     assert "FINISHED" not in pty_robot.did
     if is_others:
-        command.process.kill()
-        command.process.communicate()
+        command.kill()
 
 
 def test_through_the_command_that_has_the_port(link: Command, pty_robot: PtyRobot) -> None:
-    done = on(pty_robot, "doctor", "--lang", "es")
-    assert done.code == 0
-    assert "1. tinibot está bien (seguro)" in done.out
+    on(pty_robot, "doctor", "--lang", "es").gives(0, out="1. tinibot está bien (seguro)")
     assert on(pty_robot, "ping").code == 0
 
 
 def test_what_is_wrong_with_a_robot_is_said(pty_robot: PtyRobot) -> None:
     """Another kit than that of the robot that was named, weak batteries, and a bad line."""
-    done = on(pty_robot, "doctor", "--robot", "liner")
-    assert done.code == 3
-    assert "(tinibot), not that of liner" in done.out
-    assert "--robot tinibot" in done.out
+    on(pty_robot, "doctor", "--robot", "liner").gives(
+        3, out=("(tinibot), not that of liner", "--robot tinibot")
+    )
     pty_robot.ask(lambda robot: robot.supply(True))
     on(pty_robot, "upload", "-e", "SB|F(1, 50)")
     done = on(pty_robot, "doctor", "--json")
     assert (done.code, causes(done.out)) == (3, ["low_supply"])
     pty_robot.damages = 97
-    done = on(pty_robot, "doctor", "--json")
-    assert done.code == 3
+    done = on(pty_robot, "doctor", "--json").gives(3)
     assert "lossy" in causes(done.out)
 
 
@@ -95,10 +89,8 @@ def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
     command = Command("doctor", "--port", pty_robot.port, "--watch", "12", "--json")
     heard = len(pty_robot.heard)
     pty_robot.until(lambda: len(pty_robot.heard) > heard + 200, "it is watched")
-    pty_robot.switch_off()
-    pty_robot.switch_on()
-    done = command.ended()
-    assert done.code == 3
+    pty_robot.switch_off_and_on()
+    done = command.ended().gives(3)
     (finding,) = (each for each in json.loads(done.out)["findings"] if each["is_wrong"])
     assert (finding["cause"], finding["is_sure"]) == ("motors_restart", False)
     assert finding["said"] == "Your robot restarted when the motors started: check the batteries"
@@ -113,8 +105,7 @@ def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> No
     assert process("stop", "--port", pty_robot.port).code == 0  # its time is also the doctor's
     assert not pty_robot.moves
     command.signal(signal.SIGINT)
-    done = command.ended()
-    assert done.code == 2, done.out + done.err
+    command.ended().gives(2)
 
 
 # -- other things -------------------------------------------------------------------------------
@@ -168,8 +159,7 @@ def test_without_a_yes_a_cable_is_not_opened(tsc: Tsc, cable: PtyEnd) -> None:
     done = tsc("doctor", "--port", cable.port)
     assert (done.code, cable.heard) == (3, b"")
     assert "tsc doctor --yes" in done.out
-    done = tsc("doctor", "--port", cable.port, "--yes")
-    assert done.code == 0
+    tsc("doctor", "--port", cable.port, "--yes").gives(0)
     assert cable.heard
 
 
@@ -195,8 +185,7 @@ def test_a_report_has_the_findings_and_no_names(tsc: Tsc, tmp_path: Path) -> Non
     file = tmp_path / "report.txt"
     own = (getpass.getuser(), socket.gethostname(), str(Path.home()), str(Path.cwd()))
     with PtyEnd(Firmware(name=b"ANA 6B", kit=0x1234)) as pty_end:
-        done = tsc("doctor", "--port", pty_end.port, "--report", file)
-        assert (done.code, str(file) in done.out) == (3, True)
+        tsc("doctor", "--port", pty_end.port, "--report", file).gives(3, out=str(file))
         text = file.read_text(encoding="utf-8")
         assert text.startswith(report.MARK + "\n")
         assert "unknown_kit sure" in text and "next: Name its profile once" in text
@@ -217,8 +206,7 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
         assert "tsc has not made it" in done.err
         assert file.read_text(encoding="utf-8") == text
     for place in (tmp_path, tmp_path / "no" / "report.txt", Path("/dev/full")):
-        done = tsc("doctor", "--port", "/dev/not-there", "--report", place)
-        assert (done.code, "cannot be written" in done.err) == (2, True)
+        tsc("doctor", "--port", "/dev/not-there", "--report", place).gives(2, "cannot be written")
 
 
 @pytest.mark.parametrize(

@@ -80,8 +80,7 @@ def files_with(folder: Path, words: bytes) -> list[str]:
 
 def test_a_robot_without_an_owner_says_what_comes_first(robot: Esp32PtyRobot) -> None:
     for words in (("wifi", NETWORK), ("wifi",), ("wifi", "--forget")):
-        done = on(robot, *words, data=PASSWORD + b"\n")
-        assert done.code == 3 and "tsc claim" in done.err and done.out == ""
+        on(robot, *words, data=PASSWORD + b"\n").gives(3, "tsc claim", out="")
     assert "Primero hazlo tuyo" in on(robot, "wifi", NETWORK, "--lang", "es").err
     assert asked(robot, "joins") == "0"
 
@@ -124,14 +123,12 @@ def test_two_computers_at_once_over_cable_and_network(
 ) -> None:
     place = f"socket://127.0.0.1:{asked(joined, 'port')}"
     for words in (("wifi", "Other"), ("wifi", "--forget")):
-        done = inside(*words, "--port", place, data=PASSWORD)
-        assert done.code == 2 and "Bluetooth" in done.err
+        inside(*words, "--port", place, data=PASSWORD).gives(2, "Bluetooth")
     assert NETWORK in inside("wifi", "--port", place).out
     assert inside("upload", "-e", DRIVES, "--port", place).code == 0
     assert drove(joined)[-2:] == DROVE
     command = driving(joined, place)
-    refused = on(joined, "upload", "-e", DRIVES)
-    assert refused.code == 3 and "another connection" in refused.err
+    on(joined, "upload", "-e", DRIVES).gives(3, "another connection")
     assert "otra conexión" in on(joined, "live", "F(1, 20)", "--lang", "es").err
     as_another(monkeypatch, tmp_path)
     assert on(joined, "info").code == 0
@@ -146,8 +143,7 @@ def test_over_a_bad_network(joined: Esp32PtyRobot, tmp_path: Path) -> None:
     bad = BadNetwork(int(asked(joined, "port")))
     place = f"socket://127.0.0.1:{bad.port}"
     for _ in range(3):
-        done = inside("upload", "-e", LONG, "--no-run", "--port", place)
-        assert done.code == 0, done.err
+        inside("upload", "-e", LONG, "--no-run", "--port", place).gives(0)
     ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
     assert inside("compile", "-e", LONG, "-o", ours).code == 0
     assert inside("fetch", "-o", theirs, "--port", place).code == 0

@@ -190,9 +190,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     """Nothing happens without one; where nobody can be asked it says how."""
     clone.has_node()
     clone.works("time.sleep(0.5)")
-    done = clone.unasked(clone.studio(*words))
-    assert (done.code, done.out) == (2, "")
-    assert said in done.err and "--yes" in done.err and size in done.err
+    clone.unasked(clone.studio(*words)).gives(2, said, "--yes", size, out="")
     for answer in ("n", "", "what?"):
         person = Person(clone, clone.studio())
         started.append(person)
@@ -295,8 +293,7 @@ def test_where_pip_may_install_nothing_it_says_what_to_install(
 def test_no_clone_says_so(tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(serving, "PAGE", tmp_path)
     monkeypatch.setattr(building, "LOCK", tmp_path / "none")
-    done = tsc("studio", "--no-browser", "--yes", "--lang", "es")
-    assert done.code == 2 and "no está en esta instalación" in done.err
+    tsc("studio", "--no-browser", "--yes", "--lang", "es").gives(2, "no está en esta instalación")
 
 
 # What npm and pip have said, without a network and on a full disk.
@@ -350,8 +347,7 @@ def test_platformio_is_installed_after_a_yes(
     person.sees("[y/N]")
     person.types("n")
     assert person.ended() == 2 and "nothing was downloaded" in person.seen
-    done = clone.unasked(clone.firmware())
-    assert done.code == 2 and "--yes" in done.err
+    clone.unasked(clone.firmware()).gives(2, "--yes")
     assert not (clone.own / "platformio").exists() and not clone.core.exists()
     person = Person(clone, clone.firmware(*words))
     started.append(person)
@@ -365,8 +361,7 @@ def test_platformio_is_installed_after_a_yes(
     another, third = ("--lang", "pt"), ("--lang", "en" if words else "es")
     done = clone.unasked(clone.firmware(*another))
     assert done.code == 2 and "50 MB" in done.err and "PyPI" not in done.err
-    done = clone.unasked(clone.firmware(*another, "--yes"))
-    assert done.code == 0 and "50 MB" in done.err
+    clone.unasked(clone.firmware(*another, "--yes")).gives(0, "50 MB")
     done = clone.unasked(clone.firmware(*third))
     assert done.code == 0 and "MB" not in done.err
 

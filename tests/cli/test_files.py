@@ -265,8 +265,7 @@ def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
     command = Command(code=code)
     command.until("held")
     assert registry.claimed("socket://x:1") is None
-    command.process.kill()
-    command.process.communicate()
+    command.kill()
     assert len(names()) == 2
     assert json.loads(inside("ports", "--json").out) is not None
     assert names() == set()

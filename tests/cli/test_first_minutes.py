@@ -46,10 +46,9 @@ def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None
     assert sorted(rest[:3]) == ["Done.", "SHOW 1.5", "Saved in slot 0."]  # it is saved meanwhile
     assert rest[3].startswith("The virtual robot drove 36 cm in 1.0 s and touched nothing.")
     assert picture.read_bytes().startswith(b"\x89PNG")
-    done = inside("upload", "--virtual", "-e", "SB|X = 0;SHOW(1 / X)", "--lang", "es")
-    assert done.code == 1
-    assert "su botón se pulsa de inmediato" in done.out
-    assert "DIVIDE_BY_ZERO" in done.err
+    inside("upload", "--virtual", "-e", "SB|X = 0;SHOW(1 / X)", "--lang", "es").gives(
+        1, "DIVIDE_BY_ZERO", out="su botón se pulsa de inmediato"
+    )
 
 
 def test_a_program_with_a_button_ends_when_it_is_told() -> None:
@@ -64,20 +63,16 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     done = inside("upload", "--virtual", "--no-run", "-e", "SB|F(1, 80)")
     assert (done.code, done.err) == (0, "")
     assert "SB: waits for the button" in done.out
-    done = inside("upload", "--virtual", "--detach", "-e", "SI|F(1, 80)")
-    assert done.code == 2
-    assert "Leave --detach out" in done.err
+    inside("upload", "--virtual", "--detach", "-e", "SI|F(1, 80)").gives(2, "Leave --detach out")
     lines = b"F(0.1, 50)\nSHOW(1)\nLOOP(FOREVER);F(1, 50);END_LOOP\nSHOW(2)\n"
-    done = inside("live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines)
-    assert done.code == 0
+    done = inside("live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines).gives(0)
     assert done.out.splitlines()[:2] == ["SHOW 1", "The time of --for is over."]
     assert "SHOW 2" not in done.out
 
 
 @pytest.mark.parametrize("hurry", ["1", "50", "max"])
 def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
-    done = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "2.5", "--hurry", hurry)
-    assert done.code == 0
+    done = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "2.5", "--hurry", hurry).gives(0)
     # 2.5 s at 80 % of 45 cm a second, to the millisecond
     assert done.out.splitlines()[1:] == [
         "The time of --for is over.", "Saved in slot 0.",
@@ -130,9 +125,7 @@ def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     assert (done.code, done.out) == (
         0, f"Stopped: the robot on {upload.port} has confirmed it.\n",
     )  # fmt: skip
-    ended = upload.command.ended()
-    assert ended.code == 3
-    assert "The robot was stopped from a computer." in ended.out
+    upload.command.ended().gives(3, out="The robot was stopped from a computer.")
     done = inside("stop", *options)
     assert done.code == 3  # there is none any more
     assert directory.running() == []
@@ -143,8 +136,7 @@ def test_stop_stops_all_that_are_in_use() -> None:
     with robot() as found:
         first, second = Upload("--seed", "1"), Upload("--seed", "2")
         inside("upload", "--port", found.port, "-e", FOREVER, "--detach")
-        done = inside("stop")
-        assert done.code == 0
+        done = inside("stop").gives(0)
         assert done.err == "Done: 3 of 3.\n"
         assert {found.port, first.port, second.port} <= set(re.findall(r"socket:\S*\d", done.out))
         assert [each.command.ended().code for each in (first, second)] == [3, 3]
@@ -181,9 +173,7 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
     assert "socket" not in inside("ports").out
     known_ports.remember(found.port, "KAT")  # by a tsc that did
     assert "socket" not in inside("ports").out
-    done = inside("ping")
-    assert done.code == 3
-    assert "is not there" in done.err
+    inside("ping").gives(3, "is not there")
 
 
 # -- a program for another robot ------------------------------------------------------------------
@@ -233,20 +223,15 @@ def test_the_robot_that_answers_says_which_kit_it_has() -> None:
         assert (done.code, done.err) == (0, here)
         done = inside("upload", LINE, "--port", found.port, "--no-run")
         assert (done.code, done.err) == (0, here)
-        done = inside("live", "SHOW(LINE_L)", "--lang", "es")
-        assert done.code == 0
+        done = inside("live", "SHOW(LINE_L)", "--lang", "es").gives(0)
         assert done.err == "El robot de aquí: liner. tsc compila para él.\n"
         # a program of the default robot would be for another kit than the robot has
-        done = inside("upload", "-e", "SHOW(DISTANCE)")
-        assert done.code == 1
-        assert "liner has no DISTANCE" in done.err
+        inside("upload", "-e", "SHOW(DISTANCE)").gives(1, "liner has no DISTANCE")
         # nothing is said of a program that any robot can do, and no robot is asked about a slip
         assert inside("upload", "-e", "SI|S").err == ""
         assert "TS103" in inside("upload", "-e", "SHOW(LIN)").err
         # who names a robot gets that one
-        done = inside("upload", LINE, "--robot", "grabber")
-        assert done.code == 1
-        assert "grabber has no LINE_L" in done.err
+        inside("upload", LINE, "--robot", "grabber").gives(1, "grabber has no LINE_L")
 
 
 def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
@@ -337,22 +322,16 @@ def test_help_is_a_verb_too(tsc: Tsc) -> None:
     assert "tsc upload" in tsc("help", "como enviar", "--lang", "pt").out
     assert tsc("help", "--lang", "es").out == tsc("--help", "--lang", "es").out
     assert tsc("help").out == tsc("--help").out
-    done = tsc("help", "uplod")
-    assert done.code == 2
-    assert "Did you mean upload?" in done.err
+    tsc("help", "uplod").gives(2, "Did you mean upload?")
 
 
 def test_a_program_without_a_verb(tsc: Tsc, tmp_path: Path) -> None:
-    done = tsc("prog.ts")
-    assert done.code == 2
-    assert "tsc upload prog.ts --virtual   or:  tsc run prog.ts" in done.err
+    tsc("prog.ts").gives(2, "tsc upload prog.ts --virtual   or:  tsc run prog.ts")
     assert "¿qué hago con prog.ts?" in tsc("prog.ts", "--lang", "es").err
     named = tmp_path / "my robot"
     named.write_text("S")
     assert f'tsc run "{named}"' in tsc(named).err
-    done = tsc("SI|F(2, 80)")
-    assert done.code == 2
-    assert 'tsc live "SI|F(2, 80)"' in done.err
+    tsc("SI|F(2, 80)").gives(2, 'tsc live "SI|F(2, 80)"')
     assert "there is no command nix" in tsc("nix").err
     assert tsc("x" * 5000).code == 2
 
@@ -368,8 +347,7 @@ def test_a_file_is_found_by_the_name_that_a_folder_shows(
     folder.mkdir()
     path = folder / real
     path.write_text("SI|F(1, 80)")
-    done = tsc("check", folder / said)
-    assert done.code == 0
+    done = tsc("check", folder / said).gives(0)
     assert done.out == f"{path}: no mistakes.\n"
     assert f"tsc uses {path}, its full name" in done.err
     assert tsc("compile", folder / said).code == 0
@@ -398,8 +376,7 @@ def test_board_says_where_the_build_looks(
 
 
 def test_the_first_run_explains_its_warning(tsc: Tsc) -> None:
-    done = tsc("check", ROOT / "examples" / "obstacle.ts")
-    assert done.code == 0 and "no mistakes" in done.out
+    done = tsc("check", ROOT / "examples" / "obstacle.ts").gives(0, out="no mistakes")
     assert done.err.count("Warning") == 1 and "F(1, 80) UNTIL(DISTANCE < 10)" in done.err
     assert tsc("check", ROOT / "examples" / "obstacle_until.ts").err == ""
     for path in ("README.md", "tools/try.py", "examples/obstacle.ts"):

@@ -46,8 +46,7 @@ def test_a_foreign_file_stays_and_an_own_one_is_replaced(
     for content in FOREIGN:
         target.write_bytes(content)
         for lang, said in (("en", "tsc has not made it"), ("es", "no lo hizo tsc")):
-            done = tsc(*words, target, "--lang", lang)
-            assert done.code == 2 and said in done.err and option in done.err
+            tsc(*words, target, "--lang", lang).gives(2, said, option)
         assert target.read_bytes() == content
 
 
@@ -63,8 +62,7 @@ def test_a_table_with_a_column_of_the_teacher_stays(tsc: Tsc, tmp_path: Path, la
     assert tsc(*words).code == 0 and table.read_bytes() == made
     marked = made.replace(b"\n", b";18\n")
     table.write_bytes(marked)
-    done = tsc(*words)
-    assert done.code == 2 and "--csv" in done.err
+    tsc(*words).gives(2, "--csv")
     assert table.read_bytes() == marked
 
 
@@ -72,8 +70,7 @@ def test_the_image_that_nobody_names_spares_a_foreign_file(tsc: Tsc, tmp_path: P
     program, beside = tmp_path / "photo.ts", tmp_path / "photo.bin"
     program.write_text(PROGRAM)
     beside.write_bytes(b"a firmware of something else")
-    done = tsc("compile", program)
-    assert done.code == 2 and "tsc has not made it" in done.err
+    tsc("compile", program).gives(2, "tsc has not made it")
     assert beside.read_bytes() == b"a firmware of something else"
     beside.unlink()
     assert tsc("compile", program).code == tsc("compile", program).code == 0
@@ -104,6 +101,5 @@ def test_rows_of_a_monitor(pty_robot: PtyRobot, tmp_path: Path) -> None:
     for _ in range(2):
         assert on(pty_robot, "monitor", "--csv", rows, "--max-time", "1").code == 0
         assert rows.read_bytes() == b"ms,event,value\n"
-    done = on(pty_robot, "monitor", "--csv", letter, "--max-time", "1")
-    assert done.code == 2 and "tsc has not made it" in done.err
+    on(pty_robot, "monitor", "--csv", letter, "--max-time", "1").gives(2, "tsc has not made it")
     assert letter.read_bytes() == b"a;b\n1;2\n"

@@ -57,8 +57,7 @@ def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
     tsc: Tsc, verb: str, language: str
 ) -> None:
     """And whether it takes a value."""
-    done = tsc(verb, "--help", "--lang", language)
-    assert done.code == 0
+    done = tsc(verb, "--help", "--lang", language).gives(0)
     rows = rows_of(done.out)
     said = [flag for row in rows for flag in re.findall(FLAG, row)]
     assert sorted(said) == flags_in_help(verb)
@@ -129,16 +128,13 @@ def test_the_first_help_has_the_ten_that_most_people_need(language: str) -> None
     ("ver los sensores", "live"), ("programar con bloques", "studio"),
 ])  # fmt: skip
 def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked: str, verb: str) -> None:
-    done = tsc("help", asked)
-    assert done.code == 0
+    done = tsc("help", asked).gives(0)
     assert rows_of(done.out)[0].split()[1] == verb
     assert tsc("help", *asked.split()).out == done.out
 
 
 def test_a_question_that_no_command_answers(tsc: Tsc) -> None:
-    done = tsc("help", "bake", "a", "cake")
-    assert done.code == 2
-    assert "found no command for “bake a cake”" in done.err
+    tsc("help", "bake", "a", "cake").gives(2, "found no command for “bake a cake”")
     assert tsc("help", "todo", "--lang", "es").out == help.everything("es")
 
 
@@ -335,8 +331,7 @@ def test_what_argparse_says_is_said_in_plain_words(
     tsc: Tsc, words: list[str], english: str, spanish: str
 ) -> None:
     for language, said in (("en", english), ("es", spanish)):
-        done = tsc(words[0], "--lang", language, *words[1:])
-        assert done.code == 2
+        done = tsc(words[0], "--lang", language, *words[1:]).gives(2)
         assert done.err.startswith(f"tsc: {said}. ")
 
 

@@ -98,9 +98,7 @@ def test_files_that_are_none_or_may_not_be_read(
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "open", refuse)  # root may read everything, so nothing else would do
-    done = tsc(verb, program)
-    assert done.code == 2
-    assert "no permission to read" in done.err
+    tsc(verb, program).gives(2, "no permission to read")
 
 
 def test_no_verb_and_no_such_verb(tsc: Tsc) -> None:
@@ -108,9 +106,7 @@ def test_no_verb_and_no_such_verb(tsc: Tsc) -> None:
     assert tsc().out == tsc("--help").out == help.overview("en")
     assert tsc("--lang", "es", "--help").out == help.overview("es")
     assert tsc("--version").out.startswith("tsc (TiniScript) ")
-    done = tsc("complie")
-    assert done.code == 2
-    assert "compile" in done.err
+    tsc("complie").gives(2, "compile")
     assert tsc("--lang", "es", "check", "-e", "W(1)").out == "-e: sin errores.\n"
 
 
@@ -224,6 +220,5 @@ def test_a_cache_that_is_damaged_or_cannot_be_written_is_no_trouble(
     blocked.write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
     assert tsc("compile", program).code == 0
-    done = tsc("show", image)
-    assert done.code == 0
+    done = tsc("show", image).gives(0)
     assert "line" not in done.out

@@ -34,8 +34,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_the_lessons_are_listed(tsc: Tsc) -> None:
-    done = tsc("lesson", "--lang", "es")
-    assert done.code == 0
+    done = tsc("lesson", "--lang", "es").gives(0)
     rows = done.out.splitlines()
     assert len(rows) == 16
     assert rows[0] == " 1  La primera línea   (tinibot)"
@@ -45,35 +44,26 @@ def test_one_program(tsc: Tsc, folder: Path) -> None:
     done = tsc("lesson", "check", "1", folder / "ana.ts")
     assert done.code == 0
     assert "done! The task of lesson 1 is solved." in done.out
-    done = tsc("lesson", "check", "1", folder / "beto.ts", "--lang", "es")
-    assert done.code == 1
-    assert (
-        "- El robot se quedó 18 cm antes del centro de la cochera. Haz que avance más." in done.out
+    tsc("lesson", "check", "1", folder / "beto.ts", "--lang", "es").gives(
+        1, out="- El robot se quedó 18 cm antes del centro de la cochera. Haz que avance más."
     )
-    done = tsc("lesson", "check", "1", "-e", WRONG)
-    assert done.code == 1
-    assert "TS017" in done.err
-    assert "repair the mistakes first" in done.out
+    tsc("lesson", "check", "1", "-e", WRONG).gives(1, "TS017", out="repair the mistakes first")
 
 
 def test_the_world_of_a_failure_can_be_repeated(tsc: Tsc, tmp_path: Path) -> None:
     path = tmp_path / "left.ts"
     path.write_text("SI|F(2.6, 60);L(0.42, 60);IF(TRUE);F(2.4, 60);ENDIF", encoding="utf-8")
-    done = tsc("lesson", "check", "8", path)
-    assert done.code == 1
+    done = tsc("lesson", "check", "8", path).gives(1)
     said = re.search(r"--seed (\d+)", done.out)
     assert said and f"not yet, in world {said[1]}." in done.out
     (sentence,) = [row for row in done.out.splitlines() if row.startswith("- ")]
-    again = tsc("lesson", "check", "8", path, "--seed", said[1])
-    assert again.code == 1
-    assert sentence in again.out
+    tsc("lesson", "check", "8", path, "--seed", said[1]).gives(1, out=sentence)
     assert tsc("lesson", "check", "8", path, "--seed", "1").code == 0
 
 
 def test_a_folder_gets_a_table(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
     rows = tmp_path / "marks.csv"
-    done = tsc("lesson", "check", "1", folder, "--csv", rows)
-    assert done.code == 1
+    done = tsc("lesson", "check", "1", folder, "--csv", rows).gives(1)
     table = {row.split()[0]: row for row in done.out.splitlines()}
     assert re.match(r"ana\.ts +done$", table["ana.ts"])
     assert "not yet" in table["beto.ts"] and "18 cm before" in table["beto.ts"]
@@ -121,10 +111,9 @@ def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path
     picture = tmp_path / "way.png"
     assert tsc("lesson", "check", "1", "-e", SHORT, "--plot", picture).code == 1
     assert picture.read_bytes().startswith(b"\x89PNG")
-    done = tsc("lesson", "show", "4", "--teacher")
-    assert done.code == 0
-    assert "    SI|LOOP(4)\n" in done.out
-    assert "Answers\n-------" in done.out
+    done = tsc("lesson", "show", "4", "--teacher").gives(
+        0, out=("    SI|LOOP(4)\n", "Answers\n-------")
+    )
     assert "```" not in done.out
 
 
@@ -158,9 +147,7 @@ def test_wrong_use_says_the_next_step(
     tsc: Tsc, arguments: list[str], sentence: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    done = tsc("lesson", *arguments)
-    assert done.code == 2
-    assert sentence in done.err
+    done = tsc("lesson", *arguments).gives(2, sentence)
     assert tsc("lesson", *arguments, "--lang", "es").err != done.err
 
 
@@ -189,15 +176,12 @@ def test_a_lesson_of_ones_own(tsc: Tsc, tmp_path: Path) -> None:
     for name in ("lesson.toml", "world.toml"):
         (tmp_path / name).write_bytes((shipped / name).read_bytes())
     assert tsc("lesson", "check", tmp_path, "-e", RIGHT).code == 0
-    done = tsc("lesson", "show", tmp_path)
-    assert (done.code, "pupil.en.md is missing" in done.err) == (2, True)
+    tsc("lesson", "show", tmp_path).gives(2, "pupil.en.md is missing")
     text = (tmp_path / "world.toml").read_text(encoding="utf-8")
     (tmp_path / "world.toml").write_text(text.replace("x_cm = 30", "x_cm = 2"), encoding="utf-8")
-    done = tsc("lesson", "check", tmp_path, "-e", RIGHT)
-    assert (done.code, "the robot does not fit" in done.err) == (2, True)
+    tsc("lesson", "check", tmp_path, "-e", RIGHT).gives(2, "the robot does not fit")
     (tmp_path / "lesson.toml").write_text("worlds = 0", encoding="utf-8")
-    done = tsc("lesson", "check", tmp_path, "-e", RIGHT)
-    assert (done.code, "robot is missing" in done.err) == (2, True)
+    tsc("lesson", "check", tmp_path, "-e", RIGHT).gives(2, "robot is missing")
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -206,8 +190,7 @@ def test_sheets_are_whole_pages(tsc: Tsc, number: int, language: str, tmp_path: 
     """One file: nothing is fetched, every element is closed, the drawing is inside."""
     for more in ([], ["--teacher"]):
         path = tmp_path / "sheet.html"
-        done = tsc("lesson", "sheet", str(number), "-o", path, "--lang", language, *more)
-        assert done.code == 0
+        tsc("lesson", "sheet", str(number), "-o", path, "--lang", language, *more).gives(0)
         page = path.read_text(encoding="utf-8")
         assert not re.search(r"(src|href|url|@import|<script|<link)\b", page)
         assert page.count("<svg") == 1
@@ -251,8 +234,7 @@ def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None
         (pupils / f"pupil {number}.ts").write_text(RIGHT, encoding="utf-8")
     (pupils / "folder.ts").mkdir()
     rows = tmp_path / "marks.csv"
-    done = tsc("lesson", "check", "1", pupils, "--csv", rows)
-    assert done.code == 1
+    done = tsc("lesson", "check", "1", pupils, "--csv", rows).gives(1)
     assert done.out.splitlines()[-1] == "Lesson 1 done: 23 of 30."
     assert "\x1b" not in done.out
     assert b"\x1b" not in rows.read_bytes()
@@ -281,8 +263,7 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
     (pupils / ".hidden").mkdir()
     (pupils / ".hidden" / "old.ts").write_text(RIGHT, encoding="utf-8")
     rows = tmp_path / "marks.csv"
-    done = tsc("lesson", "check", "1", pupils, "--json", "--csv", rows)
-    assert done.code == 1
+    done = tsc("lesson", "check", "1", pupils, "--json", "--csv", rows).gives(1)
     found = {row["file"].replace(os.sep, "/"): row["verdict"] for row in json.loads(done.out)}
     assert found == {
         "also.ts.txt": "mistakes", "empty.txt": "failed", "note.ts": "mistakes",
@@ -305,9 +286,7 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
     for name in ("Ana", "Beto", "x.ts"):
         (pupils / name / "square.ts").unlink()
     for language, words in (("en", "has no programs"), ("es", "no hay ningún programa")):
-        done = tsc("lesson", "check", "1", pupils, "--lang", language)
-        assert (done.code, done.out) == (2, "")
-        assert words in done.err
+        tsc("lesson", "check", "1", pupils, "--lang", language).gives(2, words, out="")
 
 
 def test_a_wrong_program_of_a_pupil_has_a_row(tsc: Tsc, tmp_path: Path) -> None:

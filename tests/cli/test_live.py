@@ -23,9 +23,7 @@ def test_a_line_is_done_at_once_and_the_program_stays(pty_robot: PtyRobot) -> No
     assert "SB" in on(pty_robot, "fetch").out
     assert on(pty_robot, "live", "F(2 80)").code == 1
     assert on(pty_robot, "live", "SB|F(2, 80)").code == 1
-    done = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 12)
-    assert done.code == 1
-    assert "room for 55" in done.err
+    on(pty_robot, "live", "SHOW(TIME * 1.234);" * 12).gives(1, "room for 55")
     assert on(pty_robot, "live", "X = 0;SHOW(1 / X)").code == 1
 
 
@@ -96,12 +94,9 @@ def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
     done = told("DEF TELL\n  SHOW(1)\nEND_DEF\nLOOP(2)\n\n  TELL // twice\nEND_LOOP\nSHOW(3)\n")
     assert (done.code, done.err) == (0, "")
     assert done.out == "TELL: known from now on.\nSHOW 1\nSHOW 1\nSHOW 3\n"
-    done = told("LOOP(2)\nF(2 80)\nEND_LOOP\nSHOW(4)\n")
-    assert (done.code, done.out) == (1, "")
+    done = told("LOOP(2)\nF(2 80)\nEND_LOOP\nSHOW(4)\n").gives(1, out="")
     assert done.err.startswith("line 2:") and "comma" in done.err and "END_LOOP" not in done.err
-    done = told("IF(TRUE)\nSHOW(5)\n")
-    assert (done.code, done.out) == (1, "")
-    assert "ENDIF" in done.err
+    told("IF(TRUE)\nSHOW(5)\n").gives(1, "ENDIF", out="")
 
 
 @pytest.mark.parametrize(("text", "ends"), [

@@ -54,8 +54,7 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
             pupils[number].damages = 97
         for pupil in pupils:
             known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
-        done = inside("upload", "-e", SHORT, "--all", "--json")
-        assert done.code == 3
+        done = inside("upload", "-e", SHORT, "--all", "--json").gives(3)
         rows = results(done)
         bad = {pupils[number].port for number in (SILENT, OTHER_KIT, DEAF)}
         named = {port: row for port, row in rows.items() if not row["is_absent"]}
@@ -75,11 +74,9 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         # the silent one is over last
         assert events[-1]["port"] in bad | {port for port, row in rows.items() if row["is_absent"]}
 
-        done = inside("upload", "-e", FOREVER, "--all", "--detach")
-        assert done.code == 3
+        inside("upload", "-e", FOREVER, "--all", "--detach").gives(3)
         assert sum(pupil.moves for pupil in pupils) == ROBOTS - 2  # it uses no device of a kit
-        done = inside("stop", "--all")
-        assert done.code == 3
+        done = inside("stop", "--all").gives(3)
         assert not any(pupil.moves for pupil in pupils)
         assert done.out.count("the robot has confirmed it") == ROBOTS - 2  # the other kit, too
 
@@ -116,8 +113,7 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
             assert all(rows[each.port]["is_done"] for each in others)
             assert not any(each.moves for each in others)
             inside("start", "--port", others[0].port, "--detach")
-    done = inside("stop", "--all")
-    assert done.code == 0, done
+    inside("stop", "--all").gives(0)
     assert not any(each.moves for each in class_.pupils)
 
 
@@ -130,24 +126,20 @@ def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
         return command
 
     command = driven()
-    done = inside("stop", "--all", "--json")
-    assert done.code == 0
+    done = inside("stop", "--all", "--json").gives(0)
     assert not any(pupil.moves for pupil in class_.pupils)
     rows = [row for row in results(done).values() if not row["is_absent"]]
     assert len(rows) == len(class_.pupils)
-    done = command.ended()
-    assert done.code == 3
+    done = command.ended().gives(3)
     told = ("The robot was stopped from a computer.", "another command has stopped the robot")
     assert sum(map(done.out.count, told)) == len(class_.pupils)  # before or after its start
     command = driven()
     command.signal(signal.SIGINT)
-    done = command.ended()
-    assert done.code == 2
+    done = command.ended().gives(2)
     assert not any(pupil.moves for pupil in class_.pupils)
     assert done.out.count("the robot has confirmed it") == len(class_.pupils)
     command = driven()
-    command.process.kill()
-    command.process.communicate()
+    command.kill()
     class_.until(lambda: not any(pupil.moves for pupil in class_.pupils), "they stop")
 
 
@@ -158,8 +150,7 @@ def test_each_robot_has_a_row(class_: RobotFleet) -> None:
     assert inside("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
     assert inside("upload", "-e", "SB|S", "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
-    done = inside("info", "--all")
-    assert done.code == 0
+    done = inside("info", "--all").gives(0)
     rows = [line.split("(")[1].split(")")[0] for line in done.out.splitlines()]
     assert sorted(rows) == sorted(names)
     assert done.out.count("nothing runs") == len(names)
@@ -167,8 +158,7 @@ def test_each_robot_has_a_row(class_: RobotFleet) -> None:
     found = results(inside("ping", "--count", "3", "--json", *ports_of))
     assert set(found) == {names[0], names[2]}
     assert all(row["round_trips"] == 3 for row in found.values())
-    done = inside("upload", "-e", "SI|X = DISTANCE;SHOW(1 / X)", "--all", "--no-save")
-    assert done.code == 3
+    done = inside("upload", "-e", "SI|X = DISTANCE;SHOW(1 / X)", "--all", "--no-save").gives(3)
     assert done.out.count("DIVIDE_BY_ZERO") == 4
     assert done.out.count("line 1") == 4
     done = inside("ping", "--port", names[0], "--port", "/dev/no-such", "--lang", "es")
@@ -182,15 +172,13 @@ def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
     assert inside("upload", "-e", first, "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
     assert inside("upload", "-e", second, "--port", names[1], "--port", names[2]).code == 0
-    done = inside("undo", "--all", "--json")
-    assert done.code == 3
+    done = inside("undo", "--all", "--json").gives(3)
     rows = results(done)
     assert {port for port in names if rows[port]["is_done"]} == {names[1], names[2]}
     assert "no program from before" in str(rows[names[0]]["said"])
     checksums = {rows[names[1]]["checksum"], rows[names[2]]["checksum"]}
     assert len(checksums) == 1
-    done = inside("undo", "--port", names[1], "--port", names[2], "--lang", "es")
-    assert done.code == 0
+    done = inside("undo", "--port", names[1], "--port", names[2], "--lang", "es").gives(0)
     assert done.out.count("vuelve a tener el programa anterior") == 2
     assert str(checksums.pop()) not in done.out
 
@@ -204,17 +192,15 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
     monkeypatch.setattr(ports, "listed", lambda: [ports.Found(port, "")])
     monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_S", 1.0)
-    done = inside("ping", "--all", "--count", "1")
-    assert done.code == 0
+    done = inside("ping", "--all", "--count", "1").gives(0)
     assert len(done.out.splitlines()) == 4
     assert done.err == f"Done: 4 of 4.\nNo robot answers on {port}.\n"
     monkeypatch.setattr(ports, "listed", list)
     monkeypatch.setattr(opening, "ANSWER_MS", 1000)
     known_ports.remember(known, "R9", is_used=False)
-    done = inside("ping", "--all", "--count", "1")
-    assert done.code == 3
-    assert f"R9 ({known}): nothing answers" in done.out
-    assert "Done: 4 of 5." in done.err
+    inside("ping", "--all", "--count", "1").gives(
+        3, "Done: 4 of 5.", out=f"R9 ({known}): nothing answers"
+    )
     for end in ends:
         os.close(end)
 
@@ -222,9 +208,7 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
 def test_nobody_and_wrong_use(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "listed", list)
     for language, words in (("en", "no robot answers"), ("es", "ningún robot responde")):
-        done = inside("stop", "--all", "--lang", language)
-        assert done.code == 3
-        assert words in done.err
+        inside("stop", "--all", "--lang", language).gives(3, words)
         assert inside("stop", "--all", "--port", "x", "--lang", language).code == 2
         assert inside("info", "--port", "a\0b", "--port", "x", "--lang", language).code == 2
 

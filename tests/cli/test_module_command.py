@@ -30,8 +30,7 @@ def port_of(module: Simulated) -> str:
 
 def test_a_module_gets_name_pin_and_speed(tsc: Tsc, module: Simulated) -> None:
     done = tsc("module", "--port", port_of(module), "--name", "ANA", "--pin", "4711",
-               "--baud", "57600")  # fmt: skip
-    assert (done.code, done.err) == (0, "")
+               "--baud", "57600").gives(0, "")  # fmt: skip
     assert (module.name, module.pin, module.baud) == ("ANA", "4711", 57600)
     assert done.out.splitlines() == [
         f"HC-06 3.x on {port_of(module)}, version 3.0-20170609; it listens at 9600 baud.",
@@ -100,9 +99,7 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_no_module_can_have_is_refused_before_anything_is_opened(
     tsc: Tsc, words: list[str], said: str
 ) -> None:
-    done = tsc("module", "--port", "/dev/not-there", *words)
-    assert done.code == 2
-    assert said in done.err
+    tsc("module", "--port", "/dev/not-there", *words).gives(2, said)
 
 
 def test_what_this_module_cannot_have_is_refused_before_anything_is_changed(tsc: Tsc) -> None:
@@ -119,8 +116,7 @@ def test_ports_that_are_none(tsc: Tsc) -> None:
     assert tsc("module", "--port", "").code == 2
     assert tsc("module", "--port", "/dev/not-there").code == 3
     for port in ("/dev/rfcomm7", "socket://127.0.0.1:9"):
-        done = tsc("module", "--port", port)
-        assert (done.code, "only by wire" in done.err) == (2, True)
+        tsc("module", "--port", port).gives(2, "only by wire")
 
 
 def test_a_module_that_does_not_do_it_is_an_exit_code(tsc: Tsc, module: Simulated) -> None:

@@ -26,8 +26,7 @@ def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path
         lambda: "FAULT" in rows.read_text(encoding="utf-8"), "the fault is written down"
     )
     command.signal(signal.SIGINT)
-    done = command.ended()
-    assert done.code == 0
+    done = command.ended().gives(0)
     events = [json.loads(line) for line in done.out.splitlines()]
     assert [event["event"] for event in events] == ["SHOW", "SHOW", "FAULT"]
     assert [row.split(",")[1:] for row in rows.read_text(encoding="utf-8").splitlines()] == [
@@ -38,8 +37,7 @@ def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path
 def test_monitor_keeps_the_last_rows_where_no_robot_answers(tmp_path: Path) -> None:
     rows = tmp_path / "rows.csv"
     rows.write_text("ms,event,value\n1,SHOW,5\n", encoding="utf-8")
-    done = inside("monitor", "--port", tmp_path / "no-port", "--csv", rows, "--max-time", "1")
-    assert done.code == 3
+    inside("monitor", "--port", tmp_path / "no-port", "--csv", rows, "--max-time", "1").gives(3)
     assert rows.read_text(encoding="utf-8") == "ms,event,value\n1,SHOW,5\n"
 
 
@@ -78,7 +76,5 @@ def test_every_curve_fits_its_terminal(values: list[tuple[int, int]]) -> None:
 def test_monitor_and_a_full_disk(pty_robot: PtyRobot, tmp_path: Path) -> None:
     files = [Path("/dev/full"), tmp_path, tmp_path / "no" / "such"]
     for file in files if files[0].exists() else files[1:]:
-        done = on(pty_robot, "monitor", "--csv", file, "--max-time", "1")
-        assert (done.code, done.out) == (2, "")
-        assert "--csv" in done.err
+        on(pty_robot, "monitor", "--csv", file, "--max-time", "1").gives(2, "--csv", out="")
     assert on(pty_robot, "monitor", "--max-time", "1").code == 0

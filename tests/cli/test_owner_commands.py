@@ -67,8 +67,7 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     assert json.loads(on(pty_robot, "info", "--json").out)["owner"] == "free"
-    done = claimed(pty_robot)
-    assert done.code == 0 and "yours" in done.out
+    claimed(pty_robot).gives(0, out="yours")
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
     assert ", yours" in on(pty_robot, "info").out
     assert ", yours" in on(pty_robot, "ping", "--count", "1").out
@@ -77,14 +76,12 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
     as_another(monkeypatch, tmp_path)
     assert ", owned by somebody else" in on(pty_robot, "info").out
     assert "(de otro dueño)" in on(pty_robot, "ports", "--ask", "--lang", "es").out
-    refused = on(pty_robot, "upload", "-e", DRIVES)
-    assert refused.code == 3 and "10 s" in refused.err
+    on(pty_robot, "upload", "-e", DRIVES).gives(3, "10 s")
     assert "dueño" in on(pty_robot, "live", "F(1, 80)", "--lang", "es").err
     refused = on(pty_robot, "claim")
     assert refused.code == 3 and "10 s" in refused.err and "2 s" not in refused.err
     assert on(pty_robot, "disown").code == 3
-    doctor = on(pty_robot, "doctor")
-    assert doctor.code == 0 and "The robot has an owner" in doctor.out
+    on(pty_robot, "doctor").gives(0, out="The robot has an owner")
     assert on(pty_robot, "identify").code == 0
     pty_robot.until(lambda: any("BEEP" in line for line in pty_robot.did), "its tune")
     assert on(pty_robot, "stop").code == 0
@@ -101,12 +98,10 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
     assert claimed(pty_robot).code == 0
     as_another(monkeypatch, tmp_path, "settings")
     for _ in range(7):  # more often than wrong keys are listened to
-        done = on(pty_robot, "info")
-        assert done.code == 0 and "claimed it again" in done.err and "10 s" in done.err
+        on(pty_robot, "info").gives(0, "claimed it again", "10 s")
     assert "lo hizo suyo" in on(pty_robot, "ping", "--count", "1", "--lang", "es").err
     assert [key.is_stale for key in KeyFile().all()] == [True]
-    refused = on(pty_robot, "upload", "-e", DRIVES)
-    assert refused.code == 3 and "another key" in refused.err
+    on(pty_robot, "upload", "-e", DRIVES).gives(3, "another key")
     as_another(monkeypatch, tmp_path)
     done = on(pty_robot, "upload", "-e", DRIVES)
     assert done.code == 0 and "claimed it again" not in done.err
@@ -133,11 +128,8 @@ def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -
     done = on(pty_robot, "live", "-", data=f"{most}\nSHOW(X)\n".encode())
     assert done.code == 0 and done.out.count("SHOW 1\n") == 1
     assert claimed(pty_robot).code == 0
-    done = on(pty_robot, "live", "-", data=most.encode())
-    assert (done.code, done.out) == (0, "")
-    assert "not kept" in done.err
-    done = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8)
-    assert done.code == 1 and "room for 42" in done.err
+    on(pty_robot, "live", "-", data=most.encode()).gives(0, "not kept", out="")
+    on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8).gives(1, "room for 42")
     done = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8, "--lang", "es")
     assert "42" in done.err
 
@@ -147,14 +139,12 @@ def test_a_claim_without_the_button_says_what_to_do(
 ) -> None:
     """And where the key could not be kept the robot gives none."""
     monkeypatch.setattr(authority, "HOLD_TRIES", 3)
-    done = on(pty_robot, "claim")
-    assert done.code == 3 and "2 s" in done.err
+    on(pty_robot, "claim").gives(3, "2 s")
     assert KeyFile().all() == []
     path = KeyFile().path
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("broken")
-    done = on(pty_robot, "claim")
-    assert done.code == 2 and str(path) in done.err
+    on(pty_robot, "claim").gives(2, str(path))
     path.unlink()
     assert ", free" in on(pty_robot, "info").out
 
@@ -170,8 +160,7 @@ def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
     as_another(monkeypatch, tmp_path, "settings")
     assert "goes on only after" in on(pty_robot, "stop", "--teacher").out
     as_another(monkeypatch, tmp_path, "pupil")
-    held = on(pty_robot, "start")
-    assert held.code == 3 and "teacher" in held.err
+    on(pty_robot, "start").gives(3, "teacher")
     as_another(monkeypatch, tmp_path, "settings")
     assert on(pty_robot, "start").code == 0
     assert {key.which for key in KeyFile().all()} == {KEY_TEACHER}
@@ -192,8 +181,7 @@ def test_a_shared_port_has_the_authority_and_its_messages_no_key(
     assert on(pty_robot, "stop").code == 0
     driving.ended()
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0  # after a stop, too
-    link.process.kill()
-    link.process.communicate()
+    link.kill()
     client: Any = ClientRequests()
     for request in (client.claim(KEY_OWNER), client.disown(KEY_OWNER)):
         assert set(request.message) == {"do", "which"}

@@ -36,8 +36,7 @@ def of_the_page(*events: tuple[int, str]) -> bytes:
 def test_a_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.jsonl"
     program.write_text(TEXT)
-    done = inside("upload", program, "--virtual", "--record", file)
-    assert (done.code, "3" in done.err) == (1, True)
+    inside("upload", program, "--virtual", "--record", file).gives(1, "3")
     found = read(file.read_bytes())
     assert found.program == CHECKSUM
     assert [each.event for each in found.events] == ["SHOW 5", "FAULT DIVIDE_BY_ZERO"]
@@ -48,8 +47,7 @@ def test_a_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
         0, "Both did the same. Comparisons: 2.\n",
     )  # fmt: skip
     file.write_bytes(file.read_bytes().replace(b"SHOW 5", b"SHOW 6"))
-    done = tsc("run", program, "--replay", file, "--world", "line", "--lang", "es")
-    assert done.code == 1
+    done = tsc("run", program, "--replay", file, "--world", "line", "--lang", "es").gives(1)
     assert done.out.startswith("Línea 1: el robot dice 6 a los 0.")
     assert "el virtual, 5 a los 0.2 s" in done.out
 
@@ -60,8 +58,7 @@ def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
 ) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.jsonl"
     program.write_text("X = 0; LOOP(6); W(2); X = X + 1; SHOW(X); END_LOOP; W(3)")
-    done = inside("upload", program, "--virtual", "--hurry", hurry, "--record", file)
-    assert done.code == 0, done.err
+    inside("upload", program, "--virtual", "--hurry", hurry, "--record", file).gives(0)
     events = read(file.read_bytes()).events
     assert [each.event for each in events] == [*(f"SHOW {k}" for k in range(1, 7)), "DONE"]
     for each, wanted_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
@@ -133,8 +130,7 @@ def test_a_file_that_cannot_be_compared_says_why(
     file = tmp_path / "run.jsonl"
     file.write_bytes(data)
     for language, words in (("en", said), ("es", dicho)):
-        done = tsc("run", "-e", TEXT, "--replay", file, "--lang", language)
-        assert (done.code, done.out) == (2, "")
+        done = tsc("run", "-e", TEXT, "--replay", file, "--lang", language).gives(2, out="")
         assert words in done.err and "Traceback" not in done.err
 
 
@@ -163,8 +159,7 @@ def test_what_is_not_recorded_or_compared_says_why(
         "robots/tinibot.toml").read_text(encoding="utf-8"), encoding="utf-8")  # fmt: skip
     Path("letter").write_bytes(b"a letter")
     Path("r").write_bytes(of_the_page((5, "SHOW 5")))
-    done = tsc(*words)
-    assert (done.code, done.out) == (2, "")
+    done = tsc(*words).gives(2, out="")
     assert said in done.err and "Traceback" not in done.err
     assert Path("r").read_bytes() == of_the_page((5, "SHOW 5"))
 
@@ -198,10 +193,8 @@ def test_the_robot_of_a_comparison_is_that_of_the_recording(tsc: Tsc, tmp_path: 
     assert done_with(None, "--robot", "liner").code == 0  # no robot in the file
     assert done_with(None).out.startswith("The recording is of another program.")  # for tinibot
     for robot in ("mine", "../liner", "", "a\x1b[31m\n" * 999):
-        done = done_with(robot)
-        assert (done.code, done.out, "that tsc brings: tinibot" in done.err) == (2, "", True)
-        done = done_with(robot, "--robot", "liner", "--lang", "es")
-        assert (done.code, "y --robot dice liner" in done.err) == (2, True), done.err
+        done_with(robot).gives(2, "that tsc brings: tinibot", out="")
+        done = done_with(robot, "--robot", "liner", "--lang", "es").gives(2, "y --robot dice liner")
         assert "\x1b" not in done.err and len(done.err) < 1000
     for odd in (5, ["liner"], False):
         assert "is damaged, or no recording (line 1)" in done_with(odd).err
@@ -278,8 +271,7 @@ def test_after_ctrl_c_saving_is_no_time_of_the_run(
     monkeypatch.setattr(upload, "follow_run", ctrl_c)
     monkeypatch.setattr(Saving, "wait", saves)
     monkeypatch.setattr(CommandSimulator, "told_ms", None)  # as a real robot, it has no clock
-    done = tsc("upload", "-e", "SI|F(9, 60)", "--virtual", "--record", file)
-    assert (done.code, "confirmed" in done.err) == (2, True), done.err
+    tsc("upload", "-e", "SI|F(9, 60)", "--virtual", "--record", file).gives(2, "confirmed")
     assert read(file.read_bytes()).events == (Recorded(5000, "STOPPED"),)
 
 

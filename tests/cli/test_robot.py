@@ -43,9 +43,7 @@ def test_a_port_that_another_program_uses_is_said(
 
     monkeypatch.setattr(opening, "STOP_BUSY_S", 0.5)
     with serial.Serial(pty_robot.port, exclusive=True):
-        done = on(pty_robot, "stop")
-        assert done.code == 3
-        assert "another program is using the port" in done.err
+        on(pty_robot, "stop").gives(3, "another program is using the port")
     assert pty_robot.heard == b""
 
 
@@ -54,27 +52,20 @@ def test_however_a_command_ends_its_robot_stops(pty_robot: PtyRobot) -> None:
     command = uploading(pty_robot)
     pressed_ms = pty_robot.robot_ms
     command.signal(signal.SIGINT)
-    done = command.ended()
-    assert done.code == 2
-    assert "Stopped: the robot has confirmed it." in done.err
+    command.ended().gives(2, "Stopped: the robot has confirmed it.")
     assert pty_robot.did[-1] == "MOTORS 0 0"
     assert int(pty_robot.timed[-1].split()[0]) <= pressed_ms + 1000
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     command = uploading(pty_robot)
     pty_robot.push()
-    done = command.ended()
-    assert done.code == 3
-    assert "with its button" in done.out
+    command.ended().gives(3, out="with its button")
     command = uploading(pty_robot)
-    command.process.kill()
-    command.process.communicate()
+    command.kill()
     pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
     assert "LINK_LOST" in on(pty_robot, "info").out
     command = uploading(pty_robot)
     pty_robot.pull()
-    done = command.ended()
-    assert done.code == 3
-    assert "is gone" in done.err
+    command.ended().gives(3, "is gone")
 
 
 def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: Path) -> None:
@@ -95,9 +86,7 @@ def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: 
 
 def test_a_robot_describes_itself_and_its_port_is_remembered(pty_robot: PtyRobot) -> None:
     assert inside("info").code == 3  # which port?
-    done = on(pty_robot, "ping", "--count", "3")
-    assert done.code == 0
-    assert "3 round trips" in done.out
+    done = on(pty_robot, "ping", "--count", "3").gives(0, out="3 round trips")
     known = json.loads(inside("info", "--json").out)
     assert (known["port"], known["kit"], known["robot"]) == (
         pty_robot.port, f"{KIT.fingerprint:04x}", "tinibot",
@@ -132,16 +121,14 @@ def test_a_board_that_has_just_been_reset_is_waited_for(pty_robot: PtyRobot) -> 
     pty_robot.switch_off()
     timer = threading.Timer(2, pty_robot.switch_on)  # python has to start, too
     timer.start()
-    done = on(pty_robot, "upload", "-e", "SI|F(0.1, 30)")
-    assert done.code == 0
+    on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").gives(0)
     timer.join()
 
 
 def test_a_name_survives_power_off(pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "name", "Ñandú")
     assert (done.code, done.out) == (0, f"{pty_robot.port}: the robot is called Ñandú now.\n")
-    pty_robot.switch_off()
-    pty_robot.switch_on()
+    pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "info", "--json").out)["name"] == "Ñandú"
     for name in ("", " ", "a" * 17, "ñ" * 9, "a\nb"):
         assert on(pty_robot, "name", name).code == 2
@@ -169,9 +156,7 @@ def test_a_person_without_a_port_is_asked_for_one(
     monkeypatch.setattr("sys.stdin.isatty", lambda: True)
     monkeypatch.setattr("sys.stdin.readline", lambda: next(answers))
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
-    done = tsc("ping")
-    assert done.code == 0
-    assert f"  2  {pty_robot.port}   a robot\n" in done.err
+    done = tsc("ping").gives(0, f"  2  {pty_robot.port}   a robot\n")
     assert done.err.count("Its number: ") == 3
     assert tsc("info").err == ""  # it is remembered
 
@@ -181,23 +166,15 @@ def test_nobody_something_else_and_another_version(
 ) -> None:
     with monkeypatch.context() as newer:
         newer.setattr("tiniscript.link.handshake.MAJOR", 2)
-        done = tsc("ping", "--port", pty_robot.port)
-        assert done.code == 3
-        assert "speaks version 1 of the link" in done.err
+        tsc("ping", "--port", pty_robot.port).gives(3, "speaks version 1 of the link")
     pty_robot.switch_off()
-    done = tsc("ping", "--port", pty_robot.port)
-    assert done.code == 3
-    assert "nothing answers" in done.err
+    tsc("ping", "--port", pty_robot.port).gives(3, "nothing answers")
     for said in (b"Hello from another sketch\r\n", bytes(range(1, 256)) * 3, b"\xff" * 99):
         timer = threading.Timer(0.3, pty_robot.say, [said])
         timer.start()
-        done = tsc("ping", "--port", pty_robot.port)
-        assert done.code == 3
-        assert "not TiniScript" in done.err
+        tsc("ping", "--port", pty_robot.port).gives(3, "not TiniScript")
         timer.join()
-    done = tsc("ping", "--port", "loop://")
-    assert done.code == 3
-    assert "is sent to loop:// comes back" in done.err
+    tsc("ping", "--port", "loop://").gives(3, "is sent to loop:// comes back")
 
 
 @pytest.mark.parametrize("verb", ["ping", "stop", "start", "info", "fetch", "monitor", "live"])
@@ -205,8 +182,7 @@ def test_ports_that_are_none(tsc: Tsc, verb: str, tmp_path: Path) -> None:
     for language in ("en", "es"):
         for port in ("/dev/no-such-port", str(tmp_path), os.devnull, "nix://a", "socket://a",
                      "socket://127.0.0.1:1", "a" * 5000):  # fmt: skip
-            done = tsc(verb, "--port", port, "--lang", language)
-            assert (done.code, done.out) == (3, "")
+            done = tsc(verb, "--port", port, "--lang", language).gives(3, out="")
             assert done.err.startswith("tsc: ")
         for port in ("", "a\0b"):
             assert tsc(verb, "--port", port, "--lang", language).code == 2
@@ -227,16 +203,14 @@ def test_every_reason_has_a_sentence_with_a_next_step(
         (SerialException("could not open port 'COM5': FileNotFoundError(2, '')"), "no port"),
         (SerialException("could not open port 'COM5': OSError(22, 'semaphore')"), "cannot reach"),
         (SerialException("something new"), "something new"),
-        (OSError(112, "Host is down"), "cannot reach" if os.name == "posix" else ""),
+        (OSError(112, "Host is down"), "cannot reach" if os.name == "posix" else "tsc: "),
     ):
 
         def refuse(*_: object, failure: Exception = failure, **__: object) -> None:
             raise failure
 
         monkeypatch.setattr("serial.serial_for_url", refuse)
-        done = tsc("ping", "--port", "COM5")
-        assert done.code == 3
-        assert word in done.err
+        tsc("ping", "--port", "COM5").gives(3, word)
 
 
 def test_a_port_that_never_opens_is_given_up(

@@ -207,8 +207,7 @@ def test_a_report_has_no_names(pty_robot: PtyRobot, tmp_path: Path) -> None:
 
 def test_a_robot_that_is_not_there_has_a_report_too(tmp_path: Path) -> None:
     file = tmp_path / "report.txt"
-    done = inside("selftest", "--port", "/dev/serial-of-Ana", "--report", file)
-    assert done.code == 3
+    inside("selftest", "--port", "/dev/serial-of-Ana", "--report", file).gives(3)
     said = file.read_text(encoding="utf-8")
     assert "Ana" not in said
     assert "tsc doctor" in said

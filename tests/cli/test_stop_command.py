@@ -63,9 +63,7 @@ def test_a_stop_that_nobody_confirms_holds_up_nobody_for_long(
     pty_robot: PtyRobot, link: Command
 ) -> None:
     pty_robot.switch_off()
-    done = on(pty_robot, "stop")
-    assert done.code == 3
-    assert "has not confirmed" in done.err
+    on(pty_robot, "stop").gives(3, "has not confirmed")
     pty_robot.switch_on()
     link.until("is back")
     assert at_once(pty_robot, "info")

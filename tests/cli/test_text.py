@@ -42,8 +42,7 @@ def test_the_line_runs_and_compiles_as_the_program_does(tsc: Tsc, program: Path)
 def test_a_line_that_has_changed_does_nothing(tsc: Tsc) -> None:
     for verb in ("run", "check", "fmt", "compile"):
         more = ["-o", "-"] if verb == "compile" else []
-        done = tsc(verb, "-e", LINE.replace("80", "90"), *more)
-        assert done.code == 1 and "[TS058]" in done.err and not done.out
+        tsc(verb, "-e", LINE.replace("80", "90"), *more).gives(1, "[TS058]", out="")
 
 
 def test_what_a_level_lacks_is_a_mistake_with_its_place(tsc: Tsc) -> None:
@@ -76,5 +75,4 @@ def test_nothing_is_written_that_a_level_does_not_take(tsc: Tsc, tmp_path: Path)
 def test_options_that_do_not_go_together(
     tsc: Tsc, program: Path, arguments: list[str], says: str
 ) -> None:
-    done = tsc("compile", program, *arguments)
-    assert done.code == 2 and says in done.err
+    tsc("compile", program, *arguments).gives(2, says)

@@ -35,8 +35,7 @@ def on(pty_robot: PtyRobot, *arguments: str, data: str = "") -> Done:
 
 def keeps(pty_robot: PtyRobot) -> Trim:
     """What the robot says that it keeps."""
-    done = on(pty_robot, "--show", "--json")
-    assert done.code == 0
+    done = on(pty_robot, "--show", "--json").gives(0)
     fields = json.loads(done.out)
     pace = fields["pace"]
     found = Trim(*(fields[name] for name in Trim._fields))
@@ -127,8 +126,7 @@ ANSWERS = "\n2\n2\n1\n1\n2\n2\n1\n\n2\n9\n3\n1\n1\n"
 
 def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot) -> None:
     assert pty_robots.on(pty_robot, "live", "W(0)").code == 0
-    done = on(pty_robot, data=ANSWERS + "2\n")
-    assert done.code == 0, done.err
+    done = on(pty_robot, data=ANSWERS + "2\n").gives(0)
     assert keeps(pty_robot) == Trim(True, False, True, -8, 15, Pace())
     assert "A number from 1 to 4" in done.err
     assert done.err.index("One motor turned") < done.err.index("The other motor turned")
@@ -150,9 +148,7 @@ def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(pty_robot: PtyRobot) -
         ("\n1\n1\n2\n1\n1\n\n" + "2\n" * 3, "more than 40 % stronger"),
         ("\n1\n", "the answers ended"),
     ):
-        done = on(pty_robot, data=answers)
-        assert done.code == 3
-        assert said in done.err
+        on(pty_robot, data=answers).gives(3, said)
         assert keeps(pty_robot) == Trim(balance=7, least=3, pace=Pace()), said
         assert not pty_robot.moves
 
@@ -274,8 +270,7 @@ def test_older_firmware_keeps_none() -> None:
 
 def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None:
     measuring = "1\n\nx\n-3\n0.5 m\n1e3\n99999\n\n33\n\n66,5 cm\n\n144°\n\n288\n"
-    done = on(pty_robot, data=LIFTED + measuring)
-    assert done.code == 0, done.err
+    done = on(pty_robot, data=LIFTED + measuring).gives(0)
     assert keeps(pty_robot).pace == Pace(16.5, 33.25, 144, 288)
     assert done.err.count("18 in") == 5
     assert "goes 16.5 cm in a second at 40 % and 33.25 at 80 %" in done.out
@@ -292,13 +287,10 @@ def test_who_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None:
 
 
 def test_who_stops_measuring_leaves_what_was_there(pty_robot: PtyRobot) -> None:
-    done = on(pty_robot, "--speed-40", "20")
-    assert done.code == 2 and "faster than at 40 %" in done.err
+    on(pty_robot, "--speed-40", "20").gives(2, "faster than at 40 %")
     assert keeps(pty_robot).pace == Pace()
     assert on(pty_robot, "--speed-40", "10", "--speed-80", "20,5", "--balance", "7").code == 0
     for answers in ("1\n", "1\n\n33\n\n"):
-        done = on(pty_robot, data=LIFTED + answers)
-        assert done.code == 3
-        assert "the answers ended" in done.err
+        on(pty_robot, data=LIFTED + answers).gives(3, "the answers ended")
         assert keeps(pty_robot) == Trim(balance=7, pace=Pace(10, 20.5))
         assert not pty_robot.moves

@@ -22,8 +22,7 @@ def test_upload_runs_the_program_and_stays_until_it_ends(
     program = tmp_path / "drive.ts"
     program.write_text("SI|F(0.2, 80)\nSHOW(DISTANCE + 1.5); SHOW(TRUE)\n", encoding="utf-8")
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
-    done = on(pty_robot, "upload", program)
-    assert (done.code, done.err) == (0, "")
+    done = on(pty_robot, "upload", program).gives(0, "")
     receipt, *rest = done.out.splitlines()
     image = compile_text(program.read_text(encoding="utf-8"), KIT).image
     assert receipt.startswith(f"{program} -> tinibot ({pty_robot.port})   {len(image)} bytes")
@@ -46,8 +45,7 @@ def test_a_program_that_waits_ends_with_its_receipt(pty_robot: PtyRobot) -> None
     assert "SB: waits for the button or tsc start\nSaved in slot" in done.out
     pty_robot.push()
     pty_robot.until(lambda: "FINISHED" in pty_robot.did, "the button starts it")
-    done = on(pty_robot, "start")
-    assert done.code == 0
+    done = on(pty_robot, "start").gives(0)
     assert done.out.endswith("Done.\n")
     assert pty_robot.did.count("FINISHED") == 2
 
@@ -73,8 +71,7 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
 
 def test_the_receipt_is_data_too(pty_robot: PtyRobot) -> None:
     text = "SI|SHOW(0.5);SHOW(2);SHOW(FALSE);X = 0;SHOW(1 / X)"
-    done = on(pty_robot, "upload", "-e", text, "--json")
-    assert done.code == 1
+    done = on(pty_robot, "upload", "-e", text, "--json").gives(1)
     lines = [json.loads(line) for line in done.out.splitlines()]
     kinds = [line["event"] for line in lines]
     assert kinds == ["RECEIPT", "SHOW", "SHOW", "SHOW", "FAULT", "SAVED"]
@@ -87,10 +84,9 @@ def test_the_receipt_is_data_too(pty_robot: PtyRobot) -> None:
 def test_a_fault_names_its_line(pty_robot: PtyRobot, tmp_path: Path) -> None:
     program = tmp_path / "divide.ts"
     program.write_text("SI|F(0.1, 50)\nX = 0\nSHOW(1 / X)\n", encoding="utf-8")
-    done = on(pty_robot, "upload", program, "--lang", "es")
-    assert done.code == 1
-    assert "falla DIVIDE_BY_ZERO" in done.err
-    assert "línea 3:  SHOW(1 / X)" in done.err
+    on(pty_robot, "upload", program, "--lang", "es").gives(
+        1, "falla DIVIDE_BY_ZERO", "línea 3:  SHOW(1 / X)"
+    )
     assert not pty_robot.moves
     done = on(pty_robot, "info")  # the text is in the cache
     assert "divide.ts, line 3:  SHOW(1 / X)" in done.out
@@ -98,9 +94,7 @@ def test_a_fault_names_its_line(pty_robot: PtyRobot, tmp_path: Path) -> None:
 
 
 def test_mistakes_keep_the_program_off_the_robot(pty_robot: PtyRobot) -> None:
-    done = on(pty_robot, "upload", "-e", "F(2 80)")
-    assert done.code == 1
-    assert "TS017" in done.err
+    on(pty_robot, "upload", "-e", "F(2 80)").gives(1, "TS017")
     assert pty_robot.heard == b""
 
 
@@ -110,12 +104,8 @@ def test_what_does_not_fit_is_said_with_numbers(pty_robot: PtyRobot, tmp_path: P
     done = on(pty_robot, "upload", target)
     assert done.code == 1
     assert "540 bytes of code, 151 more than the robot has room for (389)" in done.err
-    done = on(pty_robot, "upload", "-e", "SHOW(LINE_L)", "--robot", "liner")
-    assert done.code == 3
-    assert "--robot tinibot" in done.err
-    done = on(pty_robot, "start")
-    assert done.code == 3
-    assert "tsc upload" in done.err
+    on(pty_robot, "upload", "-e", "SHOW(LINE_L)", "--robot", "liner").gives(3, "--robot tinibot")
+    on(pty_robot, "start").gives(3, "tsc upload")
 
 
 def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
@@ -134,8 +124,7 @@ def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) 
     other = ("--port", "/dev/none") if is_many else ()
     command = Command("upload", "-e", "SI|F(200, 80)", "--port", pty_robot.port, *other)
     pty_robot.until(lambda: pty_robot.moves, "it drives")
-    pty_robot.switch_off()
-    pty_robot.switch_on()
+    pty_robot.switch_off_and_on()
     done = command.ended()
     assert done.code == 3 and "Done." not in done.out + done.err
     assert "was restarted" in done.out + done.err, done
@@ -154,19 +143,14 @@ def interrupted(command: Command) -> Done:
 def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyRobot) -> None:
     command = Command("upload", "-e", WAITS, "--port", pty_robot.port)
     command.until("Saved in slot 0.")
-    pty_robot.switch_off()
-    pty_robot.switch_on()
-    command.process.kill()
-    command.process.communicate()
+    pty_robot.switch_off_and_on()
+    command.kill()
     assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
 
 
 def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
-    done = interrupted(uploading(pty_robot))
-    assert done.code == 2 and "the robot has confirmed it" in done.err, done.err
-    assert "Saved in slot 0." in done.out, done.err
-    pty_robot.switch_off()
-    pty_robot.switch_on()
+    interrupted(uploading(pty_robot)).gives(2, "the robot has confirmed it", out="Saved in slot 0.")
+    pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
 
 
@@ -182,8 +166,7 @@ def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: 
     interrupted(command)
     for words in (naming, trimming):
         assert on(pty_robot, *words).code == 0, words
-    pty_robot.switch_off()
-    pty_robot.switch_on()
+    pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "info", "--json").out)["name"] == "ANA"
 
 
@@ -200,8 +183,7 @@ def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
     fields = json.loads(on(pty_robot, "info", "--json").out)
     assert (fields["saved"], fields["slot"]) == ("LOW_SUPPLY", None)
     for words in (("name", "ANA"), ("trim", "--balance", "5")):
-        done = on(pty_robot, *words)
-        assert done.code == 3 and "Change the batteries" in done.err
+        on(pty_robot, *words).gives(3, "Change the batteries")
         assert "Cambia las pilas" in on(pty_robot, *words, "--lang", "es").err
     pty_robot.ask(lambda robot: robot.supply(is_low=False))
     assert on(pty_robot, "name", "ANA").code == 0
@@ -237,13 +219,11 @@ def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRob
         ("en", first, "it holds the previous program again, checksum", "Saved in slot 0."),
         ("es", second, "vuelve a tener el programa anterior, suma", "Guardado en el lugar 1."),
     ):
-        done = on(pty_robot, "undo", "--lang", language)
-        assert (done.code, done.err) == (0, "")
+        done = on(pty_robot, "undo", "--lang", language).gives(0, "")
         lines = done.out.splitlines()
         assert f"{said} {checksum}" in lines[0] and "tsc undo" in lines[0]
         assert lines[1:] == [saved]
-        pty_robot.switch_off()
-        pty_robot.switch_on()
+        pty_robot.switch_off_and_on()
         assert json.loads(on(pty_robot, "info", "--json").out)["program"] == checksum
     receipt, kept = map(json.loads, on(pty_robot, "undo", "--json").out.splitlines())
     assert receipt["event"] == "RECEIPT" and receipt["checksum"] == first
@@ -267,17 +247,14 @@ def test_where_there_is_none_before_the_next_step_is_said(pty_robot: PtyRobot) -
         ("en", "no program from before that it can run", "Send the program that you want"),
         ("es", "ningún programa anterior que pueda", "Envía el programa que quieras"),
     ):
-        done = on(pty_robot, "undo", "--lang", language)
-        assert done.code == 3 and not done.out
-        assert said in done.err and advice in done.err
+        on(pty_robot, "undo", "--lang", language).gives(3, said, advice, out="")
     assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
 
 
 def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> None:
     with_two(pty_robot)
     command = uploading(pty_robot)
-    done = on(pty_robot, "undo")
-    assert done.code == 0, done.err
+    done = on(pty_robot, "undo").gives(0)
     assert done.out.splitlines()[-1].startswith("Saved in slot")
     assert not pty_robot.moves
     assert command.ended().code in (0, 3)
@@ -287,13 +264,11 @@ def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot
     first, second = with_two(pty_robot)
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
     for language, said in (("en", "Nothing is lost"), ("es", "No se pierde nada")):
-        done = on(pty_robot, "undo", "--lang", language)
-        assert done.code == 3 and said in done.err and first in done.out
+        on(pty_robot, "undo", "--lang", language).gives(3, said, out=first)
         assert on(pty_robot, "undo").code == 0, "the second one is saved already"
     on(pty_robot, "undo")
     pty_robot.ask(lambda robot: robot.supply(is_low=False))
-    pty_robot.switch_off()
-    pty_robot.switch_on()
+    pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "info", "--json").out)["program"] in (first, second)
 
 

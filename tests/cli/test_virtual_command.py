@@ -45,8 +45,7 @@ class Robot:
         return lines
 
     def kill(self) -> None:
-        self.command.process.kill()
-        self.command.process.communicate()
+        self.command.kill()
 
     def end(self, number: int = signal.SIGINT) -> Done:
         if self.command.process.poll() is None:
@@ -94,14 +93,10 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
         assert json.loads(inside("info", "--virtual", "--json").out)["name"] == "KAT"
         for _ in range(3):
             assert inside("stop", "--virtual").code == 0
-        ended = found.end()
-        assert ended.code == 0
-        assert "The virtual robot drove 9 cm" in ended.err
+        found.end().gives(0, "The virtual robot drove 9 cm")
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert directory.running() == []
-    done = inside("info")
-    assert done.code == 3
-    assert "which port?" in done.err
+    inside("info").gives(3, "which port?")
 
 
 @pytest.mark.parametrize("hurry", ["1", "50"])
@@ -109,8 +104,7 @@ def test_a_computer_that_vanishes_stops_the_robot(hurry: str) -> None:
     with robot("--hurry", hurry) as found:
         upload = Command("upload", "--port", found.port, "-e", FOREVER)
         found.until("0 MOTORS -30 30")
-        upload.process.kill()
-        upload.process.communicate()
+        upload.kill()
         line = "MOTORS"
         while "MOTORS" in line:
             line = found.line()
@@ -144,8 +138,7 @@ def test_a_second_computer_is_told_that_the_port_is_taken() -> None:
                 assert third.recv(1000).startswith(b"Port already in use")
                 assert third.recv(1000) == b""
             first.sendall(b"\x05half a frame")
-        done = inside("upload", "--port", found.port, "-e", "SI|F(0.1, 50)")
-        assert (done.code, done.err) == (0, "")
+        inside("upload", "--port", found.port, "-e", "SI|F(0.1, 50)").gives(0, "")
 
 
 def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
@@ -194,9 +187,7 @@ def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
 def test_of_several_robots_one_is_named(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "listed", list)
     with robot() as first, robot("--world", "line") as second:
-        done = tsc("info", "--virtual")
-        assert done.code == 3
-        assert second.port in done.err
+        done = tsc("info", "--virtual").gives(3, second.port)
         asked = tsc("info")  # without --virtual and without a terminal
         assert (asked.code, asked.err) == (3, done.err)
         places = sorted([(first.port, "obstacles"), (second.port, "a line to follow")])
@@ -237,8 +228,7 @@ def colours(data: bytes) -> dict[str, int]:
 
 def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None:
     still, way = tmp_path / "still.png", tmp_path / "way.png"
-    done = inside("upload", "--virtual", "-e", "SI|S", "--plot", still)
-    assert done.code == 0
+    inside("upload", "--virtual", "-e", "SI|S", "--plot", still).gives(0)
     done = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
                    "--plot", way)  # fmt: skip
     assert done.code == 0
@@ -265,8 +255,7 @@ def test_upload_and_live_say_what_they_say_of_any_robot() -> None:
     assert events == ["RECEIPT", "FAULT", "SAVED"]
     assert "The virtual robot drove 0 cm" in done.err
     done = inside("live", "--virtual", "F(0.1, 80);SHOW(BATTERY)", "--robot", "liner",
-                   "--sensor", "BATTERY=7.4")  # fmt: skip
-    assert done.code == 0
+                   "--sensor", "BATTERY=7.4").gives(0)  # fmt: skip
     assert done.out.startswith("SHOW 7.4\nDone.\nThe virtual robot drove 5 cm")
 
 
@@ -277,10 +266,7 @@ def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path)
     command.until("SI: running")
     command.until("SHOW 1")
     command.signal(signal.SIGINT)
-    done = command.ended()
-    assert done.code == 2
-    assert "Stopped: the robot has confirmed it." in done.err
-    assert str(picture) in done.out
+    command.ended().gives(2, "Stopped: the robot has confirmed it.", out=str(picture))
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
@@ -294,12 +280,8 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
     assert "Without a robot:  --virtual" in inside("upload", "-e", "SI|S").err
     with robot() as running:
         for verb in ("ping", "doctor"):
-            done = inside(verb, "--virtual")
-            assert done.code == 0, done
-            assert running.port in done.out, done.out
-        done = inside("doctor", "--virtual", "--port", running.port)
-        assert done.code == 2
-        assert "--virtual" in done.err
+            inside(verb, "--virtual").gives(0, out=running.port)
+        inside("doctor", "--virtual", "--port", running.port).gives(2, "--virtual")
 
 
 @pytest.mark.parametrize(
@@ -326,11 +308,8 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
     ],
 )
 def test_wrong_options_are_said(tsc: Tsc, arguments: list[str], said: str) -> None:
-    done = tsc(*arguments)
-    assert done.code == 2
-    assert said in done.err
-    spanish = tsc(*arguments, "--lang", "es")
-    assert spanish.code == 2
+    tsc(*arguments).gives(2, said)
+    spanish = tsc(*arguments, "--lang", "es").gives(2)
     assert said not in spanish.err or said.startswith("There")
 
 
@@ -341,9 +320,7 @@ def test_a_port_that_is_taken_and_a_memory_that_is_none(tsc: Tsc, tmp_path: Path
     assert "Choose another with --listen" in done.err
     small = tmp_path / "small.bin"
     small.write_bytes(b"TS")
-    done = tsc("robot", "--memory", small)
-    assert done.code == 2
-    assert "that has 1024 bytes" in done.err
+    tsc("robot", "--memory", small).gives(2, "that has 1024 bytes")
 
 
 @pytest.mark.parametrize(("name", "commands"), [

@@ -40,8 +40,7 @@ def test_who_waits_for_a_robot_is_told(
 ) -> None:
     """Not for a moment, and no program that reads is."""
     looks_on(monkeypatch)
-    done = tsc("ping", "--port", silent, "--lang", "es")
-    assert done.code == 3
+    done = tsc("ping", "--port", silent, "--lang", "es").gives(3)
     assert done.err.startswith(f"Esperando al robot en {silent} …\n")
     monkeypatch.setattr(progress, "MOMENT_S", HANGS_S)
     assert "Waiting" not in tsc("ping", "--port", silent).err

@@ -53,8 +53,7 @@ def conform(tsc: Tsc, command: str, *more: str) -> Done:
 
 def found_by(tsc: Tsc, command: str, *more: str) -> list[dict[str, object]]:
     """Return what differs."""
-    done = conform(tsc, command, "--json", *more)
-    assert done.code == 1
+    done = conform(tsc, command, "--json", *more).gives(1)
     rows: list[dict[str, object]] = json.loads(done.out)["found"]
     return rows
 
@@ -63,8 +62,7 @@ def test_the_machine_from_the_specification_passes_all(
     tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
-    done = conform(tsc, FROM_SPEC)
-    assert done.code == 0, done.out
+    done = conform(tsc, FROM_SPEC).gives(0)
     needing = sum(bool(case.needs) for case in machine_cases())
     count = len(machine_cases()) - needing
     assert count > 500 and needing > 100
@@ -254,9 +252,7 @@ def test_a_hostile_machine_is_named(what: str, tsc: Tsc, tmp_path: Path) -> None
     source, said, tried = HOSTILE[what]
     command = machine(tmp_path, source)
     timeout_s = "1" if what == "hang" else "100"  # a busy computer starts Python in a second
-    done = conform(tsc, command, "--timeout", timeout_s)
-    assert done.code == 1
-    assert said in done.out
+    done = conform(tsc, command, "--timeout", timeout_s).gives(1, out=said)
     assert done.out.splitlines()[-1].startswith("0 of ")
     assert "too many had no answer" in done.out
     rows = found_by(tsc, command, "--timeout", timeout_s)
@@ -303,16 +299,14 @@ def test_of_a_machine_that_crashed_without_a_word_the_exit_code_is_told(
 
 def test_half_an_answer_is_one_of_a_machine_that_crashed(tsc: Tsc, tmp_path: Path) -> None:
     source = "sys.stdin.readline()\nos.write(1, b'0 SHOW 1\\n')\nsys.exit('half')"
-    done = conform(tsc, machine(tmp_path, source), "--only", "images: no code", "--timeout", "100")
-    assert done.code == 1
-    assert "exit code 1: half" in done.out
-    assert "line 1: 0 SHOW 1" in done.out
+    conform(tsc, machine(tmp_path, source), "--only", "images: no code", "--timeout", "100").gives(
+        1, out=("exit code 1: half", "line 1: 0 SHOW 1")
+    )
 
 
 def test_bytes_that_are_no_text_are_shown_without_harm(tsc: Tsc, tmp_path: Path) -> None:
     source = "os.write(1, bytes(range(256)) + b'\\n\\x1b[2J 0 DONE')"
-    done = conform(tsc, machine(tmp_path, source), "--only", "images: whole")
-    assert done.code == 1
+    done = conform(tsc, machine(tmp_path, source), "--only", "images: whole").gives(1)
     assert "\x1b" not in done.out
     assert "\0" not in done.out
 
@@ -342,8 +336,7 @@ def test_what_it_has_started_ends_with_it(tsc: Tsc, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("command", ["no_such_command", "", "'", "/"])
 def test_a_command_that_does_not_start(command: str, tsc: Tsc) -> None:
-    done = conform(tsc, command)
-    assert done.code == 2
+    done = conform(tsc, command).gives(2)
     assert "does not start" in done.err and "Errno" not in done.err
     assert "no arranca" in conform(tsc, command, "--lang", "es").err
 

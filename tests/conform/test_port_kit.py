@@ -59,8 +59,7 @@ def of(name: str) -> int:
 
 
 def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
-    done = tsc("conform", "--port", pty_robot.port)
-    assert done.code == 0, done.out
+    done = tsc("conform", "--port", pty_robot.port).gives(0)
     count = len(all_checks(link_kit()))
     assert count > 200
     assert done.out == f"{count} of {count} checks agree. Kit 1, link 1.2, bytecode 2.1.\n"
@@ -226,9 +225,7 @@ def test_a_robot_with_an_owner_is_not_tried(pty_robot: PtyRobot, tsc: Tsc,
     from tiniscript.link.messages import OWNED
 
     monkeypatch.setattr(port_checks, "met", lambda robot: Answer(0, 0, {"features": OWNED}, b""))
-    done = tsc("conform", "--port", pty_robot.port)
-    assert done.code == 3
-    assert "tsc disown" in done.err
+    tsc("conform", "--port", pty_robot.port).gives(3, "tsc disown")
 
 
 def test_wrong_use_of_a_port(tsc: Tsc) -> None:

@@ -91,12 +91,10 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
     ) as uno:
         uno.go()
         assert "bytes of flash verified" in avrdude(uno, of, sketch)
-        pong = process("ping", "--port", uno.pty)
-        assert pong.code == 0, pong.err
+        pong = process("ping", "--port", uno.pty).gives(0)
         assert pong.out.startswith(f"tinibot on {uno.pty}")
         assert states(uno) == OFF
-        done = process("upload", program, "--port", uno.pty)
-        assert done.code == 0, done.err
+        process("upload", program, "--port", uno.pty).gives(0)
         uno.pause()
         left = [change for change in uno.pins.history("left") if change.state == "pwm"]
         assert len(left) == 1

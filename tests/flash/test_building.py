@@ -356,8 +356,7 @@ def test_without_platformio_it_says_how_to_get_it(
     monkeypatch.setattr(install_advice, "installing", lambda extra: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setenv("HOME", str(tmp_path))
-    done = tsc("firmware", "--build")
-    assert (done.code, done.out) == (2, "")
+    done = tsc("firmware", "--build").gives(2, out="")
     assert f'pip install -e "{ROOT}[firmware]"' in done.err.replace(f"{sys.executable} -m ", "")
     assert "PlatformIO" in done.err
 
@@ -376,8 +375,7 @@ def test_the_platformio_of_the_editor_is_found(
 
 
 def test_a_package_without_sources_says_how_to_get_them(tmp_path: Path) -> None:
-    done = tsc(copied(tmp_path), "--build")
-    assert done.code == 2 and 'pip install ".[firmware]"' in done.err
+    tsc(copied(tmp_path), "--build").gives(2, 'pip install ".[firmware]"')
 
 
 # -- how far it is

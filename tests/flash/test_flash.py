@@ -109,8 +109,7 @@ def test_a_new_board_becomes_a_robot(
     board: str, robot: str, option: str, bytes_least: int, package: Path
 ) -> None:
     with new_board(bootloader(board)) as uno:
-        done = tsc(package, "--port", uno.pty, "--robot", robot, "--board", option)
-        assert done.code == 0, done.err
+        done = tsc(package, "--port", uno.pty, "--robot", robot, "--board", option).gives(0)
         first, second = done.out.splitlines()[:2]
         name, _, rest = first.partition(" on the ")
         size = int(rest.split()[1].replace(",", ""))
@@ -124,9 +123,7 @@ def test_a_board_without_a_bootloader_stays_as_it_is(
     """The robot's own firmware answers nothing that avrdude says."""
     with Uno(firmware("uno", tmp_path, shared(tmp_path_factory)), tells_sleep=False) as uno:
         uno.go()
-        done = tsc(package, "--port", uno.pty)
-        assert done.code == 3
-        assert f"no bootloader answers on {uno.pty}" in done.err and "HC-05" in done.err
+        tsc(package, "--port", uno.pty).gives(3, f"no bootloader answers on {uno.pty}", "HC-05")
         uno.pause()
         assert not [event for event in uno.events if event.what == "crash"]
 
@@ -148,16 +145,12 @@ def test_another_chip_is_refused(package: Path, tmp_path: Path) -> None:
 def test_a_memory_that_does_not_keep_it_is_seen(package: Path, tmp_path: Path) -> None:
     of = changed_optiboot(tmp_path, "__boot_page_write_short(", "(void)(")
     with new_board(of) as uno:
-        done = tsc(package, "--port", uno.pty)
-        assert done.code == 3
-        assert "is not what was written" in done.err
+        tsc(package, "--port", uno.pty).gives(3, "is not what was written")
 
 
 def test_a_port_in_use_is_said(package: Path) -> None:
     with new_board(bootloader("uno")) as uno, serial.Serial(uno.pty, exclusive=True):
-        done = tsc(package, "--port", uno.pty)
-        assert done.code == 3
-        assert "another program is using the port" in done.err
+        tsc(package, "--port", uno.pty).gives(3, "another program is using the port")
 
 
 # -- with an avrdude that says what it is told
@@ -201,9 +194,7 @@ def test_a_nano_is_tried_with_both_of_its_bootloaders(
 
 def test_half_a_firmware_is_said(package: Path, board: Uno, tmp_path: Path) -> None:
     body = f'{PROGRESS}\nprint("avrdude: programmer is not responding")\nsys.exit(1)'
-    done = tsc(package, "--port", board.pty, **fake(tmp_path, body))
-    assert done.code == 3
-    assert "half of its firmware" in done.err
+    tsc(package, "--port", board.pty, **fake(tmp_path, body)).gives(3, "half of its firmware")
 
 
 def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
@@ -333,8 +324,7 @@ def test_the_licence_of_the_core_goes_with_it(tmp_path: Path) -> None:
 
 
 def test_what_came_with_the_package_is_listed(package: Path) -> None:
-    done = tsc(package, "--list")
-    assert done.code == 0
+    done = tsc(package, "--list").gives(0)
     files = ready.files(package / "tiniscript" / "flash" / "ready")
     assert [(each.title, each.board) for each in files] == [
         ("grabber", "mega"), ("tinibot", "nano"), ("tinibot", "uno")

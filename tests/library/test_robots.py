@@ -26,6 +26,14 @@ from tiniscript.link.outcomes import Event, LostEvent, RestartedEvent, StartedEv
 from tiniscript.link.payloads import DoneEvent
 from tiniscript.virtual import directory
 
+
+def fails(
+    kind: type[tiniscript.RobotError | tiniscript.UsageError], reason: str
+) -> pytest.RaisesExc[tiniscript.RobotError | tiniscript.UsageError]:
+    """Expect an error of this kind, for this reason."""
+    return pytest.raises(kind, check=lambda error: error.reason == reason)
+
+
 # -- a virtual robot -------------------------------------------------------------------------------
 
 
@@ -86,9 +94,8 @@ def test_a_program_that_goes_on_is_no_ending_and_a_line_after_its_stop_runs(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
     virtual.upload(FOREVER, save=False)
-    with pytest.raises(tiniscript.RobotError) as raised:
+    with fails(tiniscript.RobotError, "still_running"):
         virtual.wait(0.05)
-    assert raised.value.reason == "still_running"
     assert list(virtual.events(0)) == []
     virtual.stop()
     assert virtual.wait() == tiniscript.Ending("STOPPED", cause="SEQUENCE")
@@ -101,9 +108,8 @@ def test_a_time_limit_ends_a_stream_without_end(
 ) -> None:
     virtual.upload("SI|LOOP(FOREVER);SHOW(1);W(0.01);END_LOOP", save=False)
     assert "SHOW" in {each.name for each in virtual.events(0.3)}
-    with pytest.raises(tiniscript.RobotError) as raised:
+    with fails(tiniscript.RobotError, "still_running"):
         virtual.wait(0.2)
-    assert raised.value.reason == "still_running"
 
 
 def test_its_world_and_its_readings_can_be_chosen() -> None:
@@ -124,9 +130,8 @@ def test_its_world_and_its_readings_can_be_chosen() -> None:
 def test_a_virtual_robot_refuses_what_it_cannot_be(
     reason: str, arguments: dict[str, object]
 ) -> None:
-    with pytest.raises(tiniscript.UsageError) as raised:
+    with fails(tiniscript.UsageError, reason):
         tiniscript.virtual_robot(**arguments)  # type: ignore[arg-type]
-    assert raised.value.reason == reason
     assert directory.running() == []
 
 
@@ -139,9 +144,8 @@ def test_wrong_use_of_a_connection_is_an_error(
         ("ping_program", lambda: virtual.upload("PING|check_connection")),
         ("bad_number", lambda: list(virtual.events(-1))),
     ):
-        with pytest.raises(tiniscript.UsageError) as raised:
+        with fails(tiniscript.UsageError, reason):
             wrong()
-        assert raised.value.reason == reason
     with pytest.raises(tiniscript.ProgramError, match="TS"):
         virtual.live("F(1 50)")
     with pytest.raises(tiniscript.ProgramError) as too_long:
@@ -149,9 +153,8 @@ def test_wrong_use_of_a_connection_is_an_error(
     assert (too_long.value.reason, too_long.value.diagnostics) == ("TOO_LARGE", ())
     virtual.close()
     virtual.close()
-    with pytest.raises(tiniscript.UsageError) as raised:
+    with fails(tiniscript.UsageError, "closed"):
         virtual.live("F(1, 50)")
-    assert raised.value.reason == "closed"
 
 
 def test_a_virtual_robot_is_gone_when_it_is_left() -> None:
@@ -178,9 +181,8 @@ def test_without_a_port_the_virtual_robot_of_another_process_is_found() -> None:
     finally:
         command.terminate()
         command.communicate()
-    with pytest.raises(tiniscript.RobotError) as raised:
+    with fails(tiniscript.RobotError, "which_port"):
         tiniscript.connect()
-    assert raised.value.reason == "which_port"
 
 
 # -- a robot on a port -----------------------------------------------------------------------------
@@ -200,9 +202,8 @@ def test_button_command_and_leaving_stop_the_robot(pty_robot: PtyRobot) -> None:
         done = process("stop", "--port", pty_robot.port)
         assert (done.code, pty_robot.moves) == (0, False)
         assert robot.wait() == tiniscript.Ending("STOPPED", cause="SEQUENCE")
-        with pytest.raises(tiniscript.RobotError) as raised:
+        with fails(tiniscript.RobotError, "WRONG_KIT"):
             robot.upload(tiniscript.compile("GRIPPER(30)", "grabber"))
-        assert raised.value.reason == "WRONG_KIT"
         drive()
     assert not pty_robot.moves
 
@@ -306,20 +307,17 @@ def test_what_ended_before_a_run_is_not_its_end() -> None:
     for last, reason in (
         (started[1], "replaced"), (LostEvent(), "link_lost"), (RestartedEvent(), "restarted")
     ):  # fmt: skip
-        with pytest.raises(tiniscript.RobotError) as raised:
+        with fails(tiniscript.RobotError, reason):
             follower.is_about(last, "P")
-        assert raised.value.reason == reason
 
 
 def test_a_reset_during_a_run_is_no_end_of_the_program(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload("SI|F(200, 80)", save=False)
         pty_robot.until(lambda: pty_robot.moves, "it drives")
-        pty_robot.switch_off()
-        pty_robot.switch_on()
-        with pytest.raises(tiniscript.RobotError) as raised:
+        pty_robot.switch_off_and_on()
+        with fails(tiniscript.RobotError, "restarted"):
             robot.wait()
-        assert raised.value.reason == "restarted"
         robot.live("W(0.01)")
         assert robot.wait().name == "DONE"
 
@@ -329,8 +327,7 @@ def test_a_reset_of_a_robot_that_stands_is_noticed_by_nobody(pty_robot: PtyRobot
         for _ in range(2):
             robot.upload("SI|SHOW(1)", save=False)
             assert robot.wait().name == "DONE"
-            pty_robot.switch_off()
-            pty_robot.switch_on()
+            pty_robot.switch_off_and_on()
 
 
 def test_a_program_is_saved_when_waiting_is_over_or_its_connection_is_left(
@@ -343,8 +340,7 @@ def test_a_program_is_saved_when_waiting_is_over_or_its_connection_is_left(
         assert robot.wait().name == "DONE"
         assert robot.start().saved == "STORED"
         program = robot.upload("SB|" + "SHOW(2);" * 120)
-    pty_robot.switch_off()
-    pty_robot.switch_on()
+    pty_robot.switch_off_and_on()
     with tiniscript.connect(pty_robot.port) as robot:
         assert robot.start().checksum == program.checksum
 
@@ -361,11 +357,9 @@ def test_the_program_before_comes_back(pty_robot: PtyRobot) -> None:
                 assert refused.value.reason == "NO_PREVIOUS"
         receipt = robot.undo()
         assert (receipt.checksum, receipt.is_running) == (programs[0].checksum, False)
-        with pytest.raises(tiniscript.UsageError) as raised:
+        with fails(tiniscript.UsageError, "nothing_started"):
             robot.wait()
-        assert raised.value.reason == "nothing_started"
-    pty_robot.switch_off()
-    pty_robot.switch_on()
+    pty_robot.switch_off_and_on()
     with tiniscript.connect(pty_robot.port) as robot:
         assert robot.start().checksum == programs[0].checksum
         assert robot.wait().name == "DONE"
@@ -379,8 +373,7 @@ def test_a_way_through_another_command_is_a_way(pty_robot: PtyRobot, link: Comma
         robot.upload(FOREVER)
         pty_robot.until(lambda: pty_robot.moves, "it drives")
     assert not pty_robot.moves
-    link.process.kill()
-    link.process.communicate()
+    link.kill()
 
 
 def test_a_cable_that_is_pulled_is_told_twice(pty_robot: PtyRobot) -> None:
@@ -422,7 +415,6 @@ def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch
 
     for listed in ([], [ports.Found("/dev/other", "")]):
         monkeypatch.setattr(ports, "listed", lambda listed=listed: listed)
-        with pytest.raises(tiniscript.RobotError) as raised:
+        with fails(tiniscript.RobotError, "port_missing") as raised:
             tiniscript.connect("/dev/none-here")
-        assert raised.value.reason == "port_missing"
         assert ("/dev/other" in str(raised.value)) == bool(listed)

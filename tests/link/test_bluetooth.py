@@ -55,8 +55,7 @@ def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot
         assert inside("info").code == 0  # the port is remembered
     assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
     assert max(len(data) for _, data in ble.written) == 20
-    done = inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\nR(0.1, 40)\n")
-    assert (done.code, done.err) == (0, "")
+    inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\nR(0.1, 40)\n").gives(0, "")
     assert ble.robot.did[-6::3] == ["MOTORS 50 50", "MOTORS 40 -40"]
 
 
@@ -140,8 +139,7 @@ def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
 ) -> None:
     """BlueZ keeps its connection, and a robot that is connected is seen by no scan."""
     command = uploading(ble)
-    command.process.kill()
-    command.process.communicate()
+    command.kill()
     ble.robot.until(lambda: not ble.robot.moves, "the dead-man timer stops it")
     assert bluez.devices[ADDRESS].is_connected
     for port in (NAME, PLACE):
@@ -158,10 +156,9 @@ def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, lat
     twin = Peripheral("TINI 1", OTHER)
     twin.late = late
     bluez.add(twin)
-    done = inside("upload", "-e", DRIVE, "--port", NAME)
-    assert done.code == 3
-    assert f"several robots are called {NAME}" in done.err
-    assert f"{PLACE}, ble://{OTHER}" in done.err
+    inside("upload", "-e", DRIVE, "--port", NAME).gives(
+        3, f"several robots are called {NAME}", f"{PLACE}, ble://{OTHER}"
+    )
     assert ble.connections == 0
     assert inside("upload", "-e", DRIVE, "--port", PLACE).code == 0
 
@@ -190,8 +187,7 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
     hostile = "\x1b[31mNo\r\ntsc: \u202ename"
     bluez.add(Echo(hostile, OTHER))
     bluez.add(Peripheral("lamp", "AA:BB:CC:DD:EE:03", LAMP))
-    done = inside("ports", "--ask")
-    assert done.code == 0
+    done = inside("ports", "--ask").gives(0)
     rows = {line.split("   ")[0]: line.split("   ")[1:] for line in done.out.splitlines()}
     assert rows[PLACE] == ["Tini 1, Bluetooth LE", "robot tinibot (free)"]
     assert [port for port in rows if port.startswith("ble")] == [f"ble://{OTHER}", PLACE]
@@ -208,37 +204,31 @@ def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
         bluez.add(BleRobot(second, "Tini 2", OTHER, NORDIC))
         ports = ("--port", NAME, "--port", "ble://tini 2")
         for words in (("upload", "-e", DRIVE), ("stop",)):
-            done = inside(*words, *ports)
-            assert (done.code, "Done: 2 of 2." in done.err) == (0, True)
+            inside(*words, *ports).gives(0, "Done: 2 of 2.")
         assert (ble.robot.did[:3], second.did[:3]) == (DROVE, DROVE)
 
 
 def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:
     assert inside("ping", "--port", NAME).code == 0
     for words in (("stop",), ("upload", "-e", DRIVE)):
-        done = inside(*words, "--all")
-        assert (done.code, "Done: 1 of 1." in done.err) == (0, True), done.err
+        inside(*words, "--all").gives(0, "Done: 1 of 1.")
 
 
 def test_what_is_no_robot_is_said(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_MS", 1500)
     bluez.add(Peripheral("lamp", OTHER, LAMP))
-    done = inside("ping", "--port", "ble://lamp")
-    assert (done.code, "does not offer what tsc needs" in done.err) == (3, True)
+    inside("ping", "--port", "ble://lamp").gives(3, "does not offer what tsc needs")
     bluez.add(Echo("echo", ADDRESS))
-    done = inside("ping", "--port", "ble://echo")
-    assert (done.code, "comes back" in done.err) == (3, True)
+    inside("ping", "--port", "ble://echo").gives(3, "comes back")
 
 
 def test_nobody_is_in_reach(ble: BleRobot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.SEARCH_S", 3.0)
-    done = inside("ping", "--port", "ble://nobody")
-    assert done.code == 3
-    assert "no ble://nobody is in reach" in done.err
-    assert "In reach: Tini 1" in done.err
+    inside("ping", "--port", "ble://nobody").gives(
+        3, "no ble://nobody is in reach", "In reach: Tini 1"
+    )
     ble.is_on = False
-    done = inside("ping", "--port", NAME, "--lang", "es")
-    assert (done.code, "ni otro robot con Bluetooth LE" in done.err) == (3, True)
+    inside("ping", "--port", NAME, "--lang", "es").gives(3, "ni otro robot con Bluetooth LE")
 
 
 def test_a_connection_that_is_closed_is_free_while_its_process_goes_on(

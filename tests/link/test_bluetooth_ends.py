@@ -38,8 +38,7 @@ def stops_by_itself(ble: BleRobot) -> None:
 def test_a_connection_that_is_never_made(ble: BleRobot, stage: str) -> None:
     ble.fails_at = stage
     for language in ("en", "es"):
-        done = inside("upload", "-e", DRIVE, "--port", PLACE, "--lang", language)
-        assert (done.code, done.out) == (3, "")
+        done = inside("upload", "-e", DRIVE, "--port", PLACE, "--lang", language).gives(3, out="")
         assert done.err.startswith("tsc: ")
         assert PLACE.upper() in done.err.upper()
     assert ble.robot.did == []
@@ -75,9 +74,7 @@ def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
 ) -> None:
     command = uploading(ble)
     bluez.part(ble)
-    done = command.ended()
-    assert done.code == 3
-    assert f"the Bluetooth connection to {PLACE} has ended" in done.err
+    command.ended().gives(3, f"the Bluetooth connection to {PLACE} has ended")
     stops_by_itself(ble)
     assert inside("upload", "-e", DRIVE, "--port", NAME).code == 0
     port = ports.opened(PLACE, 9600)
@@ -91,11 +88,9 @@ def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
 
 
 def test_a_line_after_a_lost_connection_ends_live(ble: BleRobot, bluez: FakeBluez) -> None:
-    done = inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n")
-    assert done.code == 0
+    inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n").gives(0)
     ble.parts_after = len(ble.heard) + 60
-    done = inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n" * 9)
-    assert (done.code, "Bluetooth connection" in done.err) == (3, True)
+    inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n" * 9).gives(3, "Bluetooth connection")
 
 
 @pytest.mark.parametrize("what", ["power", "unplug", "vanish"])
@@ -109,9 +104,7 @@ def test_an_adapter_that_is_gone_ends_the_command(
         bluez.unplug()
     else:
         bluez.vanish()
-    done = command.ended()
-    assert done.code == 3
-    assert "the Bluetooth connection" in done.err
+    done = command.ended().gives(3, "the Bluetooth connection")
     assert done.err.count("\n") == 1  # nothing of bleak's
     stops_by_itself(ble)
     done = inside("stop", "--port", PLACE, "--lang", "es")
@@ -132,8 +125,7 @@ def test_a_flood_is_no_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) 
                 self.loop.call_soon(self.flood, left - 1)
 
     bluez.add(Flood("flood"))
-    done = inside("ping", "--port", PLACE)
-    assert (done.code, "not TiniScript" in done.err) == (3, True)
+    inside("ping", "--port", PLACE).gives(3, "not TiniScript")
 
 
 # -- before it begins ---------------------------------------------------------------------------
@@ -153,10 +145,8 @@ def test_a_computer_without_bluetooth(
         monkeypatch.setattr(ports, "listed", list)
         monkeypatch.setattr(ports, "announced", list)
         for language, words in zip(("en", "es"), said, strict=True):
-            done = inside("ping", "--port", NAME, "--lang", language)
-            assert (done.code, words in done.err) == (3, True)
-        done = inside("ports", "--ask")
-        assert (done.code, said[0] in done.err) == (0, True)
+            inside("ping", "--port", NAME, "--lang", language).gives(3, words)
+        inside("ports", "--ask").gives(0, said[0])
 
 
 def test_a_bus_that_lets_nobody_in(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -194,13 +184,9 @@ def test_without_its_package_the_next_step_is_said(
     monkeypatch.setitem(sys.modules, package, None)
     port = {"bleak": "ble://Tini", "zeroconf": "tcp://tini"}[package]
     for language in ("en", "es"):
-        done = tsc("ping", "--port", port, "--lang", language)
-        assert done.code == 3
-        assert package in done.err
-        assert "[radio]" in done.err
+        tsc("ping", "--port", port, "--lang", language).gives(3, package, "[radio]")
         if package == "zeroconf":
-            done = tsc("robot", "--announce", "--for", "0.1", "--lang", language)
-            assert (done.code, "[radio]" in done.err) == (2, True)
+            tsc("robot", "--announce", "--for", "0.1", "--lang", language).gives(2, "[radio]")
 
 
 # -- the pace -----------------------------------------------------------------------------------

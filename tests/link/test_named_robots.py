@@ -241,8 +241,7 @@ def test_a_hostile_name_is_shown_without_what_a_terminal_obeys(
 ) -> None:
     monkeypatch.setattr(ports, "listed", list)
     with robot("--listen", "0") as found, announced("\u202ex", "127.0.0.1", number_of(found.port)):
-        done = inside("ports", "--ask")
-        assert (done.code, found.port in done.out) == (0, True)
+        done = inside("ports", "--ask").gives(0, out=found.port)
         assert "\u202e" not in done.out
 
 
@@ -269,8 +268,7 @@ def test_without_multicast_the_address_is_the_next_step(
     monkeypatch.setattr(network, "Zeroconf", fail)
     for language, said in (("en", "reaches no network with multicast"),
                            ("es", "no llega a ninguna red con multicast")):  # fmt: skip
-        done = tsc("ping", "--port", "tcp://tini", "--lang", language)
-        assert (done.code, said in done.err, "socket://HOST" in done.err) == (3, True, True)
+        tsc("ping", "--port", "tcp://tini", "--lang", language).gives(3, said, "socket://HOST")
 
 
 def test_a_bad_network_costs_time_and_nothing_else() -> None:
@@ -281,8 +279,7 @@ def test_a_bad_network_costs_time_and_nothing_else() -> None:
         closing(BadNetwork(number_of(found.port), LATE_S, every=2000, lost=LOST)) as network,
         announced(f"far-{HERE}", "127.0.0.1", network.port),
     ):
-        done = inside("upload", "-e", f"SB|{LONG}", "--port", port)
-        assert (done.code, done.err) == (0, "")
+        done = inside("upload", "-e", f"SB|{LONG}", "--port", port).gives(0, "")
         checksum = done.out.partition("checksum ")[2][:8]
         assert f"program {checksum}" in inside("info", "--port", port).out
         command = Command("upload", "-e", FOREVER, "--port", port)

@@ -46,17 +46,14 @@ def test_stop_works_while_another_terminal_drives(pty_robot: PtyRobot) -> None:
         0, f"Stopped: the robot on {pty_robot.port} has confirmed it.\n",
     )  # fmt: skip
     assert not pty_robot.moves
-    done = command.ended()
-    assert done.code == 3
-    assert "The robot was stopped from a computer." in done.out
+    command.ended().gives(3, out="The robot was stopped from a computer.")
     assert hellos(pty_robot) == 1
 
 
 def test_commands_share_a_session_that_is_begun_once(
     pty_robot: PtyRobot, link: Command, tmp_path: Path
 ) -> None:
-    done = on(pty_robot, "upload", "-e", "SI|F(0.1, 80);SHOW(1.5)")
-    assert (done.code, done.err) == (0, "")
+    done = on(pty_robot, "upload", "-e", "SI|F(0.1, 80);SHOW(1.5)").gives(0, "")
     assert done.out.splitlines()[1:] == ["SHOW 1.5", "Done.", "Saved in slot 0."]
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     assert on(pty_robot, "live", "X = 1 / 0").code == 1
@@ -72,10 +69,7 @@ def test_commands_share_a_session_that_is_begun_once(
     assert on(pty_robot, "start").out.endswith("Done.\n")
     assert hellos(pty_robot) == 1
     link.signal(signal.SIGINT)
-    done = link.ended()
-    assert done.code == 0
-    assert "tsc upload: connected." in done.out
-    assert "SHOW 1.5" in done.out
+    link.ended().gives(0, out=("tsc upload: connected.", "SHOW 1.5"))
 
 
 def test_all_names_of_a_port_lead_to_its_server(
@@ -90,12 +84,8 @@ def test_all_names_of_a_port_lead_to_its_server(
     assert {row["port"]: row["held_by"] for row in rows}[pty_robot.port] == "link"
     done = process("ports", "--ask", "--port", name)
     assert "robot" in done.out and "held by tsc link" in done.out
-    done = process("info", "--port", name, "--baud", "115200")
-    assert done.code == 3
-    assert "held by tsc link, at 9600 baud" in done.err
-    done = process("link", "--port", name)
-    assert done.code == 3
-    assert "shared already, by tsc link" in done.err
+    process("info", "--port", name, "--baud", "115200").gives(3, "held by tsc link, at 9600 baud")
+    process("link", "--port", name).gives(3, "shared already, by tsc link")
 
 
 BRIDGE = """
@@ -119,8 +109,7 @@ def address(pty_robot: PtyRobot) -> Iterator[str]:
     bridge = Command(code=BRIDGE.format(port=pty_robot.port))
     assert bridge.process.stdout
     yield f"socket://127.0.0.1:{int(bridge.process.stdout.readline())}"
-    bridge.process.kill()
-    bridge.process.communicate()
+    bridge.kill()
 
 
 def test_an_address_is_held_like_a_port(pty_robot: PtyRobot, address: str) -> None:
@@ -137,12 +126,8 @@ def test_a_client_may_have_chosen_another_robot(pty_robot: PtyRobot) -> None:
     command.process.stderr.readline()  # it watches
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
     assert "SHOW 42" in on(pty_robot, "live", "SHOW(DISTANCE)").out
-    done = on(pty_robot, "live", "GRIPPER(90)", "--robot", "grabber")
-    assert done.code == 3
-    assert "--robot tinibot" in done.err
-    done = on(pty_robot, "upload", "-e", "SHOW(LINE_L)", "--robot", "liner")
-    assert done.code == 3
-    assert "--robot tinibot" in done.err
+    on(pty_robot, "live", "GRIPPER(90)", "--robot", "grabber").gives(3, "--robot tinibot")
+    on(pty_robot, "upload", "-e", "SHOW(LINE_L)", "--robot", "liner").gives(3, "--robot tinibot")
     command.signal(signal.SIGINT)
     assert command.ended().code == 0
 
@@ -215,8 +200,7 @@ def test_a_robot_stops_without_the_command_that_has_started_it(
         assert int(pty_robot.timed[-1].split()[0]) <= gone_ms + within_ms, number
         # The server's stop for the command that is gone may come behind a first upload: it says so.
         until(lambda: on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0, "others drive")
-        command.process.kill()
-        command.process.communicate()
+        command.kill()
 
 
 def test_a_program_ends_with_its_command_unless_it_needs_nobody(
@@ -224,9 +208,7 @@ def test_a_program_ends_with_its_command_unless_it_needs_nobody(
 ) -> None:
     command = uploading(pty_robot)
     command.signal(signal.SIGINT)
-    done = command.ended()
-    assert done.code == 2
-    assert "the robot has confirmed it" in done.err
+    command.ended().gives(2, "the robot has confirmed it")
     assert not pty_robot.moves
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     pty_robot.ask(lambda robot: robot.wait(1500))
@@ -242,9 +224,7 @@ def test_a_second_program_ends_the_first_and_both_know(pty_robot: PtyRobot) -> N
     done = first.ended()  # it held the port
     assert done.code == 3
     assert "another program" in done.err
-    done = second.ended()
-    assert done.code == 3
-    assert "has ended (tsc upload)" in done.err
+    second.ended().gives(3, "has ended (tsc upload)")
     pty_robot.until(lambda: not pty_robot.moves, "nobody is left who attends")
 
 
@@ -258,9 +238,7 @@ def test_a_server_that_leaves_stops_the_run_of_its_client(
     link.signal(signal.SIGINT)
     assert link.ended().code == 0
     assert not pty_robot.moves
-    done = command.ended()
-    assert done.code == 3
-    assert "has ended (tsc link)" in done.err
+    command.ended().gives(3, "has ended (tsc link)")
     assert registry.found(pty_robot.port) is None
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     assert hellos(pty_robot) == 2
@@ -269,16 +247,12 @@ def test_a_server_that_leaves_stops_the_run_of_its_client(
 def test_a_server_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Command) -> None:
     command = uploading(pty_robot)
     link.process.kill()
-    done = command.ended()
-    assert done.code == 3
-    assert "has ended (tsc link)" in done.err
+    command.ended().gives(3, "has ended (tsc link)")
     pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
     assert registry.found(pty_robot.port) is not None
     assert pty_robot.port not in [row["port"] for row in json.loads(process("ports", "--json").out)
                              if row["held_by"]]  # fmt: skip
-    done = on(pty_robot, "info")
-    assert (done.code, done.err) == (0, "")
-    assert "LINK_LOST" in done.out
+    on(pty_robot, "info").gives(0, "", out="LINK_LOST")
     assert registry.found(pty_robot.port) is None
 
 
@@ -289,8 +263,7 @@ def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
         stop = Command("stop", "--port", pty_robot.port)
         time.sleep(wait_s)
         server.process.kill()
-        done = stop.ended()
-        assert (done.code, done.err) == (0, "")
+        stop.ended().gives(0, "")
         assert not pty_robot.moves
         server.process.communicate()
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
@@ -311,9 +284,7 @@ def test_a_cable_that_is_pulled_is_said_to_all(pty_robot: PtyRobot, link: Comman
     command = uploading(pty_robot)
     pty_robot.pull()
     for each in (command, link):
-        done = each.ended()
-        assert done.code == 3
-        assert "is gone" in done.err
+        each.ended().gives(3, "is gone")
 
 
 def test_a_robot_that_was_lost_is_found_again(pty_robot: PtyRobot, link: Command) -> None:
@@ -366,9 +337,7 @@ def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
     command = Command("upload", "-e", FOREVER, "--port", pty_robot.port, code=newer)
     command.until("running")
     for language, words in (("en", "another version, 9.1"), ("es", "otra versión, 9.1")):
-        done = on(pty_robot, "info", "--lang", language)
-        assert done.code == 3
-        assert words in done.err
+        on(pty_robot, "info", "--lang", language).gives(3, words)
     assert on(pty_robot, "stop").code == 0
     assert command.ended().code == 3
 

@@ -40,6 +40,14 @@ class Done:
         """What a test that fails shows."""
         return f"exit code {self.code}, out {self.out!r}, err {self.err!r}"
 
+    def gives(self, code: int, *err: str, out: str | tuple[str, ...] = ()) -> Done:
+        """Assert its exit code, and words of its errors and of its output: "" is nothing at all."""
+        assert self.code == code, self
+        for stream, said in ((self.err, err), (self.out, (out,) if isinstance(out, str) else out)):
+            for words in said:
+                assert words in stream if words else not stream, (words, self)
+        return self
+
 
 class Tsc:
     def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
@@ -101,6 +109,10 @@ class Command:
 
     def signal(self, number: int) -> None:
         self.process.send_signal(number)
+
+    def kill(self) -> None:
+        self.process.kill()
+        self.process.communicate()
 
     def ended(self) -> Done:
         out, err = self.process.communicate(timeout=HANGS_S)

@@ -104,6 +104,10 @@ class PtyRobot(PtyPort):
             self.off_after = None
             self._robot = self._made(seed=0x9ABCDEF1)
 
+    def switch_off_and_on(self) -> None:
+        self.switch_off()
+        self.switch_on()
+
     def pull(self) -> None:
         """Pull the cable out: the port is not there any more."""
         self._is_over = True

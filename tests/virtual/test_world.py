@@ -177,8 +177,7 @@ def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> 
         ("a\0b.toml", "cannot be read"),
     ):
         for language in ("en", "es"):
-            done = tsc(*verb, "--world", name, "--lang", language)
-            assert done.code == 2
+            done = tsc(*verb, "--world", name, "--lang", language).gives(2)
             assert (said in done.err) == (language == "en"), done.err
 
 
