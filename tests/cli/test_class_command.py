@@ -19,7 +19,7 @@ import pytest
 
 from tests.cli.test_esp32_radio import DRIVES, DROVE, NETWORK, PASSWORD, drove, files_with, near
 from tests.cli.test_owner_commands import as_another, claimed
-from tests.support.command import FOREVER, Command, inside, process
+from tests.support.command import FOREVER, Command, Done, inside, process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto
 from tests.support.pty_robot import on
@@ -82,10 +82,10 @@ def broker(tmp_path: Path) -> Iterator[Mosquitto]:
     found.kill()
 
 
-def tsc(room: Class, *words: str) -> tuple[int, str, str]:
+def tsc(room: Class, *words: str) -> Done:
     done = process("class", *words, *room.access, data=SECRET + b"\n")
     assert SECRET.decode() not in done.out + done.err
-    return done.code, done.out, done.err
+    return done
 
 
 def driving(room: Class) -> Command:
@@ -108,26 +108,25 @@ def pass_ms(room: Class, milliseconds: int) -> None:
 
 
 def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> None:
-    code, said, _ = tsc(room)
-    assert code == 0 and "12345678" in said and "0badcafe" in said, said
-    code, said, _ = tsc(room, "upload", "-e", "SI|F(0.2, 80); SHOW(7)")
-    assert code == 0 and said.count("SHOW 7") == 2, said
+    tsc(room).gives(0, out=("12345678", "0badcafe"))
+    done = tsc(room, "upload", "-e", "SI|F(0.2, 80); SHOW(7)").gives(0)
+    assert done.out.count("SHOW 7") == 2, done
     assert all(drove(robot)[-2:] == DROVE for robot in room)
     assert files_with(tmp_path / "cache", SECRET) == []
     command = driving(room)
-    code, said, error = tsc(room, "stop")
+    done = tsc(room, "stop")
     assert not any(robot.moves for robot in room)
-    assert (code, said.count("has confirmed")) == (0, 2), (said, error)
+    assert (done.code, done.out.count("has confirmed")) == (0, 2), done
     assert command.ended().code != 0
     room[1].switch_off()
-    until(lambda: "0badcafe) is not at the broker any more" in tsc(room)[1], "its last will")
+    until(lambda: "0badcafe) is not at the broker any more" in tsc(room).out, "its last will")
 
 
 def test_who_has_no_key_sees_and_stops(
     room: Class, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Who does not know the password of the broker does not even see."""
-    assert tsc(room, "upload", "-e", FOREVER, "--detach")[0] == 0
+    tsc(room, "upload", "-e", FOREVER, "--detach").gives(0)
     all_drive(room)
     as_another(monkeypatch, tmp_path)
     for data in (b"wrong\n", b"\n", b""):
@@ -135,11 +134,11 @@ def test_who_has_no_key_sees_and_stops(
         assert done.code in (2, 3) and done.out == "" and "assword" in done.err, data
     process("class", *room.place).gives(3, "does not let this computer in")
     assert "no deja entrar" in process("class", *room.place, "--lang", "es").err
-    assert tsc(room, "list")[0] == 0
-    code, said, _ = tsc(room, "upload", "-e", DRIVES)
-    assert code == 3 and said.count("has an owner") == 2
+    tsc(room, "list").gives(0)
+    done = tsc(room, "upload", "-e", DRIVES).gives(3)
+    assert done.out.count("has an owner") == 2
     assert all(robot.moves for robot in room)
-    assert tsc(room, "stop")[0] == 0
+    tsc(room, "stop").gives(0)
     assert not any(robot.moves for robot in room)
 
 
@@ -154,14 +153,13 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
     command = driving(room)
     command.process.kill()
     command.process.wait()
-    code, said, error = tsc(room, "upload", "-e", DRIVES)
-    assert code == 0, said + error
+    tsc(room, "upload", "-e", DRIVES).gives(0)
 
 
 def test_who_only_looks_changes_nothing(room: Class) -> None:
     """Also where the command stood still for longer than a driver may be silent."""
     text = "SI|LOOP(FOREVER); F(0.3, 80); SHOW(5); END_LOOP"
-    assert tsc(room, "upload", "-e", text, "--detach")[0] == 0
+    tsc(room, "upload", "-e", text, "--detach").gives(0)
     command = Command("class", "show", *room.access, data=SECRET + b"\n")
     command.until("SHOW 5")
     command.signal(signal.SIGSTOP)
@@ -188,16 +186,15 @@ def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
 
 def test_values_are_collected(room: Class, tmp_path: Path) -> None:
     text = "SI|LOOP(FOREVER); SHOW(5); W(0.3); END_LOOP"
-    assert tsc(room, "upload", "-e", text, "--detach")[0] == 0
+    tsc(room, "upload", "-e", text, "--detach").gives(0)
     (tmp_path / "rows.csv").write_bytes(b"robot,id,ms,event,value\nan older one\n")
     for listens_s in ("3", "15", "60"):  # a busy computer hears the second robot later
         words = ("show", "--max-time", listens_s, "--json", "--csv", str(tmp_path / "rows.csv"))
-        code, said, error = tsc(room, *words)
-        values = [json.loads(line) for line in said.splitlines() if '"SHOW"' in line]
-        assert code == 0, said + error
+        done = tsc(room, *words).gives(0)
+        values = [json.loads(line) for line in done.out.splitlines() if '"SHOW"' in line]
         if len({each["port"] for each in values}) == 2:
             break
-    assert len({each["port"] for each in values}) == 2, said
+    assert len({each["port"] for each in values}) == 2, done
     with (tmp_path / "rows.csv").open(encoding="utf-8", newline="") as file:
         first, *rows = csv.reader(file)
     assert first == ["robot", "id", "ms", "event", "value"]

@@ -10,7 +10,8 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -164,19 +165,26 @@ class Person(Terminal):
         return code
 
 
+Begin = Callable[[list[str]], Person]
+
+
 @pytest.fixture
 def clone(tmp_path: Path) -> Clone:
     return Clone(tmp_path)
 
 
 @pytest.fixture
-def started() -> Iterator[list[Person]]:
-    """Ends what a test has started."""
-    found: list[Person] = []
-    yield found
-    for person in found:
-        person.process.kill()
-        person.process.wait()
+def begin(clone: Clone) -> Iterator[Begin]:
+    """Let a person begin a command, which the test ends at the latest."""
+    with ExitStack() as stack:
+
+        def begun(command: list[str]) -> Person:
+            person = Person(clone, command)
+            stack.callback(person.process.wait)
+            stack.callback(person.process.kill)
+            return person
+
+        yield begun
 
 
 @pytest.mark.sampled("words", "size", "asks", "yes", "said")
@@ -185,21 +193,19 @@ def started() -> Iterator[list[Person]]:
     (["--lang", "es"], "unos 40 MB", "¿Sigo? [s/N] ", "sí", "no hay una terminal"),
 ])  # fmt: skip
 def test_a_page_that_is_missing_is_built_after_a_yes(
-    clone: Clone, started: list[Person], words: list[str], size: str, asks: str, yes: str, said: str
+    clone: Clone, begin: Begin, words: list[str], size: str, asks: str, yes: str, said: str
 ) -> None:
     """Nothing happens without one; where nobody can be asked it says how."""
     clone.has_node()
     clone.works("time.sleep(0.5)")
     clone.unasked(clone.studio(*words)).gives(2, said, "--yes", size, out="")
     for answer in ("n", "", "what?"):
-        person = Person(clone, clone.studio())
-        started.append(person)
+        person = begin(clone.studio())
         person.sees("[y/N]")
         person.types(answer)
         assert person.ended() == 2, answer
         assert "nothing was downloaded" in person.seen and not clone.page.exists()
-    person = Person(clone, clone.studio(*words))
-    started.append(person)
+    person = begin(clone.studio(*words))
     assert size in person.sees(asks) and "node.js" not in person.seen
     assert not clone.page.exists()
     person.types(yes)
@@ -219,40 +225,36 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     ([], "built from other sources"), (["--lang", "es"], "con otras fuentes"),
 ])  # fmt: skip
 def test_a_page_of_other_sources_is_told(
-    clone: Clone, started: list[Person], words: list[str], said: str
+    clone: Clone, begin: Begin, words: list[str], said: str
 ) -> None:
     clone.has_node()
     build = [sys.executable, str(clone.root / "tools" / "builds" / "studio.py")]
     subprocess.run(build, env=clone.variables(), cwd=clone.root, check=True)
     for new in ("", "tools/studio/src/main.js", "compiler/tiniscript/library/new.py"):
         path = clone.put(new, "") if new else None
-        person = Person(clone, clone.studio(*words))
-        started.append(person)
+        person = begin(clone.studio(*words))
         seen = person.sees("http://127.0.0.1:")
         assert (said in seen) is (" ".join(build) in seen) is bool(new), seen
         if path:
             path.unlink()
 
 
-def test_a_wheel_begins_with_the_same_question(clone: Clone, started: list[Person]) -> None:
+def test_a_wheel_begins_with_the_same_question(clone: Clone, begin: Begin) -> None:
     """By a process of its own: what makes a wheel knows nothing of this package."""
     clone.has_node()
     command = [sys.executable, "-m", "tiniscript.cli.page_build"]
-    person = Person(clone, command)
-    started.append(person)
+    person = begin(command)
     person.sees("[y/N]")
     person.types("n")
     assert person.ended() == 2 and "nothing was downloaded" in person.seen
-    person = Person(clone, command)
-    started.append(person)
+    person = begin(command)
     person.sees("[y/N]")
     person.types("y")
     assert person.ended() == 0 and clone.page.exists()
 
 
-def test_node_is_fetched_where_there_is_none(clone: Clone, started: list[Person]) -> None:
-    person = Person(clone, clone.studio())
-    started.append(person)
+def test_node_is_fetched_where_there_is_none(clone: Clone, begin: Begin) -> None:
+    person = begin(clone.studio())
     said = person.sees("[y/N]")
     assert f"about {building.NODE_MB + building.NPM_MB} MB" in said and "node.js from PyPI" in said
     person.types("y")
@@ -318,12 +320,11 @@ def test_what_fails_has_a_sentence_and_leaves_no_page(clone: Clone, said: str, w
     assert not clone.page.exists()
 
 
-def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, started: list[Person]) -> None:
+def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, begin: Begin) -> None:
     clone.has_node()
     told = clone.root / "told"
     clone.works(f"Path({str(told)!r}).write_text(str(os.getpid())); time.sleep(600)")
-    person = Person(clone, clone.studio("--yes"))
-    started.append(person)
+    person = begin(clone.studio("--yes"))
     until(lambda: told.exists() and bool(told.read_text()), "the build has begun")
     person.interrupt()
     assert person.ended() == 2 and "Stopped." in person.seen
@@ -339,18 +340,16 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, started: list[Pe
     ([], "about 54 MB", "Go on? [y/N] "), (["--lang", "es"], "unos 54 MB", "¿Sigo? [s/N] "),
 ])  # fmt: skip
 def test_platformio_is_installed_after_a_yes(
-    clone: Clone, started: list[Person], words: list[str], size: str, asks: str
+    clone: Clone, begin: Begin, words: list[str], size: str, asks: str
 ) -> None:
     """Then its compiler alone is asked for, if it is not there, and once."""
-    person = Person(clone, clone.firmware())
-    started.append(person)
+    person = begin(clone.firmware())
     person.sees("[y/N]")
     person.types("n")
     assert person.ended() == 2 and "nothing was downloaded" in person.seen
     clone.unasked(clone.firmware()).gives(2, "--yes")
     assert not (clone.own / "platformio").exists() and not clone.core.exists()
-    person = Person(clone, clone.firmware(*words))
-    started.append(person)
+    person = begin(clone.firmware(*words))
     said = person.sees(asks)
     assert size in said and "4 MB" in said and "50 MB" in said
     person.types("y")

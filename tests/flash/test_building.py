@@ -20,7 +20,7 @@ from tests.machines.bootloaders import bootloader
 from tests.machines.uno import needed
 from tests.robots.test_robots import TEXTS
 from tests.support.casefile import ROOT
-from tests.support.command import Tsc, process
+from tests.support.command import Done, Tsc, process
 from tests.support.copies import linked
 from tests.support.needs import need
 from tests.support.platformio import prepared
@@ -209,20 +209,18 @@ def make(name, rows):
 """
 
 
-def built(clone: Path, variables: dict[str, str], *words: str) -> tuple[int, str, str]:
+def built(clone: Path, variables: dict[str, str], *words: str) -> Done:
     path = variables["PYTHONPATH"] + os.pathsep + str(clone)
-    done = tsc(clone, "--build", *words, **{**variables, "PYTHONPATH": path})
-    return done.code, done.out, done.err
+    return tsc(clone, "--build", *words, **{**variables, "PYTHONPATH": path})
 
 
 OFFLINE = 'print("Platform Manager: Installing atmelavr\\nHTTPClientError: "); sys.exit(1)'
 
 
 def test_offline_it_says_what_to_do(clone: Path, tmp_path: Path) -> None:
-    code, out, err = built(clone, pretending(tmp_path, OFFLINE), "--lang", "es")
-    assert (code, out) == (2, "")
-    assert "¿Tiene internet esta computadora?" in err and "(HTTPClientError)" in err
-    log = Path(err.split()[-1])
+    done = built(clone, pretending(tmp_path, OFFLINE), "--lang", "es")
+    done.gives(2, "¿Tiene internet esta computadora?", "(HTTPClientError)", out="")
+    log = Path(done.err.split()[-1])
     assert log.parent == ready.cache() and "Installing atmelavr" in log.read_text()
     assert not ready.files(ready.cache())
 
@@ -237,17 +235,16 @@ def test_offline_it_says_what_to_do(clone: Path, tmp_path: Path) -> None:
 def test_a_build_that_fails_has_its_reason(
     body: str, said: str, clone: Path, tmp_path: Path
 ) -> None:
-    code, out, err = built(clone, pretending(tmp_path, body))
-    assert (code, out) == (2, "")
-    assert said in err and "\x1b" not in err
+    done = built(clone, pretending(tmp_path, body)).gives(2, said, out="")
+    assert "\x1b" not in done.err
 
 
 def test_a_firmware_that_the_board_does_not_hold_is_refused_before_it_is_written(
     clone: Path, tmp_path: Path
 ) -> None:
-    code, out, err = built(clone, pretending(tmp_path, TOO_LARGE))
-    assert (code, out) == (2, "")
-    assert "does not fit on" in err and "33000 > 32256" in err and "upgrade" not in err
+    done = built(clone, pretending(tmp_path, TOO_LARGE))
+    done.gives(2, "does not fit on", "33000 > 32256", out="")
+    assert "upgrade" not in done.err
     assert not ready.files(ready.cache())
 
 
@@ -261,15 +258,14 @@ if name == "uno":
     {TOO_LARGE}
 make(name, ":00000001FF\\n")
 """
-    code, _, err = built(clone, pretending(tmp_path, body), "--lang", "es")
-    assert code == 0 and err.count("queda sin TASK ni WHEN") == 1, err
+    done = built(clone, pretending(tmp_path, body), "--lang", "es").gives(0)
+    assert done.err.count("queda sin TASK ni WHEN") == 1, done
     assert len(list(ready.cache().glob("*.hex"))) == 1
 
 
 def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) -> None:
     body = f'{MAKES}\nmake("uno", ":0400")'
-    code, _, err = built(clone, pretending(tmp_path, body))
-    assert code == 2 and "could not be built" in err
+    built(clone, pretending(tmp_path, body)).gives(2, "could not be built")
     assert not list(ready.cache().glob("*.hex"))
 
 
@@ -306,9 +302,8 @@ def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Pat
 def test_where_nothing_can_be_kept_it_says_so(clone: Path, tmp_path: Path) -> None:
     body = f'{MAKES}\nmake("uno", ":00000001FF\\n")'
     (tmp_path / "cache").write_text("a file")
-    code, _, err = built(clone, pretending(tmp_path, body))
-    assert code == 2
-    assert "make room there" in err and str(tmp_path / "cache") in err
+    done = built(clone, pretending(tmp_path, body))
+    done.gives(2, "make room there", str(tmp_path / "cache"))
 
 
 def test_a_file_that_cannot_be_removed_yet_fails_no_build(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -428,31 +423,27 @@ assert os.path.exists("partitions.csv") and "esp32dev" in words
 """
 
 
-def written(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> tuple[int, str, str]:
+def written(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> Done:
     main_end, its_end = os.openpty()
     port = os.ttyname(its_end)
     variables = pretending(tmp_path, ESP32)
     variables = {"PYTHONPATH": variables["PYTHONPATH"] + os.pathsep + str(clone),
                  "ITS_PORT": port, "ITS_CODE": str(code)}  # fmt: skip
     try:
-        done = tsc(clone, "--robot", "tinibot32", "--port", port, *words, **variables)
+        return tsc(clone, "--robot", "tinibot32", "--port", port, *words, **variables)
     finally:
         os.close(main_end)
         os.close(its_end)
-    return done.code, done.out, done.err
 
 
 def test_an_esp32_is_built_and_written_in_one_command(clone: Path, tmp_path: Path) -> None:
-    code, out, err = written(clone, tmp_path)
-    assert "tinibot32 on the esp32dev: written" in out, err
-    assert code == 3 and "no robot answers" in err, "there is none on this port"
+    done = written(clone, tmp_path)
+    done.gives(3, "no robot answers", out="tinibot32 on the esp32dev: written")
 
 
 def test_an_esp32_that_is_not_written_is_told(clone: Path, tmp_path: Path) -> None:
-    code, out, err = written(clone, tmp_path, "--lang", "es", code=1)
-    assert (code, out) == (2, "") and "botón BOOT" in err
+    written(clone, tmp_path, "--lang", "es", code=1).gives(2, "botón BOOT", out="")
 
 
 def test_an_esp32_is_only_built_where_that_is_asked(clone: Path, tmp_path: Path) -> None:
-    code, out, _ = written(clone, tmp_path, "--build", code=1)
-    assert code == 0 and "its firmware builds" in out
+    written(clone, tmp_path, "--build", code=1).gives(0, out="its firmware builds")
