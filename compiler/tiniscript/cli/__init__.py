@@ -17,7 +17,7 @@ from typing import TextIO
 
 from tiniscript.cli import streams
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts import language_of, text
+from tiniscript.cli.texts import language_of, say, say_aside, text
 from tiniscript.cli.texts.options import LANGUAGE
 from tiniscript.cli.texts.verbs import VERBS
 
@@ -59,7 +59,7 @@ def _main(arguments: list[str]) -> int:
         if _is_left_pipe(failure):
             raise BrokenPipeError from None
         why = str(failure.strerror or failure)
-        print(text("full", language).format(why=why), file=sys.stderr, flush=True)
+        say_aside("full", language, why=why)
         _drop_output()
         return 2
     except Exception as bug:
@@ -121,7 +121,7 @@ def _tell_missing(language: str) -> None:
     }
     for key, is_there in parts.items():
         if not is_there:
-            print(text(key, language))
+            say(key, language)
 
 
 def _verb(arguments: list[str], language: str) -> int:
@@ -161,5 +161,5 @@ def _explain_bug(bug: Exception, language: str) -> int:
     if os.environ.get("TINISCRIPT_DEBUG"):
         raise bug
     what = " ".join(f"{type(bug).__name__}: {bug}".split())
-    print(text("bug", language).format(what=what[:300]), file=sys.stderr)
+    say_aside("bug", language, what=what[:300])
     return 2

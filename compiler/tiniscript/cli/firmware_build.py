@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from argparse import Namespace
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -14,7 +13,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.fetching import Part
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal.progress import Progress
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say_aside, text
 from tiniscript.flash import building, ready
 from tiniscript.flash.building import LESS, CannotBuild, Seen, Sources
 from tiniscript.flash.ready import Ready
@@ -94,7 +93,7 @@ def _built(
     then."""
     values = {"robot": robot.name, "board": robot.board.chip, **more}
     _fetch(robot, values, options, language)
-    print(text("flash_builds", language).format(**values), file=sys.stderr, flush=True)
+    say_aside("flash_builds", language, **values)
     progress = Progress(language, 100)
     fetched = ""
 
@@ -102,13 +101,13 @@ def _built(
         nonlocal fetched
         if seen.phase == LESS:
             progress.end()
-            print(text("flash_less", language).format(**values), file=sys.stderr, flush=True)
+            say_aside("flash_less", language, **values)
             return
         progress.label = text(f"flash_{seen.phase}", language)
         if seen.what and seen.what != fetched:
             progress.end()
             what = shown(seen.what)
-            print(text("flash_fetches", language).format(what=what), file=sys.stderr, flush=True)
+            say_aside("flash_fetches", language, what=what)
             fetched = seen.what
         progress.draw(seen.percent)
 

@@ -12,7 +12,7 @@ from tiniscript import robots
 from tiniscript.base.source import LARGEST_SOURCE, printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
-from tiniscript.cli.texts import Said, text
+from tiniscript.cli.texts import Said, say_aside
 from tiniscript.robots.profile import ProfileRefused, Robot
 
 SHOWN = 200  # characters of a file's name
@@ -48,8 +48,7 @@ def program(options: Namespace) -> Input:
         return Input("-", sys.stdin.buffer.read(LARGEST_SOURCE + 1), None)
     name = real_name(options.program)
     if name != options.program:
-        said = text("file_really", options.language)
-        print(said.format(file=options.program, real=name), file=sys.stderr)
+        say_aside("file_really", options.language, file=options.program, real=name)
     return file(name, options.program)
 
 

@@ -29,7 +29,7 @@ from tiniscript.cli.options import whole_number
 from tiniscript.cli.program_files import Found, in_folder, read
 from tiniscript.cli.robot.simulator_options import check_picture, draw_picture
 from tiniscript.cli.spreadsheet import as_csv
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, text
 from tiniscript.diagnostics.rendering import message
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.lesson import Lesson
@@ -215,21 +215,20 @@ def _is_note(found: Found) -> bool:
 def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: str) -> None:
     number, file = inputs.shown(options.number), inputs.shown(mark.name)
     if mark.verdict == MISTAKES:
-        print(text("lesson_mistakes", language).format(file=file))
+        say("lesson_mistakes", language, file=file)
         return
     if mark.verdict == PASSED:
         key = "lesson_passed" if len(seeds) == 1 else "lesson_passed_worlds"
-        print(text(key, language).format(file=file, number=number, worlds=len(seeds)))
+        say(key, language, file=file, number=number, worlds=len(seeds))
     else:
         key = "lesson_failed_world" if len(seeds) > 1 and mark.seed else "lesson_failed"
-        print(text(key, language).format(file=file, seed=mark.seed))
+        say(key, language, file=file, seed=mark.seed)
         for _, sentence in mark.said:
-            print(text("lesson_finding", language).format(said=sentence))
+            say("lesson_finding", language, said=sentence)
         if len(seeds) > 1 and mark.seed and not options.texts and mark.name != "-":
-            again = text("lesson_again", language)
-            print(again.format(number=number, file=file, seed=mark.seed))
+            say("lesson_again", language, number=number, file=file, seed=mark.seed)
     if options.plot is not None:
-        print(text("picture", language).format(file=inputs.shown(options.plot)))
+        say("picture", language, file=inputs.shown(options.plot))
 
 
 def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> None:

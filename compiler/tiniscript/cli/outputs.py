@@ -8,7 +8,7 @@ from pathlib import Path
 from tiniscript.cli.errors import unwritable
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.streams import has_colors
-from tiniscript.cli.texts import Said, text
+from tiniscript.cli.texts import Said, say_aside, text
 from tiniscript.library.compiling import Compiled
 
 SHOWN = 20  # diagnostics that are printed; a person mends the first ones first
@@ -57,8 +57,7 @@ def print_diagnostics(compiled: Compiled, language: str) -> None:
         frame = rows[: 2 * bool(compiled.source.text)]
         print(*frame, *map(Said, rows[len(frame) :]), "", sep="\n", file=sys.stderr)
     if len(compiled.diagnostics) > SHOWN:
-        more = text("and_more", language).format(n=len(compiled.diagnostics) - SHOWN)
-        print(more, file=sys.stderr)
+        say_aside("and_more", language, n=len(compiled.diagnostics) - SHOWN)
     if len(compiled.diagnostics) > 1:
         print(_count(compiled, language), file=sys.stderr)
 

@@ -11,7 +11,7 @@ from argparse import Namespace
 from tiniscript.cli import fetching
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.fetching import Part, Step
-from tiniscript.cli.texts import language_of, text
+from tiniscript.cli.texts import language_of, say_aside, text
 from tiniscript.library import install_advice
 from tiniscript.studio import building, serving
 
@@ -26,7 +26,7 @@ def prepare(options: Namespace, language: str) -> None:
         build(options, language)
     elif not building.is_of_sources(serving.PAGE):
         how = " ".join(map(install_advice.quoted, (sys.executable, str(building.BUILDER))))
-        print(text("studio_stale", language).format(how=how), file=sys.stderr)
+        say_aside("studio_stale", language, how=how)
 
 
 def build(options: Namespace, language: str) -> None:

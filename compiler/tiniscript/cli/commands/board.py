@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, text
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import Robot
 
@@ -21,9 +21,8 @@ def run(options: Namespace, language: str) -> int:
     if not outputs.put(options.output, header.encode()):
         return 0
     now = _next(options.robot, Path(options.output), robot.board.chip, language)
-    print(text("board", language).format(
-        file=inputs.shown(options.output), robot=robot.name, chip=robot.board.chip, now=now
-    ))  # fmt: skip
+    say("board", language, file=inputs.shown(options.output), robot=robot.name,
+        chip=robot.board.chip, now=now)  # fmt: skip
     return 0
 
 

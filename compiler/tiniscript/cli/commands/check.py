@@ -9,7 +9,7 @@ from argparse import Namespace
 from tiniscript.cli import compiling, inputs, outputs, program_files
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import Input
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.diagnostics.rendering import as_json, message
 from tiniscript.library.compiling import Compiled
 from tiniscript.robots.profile import Robot
@@ -42,7 +42,7 @@ def run(options: Namespace, language: str) -> int:
     else:
         outputs.print_diagnostics(compiled, language)
         if compiled.is_right and not options.diff and (given.path is not None or not options.fix):
-            print(text("no_mistakes", language).format(file=inputs.shown(given.name)))
+            say("no_mistakes", language, file=inputs.shown(given.name))
     return 0 if is_right else 1
 
 
@@ -61,7 +61,7 @@ def _repaired(
         key = "would_repair" if found.repairs else "nothing_repaired"
         if says and (found.repairs or not found.compiled.is_right):
             key += "_one" if found.repairs == 1 else ""
-            print(text(key, language).format(file=name, n=found.repairs), file=sys.stderr)
+            say_aside(key, language, file=name, n=found.repairs)
         return found.compiled, found.compiled.is_right and not found.repairs
     if given.path is None:
         if says:
@@ -71,7 +71,7 @@ def _repaired(
     if says and found.repairs and given.path is not None:
         print_difference(given.data, found.data, given.name)
         key = "repaired_one" if found.repairs == 1 else "repaired"
-        print(text(key, language).format(file=name, n=found.repairs), file=sys.stderr)
+        say_aside(key, language, file=name, n=found.repairs)
     if says and not found.compiled.is_right:
         key = "not_repaired" if found.repairs else "nothing_repaired"
         print(text(key, language).format(file=name) + "\n", file=sys.stderr)

@@ -8,7 +8,6 @@ from argparse import Namespace
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, connected
-from tiniscript.cli.texts import text
 from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, whose
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNERS, STATUSES
@@ -28,9 +27,7 @@ def run(options: Namespace, language: str) -> int:
 def _claim(connection: Connection, which: int) -> None:
     request = connection.line.do(lambda session: session.claim(which))
     # Said once the robot is asked: a press that has lasted 2 s before counts for nothing.
-    said = text("claim_hold", connection.language)
-    said = said.format(robot=connection.name, port=shown(connection.port))
-    print(said, file=sys.stderr, flush=True)
+    print(connection.text("claim_hold"), file=sys.stderr, flush=True)
     reply = connection.wait(request)
     if reply.status == UNKEPT:
         raise CommandError(2, "unkept_key", file=shown(str(KeyFile().path)))
@@ -40,7 +37,7 @@ def _claim(connection: Connection, which: int) -> None:
         raise connection.failure(reply)
     else:
         key = "claimed" if which == KEY_OWNER else "claimed_teacher"
-    print(text(key, connection.language).format(robot=connection.name))
+    connection.say(key)
 
 
 def _refuse_at_once(connection: Connection) -> None:

@@ -15,7 +15,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import baud_of, opening_port
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, text
 from tiniscript.conformance import port_checks
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, Verdict, verdicts
 from tiniscript.conformance.kit import LINK_VERSION, VERSION, link_kit, machine_cases
@@ -124,12 +124,12 @@ def report(
     for each in differing[:MOST_SHOWN]:
         print("\n".join(_rows(each, timeout_s, language)))
     if len(differing) > MOST_SHOWN:
-        print(text("conform_others", language).format(n=len(differing) - MOST_SHOWN))
+        say("conform_others", language, n=len(differing) - MOST_SHOWN)
     if len(found) < count:
-        print(text("conform_given_up", language))
+        say("conform_given_up", language)
     if lacking:
-        print(text("conform_left_out", language).format(n=lacking))
-    print(text(end, language).format(good=good, all=count, **facts))
+        say("conform_left_out", language, n=lacking)
+    say(end, language, good=good, all=count, **facts)
     return int(bool(differing))
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from argparse import Namespace
 
 from tiniscript.cli.robot.connect import connected
-from tiniscript.cli.texts import text
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNED
 
 
@@ -14,9 +13,8 @@ def run(options: Namespace, language: str) -> int:
     with connected(options, language) as connection:
         info = connection.meet()
         if which == KEY_OWNER and not info.values.features & OWNED:
-            print(text("not_owned", language).format(robot=connection.name))
+            connection.say("not_owned")
             return 0
         connection.ask(lambda session: session.disown(which))
-        key = "disowned" if which == KEY_OWNER else "disowned_teacher"
-        print(text(key, language).format(robot=connection.name))
+        connection.say("disowned" if which == KEY_OWNER else "disowned_teacher")
     return 0

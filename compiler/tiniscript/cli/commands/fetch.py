@@ -8,7 +8,6 @@ from pathlib import Path
 from tiniscript.cli import images, inputs, outputs
 from tiniscript.cli.commands import show
 from tiniscript.cli.robot.connect import connected
-from tiniscript.cli.texts import text
 
 
 def run(options: Namespace, language: str) -> int:
@@ -24,14 +23,9 @@ def run(options: Namespace, language: str) -> int:
     assert ready is not None  # an image has no mistakes
     if options.output is not None:
         outputs.write(Path(options.output), data, "unwritable")
-        print(text("fetched", language).format(
-            robot=name,
-            port=inputs.shown(connection.port),
-            target=inputs.shown(options.output),
-            image=len(data),
-            code=len(ready.image.code),
-            checksum=f"{ready.image.checksum:08x}",
-        ))  # fmt: skip
+        connection.say("fetched", target=inputs.shown(options.output), image=len(data),
+                       code=len(ready.image.code),
+                       checksum=f"{ready.image.checksum:08x}")  # fmt: skip
     else:
         show.print_disassembly(ready, robot, name, language)
     return 0

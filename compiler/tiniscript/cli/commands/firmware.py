@@ -12,7 +12,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import bad_choice
 from tiniscript.cli.robot.connect import Connection, opening_port
 from tiniscript.cli.terminal.progress import Progress, waiting
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.flash import avrdude
 from tiniscript.flash.avrdude import Ended, Seen
 from tiniscript.flash.bootloaders import BOARDS, UNO, Bootloader
@@ -58,7 +58,7 @@ def _esp32(options: Namespace, language: str) -> int:
     values = {"robot": robot.name, "board": robot.board.chip}
     if options.build:
         firmware_build.upload(robot, None, options, language)
-        print(text("flash_built", language).format(**values))
+        say("flash_built", language, **values)
         return 0
     port = _port(options)
     firmware_build.upload(robot, port, options, language)
@@ -111,7 +111,7 @@ def _write(
     """Write a firmware with the first bootloader that answers. Raises CommandError."""
     for bootloader in bootloaders:
         if bootloader is not bootloaders[0]:
-            print(text("flash_older", language), file=sys.stderr)
+            say_aside("flash_older", language)
         ended = _written(command, bootloader, port, firmware, language)
         if ended.how != avrdude.NOBODY:
             break

@@ -8,7 +8,7 @@ from argparse import Namespace
 from tiniscript.base.source import LARGEST_SOURCE
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, text
 from tiniscript.syntax.formatter import formatted
 
 
@@ -33,5 +33,5 @@ def run(options: Namespace, language: str) -> int:
         outputs.put(None, laid_out.encode())
     elif not is_same:
         outputs.write(given.path, laid_out.encode(), "unwritable_source")
-        print(text("formatted", language).format(file=name))
+        say("formatted", language, file=name)
     return 0

@@ -6,11 +6,9 @@ import json
 from argparse import Namespace
 
 from tiniscript.cli import inputs
-from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result, are_many
-from tiniscript.cli.texts import text
 
 
 def run(options: Namespace, language: str) -> int:
@@ -26,9 +24,7 @@ def run(options: Namespace, language: str) -> int:
 
 def _identified(connection: Connection) -> str:
     connection.ask(lambda session: session.identify())
-    return text("identified", connection.language).format(
-        robot=connection.name, port=shown(connection.port)
-    )
+    return connection.text("identified")
 
 
 def _fields(connection: Connection) -> dict[str, object]:

@@ -14,7 +14,6 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import fault_sentence
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result, are_many
-from tiniscript.cli.texts import text
 from tiniscript.library import source_map
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.link.authority import OF_ANOTHER, whose
@@ -98,22 +97,20 @@ class Description:
 
     def line(self) -> str:
         """Return the most important of it in one line."""
-        state = text(f"state_{self.fields()['state']}", self.connection.language)
-        owner = text(f"whose_{self.fields()['owner']}", self.connection.language)
+        fields, say = self.fields(), self.connection.text
+        state, owner = say(f"state_{fields['state']}"), say(f"whose_{fields['owner']}")
         return f"{self._program()}; {state}; {owner}"
 
     def _program(self) -> str:
-        language, status, fields = self.connection.language, self.status, self.fields()
+        say, status, fields = self.connection.text, self.status, self.fields()
         why = self._why_no_program()
         if why:
-            return text(why, language)
+            return say(why)
         places = source_map.recall(status.program)
-        return text("info_program", language).format(
-            checksum=fields["program"],
-            name=f" ({shown(places.name)})" if places is not None else "",
-            code=status.length,
-            saved=text(f"saved_{fields['saved']}", language).format(slot=status.slot),
-        )
+        name = f" ({shown(places.name)})" if places is not None else ""
+        saved = say(f"saved_{fields['saved']}", slot=status.slot)
+        return say("info_program", checksum=fields["program"], name=name, code=status.length,
+                   saved=saved)  # fmt: skip
 
     def _text_level(self) -> str | None:
         """Return the level of text that the robot reads, or None."""
@@ -123,7 +120,7 @@ class Description:
     def _reader(self) -> str:
         level = self._text_level()
         key = "info_no_text" if level is None else "info_text"
-        return text(key, self.connection.language).format(level=level)
+        return self.connection.text(key, level=level)
 
     def _why_no_program(self) -> str:
         """Return the reason why the robot holds no program, or an empty text."""
@@ -132,34 +129,28 @@ class Description:
 
     def text(self) -> str:
         """Return it as lines."""
-        language, status, fields = self.connection.language, self.status, self.fields()
+        language, say = self.connection.language, self.connection.text
+        status, fields = self.status, self.fields()
         kit = f"{fields['kit']} ({fields['robot']})" if fields["robot"] else fields["kit"]
-        head = {"robot": self.connection.name, "port": shown(self.connection.port)}
-        state, reset, owner = (
-            text(f"{what}_{fields[name]}", language)
-            for what, name in (("state", "state"), ("reset", "reset"), ("whose", "owner"))
-        )
+        state, reset = say(f"state_{fields['state']}"), say(f"reset_{fields['reset']}")
+        owner = say(f"whose_{fields['owner']}")
         lines = [
-            text("info_robot", language).format(**head, id=fields["id"], whose=owner),
-            text("info_kit", language).format(
-                kit=kit, isa=fields["isa"], room=self.device_info.room
-            ),
+            say("info_robot", id=fields["id"], whose=owner),
+            say("info_kit", kit=kit, isa=fields["isa"], room=self.device_info.room),
             self._reader(),
             self._program(),
-            text("info_state", language).format(state=state, reset=reset),
+            say("info_state", state=state, reset=reset),
         ]
         if self.trim not in (None, Trim(), Trim(pace=Pace())):
-            lines.append(
-                text("info_trim", language).format(trim=words(self.trim or Trim(), language))
-            )
+            lines.append(say("info_trim", trim=words(self.trim or Trim(), language)))
         if status.fault:
             lines.append(self._fault())
         if status.damaged or status.dropped or status.framing or status.overrun:
-            lines.append(text("info_hearing", language).format(**status._asdict()))
+            lines.append(say("info_hearing", **status._asdict()))
         return "\n".join(lines)
 
     def _fault(self) -> str:
         status = self.status
         said = fault_sentence(status.fault, status.fault_at, status.fault_program, None,
                               self.connection.language)  # fmt: skip
-        return text("info_fault", self.connection.language).format(fault=said)
+        return self.connection.text("info_fault", fault=said)

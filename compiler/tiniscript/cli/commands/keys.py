@@ -11,7 +11,7 @@ from tiniscript.base import files
 from tiniscript.cli import outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, text
 from tiniscript.link import keys
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.keys import BadKeys, KeyFile, TooManyKeys
@@ -48,7 +48,7 @@ def _export(found: list[RobotKey], name: str, language: str) -> None:
         raise CommandError(2, "export_there", file=shown(name))
     taken = [key._replace(is_stale=False) for key in found if not key.is_pending]
     outputs.write(path, keys.written(taken), "unwritable_more --export", keys.MODE)
-    print(text("keys_exported", language).format(n=len(taken), file=shown(name)))
+    say("keys_exported", language, n=len(taken), file=shown(name))
 
 
 def _import(own: KeyFile, name: str, language: str) -> None:
@@ -62,8 +62,7 @@ def _import(own: KeyFile, name: str, language: str) -> None:
         raise CommandError(2, "too_many_keys", most=str(keys.MOST), file=shown(name)) from None
     except BadKeys as why:
         raise _own(own, "own_keys_full", why) from None
-    said = text("keys_imported", language)
-    print(said.format(n=changed, all=len(brought), file=shown(name)))
+    say("keys_imported", language, n=changed, all=len(brought), file=shown(name))
 
 
 def _forget(own: KeyFile, found: list[RobotKey], robot: str, language: str) -> None:
@@ -75,7 +74,7 @@ def _forget(own: KeyFile, found: list[RobotKey], robot: str, language: str) -> N
         own.forget(gone[0].id)
     except BadKeys as why:
         raise _own(own, "own_keys_full", why) from None
-    print(text("keys_forgotten", language).format(robot=shown(robot)))
+    say("keys_forgotten", language, robot=shown(robot))
 
 
 def _own(own: KeyFile, key: str, why: BadKeys) -> CommandError:
@@ -84,7 +83,7 @@ def _own(own: KeyFile, key: str, why: BadKeys) -> CommandError:
 
 def _print(found: list[RobotKey], language: str) -> None:
     if not found:
-        print(text("no_keys", language))
+        say("no_keys", language)
     for key in sorted(found, key=lambda key: (key.name, key.id, key.which)):
         kind = text(f"kind_{KEYS[key.which][0].lower()}", language)
         row = text("key_row", language).format(id=f"{key.id:08x}", kind=kind, name=shown(key.name))

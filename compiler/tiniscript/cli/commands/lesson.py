@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from argparse import Namespace
 from pathlib import Path
 
@@ -10,7 +9,7 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.lesson_check import check
 from tiniscript.cli.terminal import pager
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.cli.texts.options import LESSON_ACTIONS as ACTIONS
 from tiniscript.cli.texts.options import of_verb
 from tiniscript.lessons import catalogue
@@ -59,9 +58,9 @@ def _refuse_others(options: Namespace, action: str) -> None:
 def _list(language: str) -> int:
     for number, folder in enumerate(catalogue.folders(), 1):
         lesson = catalogue.load(folder)
-        said = text("lesson_title", language)
-        print(said.format(number=f"{number:2}", title=lesson.titles[language], robot=lesson.robot))
-    print(text("lesson_hint", language), file=sys.stderr)
+        title, robot = lesson.titles[language], lesson.robot
+        say("lesson_title", language, number=f"{number:2}", title=title, robot=robot)
+    say_aside("lesson_hint", language)
     return 0
 
 
@@ -95,6 +94,5 @@ def _sheet(folder: Path, lesson: Lesson, options: Namespace, language: str) -> i
     page = sheet(_page(folder, options.teacher, language), lesson, options.teacher, language)
     if not outputs.put(options.output, page.encode()):
         return 0
-    said = text("lesson_sheet", language)
-    print(said.format(file=inputs.shown(options.output), title=lesson.titles[language]))
+    say("lesson_sheet", language, file=inputs.shown(options.output), title=lesson.titles[language])
     return 0

@@ -19,7 +19,7 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
 from tiniscript.cli.robot.live_state import Known, Line, Value, header, open_ends
 from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.library import source_map
 from tiniscript.library.compiling import kit_of, naming
 from tiniscript.library.known_kits import lacking
@@ -116,12 +116,12 @@ class Repl:
         except KeyboardInterrupt:
             return stop_and_say(self.connection)
         if not code and found.forgets and not is_last:
-            print(text("live_forgets", self.language), file=sys.stderr)
+            say_aside("live_forgets", self.language)
         if not code and found.defs:
             self.known.defs.update(found.defs)
             if found.does_nothing:
                 names = ", ".join(found.defs)
-                print(text("live_known", self.language).format(names=names))
+                say("live_known", self.language, names=names)
         return code
 
     def whole(self, line: str, more: Callable[[], str | None]) -> str:
@@ -170,7 +170,7 @@ class Repl:
     def _says_time_over(self) -> bool:
         """Whether a virtual robot's time limit has passed between two lines; prints so then."""
         if self.connection.is_time_over:
-            print(text("time_over", self.language))
+            say("time_over", self.language)
             return True
         return False
 
@@ -185,8 +185,7 @@ class Repl:
     def prompt(self) -> int:
         """Let a person type lines, until they leave."""
         self.meet()
-        said = {"robot": self.connection.name, "port": inputs.shown(self.connection.port)}
-        print(text("live_hello", self.language).format(**said))
+        self.connection.say("live_hello")
         with _history(self.known):
             while True:
                 self._tell_meanwhile()

@@ -6,7 +6,6 @@ import sys
 from argparse import Namespace
 from time import monotonic
 
-from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.paths import ROWS
 from tiniscript.cli.robot.connect import Connection, connected
@@ -26,8 +25,7 @@ def run(options: Namespace, language: str) -> int:
             if options.csv is not None:  # without a robot the old file stays
                 rows = Rows(options.csv, ROWS)
             add = rows.add if rows is not None else None
-            said = {"robot": connection.name, "port": shown(connection.port)}
-            print(text("watching", language).format(**said), file=sys.stderr)
+            print(connection.text("watching"), file=sys.stderr)
             if options.plot and sys.stderr.isatty():
                 with Board(text("plot_waiting", language)) as board:
                     printer = EventPrinter(language, options.json, has_times=True, rows=add,

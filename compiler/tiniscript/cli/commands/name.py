@@ -7,7 +7,6 @@ from argparse import Namespace
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import connected
-from tiniscript.cli.texts import text
 from tiniscript.link.messages import NAME_BYTES
 from tiniscript.link.requests import TAKEN
 
@@ -23,8 +22,7 @@ def run(options: Namespace, language: str) -> int:
         connection.remember(name)
         if reply.status:  # the name is set, but may not be saved
             raise connection.failure(reply)
-        said = {"port": shown(connection.port), "name": shown(name)}
-        print(text("named", language).format(**said))
+        connection.say("named", name=shown(name))
     return 0
 
 

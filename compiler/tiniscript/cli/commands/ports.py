@@ -13,7 +13,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import about_virtual, baud_of, opened_client
 from tiniscript.cli.robot.in_reach import AT_ONCE, InReach, alive, found
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.library.known_kits import shipped_of_kit
@@ -48,7 +48,7 @@ def run(options: Namespace, language: str) -> int:
     if options.json:
         print(json.dumps(rows, indent=2))
     elif not rows:
-        print(text("no_port_listed", language))
+        say("no_port_listed", language)
     for row in [] if options.json else rows:
         print(_line(row, language))
     return 0

@@ -23,7 +23,7 @@ from tiniscript.cli.terminal import FRAME_S
 from tiniscript.cli.terminal.keys import Keys, is_in_front
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.cli.terminal.world_drawing import WorldPicture
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say_aside, text
 from tiniscript.library import install_advice, opening
 from tiniscript.link.keys import KeyFile
 from tiniscript.virtual import directory
@@ -132,11 +132,8 @@ class _Stage:
         if self.announced:
             print(shown(self.announced), flush=True)
         language = self.language
-        said = text("robot_here", language).format(
-            robot=shown(self.options.name or "") or robot.profile.labels[language]["robot"],
-            world=robot.world.labels[language],
-        )
-        print(said, file=sys.stderr, flush=True)
+        name = shown(self.options.name or "") or robot.profile.labels[language]["robot"]
+        say_aside("robot_here", language, robot=name, world=robot.world.labels[language])
 
     def _begin(self) -> None:
         if not (sys.stderr.isatty() and is_in_front()):

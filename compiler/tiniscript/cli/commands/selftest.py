@@ -15,7 +15,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.self_test import OK, OPEN, WRONG, Found, SelfTest
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, text
 from tiniscript.doctor import report
 
 
@@ -45,7 +45,7 @@ def run(options: Namespace, language: str) -> int:
         data = ("\n".join(_report(found, name, port or "", language)) + "\n").encode()
         outputs.write(Path(options.report), data, "unwritable_at --report")
         if not options.json:
-            print(text("selftest_report", language).format(file=shown(options.report)))
+            say("selftest_report", language, file=shown(options.report))
     return 3 if any(each.verdict == WRONG for each in found) else 0
 
 
@@ -55,12 +55,11 @@ def _print(found: list[Found], name: str, port: str | None, is_json: bool, langu
         print(json.dumps({"robot": name, "port": port, "found": fields}, indent=2))
         return
     if name:
-        print(text("selftest_head", language).format(robot=name, port=shown(port or "")))
+        say("selftest_head", language, robot=name, port=shown(port or ""))
     print("\n".join(_rows(found, language)))
     counts = {each: sum(row.verdict == each for row in found) for each in (OK, WRONG, OPEN)}
-    print(text("selftest_end", language).format(
-        good=str(counts[OK]), all=str(len(found)), wrong=str(counts[WRONG]), open=str(counts[OPEN])
-    ))  # fmt: skip
+    good, wrong, left = counts[OK], counts[WRONG], counts[OPEN]
+    say("selftest_end", language, good=good, all=len(found), wrong=wrong, open=left)
 
 
 def _fields(found: Found, language: str) -> dict[str, object]:

@@ -8,7 +8,7 @@ from argparse import Namespace
 from tiniscript.bytecode.disassembly import disassemble, rows
 from tiniscript.cli import compiling, images, inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, text
 from tiniscript.codegen.sketch.writing import BOARDS, sketch_of
 from tiniscript.library.programs import remarks
 from tiniscript.robots.profile import Robot
@@ -55,23 +55,17 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
     if not outputs.put(options.output, sketch):
         return 0
-    print(text("sketch", language).format(
-        file=inputs.shown(options.output), robot=inputs.shown(robot.labels[language]["robot"])
-    ))  # fmt: skip
+    name = inputs.shown(robot.labels[language]["robot"])
+    say("sketch", language, file=inputs.shown(options.output), robot=name)
     return 0
 
 
 def print_disassembly(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
     image = ready.image
     key = "for_robot" if image.devices else "any_robot"
-    print(text("head", language).format(
-        file=name,
-        start=image.start,
-        robot=text(key, language).format(robot=robot.name),
-        code=len(image.code),
-        image=ready.image_bytes,
-        checksum=f"{image.checksum:08x}",
-    ))  # fmt: skip
+    whose = text(key, language).format(robot=robot.name)
+    say("head", language, file=name, start=image.start, robot=whose, code=len(image.code),
+        image=ready.image_bytes, checksum=f"{image.checksum:08x}")  # fmt: skip
     found = remarks(ready.places, language)
     print(disassemble(image.code, found, robot.kit if image.devices else None), end="")
 

@@ -7,7 +7,6 @@ from argparse import Namespace
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
-from tiniscript.cli.texts import text
 
 
 def run(options: Namespace, language: str) -> int:
@@ -23,7 +22,7 @@ def _start(connection: Connection, is_detached: bool, is_json: bool) -> int:
     reply = connection.ask(lambda session: session.start(is_detached))
     number, run = reply.values.program, reply.values.run
     key = "started_detached" if is_detached else "started"
-    said = text(key, connection.language).format(robot=connection.name, checksum=f"{number:08x}")
+    said = connection.text(key, checksum=f"{number:08x}")
     printer = EventPrinter(connection.language, is_json)
     printer.say(0, "STARTED", "", said, program=f"{number:08x}")
     return 0 if is_detached else RunMonitor(connection, printer).follow(run)

@@ -10,7 +10,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import Member, Result, are_many
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, text
 
 
 def run(options: Namespace, language: str) -> int:
@@ -36,7 +36,7 @@ def run(options: Namespace, language: str) -> int:
                     print(json.dumps({"port": port, "is_done": True}))
                 else:
                     key = "held_back" if options.teacher else "stopped_on"
-                    print(text(key, language).format(port=shown(port)))
+                    say(key, language, port=shown(port))
                 return 0
             if not _may_be_opened(connection):
                 raise CommandError(3, "not_confirmed", port=shown(port))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import socket
-import sys
 import webbrowser
 from argparse import Namespace
 from contextlib import suppress
@@ -17,7 +16,7 @@ from tiniscript.cli.commands.robot import ended_by_signal
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say_aside
 from tiniscript.studio import building, class_keeping, serving
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
@@ -54,17 +53,16 @@ def run(options: Namespace, language: str) -> int:
             print(entrance, flush=True)
             key = "studio_class" if classroom else "studio_here"
             values = {"address": server.address, "code": classroom.code if classroom else ""}
-            print(text(key, language).format(**values), file=sys.stderr, flush=True)
+            say_aside(key, language, **values)
             if went_on:
-                said = text("studio_goes_on", language).format(pupils=went_on)
-                print(said, file=sys.stderr, flush=True)
+                say_aside("studio_goes_on", language, pupils=went_on)
             if not options.no_browser:
                 webbrowser.open(server.entrance(is_for_here=True))
             while thread.is_alive():
                 thread.join(1)
                 if not server.is_unused(entrance):
                     entrance = server.entrance()
-                    print(text("studio_opened", language), file=sys.stderr, flush=True)
+                    say_aside("studio_opened", language)
                     print(entrance, flush=True)
                 if classroom is not None:
                     classroom.tend()

@@ -6,7 +6,6 @@ from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import connected
-from tiniscript.cli.texts import text
 from tiniscript.link.messages import OWNED
 
 
@@ -20,5 +19,5 @@ def run(options: Namespace, language: str) -> int:
         key = "text_on" if is_allowed else "text_off"
         if not info.values.features & OWNED:
             key = "text_free"
-        print(text(key, language).format(robot=connection.name))
+        connection.say(key)
     return 0

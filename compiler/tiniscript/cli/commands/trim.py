@@ -11,7 +11,6 @@ from typing import Any
 
 from tiniscript.base.fixed_point import ONE
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import thousandths, whole_number
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.trim_wizard import guided
@@ -82,10 +81,7 @@ def _print(connection: Connection, key: str, trim: Trim, is_json: bool) -> None:
         print(json.dumps({"robot": connection.device_info.name, "port": connection.port,
                           **trim.as_data()}))  # fmt: skip
         return
-    said = text(key, connection.language).format(
-        robot=connection.name, port=shown(connection.port), trim=words(trim, connection.language)
-    )
-    print(said)
+    connection.say(key, trim=words(trim, connection.language))
 
 
 def words(trim: Trim, language: str) -> str:

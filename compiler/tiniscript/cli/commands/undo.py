@@ -14,7 +14,6 @@ from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.robot.run_monitor import Saving
-from tiniscript.cli.texts import text
 from tiniscript.library import source_map
 from tiniscript.link.names import saved_name
 from tiniscript.link.payloads import ReceiptReply
@@ -88,13 +87,9 @@ class Undone:
     def line(self) -> str:
         """Return which program is back, in one line."""
         name = f" ({shown(self.program)})" if self.program is not None else ""
-        return text("undone_line", self.connection.language).format(
-            checksum=f"{self.values.program:08x}", name=name
-        )
+        checksum = f"{self.values.program:08x}"
+        return self.connection.text("undone_line", checksum=checksum, name=name)
 
     def text(self) -> str:
         """Return the receipt as lines."""
-        language, connection = self.connection.language, self.connection
-        return text("undone", language).format(
-            robot=connection.name, port=shown(connection.port), line=self.line()
-        )
+        return self.connection.text("undone", line=self.line())

@@ -24,7 +24,6 @@ from tiniscript.cli.robot.program_upload import (
 )
 from tiniscript.cli.robot.run_monitor import Saving, stop_and_say
 from tiniscript.cli.terminal.progress import Progress
-from tiniscript.cli.texts import text
 from tiniscript.library import source_map
 from tiniscript.link.names import saved_name
 from tiniscript.link.payloads import ReceiptReply
@@ -150,19 +149,17 @@ def _receipt_line(
     connection: Connection, ready: images.Ready, name: str, values: ReceiptReply,
     options: Namespace,
 ) -> str:  # fmt: skip
-    language = connection.language
     how = "how_waits"
     if is_running(ready, options):
         how = "how_detached" if options.detach else "how_running"
     elif has_button(connection, ready, options):
         how = "how_key" if has_keys(connection) else "how_pushed"
-    return text("receipt", language).format(
+    return connection.text(
+        "receipt",
         program=name,
-        robot=connection.name,
-        port=inputs.shown(connection.port),
         image=ready.image_bytes,
         code=len(ready.image.code),
         checksum=f"{values.program:08x}",
-        saved=text(f"saved_{saved_name(values.saved)}", language).format(slot=values.slot),
-        how=text(how, language).format(start=ready.image.start),
+        saved=connection.text(f"saved_{saved_name(values.saved)}", slot=values.slot),
+        how=connection.text(how, start=ready.image.start),
     )

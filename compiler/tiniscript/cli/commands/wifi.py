@@ -56,7 +56,7 @@ def run(options: Namespace, language: str) -> int:
             _refuse_itself(connection)
         if options.forget:
             connection.ask(lambda session: session.forget_wifi())
-            print(text("wifi_forgotten", language).format(robot=connection.name))
+            connection.say("wifi_forgotten")
         elif name is not None:
             _join(connection, name, options.access_point)
         else:
@@ -96,8 +96,7 @@ def _tell(connection: Connection, told: WifiReply) -> None:
         key = "wifi_station_searching"
     network = shown(told.network.decode("utf-8", "replace"))
     host = f"tini-{connection.device_info.id & 0xFFFF:04x}"
-    said = text(key, connection.language)
-    print(said.format(robot=connection.name, network=network, address=address(told), host=host))
+    connection.say(key, network=network, address=address(told), host=host)
 
 
 def _name_bytes(name: str) -> bytes:

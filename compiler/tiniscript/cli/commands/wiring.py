@@ -11,7 +11,7 @@ from rich.cells import cell_len, set_cell_size
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.commands.board import wired
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.page import rail_rows, wire_rows
 from tiniscript.robots.wiring.plan import plan_of
@@ -28,14 +28,12 @@ def run(options: Namespace, language: str) -> int:
         print()
         _print_rows(_by_tag(rail_rows(plan)))
         print()
-        print(text("wiring_page", language))
+        say("wiring_page", language)
         return 0
 
     if not outputs.put(options.output, html_of(plan).encode()):
         return 0
-    print(text("wiring", language).format(
-        file=inputs.shown(options.output), robot=inputs.shown(plan.robot)
-    ))  # fmt: skip
+    say("wiring", language, file=inputs.shown(options.output), robot=inputs.shown(plan.robot))
     return 0
 
 

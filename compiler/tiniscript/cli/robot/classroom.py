@@ -22,7 +22,7 @@ from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.recorder import Rows
 from tiniscript.cli.spreadsheet import no_formula
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say, text
 from tiniscript.link.errors import NOT_INSTALLED, PortError
 from tiniscript.link.port_connection import now_ms
 
@@ -96,8 +96,7 @@ def list_robots(room: Classroom) -> int:
     code = together(own, inputs.robot(own, room.language), room.language, one_of_many)
     for each in found:
         if not each.is_here and not own.json:
-            said = text("class_gone", room.language)
-            print(said.format(robot=shown(each.name), id=each.id))
+            say("class_gone", room.language, robot=shown(each.name), id=each.id)
     return code
 
 

@@ -20,7 +20,7 @@ from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal import asking
 from tiniscript.cli.terminal.progress import waiting
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say_aside, text
 from tiniscript.cli.texts.options import virtual_names
 from tiniscript.library import opening
 from tiniscript.library.client import Client
@@ -121,8 +121,7 @@ class Connection(Client):
         is_confirmed = self.stop(STOP_S)
         key = "output_stopped" if is_confirmed else "not_confirmed"
         with suppress(OSError):
-            said = text(key, self.language).format(port=shown(self.port))
-            print(said, file=sys.stderr, flush=True)
+            say_aside(key, self.language, port=shown(self.port))
         return is_confirmed
 
     @property
@@ -160,8 +159,7 @@ class Connection(Client):
 
         keys = KeyFile().of_robot(device_info.id)
         if any(key.is_stale and not key.is_pending for key in keys):
-            said = text("key_is_stale", self.language).format(robot=self.name)
-            print(said, file=sys.stderr, flush=True)
+            say_aside("key_is_stale", self.language, robot=self.name)
 
     def remember(self, name: str) -> None:
         """Remember the port for the next time, and the name of its robot."""
@@ -173,6 +171,16 @@ class Connection(Client):
         if self.device_info.name:
             return shown(self.device_info.name)
         return shipped_of_kit(self.device_info.kit) or text("robot", self.language)
+
+    def text(self, key: str, **values: object) -> str:
+        """Return a sentence, which may name the robot that has answered, and its port."""
+        name = "" if self.line.robot is None else self.name
+        names = {"robot": name, "port": shown(self.port)}
+        return text(key, self.language).format(**{**names, **values})
+
+    def say(self, key: str, **values: object) -> None:
+        """Print such a sentence."""
+        print(self.text(key, **values))
 
     def ask_or(
         self, make: Callable[[Requester], PendingRequest[T]], key: str, *statuses: str
@@ -337,7 +345,7 @@ def _asked(language: str, can_bring: bool, virtual: list[directory.Running]) -> 
         raise CommandError(3, "no_ports")
     about = {each.port: each.description for each in found}
     about |= {each.address: about_virtual(each, language) for each in virtual}
-    print(text("choose_port", language), file=sys.stderr)
+    say_aside("choose_port", language)
     for number, port in enumerate(choices, 1):
         more = "   ".join(filter(None, (names.get(port), about.get(port))))
         print(f"  {number}  {shown(port)}   {shown(more)}".rstrip(), file=sys.stderr)

@@ -6,13 +6,12 @@ for the robot that answers, if its profile is known: a shipped one, or one given
 
 from __future__ import annotations
 
-import sys
 from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say_aside
 from tiniscript.library.known_kits import of_kit
 from tiniscript.robots.profile import Robot
 
@@ -29,8 +28,7 @@ def take(connection: Connection, options: Namespace) -> bool:
     if robot is None:
         return False
     connection.profile = robot
-    said = text("own_kit", connection.language).format(robot=shown(robot.name))
-    print(said, file=sys.stderr, flush=True)
+    say_aside("own_kit", connection.language, robot=shown(robot.name))
     return True
 
 

@@ -15,7 +15,6 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot import broker_options
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.texts import text
 from tiniscript.library.install_advice import quoted
 from tiniscript.link.messages import BROKER_NAME_BYTES, STATUSES, TRUST_BYTES
 from tiniscript.link.payloads import WifiReply
@@ -92,7 +91,7 @@ def use(connection: Connection, broker: BrokerSettings | None, options: Namespac
         _refuse_itself(connection, IPv4Address(broker.address))
     connection.ask_or(lambda session: session.use_broker(broker), "broker_old", "BAD_VALUE")
     if broker is None:
-        print(text("broker_off", connection.language).format(robot=connection.name))
+        connection.say("broker_off")
         return
     told = awaited(partial(_told, connection), lambda told: _state(told) != "SEARCHING")
     tell(connection, told, broker.name.decode(), _class_command(options))
@@ -121,11 +120,9 @@ def tell(connection: Connection, told: WifiReply, name: str = "", command: str =
     state = _state(told)
     key = f"broker_{state.lower()}" if told.network else "broker_none"
     group = shown(told.network.decode("utf-8", "replace"))
-    said = text(key, connection.language).format(
-        robot=connection.name, address=name or address(told), group=group
-    )
+    said = connection.text(key, address=name or address(told), group=group)
     if command and state == "READY":
-        said += text("broker_all", connection.language).format(command=command)
+        said += connection.text("broker_all", command=command)
     print(said)
 
 

@@ -12,7 +12,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say_aside, text
 from tiniscript.library import client
 from tiniscript.library.endings import Follower, end_of
 from tiniscript.library.errors import RobotError
@@ -96,7 +96,7 @@ def stop_and_say(connection: Connection) -> int:
         connection.simulator.unwatch()  # the robot has stopped in the picture, too
     print(file=sys.stderr)  # the terminal has written ^C
     if is_confirmed:
-        print(text("robot_stopped", connection.language), file=sys.stderr)
+        say_aside("robot_stopped", connection.language)
         return INTERRUPTED
     raise CommandError(3, "not_confirmed", port=shown(connection.port))
 

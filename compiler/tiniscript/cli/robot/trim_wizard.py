@@ -13,7 +13,7 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.program_upload import follow_line
 from tiniscript.cli.terminal import asking
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import say_aside, text
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.requests import TAKEN
 from tiniscript.link.trim import MOST_PACE, Pace, Trim
@@ -87,7 +87,7 @@ class TrimWizard:
         found = found._replace(balance=round((slow + quick) / 2))
         self._set(found)
         if before.pace is None:
-            print(text("trim_no_pace_here", self.language), file=sys.stderr)
+            say_aside("trim_no_pace_here", self.language)
             return found
         if self._choice("trim_measure", 2) != YES:
             return found._replace(pace=before.pace)
@@ -119,7 +119,7 @@ class TrimWizard:
             found = [self._went(move, power, seconds, question) / seconds for power in POWERS]
             if found[0] < found[1]:
                 return found
-            print(text("trim_not_faster_again", self.language), file=sys.stderr)
+            say_aside("trim_not_faster_again", self.language)
 
     def _went(self, move: str, power: int, seconds: int, question: str) -> float:
         """Return how far it went in centimetres, or turned in degrees, as the person measured."""
@@ -131,7 +131,7 @@ class TrimWizard:
                 size = measured(answer, move == "R")
                 if size is not None and size <= MOST_PACE * seconds:
                     return size
-                print(text(f"{question}_number", self.language), file=sys.stderr)
+                say_aside(f"{question}_number", self.language)
                 answer = self._ask_line(question, n=str(power)).strip()
 
     def _straight(self, found: Trim, power: int) -> int:
@@ -168,7 +168,7 @@ class TrimWizard:
             answer = self._ask_line(key, **values).strip()
             if answer.isascii() and answer.isdigit() and 1 <= int(answer[:9]) <= high:
                 return int(answer)
-            print(text("trim_number", self.language).format(high=high), file=sys.stderr)
+            say_aside("trim_number", self.language, high=high)
 
     def _ask_line(self, key: str, **values: str) -> str:
         answer = asking.answer(text(key, self.language).format(**values))

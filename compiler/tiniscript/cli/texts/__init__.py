@@ -60,6 +60,16 @@ def text(key: str, language: str) -> str:
     return said
 
 
+def say(key: str, language: str, /, **values: object) -> None:
+    """Print a sentence, with these values in its gaps."""
+    print(text(key, language).format(**values))
+
+
+def say_aside(key: str, language: str, /, **values: object) -> None:
+    """Print a sentence on standard error, where no results are."""
+    print(text(key, language).format(**values), file=sys.stderr, flush=True)
+
+
 def has_text(key: str) -> bool:
     return languages.found(CATALOGUE, key, languages.SOURCE) is not None
 
