@@ -15,7 +15,6 @@ from tiniscript.lessons.lesson import Answer, Criterion, Lesson, LessonRefused
 from tiniscript.lessons.markdown import printed
 from tiniscript.lessons.reader import read, read_answers
 from tiniscript.lessons.variation import point_of
-from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.refusals import shown
 from tiniscript.virtual import worlds
 
@@ -87,14 +86,8 @@ def folder_of(name: str) -> Path:
 def load(folder: Path) -> Lesson:
     """Return the lesson in a folder. Raises LessonRefused."""
     name = folder.resolve().name
-    try:
-        text, world_text = (
-            robots.text_of(str(folder / each)) for each in ("lesson.toml", "world.toml")
-        )
-        world = worlds.read(world_text, name)
-    except ProfileRefused as refused:
-        raise LessonRefused(*refused.reasons) from None
-    return read(text, world, name)
+    text, world = _text(folder / "lesson.toml"), _text(folder / "world.toml")
+    return read(text, worlds.read(world, name, LessonRefused), name)
 
 
 def page(folder: Path, who: str, language: str) -> str:
@@ -117,7 +110,4 @@ def answers(folder: Path) -> tuple[list[Answer], list[Answer]]:
 
 
 def _text(path: Path) -> str:
-    try:
-        return robots.text_of(str(path))
-    except ProfileRefused as refused:
-        raise LessonRefused(*refused.reasons) from None
+    return robots.text_of(str(path), LessonRefused)

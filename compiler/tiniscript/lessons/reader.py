@@ -33,9 +33,9 @@ from tiniscript.lessons.lesson import (
     Variation,
 )
 from tiniscript.lessons.sentences import sentence
-from tiniscript.robots.profile import Reason, Robot
+from tiniscript.robots.profile import Robot
 from tiniscript.robots.refusals import shown
-from tiniscript.robots.toml_table import Table, parse_toml
+from tiniscript.robots.toml_table import Table, root_of
 from tiniscript.virtual.world import World
 
 LABEL_CHARACTERS = 80
@@ -52,49 +52,35 @@ OF_SENTENCES = ("word", "question", "what", "times")  # values of which a senten
 
 def read(text: str, world: World, name: str) -> Lesson:
     """Return the lesson that a text describes, with its world. Raises LessonRefused."""
-    root, reasons = _root(text)
-    title = root.table("title", "[title]")
-    titles = _labels(title)
-    title.finish()
-    robot = root.choice("robot", robots.names())
-    known = _known(robots.load(robot or robots.names()[0]))
-    lesson = Lesson(
-        shown(name),
-        robot,
-        titles,
-        root.number("seconds", ONE, MOST_SECONDS * ONE, "seconds = 20", ONE) / ONE,
-        root.whole("worlds", 1, MOST_WORLDS, default=1),
-        root.number("noise_percent", 0, MOST_NOISE * ONE) / ONE / 100,
-        root.yes_no("mirror", False),
-        world,
-        tuple(_variation(each, world) for each in _rows(root, "varies")),
-        tuple(_criterion(each, world, known) for each in _rows(root, "criteria")),
-    )
-    if not lesson.criteria and not reasons:
-        root.complain("no_criteria", "criteria")
-    root.finish()
-    if reasons:
-        raise LessonRefused(*reasons)
+    with root_of(text, LessonRefused) as root:
+        title = root.table("title", "[title]")
+        titles = _labels(title)
+        title.finish()
+        robot = root.choice("robot", robots.names())
+        known = _known(robots.load(robot or robots.names()[0]))
+        lesson = Lesson(
+            shown(name),
+            robot,
+            titles,
+            root.number("seconds", ONE, MOST_SECONDS * ONE, "seconds = 20", ONE) / ONE,
+            root.whole("worlds", 1, MOST_WORLDS, default=1),
+            root.number("noise_percent", 0, MOST_NOISE * ONE) / ONE / 100,
+            root.yes_no("mirror", False),
+            world,
+            tuple(_variation(each, world) for each in _rows(root, "varies")),
+            tuple(_criterion(each, world, known) for each in _rows(root, "criteria")),
+        )
+        if not lesson.criteria and not root.reasons:
+            root.complain("no_criteria", "criteria")
     return lesson
 
 
 def read_answers(text: str) -> tuple[list[Answer], list[Answer]]:
     """Return the right answers of a lesson and the typical wrong ones. Raises LessonRefused."""
-    root, reasons = _root(text)
-    right = [_answer(each, False) for each in _rows(root, "right")]
-    wrong = [_answer(each, True) for each in _rows(root, "wrong")]
-    root.finish()
-    if reasons:
-        raise LessonRefused(*reasons)
+    with root_of(text, LessonRefused) as root:
+        right = [_answer(each, False) for each in _rows(root, "right")]
+        wrong = [_answer(each, True) for each in _rows(root, "wrong")]
     return right, wrong
-
-
-def _root(text: str) -> tuple[Table, list[Reason]]:
-    found = parse_toml(text)
-    if isinstance(found, tuple):
-        raise LessonRefused(found)
-    reasons: list[Reason] = []
-    return Table(found, "", reasons), reasons
 
 
 def _rows(root: Table, key: str) -> list[Table]:

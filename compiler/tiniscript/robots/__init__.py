@@ -61,8 +61,8 @@ def is_path(text: str) -> bool:
     )
 
 
-def text_of(path: str) -> str:
-    """Return the text of a file of at most FILE_BYTES bytes of UTF-8. Raises ProfileRefused."""
+def text_of(path: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
+    """Return the text of a file of at most FILE_BYTES bytes of UTF-8. Raises `refused`."""
     from tiniscript.robots.refusals import shown
 
     values = {"file": shown(path)}
@@ -70,24 +70,24 @@ def text_of(path: str) -> str:
         with Path(path).open("rb") as file:
             found = file.read(FILE_BYTES + 1)
     except FileNotFoundError:
-        raise ProfileRefused(("file_missing", values)) from None
+        raise refused(("file_missing", values)) from None
     except (OSError, ValueError):  # ValueError: the name is not valid for a file
         is_directory = os.path.isdir(path)  # noqa: PTH112 - Path raises for those names
         code = "file_is_directory" if is_directory else "file_unreadable"
-        raise ProfileRefused((code, values)) from None
-    return decoded(found, path)
+        raise refused((code, values)) from None
+    return decoded(found, path, refused)
 
 
-def decoded(found: bytes, name: str) -> str:
-    """Return the text of a file's bytes, as `text_of` does. Raises ProfileRefused."""
+def decoded(found: bytes, name: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
+    """Return the text of a file's bytes, as `text_of` does. Raises `refused`."""
     from tiniscript.robots.refusals import shown
 
     values = {"file": shown(name)}
     if len(found) > FILE_BYTES:
         limit = f"{FILE_BYTES // 1024} KB"
-        raise ProfileRefused(("file_too_large", {**values, "limit": limit}))
+        raise refused(("file_too_large", {**values, "limit": limit}))
     try:
         return found.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = found.count(b"\n", 0, error.start) + 1
-        raise ProfileRefused(("file_not_utf8", {**values, "line": str(line)})) from None
+        raise refused(("file_not_utf8", {**values, "line": str(line)})) from None

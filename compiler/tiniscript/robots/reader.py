@@ -13,9 +13,9 @@ from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.base.languages import SOURCE, ByLanguage, languages
 from tiniscript.base.words import WORDS
 from tiniscript.robots.board_reader import device_tables, read_board
-from tiniscript.robots.profile import SEES, Body, Place, ProfileRefused, Reason, Robot
+from tiniscript.robots.profile import SEES, Body, Place, ProfileRefused, Robot
 from tiniscript.robots.refusals import shown
-from tiniscript.robots.toml_table import Table, parse_toml
+from tiniscript.robots.toml_table import Table, root_of
 
 NAME_CHARACTERS = 24
 UNIT_CHARACTERS = 8
@@ -30,21 +30,14 @@ def read(text: str, name: str, chip: str | None = None) -> Robot:
 
     `chip` replaces the board that the profile names. Raises ProfileRefused.
     """
-    found = parse_toml(text)
-    if isinstance(found, tuple):
-        raise ProfileRefused(found)
-    named = found.get("board")
-    if chip is not None and isinstance(named, dict):
-        named["chip"] = chip
-    reasons: list[Reason] = []
-    root = Table(found, "", reasons)
-    kit = _read_kit(root.table("kit", "[kit]"))
-    board = read_board(root.table("board", "[board]"), kit)
-    body = _read_body(root.table("body", "[body]"), kit)
-    labels = _read_labels(root.table("labels"), kit, shown(name))
-    root.finish()
-    if reasons:
-        raise ProfileRefused(*reasons)
+    with root_of(text, ProfileRefused) as root:
+        kit = _read_kit(root.table("kit", "[kit]"))
+        wired = root.table("board", "[board]")
+        if chip is not None:
+            wired.put("chip", chip)
+        board = read_board(wired, kit)
+        body = _read_body(root.table("body", "[body]"), kit)
+        labels = _read_labels(root.table("labels"), kit, shown(name))
     return Robot(shown(name), kit, board, body, labels)
 
 

@@ -8,11 +8,12 @@ that reading goes on; the caller refuses the file at the end.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.base.words import nearest
-from tiniscript.robots.profile import Reason
+from tiniscript.robots.profile import ProfileRefused, Reason
 from tiniscript.robots.refusals import shown
 
 
@@ -37,6 +38,19 @@ def parse_toml(text: str) -> dict[str, object] | Reason:
         return "key_twice" if is_twice else "not_toml", {"line": place}
 
 
+@contextmanager
+def root_of(text: str, refused: type[ProfileRefused]) -> Iterator[Table]:
+    """Yield the table of a whole file. Raises `refused` with all that has been complained of."""
+    found = parse_toml(text)
+    if isinstance(found, tuple):
+        raise refused(found)
+    root = Table(found, "", [])
+    yield root
+    root.finish()
+    if root.reasons:
+        raise refused(*root.reasons)
+
+
 class Table:
     """A table of a TOML file at `path`. `finish` complains about keys that were never read."""
 
@@ -57,6 +71,10 @@ class Table:
         """Return whether a key is present, and count it as known."""
         self._asked.append(key)
         return key in self._values
+
+    def put(self, key: str, value: object) -> None:
+        """Replace the value at `key`, whatever is written there."""
+        self._values = {**self._values, key: value}
 
     def written(self) -> Iterable[str]:
         return self._values.keys()

@@ -14,7 +14,7 @@ from tiniscript.base.words import nearest
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import ProfileRefused, Reason
 from tiniscript.robots.refusals import shown
-from tiniscript.robots.toml_table import Table, parse_toml
+from tiniscript.robots.toml_table import Table, root_of
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import Flag, Lamp, Line, World, WorldRefused
 
@@ -26,25 +26,18 @@ LABEL_CHARACTERS = 60
 T = TypeVar("T")
 
 
-def read(text: str, name: str) -> World:
-    """Return the world that a text describes, under `name`. Raises WorldRefused."""
-    found = parse_toml(text)
-    if isinstance(found, tuple):
-        raise WorldRefused(found)
+def read(text: str, name: str, refused: type[ProfileRefused] = WorldRefused) -> World:
+    """Return the world that a text describes, under `name`. Raises `refused`."""
+    with root_of(text, refused) as root:
+        world = _read(root, shown(name))
     reasons: list[Reason] = []
-    try:
-        world = _read(Table(found, "", reasons), shown(name))
-    except ProfileRefused as refused:  # a mistake after which reading cannot go on
-        raise WorldRefused(*refused.reasons) from None
-    if reasons:
-        raise WorldRefused(*reasons)
     x_cm, y_cm, _ = world.start
     for key, at_cm, most_cm in (("x_cm", x_cm, world.width_cm), ("y_cm", y_cm, world.height_cm)):
         if not 0 <= at_cm <= most_cm:
             values = {"path": f"start.{key}", "found": f"{at_cm:g}", "most": f"{most_cm:g}"}
             reasons.append(("start_outside", {**values, "line": str(_line_of(text, "start", key))}))
     if reasons:
-        raise WorldRefused(*reasons)
+        raise refused(*reasons)
     return world
 
 
@@ -79,7 +72,7 @@ def _read(root: Table, name: str) -> World:
     task = root.table("task")
     seconds = _number(task, "seconds", 0, MOST_S)
     task.finish()
-    world = World(
+    return World(
         name,
         _labels(root.table("labels"), name),
         width_cm,
@@ -94,8 +87,6 @@ def _read(root: Table, name: str) -> World:
         _parts(root, "flags", _flag),
         seconds,
     )
-    root.finish()
-    return world
 
 
 def _parts(root: Table, key: str, read: Callable[[Table], T]) -> tuple[T, ...]:
@@ -191,11 +182,7 @@ def load(name_or_path: str) -> World:
         name = name_or_path.lower()
         return read((FOLDER / f"{name}.toml").read_text(encoding="utf-8"), name)
     if robots.is_path(name_or_path):
-        try:
-            text = robots.text_of(name_or_path)
-        except ProfileRefused as refused:
-            raise WorldRefused(*refused.reasons) from None
-        return read(text, Path(name_or_path).stem)
+        return read(robots.text_of(name_or_path, WorldRefused), Path(name_or_path).stem)
     values = {"name": shown(name_or_path), "known": ", ".join(names())}
     near = nearest(name_or_path.lower(), names()) or ""
     raise WorldRefused(("no_such_world", {**values, "near": near}))
