@@ -16,62 +16,32 @@ class Sides(NamedTuple):
     right: tuple[Slot, ...]
 
 
-def _analog(first: int, count: int) -> tuple[int, ...]:
-    return tuple(range(first, first + count))
+def _slots(text: str) -> tuple[Slot, ...]:
+    """Return the slots of `"5V - 13..8"`: names, a gap, and pins from 13 down to 8."""
+    found: list[Slot] = []
+    for word in text.split():
+        first, _, last = word.partition("..")
+        if not first.isdigit():
+            found.append(None if word == "-" else word)
+        else:
+            step = 1 if int(last or first) >= int(first) else -1
+            found += range(int(first), int(last or first) + step, step)
+    return tuple(found)
 
 
-def _down(high: int, low: int) -> tuple[int, ...]:
-    return tuple(range(high, low - 1, -1))
-
-
-POWER = ("3.3V", "5V", "GND", "GND", "VIN")
 RECEIVE_PINS = {"esp32dev": 3, "esp32c3": 20}  # of the link; 0 on the others
 ROW_AT_THE_END = range(22, 54)  # a Mega's double row; only its used pins are drawn
 
 SIDES = {
-    "uno": Sides(
-        "Arduino Uno",
-        (*POWER, None, *_analog(14, 6)),
-        ("GND", *_down(13, 8), None, *_down(7, 0)),
-    ),
-    "nano": Sides(
-        "Arduino Nano",
-        (13, "3V3", "REF", *_analog(14, 8), "5V", "RST", "GND", "VIN"),
-        (*_down(12, 2), "GND", "RST", 0, 1),
-    ),
-    "mega": Sides(
-        "Arduino Mega",
-        (*POWER, None, *_analog(54, 8), None, *_analog(62, 8)),
-        ("GND", *_down(13, 8), None, *_down(7, 0), None, *range(14, 22)),
-    ),
-    "esp32dev": Sides(
-        "ESP32-DevKitC",
-        ("CLK", "D0", "D1", 15, 2, 0, 4, 16, 17, 5, 18, 19, "GND", 21, 3, 1, 22, 23, "GND"),
-        (
-            "5V",
-            "CMD",
-            "D3",
-            "D2",
-            13,
-            "GND",
-            12,
-            14,
-            27,
-            26,
-            25,
-            33,
-            32,
-            35,
-            34,
-            39,
-            36,
-            "EN",
-            "3V3",
-        ),
-    ),
-    "esp32c3": Sides(
-        "ESP32-C3-DevKitM-1",
-        ("GND", 19, 18, "GND", 4, 5, 6, 7, "GND", 8, 9, "GND", 20, 21, "GND"),
-        ("GND", "5V", "5V", "GND", 10, 1, 0, "GND", "RST", "GND", 3, 2, "3V3", "3V3", "GND"),
-    ),
-}
+    board: Sides(name, _slots(left), _slots(right))
+    for board, name, left, right in (
+        ("uno", "Arduino Uno", "3.3V 5V GND GND VIN - 14..19", "GND 13..8 - 7..0"),
+        ("nano", "Arduino Nano", "13 3V3 REF 14..21 5V RST GND VIN", "12..2 GND RST 0 1"),
+        ("mega", "Arduino Mega",
+         "3.3V 5V GND GND VIN - 54..61 - 62..69", "GND 13..8 - 7..0 - 14..21"),
+        ("esp32dev", "ESP32-DevKitC", "CLK D0 D1 15 2 0 4 16 17 5 18 19 GND 21 3 1 22 23 GND",
+         "5V CMD D3 D2 13 GND 12 14 27..25 33 32 35 34 39 36 EN 3V3"),
+        ("esp32c3", "ESP32-C3-DevKitM-1", "GND 19 18 GND 4..7 GND 8 9 GND 20 21 GND",
+         "GND 5V 5V GND 10 1 0 GND RST GND 3 2 3V3 3V3 GND"),
+    )
+}  # fmt: skip
