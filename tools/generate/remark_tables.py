@@ -4,33 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tiniscript.base.languages import SOURCE
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.codegen.text.problems import PROBLEMS, REMARKS, said
 from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answered, language_number
-from tools.generate.cpp_header import camel
 from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, packed
-from tools.generate.text_tables import bytes_of_table, file_of
+from tools.generate.text_tables import bytes_of_table, file_of, numbers_of
 
 
 def remarks_header(command: str) -> str:
     """Return `remarks.h`."""
-    rows = [
-        f"  k{camel(remark)} = {number},  // {said('remark', remark, SOURCE)}".rstrip(" /")
-        for number, remark in enumerate(REMARKS, 1)
-    ]
-    return file_of(
-        command,
-        "remarks.h",
-        "What the robot says to a person beside what is wrong with a line.",
-        [
-            "enum class Remark : uint8_t {",
-            "  kNone = 0,",
-            *rows,
-            "};",
-        ],
-    )
+    about = "What the robot says to a person beside what is wrong with a line."
+    return file_of(command, "remarks.h", about, [numbers_of("Remark", REMARKS)])
 
 
 def texts_header(command: str) -> str:

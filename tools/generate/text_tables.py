@@ -17,7 +17,7 @@ from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.codegen.text.problems import PROBLEMS, said
 from tiniscript.robots.kit_words import packed, packed_range
 from tiniscript.robots.text_levels import UNREAD
-from tools.generate.cpp_header import camel, cpp_file
+from tools.generate.cpp_header import camel, cpp_file, enumeration
 
 FIRST_WORD = 0x40  # the token of the first word; those of signs lie below and above
 # Roles in the order in which the reader wants their words: those with brackets first.
@@ -193,21 +193,14 @@ def words_tables(command: str) -> str:
 
 def problems_header(command: str) -> str:
     """Return `problems.h`."""
-    rows = [
-        f"  k{camel(problem)} = {number},  // {said('problem', problem, SOURCE)}"
-        for number, problem in enumerate(PROBLEMS, 1)
-    ]
-    return file_of(
-        command,
-        "problems.h",
-        "What the reader of text says about a wrong line.",
-        [
-            "enum class Problem : uint8_t {",
-            "  kNone = 0,",
-            *rows,
-            "};",
-        ],
-    )
+    about = "What the reader of text says about a wrong line."
+    return file_of(command, "problems.h", about, [numbers_of("Problem", PROBLEMS)])
+
+
+def numbers_of(name: str, keys: Sequence[str]) -> str:
+    """Return an enum of what a robot says, with its English texts."""
+    rows = [(key, k, said(name.lower(), key, SOURCE)) for k, key in enumerate(keys, 1)]
+    return enumeration(name, [("NONE", 0, ""), *rows]).rstrip("\n")
 
 
 def bytes_of_table(data: Iterable[int]) -> str:

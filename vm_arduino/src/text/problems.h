@@ -30,7 +30,7 @@ enum class Problem : uint8_t {
   kClose = 13,  // Check the ( and )
   kValue = 14,  // A value is missing
   kCount = 15,  // Too many or too few values
-  kRange = 16,  //  to 
+  kRange = 16,  //  to
   kWantsNumber = 17,  // Needs a number
   kWantsYesNo = 18,  // Ask, like DISTANCE < 10
   kCompare = 19,  // Compare 2 values of one kind
