@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 import pytest
@@ -27,6 +26,8 @@ from tests.sketch.agreement import (
     wanted,
     with_wide_kit,
 )
+from tests.support.campaign import each_seed
+from tests.support.campaign import wanted as wanted_seeds
 from tests.support.casefile import example_robot, has_tasks, sketch_examples
 from tiniscript import compile_text, robots
 from tiniscript.base.fixed_point import ONE
@@ -109,17 +110,14 @@ def test_answers_of_lessons(number: int) -> None:
     agrees(text, robot, (FAR, NEAR)[number % 2], (300, 700)[number // 2 % 2], 2)
 
 
-ROBOT = robots.load("tinibot")
+ROBOT, ROBOT_WIDE = robots.load("tinibot"), with_wide_kit()
 
 
 @pytest.mark.sampled("seeds")
 @pytest.mark.parametrize("seeds", [range(k, k + 4) for k in range(0, 24, 4)], ids=str)
 def test_random_programs(seeds: range) -> None:
-    robot = with_wide_kit()
     for seed in seeds:
-        made = example(seed, robot)
-        if made is not None:
-            check(made, robot, "es" if seed % 2 else "en")
+        check_seed(seed)
 
 
 # -- parts of kits
@@ -263,21 +261,13 @@ def test_a_program_that_does_nothing(text: str) -> None:
     assert {value for _, value in done.motors} == {(0, 0)} and done.text == ""
 
 
-def campaign(first: int, count: int) -> None:
-    robot, tried, seed = with_wide_kit(), 0, first
-    while tried < count:
-        made = example(seed, robot)
-        if made is not None:
-            check(made, robot, "es" if seed % 2 else "en")
-            tried += 1
-            if tried % 20 == 0:
-                print(f"{tried} programs agree", flush=True)
-        seed += 1
+def check_seed(seed: int) -> str:
+    made = example(seed, ROBOT_WIDE)
+    if made is None:
+        return "no example"
+    check(made, ROBOT_WIDE, "es" if seed % 2 else "en")
+    return "agrees"
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("count", nargs="?", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=0)
-    options = parser.parse_args()
-    campaign(options.seed, options.count)
+    each_seed(check_seed, wanted_seeds(200, 0))

@@ -6,7 +6,6 @@ broken ones from each.
 
 from __future__ import annotations
 
-import argparse
 import random
 import re
 from collections import Counter
@@ -18,6 +17,7 @@ from tests.machines import Senses
 from tests.machines.python import lists_of
 from tests.machines.text_reader import LARGEST_ROOM, Answer, TextReader
 from tests.oracle import programs
+from tests.support.campaign import each_seed, wanted
 from tests.support.casefile import Case, all_cases
 from tests.support.kits import KITS
 from tests.support.rows import each_row
@@ -242,31 +242,25 @@ def test_little_room_is_full_and_nothing_else(room: int) -> None:
             assert got.problem == "FULL" or got == want
 
 
-def campaign(first: int, count: int) -> None:
-    """Compare `count` programs, and for each ten with slips and ten lines of any tokens.
+FOUND: Counter[str] = Counter()  # in a campaign, of texts that are no whole programs
+
+
+def check_seed(seed: int) -> None:
+    """Compare a program, ten with slips, and ten lines of any tokens.
 
     What a program does is compared for one of TRACED: runs take longest.
     """
-    found: Counter[str] = Counter()
-    for seed in range(first, first + count):
-        kit, data, senses, slips = texts_of(seed, 10)
-        if seed % TRACED:
-            check_bytes(data, kit)
-        else:
-            check_program(data, kit, senses)
-        soups = [soup(10 * seed + k) for k in range(10)]
-        for each_kit, each in [(kit, each) for each in slips] + soups:
-            answer = check_bytes(each, each_kit)
-            found["full" if answer is None else "program" if answer.is_program else "refused"] += 1
-        if seed % 1000 == 999:
-            print(
-                f"{seed + 1 - first} programs agree, and of other texts {dict(found)}", flush=True
-            )
+    kit, data, senses, slips = texts_of(seed, 10)
+    if seed % TRACED:
+        check_bytes(data, kit)
+    else:
+        check_program(data, kit, senses)
+    soups = [soup(10 * seed + k) for k in range(10)]
+    for each_kit, each in [(kit, each) for each in slips] + soups:
+        answer = check_bytes(each, each_kit)
+        FOUND["full" if answer is None else "program" if answer.is_program else "refused"] += 1
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("count", nargs="?", type=int, default=100_000)
-    parser.add_argument("--seed", type=int, default=1_000_000)
-    options = parser.parse_args()
-    campaign(options.seed, options.count)
+    each_seed(check_seed, wanted(100_000, 1_000_000))
+    print(f"of other texts {dict(FOUND)}")

@@ -6,7 +6,6 @@ line with the compiler. `python -m tests.vm.test_agreement 100000` runs a campai
 
 from __future__ import annotations
 
-import argparse
 import random
 from typing import NamedTuple
 
@@ -14,6 +13,7 @@ import pytest
 
 from tests.machines import MACHINES, ONE_IN, Machine, Senses
 from tests.oracle import interpreter, programs
+from tests.support.campaign import each_seed, wanted
 from tests.support.kits import KITS
 from tiniscript import Compiled, compile_text
 from tiniscript.base.kit import Kit
@@ -151,17 +151,10 @@ def test_the_compiler_never_makes_what_verify_refuses(part: int) -> None:
         verify(compiled.code, len(kit.sensors), len(kit.actuators))
 
 
-def campaign(first: int, count: int) -> None:
-    for seed in range(first, first + count):
-        check_program(seed)
-        check_broken(seed)
-        if seed % 1000 == 999:
-            print(f"{seed + 1 - first} programs agree", flush=True)
+def check_both(seed: int) -> None:
+    check_program(seed)
+    check_broken(seed)
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("count", nargs="?", type=int, default=100_000)
-    parser.add_argument("--seed", type=int, default=BATCH * BATCHES)
-    options = parser.parse_args()
-    campaign(options.seed, options.count)
+    each_seed(check_both, wanted(100_000, BATCH * BATCHES))

@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import argparse
 import random
 import time
 import zlib
@@ -20,6 +19,7 @@ import pytest
 from tests.machines import Senses
 from tests.machines.host import host
 from tests.support import cpp_checks
+from tests.support.campaign import wanted
 from tests.support.casefile import Case
 from tests.support.cpp_checks import (
     KIT,
@@ -316,9 +316,5 @@ def all_of_three() -> None:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("count", nargs="?", type=int, default=1_000_000)
-    parser.add_argument("--three", action="store_true", help="all codes of three bytes instead")
-    parser.add_argument("--seed", type=int, default=BATCHES)
-    options = parser.parse_args()
-    all_of_three() if options.three else campaign(options.count, options.seed)
+    given = wanted(1_000_000, BATCHES, "three")
+    all_of_three() if given.three else campaign(given.count, given.seed)
