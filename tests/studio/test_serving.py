@@ -60,6 +60,10 @@ def test_the_page_comes_with_its_policy(own: str) -> None:
     assert response.getheader("Content-Type") == "text/javascript; charset=utf-8"
     response, data = ask(own, "/main.js", "HEAD")
     assert (response.status, data, response.getheader("Content-Length")) == (200, b"", "1")
+    with socket.create_connection((serving.HOST, int(own.rpartition(":")[2])), HANGS_S) as browser:
+        browser.sendall(f"HEAD /main.js HTTP/1.0\r\nHost: {own}\r\n\r\n".encode())
+        said = b"".join(iter(lambda: browser.recv(4096), b""))
+    assert b" 200 " in said and said.endswith(b"\r\n\r\n")  # nothing behind the head
 
 
 @pytest.mark.parametrize(

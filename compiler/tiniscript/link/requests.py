@@ -161,12 +161,8 @@ def _payload_bytes(robot: DeviceInfo) -> int:
     """Return how long a payload may be: less where frames are sealed, or will be with a key."""
     features = robot.values.features
     is_sealed = bool(features & SEALS and features & (OWNED | YOURS))
-    return payload_bytes(largest_frame(robot), is_sealed)
-
-
-def largest_frame(robot: DeviceInfo) -> int:
-    """Return the most bytes of a frame to or from a robot that both ends take."""
-    return min(max(robot.values.largest, SMALL_FRAME), LARGE_FRAME)
+    largest = min(max(robot.values.largest, SMALL_FRAME), LARGE_FRAME)  # that both ends take
+    return payload_bytes(largest, is_sealed)
 
 
 def short_bytes(robot: DeviceInfo) -> int:

@@ -67,17 +67,14 @@ class Trim(NamedTuple):
 
 def told(reply: TrimReply) -> Trim:
     """Return the trim in the reply to TRIM."""
+    pace = None
+    if len(reply.pace) == PACE_BYTES:
+        pace = Pace(*(each / 100 for each in struct.unpack("<4H", reply.pace)))
     return Trim(
         bool(reply.wheels & EXCHANGED),
         bool(reply.wheels & LEFT_REVERSED),
         bool(reply.wheels & RIGHT_REVERSED),
         reply.balance,
         reply.least,
-        _pace(reply.pace),
+        pace,
     )
-
-
-def _pace(data: bytes) -> Pace | None:
-    if len(data) != PACE_BYTES:
-        return None
-    return Pace(*(each / 100 for each in struct.unpack("<4H", data)))

@@ -15,6 +15,7 @@ import secrets
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
+from itertools import count
 from threading import RLock
 from time import monotonic
 
@@ -105,6 +106,12 @@ class ClassRobot:
     def end(self) -> None:
         self.pupil = self.hosted = None
 
+    def take_back(self) -> None:
+        """End a turn, and stop what it has started."""
+        if self.hosted is not None:
+            self.hosted.leave("turn_over")
+        self.end()
+
 
 LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"  # none looks like another
 CODE_LETTERS = 6  # a thousand million codes
@@ -149,7 +156,7 @@ class Classroom:
         self._places = PLACES
         self._wrong = Rate(*WRONG)
         self._requests = Rate(*REQUESTS)
-        self._count = 0  # of pupils, of places in the queue, of hands and of what is given back
+        self._numbers = count(1)  # of pupils, of places in the queue and of hands
         self._kept: dict[str, Work] = {}  # of who is not here, by name
         self._goes_on = False  # after a crash, and the teacher has not said otherwise
         self._over = ""  # or whether pupils' work is kept
@@ -214,9 +221,8 @@ class Classroom:
             return {"failure": "class_full"}
         taken = {each.name for each in self._pupils.values()}
         free = next(each for each in names if each not in taken)
-        self._count += 1
         token = new_token()
-        self._pupils[token] = Pupil(self._count, free, address, now_s)
+        self._pupils[token] = Pupil(next(self._numbers), free, address, now_s)
         return {"token": token, "name": free}
 
     def _give_place_away(self, now_s: float, silent_s: float, tokens: list[str]) -> bool:
@@ -247,13 +253,11 @@ class Classroom:
         if wants is False:
             pupil.waits = None
         elif wants is True and pupil.waits is None and self._turn(pupil) is None:
-            self._count += 1
-            pupil.waits = self._count
+            pupil.waits = next(self._numbers)
         if hand is False:
             pupil.hand = None
         elif hand is True and pupil.hand is None:
-            self._count += 1
-            pupil.hand = self._count
+            pupil.hand = next(self._numbers)
         self._tend()
         if self._over:
             pupil.knows_end = True
@@ -350,8 +354,7 @@ class Classroom:
         elif self._waiting() and (
             now_s - robot.began_s >= self._turn_s or hosted.attending.silent_s > HERE_S
         ):
-            hosted.leave("turn_over")
-            robot.end()
+            robot.take_back()
 
     def _begin_turn(self, robot: ClassRobot, now_s: float) -> None:
         here = [each for each in self._waiting() if now_s - each.heard_s <= HERE_S]
@@ -412,17 +415,16 @@ class Classroom:
 
     def _teach(self, do: str, token: str, pupil: Pupil) -> None:
         robot = self._turn(pupil)
-        hosted = robot.hosted if robot else None
-        if do == "class_stop":
-            if hosted is not None:
-                hosted.attending.latch()
-            return
         if do == "class_hand":
             pupil.hand = None
-            return
-        self._take_back(robot, hosted)
-        if do == "class_remove":
-            self._forget(token)
+        elif do == "class_stop":
+            if robot is not None and robot.hosted is not None:
+                robot.hosted.attending.latch()
+        else:
+            if robot is not None:
+                robot.take_back()
+            if do == "class_remove":
+                self._forget(token)
 
     # -- what is kept -----------------------------------------------------------------------------
 
@@ -451,7 +453,7 @@ class Classroom:
     def _begin_anew(self) -> None:
         """Begin another class: nobody is in it, and nothing is kept of the one before."""
         for each in self._robots:
-            self._take_back(each, each.hosted)
+            each.take_back()
         self._pupils.clear()
         self._kept.clear()
         self.code = _new_code()
@@ -492,8 +494,7 @@ class Classroom:
                 work = Work.of(each) or NOTHING
                 if not is_token(token) or not isinstance(name, str) or not isinstance(address, str):
                     continue
-                self._count += 1
-                pupil = Pupil(self._count, plain_name(name), address, now_s, work)
+                pupil = Pupil(next(self._numbers), plain_name(name), address, now_s, work)
                 if pupil.name:
                     self._pupils[str(token)] = pupil
             for port in kept["robots"] if isinstance(kept.get("robots"), list) else []:
@@ -505,19 +506,13 @@ class Classroom:
             self._goes_on = bool(self._pupils or self._kept)
             return len(self._pupils)
 
-    def _take_back(self, robot: ClassRobot | None, hosted: HostedRobot | None) -> None:
-        if hosted is not None:
-            hosted.leave("turn_over")
-        if robot is not None:
-            robot.end()
-
     def _give(self, given: ClassRobot, is_given: bool) -> None:
         """Give a robot to the class, or take it away."""
         port = same_for_all(given.port)
         same = [each for each in self._robots if same_for_all(each.port) == port]
         for each in same:
             if not is_given:
-                self._take_back(each, each.hosted)
+                each.take_back()
                 self._robots.remove(each)
         if is_given and not same:
             if len(self._robots) >= MOST_ROBOTS:
@@ -526,7 +521,7 @@ class Classroom:
 
     def _end(self, erases: bool) -> None:
         for each in self._robots:
-            self._take_back(each, each.hosted)
+            each.take_back()
         self._over = "erased" if erases else "kept"
         self._over_s = self._clock()
 

@@ -143,25 +143,13 @@ class VirtualRobot:
 
     def rest(self) -> None:
         """End its time: it no longer moves, whatever its firmware does."""
-        self._halt()
-        self._traced.now_ms = self.now_ms
-        if self.is_running:
-            self._say("STOP")
-            self.ended_ms = self.now_ms
-        self.is_running = False
-        self._ended = ""
+        self._halt("STOP")
         self.is_at_rest = True
         self._told = len(self._traced.events)
 
     def switch_off(self) -> None:
         """Switch it off. Its clock must not go on until it is switched on again."""
-        self._halt()
-        if self.is_running:
-            self._traced.now_ms = self.now_ms
-            self._say("OFF")
-            self.ended_ms = self.now_ms
-        self.is_running = False
-        self._ended = ""
+        self._halt("OFF")
         self.actuators.clear()
 
     def _switched_on(self, reset: int, memory: bytes | None) -> Firmware:
@@ -320,12 +308,19 @@ class VirtualRobot:
         else:
             self.driving.set_motors(self.now_ms, *made)
 
-    def _halt(self) -> None:
-        """Its motors have no power from now on, and its time need not go on."""
+    def _halt(self, said: str) -> None:
+        """Its motors have no power from now on, and a program that runs has ended, as is `said`.
+        Its time need not go on."""
         if self.wheels:
             self.wheels.go_on(self.now_ms)
             self.wheels.brake()
         self.driving.set_motors(self.now_ms, 0, 0)
+        self._traced.now_ms = self.now_ms
+        if self.is_running:
+            self._say(said)
+            self.ended_ms = self.now_ms
+        self.is_running = False
+        self._ended = ""
 
     def _noticed(self, sensor: int) -> int:
         if self.wheels:
