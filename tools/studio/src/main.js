@@ -80,9 +80,9 @@ showRobots();
 so.robot.say(work.robot);
 
 const editor = new Editor(element('editor', HTMLElement));
-const views = new Views(python, editor, work, remember);
-const driving = new SimulatorPanel(python, work, () => checking.whenChecked(), remember);
-const programs = new Programs(python, work, putProgram, () => views.picture());
+const views = new Views({ python, editor, work, remember });
+const driving = new SimulatorPanel({ python, work, whenCompiled: () => checking.whenChecked(), remember });
+const programs = new Programs({ python, work, put: putProgram, picturing: () => views.picture() });
 
 const recorder = new Recorder({ python, world: () => driving.world });
 const place = new RobotPlace();

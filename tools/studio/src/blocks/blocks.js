@@ -11,8 +11,7 @@ import { look } from './styles.js';
 import { toolbox } from './toolbox.js';
 import { text, textsOf } from '../page/texts.js';
 
-/** @typedef {import('./form.js').Form} Form */
-/** @typedef {import('./form.js').Range} Range */
+/** @import { Form, Range } from './form.js' */
 /** @typedef {import('./toolbox.js').Level} Level */
 /** @typedef {import('../python.js').Finding} Finding */
 /** @typedef {{changed: () => void, toggle: (place: {line: number, column: number}) => void}} Told */

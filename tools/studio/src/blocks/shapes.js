@@ -7,8 +7,7 @@ import { rangeOf } from './places.js';
 import { called } from '../page/texts.js';
 import { devicesOf, KINDS, nameOf, onBlock, tipOf } from '../page/words.js';
 
-/** @typedef {import('../page/words.js').Place} Place */
-/** @typedef {import('../page/words.js').Kind} Kind */
+/** @import { Place, Kind } from '../page/words.js' */
 
 const CHECKS = { number: 'Number', truth: 'Boolean', any: null };
 /** @type {string} */

@@ -4,8 +4,7 @@ import { drawn, made } from './made.js';
 import { drawRobot } from '../virtual/robot_drawing.js';
 import { cornersOf } from '../world/parts.js';
 
-/** @typedef {import('../world/parts.js').World} World */
-/** @typedef {import('../world/parts.js').Place} Place */
+/** @import { World, Place } from '../world/parts.js' */
 
 const WIDE = 96, HIGH = 66; // pixels of a robot's picture
 const ROBOT_CM = 34; // that are seen of one

@@ -19,8 +19,15 @@ import { keep } from './work.js';
 import { whole } from '../writing/messages.js';
 
 /** @typedef {import('./versions.js').Version} Version */
-/** @typedef {import('./work.js').Work} Work */
 /** @typedef {{text: string} | {wrong: string}} Given what is shared, or why it is not */
+
+/**
+ * @typedef {object} Page what this window needs of the page
+ * @property {import('../python.js').Python} python
+ * @property {import('./work.js').Work} work
+ * @property {(program: {text: string, robot: string, name: string}) => void} put it into the editor
+ * @property {() => Promise<Blob | null>} picturing the program's blocks, as a file
+ */
 
 const PUBLIC = 'tiniscript.public'; // where others find this page, as somebody has told it
 const MOST_PICTURED = 900; // bytes: a camera reads no picture with more from a screen
@@ -38,29 +45,18 @@ export class Programs {
   #copy = element('copy', HTMLButtonElement);
   #name = element('program_name', HTMLInputElement);
   #public = element('public', HTMLInputElement);
-  #python;
-  #work;
-  #picturing;
-  #put;
+  #page;
   #asked = 0;
 
-  /**
-   * @param {import('../python.js').Python} python
-   * @param {Work} work
-   * @param {(program: {text: string, robot: string, name: string}) => void} put it into the editor
-   * @param {() => Promise<Blob | null>} picturing the program's blocks, as a file
-   */
-  constructor(python, work, put, picturing) {
-    this.#python = python;
-    this.#work = work;
-    this.#put = put;
-    this.#picturing = picturing;
+  /** @param {Page} page */
+  constructor(page) {
+    this.#page = page;
     element('my_programs', HTMLButtonElement).addEventListener('click', () => this.#open());
     element('programs_close', HTMLButtonElement).addEventListener('click', () => this.#window.close());
     // The page's own is behind this window.
     element('programs_stop', HTMLButtonElement).addEventListener('click', () => element('stop', HTMLButtonElement).click());
     element('new', HTMLButtonElement).addEventListener('click', () => {
-      this.replace({ text: '', robot: work.robot, name: '' });
+      this.replace({ text: '', robot: page.work.robot, name: '' });
       this.#window.close();
     });
     this.#link.addEventListener('click', () => this.#share('link'));
@@ -82,8 +78,8 @@ export class Programs {
 
   /** Keeps what is in the editor among the earlier programs, unless the page has brought it. */
   keep() {
-    if (isGiven(this.#work.text)) return;
-    if (!keepVersion(this.#work)) so.note.say(text(this.#work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
+    if (isGiven(this.#page.work.text)) return;
+    if (!keepVersion(this.#page.work)) so.note.say(text(this.#page.work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
   }
 
   /**
@@ -92,7 +88,7 @@ export class Programs {
    */
   replace(program) {
     this.keep();
-    this.#put(program);
+    this.#page.put(program);
   }
 
   /** Opens the program of the page's address, if there is one; it does not run. */
@@ -113,7 +109,7 @@ export class Programs {
   #open() {
     this.keep();
     this.#showVersions();
-    this.#name.value = this.#work.name.replace(/\.\w+$/, '');
+    this.#name.value = this.#page.work.name.replace(/\.\w+$/, '');
     this.#public.value = publicAddress();
     this.#window.showModal();
     this.#share('link');
@@ -122,8 +118,8 @@ export class Programs {
   /** Gives the program another name; its file gets it, too. */
   #rename() {
     const name = this.#name.value.replace(/[\\/:*?"<>|\u0000-\u001f]|^[ .]+|\.ts$/g, '').trim();
-    this.#work.name = name && `${name}.ts`;
-    keep(this.#work);
+    this.#page.work.name = name && `${name}.ts`;
+    keep(this.#page.work);
     this.keep();
     this.#showVersions();
   }
@@ -152,14 +148,14 @@ export class Programs {
   /** @returns {Promise<Given>} */
   async #asLink() {
     if (publicAddress() && !isAddress(publicAddress())) return { wrong: text('public_wrong') };
-    const link = await linkOf(this.#work, this.#address);
+    const link = await linkOf(this.#page.work, this.#address);
     return link === null ? { wrong: text('link_too_long') } : { text: link };
   }
 
   /** @returns {Promise<Given>} */
   async #asLine() {
-    const request = { do: 'line', robot: this.#work.robot, language: currentLanguage() };
-    const answer = await this.#python.ask(request, new TextEncoder().encode(this.#work.text));
+    const request = { do: 'line', robot: this.#page.work.robot, language: currentLanguage() };
+    const answer = await this.#page.python.ask(request, new TextEncoder().encode(this.#page.work.text));
     if (answer.text !== undefined) return { text: answer.text };
     return { wrong: whole(answer) };
   }
@@ -185,10 +181,10 @@ export class Programs {
   }
 
   async #savePicture() {
-    const name = (this.#work.name || text('file_name')).replace(/\.\w+$/, '') + '.png';
+    const name = (this.#page.work.name || text('file_name')).replace(/\.\w+$/, '') + '.png';
     let file = null;
     try {
-      file = await this.#picturing();
+      file = await this.#page.picturing();
     } catch {
       // said below
     }

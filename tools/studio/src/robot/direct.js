@@ -4,12 +4,10 @@
 // The main thread owns the port and asks the session for every byte: when it hangs or the page
 // sleeps, nothing is sent, and the robot stops by itself.
 
-import { Failed, pause } from './transport.js';
+import { Asking, Failed, pause } from './transport.js';
 import { LINK, robotOf } from '../page/words.js';
 
-/** @typedef {import('./transport.js').Heard} Heard */
-/** @typedef {import('./transport.js').Answer} Answer */
-/** @typedef {import('./transport.js').About} About */
+/** @import { Heard, About } from './transport.js' */
 
 /**
  * What carries bytes. `write` keeps the order; `gone` comes once, when nothing is carried any more.
@@ -25,22 +23,14 @@ const LOOK_MS = 100; // between two looks at the latest
 const STOP = new Uint8Array(LINK.stop_bytes); // zeros stop a robot, whatever it hears
 const LOCK = 'tiniscript-robot';
 
-export class DirectRobot {
+export class DirectRobot extends Asking {
   #python;
   #port;
-  #heard;
-  #isOver = false;
   #isGoing = false;
   #isAgain = false;
   #bytes = 0;
-  #count = 0;
-  #timer = 0;
   /** @type {number[]} */
   #came = [];
-  /** @type {Record<string, unknown>[]} */
-  #asked = [];
-  /** @type {Map<number, {resolve: (answer: Answer) => void, reject: (why: Error) => void}>} */
-  #waiting = new Map();
   #unlock = () => {};
   #keepKeys;
 
@@ -51,9 +41,9 @@ export class DirectRobot {
    * @param {(keys: string) => unknown} keepKeys
    */
   constructor(python, port, heard, keepKeys) {
+    super(heard);
     this.#python = python;
     this.#port = port;
-    this.#heard = heard;
     this.#keepKeys = keepKeys;
   }
 
@@ -72,14 +62,14 @@ export class DirectRobot {
         (data) => {
           this.#bytes += data.length;
           for (const byte of data) this.#came.push(byte);
-          this.#go();
+          this.go();
         },
-        () => this.#end(new Failed(this.#port.goneBy)),
+        () => this.end(new Failed(this.#port.goneBy)),
       );
       return await this.#meet(robot);
     } catch (why) {
       const failed = why instanceof Failed ? why : new Failed('bug', String(why));
-      this.#end(failed);
+      this.end(failed);
       throw failed;
     }
   }
@@ -118,93 +108,62 @@ export class DirectRobot {
     return answer.robot;
   }
 
-  /** @param {Record<string, unknown>} request @returns {Promise<Answer>} */
-  ask(request) {
-    const id = ++this.#count;
-    return new Promise((resolve, reject) => {
-      if (this.#isOver) {
-        reject(new Failed('left'));
-        return;
-      }
-      this.#waiting.set(id, { resolve, reject });
-      this.#asked.push({ ...request, id });
-      this.#go();
-    });
-  }
-
   /** Stops the robot: at once, and again until it confirms. What waits is not done. */
   stop() {
-    if (this.#isOver) return;
+    if (this.isOver) return;
     this.#port.write(STOP).catch(() => {});
-    for (const each of this.#asked.splice(0)) {
-      const id = Number(each['id']);
-      this.#waiting.get(id)?.resolve({ failure: 'stopped_elsewhere' });
-      this.#waiting.delete(id);
-    }
+    for (const { id } of this.asked.splice(0)) this.take({ id, failure: 'stopped_elsewhere' });
     this.ask({ do: 'stop' }).catch(() => {});
   }
 
   /** Stops the robot and closes the port. */
   leave() {
-    if (this.#isOver) return;
+    if (this.isOver) return;
     const last = this.#port.write(STOP).catch(() => {});
-    this.#end(new Failed('left'), last);
+    this.end(new Failed('left'), last);
   }
 
-  async #go() {
-    if (this.#isOver) return;
+  async go() {
+    if (this.isOver) return;
     if (this.#isGoing) {
       this.#isAgain = true;
       return;
     }
     this.#isGoing = true;
-    clearTimeout(this.#timer);
+    clearTimeout(this.timer);
     let wakes = LOOK_MS;
     try {
       do {
         this.#isAgain = false;
         const now_ms = Math.floor(performance.now());
         const data = new Uint8Array(this.#came.splice(0));
-        const asked = this.#asked.splice(0);
+        const asked = this.asked.splice(0);
         const answer = await this.#python.ask({ do: 'link', now_ms, asked }, data);
-        if (this.#isOver) return;
+        if (this.isOver) return;
         if (answer.send) await this.#port.write(bytesOf(answer.send));
         if (answer.keys) this.#keepKeys(answer.keys);
         for (const each of answer.news) {
-          this.#take(each);
+          this.take(each);
           await undefined; // who has asked hears its answer before what comes next
         }
         if (answer.wakes_ms !== null) wakes = Math.max(0, Math.min(LOOK_MS, answer.wakes_ms - performance.now()));
-      } while (this.#isAgain && !this.#isOver);
+      } while (this.#isAgain && !this.isOver);
     } catch (why) {
-      this.#end(why instanceof Failed ? why : new Failed(this.#port.goneBy, ''));
+      this.end(why instanceof Failed ? why : new Failed(this.#port.goneBy, ''));
     } finally {
       this.#isGoing = false;
     }
-    if (!this.#isOver) this.#timer = window.setTimeout(() => this.#go(), wakes);
-  }
-
-  /** @param {any} news */
-  #take(news) {
-    if (news.event) this.#heard.event(news);
-    else {
-      this.#waiting.get(news.id)?.resolve(news);
-      this.#waiting.delete(news.id);
-    }
+    if (!this.isOver) this.timer = window.setTimeout(() => this.go(), wakes);
   }
 
   /** @param {Failed} why @param {Promise<unknown>} [before] */
-  #end(why, before = Promise.resolve()) {
-    if (this.#isOver) return;
-    this.#isOver = true;
-    clearTimeout(this.#timer);
-    for (const waiting of this.#waiting.values()) waiting.reject(why);
-    this.#waiting.clear();
+  end(why, before = Promise.resolve()) {
+    if (this.isOver) return;
     before
       .then(() => this.#port.close())
       .catch(() => {})
       .finally(() => this.#unlock());
-    this.#heard.over(why);
+    super.end(why);
   }
 }
 

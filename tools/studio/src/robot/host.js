@@ -5,11 +5,9 @@
 // The main thread asks many times a second; when it hangs or the page sleeps, `tsc studio` hears
 // nothing, and stops the robot.
 
-/** @typedef {import('./transport.js').Heard} Heard */
-/** @typedef {import('./transport.js').Answer} Answer */
-/** @typedef {import('./transport.js').About} About */
+/** @import { Answer, About } from './transport.js' */
 
-import { Failed } from './transport.js';
+import { Asking, Failed } from './transport.js';
 import { keepAt, kept } from '../page/kept.js';
 
 /** @typedef {{port: string, name: string, description: string, virtual: string | null}} Port */
@@ -81,29 +79,16 @@ export async function hostPorts() {
 }
 
 
-export class HostRobot {
+export class HostRobot extends Asking {
   #page = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, '0')).join('');
-  #heard;
-  #count = 0;
   #seen = 0;
-  #isOver = false;
   #isAsking = false;
   #heardAt = 0;
-  /** @type {Record<string, unknown>[]} */
-  #asked = [];
-  /** @type {Map<number, {resolve: (answer: Answer) => void, reject: (why: Error) => void}>} */
-  #waiting = new Map();
   /** @type {(about: About) => void} */
   #met = () => {};
   /** @type {(why: Error) => void} */
   #fails = () => {};
-  #timer = 0;
   #stops = 0; // what was asked before one, and arrives after it, is void
-
-  /** @param {Heard} heard */
-  constructor(heard) {
-    this.#heard = heard;
-  }
 
   /**
    * Connects; rejects with a Failed.
@@ -126,84 +111,67 @@ export class HostRobot {
       this.#fails = reject;
     });
     this.#heardAt = performance.now();
-    this.#beat();
+    this.go();
     return met;
   }
 
   /** @param {Record<string, unknown>} request @returns {Promise<Answer>} */
   ask(request) {
-    const id = ++this.#count;
-    return new Promise((resolve, reject) => {
-      if (this.#isOver) {
-        reject(new Failed('left'));
-        return;
-      }
-      this.#waiting.set(id, { resolve, reject });
-      this.#asked.push({ ...request, id, stops: this.#stops });
-      clearTimeout(this.#timer);
-      this.#beat();
-    });
+    return super.ask({ ...request, stops: this.#stops });
   }
 
   /** Stops the robot; that waits for nothing. */
   stop() {
-    if (this.#isOver) return;
+    if (this.isOver) return;
     this.#stops += 1;
     post({ do: 'stop', page: this.#page, seen: this.#seen, stops: this.#stops }, { keepalive: true }).catch(() => {});
   }
 
   /** Stops what this page has started, and leaves the robot. */
   leave() {
-    if (this.#isOver) return;
+    if (this.isOver) return;
     post({ do: 'leave', page: this.#page, seen: this.#seen }, { keepalive: true }).catch(() => {});
-    this.#end(new Failed('left'));
+    this.end(new Failed('left'));
   }
 
-  async #beat() {
-    if (this.#isOver || this.#isAsking) return;
+  async go() {
+    if (this.isOver || this.#isAsking) return;
     this.#isAsking = true;
-    const asked = this.#asked.splice(0, 8);
+    clearTimeout(this.timer);
+    const asked = this.asked.splice(0, 8);
     try {
       const answer = await post({ do: 'beat', page: this.#page, seen: this.#seen, asked });
       this.#heardAt = performance.now();
       for (const each of answer.news) {
-        this.#take(each);
+        this.take(each);
         await undefined; // who has asked hears its answer before what comes next
       }
     } catch (why) {
-      if (why instanceof Failed) this.#end(why);
+      if (why instanceof Failed) this.end(why);
       else {
-        this.#asked.unshift(...asked); // it has not arrived, or has: an id is answered once
-        if (performance.now() - this.#heardAt > SILENT_MS) this.#end(new Failed('host_gone'));
+        this.asked.unshift(...asked); // it has not arrived, or has: an id is answered once
+        if (performance.now() - this.#heardAt > SILENT_MS) this.end(new Failed('host_gone'));
       }
     } finally {
       this.#isAsking = false;
     }
-    if (!this.#isOver) this.#timer = window.setTimeout(() => this.#beat(), this.#asked.length ? 0 : BEAT_MS);
+    if (!this.isOver) this.timer = window.setTimeout(() => this.go(), this.asked.length ? 0 : BEAT_MS);
   }
 
   /** @param {any} news */
-  #take(news) {
-    if (this.#isOver || (news.number && news.number <= this.#seen)) return;
+  take(news) {
+    if (this.isOver || (news.number && news.number <= this.#seen)) return;
     this.#seen = Math.max(this.#seen, news.number ?? 0);
     if (news.stops) this.#stops = Math.max(this.#stops, news.stops);
-    if (news.over) this.#end(new Failed(news.over, news.said));
+    if (news.over) this.end(new Failed(news.over, news.said));
     else if (news.connected) this.#met(news.connected);
-    else if (news.event) this.#heard.event(news);
-    else if (news.id) {
-      this.#waiting.get(news.id)?.resolve(news);
-      this.#waiting.delete(news.id);
-    }
+    else super.take(news);
   }
 
   /** @param {Failed} why */
-  #end(why) {
-    if (this.#isOver) return;
-    this.#isOver = true;
-    clearTimeout(this.#timer);
+  end(why) {
+    if (this.isOver) return;
     this.#fails(why);
-    for (const waiting of this.#waiting.values()) waiting.reject(why);
-    this.#waiting.clear();
-    this.#heard.over(why);
+    super.end(why);
   }
 }

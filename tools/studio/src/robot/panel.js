@@ -22,10 +22,7 @@ import { LINK, robotOf } from '../page/words.js';
 import { whole } from '../writing/messages.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
-/** @typedef {import('./transport.js').About} About */
-/** @typedef {import('./transport.js').Answer} Answer */
-/** @typedef {import('./transport.js').RobotEvent} RobotEvent */
-/** @typedef {import('./transport.js').Transport} Transport */
+/** @import { About, Answer, RobotEvent, Transport } from './transport.js' */
 /** @typedef {{label: string, drawn: string, connect: () => Promise<void>, serial?: any}} Choice */
 
 /**

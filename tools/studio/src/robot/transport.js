@@ -74,6 +74,58 @@ export class Failed extends Error {
   }
 }
 
+/** What is asked of a robot, and who waits for it; how it is sent is each way's own. */
+export class Asking {
+  isOver = false;
+  /** What has not been sent yet. @type {Record<string, unknown>[]} */
+  asked = [];
+  timer = 0; // until it sends the next time
+  /** @type {Map<unknown, {resolve: (answer: Answer) => void, reject: (why: Error) => void}>} */
+  #waiting = new Map();
+  #count = 0;
+  #heard;
+
+  /** @param {Heard} heard */
+  constructor(heard) {
+    this.#heard = heard;
+  }
+
+  /** @param {Record<string, unknown>} request @returns {Promise<Answer>} */
+  ask(request) {
+    const id = ++this.#count;
+    return new Promise((resolve, reject) => {
+      if (this.isOver) {
+        reject(new Failed('left'));
+        return;
+      }
+      this.#waiting.set(id, { resolve, reject });
+      this.asked.push({ ...request, id });
+      this.go();
+    });
+  }
+
+  /** Sends what is asked. */
+  async go() {}
+
+  /** @param {any} news an event, or an answer */
+  take(news) {
+    if (news.event) this.#heard.event(news);
+    else {
+      this.#waiting.get(news.id)?.resolve(news);
+      this.#waiting.delete(news.id);
+    }
+  }
+
+  /** The connection has ended. @param {Failed} why */
+  end(why) {
+    this.isOver = true;
+    clearTimeout(this.timer);
+    for (const waiting of this.#waiting.values()) waiting.reject(why);
+    this.#waiting.clear();
+    this.#heard.over(why);
+  }
+}
+
 /** @param {number} milliseconds */
 export function pause(milliseconds) {
   return new Promise((resolve) => setTimeout(resolve, milliseconds));

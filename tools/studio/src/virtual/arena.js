@@ -6,8 +6,7 @@ import { robotOf, ROBOTS, WORLDS } from '../page/words.js';
 import { drawWorld } from '../world/floor.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
-/** @typedef {import('../world/parts.js').World} World */
-/** @typedef {import('../world/parts.js').Place} Place */
+/** @import { World, Place } from '../world/parts.js' */
 /** @typedef {{points: Place[], point: number, handle: Place | null}} Mark the points that can be taken, which one is, and what turns it */
 /** @typedef {import('../world/floor.js').Goal} Goal */
 /** @typedef {import('../page/shapes.js').Pen} Pen */

@@ -5,9 +5,7 @@
 import { bugSaid } from '../page/faults.js';
 import { currentLanguage } from '../page/texts.js';
 
-/** @typedef {import('../python.js').Python} Python */
-/** @typedef {import('../python.js').Checked} Checked */
-/** @typedef {import('../python.js').RobotState} RobotState */
+/** @import { Python, Checked, RobotState } from '../python.js' */
 /** @typedef {'off' | 'running' | 'paused' | 'ended'} Phase */
 
 const MOST_MS = 400; // of the robot's time that is asked for at once: a stop waits for no more

@@ -20,7 +20,14 @@ import { starsShown, Where } from './where.js';
 import { WorldDrawing } from '../world/drawing.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
-/** @typedef {import('../programs/work.js').Work} Work */
+
+/**
+ * @typedef {object} Page what this part needs of the page
+ * @property {import('../python.js').Python} python
+ * @property {import('../programs/work.js').Work} work
+ * @property {() => Promise<Checked | null>} whenCompiled what the compiler says of the newest text, when it is done; null if it cannot say
+ * @property {() => void} remember
+ */
 
 const SHOWN = 200; // lines of the trace
 const READ_MS = 100; // nobody reads what changes more often; where the program is and what is measured take turns
@@ -31,12 +38,10 @@ const PLAYED_MS = 6000; // at most for a run of a lesson
 const SEEN = { seen_arena: 'arena', seen_plot: 'plot_place', seen_trace: 'trace_place' };
 
 export class SimulatorPanel {
-  #work;
-  #whenCompiled;
+  #page;
   #starts = 0; // one that STOP or a newer one has overtaken does nothing
   #isWaiting = false; // for the compiler
   #seenRun = () => {}; // the run of a lesson is over
-  #python;
   #simulator;
   #arena = new Arena(element('arena', HTMLCanvasElement));
   #plot = new Plot(element('plot', HTMLCanvasElement));
@@ -63,19 +68,11 @@ export class SimulatorPanel {
   /** While a finger moves a part. @type {import('../world/parts.js').World | null} */
   #preview = null;
   #restored;
-  #remember;
 
-  /**
-   * @param {import('../python.js').Python} python
-   * @param {Work} work
-   * @param {() => Promise<Checked | null>} whenCompiled what the compiler says of the newest text, when it is done; null if it cannot say
-   * @param {() => void} remember
-   */
-  constructor(python, work, whenCompiled, remember) {
-    this.#work = work;
-    this.#whenCompiled = whenCompiled;
-    this.#python = python;
-    this.#remember = remember;
+  /** @param {Page} page */
+  constructor(page) {
+    const { python, work, remember } = page;
+    this.#page = page;
     this.#world = new WorldChoice(python, work, () => this.#enter());
     this.#simulator = new Simulator(python, (state) => {
       if (state) this.#keep(state);
@@ -213,7 +210,7 @@ export class SimulatorPanel {
 
   /** Another world has been chosen. */
   #enter() {
-    this.#remember();
+    this.#page.remember();
     this.begin();
   }
 
@@ -224,7 +221,7 @@ export class SimulatorPanel {
    * @param {() => string} label
    */
   async showLesson(number, seed, label) {
-    const { world, goals } = await this.#python.ask({ do: 'lesson_world', number, seed });
+    const { world, goals } = await this.#page.python.ask({ do: 'lesson_world', number, seed });
     this.#world.bring({ request: { lesson: number, seed }, shapes: world, label, goals });
     this.begin();
     this.#choose('seen_arena');
@@ -257,7 +254,7 @@ export class SimulatorPanel {
   async #restore() {
     try {
       const isWhole = await this.#world.restoreOwn();
-      if (this.#work.world !== OWN_WORLD) return;
+      if (this.#page.work.world !== OWN_WORLD) return;
       if (!isWhole) this.#note = text('world_lost');
       this.begin();
     } catch {
@@ -299,7 +296,7 @@ export class SimulatorPanel {
       this.#isWaiting = true;
       this.#note = text('still_compiling');
       this.#show();
-      program = await this.#whenCompiled();
+      program = await this.#page.whenCompiled();
       await this.#restored;
       if (start !== this.#starts) return;
       this.#isWaiting = false;

@@ -12,10 +12,7 @@ import {
 } from './parts.js';
 import { nameOf, showNumbers } from './numbers.js';
 
-/** @typedef {import('./parts.js').World} World */
-/** @typedef {import('./parts.js').Part} Part */
-/** @typedef {import('./parts.js').Kind} Kind */
-/** @typedef {import('./parts.js').Place} Place */
+/** @import { World, Part, Kind, Place } from './parts.js' */
 /** @typedef {import('./choice.js').Page} Page */
 /** @typedef {{how: 'move' | 'draw' | 'turn', part: Part, point: number, from: Place, before: World, base: World, way: Place[]}} Drag `base`: what is moved */
 

@@ -4,8 +4,7 @@ import { labelled, made } from '../page/made.js';
 import { known, text } from '../page/texts.js';
 import { CHOICES, NUMBERS, valueOf, withChoice, withNumber } from './parts.js';
 
-/** @typedef {import('./parts.js').World} World */
-/** @typedef {import('./parts.js').Part} Part */
+/** @import { World, Part } from './parts.js' */
 
 /**
  * Puts the inputs of a part into a place; the one that has the focus keeps it.

@@ -16,8 +16,7 @@ import { partAt } from './parts.js';
 import { so } from '../page/so.js';
 import { text, textsOf } from '../page/texts.js';
 
-/** @typedef {import('../python.js').Finding} Finding */
-/** @typedef {import('../python.js').Change} Change */
+/** @import { Finding, Change } from '../python.js' */
 /** @typedef {{line: number, column: number, end_line: number, end_column: number}} Range */
 
 /** @type {import('@codemirror/state').StateEffectType<{from: number, to: number}[]>} */

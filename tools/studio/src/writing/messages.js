@@ -5,8 +5,7 @@ import { element, say } from '../page/elements.js';
 import { button, made } from '../page/made.js';
 import { text } from '../page/texts.js';
 
-/** @typedef {import('../python.js').Checked} Checked */
-/** @typedef {import('../python.js').Finding} Finding */
+/** @import { Checked, Finding } from '../python.js' */
 
 const MOST = 50; // messages that are shown at once
 

@@ -10,17 +10,21 @@ import { text } from '../page/texts.js';
 /** @typedef {import('../blocks/blocks.js').Blocks} Blocks */
 /** @typedef {import('../blocks/form.js').Form} Form */
 /** @typedef {import('../python.js').Finding} Finding */
-/** @typedef {import('../programs/work.js').Work} Work */
+
+/**
+ * @typedef {object} Page what the views need of the page
+ * @property {import('../python.js').Python} python
+ * @property {import('./editor.js').Editor} editor
+ * @property {import('../programs/work.js').Work} work
+ * @property {() => void} remember
+ */
 
 const TYPING_MS = 200; // of silence before blocks are made of a text
 const BUSY_MS = 50; // until a block that is dragged is looked at again
 const LEVELS = /** @type {const} */ ([['few', 'level_few'], ['usual', 'level_usual'], ['all', 'level_all']]);
 
 export class Views {
-  #python;
-  #editor;
-  #work;
-  #remember;
+  #page;
   /** @type {Blocks | null} */
   #blocks = null;
   /** @type {Promise<void> | null} */
@@ -44,17 +48,10 @@ export class Views {
   #note = element('blocks_note', HTMLElement);
   #level = element('level', HTMLSelectElement);
 
-  /**
-   * @param {import('../python.js').Python} python
-   * @param {import('./editor.js').Editor} editor
-   * @param {Work} work
-   * @param {() => void} remember
-   */
-  constructor(python, editor, work, remember) {
-    this.#python = python;
-    this.#editor = editor;
-    this.#work = work;
-    this.#remember = remember;
+  /** @param {Page} page */
+  constructor(page) {
+    const { editor, work, remember } = page;
+    this.#page = page;
     for (const view of /** @type {const} */ (['blocks', 'text'])) {
       element(`view_${view}`, HTMLButtonElement).addEventListener('click', () => this.#choose(view));
     }
@@ -92,7 +89,7 @@ export class Views {
   }
 
   get #isOn() {
-    return this.#work.view === 'blocks';
+    return this.#page.work.view === 'blocks';
   }
 
   /** Python answers from now on. */
@@ -114,7 +111,7 @@ export class Views {
 
   #showWords() {
     offer(this.#level, LEVELS.map(([level, name], k) => pictured(text(name), level, blocksPicture(k + 1))));
-    this.#level.value = this.#work.level;
+    this.#level.value = this.#page.work.level;
     this.#blocks?.showWords();
     if (!this.#isStale()) this.#showAll();
     if (this.#blocks) this.#refresh(true);
@@ -137,7 +134,7 @@ export class Views {
     if (!this.#blocks || !this.#isStale()) return;
     this.#showState();
     clearTimeout(this.#typing);
-    this.#typing = window.setTimeout(() => this.#refresh(!this.#editor.hasFocus), TYPING_MS);
+    this.#typing = window.setTimeout(() => this.#refresh(!this.#page.editor.hasFocus), TYPING_MS);
   }
 
   /** @param {Finding[]} findings of the newest text */
@@ -155,14 +152,14 @@ export class Views {
     const { ranges, isHeld } = so.running.value;
     const there = so.runningThere.value;
     this.#running = isHeld || !there ? ranges : [there];
-    this.#editor.showRunning(this.#running, isHeld);
+    this.#page.editor.showRunning(this.#running, isHeld);
     if (!this.#isStale()) this.#blocks?.showRunning(this.#running);
   }
 
   /** @param {import('./editor.js').Range} finding */
   goTo(finding) {
     if (this.#isOn && this.#blocks && !this.#isStale()) this.#blocks.goTo(finding);
-    else this.#editor.goTo(finding);
+    else this.#page.editor.goTo(finding);
   }
 
   /**
@@ -170,7 +167,7 @@ export class Views {
    * @returns {Promise<Blob | null>} null where there are none
    */
   async picture() {
-    const { view } = this.#work;
+    const { view } = this.#page.work;
     if (view !== 'blocks') this.#choose('blocks');
     try {
       await this.#fetching;
@@ -185,15 +182,15 @@ export class Views {
 
   /** @param {'blocks' | 'text'} view */
   #choose(view) {
-    this.#work.view = view;
-    this.#remember();
+    this.#page.work.view = view;
+    this.#page.remember();
     this.#lay();
     this.#blocks?.resize();
     if (view === 'blocks') this.#refresh(true);
   }
 
   #lay() {
-    const { view } = this.#work;
+    const { view } = this.#page.work;
     element('writing', HTMLElement).dataset['view'] = view;
     for (const each of ['blocks', 'text']) {
       element(`view_${each}`, HTMLButtonElement).setAttribute('aria-pressed', String(each === view));
@@ -204,10 +201,10 @@ export class Views {
 
   async #fetch() {
     const { Blocks: Kind } = await import('../blocks/blocks.js');
-    this.#blocks = new Kind(this.#pane, so.robot.value, this.#work.level, {
+    this.#blocks = new Kind(this.#pane, so.robot.value, this.#page.work.level, {
       changed: () => this.#blocksChanged(),
       toggle: (place) => {
-        if (!this.#isStale()) this.#editor.toggleBreakpoint(place);
+        if (!this.#isStale()) this.#page.editor.toggleBreakpoint(place);
       },
     });
     this.#pane.dataset['state'] = 'empty';
@@ -215,7 +212,7 @@ export class Views {
   }
 
   #isStale() {
-    return this.#shown !== this.#editor.text;
+    return this.#shown !== this.#page.editor.text;
   }
 
   /** Undo and redo once what the blocks are has become text; not while one is dragged. @param {() => void} act */
@@ -243,19 +240,19 @@ export class Views {
       return;
     }
     this.#isSending = true;
-    const before = this.#editor.text;
+    const before = this.#page.editor.text;
     try {
       while (this.#changes && this.#shown === before) {
         this.#changes = 0;
         const { form, ids } = this.#blocks.read();
         const whole = JSON.stringify(form);
         if (whole === this.#form) break; // a block was only moved about
-        const answer = await this.#python.ask({ do: 'text', form });
-        if (this.#changes || this.#editor.text !== before) continue;
+        const answer = await this.#page.python.ask({ do: 'text', form });
+        if (this.#changes || this.#page.editor.text !== before) continue;
         this.#shown = answer.text;
         this.#form = whole;
         this.#blocks.placed(ids, answer.places);
-        this.#editor.replaceByBlocks(answer.text);
+        this.#page.editor.replaceByBlocks(answer.text);
         this.#showBreakpoints();
       }
     } catch (why) {
@@ -279,12 +276,12 @@ export class Views {
     this.#isRefreshing = true;
     try {
       while (this.#isStale()) {
-        const now = this.#editor.text;
+        const now = this.#page.editor.text;
         /** @type {Form & {size: number}} */
-        const form = await this.#python.ask({ do: 'blocks', robot: so.robot.value }, new TextEncoder().encode(now));
+        const form = await this.#page.python.ask({ do: 'blocks', robot: so.robot.value }, new TextEncoder().encode(now));
         while (this.#blocks.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
-        if (now !== this.#editor.text) continue;
-        const isKept = !this.#isWanted && this.#editor.hasFocus && this.#shown !== null && hasGrey(form);
+        if (now !== this.#page.editor.text) continue;
+        const isKept = !this.#isWanted && this.#page.editor.hasFocus && this.#shown !== null && hasGrey(form);
         if (!form.body || isKept) {
           this.#showState(form.body ? text('blocks_wait') : text('blocks_many'));
           return;
