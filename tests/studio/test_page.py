@@ -12,7 +12,7 @@ import pytest
 from tests.pupils import corpus
 from tests.studio.programs import LACKING, programs, said
 from tests.studio.programs import image as image_of
-from tests.support.studio import Pages, asked, checked, enter, image, noted, speak, write
+from tests.support.studio import Pages, asked, checked, image, noted, speak, write
 from tiniscript import check, compile, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.diagnostics.rendering import Message
@@ -166,9 +166,7 @@ def test_work_is_kept(page: Page, only_page: tuple[Pages, Page]) -> None:
     assert page.locator(".cm-content").inner_text() == "GRIPPER(90)"
     assert (page.input_value("#robot"), page.input_value("#language")) == ("grabber", "es")
     page.click("#words")
-    other = page.context.new_page()  # a new tab begins with it
-    only_page[0].watch(other)
-    enter(other, only_page[0].address)
+    other = only_page[0].another(page)  # a new tab begins with it
     assert other.locator(".cm-content").inner_text() == "GRIPPER(90)"
     write(other, "S")
     other.close()

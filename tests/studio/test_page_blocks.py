@@ -17,7 +17,7 @@ from tests.studio.test_page_for_everyone import SCREENS
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tests.support.needs import need
-from tests.support.studio import SETTLED, Pages, hears, image, in_phase, shown, speak, write
+from tests.support.studio import SETTLED, Pages, finger, hears, image, in_phase, shown, speak, write
 from tiniscript import check, compile, robots
 from tiniscript.studio.block_form import data_of
 from tiniscript.studio.block_reading import read
@@ -134,20 +134,6 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None
     assert compare(page, SAMPLE, seed=1000) > SAMPLE * 0.9
 
 
-def finger(page: Page, source: Any, target: Any) -> None:
-    """Drag a block from its box to below another one's with a finger."""
-    session = page.context.new_cdp_session(page)
-    x, y = source["x"] + 8, source["y"] + 10
-    to_x, to_y = target["x"] + 10, target["y"] + target["height"] + 8
-    way = [(x + (to_x - x) * k / 12, y + (to_y - y) * k / 12) for k in range(13)]
-    for k, place in enumerate([*way, None]):
-        kind = "touchEnd" if place is None else "touchMove" if k else "touchStart"
-        points = [{"x": place[0], "y": place[1]}] if place else []
-        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
-    session.detach()
-    page.locator("#blocks[data-state=shown]").wait_for()
-
-
 def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     """With the mouse, and on a small screen with a finger."""
     page = pages.open(view="blocks", locale="es-PE", has_touch=True)
@@ -173,7 +159,11 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     source = page.locator(FLYOUT).nth(1)
     source.wait_for()
     page.evaluate(SETTLED)
-    finger(page, box_of(source), box_of(block(page, "gira a la derecha")))
+    held, target = box_of(source), box_of(block(page, "gira a la derecha"))
+    x, y = held["x"] + 8, held["y"] + 10
+    to_x, to_y = target["x"] + 10, target["y"] + target["height"] + 8
+    finger(page, [(x + (to_x - x) * k / 12, y + (to_y - y) * k / 12) for k in range(13)])
+    page.locator("#blocks[data-state=shown]").wait_for()
     hears(page, lambda: "B(2, 80)" in text_of(page), "a finger has dragged a block")
 
 

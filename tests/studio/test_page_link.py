@@ -192,9 +192,7 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
 
 
 def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: PtyRobot) -> None:
-    other = page.context.new_page()
-    first[0].watch(other)
-    enter(other, first[0].entrance())
+    other = first[0].another(page)
     other.click("#side_real")
     other.locator("#link_port option").first.wait_for(state="attached")
     other.click("#link_connect")

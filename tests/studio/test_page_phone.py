@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.studio import Pages, axe, in_phase, shown, turn, write
+from tests.support.studio import SETTLED, Pages, axe, in_phase, shown, turn, write
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -143,10 +143,9 @@ def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
     in_phase(phone, "running")
     for width, height in ((844, 390), (390, 844), (844, 390)):
         phone.set_viewport_size({"width": width, "height": height})
-        ratio = phone.evaluate(
-            "() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame("
-            "() => { const a = document.querySelector('#arena');"
-            " resolve(a.width / a.clientWidth / (a.height / a.clientHeight)); })))"
+        phone.evaluate(SETTLED)
+        ratio = phone.locator("#arena").evaluate(
+            "(a) => a.width / a.clientWidth / (a.height / a.clientHeight)"
         )
         assert ratio == pytest.approx(1, abs=0.02)  # what is drawn is not stretched
         assert phone.evaluate("document.documentElement.dataset.phase") == "running"

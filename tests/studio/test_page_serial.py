@@ -65,15 +65,6 @@ def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
     assert "MOTORS 80 80" in robot.did
 
 
-def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
-    write(page, "F(1, 80);\nR(1, 60);\nF(1, 80)")
-    page.click("#link_upload")
-    for part in ("F(1, 80)", "R(1, 60)", "F(1, 80)"):
-        page.locator(".cm-running", has_text=part).wait_for()
-    said(page, "Done.")
-    page.locator(".cm-running").wait_for(state="detached")
-
-
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
     drives(page, robot)
     page.keyboard.press("Escape")

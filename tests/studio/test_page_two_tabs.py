@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from tests.studio.test_page_worlds import drag, put, said, saved
 from tests.studio.test_page_worlds_kept import NO_BORDER, draw_wall
-from tests.support.studio import Pages, checked, enter, hears, image, in_phase, noted, write
+from tests.support.studio import Pages, checked, hears, image, in_phase, noted, write
 from tiniscript import compile
 from tiniscript.virtual.worlds import read
 
@@ -35,14 +35,6 @@ PASTE = """(count) => {
 }"""
 
 
-def second(pages: Pages, page: Page) -> Page:
-    """Open another tab of the same person."""
-    other: Page = page.context.new_page()
-    pages.watch(other)
-    enter(other, pages.address)
-    return other
-
-
 def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
     """They come behind this tab's own worlds before, and push none of them out."""
 
@@ -57,7 +49,7 @@ def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
     page.click("#world_draw")
     opens(page, 100)
     opens(page, 101)
-    other = second(pages, page)
+    other = pages.another(page)
     other.locator("#world_draw:enabled").wait_for()
     other.click("#world_draw")
     opens(other, 102)
@@ -82,7 +74,7 @@ def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
 
 def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:
     page = pages.open()
-    other = second(pages, page)
+    other = pages.another(page)
     for k in (1, 2):
         write(page, f"SI|F({k}, 10)")
         write(other, f"SI|B({k}, 20)")

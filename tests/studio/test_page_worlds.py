@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.studio import Pages, checked, in_phase, speak, turn, write
+from tests.support.studio import SETTLED, Pages, checked, finger, in_phase, speak, turn, write
 from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
@@ -47,7 +47,6 @@ def said(page: Page, text: str) -> None:
 
 
 KEPT = "() => localStorage.getItem('tiniscript.world')"
-DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
 
 def saved(page: Page) -> World:
@@ -135,10 +134,8 @@ def test_an_undo_while_a_finger_moves_a_part_puts_it_back(floor: Page) -> None:
 
 def picture(page: Page) -> str:
     """Return what the floor looks like once it is drawn."""
-    found: str = page.evaluate(
-        "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() =>"
-        " done(document.querySelector('#arena').toDataURL()))))"
-    )
+    page.evaluate(SETTLED)
+    found: str = page.evaluate("document.querySelector('#arena').toDataURL()")
     return found
 
 
@@ -264,16 +261,10 @@ def test_nothing_leaves_the_floor(floor: Page) -> None:
     assert saved(floor).start[:2] == (56, 82.5)
 
 
-def finger(page: Page, way: Sequence[Place]) -> None:
+def draw(page: Page, way: Sequence[Place]) -> None:
     """Go along a way on the floor with a finger."""
-    session = page.context.new_cdp_session(page)
-    page.evaluate(DRAWN)  # what was tapped before has made the floor smaller or larger
-    for k, place in enumerate([*way, None]):
-        kind = "touchEnd" if place is None else "touchMove" if k else "touchStart"
-        x, y = on_screen(page, place) if place else (0, 0)
-        points = [] if place is None else [{"x": x, "y": y}]
-        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
-    session.detach()
+    page.evaluate(SETTLED)  # what was tapped before has made the floor smaller or larger
+    finger(page, [on_screen(page, place) for place in way])
 
 
 def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
@@ -281,9 +272,9 @@ def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     turn(page, "robot")
     page.tap("#world_draw")
     page.tap("#world_add_lines")
-    finger(page, [(60, 40), (100, 40), (150, 60), (160, 80)])
+    draw(page, [(60, 40), (100, 40), (150, 60), (160, 80)])
     assert chosen(page) == "Línea 1"
-    finger(page, [(56, 82.5), (56, 97.5), (60, 110)])
+    draw(page, [(56, 82.5), (56, 97.5), (60, 110)])
     assert chosen(page) == "Robot"
     found = saved(page)
     assert abs(found.start.x_cm - 60) <= 1 and abs(found.start.y_cm - 110) <= 1
@@ -291,7 +282,7 @@ def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     page.tap("#world_done")
     assert page.locator("#world option:checked").inner_text() == "mi mundo"
     kept = page.evaluate(KEPT)
-    finger(page, [(60, 110), (60, 100)])  # outside of the drawing, too
+    draw(page, [(60, 110), (60, 100)])  # outside of the drawing, too
     page.wait_for_function(f"before => ({KEPT})() !== before", arg=kept)
     page.reload()
     checked(page)

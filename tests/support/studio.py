@@ -185,6 +185,13 @@ class Pages:
         """
         return self.visit(self.entrance(), view, **options)
 
+    def another(self, page: Page) -> Page:
+        """Open another tab of the same visitor."""
+        other: Page = page.context.new_page()
+        self.watch(other)
+        enter(other, self.entrance())
+        return other
+
     def blank(self, *, is_alone: bool = False, **options: Any) -> Page:
         """Return a tab of a new visitor, in which nothing is open yet.
 
@@ -275,6 +282,30 @@ def enter(page: Page, address: str) -> None:
 
 # Once a new size of the screen has been heard of, and drawn.
 SETTLED = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+
+
+def finger(page: Page, way: Sequence[tuple[float, float]]) -> None:
+    """Go along a way on the screen with a finger."""
+    session = page.context.new_cdp_session(page)
+    for k, (x, y) in enumerate(way):
+        kind = "touchMove" if k else "touchStart"
+        touch = {"type": kind, "touchPoints": [{"x": x, "y": y}]}
+        session.send("Input.dispatchTouchEvent", touch)
+    session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    session.detach()
+
+
+def colors_of(page: Page, canvas: str) -> set[str]:
+    """Return the colors of the pixels of a canvas that hide what is behind."""
+    found = page.evaluate(
+        "(id) => { const c = document.querySelector(id); const d = c.getContext('2d')"
+        ".getImageData(0, 0, c.width, c.height).data; const found = new Set();"
+        " for (let k = 0; k < d.length; k += 4)"
+        " if (d[k + 3] === 255) found.add(d.slice(k, k + 3).join());"
+        " return [...found]; }",
+        canvas,
+    )
+    return set(found)
 
 
 def turn(page: Page, half: str) -> None:
