@@ -6,6 +6,7 @@ push: each operator is its instruction, and a condition is a value that IF or UN
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.base.source import Span
@@ -16,6 +17,7 @@ from tiniscript.semantics.optimizer import is_safe
 NEGATED = {"EQ": "NE", "NE": "EQ", "LT": "GE", "GE": "LT", "LE": "GT", "GT": "LE"}
 _SWAPPED = {"EQ": "EQ", "NE": "NE", "LT": "GT", "GT": "LT", "LE": "GE", "GE": "LE"}
 _SHORT = ("PUSH_VAR", "PUSH_SENSOR", "PUSH_READ", "READ", "SET_VAR", "SET")
+_LEFTS, _JOINS = ("AND_LEFT", "OR_LEFT"), ("AND", "OR")
 _SHORT_SIDE = 6  # terms up to which evaluating a needless side costs less than a jump
 
 
@@ -153,14 +155,15 @@ def add_value(out: Emitter, expression: Expression) -> None:
     """Add instructions that leave the value of `expression` on the stack."""
     joins: list[int | None] = []
     for k, term in enumerate(expression):
-        if term.op in ("AND_LEFT", "OR_LEFT"):
-            right = _right_side(expression, k)
+        if term.op in _LEFTS:
+            end = _other_half(expression, range(k + 1, len(expression)), _LEFTS, _JOINS)
+            right = expression[k + 1 : end]
             if not out.plain and is_safe(right) and len(right) <= _SHORT_SIDE:
                 joins.append(None)
             else:
                 joins.append(out.new_label())
                 out.add("AND_THEN" if term.op == "AND_LEFT" else "OR_ELSE", to=joins[-1])
-        elif term.op in ("AND", "OR"):
+        elif term.op in _JOINS:
             join = joins.pop()
             if join is None:
                 out.add(term.op)
@@ -184,7 +187,7 @@ def tests(out: Emitter, condition: Expression, otherwise: int) -> None:
         if operator == "NOT":
             pending.append((start, end - 1, not when))
         elif operator == ("OR" if when else "AND"):
-            split = _split(condition, end)
+            split = _other_half(condition, range(end - 2, -1, -1), _JOINS, _LEFTS)
             pending.append((split + 1, end - 1, when))
             pending.append((start, split, when))
         else:
@@ -241,29 +244,14 @@ def _compared(expression: Expression) -> _Compared | None:
     return _Compared(value, 8 if 0 <= number <= 255 else 16, comparator, number)
 
 
-def _right_side(expression: Expression, left_mark: int) -> Expression:
-    """Return the right side of the AND or OR whose left side ends at `left_mark`."""
+def _other_half(
+    expression: Expression, places: range, begins: Sequence[str], ends: Sequence[str]
+) -> int:
+    """Return the first of `places` with one of `ends` that no one of `begins` there belongs to."""
     depth = 0
-    for k in range(left_mark + 1, len(expression)):
+    for k in places:
         op = expression[k].op
-        if op in ("AND_LEFT", "OR_LEFT"):
-            depth += 1
-        elif op in ("AND", "OR"):
-            if depth == 0:
-                return expression[left_mark + 1 : k]
-            depth -= 1
-    raise AssertionError("an AND_LEFT without its AND")
-
-
-def _split(expression: Expression, end: int) -> int:
-    """Return the index of the AND_LEFT or OR_LEFT of the AND or OR right before `end`."""
-    depth = 0
-    for k in range(end - 2, -1, -1):
-        op = expression[k].op
-        if op in ("AND", "OR"):
-            depth += 1
-        elif op in ("AND_LEFT", "OR_LEFT"):
-            if depth == 0:
-                return k
-            depth -= 1
-    raise AssertionError("an AND without its AND_LEFT")
+        if op in ends and not depth:
+            return k
+        depth += (op in begins) - (op in ends)
+    raise AssertionError("an AND or its left side alone")

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from tiniscript.base.fixed_point import Fault, whole
 from tiniscript.base.kit import Kit
 from tiniscript.semantics import ir
-from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.semantics.optimizer import known_value
 from tiniscript.semantics.ways import way_ms
 
 
@@ -112,8 +112,7 @@ class _Durations:
         body = self.of(loop.body)
         if isinstance(loop, ir.Loop) and loop.times is None:
             return _UNKNOWN if ir.loops_end(loop.body) else Duration(0, None, True)
-        value = None if isinstance(loop, ir.While) or loop.times is None else fold(loop.times)
-        count = None if value is None else constant(value)
+        count = known_value(loop.times) if isinstance(loop, ir.Loop) else None
         if body.least == 0 and body.most is not None:
             body = body._replace(most=body.most + self.turn_ms)
         if count is None:
@@ -126,5 +125,5 @@ class _Durations:
 
 
 def _time(time: ir.Expression | None) -> Duration:
-    value = None if time is None else constant(fold(time))
+    value = known_value(time)
     return _UNKNOWN if value is None else Duration(max(value, 0), max(value, 0))

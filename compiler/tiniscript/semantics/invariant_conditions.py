@@ -26,7 +26,7 @@ from tiniscript.semantics.comparisons import (
     is_between,
     looks_ahead,
 )
-from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.semantics.optimizer import known_value
 from tiniscript.semantics.written_conditions import written_condition
 from tiniscript.syntax.operators import SIGN_OF
 
@@ -80,7 +80,8 @@ class InvariantConditions:
         elif isinstance(statement, ir.While):
             self._while(statement)
             head = Span(statement.span.start, statement.span.start + len("WHILE"))
-            self._known(self._comparison(statement.condition), head)
+            if compared := self._comparison(statement.condition):
+                self._known(compared, head)
             self._known_of_both(statement.condition, head)
         elif isinstance(statement, ir.Show) and outermost is not None:
             self._frozen_show(statement, outermost)
@@ -89,8 +90,9 @@ class InvariantConditions:
             for arm in statement.arms:
                 self._subtracted(arm.condition, arm.span)
                 self._known_of_both(arm.condition, arm.span)
-                if not self._known(self._comparison(arm.condition), arm.span):
-                    self._exact_if(arm)
+                compared = self._comparison(arm.condition)
+                if compared and not self._known(compared, arm.span):
+                    self._exact(compared, arm.span, "IF", "")
                 if outermost is not None and _is_endless(outermost):
                     self._frozen_if(arm, outermost)
 
@@ -102,7 +104,7 @@ class InvariantConditions:
         self._known_of_both(condition, move.span)
         variables = _variables(condition)
         if variables and not any(term.op in _CHANGING for term in condition):
-            time = None if move.time is None else constant(fold(move.time))
+            time = known_value(move.time)
             if not (is_repeated and time is not None and time < SHORT):
                 self._frozen(move, condition, variables)
             return
@@ -120,13 +122,12 @@ class InvariantConditions:
             number_is, repair = ("number", "fix") if is_forward else ("far", "away")
             values = {"sensor": device.name, number_is: as_text(number), repair: other}
             self.found.append(Diagnostic(codes.TURNED_ROUND, move.span, values))
-        elif op == "EQ" and is_between(device, number):
+        else:
             reached = "GE" if device is TIME else _REACHED.get(move.direction, "")
             written = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
             is_sure = bool(reached) and (is_ahead or device is TIME)
             fix = self._with(move, written) if is_sure else ""
-            self._report(codes.EXACT, move.span, sensor=device.name, number=as_text(number),
-                         word="UNTIL", fix=fix)  # fmt: skip
+            self._exact(compared, move.span, "UNTIL", fix)
 
     def _frozen(self, move: ir.Move, condition: ir.Expression, variables: list[int]) -> None:
         held = self._sensors_of(variables)
@@ -135,9 +136,8 @@ class InvariantConditions:
         values = {"name": name, "fix": "", "example": f"UNTIL(DISTANCE {sign} 20)"}
         if held:
             values["sensor"] = held[name]
-            if self._is_good(condition, held, move.direction):
-                written = _replaced(written_condition(self._source, move.span, "UNTIL"), held)
-                values["fix"] = self._with(move, written) if written else ""
+            asked = self._asking(condition, held, move.span, "UNTIL", move.direction)
+            values["fix"] = self._with(move, asked) if asked else ""
         self.found.append(Diagnostic(codes.FROZEN_UNTIL, move.span, values))
 
     def _with(self, move: ir.Move, written: str) -> str:
@@ -166,10 +166,9 @@ class InvariantConditions:
         head = Span(loop.span.start, loop.span.start + len("WHILE"))
         values = {"name": name, "fix": ""}
         if held:
-            written = _replaced(written_condition(self._source, loop.span, "WHILE"), held)
             values["sensor"] = held[name]
-            is_good = written and self._is_good(condition, held)
-            values["fix"] = f"WHILE({written})" if is_good else ""
+            asked = self._asking(condition, held, loop.span, "WHILE")
+            values["fix"] = f"WHILE({asked})" if asked else ""
         elif [term.op for term in condition[:-1]] == ["VARIABLE", "NUMBER"]:
             is_down = condition[-1].op in ("GT", "GE")
             values["step"] = f"{name} = {name} {'-' if is_down else '+'} 1"
@@ -188,17 +187,13 @@ class InvariantConditions:
     def _frozen_if(self, arm: ir.Arm, outermost: ir.Loop | ir.While) -> None:
         """`D = DISTANCE; LOOP(FOREVER); IF(D < 20) …`: it moves, and looks at what was before."""
         variables = _variables(arm.condition)
-        held = self._sensors_of(variables)
+        held = self._held_in(outermost, variables)
         if not held or any(term.op in _CHANGING for term in arm.condition):
-            return
-        changed = self._changed_in(outermost)
-        if changed is None or changed & set(variables):
             return
         name = self._program.variables[variables[0]]
         word = "IF" if self._source[arm.span][:1].upper() == "I" else "ELSEIF"
-        written = _replaced(written_condition(self._source, arm.span, word), held)
-        is_good = written and self._is_good(arm.condition, held)
-        fix = f"{word}({written})" if is_good else ""
+        asked = self._asking(arm.condition, held, arm.span, word)
+        fix = f"{word}({asked})" if asked else ""
         self._report(codes.FROZEN_WHILE, arm.span, name=name, sensor=held[name], fix=fix)
 
     def _frozen_show(self, show: ir.Show, outermost: ir.Loop | ir.While) -> None:
@@ -206,15 +201,13 @@ class InvariantConditions:
         variables = _variables(show.value) if len(show.value) == 1 else []
         if variables and self._thrown_once(show, variables[0], outermost):
             return
-        held = self._sensors_of(variables)
-        changed = self._changed_in(outermost)
-        if not held or changed is None or changed & set(variables):
+        held = self._held_in(outermost, variables)
+        if not held:
             return
         name = self._program.variables[variables[0]]
         sensor = next(k for k, each in enumerate(self._kit.sensors) if each.name == held[name])
-        if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & self._used_in(
-            outermost
-        ):
+        used = self._used_in(outermost)
+        if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & used:
             return  # it is shown beside what is measured now, or the rounds need it
         fix = f"SHOW({held[name]})"
         self._report(codes.FROZEN_WHILE, show.span, name=name, sensor=held[name], fix=fix)
@@ -253,13 +246,15 @@ class InvariantConditions:
             self._report(codes.FROZEN_WHILE, show.span, thrown=name, within=within)
         return True
 
-    def _changed_in(self, loop: ir.Loop | ir.While) -> set[int] | None:
-        """Return the variables that get a value in a loop; None where nothing drives in it."""
+    def _held_in(self, loop: ir.Loop | ir.While, variables: list[int]) -> dict[str, str]:
+        """Return `_sensors_of` where a loop drives and gives none of the variables a value."""
         place = loop.span.start
         if place not in self._in_loops:
             drives = any(isinstance(each, (ir.Move, ir.Motors)) for each in ir.walk(loop.body))
             self._in_loops[place] = self._set_in(loop.body) if drives else None
-        return self._in_loops[place]
+        changed = self._in_loops[place]
+        is_held = changed is not None and not changed & set(variables)
+        return self._sensors_of(variables) if is_held else {}
 
     def _used_in(self, loop: ir.Loop | ir.While) -> set[ir.Term]:
         """Return the terms of a loop: all sensors, and what statements other than SHOW use."""
@@ -289,10 +284,8 @@ class InvariantConditions:
                 self._report(codes.LATE_ARM, arm.span, wide=str(before),
                              narrow=str(compared))  # fmt: skip
 
-    def _known(self, compared: Comparison | None, span: Span) -> bool:
+    def _known(self, compared: Comparison, span: Span) -> bool:
         """Warn where the answer is known: `LIGHT_L > 5000`, of a sensor that goes up to 1023."""
-        if compared is None:
-            return False
         device = compared.device
         answer = answer_of(compared)
         if answer:
@@ -319,23 +312,25 @@ class InvariantConditions:
             self._report(codes.KNOWN_ANSWER, span, sensor=name, low=low, high=high,
                          answer="answer_no", between=between)  # fmt: skip
 
-    def _exact_if(self, arm: ir.Arm) -> None:
-        compared = self._comparison(arm.condition)
-        if compared is not None:
-            device, op, number = compared
-            if op == "EQ" and is_between(device, number):
-                self._report(codes.EXACT, arm.span, sensor=device.name, number=as_text(number),
-                             word="IF", fix="")  # fmt: skip
+    def _exact(self, compared: Comparison, span: Span, word: str, fix: str) -> None:
+        device, op, number = compared
+        if op == "EQ" and is_between(device, number):
+            self._report(codes.EXACT, span, sensor=device.name, number=as_text(number),
+                         word=word, fix=fix)  # fmt: skip
 
     # -- what is in them ----------------------------------------------------------------------
 
     def _comparison(self, condition: ir.Expression) -> Comparison | None:
         return comparison(condition, self._kit)
 
-    def _is_good(
-        self, condition: ir.Expression, held: Mapping[str, str], direction: str = ""
-    ) -> bool:
-        """Whether a condition is one to write where it asks the sensors themselves."""
+    def _asking(
+        self, condition: ir.Expression, held: Mapping[str, str], span: Span, word: str,
+        direction: str = "",
+    ) -> str:  # fmt: skip
+        """Return a condition as it is written behind `word`, asking the sensors themselves.
+
+        Nothing where it is none to write, as where a move in this direction never makes it true.
+        """
         numbers = {device.name: k for k, device in enumerate(self._kit.sensors)}
         asking = tuple(
             ir.Term("SENSOR", numbers[held[self._program.variables[term.value]]])
@@ -344,7 +339,10 @@ class InvariantConditions:
             for term in condition
         )
         comes = comes_true(asking, direction, self._kit)
-        return bool(comes) or (comes is None and not direction)
+        written = written_condition(self._source, span, word)
+        if not comes and (comes is not None or direction):
+            return ""
+        return re.sub(r"[A-Za-z_]\w*", lambda it: held.get(it[0].upper(), it[0]), written)
 
     def _sensors_of(self, variables: list[int]) -> dict[str, str]:
         """Return the sensor that each of these variables holds; nothing where one holds another."""
@@ -364,7 +362,7 @@ class InvariantConditions:
 
 def _goes_once(loop: ir.Loop | ir.While) -> bool:
     times = loop.times if isinstance(loop, ir.Loop) else None
-    return times is not None and constant(fold(times)) == 1000
+    return known_value(times) == 1000
 
 
 def _each_round(loop: ir.Loop | ir.While) -> list[ir.Statement]:
@@ -392,8 +390,3 @@ def _is_within(narrow: Comparison, wide: Comparison) -> bool:
     if narrow.number == wide.number:
         return narrow.op == wide.op or wide.op in ("LE", "GE")
     return (narrow.number < wide.number) == (_WAYS[wide.op] == "below")
-
-
-def _replaced(written: str, held: Mapping[str, str]) -> str:
-    """Return a condition that asks the sensors themselves."""
-    return re.sub(r"[A-Za-z_]\w*", lambda each: held.get(each[0].upper(), each[0]), written)

@@ -12,7 +12,7 @@ from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics import ir
-from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.semantics.optimizer import known_value
 
 
 def kept_motors(program: ir.Program, source: Source) -> list[Diagnostic]:
@@ -107,4 +107,4 @@ def _lasts(statement: ir.Statement) -> bool:
     if isinstance(statement, ir.Move) and (statement.time is None or statement.until is not None):
         return statement.until is None
     assert statement.time is not None
-    return (constant(fold(statement.time)) or 0) > 0
+    return (known_value(statement.time) or 0) > 0

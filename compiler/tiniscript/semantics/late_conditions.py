@@ -13,7 +13,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import asks_if_near, comes_true, is_distance, looks_ahead
-from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.semantics.optimizer import known_value
 from tiniscript.semantics.written_conditions import written_condition
 from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
 
@@ -189,7 +189,7 @@ def _nearest(body: ir.Body, places: range) -> ir.Statement | None:
 
 
 def _time(move: ir.Move) -> int | None:
-    return None if move.time is None or move.unit else constant(fold(move.time))
+    return None if move.unit else known_value(move.time)
 
 
 def _can_change(condition: ir.Expression) -> bool:

@@ -19,7 +19,7 @@ from tiniscript.semantics.invariant_conditions import InvariantConditions
 from tiniscript.semantics.kept_motors import kept_motors
 from tiniscript.semantics.late_conditions import LateConditions
 from tiniscript.semantics.named_values import use_of
-from tiniscript.semantics.optimizer import constant, fold, sure_fault
+from tiniscript.semantics.optimizer import fold, known_value, sure_fault
 from tiniscript.semantics.suspicious_values import of_beep, of_move, of_way, swapped_names
 from tiniscript.semantics.unseen_motors import unseen
 
@@ -129,7 +129,7 @@ def _expressions(statement: ir.Statement | ir.Task, found: list[Diagnostic]) -> 
 
 def _odd_times(loop: ir.Loop | ir.While, found: list[Diagnostic]) -> None:
     """`LOOP(0)`, `LOOP(-1)`, which other languages take for one without an end; `LOOP(4.5)`."""
-    times = None if isinstance(loop, ir.While) or loop.times is None else constant(fold(loop.times))
+    times = known_value(loop.times) if isinstance(loop, ir.Loop) else None
     if times is not None and times < 500:  # it is rounded
         head = Span(loop.span.start, loop.span.start + len("LOOP"))
         _report(found, codes.NEVER_REPEATS, head, times=as_text(times))
@@ -141,7 +141,7 @@ def _odd_times(loop: ir.Loop | ir.While, found: list[Diagnostic]) -> None:
 def _is_forever(statement: ir.Loop | ir.While) -> bool:
     if isinstance(statement, ir.Loop):
         return statement.times is None
-    return constant(fold(statement.condition)) == 1
+    return known_value(statement.condition) == 1
 
 
 def _unused(

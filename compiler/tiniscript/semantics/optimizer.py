@@ -87,6 +87,11 @@ def constant(expression: ir.Expression) -> int | None:
     return expression[0].value if _is_constant(expression) else None
 
 
+def known_value(expression: ir.Expression | None) -> int | None:
+    """Return what an expression has for its value, None for none, or where only the robot knows."""
+    return None if expression is None else constant(fold(expression))
+
+
 def is_safe(terms: ir.Expression) -> bool:
     """Return whether evaluating these terms is free of faults and side effects."""
     return all(term.op in SAFE for term in terms)

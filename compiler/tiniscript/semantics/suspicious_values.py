@@ -16,7 +16,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics.ir import Assign, Beep, Expression, Move, Program, every
 from tiniscript.semantics.named_values import is_power, is_time
-from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.semantics.optimizer import known_value
 from tiniscript.semantics.ways import way_ms
 
 SECOND = 1000  # ms
@@ -44,7 +44,7 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
     It is one thing at most, and for `R(03, 2)` what is said of its power, too. With UNTIL a long
     time is only how long it may last.
     """
-    time, power = _number(move.time), _number(move.power)
+    time, power = known_value(move.time), known_value(move.power)
     text, is_ended = source[move.span], move.until is not None
     zero = None if is_ended else _ZERO.match(text) or _ZERO_OF_TURN.match(text)
     if time is None:
@@ -70,7 +70,7 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
 
 def of_way(move: Move, kit: Kit) -> list[Diagnostic]:
     """Return the warning about a move by its way: what its numbers surely make."""
-    way = _number(move.time)
+    way = known_value(move.time)
     if way is not None and way <= 0:
         values = {"word": move.direction, "unit": move.unit}
         return [Diagnostic(codes.MOVE_OF_NO_TIME, move.span, values)]
@@ -105,7 +105,7 @@ def _measured(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
 
 def of_power(move: Move) -> list[Diagnostic]:
     """Return the warning about a power that moves no robot, or that is too much."""
-    time, power = _number(move.time), _number(move.power)
+    time, power = known_value(move.time), known_value(move.power)
     found = [] if move.power is None else _cut(move.power, POWER, move.span, move.direction)
     if (
         power is not None
@@ -164,7 +164,7 @@ def _is_milliseconds(time: int) -> bool:
 
 def of_beep(beep: Beep) -> list[Diagnostic]:
     """Return the warning about a sound that lasts longer than anybody can bear."""
-    time, hertz = _number(beep.time), _number(beep.hertz)
+    time, hertz = known_value(beep.time), known_value(beep.hertz)
     found = _cut(beep.hertz, HERTZ, beep.span, "BEEP")
     if time is not None and time <= 0:
         found.append(Diagnostic(codes.MOVE_OF_NO_TIME, beep.span, {"word": "BEEP"}))
@@ -188,7 +188,7 @@ def swapped_names(program: Program) -> list[Diagnostic]:
     set_to: dict[int, list[int | None]] = {}
     for statement in every(program):
         if isinstance(statement, Assign):
-            set_to.setdefault(statement.variable, []).append(constant(fold(statement.value)))
+            set_to.setdefault(statement.variable, []).append(known_value(statement.value))
     for move in (each for each in every(program) if isinstance(each, Move)):
         if move.until is not None or move.time is None or move.power is None or move.unit:
             continue
@@ -224,13 +224,9 @@ def _is_swapped(time: int, power: int | None) -> bool:
 
 def _cut(expression: Expression, its: Argument, span: Span, word: str) -> list[Diagnostic]:
     """`BEEP(0.2, 440-660)`: the robot takes the lowest or the highest value instead."""
-    value = _number(expression)
+    value = known_value(expression)
     if value is None or its.low <= value <= its.high:
         return []
     taken = as_text(its.low if value < its.low else its.high)
     values = {"word": word, "value": as_text(value), "unit": its.unit, "taken": taken}
     return [Diagnostic(codes.CUT_VALUE, span, values)]
-
-
-def _number(expression: Expression | None) -> int | None:
-    return None if expression is None else constant(fold(expression))

@@ -10,7 +10,7 @@ from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics import ir
-from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.semantics.optimizer import known_value
 
 _TAKE_NO_TIME = (ir.Read, ir.Assign, ir.Show, ir.Set)
 _TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
@@ -36,7 +36,7 @@ def unseen(body: ir.Body, ends: bool, source: Source) -> list[Diagnostic]:
             values["next"] = source[after.span]
         elif after is not None or not ends:
             continue
-        left, right = constant(fold(motors.left)) or 0, constant(fold(motors.right)) or 0
+        left, right = known_value(motors.left) or 0, known_value(motors.right) or 0
         if left in _TIMES and right in _POWERS:
             values["time"] = as_text(left)
             values["move"] = f"F({as_text(left)}, {as_text(right)})"
@@ -56,4 +56,4 @@ def _takes_no_time(statement: ir.Statement) -> bool:
 
 def _is_still(motors: ir.Motors) -> bool:
     """`M(0, 0)` is a way to stop."""
-    return not constant(fold(motors.left)) and not constant(fold(motors.right))
+    return not known_value(motors.left) and not known_value(motors.right)

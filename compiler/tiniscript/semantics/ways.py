@@ -8,7 +8,7 @@ from __future__ import annotations
 from tiniscript.base.fixed_point import HIGHEST, Fault, limited, whole
 from tiniscript.base.kit import Kit
 from tiniscript.semantics.ir import Move, Statement, Term
-from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.semantics.optimizer import known_value
 
 
 def way_ms(move: Move, kit: Kit) -> int | None:
@@ -16,8 +16,8 @@ def way_ms(move: Move, kit: Kit) -> int | None:
 
     Raises Fault, as the robot does.
     """
-    way = None if move.time is None else constant(fold(move.time))
-    power = None if move.power is None else constant(fold(move.power))
+    way = known_value(move.time)
+    power = known_value(move.power)
     if way is None or power is None:
         return None
     return kit.go_ms(way, limited(whole(power), 0, 100), move.unit == "DEG")
@@ -28,7 +28,7 @@ def is_open_way(statement: Statement) -> bool:
     if not isinstance(statement, Move) or not statement.unit:
         return False
     values = (statement.time, statement.power)
-    return any(each is None or constant(fold(each)) is None for each in values)
+    return any(each is None or known_value(each) is None for each in values)
 
 
 def timed(move: Move, kit: Kit) -> Move:
