@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import tracemalloc
+from contextlib import closing
 
 import pytest
 
@@ -93,7 +94,7 @@ def test_what_a_socket_has_is_heard_in_one_piece(monkeypatch: pytest.MonkeyPatch
     pieces: list[bytes] = []
     session = Session(1)
     monkeypatch.setattr(session, "receive", lambda data, now_ms: pieces.append(data))
-    with PortConnection(Socket(), session) as line:
+    with closing(PortConnection(Socket(), session)) as line:
         until(lambda: line.has_ended, "the socket is at its end")
     assert (pieces, line.gone) == ([CHATTER], "socket disconnected")
 

@@ -9,6 +9,7 @@ import pytest
 
 LIMIT_BYTES = 1 << 30  # of addresses: less than wasmtime by itself takes for one memory
 MACHINES = """
+from contextlib import closing
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import ImageRefused
 from tiniscript.vm.wasm import WasmImage
@@ -40,7 +41,7 @@ def limited(code: str) -> str:
 @pytest.mark.parametrize("each", [
     "loaded()",
     "loaded().machine(image, None)",
-    "with loaded() as one: one.machine(image, None)",
+    "with closing(loaded()) as one: one.machine(image, None)",
     "try: loaded(image[:-1])\n    except ImageRefused: pass",
     "one = loaded(); one.myself = one; one.close()",
 ])  # fmt: skip

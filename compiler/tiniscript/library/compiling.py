@@ -189,9 +189,7 @@ def compiled(
         return text
     found = compile_text(text, robot.kit, name, optimize)
     if not found.is_right:
-        if not names_robots:
-            return found
-        return naming(found, robot)
+        return naming(found, robot) if names_robots else found
     return fitting(found, robot, is_strict)
 
 

@@ -149,12 +149,6 @@ class PortConnection(LinkConnection):
         if self._lock is not None:
             self._lock.close()
 
-    def __enter__(self) -> PortConnection:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
     # -- the thread -------------------------------------------------------------------------------
 
     def _wake(self) -> None:

@@ -19,7 +19,7 @@ from tiniscript.link.messages import (
     payload_bytes,
     written,
 )
-from tiniscript.link.requests import Pieces
+from tiniscript.link.requests import OFFSET_BYTES, Pieces
 from tiniscript.link.seal import Seal
 
 ROUND_MS = 120  # round trip through two radios and a robot, without the bytes
@@ -82,7 +82,6 @@ class Transmission:
 AHEAD_MS = 200  # a stop waits behind so much of the line's time at most
 REPLY_BYTES = 32  # of DATA on the wire, and more
 FRAME_BYTES = 24  # of DATA on the wire beside its piece, and more
-OFFSET_BYTES = 2  # of DATA before its piece
 _DATA = BY_NAME["DATA"]
 
 

@@ -71,9 +71,7 @@ class RobotLink:
         self._run: _Run | None = None
         self._begun: _Run | None = None
         self._over: _Run | None = None
-        self._program_run: _Run | None = (
-            None  # that of the newest program that the page has started
-        )
+        self._program_run: _Run | None = None  # of the newest program that the page has started
 
     @property
     def has_run(self) -> bool:

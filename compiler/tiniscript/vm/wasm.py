@@ -37,7 +37,7 @@ _NUMBERS = 8
 class WasmImage:
     """An image in the memory of a C++ machine of its own, which has read and verified it.
 
-    `close`, the end of a `with`, or the loss of the last reference frees the memory.
+    `close`, or the loss of the last reference, frees the memory.
     """
 
     def __init__(self, data: bytes, kit: Kit) -> None:
@@ -88,12 +88,6 @@ class WasmImage:
         """Free its memory. It cannot be used again."""
         self.exchange.release()  # its memory is about to be freed
         self._instance.close()
-
-    def __enter__(self) -> WasmImage:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def _robot_functions(self) -> dict[str, Callable[[], None]]:
         """Return what the module imports: `robot.h`, under the names of `state.Robot`."""
