@@ -120,8 +120,7 @@ def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Pa
     for language, answer, other in (("es", "500: 0 a 100", "en"), ("en", "500: 0 to 100", "es")):
         robot = robots.load("tinibot", "mega").speaking(language)
         (project / building.HEADER).write_text(building.header(robot), encoding="utf-8")
-        code, log = pio(project, "run", "-e", "mega")
-        assert code == 0, log
+        pio(project, "run", "-e", "mega").gives(0)
         elf = project / ".pio" / "build" / "mega" / "firmware.elf"
         for each in (language, other):
             assert (packed(rows(each)).texts in elf.read_bytes()) == (each == language)

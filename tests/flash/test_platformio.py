@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.command import Done
 from tests.support.platformio import OFFLINE, SKETCH, copied, pio, prepared
 from tiniscript import compile_text, robots
 from tiniscript.cli import main
@@ -50,8 +51,7 @@ def says_what_it_is(log: str) -> bool:
 
 
 def test_tests_pass(project: Path) -> None:
-    code, log = pio(project, "test", "-e", "native")
-    assert code == 0, log
+    log = pio(project, "test", "-e", "native").gives(0).out
     count = re.search(r"(\d+) test cases: (\d+) succeeded", log)
     files = "".join(path.read_text(encoding="utf-8") for path in project.glob("test/test_*.cpp"))
     assert count and int(count[1]) == int(count[2]) == files.count("\nTEST_CASE("), log
@@ -59,9 +59,8 @@ def test_tests_pass(project: Path) -> None:
 
 
 def test_no_test_case_fails(project: Path) -> None:
-    code, log = pio(project, "test", "-e", "native", "-a", "--test-case=no such case")
-    assert code == 1, log
-    assert "no test case has run" in log
+    done = pio(project, "test", "-e", "native", "-a", "--test-case=no such case")
+    done.gives(1, out="no test case has run")
 
 
 def test_early_end_fails(project: Path) -> None:
@@ -72,15 +71,11 @@ def test_early_end_fails(project: Path) -> None:
         ('TEST_CASE("a robot does', 'TEST_CASE("ends") { exit(0); }\nTEST_CASE("a robot does'),
         ("#include <doctest.h>", "#include <doctest.h>\n#include <stdlib.h>"),
     ):
-        code, log = pio(project, "test", "-e", "native")
-    assert code == 1, log
-    assert "have ended before their end" in log
+        pio(project, "test", "-e", "native").gives(1, out="have ended before their end")
 
 
 def test_tests_are_for_a_computer(project: Path) -> None:
-    code, log = pio(project, "test", "-e", "uno")
-    assert code == 1, log
-    assert "pio test -e native" in log
+    pio(project, "test", "-e", "uno").gives(1, out="pio test -e native")
 
 
 # -- the sketch ---------------------------------------------------------------------------------
@@ -110,8 +105,7 @@ def test_every_robot_has_a_sketch_for_its_board() -> None:
 @pytest.mark.sampled(of="builds of PlatformIO", keep=2)
 @pytest.mark.parametrize("name", SKETCHES)
 def test_sketch_builds(project: Path, name: str) -> None:
-    code, log = pio(project, "run", "-e", name)
-    assert code == 0, log
+    log = pio(project, "run", "-e", name).gives(0).out
     assert says_what_it_is(log)
     assert "warning" not in log, log
     used = {name: int(size) for name, size in re.findall(r"(\w+): .*used (\d+) bytes", log)}
@@ -126,9 +120,9 @@ def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None
         project / "platformio.ini",
         ("= nanoatmega328\n", "= nanoatmega328\nboard_upload.maximum_size = 20000\n"),
     ):
-        code, log = pio(project, "run", "-e", "nano")
-    assert code == 1
-    assert "is greater than maximum allowed (20000 bytes)" in log
+        pio(project, "run", "-e", "nano").gives(
+            1, out="is greater than maximum allowed (20000 bytes)"
+        )
 
 
 @pytest.mark.sampled(of="builds of PlatformIO", keep=2)
@@ -140,12 +134,11 @@ def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     made: list[bytes] = []
     held: list[int] = []
     for name in (new, old):
-        code, log = pio(project, "run", "-e", name)
-        assert code == 0, log
+        log = pio(project, "run", "-e", name).gives(0).out
         held += map(int, re.findall(r"Flash: .*bytes from (\d+)", log))
         made.append((project / ".pio" / "build" / name / "firmware.hex").read_bytes())
     assert made[0] == made[1]
-    assert "nanoatmega328new" in pio(project, "project", "config")[1].partition(f"env:{new}\n")[2]
+    assert "nanoatmega328new" in pio(project, "project", "config").out.partition(f"env:{new}\n")[2]
     assert held == [32_256, 30_720]  # bytes that the bootloader leaves
 
 
@@ -153,18 +146,17 @@ def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
 def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:
     """`tsc board` writes its header, and from then on the sketch is for it."""
     own = project / "src" / "boards" / "kits" / "own.h"
-    assert pio(project, "run", "-e", "uno")[0] == 0
+    pio(project, "run", "-e", "uno").gives(0)
     profile = Path(robots.__file__).parent / "tinibot.toml"
     try:
         assert main(["board", str(profile), "-o", str(own)]) == 0
-        code, log = pio(project, "run", "-e", "uno")
-        assert code == 0 and re.search(r"(Compiling |Retrieved `)\S+/boards/motors.cpp.o", log)
+        log = pio(project, "run", "-e", "uno").gives(0).out
+        assert re.search(r"(Compiling |Retrieved `)\S+/boards/motors.cpp.o", log)
         with changed(own, ("kBuzzer", "kNothingLikeIt")):
-            code, log = pio(project, "run", "-e", "uno")
-        assert code == 1 and "kBuzzer" in log
-        code, log = pio(project, "run", "-e", "mega")
-        assert code == 1 and "is wired to another board. It fits: uno." in log
-        assert pio(project, "run", "-e", "mega_grabber")[0] == 0
+            pio(project, "run", "-e", "uno").gives(1, out="kBuzzer")
+        fits = "is wired to another board. It fits: uno."
+        pio(project, "run", "-e", "mega").gives(1, out=fits)
+        pio(project, "run", "-e", "mega_grabber").gives(0)
     finally:
         own.unlink(missing_ok=True)
 
@@ -184,7 +176,7 @@ def test_test_sketch_has_a_program_that_every_robot_can_run() -> None:
 # -- the bootstrap ------------------------------------------------------------------------------
 
 
-def offline(*words: str, **variables: str) -> tuple[int, str, str]:
+def offline(*words: str, **variables: str) -> Done:
     done = subprocess.run(
         [*OFFLINE, "--offline", *words],
         env={**os.environ, **variables},
@@ -192,16 +184,15 @@ def offline(*words: str, **variables: str) -> tuple[int, str, str]:
         text=True,
         check=False,
     )
-    return done.returncode, done.stdout, done.stderr
+    return Done(done.returncode, done.stdout, done.stderr)
 
 
 def test_own_installation_is_left_alone(project: Path, tmp_path: Path) -> None:
     manifest = tmp_path / "platforms" / "native" / "platform.json"
     manifest.parent.mkdir(parents=True)
     manifest.write_text("{}")
-    code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
-    assert (code, out) == (0, "")
-    assert "platforms of its own (native)" in err
+    done = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+    done.gives(0, "platforms of its own (native)", out="")
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == [manifest]
 
 
@@ -212,12 +203,9 @@ def test_every_platform_has_its_version_and_another_one_is_refused(
     named = re.findall(r"(?m)^platform = (.*)", settings)
     assert named and all(re.fullmatch(r"\w+ @ \d+\.\d+\.\d+", each) for each in named)
     with changed(project / "platformio.ini", ("= atmelavr @ 5.1.0", "= atmelavr @ 5.0.0")):
-        code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
-    assert (code, out) == (2, "")
-    assert "wants atmelavr @ 5.0.0, the stand-in is one for 5.1.0" in err
+        done = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+    done.gives(2, "wants atmelavr @ 5.0.0, the stand-in is one for 5.1.0", out="")
 
 
 def test_command_runs_in_the_project(project: Path) -> None:
-    code, out, _ = offline("--project", str(project), "pio", "project", "config")
-    assert code == 0
-    assert "env:native" in out
+    offline("--project", str(project), "pio", "project", "config").gives(0, out="env:native")

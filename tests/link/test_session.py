@@ -98,17 +98,6 @@ def test_times_of_retries_come_from_the_baud_rate(baud: int, first: int) -> None
     assert session.wakes_at() is None
 
 
-def test_a_robot_that_is_silent_is_lost() -> None:
-    session = greeted()
-    sent = sending(session, 10_000)
-    assert [each.name for each in session.events()] == ["LOST"]
-    assert all(IDLE_HEARTBEAT_MS <= at < IDLE_HEARTBEAT_MS + 3000 for at, _ in sent)
-    assert session.wakes_at() is None
-    request = session.live(FORWARD)  # begins with HELLO again
-    frame = decoded(session.poll(10_000).strip(b"\0"))
-    assert frame and frame.number == BY_NAME["HELLO"].number and not request.outcome
-
-
 def test_a_stop_cuts_everything_short() -> None:
     session = greeted()
     requests: list[PendingRequest[Any]] = [session.live(FORWARD), session.fetch()]

@@ -15,6 +15,7 @@ import pytest
 
 from tests.machines.host import once
 from tests.support.casefile import ROOT
+from tests.support.command import Done
 from tests.support.copies import linked
 from tests.support.needs import need
 
@@ -38,8 +39,8 @@ def copied(folder: Path) -> Path:
     return linked(SKETCH, folder / "vm_arduino", ".pio", "__pycache__", "own.h")
 
 
-def pio(project: Path, *words: str) -> tuple[int, str]:
-    """Return the exit code of `pio`, and what it printed."""
+def pio(project: Path, *words: str) -> Done:
+    """Run `pio`: what it said, as its output."""
     done = subprocess.run(
         [sys.executable, "-m", "platformio", *words],
         cwd=project,
@@ -49,7 +50,7 @@ def pio(project: Path, *words: str) -> tuple[int, str]:
         text=True,
         check=False,
     )
-    return done.returncode, done.stdout
+    return Done(done.returncode, done.stdout, "")
 
 
 def shared(factory: pytest.TempPathFactory) -> Path:
@@ -66,8 +67,7 @@ def changed(folder: Path, name: str, old: str, new: str, environment: str = "uno
     assert text.count(old) == 1, f"{name} has another {old!r} now"
     file.unlink()
     file.write_text(text.replace(old, new), encoding="utf-8")
-    code, said = pio(project, "run", "-e", environment)
-    assert code == 0, said[-3000:]
+    pio(project, "run", "-e", environment).gives(0)
     return project / ".pio" / "build" / environment / "firmware.elf"
 
 
@@ -76,8 +76,7 @@ def firmware(board: str, own: Path, shared: Path) -> Path:
 
     def make(made: Path) -> None:
         project = copied(own)
-        code, log = pio(project, "run", "-e", board)
-        assert code == 0, log
+        pio(project, "run", "-e", board).gives(0)
         shutil.copy(project / ".pio" / "build" / board / "firmware.elf", made)
 
     return once(shared / f"{board}.elf", make)
