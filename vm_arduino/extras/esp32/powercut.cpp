@@ -62,11 +62,6 @@ void power_on(Entries entries, uint32_t cut_at, TornEntry torn) {
   forget();
 }
 
-bool begin(Store* store, Area area, Content* content) {
-  if (area == Area::kProgram) return store->begin_save(content->data());
-  return store->begin_keep(area, content->data());
-}
-
 // Three starts find something that is allowed, and all the same.
 void starts(const Entries& entries, Area area, const std::vector<Content>& allowed) {
   cases++;

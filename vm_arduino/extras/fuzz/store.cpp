@@ -83,8 +83,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const Content old = what_counts(store, area);
     const Content now = area == Area::kProgram ? some_image(input.u8()) : some_record(area);
     Content buffer = now;
-    must(area == Area::kProgram ? store.begin_save(buffer.data())
-                                : store.begin_keep(area, buffer.data()));
+    must(begin(&store, area, &buffer));
     while (store.is_busy() && !memory.is_off) {
       memory.is_writing = false;
       if (is_cut && cut_after == 0) {

@@ -4,7 +4,6 @@
 
 #include "../../src/robot.h"
 #include "../../src/text/kit_words.h"
-#include "../../src/vm/crc32.h"
 #include "../../src/vm/image.h"
 #include "../../src/vm/vm.h"
 
@@ -54,9 +53,7 @@ std::string text_of(const uint8_t* image) {
 
 // The image with its checksum.
 std::string sealed(std::string image) {
-  const uint8_t* const bytes = bytes_of(image);
-  const uint16_t rest = static_cast<uint16_t>(image.size() - kBehindChecksum);
-  const uint32_t crc = crc32(crc32(0, bytes, kChecksumAt), bytes + kBehindChecksum, rest);
+  const uint32_t crc = image_checksum(bytes_of(image), static_cast<uint16_t>(image.size()));
   image.replace(kChecksumAt, sizeof crc, reinterpret_cast<const char*>(&crc), sizeof crc);
   return image;
 }

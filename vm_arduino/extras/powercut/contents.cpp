@@ -55,6 +55,11 @@ Content some_record(Area area) {
   return record;
 }
 
+bool begin(Store* store, Area area, Content* content) {
+  if (area == Area::kProgram) return store->begin_save(content->data());
+  return store->begin_keep(area, content->data());
+}
+
 Content read(const Store& store, Area area) {
   Content found;
   if (store.used(area) == kNoSlot) return found;

@@ -26,6 +26,9 @@ Content some_image(uint16_t code_bytes);
 // A record of anything, with its check.
 Content some_record(Area area);
 
+// Begins to save content, which must not change until that is done. False: the store refuses it.
+bool begin(Store* store, Area area, Content* content);
+
 // What counts in an area, all of it. Where it cannot be read the program ends.
 Content read(const Store& store, Area area);
 

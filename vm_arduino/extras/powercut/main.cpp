@@ -77,17 +77,21 @@ void run(Store* store) {
   memory.is_writing = false;
 }
 
-bool begin(Store* store, Task* task) {
-  if (task->area == Area::kProgram) return store->begin_save(task->content.data());
-  return store->begin_keep(task->area, task->content.data());
-}
-
 // The contents of all areas, those of the one that is looked at apart.
 struct Expected {
   Area area;
   std::vector<Content> allowed;
   Content others[kAreas];
 };
+
+// What is there now, all of it.
+Expected expected_now(const Store& store, Area area) {
+  Expected found;
+  found.area = area;
+  for (uint8_t k = 0; k < kAreas; k++) found.others[k] = read(store, static_cast<Area>(k));
+  found.allowed = {found.others[static_cast<uint8_t>(area)]};
+  return found;
+}
 
 // Reads everything after a start. Returns what is in the area that is looked at.
 Content look(const Store& store, const Expected& expected) {
@@ -162,7 +166,7 @@ void cut_next(World world, const Expected& expected, Task next, uint32_t stride)
   memory = world.memory;
   start(&world.store);
   const Content found = look(world.store, expected);
-  if (!begin(&world.store, &next)) wrong("the next save is refused");
+  if (!begin(&world.store, next.area, &next.content)) wrong("the next save is refused");
   world.memory = memory;
   const Expected now = with(expected, {found, next.content});
   world = cut_each_write(world, stride, [&](const World& cut) { starts(cut, now); });
@@ -194,15 +198,10 @@ void cut_everything(const char* name, World world, Task task, const std::vector<
                     uint32_t stride, const std::vector<Content>& also = {}) {
   history = name;
   memory = world.memory;
-  Expected expected;
-  expected.area = task.area;
-  for (uint8_t k = 0; k < kAreas; k++) {
-    expected.others[k] = read(world.store, static_cast<Area>(k));
-  }
-  const Content old = expected.others[static_cast<uint8_t>(task.area)];
+  Expected expected = expected_now(world.store, task.area);
   memset(erases, 0, sizeof erases);
-  if (!begin(&world.store, &task)) wrong("a save is refused");
-  expected.allowed = {old, task.content};
+  if (!begin(&world.store, task.area, &task.content)) wrong("a save is refused");
+  expected.allowed.push_back(task.content);
   expected.allowed.insert(expected.allowed.end(), also.begin(), also.end());
 
   // once without a cut, for the wear
@@ -233,7 +232,7 @@ World after(uint8_t fill, std::vector<Task> tasks) {
   }
   start(&world.store);
   for (Task& task : tasks) {
-    if (!begin(&world.store, &task)) wrong("a save before is refused");
+    if (!begin(&world.store, task.area, &task.content)) wrong("a save before is refused");
     run(&world.store);
     if (read(world.store, task.area) != task.content) wrong("a save before does not save");
   }
@@ -246,7 +245,7 @@ World after(uint8_t fill, std::vector<Task> tasks) {
 World given_up(World world, Content content, uint8_t marks) {
   memory = world.memory;
   Task task = {Area::kProgram, content};
-  if (!begin(&world.store, &task)) wrong("a save before is refused");
+  if (!begin(&world.store, task.area, &task.content)) wrong("a save before is refused");
   for (uint32_t ticks = 0; ticks < kMostTicks; ticks++) {
     memory.is_writing = false;
     const bool is_ready = world.store.is_ready_to_commit();
@@ -269,12 +268,7 @@ void tear_emptied(World world) {
   const uint8_t generation = world.memory.cells[place].value;
   const uint8_t mark = generation ^ 0xa5;
   memory = world.memory;
-  Expected expected;
-  expected.area = Area::kProgram;
-  for (uint8_t k = 0; k < kAreas; k++) {
-    expected.others[k] = read(world.store, static_cast<Area>(k));
-  }
-  expected.allowed = {expected.others[static_cast<uint8_t>(expected.area)]};
+  const Expected expected = expected_now(world.store, Area::kProgram);
   start(&world.store);
   world.memory = memory;
   world.memory.cells[place] = {generation, generation};
