@@ -14,7 +14,7 @@ from itertools import product
 
 from tests.machines import Senses
 from tests.machines.host import Process
-from tests.machines.python import ran_python
+from tests.machines.python import lists_of, ran_python
 from tests.oracle import programs
 from tests.oracle.task_programs import task_program
 from tests.support.images import image_for
@@ -34,8 +34,7 @@ from tests.support.random_codes import (
 from tiniscript import compile_text
 from tiniscript.base import fixed_point
 from tiniscript.base.kit import Kit
-from tiniscript.base.trace import Ending, TracedRobot
-from tiniscript.base.trace import Senses as Lists
+from tiniscript.base.trace import TracedRobot
 from tiniscript.base.words import COMPARATORS
 from tiniscript.bytecode.image import (
     EVERYTHING,
@@ -51,7 +50,7 @@ from tiniscript.bytecode.image import (
 from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ESCAPED, FAULTS
 from tiniscript.bytecode.verify import Refused, loaded, verify
 from tiniscript.vm.machine import Machine
-from tiniscript.vm.runner import MachineOf, run
+from tiniscript.vm.runner import MachineOf
 from tiniscript.vm.state import DONE, FAULT, WAITING
 from tiniscript.vm.tasks import machine_of
 
@@ -88,15 +87,10 @@ def compare_verdicts(
 
 def compare_runs(machine: Process, code: bytes, kit: Kit, senses: Senses) -> str:
     """Assert that both machines run accepted code alike to the last step; return the ending."""
-    lists = {k: senses.readings.get(each.name, ()) for k, each in enumerate(kit.sensors)}
-    events = list(run(code, kit, Lists(kit, lists), senses.max_ms, senses.max_steps, senses.seed))
-    ending = events.pop()
-    assert isinstance(ending, Ending)
-    ran = machine.run(image_for(code, kit), kit, senses)
-    ours = "".join(f"{event}\n" for event in events)
-    assert ran.trace == ours, f"{code.hex(' ')}:\n{ours}not\n{ran.trace}"
-    assert (ran.offset, ran.steps) == (ending.offset, ending.steps), code.hex(" ")
-    return ending.fault or ending.what
+    image = image_for(code, kit)
+    ours, theirs = ran_python(image, kit, senses), machine.run(image, kit, senses)
+    assert ours == theirs, f"{code.hex(' ')}:\n{ours}\nnot\n{theirs}"
+    return theirs.trace.split()[-1]
 
 
 # -- code ---------------------------------------------------------------------------------------
@@ -132,8 +126,7 @@ def run_late(
     machine_of: MachineOf = Machine,
 ) -> str:
     """Return the trace of Python's machine where the tick after each wait comes so late."""
-    lists = {k: senses.readings.get(each.name, ()) for k, each in enumerate(kit.sensors)}
-    robot = TracedRobot(kit, Lists(kit, lists))
+    robot = TracedRobot(kit, lists_of(kit, senses))
     machine = machine_of(unpack(image).code, robot, len(kit.sensors), senses.seed)
     for late in late_ms:
         if machine.tick(robot.now_ms, LATE_BUDGET) != WAITING:
@@ -273,8 +266,7 @@ def slow_run(image: bytes, senses: Senses, not_ready: int, late_ms: int = 0) -> 
     Its clock moves by more than a millisecond at once, so that ticks come up to `late_ms` late.
     """
     step_ms = late_ms + 1
-    lists = {k: senses.readings.get(each.name, ()) for k, each in enumerate(KIT.sensors)}
-    robot = SlowRobot(KIT, Lists(KIT, lists))
+    robot = SlowRobot(KIT, lists_of(KIT, senses))
     robot.not_ready = not_ready
     machine = machine_of(unpack(image).code, robot, len(KIT.sensors), senses.seed)
     end = ""
