@@ -8,9 +8,9 @@ import pytest
 
 from tests.machines.host_firmware import HostFirmware
 from tests.robots.test_robots import TEXTS
+from tests.support.images import image_of
 from tests.support.virtual_robot import Talk
-from tiniscript import compile_text, robots
-from tiniscript.bytecode.image import Image, unpack
+from tiniscript import robots
 from tiniscript.cli.terminal.run_drawing import Picture
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -24,15 +24,11 @@ WAITS = "SI|LED(TRUE);GRIPPER(90);W(60)"
 SET = ["SET 1 1", "SET 0 90000"]
 
 
-def image_of(text: str) -> Image:
-    return unpack(compile_text(text, KIT).image)
-
-
 def started(text: str, **how: bool) -> tuple[HostFirmware, Session]:
     robot = HostFirmware(KIT)
     robot.wait(200)
     session = Session(1, 9600, KIT.fingerprint)
-    assert robot.until(session, session.upload(image_of(text), **how)) == OK
+    assert robot.until(session, session.upload(image_of(text, KIT), **how)) == OK
     robot.talk(session, 50)
     return robot, session
 

@@ -7,11 +7,11 @@ import random
 import pytest
 
 from tests.support.campaign import wanted
+from tests.support.images import image_of
 from tests.support.owners import (
     WITHOUT_SEALS,
     Keys,
     Owned,
-    image_of,
     owner_of,
     robots_of_both_kinds,
     state_of,

@@ -13,10 +13,10 @@ import pytest
 
 from tests.machines.board import Board
 from tests.support.casefile import ROOT
+from tests.support.images import image_of
 from tests.support.uno_with_discs import ENVIRONMENT, ROBOT, Driven
 from tests.wiring.test_wiring import with_discs
-from tiniscript import compile_text, robots
-from tiniscript.bytecode.image import unpack
+from tiniscript import robots
 from tiniscript.link.requests import OK
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.wheels import Roughness
@@ -132,7 +132,7 @@ def test_a_nano_with_discs_has_tasks(sketches: Callable[[str], Path]) -> None:
     with robot.uno:
         robot.uno.sonar(*eye, 50)
         assert robot.until(robot.session.hello()) == OK
-        image = unpack(compile_text(text, ROBOT.kit).image)
+        image = image_of(text, ROBOT.kit)
         assert robot.until(robot.session.upload(image)) == OK
         seen = []
         for distance_cm, milliseconds in ((50, 500), (9, 300), (50, 500), (50, 500)):

@@ -11,10 +11,11 @@ from functools import lru_cache
 import pytest
 
 from tests.firmware.test_button import told
-from tests.firmware.test_host_firmware import computer, image_of, send, stored, switched_on
+from tests.firmware.test_host_firmware import computer, send, stored, switched_on
 from tests.firmware.test_text import typed
 from tests.machines.host_firmware import HostFirmware
 from tests.support.casefile import ROOT
+from tests.support.images import image_of
 from tests.support.owners import HELD, KIT, PRESSED, RELEASED, Keys
 from tiniscript.link.messages import KEY_OWNER, OWNED
 from tiniscript.link.requests import OK

@@ -10,8 +10,9 @@ from argparse import ArgumentParser
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT, computer, happened, held, holding, image_of
+from tests.firmware.test_host_firmware import KIT, computer, happened, held, holding
 from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
 from tiniscript.bytecode.image import Image, pack, unpack
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session

@@ -14,7 +14,8 @@ from typing import Any
 import pytest
 
 from tests.support.campaign import each_seed, wanted
-from tests.support.owners import FOREVER, Keys, Owned, image_of
+from tests.support.images import image_of
+from tests.support.owners import FOREVER, Keys, Owned
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (

@@ -10,9 +10,10 @@ import pytest
 
 from tests.firmware.test_esp32_transports import AWAY, Ends, ended, uploaded
 from tests.firmware.test_esp32_wifi import joined, remote, school_in_reach
-from tests.firmware.test_host_firmware import happened, image_of
+from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import in_reach, talk
+from tests.support.images import image_of
 from tests.support.mosquitto import AtBroker, Mosquitto
 from tests.support.owners import Keys
 from tests.support.waiting import HANGS_S

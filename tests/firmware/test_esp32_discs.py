@@ -14,9 +14,9 @@ import pytest
 from tests.firmware.test_esp32_builds import BOARD, complaints
 from tests.machines.esp32 import STAND_INS, Esp32Robot, flags_of
 from tests.machines.host import missing
+from tests.support.images import image_of
 from tests.wiring.test_wiring import with_discs
-from tiniscript import compile_text, robots
-from tiniscript.bytecode.image import unpack
+from tiniscript import robots
 from tiniscript.link.outcomes import Event
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -80,7 +80,7 @@ class Driven:
 
     def drive(self, text: str, limit_ms: int = 8000) -> Event:
         """Run a program to its end and a little longer; return what has ended it."""
-        image = unpack(compile_text(text, self._kit).image)
+        image = image_of(text, self._kit)
         assert self.robot.until(self.session, self.session.hello()) == OK
         assert self.robot.until(self.session, self.session.upload(image)) == OK
         for _ in range(limit_ms // 10):

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.firmware.test_host_firmware import happened, image_of
+from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import (
     LEAST_MTU,
@@ -20,6 +20,7 @@ from tests.support.esp32_radio import (
     session,
     talk,
 )
+from tests.support.images import image_of
 from tests.support.owners import Keys
 from tiniscript import robots
 from tiniscript.link.connection import PendingRequest

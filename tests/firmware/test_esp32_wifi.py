@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.firmware.test_esp32_transports import AWAY, Ends, booted, claimed, ended, uploaded
-from tests.firmware.test_host_firmware import happened, image_of
+from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import BROWN_OUT, EXTERNAL, POWER_ON, TASK_WATCHDOG, Esp32Robot, Kept
 from tests.support.esp32_radio import (
     Bytes,
@@ -20,6 +20,7 @@ from tests.support.esp32_radio import (
     session,
     talk,
 )
+from tests.support.images import image_of
 from tests.support.owners import Keys
 from tiniscript.link import wifi
 from tiniscript.link.authority import RobotKey

@@ -11,8 +11,8 @@ from typing import TypeVar
 import pytest
 
 from tests.machines.host_firmware import EMPTY, HostFirmware
-from tiniscript import compile_text, robots
-from tiniscript.bytecode.image import Image, unpack
+from tests.support.images import image_of
+from tiniscript import robots
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME, RUN, SAVED_STORED
@@ -22,12 +22,6 @@ from tiniscript.link.session import Session
 KIT = robots.load("tinibot").kit
 LONG = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
 AWAY = "SI|F(60, 80)"
-
-
-def image_of(text: str) -> Image:
-    compiled = compile_text(text, KIT)
-    assert compiled.image, text
-    return unpack(compiled.image)
 
 
 def switched_on(memory: bytes = EMPTY, **options: float) -> HostFirmware:

@@ -8,16 +8,10 @@ from struct import pack as struct_pack
 
 import pytest
 
-from tests.firmware.test_host_firmware import (
-    KIT,
-    computer,
-    happened,
-    image_of,
-    send,
-    switched_on,
-)
+from tests.firmware.test_host_firmware import KIT, computer, happened, send, switched_on
 from tests.firmware.test_persistence import EACH, FIRST, SECOND, bytes_of, saved
 from tests.machines.host_firmware import EMPTY, HostFirmware
+from tests.support.images import image_of
 from tests.support.owners import Keys
 from tiniscript.bytecode.image import REFUSALS, pack, sealed, unpack
 from tiniscript.link.authority import FREE, OF_ANOTHER, RobotKey, whose

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from tests.support.images import image_of
 from tests.support.owners import (
     FOREVER,
     HELD,
@@ -14,7 +15,6 @@ from tests.support.owners import (
     RELEASED,
     Keys,
     Owned,
-    image_of,
     owner_of,
     robots_of_both_kinds,
     state_of,

@@ -11,7 +11,6 @@ from tests.firmware.test_host_firmware import (
     computer,
     happened,
     holding,
-    image_of,
     outcome,
     pushed,
     send,
@@ -19,6 +18,7 @@ from tests.firmware.test_host_firmware import (
     switched_on,
 )
 from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
 from tiniscript.bytecode.image import pack
 from tiniscript.link.messages import SAVED, STATUSES
 from tiniscript.link.payloads import EmptyReply, FetchReply

@@ -12,7 +12,8 @@ import pytest
 
 from tests.firmware.test_authority import is_accepted
 from tests.support.campaign import wanted
-from tests.support.owners import FOREVER, PRESSED, Keys, Owned, image_of, owner_of, state_of
+from tests.support.images import image_of
+from tests.support.owners import FOREVER, PRESSED, Keys, Owned, owner_of, state_of
 from tests.support.thief import Thief, wire_of
 from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
 from tiniscript.link.frames import Frame, decoded, encoded

@@ -9,9 +9,8 @@ import pytest
 from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
 from tests.robots.test_robots import TEXTS
+from tests.support.images import image_of
 from tests.vm.test_tasks import STATES
-from tiniscript import compile_text
-from tiniscript.bytecode.image import unpack
 from tiniscript.link.messages import STATE_FAULTED, STATE_STOPPED
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -45,7 +44,7 @@ def test_all_tasks_end(state: str, end: str) -> None:
     session = Session(1, 9600, robot.robot.kit.fingerprint)
 
     def send(state: str) -> None:
-        image = unpack(compile_text(STATES[state], robot.robot.kit).image)
+        image = image_of(STATES[state], robot.robot.kit)
         request = session.upload(image, is_detached=end == "max_run")
         assert robot.until(session, request) == OK
         robot.talk(session, 200)

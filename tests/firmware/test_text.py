@@ -14,7 +14,6 @@ from tests.firmware.test_host_firmware import (
     LONG,
     computer,
     happened,
-    image_of,
     outcome,
     pushed,
     send,
@@ -24,6 +23,7 @@ from tests.firmware.test_host_firmware import (
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.campaign import each_seed, wanted
 from tests.support.command import OBSTACLE
+from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.base.kit import NUMBER, Device, Kit
 from tiniscript.link.frames import Frame, encoded

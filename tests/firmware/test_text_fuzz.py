@@ -12,9 +12,10 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.firmware.test_host_firmware import computer, image_of, switched_on
+from tests.firmware.test_host_firmware import computer, switched_on
 from tests.firmware.test_text import holding
 from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
 from tiniscript.base.words import WORDS
 
 SEEDS = 24  # in the tests; a campaign runs more

@@ -10,15 +10,7 @@ import random
 import pytest
 
 from tests.firmware import test_text, test_text_fuzz
-from tests.firmware.test_host_firmware import (
-    computer,
-    happened,
-    image_of,
-    pushed,
-    send,
-    stored,
-    switched_on,
-)
+from tests.firmware.test_host_firmware import computer, happened, pushed, send, stored, switched_on
 from tests.firmware.test_text import (
     LINE,
     SAVED_BACK,
@@ -30,6 +22,7 @@ from tests.firmware.test_text import (
     typed,
 )
 from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
 from tiniscript.link.messages import SAVED_STORED, STATE_STOPPED
 from tiniscript.link.requests import OK
 

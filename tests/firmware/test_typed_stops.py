@@ -17,11 +17,12 @@ from pathlib import Path
 import pytest
 
 from tests.firmware.test_board_text import OBSTACLE
-from tests.firmware.test_uno_robot import FORWARD, KIT, NAMES, OFF, image_of, states
+from tests.firmware.test_uno_robot import FORWARD, KIT, NAMES, OFF, states
 from tests.machines.host import once
 from tests.machines.uno import needed
 from tests.machines.wired import Wired
 from tests.support.campaign import wanted
+from tests.support.images import image_of
 from tests.support.platformio import firmware, shared
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session

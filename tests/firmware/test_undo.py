@@ -17,7 +17,6 @@ from tests.firmware.test_host_firmware import (
     computer,
     happened,
     held,
-    image_of,
     outcome,
     send,
     stored,
@@ -33,6 +32,7 @@ from tests.firmware.test_persistence import (
     saved,
 )
 from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
 from tiniscript.bytecode.image import sealed
 from tiniscript.bytecode.opcodes import ISA_MINOR
 from tiniscript.link.frames import decoded

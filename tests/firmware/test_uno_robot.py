@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from tests.machines.wired import Wired
+from tests.support.images import image_of
 from tests.support.owners import Keys
-from tiniscript import compile_text, robots
-from tiniscript.bytecode.image import Image, unpack
+from tiniscript import robots
 from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
 from tiniscript.link.messages import KEY_OWNER, SAVED_STORED
 from tiniscript.link.requests import OK
@@ -45,10 +45,6 @@ def switched_on(sketch: Path, memory: Path, board: str = "uno") -> Uno:
 
 def states(uno: Uno) -> dict[str, str]:
     return {name: uno.pins[name].state for name in MOTORS}
-
-
-def image_of(text: str) -> Image:
-    return unpack(compile_text(text, KIT).image)
 
 
 def computer(uno: Uno, nonce: int = 1) -> Wired:

@@ -6,19 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_uno_robot import (
-    AWAY,
-    BAUD,
-    FORWARD,
-    NAMES,
-    OFF,
-    computer,
-    image_of,
-    send,
-    states,
-)
+from tests.firmware.test_uno_robot import AWAY, BAUD, FORWARD, NAMES, OFF, computer, send, states
 from tests.machines.uno import needed
 from tests.machines.wired import Wired
+from tests.support.images import image_of
 from tests.support.platformio import changed
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import OK

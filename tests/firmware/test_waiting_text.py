@@ -11,9 +11,10 @@ from itertools import cycle
 import pytest
 
 from tests.firmware.test_button_states import SmallRobot
-from tests.firmware.test_host_firmware import KIT, computer, happened, image_of
+from tests.firmware.test_host_firmware import KIT, computer, happened
 from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import wanted
+from tests.support.images import image_of
 from tiniscript import compile_text
 from tiniscript.bytecode.image import HEADER_BYTES
 from tiniscript.link.frames import Frame, decoded, encoded

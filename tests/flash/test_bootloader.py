@@ -8,17 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_uno_robot import (
-    AWAY,
-    BAUD,
-    FORWARD,
-    NAMES,
-    OFF,
-    computer,
-    image_of,
-    send,
-    states,
-)
+from tests.firmware.test_uno_robot import AWAY, BAUD, FORWARD, NAMES, OFF, computer, send, states
 from tests.firmware.test_uno_watchdog import (
     HANGS,
     HANGS_ALONE,
@@ -33,6 +23,7 @@ from tests.machines.uno import built as nothing_but
 from tests.machines.uno import needed
 from tests.support import arduino_builder
 from tests.support.command import process
+from tests.support.images import image_of
 from tests.support.needs import need
 from tests.support.platformio import firmware, shared
 from tiniscript.link.requests import OK

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from time import monotonic
 
-from tests.firmware.test_host_firmware import image_of
+from tests.support.images import image_of
 from tests.support.shared_pty_robot import Shared
 from tests.support.waiting import HANGS_S
 from tiniscript.link.connection import LinkConnection

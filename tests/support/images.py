@@ -1,14 +1,24 @@
-"""Images of code that no compiler has made."""
+"""Images of texts, and of code that no compiler has made."""
 
 from __future__ import annotations
 
 from functools import reduce
 from operator import or_
 
+from tiniscript import compile_text, robots
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import rows
-from tiniscript.bytecode.image import pack
+from tiniscript.bytecode.image import Image, pack, unpack
 from tiniscript.bytecode.verify import Refused, verify
+
+TINIBOT = robots.load("tinibot").kit
+
+
+def image_of(text: str, kit: Kit = TINIBOT) -> Image:
+    """Return the image of a text, which must be right."""
+    compiled = compile_text(text, kit)
+    assert compiled.image, text
+    return unpack(compiled.image)
 
 
 def needs_of(code: bytes) -> int:

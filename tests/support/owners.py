@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from tests.machines.host_firmware import EMPTY, HostFirmware
-from tiniscript import compile_text, robots
-from tiniscript.bytecode.image import Image, unpack
+from tests.support.images import image_of
+from tiniscript import robots
 from tiniscript.link.authority import KeyRing, RobotKey, whose
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
@@ -128,12 +128,6 @@ class Owned:
     def tries(self, session: Session) -> str:
         """Return how the robot answers who wants to drive."""
         return self.outcome(session, session.upload(image_of(FOREVER), saves=False))
-
-
-def image_of(text: str) -> Image:
-    compiled = compile_text(text, KIT)
-    assert compiled.image, text
-    return unpack(compiled.image)
 
 
 def owner_of(table: Owned, session: Session) -> str:

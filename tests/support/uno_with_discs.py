@@ -9,8 +9,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from tests.machines.wired import Wired
-from tiniscript import compile_text, robots
-from tiniscript.bytecode.image import unpack
+from tests.support.images import image_of
+from tiniscript import robots
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.robots.drivers import discs_of
@@ -78,7 +78,7 @@ class Driven(Wired):
 
     def drive(self, text: str, limit_ms: int = 20_000) -> str:
         """Run a program to its end and a little longer; return what has ended it."""
-        image = unpack(compile_text(text, ROBOT.kit).image)
+        image = image_of(text, ROBOT.kit)
         assert self.until(self.session.hello()) == OK
         assert self.until(self.session.upload(image)) == OK
         for _ in range(limit_ms // 10):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tiniscript import compile_text, robots
+from tests.support.images import image_of
+from tiniscript import robots
 from tiniscript.base.trace import Event
-from tiniscript.bytecode.image import unpack
 from tiniscript.link.authority import KeyRing
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.requests import Reply
@@ -50,5 +50,5 @@ class Talk(Computer):
     ) -> Reply[ReceiptReply]:
         self.until(self.session.hello())
         kit = self.robot.profile.kit
-        image = unpack(compile_text(text, kit).image)
+        image = image_of(text, kit)
         return self.until(self.session.upload(image, runs, True, is_detached))

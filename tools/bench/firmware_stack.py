@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from tests.machines.wired import Wired
+from tests.support.images import image_of
 from tests.support.owners import Keys
-from tiniscript import compile_text
 from tiniscript.base.kit import NUMBER, Kit
-from tiniscript.bytecode.image import Image, unpack
+from tiniscript.bytecode.image import Image
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import KEY_OWNER
 from tiniscript.link.session import Session
@@ -162,13 +162,6 @@ def must(wired: Wired, request: PendingRequest[Any]) -> None:
     status = wired.until(request)
     if status != 0:
         raise RuntimeError(f"the robot has answered {status}")
-
-
-def image_of(text: str, kit: Kit) -> Image:
-    done = compile_text(text, kit)
-    if not done.image:
-        raise RuntimeError(f"{text}: {done.diagnostics}")
-    return unpack(done.image)
 
 
 def longest(kit: Kit, room: int) -> Image:

@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.machines.wired import Wired
+from tests.support.images import image_of
 from tiniscript import robots
 from tools import ROOT, uno
 from tools.bench import firmware_size, stops
 from tools.bench.compiler import PROGRAMS
-from tools.bench.firmware_stack import connected, image_of, must
+from tools.bench.firmware_stack import connected, must
 from tools.uno import CYCLES_PER_MS, Uno
 
 PROJECT = ROOT / "vm_arduino"

@@ -12,8 +12,9 @@ import re
 from pathlib import Path
 
 from tests.machines.wired import Wired
+from tests.support.images import image_of
 from tiniscript import robots
-from tools.bench.firmware_stack import connected, image_of, must, pin
+from tools.bench.firmware_stack import connected, must, pin
 from tools.bench.workloads import Work, check
 from tools.uno import Uno
 

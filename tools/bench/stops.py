@@ -16,9 +16,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
+from tests.support.images import image_of
 from tiniscript.base.kit import Kit
 from tiniscript.robots.profile import Robot
-from tools.bench.firmware_stack import BOARDS, all_devices, connected, image_of, must, pin
+from tools.bench.firmware_stack import BOARDS, all_devices, connected, must, pin
 from tools.uno import CYCLES_PER_MS, HERTZ, Masked, Uno
 
 TEXT = b"// nobody reads that\n", b"// nor this line, which nobody ends"

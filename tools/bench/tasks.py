@@ -19,10 +19,11 @@ from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 
+from tests.support.images import image_of
 from tiniscript import robots
 from tools import uno
 from tools.bench import avr_bench, firmware_size
-from tools.bench.firmware_stack import connected, image_of, must
+from tools.bench.firmware_stack import connected, must
 from tools.bench.machine import BUDGET, count
 from tools.bench.sketch_cycles import SENSOR_PIN
 from tools.uno import CYCLES_PER_MS, Uno
