@@ -13,7 +13,6 @@ import os
 import stat
 import sys
 from importlib import import_module
-from typing import TextIO
 
 from tiniscript.cli import streams
 from tiniscript.cli.errors import CommandError
@@ -83,24 +82,15 @@ def _mend_streams() -> None:
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115
-    for stream in (sys.stdout, sys.stderr):
+    for name, stream in (("stdout", sys.stdout), ("stderr", sys.stderr)):
         if hasattr(stream, "reconfigure"):
             is_unicode = (stream.encoding or "").lower().startswith("utf")
-            stream.reconfigure(errors="backslashreplace" if is_unicode else _plain_errors())
+            streams.register()
+            stream.reconfigure(errors="backslashreplace" if is_unicode else streams.NAME)
         if stream.isatty():
-            _wrap(stream)
+            setattr(sys, name, streams.Wrapping(stream))
     if hasattr(sys.stdin, "reconfigure"):
         sys.stdin.reconfigure(errors="backslashreplace")  # invalid text becomes a mistake
-
-
-def _wrap(stream: TextIO) -> None:
-    name = "stdout" if stream is sys.stdout else "stderr"
-    setattr(sys, name, streams.Wrapping(stream))
-
-
-def _plain_errors() -> str:
-    streams.register()
-    return streams.NAME
 
 
 def _drop_output() -> None:

@@ -22,12 +22,8 @@ from tiniscript.robots.ports import AVRS, ESP32S
 from tiniscript.robots.profile import ProfileRefused, Robot
 
 LOG = "build.log"  # the output of the last failed build, in the folder of the ready files
-MINUTES, MINUTES_ESP32 = (
-    3,
-    10,
-)  # of fetching and building, for whoever fetches 10 Mbit a second or more
-
-
+# Of fetching and building, for whoever fetches 10 Mbit a second or more.
+MINUTES, MINUTES_ESP32 = 3, 10
 BOARDS = tuple(AVRS)  # that avrdude writes to
 
 

@@ -30,18 +30,13 @@ _MESSAGES = {
 }
 
 
-def _plain_formatter(prog: str) -> HelpFormatter:
-    """Return a formatter: argparse always needs one, and with a width it starts faster."""
-    return HelpFormatter(prog, width=80)
-
-
 class Options(ArgumentParser):
     """The options of a verb, as the table of options has them."""
 
     def __init__(self, verb: str, language: str) -> None:
-        super().__init__(
-            prog=f"tsc {verb}", add_help=False, allow_abbrev=False, formatter_class=_plain_formatter
-        )
+        # argparse always needs a formatter, and with a width it starts faster
+        plain = partial(HelpFormatter, width=80)
+        super().__init__(f"tsc {verb}", add_help=False, allow_abbrev=False, formatter_class=plain)
         self.verb = verb
         self.language = language
         self.table = of_verb(verb)

@@ -173,7 +173,6 @@ def _folded(name: str) -> str:
 
 def _refuse_foreign(output: Named) -> None:
     """Refuse to write over a file that tsc has not made. Raises CommandError."""
-
     with suppress(OSError, ValueError):  # it is not there, or writing it reports the reason
         if is_foreign(Path(output.path)):
             raise CommandError(2, "over_foreign", option=output.label, file=output.path)

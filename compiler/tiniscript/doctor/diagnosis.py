@@ -46,10 +46,12 @@ def looked(system: System) -> Computer:
 
 def access(system: System, port: str) -> Access:
     """Return who may use a port and who does. Opens no port."""
-    if system.platform == "win32":
+    is_told = system.platform != "win32" and not is_address(port)
+    owner = system.owner(port) if is_told else None
+    if owner is None:
         return FREE
     look = macos.access if system.platform == "darwin" else linux.access
-    return look(system, port)
+    return look(system, port, owner)
 
 
 REFUSED, IN_USE = os.strerror(errno.ECONNREFUSED), os.strerror(errno.EBUSY)

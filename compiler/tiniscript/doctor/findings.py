@@ -1,4 +1,4 @@
-"""What the doctor can find: the table of causes. Knows no sentence.
+"""What the doctor can find: the names of causes. Knows no sentence.
 
 A cause is a short name that stays; its sentences are in `languages/en/command.toml`.
 """
@@ -8,64 +8,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-WRONG, NOTE, FINE = "wrong", "note", "fine"
-
-# Each cause: whether something is wrong then. NOTE: it is good to know, and nothing is wrong.
-CAUSES: dict[str, str] = {
+# fmt: off
+WRONG = (
     # the computer
-    "no_port": WRONG,
-    "charging_cable": WRONG,
-    "port_missing": WRONG,
-    "which_port": WRONG,
-    "driver_missing": WRONG,
-    "brltty": WRONG,
-    "no_bluetooth": WRONG,
-    "bluetooth_off": WRONG,
-    "not_paired": WRONG,
-    "no_rfcomm": WRONG,
+    "no_port", "charging_cable", "port_missing", "which_port", "driver_missing", "brltty",
+    "no_bluetooth", "bluetooth_off", "not_paired", "no_rfcomm",
     # the port
-    "no_permission": WRONG,
-    "login_again": WRONG,
-    "busy": WRONG,
-    "modem_manager": WRONG,
-    "other_tsc": WRONG,
-    "out_of_reach": WRONG,
-    "other_host": WRONG,
-    "slow_port": WRONG,
-    "no_serial_port": WRONG,
-    "port_broken": WRONG,
-    "port_gone": WRONG,
-    "not_opened": WRONG,
+    "no_permission", "login_again", "busy", "modem_manager", "other_tsc", "out_of_reach",
+    "other_host", "slow_port", "no_serial_port", "port_broken", "port_gone", "not_opened",
     # what answers there
-    "echo": WRONG,
-    "module_set_up": WRONG,
-    "module_alone": WRONG,
-    "wrong_baud": WRONG,
-    "module_baud": WRONG,
-    "crossed": WRONG,
-    "other_sketch": WRONG,
-    "bootloader_only": WRONG,
-    "garbled": WRONG,
-    "silent": WRONG,
+    "echo", "module_set_up", "module_alone", "wrong_baud", "module_baud", "crossed",
+    "other_sketch", "bootloader_only", "garbled", "silent",
     # the robot
-    "firmware_older": WRONG,
-    "firmware_newer": WRONG,
-    "wrong_kit": WRONG,
-    "unknown_kit": WRONG,
-    "restarts": WRONG,
-    "motors_restart": WRONG,
-    "brown_out": WRONG,
-    "hung": WRONG,
-    "low_supply": WRONG,
-    "wifi_rests": WRONG,
-    "lossy": WRONG,
-    "falls_silent": WRONG,
-    "of_another_owner": NOTE,
-    "stopped": NOTE,
-    "not_saved_yet": NOTE,
-    "other_program": NOTE,
-    "fine": FINE,
-}
+    "firmware_older", "firmware_newer", "wrong_kit", "unknown_kit", "restarts", "motors_restart",
+    "brown_out", "hung", "low_supply", "wifi_rests", "lossy", "falls_silent",
+)
+# fmt: on
+NOTES = ("of_another_owner", "stopped", "not_saved_yet", "other_program")  # nothing is wrong then
+CAUSES = (*WRONG, *NOTES, "fine")
 
 
 class Finding(NamedTuple):
@@ -77,7 +37,7 @@ class Finding(NamedTuple):
 
     @property
     def is_wrong(self) -> bool:
-        return CAUSES[self.cause] == WRONG
+        return self.cause in WRONG
 
 
 def sure(cause: str, **values: str) -> Finding:

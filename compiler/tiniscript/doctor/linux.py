@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from tiniscript.doctor.computer import FREE, NONE, OFF, ON, Access, Adapter, Computer, chip_of
-from tiniscript.doctor.system import System
-from tiniscript.link.port_names import is_address
+from tiniscript.doctor.computer import NONE, OFF, ON, Access, Adapter, Computer, chip_of
+from tiniscript.doctor.system import Owner, System
 
 USB, BLUETOOTH, SWITCHES = "/sys/bus/usb/devices", "/sys/class/bluetooth", "/sys/class/rfkill"
 LOCKS = "/run/lock", "/var/lock"
@@ -69,12 +68,7 @@ def _programs(system: System) -> dict[str, str]:
     return {number: system.text(f"/proc/{number}/comm") or "" for number in numbers}
 
 
-def access(system: System, port: str) -> Access:
-    if is_address(port):
-        return FREE
-    owner = system.owner(port)
-    if owner is None:
-        return FREE
+def access(system: System, port: str, owner: Owner) -> Access:
     group, members = _group(system, owner.group)
     is_joined = system.user() in members and owner.group not in system.groups()
     return Access(owner.may_use, group, is_joined, tuple(_users(system, port)))

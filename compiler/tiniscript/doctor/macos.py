@@ -6,19 +6,8 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
-from tiniscript.doctor.computer import (
-    FREE,
-    NONE,
-    OFF,
-    ON,
-    UNKNOWN,
-    Access,
-    Adapter,
-    Computer,
-    chip_of,
-)
-from tiniscript.doctor.system import System
-from tiniscript.link.port_names import is_address
+from tiniscript.doctor.computer import NONE, OFF, ON, UNKNOWN, Access, Adapter, Computer, chip_of
+from tiniscript.doctor.system import Owner, System
 
 
 def looked(system: System) -> Computer:
@@ -74,12 +63,7 @@ def _bluetooth(found: list[dict[str, Any]] | None) -> tuple[str, tuple[str, ...]
     return (OFF if str(state).endswith("_off") else ON), tuple(names)
 
 
-def access(system: System, port: str) -> Access:
-    if is_address(port):
-        return FREE
-    owner = system.owner(port)
-    if owner is None:
-        return FREE
+def access(system: System, port: str, owner: Owner) -> Access:
     said = system.output("lsof", "-F", "c", port) or ""
     names = [row[1:] for row in said.splitlines() if row.startswith("c") and row[1:]]
     return Access(owner.may_use, "", False, tuple(dict.fromkeys(names)))

@@ -14,7 +14,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import text
 from tiniscript.diagnostics.codes import WILL_FAULT
 from tiniscript.library import source_map
-from tiniscript.library.compiling import Compiled, for_robot
+from tiniscript.library.compiling import for_robot
 from tiniscript.semantics.duration import duration
 from tiniscript.semantics.ir import Program
 
@@ -39,6 +39,7 @@ def run(options: Namespace, language: str) -> int:
         data = (source_map.as_json(places) + "\n").encode(errors="backslashreplace")
         outputs.write(Path(options.map), data, "unwritable_at --map")
     source_map.remember(compiled.image, places)
+    will_fault = any(diagnostic.code is WILL_FAULT for diagnostic in compiled.diagnostics)
     said = text("compiled", language).format(
         source=inputs.shown(given.name),
         target=inputs.shown(target or "-"),
@@ -46,7 +47,7 @@ def run(options: Namespace, language: str) -> int:
         code=len(compiled.code),
         stack=compiled.verdict.stack_values if compiled.verdict else 0,
         stacks=STACK_VALUES,
-        runs="" if _will_fault(compiled) else _runs(compiled.lowered, robot.kit, language),
+        runs="" if will_fault else _runs(compiled.lowered, robot.kit, language),
     )
     print(said, file=sys.stderr if target is None else sys.stdout)
     return 0
@@ -84,10 +85,6 @@ def _target(given: inputs.Input, output: str | None) -> str | None:
     if output is None and given.path is None:
         raise CommandError(2, "needs_output")
     return paths.default_output(given.name) if output is None else output
-
-
-def _will_fault(compiled: Compiled) -> bool:
-    return any(diagnostic.code is WILL_FAULT for diagnostic in compiled.diagnostics)
 
 
 def _runs(program: Program | None, kit: Kit, language: str) -> str:

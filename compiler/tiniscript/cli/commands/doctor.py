@@ -24,7 +24,7 @@ from tiniscript.cli.texts import Said, has_text, text
 from tiniscript.doctor import report
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
-from tiniscript.doctor.findings import CAUSES, NOTE, Finding
+from tiniscript.doctor.findings import NOTES, Finding
 from tiniscript.doctor.system import System
 from tiniscript.library import opening
 from tiniscript.library.known_kits import of_kit, shipped_of_kit
@@ -148,7 +148,7 @@ def _rows(diagnosis: Diagnosis, language: str, is_private: bool) -> list[str]:
         values = report.values_of(finding) if is_private else finding.values
         what, seen, then = _said(finding, values, language)
         how = "doctor_sure" if finding.is_sure else "doctor_probably"
-        if CAUSES[finding.cause] == NOTE:
+        if finding.cause in NOTES:
             how = "doctor_note"
         rows += [
             text("doctor_finding", language).format(

@@ -6,13 +6,11 @@ from argparse import Namespace
 
 from tiniscript import robots
 from tiniscript.cli import inputs
-from tiniscript.cli.errors import CommandError, not_installed
-from tiniscript.cli.robot.simulator_options import world_of
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot.simulator_options import refusing, world_of
 from tiniscript.cli.texts import text
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import BadRecording, Parting, Recorded, Recording, read
-from tiniscript.virtual.module import NoWebAssembly
-from tiniscript.virtual.world import WorldRefused
 
 SAME = ("same", "missed")
 # options of `tsc run` that say what the recording says, or the virtual robot
@@ -30,13 +28,8 @@ def replay(options: Namespace, language: str) -> int:
     recording = _read(options.replay)
     robot = _robot(options, recording)
     world = world_of(options, language)
-    try:
+    with refusing(world.name, language):
         found = recordings.replay(recording, given.data, robot, world)
-    except WorldRefused as why:
-        file = inputs.shown(world.name)
-        raise inputs.refused(why, language, "world_refused", file=file) from None
-    except NoWebAssembly as why:
-        raise not_installed("virtual_needs_wasmtime", why) from None
     print(sentence(found, language))
     return int(found.what not in SAME)
 

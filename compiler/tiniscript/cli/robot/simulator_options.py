@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from tiniscript.cli import outputs
@@ -45,21 +47,26 @@ def made(
     motors = _motors(options.motors, language)
     told = sensor_lists(options.sensor, profile, language)
     settings = Settings(seed=seed, noise=noise, motors=motors, told=told, baud=baud)
-    try:
+    with refusing(world.name, language):
         return VirtualRobot(profile.speaking(language), world, settings, memory)
+
+
+@contextmanager
+def refusing(world: str, language: str) -> Iterator[None]:
+    """Raise CommandError where a world is refused, or what a virtual robot needs is missing."""
+    try:
+        yield
     except NoWebAssembly as why:
         raise not_installed("virtual_needs_wasmtime", why) from None
     except WorldRefused as why:
-        raise refused(why, language, "world_refused", file=shown(world.name)) from None
+        raise refused(why, language, "world_refused", file=shown(world)) from None
 
 
 def world_of(options: Namespace, language: str) -> World:
     """Return the world that `--world` names, or the default one."""
     name = worlds.DEFAULT if options.world is None else options.world
-    try:
+    with refusing(name, language):
         return worlds.load(name)
-    except WorldRefused as why:
-        raise refused(why, language, "world_refused", file=shown(name)) from None
 
 
 def hurry_of(options: Namespace, language: str) -> float:
