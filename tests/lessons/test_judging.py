@@ -6,16 +6,15 @@ from pathlib import Path
 
 import pytest
 
+from tests.lessons.test_lessons import findings_of
 from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tiniscript import robots
 from tiniscript.lessons import catalogue, running
-from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.lesson import Lesson
-from tiniscript.lessons.marking import Marking
 from tiniscript.lessons.sentences import sentence as words_for
 from tiniscript.lessons.variation import point_of, varied
-from tiniscript.library.compiling import compiled, image_of, maker
+from tiniscript.library.compiling import compiled, image_of
 
 HEAD = 'robot = "{robot}"\nseconds = 10\n{more}\n[title]\nen = "A"\nes = "B"\n'
 WORLD = """\
@@ -43,13 +42,8 @@ def lesson_of(folder: Path, criteria: str, robot: str = "tinibot", more: str = "
     return catalogue.load(folder)
 
 
-def said(lesson: Lesson, text: str, seed: int = 1) -> list[str]:
-    return [words_for(each, "en") for each in missing_in(lesson, text, seed)]
-
-
-def missing_in(lesson: Lesson, text: str, seed: int = 1) -> list[Finding]:
-    robot = robots.load(lesson.robot)
-    return list(Marking(text, maker(robot), robot, lesson, [seed]).whole().findings)
+def said(lesson: Lesson, text: str) -> list[str]:
+    return [words_for(each, "en") for each in findings_of(text, lesson, range(1, 2))]
 
 
 CASES = [
@@ -166,7 +160,7 @@ def test_a_criterion_is_met_or_missed(
 ) -> None:
     lesson = lesson_of(tmp_path, f"[[criteria]]\n{criterion}\n")
     assert said(lesson, right) == []
-    (missing,) = missing_in(lesson, wrong)
+    (missing,) = findings_of(wrong, lesson, range(1, 2))
     found, spanish = (words_for(missing, language) for language in ("en", "es"))
     assert sentence in found
     assert spanish != found

@@ -224,6 +224,7 @@ def test_every_need_has_a_pin_and_the_link_none(chip: Chip) -> None:
     every = chip.digital | chip.reading | chip.analog
     assert not every & chip.link_pins
     assert set(chip.pwm) <= chip.digital
+    assert all(chip.can(pin, "input") for pin in chip.digital | chip.reading)
     missing = {need for need in NEEDS if not any(chip.can(pin, need) for pin in every)}
     assert missing == ({"count"} if chip.name == "esp32c3" else set())
     assert all(chip.pin_number(_written(chip.pin_name(pin))) == pin for pin in every)
