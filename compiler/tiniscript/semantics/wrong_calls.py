@@ -16,7 +16,6 @@ from tiniscript.base.words import OTHER_WAY, UNIT_OF, VALUE, WORDS, Argument, Wo
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import looks_ahead
-from tiniscript.semantics.counts import LONG_TIME_S, LOWEST_HERTZ, count_diagnostic
 from tiniscript.semantics.symbols import ENOUGH, Name, Scope
 from tiniscript.semantics.unknown_words import (
     report_not_callable,
@@ -31,6 +30,12 @@ _PAIR = re.compile(r"(?i)\b([FBLR])[ \t]*\([ \t]*(\w+)[ \t]*(CM|DEG)\b")  # `F(2
 # How an instruction is ended by a condition, by the role of its word.
 _ENDED = {"motors": "{call};W(FOREVER) UNTIL({c});S",
           **dict.fromkeys(("show", "beep"), "WHILE(NOT ({c}));{call};END_WHILE")}  # fmt: skip
+_LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
+_LOWEST_HERTZ = 30
+_MOST_POWER = 100
+_TIME_AND_POWER = (0, 1)  # their places
+_NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
+_UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
 _NEAR = 500  # characters behind a value for a sensor in which its use is looked for
 
 
@@ -62,9 +67,16 @@ class WrongCalls:
         self.scope.report(codes.FOREVER_NEEDS_UNTIL, span, word=word.text, fix=fix)
 
     def count(self, word: Word, arguments: Sequence[ast.Argument], span: Span) -> None:
-        spans = [argument.span for argument in arguments]
-        found = count_diagnostic(self.scope.source, word, spans, span)
-        self.scope.diagnostics.append(found)
+        source = self.scope.source
+        texts = [source[each.span] for each in arguments]
+        values = {
+            "usage": word.usage,
+            "example": "" if texts else word.example,
+            **_said_of_count(texts, word, _UNTIL.search(source[span])),
+            "wanted": str(len(word.arguments)),
+            "found": str(len(arguments)),
+        }
+        self.scope.report(codes.ARGUMENT_COUNT, span, None, word=word.text, **values)
 
     def unit_pair(self, node: ast.Command, unit: ast.Part) -> None:
         """`F(20 DEG, 60)`: forward goes centimetres."""
@@ -158,11 +170,11 @@ def meant(source: Source, node: ast.Command, word: Word) -> dict[str, str]:
     if len(texts) != 2 or not all(each.is_plain for each in arguments):
         return values
     first, second = texts
-    is_short = first.replace(".", "", 1).isdecimal() and float(first) < LONG_TIME_S
+    is_short = first.replace(".", "", 1).isdecimal() and float(first) < _LONG_TIME_S
     if word.role.name == "beep":
         if re.fullmatch(r"\d+\.\d{3}", second):  # `BEEP(1, 1.000)`
             values["fix"] = f"{word.text}({first}, {second.replace('.', '')})"
-        elif _is_whole(first) > LOWEST_HERTZ:
+        elif _is_whole(first) > _LOWEST_HERTZ:
             values |= {"fix": f"{word.text}({second}, {first})", "usage": word.usage}
         elif is_short:
             values["tone"] = f"{word.text}({first}, {WORDS['BEEP'].arguments[1].sample})"
@@ -185,3 +197,32 @@ def _is_whole(text: str) -> int:
 def _is_note(text: str) -> bool:
     """Whether a number is rather a tone than a power: 440, but not 200."""
     return _is_whole(text) >= _LOW_TONE and _is_whole(text) % _ROUND != 0
+
+
+def _said_of_count(texts: Sequence[str], word: Word, until: re.Match[str] | None) -> dict[str, str]:
+    """Return what is said of a wrong number of values: `power` of F(80), `spare` of F(2, 80, 5).
+
+    `kept` is W(2) for W(2, 80): a wait has no power. With UNTIL the time may be FOREVER.
+    """
+    numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
+    said = {"power": "", "spare": "", "kept": ""}
+    if word.role.is_move and len(texts) == 1 and _LONG_TIME_S <= numbers[0] <= _MOST_POWER:
+        said["power"] = f"{word.text}( , {texts[0]})"
+        if until is not None:
+            said["endless"] = f"{word.text}(FOREVER, {texts[0]}){until[0]}"
+        said["number"] = texts[0]
+    elif len(texts) > len(word.arguments) and min(numbers) >= 0:
+        is_sound = word.role.name == "beep" and numbers[1] > _LOWEST_HERTZ
+        if is_sound or len(word.arguments) == 1:
+            said["spare"] = _call(word, texts[: len(word.arguments)])
+        if word.role.is_move and numbers[0] < _LONG_TIME_S <= numbers[1] <= _MOST_POWER:
+            said["spare"] = _call(word, texts[:2])
+        is_timed = word.role.name == "wait" and len(texts) == len(_TIME_AND_POWER)
+        for first, second in (_TIME_AND_POWER, _TIME_AND_POWER[::-1]):
+            if is_timed and 0 <= numbers[first] < _LONG_TIME_S <= numbers[second] <= _MOST_POWER:
+                said["kept"] = _call(word, [texts[first]])
+    return said
+
+
+def _call(word: Word, texts: Sequence[str]) -> str:
+    return f"{word.text}({', '.join(texts)})"
