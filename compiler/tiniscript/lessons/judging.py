@@ -13,8 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from tiniscript.base.fixed_point import ONE, as_text
 from tiniscript.lessons import place_judging
 from tiniscript.lessons.findings import STILL_CM, Finding, Task, between, in_cm, in_seconds
-from tiniscript.lessons.lesson import ANY_VALUE, Criterion, Lesson
-from tiniscript.lessons.reader import TIME
+from tiniscript.lessons.lesson import ANY_VALUE, TIME, Criterion, Lesson
 from tiniscript.lessons.running import ASKS, BUSY, DONE, FAULT, LIMIT, Run, Shown
 from tiniscript.lessons.variation import is_mirrored
 from tiniscript.robots.kinematics import Pose

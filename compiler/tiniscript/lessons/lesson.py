@@ -150,4 +150,5 @@ KINDS: dict[str, Kind] = {
 }
 # fmt: on
 
+TIME = "TIME"  # a value of `shows` that no sensor gives
 ANY_VALUE = MOST + 1  # of `shows`, where no value is asked for

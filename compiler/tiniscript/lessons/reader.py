@@ -16,12 +16,12 @@ from tiniscript.base.languages import text as said_in
 from tiniscript.base.words import WORDS, nearest
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.lesson import (
-    ANY_VALUE,
     AREA,
     BLOCKS,
     EVENTS,
     KINDS,
     PARTS,
+    TIME,
     WHATS,
     WITHIN,
     Answer,
@@ -46,7 +46,6 @@ ROWS = 100  # criteria, variations, answers
 GAP = re.compile(r"\{(\w+)\}")
 PART = re.compile(r"(start)|(walls|boxes|lines|lamps)\[([1-9][0-9]{0,2})\]")
 NO_LABELS = ByLanguage({each: said_in("lessons", "place", each) for each in languages()})
-TIME = "TIME"
 OF_SENTENCES = ("word", "question", "what", "times")  # values of which a sentence is made besides
 
 
@@ -270,6 +269,3 @@ def _part(table: Table, key: str, text: str, world: World) -> Place:
         table.complain("no_such_part", key, found=shown(text), there=str(there))
         return Place("start", 0)
     return Place(match[2], number)
-
-
-__all__ = ("ANY_VALUE", "NO_LABELS", "TIME", "read", "read_answers")
