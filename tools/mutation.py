@@ -238,11 +238,11 @@ def equivalent() -> dict[tuple[str, str, str], str]:
     return {(file, was, becomes): why for why, row in rows.items() for file, was, becomes in row}
 
 
-def mutants(module: Module, root: Path = ROOT) -> list[Mutant]:
+def mutants(module: Module) -> list[Mutant]:
     """Return all mutants of a module but those that are listed as equivalent."""
     needless = equivalent()
     found = []
-    for path in sorted({path for pattern in module.files for path in root.glob(pattern)}):
+    for path in sorted({path for pattern in module.files for path in ROOT.glob(pattern)}):
         text = path.read_text(encoding="utf-8")
         if "enerated" in text.partition("\n")[0]:
             continue
@@ -250,7 +250,7 @@ def mutants(module: Module, root: Path = ROOT) -> list[Mutant]:
             changed = text[:start] + instead + text[end:]
             line = text.count("\n", 0, start)
             was, becomes = (each.splitlines()[line].strip() for each in (text, changed))
-            name = path.relative_to(root).as_posix()
+            name = path.relative_to(ROOT).as_posix()
             if was != becomes and (name, was, becomes) not in needless:
                 found.append(Mutant(name, line + 1, was, becomes, changed))
     return found

@@ -68,12 +68,12 @@ def missing() -> str:
     return "" if is_built else "no libFuzzer for clang-22: apt-get install libclang-rt-22-dev"
 
 
-def harness(name: str, sources: Path = SOURCES) -> Path:
-    """Return the program of a harness, made from a folder like `vm_arduino`."""
-    code = [sources / "extras" / "fuzz" / f"{name.removeprefix('large_')}.cpp"]
+def harness(name: str) -> Path:
+    """Return the program of a harness."""
+    code = [SOURCES / "extras" / "fuzz" / f"{name.removeprefix('large_')}.cpp"]
     for pattern in PARTS[name]:
-        code += sorted(sources.glob(pattern))
-    headers = [path for pattern in HEADERS for path in sorted(sources.glob(pattern))]
+        code += sorted(SOURCES.glob(pattern))
+    headers = [path for pattern in HEADERS for path in sorted(SOURCES.glob(pattern))]
     own = DEFINED.get(name, ()) + (() if name == "machine" else (NOT_COMPARED,))
     return built_by(COMPILER, [*code, *headers], (*FLAGS, *own, *WARNINGS))
 

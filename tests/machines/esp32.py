@@ -140,8 +140,8 @@ class Esp32Robot(HostFirmware):
         """Let each write of NVS stop the chip for so long."""
         self.ask(b"Z", pack("<I", milliseconds))
 
-    def fill_nvs(self, is_full: bool = True) -> None:
-        self.ask(b"F", pack("<B", is_full))
+    def fill_nvs(self) -> None:
+        self.ask(b"F", b"\1")
 
 
 def flags_of(chip: str, major: int) -> tuple[str, ...]:

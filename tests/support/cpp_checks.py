@@ -363,9 +363,9 @@ def some_way_programs(first: int, count: int) -> list[tuple[bytes, Kit, Senses]]
 # -- images -------------------------------------------------------------------------------------
 
 
-def python_refusal(data: bytes, has: int = EVERYTHING) -> int:
+def python_refusal(data: bytes) -> int:
     try:
-        unpack(data, has)
+        unpack(data)
     except ImageRefused as refused:
         return refused.number
     return 0
@@ -378,12 +378,12 @@ def short_headers() -> Iterator[bytes]:
         yield sealed(whole[:5] + bytes([length]) + whole[6:])
 
 
-def check_images(machine: Process, seed: int, count: int, has: int = EVERYTHING) -> None:
+def check_images(machine: Process, seed: int, count: int) -> None:
     """Headers are refused for the same reasons, and each for some image."""
     images = [*random_images(seed, count), b"", b"T", b"TS", b"S", b"TX", *short_headers()]
     theirs = machine.refusals(images)
     for image, reason in zip(images, theirs, strict=True):
-        ours = python_refusal(image, has)
+        ours = python_refusal(image)
         assert ours == reason, f"{image.hex(' ')}: {ours}, not {reason}"
     headers = {number for name, (number, _) in REFUSALS.items() if name != "OTHER_KIT"}
     assert {*theirs} == {0, *headers}
@@ -398,14 +398,14 @@ def refusal_of(load: Callable[[], object]) -> str:
     return ""
 
 
-def check_whole_images(machine: Process, seed: int, count: int, has: int = EVERYTHING) -> None:
+def check_whole_images(machine: Process, seed: int, count: int) -> None:
     """Programs with a change in them, for robots of which some have other devices."""
     rng = random.Random(seed)
     senses = Senses(max_ms=100, max_steps=20)
     seen = set()
     for image, kit in images_of_programs(seed, count):
         for robot in (kit, changed_kit(rng, kit)):
-            ours = refusal_of(lambda data=image, kit=robot: loaded(data, kit, has))  # type: ignore[misc]
+            ours = refusal_of(lambda data=image, kit=robot: loaded(data, kit))  # type: ignore[misc]
             theirs = refusal_of(lambda data=image, kit=robot: machine.run(data, kit, senses))  # type: ignore[misc]
             assert ours == theirs, f"{image.hex(' ')}: {ours!r}, not {theirs!r}"
             seen.add(ours.partition(" ")[2].partition(" ")[0])

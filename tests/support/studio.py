@@ -115,10 +115,10 @@ class Class(NamedTuple):
 
 
 @contextmanager
-def taught(ports: list[str], turn_s: int = 180) -> Iterator[Class]:
+def taught(ports: list[str]) -> Iterator[Class]:
     """The same as a class has it, at an address of the network, as `tsc studio --class` does."""
     hosting = Hosting()
-    room = Classroom(hosting, ports, turn_s)
+    room = Classroom(hosting, ports)
     page = serving.for_class(serving.files())
     try:
         with serves(serving.Server(page, 0, room.teach, room, room_address())) as server:

@@ -16,6 +16,6 @@ def said(language: str, name: str = "command") -> dict[str, str]:
     return {key: forms[-1] for key, forms in merged(*files(name, language))[1].items()}
 
 
-def in_all(key: str, name: str = "command") -> list[str]:
-    """Return a text in each language, English first."""
-    return [said(language, name)[key] for language in languages()]
+def in_all(key: str) -> list[str]:
+    """Return a text of the command in each language, English first."""
+    return [said(language)[key] for language in languages()]

@@ -199,15 +199,15 @@ class Uno:
         begin = f"after {length} " if at is None else f"at {at + length} "
         self._tell(begin + f"pin {self.pins.number(pin)} none")
 
-    def analog(self, pin: str, count: int, at: int | None = None) -> None:
+    def analog(self, pin: str, count: int) -> None:
         """Put as much voltage to an analog pin as is read as `count`, 0 to 1023."""
         assert 0 <= count <= 1023, count
-        self._tell(_at(at) + f"analog {self.pins.number(pin)} {count}")
+        self._tell(f"analog {self.pins.number(pin)} {count}")
 
-    def supply(self, volts: float, at: int | None = None) -> None:
+    def supply(self, volts: float) -> None:
         """Let the chip have another voltage than 5 V. Only its analog converter knows of that."""
         assert 2 <= volts <= 6, volts
-        self._tell(_at(at) + f"supply {round(volts * 1000)}")
+        self._tell(f"supply {round(volts * 1000)}")
 
     def sonar(
         self, trigger: str, echo: str, distance_cm: float | None, at: int | None = None
