@@ -128,6 +128,13 @@ def tsc(capsys: pytest.CaptureFixture[str]) -> Tsc:
 
 
 @pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The test's own folder, in which it is."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
 def program(tmp_path: Path) -> Path:
     path = tmp_path / "drive.ts"
     path.write_text(PROGRAM, encoding="utf-8")

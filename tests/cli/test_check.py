@@ -18,14 +18,13 @@ LEFT = "SI|F(2 80);girar(derecha, 90)\n"  # one is sure, the other is not
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "a.ts").write_text(RIGHT, encoding="utf-8")
-    (tmp_path / "b.ts").write_text(WRONG, encoding="utf-8")
-    (tmp_path / "sub").mkdir()
-    (tmp_path / "sub" / "c.ts").write_text(LEFT, encoding="utf-8")
-    (tmp_path / "sub" / "notes.txt").write_text("no program", encoding="utf-8")
-    return tmp_path
+def folder(here: Path) -> Path:
+    (here / "a.ts").write_text(RIGHT, encoding="utf-8")
+    (here / "b.ts").write_text(WRONG, encoding="utf-8")
+    (here / "sub").mkdir()
+    (here / "sub" / "c.ts").write_text(LEFT, encoding="utf-8")
+    (here / "sub" / "notes.txt").write_text("no program", encoding="utf-8")
+    return here
 
 
 # -- several programs ---------------------------------------------------------------------------

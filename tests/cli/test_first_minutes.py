@@ -358,12 +358,11 @@ def test_a_file_is_found_by_the_name_that_a_folder_shows(
 
 
 def test_board_says_where_the_build_looks(
-    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tsc: Tsc, here: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    home = tmp_path / "vm_arduino" / "src" / "boards" / "kits"
+    home = here / "vm_arduino" / "src" / "boards" / "kits"
     home.mkdir(parents=True)
-    (tmp_path / "vm_arduino" / "platformio.ini").touch()
-    monkeypatch.chdir(tmp_path)
+    (here / "vm_arduino" / "platformio.ini").touch()
     done = tsc("board", "liner", "-o", "own.h")
     assert "tsc board liner -o vm_arduino/src/boards/kits/own.h   Then:  pio run -d vm_arduino -e" \
         in done.out  # fmt: skip

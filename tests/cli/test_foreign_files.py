@@ -32,10 +32,9 @@ WRITERS = [
 
 @pytest.mark.parametrize(("words", "option"), WRITERS, ids=lambda each: str(each))
 def test_a_foreign_file_stays_and_an_own_one_is_replaced(
-    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], option: str
+    tsc: Tsc, here: Path, words: tuple[str, ...], option: str
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    target = tmp_path / "there"
+    target = here / "there"
     assert tsc(*words, target).code == 0  # nothing is there
     made = target.read_bytes()
     assert made and not is_foreign(target)

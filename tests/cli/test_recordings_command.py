@@ -151,9 +151,8 @@ def test_a_file_that_cannot_be_compared_says_why(
     ],
 )
 def test_what_is_not_recorded_or_compared_says_why(
-    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], said: str
+    tsc: Tsc, here: Path, words: tuple[str, ...], said: str
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     assert tsc("compile", "-e", TEXT, "-o", "p.bin").code == 0
     Path("own.toml").write_text(Path(recordings.__file__).parents[1].joinpath(
         "robots/tinibot.toml").read_text(encoding="utf-8"), encoding="utf-8")  # fmt: skip
