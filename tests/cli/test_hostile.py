@@ -129,13 +129,12 @@ def test_closed_and_full_streams(closed: str, program: str, code: int) -> None:
     if "full" in closed and not Path("/dev/full").exists():
         pytest.skip("this system has no full device")
     command = f"{shlex.join(TSC)} run -e {shlex.quote(program)} {closed}"
-    done = subprocess.run(command, shell=True, capture_output=True, text=True)
-    assert "Traceback" not in done.stderr
-    assert "was not made for" not in done.stderr
-    assert done.returncode == code
-    assert bool(done.stderr) == (code == 2)
+    ended = subprocess.run(command, shell=True, capture_output=True, text=True)
+    assert bool(ended.stderr) == (code == 2)
+    assert "Traceback" not in ended.stderr and "was not made for" not in ended.stderr
+    assert ended.returncode == code
     if closed == "2>&-":
-        assert done.stdout == ("0 MOTORS 0 0\n" * 3 + "0 DONE\n" if code == 0 else "")
+        assert ended.stdout == ("0 MOTORS 0 0\n" * 3 + "0 DONE\n" if code == 0 else "")
 
 
 def test_ctrl_c_is_said() -> None:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from tests.support.command import process
 from tests.support.terminal import Terminal
 
 SIZE = (90, 30)
@@ -37,10 +36,8 @@ def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
     memory = tmp_path / "kept.bin"
     terminal = Terminal("robot", "--memory", memory, "--lang", "es", size=SIZE)
     terminal.until("q: terminar   b: botón   h: botón 2 s   r: reinicio   p: apagar y encender")
-    upload = [sys.executable, "-m", "tiniscript", "upload", "--virtual", "-e",
-              "SB|LOOP(FOREVER);L(1, 40);END_LOOP"]  # fmt: skip
     terminal.until("todavía sin programa")
-    assert subprocess.run(upload, capture_output=True, check=False).returncode == 0
+    process("upload", "--virtual", "-e", "SB|LOOP(FOREVER);L(1, 40);END_LOOP").gives(0)
     terminal.until("su botón lo inicia")
     terminal.type("b")
     terminal.until(r"motor der\. +40 %")

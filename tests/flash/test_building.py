@@ -6,7 +6,6 @@ import errno
 import os
 import re
 import shutil
-import signal
 import subprocess
 import sys
 from argparse import Namespace
@@ -15,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.flash.test_flash import command, copied, new_board, tsc
+from tests.flash.test_flash import command, copied, interrupted, new_board, tsc
 from tests.machines.bootloaders import bootloader
 from tests.machines.uno import needed
 from tests.robots.test_robots import TEXTS
@@ -24,7 +23,7 @@ from tests.support.command import Done, Tsc, process
 from tests.support.copies import linked
 from tests.support.needs import need
 from tests.support.platformio import prepared
-from tests.support.waiting import HANGS_S, has_ended, until
+from tests.support.waiting import has_ended, until
 from tiniscript import robots
 from tiniscript.cli import firmware_build
 from tiniscript.cli.errors import CommandError
@@ -328,14 +327,7 @@ time.sleep(600)
 """
     variables = pretending(tmp_path, body)
     variables["PYTHONPATH"] += os.pathsep + str(clone)
-    running = subprocess.Popen(
-        command("--build"), env={**os.environ, **variables}, stderr=subprocess.PIPE, text=True
-    )
-    while not told.exists():
-        assert running.poll() is None
-    running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=HANGS_S)
-    assert running.returncode == 2 and "Traceback" not in said
+    interrupted(told, "--build", **variables).gives(2)
     for number in told.read_text().split():
         until(partial(has_ended, number), f"the end of {number}")
 

@@ -89,6 +89,18 @@ def tsc(package: Path, *words: str, **variables: str) -> Done:
     return Done(done.returncode, done.stdout, done.stderr)
 
 
+def interrupted(told: Path, *words: str, **variables: str) -> Done:
+    """Return what it did where Ctrl-C comes as soon as something is in a file."""
+    running = subprocess.Popen(
+        command(*words), env={**os.environ, **variables}, stderr=subprocess.PIPE, text=True
+    )
+    while not (told.exists() and told.read_text()):
+        assert running.poll() is None
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=HANGS_S)
+    return Done(running.returncode, "", said)
+
+
 def new_board(of: Bootloader) -> Uno:
     """Return a board as it comes: a bootloader, and no sketch worth the name."""
     uno = Uno(built("nothing"), board=of.board, bootloader=of.file, baud=of.baud, tells_sleep=False)
@@ -204,15 +216,8 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
     body = (
         f'{PROGRESS}\nimport os\nopen({str(told)!r}, "w").write(str(os.getpid()))\ntime.sleep(60)'
     )
-    variables = {**os.environ, "PYTHONPATH": str(package), **fake(tmp_path, body)}
-    running = subprocess.Popen(
-        command("--port", board.pty), env=variables, stderr=subprocess.PIPE, text=True
-    )
-    while not (told.exists() and told.read_text()):
-        assert running.poll() is None
-    running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=HANGS_S)
-    assert running.returncode == 2
+    variables = {"PYTHONPATH": str(package), **fake(tmp_path, body)}
+    said = interrupted(told, "--port", board.pty, **variables).gives(2).err
     assert "half of its" in said or said.strip() == "Stopped."  # it may not have read that far
     assert not Path(f"/proc/{told.read_text()}").exists()
 

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 import os
 import signal
-import subprocess
-import sys
 import threading
 from collections.abc import Iterator
-from pathlib import Path
 from typing import cast
 
 import pytest
 
 import tiniscript
+from tests.cli.test_virtual_command import robot as virtual_robot
 from tests.support.command import FOREVER, OBSTACLE, Command, process
 from tests.support.link_events import event
 from tests.support.pty_robot import PtyRobot
@@ -166,21 +164,11 @@ def test_a_virtual_robot_is_gone_when_it_is_left() -> None:
 
 
 def test_without_a_port_the_virtual_robot_of_another_process_is_found() -> None:
-    command = subprocess.Popen(
-        [sys.executable, "-m", "tiniscript", "robot", "--robot", "liner"],
-        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    try:
-        assert command.stdout is not None
-        port = command.stdout.readline().strip()
-        with tiniscript.connect() as robot:
-            assert robot.port == port
-            assert robot.info.robot == "liner"
-            robot.live("SHOW(LINE_L)")  # a word of its own
-            assert robot.wait().name == "DONE"
-    finally:
-        command.terminate()
-        command.communicate()
+    with virtual_robot("--robot", "liner") as found, tiniscript.connect() as robot:
+        assert robot.port == found.port
+        assert robot.info.robot == "liner"
+        robot.live("SHOW(LINE_L)")  # a word of its own
+        assert robot.wait().name == "DONE"
     with fails(tiniscript.RobotError, "which_port"):
         tiniscript.connect()
 
@@ -216,26 +204,21 @@ def test_an_exception_stops_the_robot_and_goes_on(pty_robot: PtyRobot) -> None:
     assert not pty_robot.moves
 
 
-def test_ctrl_c_stops_the_robot(pty_robot: PtyRobot, tmp_path: Path) -> None:
-    program = tmp_path / "drive.py"
-    program.write_text(
+def test_ctrl_c_stops_the_robot(pty_robot: PtyRobot) -> None:
+    program = (
         "import sys, tiniscript\n"
         "with tiniscript.connect(sys.argv[1]) as robot:\n"
         f"    robot.upload({FOREVER!r}, detached=True)\n"
         "    print('running', flush=True)\n"
         "    robot.wait()\n"
     )
-    command = subprocess.Popen(
-        [sys.executable, str(program), pty_robot.port], stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    assert command.stdout is not None
-    assert command.stdout.readline() == "running\n"
+    command = Command(pty_robot.port, code=program)
+    command.until("running")
     pty_robot.until(lambda: pty_robot.moves, "it drives")
-    command.send_signal(signal.SIGINT)
-    _, err = command.communicate()
+    command.signal(signal.SIGINT)
+    _, err = command.process.communicate()
     assert not pty_robot.moves
-    assert err.rstrip().endswith("KeyboardInterrupt")  # no other error came after it
+    assert err.rstrip().endswith(b"KeyboardInterrupt")  # no other error came after it
 
 
 def test_a_detached_program_goes_on(pty_robot: PtyRobot) -> None:
