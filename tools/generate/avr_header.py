@@ -6,6 +6,9 @@ for each of them, so linking it fails where one is missing. `__main__.py` writes
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import groupby
+
 from tiniscript.base import limits, words
 from tiniscript.bytecode import opcodes
 
@@ -34,8 +37,10 @@ def header(command: str) -> str:
             f"#ifndef tiniscript_has_tasks\n{without_tasks()}#endif\n",
             "\n// The low bits of an instruction that compares are its comparator.\n",
             f"#define tini_comparator_bits {comparator_bits()}\n",
+            "\n.macro jumps count, target\n",
+            "    .rept \\count\n    rjmp \\target\n    .endr\n.endm\n",
             "\n.macro handlers\n",
-            *(f"    rjmp {handler(code)}{note(code)}\n" for code in range(256)),
+            *rows(),
             ".endm\n\n",
             f"#endif  // {GUARD}\n",
         )
@@ -67,8 +72,11 @@ def without_tasks() -> str:
     return "".join(f"#define {each} op_none\n" for each in found)
 
 
-def note(code: int) -> str:
-    return f"  ; {code:02x}" if code % 16 == 0 else ""
+def rows() -> Iterator[str]:
+    """Yield a row for each run of bytes that have one handler, and the first of these bytes."""
+    for target, run in groupby(range(256), handler):
+        first, *others = run
+        yield f"    jumps {1 + len(others)}, {target}  ; {first:02x}\n"
 
 
 def comparator_bits() -> int:

@@ -39,263 +39,134 @@
 // The low bits of an instruction that compares are its comparator.
 #define tini_comparator_bits 7
 
+.macro jumps count, target
+    .rept \count
+    rjmp \target
+    .endr
+.endm
+
 .macro handlers
-    rjmp op_end  ; 00
-    rjmp op_push8
-    rjmp op_push16
-    rjmp op_push_milli
-    rjmp op_push32
-    rjmp op_push_false
-    rjmp op_push_true
-    rjmp op_push_var
-    rjmp op_push_sensor
-    rjmp op_push_read
-    rjmp op_time
-    rjmp op_random
-    rjmp op_push_tenths
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_add  ; 10
-    rjmp op_sub
-    rjmp op_mul
-    rjmp op_div
-    rjmp op_mod
-    rjmp op_neg
-    rjmp op_abs
-    rjmp op_min
-    rjmp op_max
-    rjmp op_round
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_eq  ; 20
-    rjmp op_ne
-    rjmp op_lt
-    rjmp op_le
-    rjmp op_gt
-    rjmp op_ge
-    rjmp op_not
-    rjmp op_and
-    rjmp op_or
-    rjmp op_none
-    rjmp op_and_then
-    rjmp op_and_then_far
-    rjmp op_or_else
-    rjmp op_or_else_far
-    rjmp op_none
-    rjmp op_none
-    rjmp op_set_var  ; 30
-    rjmp op_set_var8
-    rjmp op_add_var8
-    rjmp op_add_var
-    rjmp op_inc_var
-    rjmp op_dec_var
-    rjmp op_none
-    rjmp op_none
-    rjmp op_read
-    rjmp op_show
-    rjmp op_show_yes_no
-    rjmp op_set
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_move  ; 40
-    rjmp op_move
-    rjmp op_move
-    rjmp op_move
-    rjmp op_move8
-    rjmp op_move8
-    rjmp op_move8
-    rjmp op_move8
-    rjmp op_watch
-    rjmp op_watch
-    rjmp op_watch
-    rjmp op_watch
-    rjmp op_watch_forever
-    rjmp op_watch_forever
-    rjmp op_watch_forever
-    rjmp op_watch_forever
-    rjmp op_wait  ; 50
-    rjmp op_wait8
-    rjmp op_watch_wait
-    rjmp op_watch_forever_wait
-    rjmp op_until
-    rjmp op_look
-    rjmp op_beep8
-    rjmp op_none
-    rjmp op_stop
-    rjmp op_motors
-    rjmp op_motors8
-    rjmp op_beep
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_if  ; 60
-    rjmp op_if_far
-    rjmp op_if_not
-    rjmp op_if_not_far
-    rjmp op_else
-    rjmp op_else_far
-    rjmp op_none
-    rjmp op_none
-    rjmp op_forever
-    rjmp op_while
-    rjmp op_while_far
-    rjmp op_again
-    rjmp op_again_far
-    rjmp op_loop8
-    rjmp op_loop
-    rjmp op_loop_far
-    rjmp op_next  ; 70
-    rjmp op_next_far
-    rjmp op_break
-    rjmp op_break_far
-    rjmp op_break_loop
-    rjmp op_break_loop_far
-    rjmp op_end_task
-    rjmp op_end_when
-    rjmp op_def
-    rjmp op_def_far
-    rjmp op_return
-    rjmp op_call
-    rjmp op_call_far
-    rjmp op_task
-    rjmp op_when
-    rjmp op_none
-    rjmp op_push_var_short  ; 80
-    rjmp op_push_var_short
-    rjmp op_push_var_short
-    rjmp op_push_var_short
-    rjmp op_push_var_short
-    rjmp op_push_var_short
-    rjmp op_push_var_short
-    rjmp op_push_var_short
-    rjmp op_push_sensor_short
-    rjmp op_push_sensor_short
-    rjmp op_push_sensor_short
-    rjmp op_push_sensor_short
-    rjmp op_push_sensor_short
-    rjmp op_push_sensor_short
-    rjmp op_push_sensor_short
-    rjmp op_push_sensor_short
-    rjmp op_push_read_short  ; 90
-    rjmp op_push_read_short
-    rjmp op_push_read_short
-    rjmp op_push_read_short
-    rjmp op_push_read_short
-    rjmp op_push_read_short
-    rjmp op_push_read_short
-    rjmp op_push_read_short
-    rjmp op_read_short
-    rjmp op_read_short
-    rjmp op_read_short
-    rjmp op_read_short
-    rjmp op_read_short
-    rjmp op_read_short
-    rjmp op_read_short
-    rjmp op_read_short
-    rjmp op_set_var_short  ; a0
-    rjmp op_set_var_short
-    rjmp op_set_var_short
-    rjmp op_set_var_short
-    rjmp op_set_var_short
-    rjmp op_set_var_short
-    rjmp op_set_var_short
-    rjmp op_set_var_short
-    rjmp op_set_short
-    rjmp op_set_short
-    rjmp op_set_short
-    rjmp op_set_short
-    rjmp op_set_short
-    rjmp op_set_short
-    rjmp op_set_short
-    rjmp op_set_short
-    rjmp op_push_num  ; b0
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num  ; c0
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_push_num
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_until8
-    rjmp op_until8
-    rjmp op_until8
-    rjmp op_until8
-    rjmp op_until8
-    rjmp op_until8
-    rjmp op_none
-    rjmp op_none
-    rjmp op_until16  ; d0
-    rjmp op_until16
-    rjmp op_until16
-    rjmp op_until16
-    rjmp op_until16
-    rjmp op_until16
-    rjmp op_none
-    rjmp op_none
-    rjmp op_if8
-    rjmp op_if8
-    rjmp op_if8
-    rjmp op_if8
-    rjmp op_if8
-    rjmp op_if8
-    rjmp op_none
-    rjmp op_none
-    rjmp op_if16  ; e0
-    rjmp op_if16
-    rjmp op_if16
-    rjmp op_if16
-    rjmp op_if16
-    rjmp op_if16
-    rjmp op_none
-    rjmp op_none
-    rjmp op_if_var8
-    rjmp op_if_var8
-    rjmp op_if_var8
-    rjmp op_if_var8
-    rjmp op_if_var8
-    rjmp op_if_var8
-    rjmp op_none
-    rjmp op_none
-    rjmp op_if_var16  ; f0
-    rjmp op_if_var16
-    rjmp op_if_var16
-    rjmp op_if_var16
-    rjmp op_if_var16
-    rjmp op_if_var16
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_none
-    rjmp op_way
+    jumps 1, op_end  ; 00
+    jumps 1, op_push8  ; 01
+    jumps 1, op_push16  ; 02
+    jumps 1, op_push_milli  ; 03
+    jumps 1, op_push32  ; 04
+    jumps 1, op_push_false  ; 05
+    jumps 1, op_push_true  ; 06
+    jumps 1, op_push_var  ; 07
+    jumps 1, op_push_sensor  ; 08
+    jumps 1, op_push_read  ; 09
+    jumps 1, op_time  ; 0a
+    jumps 1, op_random  ; 0b
+    jumps 1, op_push_tenths  ; 0c
+    jumps 3, op_none  ; 0d
+    jumps 1, op_add  ; 10
+    jumps 1, op_sub  ; 11
+    jumps 1, op_mul  ; 12
+    jumps 1, op_div  ; 13
+    jumps 1, op_mod  ; 14
+    jumps 1, op_neg  ; 15
+    jumps 1, op_abs  ; 16
+    jumps 1, op_min  ; 17
+    jumps 1, op_max  ; 18
+    jumps 1, op_round  ; 19
+    jumps 6, op_none  ; 1a
+    jumps 1, op_eq  ; 20
+    jumps 1, op_ne  ; 21
+    jumps 1, op_lt  ; 22
+    jumps 1, op_le  ; 23
+    jumps 1, op_gt  ; 24
+    jumps 1, op_ge  ; 25
+    jumps 1, op_not  ; 26
+    jumps 1, op_and  ; 27
+    jumps 1, op_or  ; 28
+    jumps 1, op_none  ; 29
+    jumps 1, op_and_then  ; 2a
+    jumps 1, op_and_then_far  ; 2b
+    jumps 1, op_or_else  ; 2c
+    jumps 1, op_or_else_far  ; 2d
+    jumps 2, op_none  ; 2e
+    jumps 1, op_set_var  ; 30
+    jumps 1, op_set_var8  ; 31
+    jumps 1, op_add_var8  ; 32
+    jumps 1, op_add_var  ; 33
+    jumps 1, op_inc_var  ; 34
+    jumps 1, op_dec_var  ; 35
+    jumps 2, op_none  ; 36
+    jumps 1, op_read  ; 38
+    jumps 1, op_show  ; 39
+    jumps 1, op_show_yes_no  ; 3a
+    jumps 1, op_set  ; 3b
+    jumps 4, op_none  ; 3c
+    jumps 4, op_move  ; 40
+    jumps 4, op_move8  ; 44
+    jumps 4, op_watch  ; 48
+    jumps 4, op_watch_forever  ; 4c
+    jumps 1, op_wait  ; 50
+    jumps 1, op_wait8  ; 51
+    jumps 1, op_watch_wait  ; 52
+    jumps 1, op_watch_forever_wait  ; 53
+    jumps 1, op_until  ; 54
+    jumps 1, op_look  ; 55
+    jumps 1, op_beep8  ; 56
+    jumps 1, op_none  ; 57
+    jumps 1, op_stop  ; 58
+    jumps 1, op_motors  ; 59
+    jumps 1, op_motors8  ; 5a
+    jumps 1, op_beep  ; 5b
+    jumps 4, op_none  ; 5c
+    jumps 1, op_if  ; 60
+    jumps 1, op_if_far  ; 61
+    jumps 1, op_if_not  ; 62
+    jumps 1, op_if_not_far  ; 63
+    jumps 1, op_else  ; 64
+    jumps 1, op_else_far  ; 65
+    jumps 2, op_none  ; 66
+    jumps 1, op_forever  ; 68
+    jumps 1, op_while  ; 69
+    jumps 1, op_while_far  ; 6a
+    jumps 1, op_again  ; 6b
+    jumps 1, op_again_far  ; 6c
+    jumps 1, op_loop8  ; 6d
+    jumps 1, op_loop  ; 6e
+    jumps 1, op_loop_far  ; 6f
+    jumps 1, op_next  ; 70
+    jumps 1, op_next_far  ; 71
+    jumps 1, op_break  ; 72
+    jumps 1, op_break_far  ; 73
+    jumps 1, op_break_loop  ; 74
+    jumps 1, op_break_loop_far  ; 75
+    jumps 1, op_end_task  ; 76
+    jumps 1, op_end_when  ; 77
+    jumps 1, op_def  ; 78
+    jumps 1, op_def_far  ; 79
+    jumps 1, op_return  ; 7a
+    jumps 1, op_call  ; 7b
+    jumps 1, op_call_far  ; 7c
+    jumps 1, op_task  ; 7d
+    jumps 1, op_when  ; 7e
+    jumps 1, op_none  ; 7f
+    jumps 8, op_push_var_short  ; 80
+    jumps 8, op_push_sensor_short  ; 88
+    jumps 8, op_push_read_short  ; 90
+    jumps 8, op_read_short  ; 98
+    jumps 8, op_set_var_short  ; a0
+    jumps 8, op_set_short  ; a8
+    jumps 20, op_push_num  ; b0
+    jumps 4, op_none  ; c4
+    jumps 6, op_until8  ; c8
+    jumps 2, op_none  ; ce
+    jumps 6, op_until16  ; d0
+    jumps 2, op_none  ; d6
+    jumps 6, op_if8  ; d8
+    jumps 2, op_none  ; de
+    jumps 6, op_if16  ; e0
+    jumps 2, op_none  ; e6
+    jumps 6, op_if_var8  ; e8
+    jumps 2, op_none  ; ee
+    jumps 6, op_if_var16  ; f0
+    jumps 9, op_none  ; f6
+    jumps 1, op_way  ; ff
 .endm
 
 #endif  // tini_bytecode_avr
