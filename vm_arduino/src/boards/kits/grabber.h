@@ -23,8 +23,9 @@ constexpr uint8_t kKitWords[] tini_progmem = {
     0x50, 0x45, 0xd2, 0x02, 0x00, 0x00, 0x00, 0x00, 0x20, 0xbf, 0x02, 0x00, 0x4c, 0x45, 0xc4, 0x03,
     0x00,
 };
-constexpr uint16_t kProgramBytes = 1900;
 constexpr uint16_t kMaxRunSeconds = 600;
+
+constexpr uint16_t kProgramBytes = 1900;
 constexpr uint32_t kBaud = 57600;
 
 constexpr Pin kStartButton = {kPortE, 1 << 5};

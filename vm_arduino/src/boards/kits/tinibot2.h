@@ -13,18 +13,7 @@
 
 namespace tiniscript {
 
-constexpr uint16_t kBoardKit = 0x231b;
-constexpr uint8_t kBoardSensors = 3;
-constexpr uint8_t kBoardActuators = 0;
-constexpr uint32_t kBoardSpeed = 45000;
-constexpr uint32_t kBoardTurn = 382000;
-constexpr uint16_t kDeviceHashes[] tini_progmem = {0x1fe9, 0xffab, 0x0920};
-constexpr uint8_t kKitWords[] tini_progmem = {
-    0x4c, 0x49, 0x47, 0x48, 0x54, 0x5f, 0xd2, 0x00, 0x4c, 0x49, 0x47, 0x48, 0x54, 0x5f, 0xcc, 0x00,
-    0x44, 0x49, 0x53, 0x54, 0x41, 0x4e, 0x43, 0xc5, 0x00, 0x00,
-};
 constexpr uint16_t kProgramBytes = 389;
-constexpr uint16_t kMaxRunSeconds = 600;
 constexpr uint32_t kBaud = 9600;
 
 constexpr Pin kStartButton = {kPortC, 1 << 2};
@@ -49,27 +38,6 @@ inline void begin_devices() {
   begin_output({kPortD, 1 << 4}, false);
 }
 
-inline bool read_sensor(uint8_t number, int32_t* value) {
-  switch (number) {
-    case 0:  // LIGHT_R
-      if (!analog_read(0, value)) return false;
-      *value = analog_scaled(*value, 0, 1000, 0);
-      return true;
-    case 1:  // LIGHT_L
-      if (!analog_read(1, value)) return false;
-      *value = analog_scaled(*value, 0, 1000, 0);
-      return true;
-    case 2:  // DISTANCE
-      if (!ultrasonic_read(0, value)) return false;
-      return true;
-  }
-  return true;
-}
-
-inline void set_actuator(uint8_t, int32_t) {}
-
-inline void actuators_off(bool) {}
-
 }  // namespace tiniscript
 
 #elif defined(__AVR_ATmega2560__)  // mega
@@ -83,18 +51,7 @@ inline void actuators_off(bool) {}
 
 namespace tiniscript {
 
-constexpr uint16_t kBoardKit = 0x231b;
-constexpr uint8_t kBoardSensors = 3;
-constexpr uint8_t kBoardActuators = 0;
-constexpr uint32_t kBoardSpeed = 45000;
-constexpr uint32_t kBoardTurn = 382000;
-constexpr uint16_t kDeviceHashes[] tini_progmem = {0x1fe9, 0xffab, 0x0920};
-constexpr uint8_t kKitWords[] tini_progmem = {
-    0x4c, 0x49, 0x47, 0x48, 0x54, 0x5f, 0xd2, 0x00, 0x4c, 0x49, 0x47, 0x48, 0x54, 0x5f, 0xcc, 0x00,
-    0x44, 0x49, 0x53, 0x54, 0x41, 0x4e, 0x43, 0xc5, 0x00, 0x00,
-};
 constexpr uint16_t kProgramBytes = 1900;
-constexpr uint16_t kMaxRunSeconds = 600;
 constexpr uint32_t kBaud = 9600;
 
 constexpr Pin kStartButton = {kPortF, 1 << 2};
@@ -119,6 +76,26 @@ inline void begin_devices() {
   begin_output({kPortG, 1 << 5}, false);
 }
 
+}  // namespace tiniscript
+
+#else
+#error "The robot tinibot2 is wired to another board. It fits: uno, nano, mega."
+#endif
+
+namespace tiniscript {
+
+constexpr uint16_t kBoardKit = 0x231b;
+constexpr uint8_t kBoardSensors = 3;
+constexpr uint8_t kBoardActuators = 0;
+constexpr uint32_t kBoardSpeed = 45000;
+constexpr uint32_t kBoardTurn = 382000;
+constexpr uint16_t kDeviceHashes[] tini_progmem = {0x1fe9, 0xffab, 0x0920};
+constexpr uint8_t kKitWords[] tini_progmem = {
+    0x4c, 0x49, 0x47, 0x48, 0x54, 0x5f, 0xd2, 0x00, 0x4c, 0x49, 0x47, 0x48, 0x54, 0x5f, 0xcc, 0x00,
+    0x44, 0x49, 0x53, 0x54, 0x41, 0x4e, 0x43, 0xc5, 0x00, 0x00,
+};
+constexpr uint16_t kMaxRunSeconds = 600;
+
 inline bool read_sensor(uint8_t number, int32_t* value) {
   switch (number) {
     case 0:  // LIGHT_R
@@ -141,7 +118,3 @@ inline void set_actuator(uint8_t, int32_t) {}
 inline void actuators_off(bool) {}
 
 }  // namespace tiniscript
-
-#else
-#error "The robot tinibot2 is wired to another board. It fits: uno, nano, mega."
-#endif
