@@ -17,7 +17,6 @@ from tests.support.platformio import copied, pio
 from tiniscript import robots
 from tiniscript.flash import building
 from tiniscript.link.messages import TEXT_LEVEL, TEXT_LEVELS
-from tiniscript.link.requests import OK
 from tools.generate.packed_texts import packed
 from tools.generate.remark_tables import rows
 from tools.uno import CYCLES_PER_MS, Uno
@@ -93,9 +92,7 @@ def test_a_stop_is_as_quick_while_text_is_read(uno: Uno, text: str) -> None:
 @each_board
 def test_its_words_are_those_of_its_level(board: str, robot: Uno) -> None:
     wired = computer(robot)
-    assert wired.until(wired.session.hello()) == OK
-    assert wired.session.robot is not None
-    features = wired.session.robot.values.features
+    features = wired.done(wired.session.hello()).features
     assert TEXT_LEVELS[features & TEXT_LEVEL][0] == board.upper()
     robot.run_ms(4000)
     words = " ".join(typed(robot, "HELP\n", 600)).replace("// ", "").split()

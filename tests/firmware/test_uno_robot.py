@@ -57,10 +57,7 @@ def send(wired: Wired, text: str, **how: bool) -> None:
 
 def saved(wired: Wired) -> int:
     """Return how the robot's program is kept."""
-    request = wired.session.status()
-    assert wired.until(request) == OK
-    assert request.outcome
-    return request.outcome.values.saved
+    return wired.done(wired.session.status()).saved
 
 
 def test_a_program_drives(uno: Uno) -> None:
@@ -104,10 +101,7 @@ def test_a_measured_robot_keeps_how_fast_it_is(sketch: Path, memory: Path) -> No
     uno.kill()
     with switched_on(sketch, memory) as again:
         wired = computer(again, 2)
-        request = wired.session.trim()
-        assert wired.until(request) == OK
-        assert request.outcome
-        assert told(request.outcome.values) == Trim(pace=pace)
+        assert told(wired.done(wired.session.trim())) == Trim(pace=pace)
         assert drive_ms(again, "SI|F(20 CM, 60)") == pytest.approx(804, abs=2)
         assert drive_ms(again, "SI|R(90 DEG, 60)") == pytest.approx(417, abs=2)
 
@@ -157,10 +151,7 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
         wired.run(140)
     assert sorted(taken)[len(taken) * 3 // 4] <= LIVE_CYCLES
     assert max(taken) <= LATE_CYCLES
-    status = wired.session.status()
-    assert wired.until(status) == OK
-    assert status.outcome
-    assert status.outcome.values.damaged == 0
+    assert wired.done(wired.session.status()).damaged == 0
 
 
 def low_for(uno: Uno, ms: float) -> None:

@@ -12,7 +12,6 @@ from tests.machines.wired import Wired
 from tests.support.images import image_of
 from tests.support.platformio import changed
 from tiniscript.link.payloads import HelloReply
-from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 PRESSED = "if (press == Press::kPressed) firmware_on_pressed();"
@@ -31,10 +30,7 @@ def built(folder: Path, hang: str, environment: str = "uno") -> Path:
 
 def told(wired: Wired) -> HelloReply:
     """Return what HELLO says of the robot."""
-    assert wired.until(wired.session.hello()) == OK
-    robot = wired.session.robot
-    assert robot is not None
-    return robot.values
+    return wired.done(wired.session.hello())
 
 
 def is_on(uno: Uno) -> bool:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 from tiniscript.link.connection import PendingRequest
+from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tools.uno import CYCLES_PER_MS, Uno
+
+T = TypeVar("T")
 
 
 class Wired:
@@ -38,3 +41,8 @@ class Wired:
                 return request.outcome.status
             self.run(1)
         raise AssertionError(f"not over after {limit_ms} ms")
+
+    def done(self, request: PendingRequest[T]) -> T:
+        """Run until the robot has done a request; return what it answers."""
+        assert self.until(request) == OK and request.outcome
+        return request.outcome.values

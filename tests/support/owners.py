@@ -137,7 +137,4 @@ def owner_of(table: Owned, session: Session) -> str:
 
 
 def state_of(table: Owned, session: Session) -> int:
-    request = session.status()
-    assert table.outcome(session, request) == "OK"
-    assert request.outcome
-    return request.outcome.values.state
+    return table.robot.done(session, session.status()).state
