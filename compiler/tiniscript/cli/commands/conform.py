@@ -86,16 +86,11 @@ def _port(options: Namespace, language: str) -> int:
         values = {"port": shown(port), "why": shown(str(why)), "n": str(len(found))}
         raise CommandError(3, "conform_gone", **values) from None
     finally:
-        _left_stopped(robot)
+        with contextlib.suppress(OSError):  # nothing runs on, whatever has ended the checks
+            robot.send(bytes(STOP_BYTES))
         wire.close()
     facts = {"version": str(LINK_VERSION), "link": f"{MAJOR}.{MINOR}", "isa": ISA}
     return report(found, len(checks), facts, "conform_port_end", 0, options, language)
-
-
-def _left_stopped(robot: WireRobot) -> None:
-    """Leave nothing that runs, whatever has ended the checks."""
-    with contextlib.suppress(OSError):
-        robot.send(bytes(STOP_BYTES))
 
 
 def report(

@@ -41,7 +41,9 @@ def run(options: Namespace, language: str) -> int:
             firmware_build.row(robot, firmware_build.firmware(robot, options, language), language)
         )
         return 0
-    command = _avrdude()
+    command = avrdude.found()
+    if command is None:
+        raise CommandError(2, "flash_no_avrdude", how=INSTALLS.get(sys.platform, INSTALLS["linux"]))
     port = _port(options)
     firmware = firmware_build.firmware(robot, options, language)
     _write(command, bootloaders, port, firmware, language)
@@ -80,13 +82,6 @@ def _chosen(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader,
         )
         raise CommandError(2, "flash_no_fit", robot=robot.name, board=board, known=fits)
     return there[0], bootloaders
-
-
-def _avrdude() -> list[str]:
-    command = avrdude.found()
-    if command is None:
-        raise CommandError(2, "flash_no_avrdude", how=INSTALLS.get(sys.platform, INSTALLS["linux"]))
-    return command
 
 
 def _port(options: Namespace) -> str:

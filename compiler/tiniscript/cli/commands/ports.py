@@ -32,7 +32,9 @@ def run(options: Namespace, language: str) -> int:
     baud = None if options.baud is None else baud_of(options, robot, language)
     in_reach = InReach({}, [], [], [])
     if options.ask and options.port is None:
-        in_reach = _in_reach(language)
+        in_reach = found(list(known_ports.known().names), language)
+        for note in in_reach.notes:  # what could not be searched
+            print(note, file=sys.stderr, flush=True)
     rows = _rows(options, in_reach, language)
     if options.ask:
         absent: dict[str, object] = {"answer": None, "said": text("out_of_reach", language)}
@@ -52,14 +54,6 @@ def run(options: Namespace, language: str) -> int:
     for row in [] if options.json else rows:
         print(_line(row, language))
     return 0
-
-
-def _in_reach(language: str) -> InReach:
-    """Return the robots that are found without a cable, and print what could not be searched."""
-    in_reach = found(list(known_ports.known().names), language)
-    for note in in_reach.notes:
-        print(note, file=sys.stderr, flush=True)
-    return in_reach
 
 
 def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str, object]]:

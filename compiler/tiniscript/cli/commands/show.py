@@ -53,10 +53,9 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     if any(map(is_open_way, every(compiled.program))):
         raise CommandError(2, "sketch_no_ways", file=inputs.shown(given.name))
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
-    if not outputs.put(options.output, sketch):
-        return 0
-    name = inputs.shown(robot.labels[language]["robot"])
-    say("sketch", language, file=inputs.shown(options.output), robot=name)
+    if outputs.put(options.output, sketch):
+        name = inputs.shown(robot.labels[language]["robot"])
+        say("sketch", language, file=inputs.shown(options.output), robot=name)
     return 0
 
 

@@ -76,7 +76,9 @@ def _refuse_itself(connection: Connection) -> None:
 
 
 def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
-    network = Network(name, _password(connection.language), is_access_point)
+    prompt = text("wifi_password", connection.language)
+    password = asking.password(prompt, LEAST_PASSWORD, PASSWORD_BYTES, "wifi_bad_password")
+    network = Network(name, password, is_access_point)
     connection.ask(lambda session: session.join(network))
     ask = partial(_told, connection)
     _tell(connection, robot_broker.awaited(ask, lambda told: told.state in ENDS))
@@ -105,8 +107,3 @@ def _name_bytes(name: str) -> bytes:
     if not 1 <= len(data) <= NETWORK_BYTES or not name.isprintable():
         raise CommandError(2, "wifi_bad_network", bytes=str(len(data)))
     return data
-
-
-def _password(language: str) -> bytes:
-    prompt = text("wifi_password", language)
-    return asking.password(prompt, LEAST_PASSWORD, PASSWORD_BYTES, "wifi_bad_password")

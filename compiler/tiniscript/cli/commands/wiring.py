@@ -30,10 +30,8 @@ def run(options: Namespace, language: str) -> int:
         print()
         say("wiring_page", language)
         return 0
-
-    if not outputs.put(options.output, html_of(plan).encode()):
-        return 0
-    say("wiring", language, file=inputs.shown(options.output), robot=inputs.shown(plan.robot))
+    if outputs.put(options.output, html_of(plan).encode()):
+        say("wiring", language, file=inputs.shown(options.output), robot=inputs.shown(plan.robot))
     return 0
 
 
