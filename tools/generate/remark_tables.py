@@ -8,7 +8,7 @@ from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.codegen.text.problems import PROBLEMS, REMARKS, said
 from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answered, language_number
-from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, packed
+from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, packed
 from tools.generate.text_tables import bytes_of_table, file_of, numbers_of
 
 
@@ -108,7 +108,6 @@ def _tables(language: str, rows: Sequence[str]) -> list[str]:
     language = language.title()
     data = packed(rows)
     lines = [data.texts[at : at + 16] for at in range(0, len(data.texts), 16)]
-    pairs = [f"{{0x{one:02x}, 0x{two:02x}}}" for one, two in data.pairs]
     return [
         f"const uint8_t k{language}[] tini_progmem = {{",
         *(f"    {bytes_of_table(line)}" for line in lines),
@@ -119,7 +118,11 @@ def _tables(language: str, rows: Sequence[str]) -> list[str]:
         "};",
         "",
         f"const uint8_t k{language}Pairs[][2] tini_progmem = {{",
-        *(f"    {', '.join(pairs[at : at + 4])}," for at in range(0, len(pairs), 4)),
+        *(
+            f"    {{0x{one:02x}, 0x{two:02x}}},"
+            f"  // 0x{number:02x}: {letters_of(number, data.pairs).decode('ascii')}"
+            for number, (one, two) in enumerate(data.pairs, 1)
+        ),
         "};",
     ]
 
