@@ -27,7 +27,7 @@ OBSTACLES = (
 SEEN = ["--sensor", "DISTANCE=50,9,50,30,8,50", "--max-time", "4"]
 GRABBER = (
     "SI|LED(TRUE);GRIPPER(90);M(50, 80);W(1);TEMPERATURE;BUTTON;SHOW(1.5);SHOW(BUTTON);"
-    "BEEP(0.5, 440);B(0.5, 30)"
+    "BEEP(5, 440);B(0.5, 30)"
 )
 HIDE, REVEAL = b"\x1b[?25l", b"\x1b[?25h"
 

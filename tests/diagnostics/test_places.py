@@ -161,6 +161,10 @@ def test_any_text_is_told_well(seed: int) -> None:
         is_told_well(check_text(some_characters(dice), KIT))
 
 
+def test_letters_of_no_name_where_a_number_goes_are_told_well() -> None:
+    is_told_well(check_text("X=é", KIT))
+
+
 def test_marks_without_end_are_shown_in_a_window() -> None:
     rows = picture("e" + "\u0301" * 100_000 + ")", 100_001, 100_002)
     assert len(rows[0]) < 250

@@ -180,6 +180,7 @@ DAMAGED = (
     ("no JSON", '{"text": 5}'),
     ("null", '{"text": "S", "robot": "../x", "language": "<b>"}'),
     ("[]", '{"text": "S", "robot": {"toString": 1}, "world": "__proto__", "name": 7}'),
+    ("5", '{"text": "S", "language": {"toString": 1}}'),
 )
 
 

@@ -471,6 +471,10 @@ def ends(pages: Pages, taught: Class, erases: bool) -> None:
     assert ("F(1, 33)" in found) is not erases
     if erases:
         assert "tiniscript." not in found
-        write(ana, "F(1, 44)")  # what is written now is kept nowhere
+        write(ana, "F(1, 44)")  # what is written now is kept in this page alone
+        ana.click("#my_programs")
+        ana.click("#new")
+        ana.click("#my_programs")
+        assert ana.locator("#versions code").all_inner_texts() == ["F(1, 44)"]
         assert "tiniscript." not in ana.evaluate(kept)
     assert taught.room.has_ended

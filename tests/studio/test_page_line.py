@@ -142,3 +142,9 @@ def test_kept_keys_that_are_damaged_do_not_keep_a_robot_out() -> None:
 def test_every_shipped_robot_can_be_named() -> None:
     for name in robots.names():
         assert PageRobot(name, "en", PageKeys(b"")).go(b"", 0, [])["send"] == ""
+
+
+def test_a_page_is_told_where_its_program_is(page: Page) -> None:
+    page.upload(FOREVER)
+    page.go(500)
+    assert "PLACE" in {each.get("event") for each in page.news}

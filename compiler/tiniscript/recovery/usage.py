@@ -449,7 +449,7 @@ class _Usage:
             return None
         start = self.source.text.index(values["amount"], self.piece.start)
         value = Span(start, start + len(values["amount"]))
-        return Diagnostic(codes.UNKNOWN_NAME, value, values)
+        return Diagnostic(codes.UNKNOWN_NAME, value, {"found": values["amount"], **values})
 
     def behind(self) -> Diagnostic | None:
         """What begins no instruction comes behind one: with a `;` between them it is as wrong."""

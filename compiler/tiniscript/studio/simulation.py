@@ -111,7 +111,7 @@ class Simulation:
         self.robot.watched.mark(bytes(marks))
 
     def _want(self, is_stepping: bool) -> None:
-        bits = BREAKPOINT * bool(self.marks.breakpoints) | PART * is_stepping
+        bits = BREAKPOINT * bool(self.marks.breakpoints) | PART * bool(is_stepping)
         self.robot.watched.want(bits)
 
     def _go(self, duration_ms: int) -> None:

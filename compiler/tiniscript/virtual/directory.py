@@ -52,14 +52,16 @@ def withdraw(path: Path | None) -> None:
 
 def running() -> list[Running]:
     """Return the running robots. Opens none of them: that would count as a client."""
-    found = []
+    found: list[Running] = []
+    paths: list[Path] = []
     with contextlib.suppress(OSError):
-        for path in sorted(_folder().glob("*.json")):
-            robot = _read(path)
-            if robot is not None and _is_listening(robot.address):
-                found.append(robot)
-            else:
-                withdraw(path)
+        paths = sorted(_folder().glob("*.json"))
+    for path in paths:
+        robot = _read(path)
+        if robot is not None and _is_listening(robot.address):
+            found.append(robot)
+        else:
+            withdraw(path)
     return found
 
 

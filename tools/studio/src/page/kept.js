@@ -6,9 +6,12 @@
 const OURS = 'tiniscript.'; // all places of this page begin with it
 
 let isForgotten = false;
+/** @type {Map<string, string>} what is kept from then on, until the page is closed */
+const remembered = new Map();
 
 /** What is kept at a place; empty for nothing. @param {string} place @param {Store} [store] @returns {string} */
 export function kept(place, store = 'localStorage') {
+  if (isForgotten) return remembered.get(store + place) ?? '';
   try {
     return window[store].getItem(place) ?? '';
   } catch {
@@ -25,18 +28,19 @@ export function keptForm(place, store) {
   }
 }
 
-/** Keeps it at a place; returns whether that was possible. @param {string} place @param {string} whole @param {Store} [store] */
+/** Keeps it at a place, empty for nothing; returns whether that was possible. @param {string} place @param {string} whole @param {Store} [store] */
 export function keepAt(place, whole, store = 'localStorage') {
-  if (isForgotten) return true;
+  if (isForgotten) return Boolean(remembered.set(store + place, whole));
   try {
-    window[store].setItem(place, whole);
+    if (whole) window[store].setItem(place, whole);
+    else window[store].removeItem(place);
     return true;
   } catch {
     return false; // full, or forbidden
   }
 }
 
-/** Deletes all that this page has kept on this device; it keeps nothing from then on. */
+/** Deletes all that this page has kept on this device; it keeps nothing there from then on. */
 export function forgetAll() {
   isForgotten = true;
   for (const store of /** @type {const} */ (['sessionStorage', 'localStorage'])) {

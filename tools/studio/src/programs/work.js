@@ -88,7 +88,7 @@ function checked(found) {
     text: found.text,
     robot: isRobot(found.robot) ? found.robot : 'tinibot',
     world: found.world === OWN_WORLD || WORLDS.some((world) => world.name === found.world) ? found.world : 'obstacles',
-    language: languageOf(found.language),
+    language: languageOf(typeof found.language === 'string' ? found.language : ''),
     name: typeof found.name === 'string' ? found.name.slice(0, 200) : '',
     view: found.view === 'text' ? 'text' : 'blocks',
     level: found.level === 'all' || found.level === 'usual' ? found.level : 'few',
