@@ -16,6 +16,7 @@ from tests.oracle.words import FIXED
 from tests.support.casefile import ROOT
 from tests.support.new_word import HORN, SAID, with_texts
 from tests.support.rows import each_row
+from tests.text.test_line import check_line
 from tiniscript import compile_text, robots
 from tiniscript.base import languages
 from tiniscript.base.source import Source
@@ -86,6 +87,7 @@ def test_a_robot_that_reads_text_gets_what_it_stands_for(level: Level) -> None:
     assert compiled.program is not None
     assert misfits(compiled.source, compiled.program, KIT, level) == []
     assert line_of(compiled.source) == line_of(Source(MEANT))
+    check_line("SI|HORN", KIT)
 
 
 # Of a process that knows the word before it imports what makes tables of all words.

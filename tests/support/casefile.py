@@ -106,15 +106,15 @@ def _folded(text: str) -> str:
 def _said(case: Case, fence: str, text: str, end: int) -> Iterator[Case]:
     """Yield a case with what is said of it, and one for each row that says what it is about."""
     before, *titled = ABOUT.split(text)
-    found = [(case, before)] if before else []
-    if case.parts and not before:
+    found = [(case, before)] if before or not titled else []
+    if case.parts and titled and not before:
         yield case  # of the heading above, which has said all
     line = end - sum(each.count("\n") for each in titled) - len(titled) // 2
     for title, said in zip(titled[::2], titled[1::2], strict=True):
         found.append((Case(case.path, line, title, {}), said))
         line += 1 + said.count("\n")
     for each, said in found:
-        each.parts[fence] = said.rstrip("\n") + "\n"
+        each.parts[fence] = said and said.rstrip("\n") + "\n"
         if shown := SHOWN.match(said):
             each.parts.setdefault("tiniscript", shown[1])
         yield each
