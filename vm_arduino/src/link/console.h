@@ -12,6 +12,7 @@
 #include "../text/reader.h"
 #include "../text/remarks.h"
 #include "receiver.h"
+#include "start_finder.h"
 
 namespace tiniscript {
 
@@ -34,12 +35,14 @@ class Console {
   // any more.
   void discard();
 
+  // The stop was typed here: what arrives after a second counts, if a short silence is before it.
+  void discard_briefly() { least_wait_ms_ = kBriefMs; }
+
   // Whether a typed stop would belong to the program that is read.
   bool is_in_block() const { return is_open_ && is_waiting_ && awaited_ != ')'; }
 
   // Whether a line or a program has begun, and whether it may take its time.
   bool is_open() const { return is_open_; }
-  bool keeps_line() { return is_open_ && is_patient(); }
 
   // The open line and its program are lost: somebody else uses the memory. Returns whether further
   // lines of that program may come; they are ignored.
@@ -60,16 +63,27 @@ class Console {
   // Sets the answer that is due. Writes it as a line of at most kWireBytes and returns its length.
   void say(Remark remark) { remark_ = remark; }
   bool has_answer() const { return remark_ != Remark::kNone; }
+
+  // The same, unless a client is heard: what no program came of is for people.
+  void tell(Remark remark, bool is_heard);
+
+  // Bytes have come that no line end follows, and none of them is read.
+  void note_tail() { has_tail_ = true; }
   uint8_t write(uint8_t* out);
 
   // Writes a line with a value that a program shows.
   uint8_t write_value(int32_t value, bool is_yes_no, uint8_t* out);
 
  private:
+  static constexpr uint16_t kBriefMs = 150;
+
   Act take(uint8_t byte, bool is_heard);
+  void read(uint8_t byte);
+  void start_again(uint8_t letters, bool is_heard);
+  Act end_tail(bool is_heard);
   Act end_line(bool is_heard);
-  void tell_cut(bool is_heard);
   void fall_silent();
+  void end_silence();
   void begin_silence();
   bool begin(uint8_t byte);
   bool has_room();
@@ -82,6 +96,9 @@ class Console {
 
   uint8_t* image_;
   uint16_t quiet_ms_;  // time since the last byte of text
+  uint16_t wait_ms_;   // until lines count again after a stop
+  uint16_t least_wait_ms_;  // so long from each byte on
+  uint16_t ends_ms_;   // until nobody knows any more that lines end here
   uint8_t length_;     // of the code before this line
   uint8_t first_;      // the first byte of the program
   uint8_t awaited_;    // the word that the last line has left open, or ')'
@@ -94,11 +111,13 @@ class Console {
   bool has_lost_;
   bool is_waiting_;    // for the end of a block that an earlier line has opened
   bool is_talking_;
-  bool is_discarding_;
+  bool has_told_;      // that lines do not count yet
+  bool has_tail_;      // bytes have come since the last line end
   bool is_ignoring_;   // lines without a SETUP word: their program is lost
   bool is_silent_;     // a second has passed
   bool is_due_;
   bool has_mark_;      // a typed stop waits behind
+  StartFinder starts_;
   Reader reader_;
 };
 

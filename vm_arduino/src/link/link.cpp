@@ -45,17 +45,26 @@ void Link::pass(uint16_t now_ms) {
   // next call.
   const bool is_held = receiver_->is_held();
   const bool is_at_stop = receiver_->is_at_stop();
+  const Receiver::Unfinished unfinished = receiver_->unfinished();
   const bool has_heard = receiver_->has_heard();
   const uint16_t before = left_ms_[kSilence];
   console_.pass(passed, has_heard);
   for (uint16_t& left_ms : left_ms_) {
     left_ms = passed < left_ms ? static_cast<uint16_t>(left_ms - passed) : 0;
   }
+  if (left_ != 0 && left_ms_[kFrameSent] != 0) left_ms_[kFrameSent] = kTextMs;
   if (has_heard) {
     left_ms_[kSilence] = kSilenceMs;
-  } else if (before != 0 && (is_held || is_at_stop)) {
+  } else if (before != 0) {
     end_silence(is_held, is_at_stop, before);
+    if (left_ms_[kSilence] == 0) tell_unfinished(unfinished);
   }
+}
+
+// A second of silence has ended a packet that looks like a person's.
+inline void Link::tell_unfinished(Receiver::Unfinished unfinished) {
+  if (unfinished == Receiver::Unfinished::kLine) console_.note_tail();
+  if (unfinished == Receiver::Unfinished::kLineEnds) console_.tell(Remark::kCut, is_listened_to());
 }
 
 // What the silence behind a typed stop does: that of kHeldMs in what began as a frame, that of
@@ -129,8 +138,12 @@ tini_noinline void Link::halt(Cause cause) {
   port_stop(0);
   const bool has_stale = cause != Cause::kMessage && receiver_->has_frame();
   note_halt();
-  if (!was_stopped || has_stale) return stopped(cause);
-  confirm(cause);
+  if (!was_stopped || has_stale) {
+    stopped(cause);
+  } else {
+    confirm(cause);
+  }
+  if (cause == Cause::kText) console_.discard_briefly();
 }
 
 // Takes the bytes of a packet that have arrived.
@@ -198,8 +211,10 @@ tini_noinline void Link::handle(uint8_t end) {
   const bool is_repeat = is_known && is_marked == is_sealed();
   if (is_open_ && is_repeat && !is_hello && type != static_cast<uint8_t>(Message::kStop)) {
     said_ = last;
+    left_ms_[kFrameSent] = 0;  // it is repeated
     return;
   }
+  if (is_hello) left_ms_[kFrameSent] = 0;  // who says it may not have heard frames
   said_.number = type & static_cast<uint8_t>(~kSealed);
   said_.seq = seq;
   said_.detail = 0;
@@ -212,7 +227,8 @@ tini_noinline void Link::handle(uint8_t end) {
   } else if (is_marked && !is_sealed()) {
     if (type == static_cast<uint8_t>(Message::kStop)) halt(Cause::kMessage);
     refusal = Answer::kNotOwner;
-  } else if (type == 0 || type > kLastRequest) {
+  } else if (type == 0 || type > kLastRequest ||
+             flash_byte(&kRequestBytes[type - 1][0]) == kUnknownRequest) {
     refusal = Answer::kUnknownMessage;
   } else if (is_hello && length != 0 && payload[kHelloMajorAt] != kLinkMajor) {
     said_.detail = kLinkMajor;
@@ -337,7 +353,6 @@ uint8_t Link::hello(const uint8_t* payload) {
   if (is_new || may_seal()) expire();
   if (is_new) forget_answer();
   is_open_ = true;
-  note_client(payload[kHelloMinorAt]);
   copy_bytes(payload + kHelloNonceAt, reinterpret_cast<uint8_t*>(&nonce_), sizeof nonce_);
   isa_[0] = payload[kHelloIsaMajorAt];
   isa_[1] = payload[kHelloIsaMinorAt];

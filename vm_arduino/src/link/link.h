@@ -156,12 +156,12 @@ class Link {
   static constexpr uint8_t kDueText = 16;
 
   // Times that run down to 0: until a client without frames no longer counts as listening, until
-  // STOPPED is sent again, until a second of silence has passed, until a key may be shown again; and,
-  // as `kListen`, since a sealed frame.
+  // STOPPED is sent again, until a second of silence has passed, until a key may be shown again,
+  // until text may follow the last frame; and, as `kListen`, since a sealed frame.
 #ifdef tiniscript_seals
-  enum Time : uint8_t { kListen, kAgain, kSilence, kKeyPause, kSealHeard, kTimes };
+  enum Time : uint8_t { kListen, kAgain, kSilence, kKeyPause, kFrameSent, kSealHeard, kTimes };
 #else
-  enum Time : uint8_t { kListen, kAgain, kSilence, kKeyPause, kTimes };
+  enum Time : uint8_t { kListen, kAgain, kSilence, kKeyPause, kFrameSent, kTimes };
 #endif
 
   // Rights of the session, one bit each: it has a challenge, it has asked for a claim, the button
@@ -181,6 +181,7 @@ class Link {
 
   void pass(uint16_t now_ms);
   void end_silence(bool is_held, bool is_at_stop, uint16_t before_ms);
+  void tell_unfinished(Receiver::Unfinished unfinished);
   // The purpose of an image: to be stored, to run once, or to run as soon as its frame ends.
   enum class Use : uint8_t { kStored, kLive, kAhead };
 
@@ -269,15 +270,6 @@ class Link {
   static void seal_out() {}
 #endif
 
-  // Whether the client takes large frames: what it has said of itself in HELLO.
-#ifdef tiniscript_large_frames
-  bool takes_large() const { return takes_large_; }
-  void note_client(uint8_t minor) { takes_large_ = minor >= kLargeMinor; }
-#else
-  static constexpr bool takes_large() { return false; }
-  static void note_client(uint8_t) {}
-#endif
-
   // writing
   void send();
   bool talks() const { return console_.is_talking() && !is_listened_to(); }
@@ -288,13 +280,11 @@ class Link {
   static void drop_answer() {}
   static void send_text() {}
   static void show_text(int32_t, bool) {}
-  static bool separate() { return false; }
 #else
   void drop_answer();
   Remark start_text(const Console& console);
   void send_text();
   void show_text(int32_t value, bool is_yes_no);
-  bool separate();
 #endif
   void reply();
   void describe();
@@ -305,7 +295,9 @@ class Link {
   void put16(uint16_t value);
   void put_all(const void* bytes, uint8_t length);
   void close();
+  bool separate();
   void hand_over();
+  void hand_over_frame();
 
   ReceiverOfLink receiver_;
   FrameCheck check_;  // of the packet that arrives or waits
@@ -336,7 +328,6 @@ class Link {
   uint8_t ahead_;      // end of the payload of an image made ahead, or 0
   bool is_ready_;      // it is `made_`, and may start if the frame ends there
   // Output.
-  bool is_after_text_;     // a line of text was sent last
   uint8_t size_;           // bytes written so far
   uint8_t sent_;           // bytes already sent
   volatile uint8_t left_;  // bytes left to send
@@ -349,9 +340,6 @@ class Link {
   uint8_t sealed_last_epoch_;
   Said sealed_last_;     // the last reply to a sealed request
   Seal seal_;
-#endif
-#ifdef tiniscript_large_frames
-  bool takes_large_;
 #endif
 #ifdef tiniscript_transports
   bool has_halted_;

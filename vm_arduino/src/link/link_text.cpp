@@ -25,7 +25,6 @@ void Link::talk() {
 tini_noinline void Link::talk() {
   Console* const console = near(&console_);
   const Console::Act act = console->turn(receiver_, is_listened_to());
-  receiver_->keep_line(console->keeps_line());
   if (act == Console::Act::kStop) halt(Cause::kText);
   if (act == Console::Act::kEnd) port_end();
   if (act == Console::Act::kStart) console->say(start_text(*console));
@@ -71,7 +70,9 @@ Remark Link::start_text(const Console& console) {
 }
 
 // Sends a line of an answer; to a person, what has happened as well.
+// Where frames have come, it waits until they are over for whoever listens.
 void Link::send_text() {
+  if (left_ms_[kFrameSent] != 0) return;
   if (!console_.has_answer()) {
     if ((due_ & kDueStopped) != 0) {
       console_.say(Remark::kStopped);
@@ -82,24 +83,12 @@ void Link::send_text() {
   }
   size_ = console_.write(out_);
   if (!console_.has_answer()) due_ &= static_cast<uint8_t>(~kDueText);
-  is_after_text_ = true;
   hand_over();
 }
 
 void Link::show_text(int32_t value, bool is_yes_no) {
   size_ = console_.write_value(value, is_yes_no, out_);
-  is_after_text_ = true;
   hand_over();
-}
-
-// Sends the 0x00 that stands between text and a frame. False: none is needed.
-bool Link::separate() {
-  if (!is_after_text_) return false;
-  is_after_text_ = false;
-  size_ = 0;
-  put(0);
-  hand_over();
-  return true;
 }
 
 #endif

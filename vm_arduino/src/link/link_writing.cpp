@@ -71,6 +71,7 @@ bool Link::show(int32_t value, bool is_yes_no) {
   if (!is_heard && !console_.is_talking()) return true;
   if (left_ != 0 || due_ != 0) return false;
   if (!is_heard) {
+    if (left_ms_[kFrameSent] != 0) return false;
     show_text(value, is_yes_no);
     return true;
   }
@@ -188,10 +189,9 @@ void Link::fetch() {
   const uint16_t whole = port_image_length();
   const uint8_t first = kHasSeals ? static_cast<uint8_t>(size_ - 1) : kPayloadAt;
   const bool is_sealed = first != kPayloadAt;
-  const uint8_t largest = takes_large() ? kLargestFrame : kSmallFrame;
   const uint8_t most =
-      static_cast<uint8_t>(largest + kTypeAt - kCrcBytes - (is_sealed ? kTagBytes : 0));
-  if (takes_large() && !is_sealed && said_.detail + kSmallFetch < whole) {
+      static_cast<uint8_t>(kLargestFrame + kTypeAt - kCrcBytes - (is_sealed ? kTagBytes : 0));
+  if (kHasLargeFrames && !is_sealed && said_.detail + kSmallFetch < whole) {
     put(out_[first]);
     out_[first] = 0;
   }
@@ -233,6 +233,20 @@ tini_noinline void Link::put_all(const void* bytes, uint8_t length) {
 void Link::close() {
   if (kHasSeals && (out_[kTypeAt] & kSealed) != 0) seal_out();
   size_ = encode_frame(out_, size_);
+  hand_over_frame();
+}
+
+// Sends the 0x00 that is before a frame, unless frames have come until now. False: none is needed.
+bool Link::separate() {
+  if (left_ms_[kFrameSent] > kTextMs - kZeroMs) return false;
+  size_ = 0;
+  put(0);
+  hand_over_frame();
+  return true;
+}
+
+void Link::hand_over_frame() {
+  left_ms_[kFrameSent] = kTextMs;
   hand_over();
 }
 

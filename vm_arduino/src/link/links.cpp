@@ -170,7 +170,7 @@ bool Links::part(Transport transport) {
   enter(place);
   links_[place].give_way();
   links_[place].expire();
-  receivers_[place].put(0, now_ms_);  // cuts what has begun
+  receivers_[place].disconnect();
   links_[place].forget_client();
   leave();
   if (driver_ == place) driver_ = kNobody;

@@ -5,6 +5,8 @@
 
 #include <stdint.h>
 
+#include "../text/remarks.h"
+
 namespace tiniscript {
 
 class Console {
@@ -15,6 +17,9 @@ class Console {
   static constexpr bool is_open() { return false; }
   static constexpr bool is_talking() { return false; }
   static void drop() {}
+  static void discard_briefly() {}
+  static void note_tail() {}
+  static void tell(Remark, bool) {}
   static void pick_up() {}
   static void hang_up() {}
 };

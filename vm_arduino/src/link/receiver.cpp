@@ -1,195 +1,174 @@
 #include "receiver.h"
 
-#include "../vm/small.h"
+#include "port.h"
 
 namespace tiniscript {
 
 namespace {
 
-bool is_letter(uint8_t byte) {
-  const uint8_t small = static_cast<uint8_t>(byte | 0x20);
-  return small >= 'a' && small <= 'z';
-}
+constexpr uint8_t kControlCByte = 3;
+constexpr uint8_t kEscape = 0x1b;
+constexpr uint8_t kDelete = 0x7f;
 
-bool is_blank(uint8_t byte) { return byte == ' ' || byte == '\t' || ends_line(byte); }
+// What every byte of a line is that a frame never looks like.
+bool is_plain(uint8_t byte) { return byte >= ' ' && byte < kDelete; }
 
-// In a line of text. Bytes beyond ASCII are UTF-8.
-bool is_printable(uint8_t byte) { return byte >= ' ' && byte != 0x7f; }
+bool is_control(uint8_t byte) { return (byte < ' ' && byte != '\t') || byte == kDelete; }
 
 }  // namespace
 
 tini_noinline bool Receiver::take(uint8_t byte, uint16_t now_ms) {
   has_heard_ = true;
-  const bool is_quiet = this->is_quiet(now_ms);
-  last_ms_ = now_ms;
-  if (is_quiet) {  // a typed stop in a frame has acted long ago
-    const bool is_text =
-        place_ == Place::kText || place_ == Place::kLost || place_ == Place::kAfterText;
-    if (!is_kept_ || !is_text) cut();
-    zeros_ = 1;  // this byte, if it is one
-    typed_.begin();
+  if (zeros_.take(byte, now_ms)) fall_silent();
+  if (byte == 0) return take_zero();
+  return state_ < State::kBegin ? take_text_byte(byte) : take_packet_byte(byte);
+}
+
+// A second without a byte: text comes again. A typed stop begins here whatever was before.
+inline void Receiver::fall_silent() {
+  if (state_ >= State::kBegin) {
+    if (state_ > State::kBegin) count_damaged();
+    state_ = State::kText;
+    is_cut_ = false;
   }
-  const Place before = place_;
-  const bool is_typed = typed_.put(byte);
-  if (byte == 0) {
-    zero();
-  } else {
-    zeros_ = 0;
-    sort(byte);
+  if (line_ != Line::kSome) line_ = Line::kNothing;
+  typed_.begin();
+}
+
+// Frames come from here on. What a 0x00 ends is a frame, or a line that is cut: a typed stop counts
+// all the same.
+inline bool Receiver::take_zero() {
+  bool is_stop = false;
+  if (state_ >= State::kFrame) {
+    is_stop = !end_packet(Packet::kFrame) && state_ == State::kHeld;
+    is_cut_ = false;
+  } else if (state_ == State::kLine || line_ == Line::kSome) {
+    is_stop = is_plain_ && typed_.is_whole();
+    is_cut_ = true;
+    if (!is_stop) cut_line();
   }
-  if (is_typed) {
-    if (is_marked(before)) return true;
-    if (is_frame() && !is_dropping_) {  // one that is dropped is not whole
-      place_ = Place::kHeld;
-      return false;
-    }
-  } else if (before != Place::kHeld || place_ != Place::kSkip) {
+  begin_line();
+  state_ = State::kBegin;
+  if (is_stop) stop();
+  if (zeros_.is_whole()) due_stop_ = Cause::kSequence;
+  return is_stop;
+}
+
+// -- text -------------------------------------------------------------------------------------------
+
+inline bool Receiver::take_text_byte(uint8_t byte) {
+  if (ends_line(byte)) {
+    has_ended_ = true;
+    if (line_ == Line::kSome) return end_line(state_ == State::kText && text_.put(kLineEnd));
+    const bool is_control_c = line_ == Line::kControlC;
+    begin_line();
+    if (is_control_c) stop();
+    return is_control_c;
+  }
+  const bool was_escape = keys_.is_escape();
+  if (keys_.takes(byte)) {
+    if (line_ != Line::kSome) line_ = Line::kSkipped;
     return false;
   }
+  if (line_ != Line::kSome) {
+    if (byte <= ' ' || byte == kDelete) {
+      const bool is_control_c = byte == kControlCByte && line_ <= Line::kControlC;
+      line_ = is_control_c ? Line::kControlC : Line::kSkipped;
+      return false;
+    }
+    line_ = Line::kSome;
+    is_plain_ = true;
+  } else if (was_escape && state_ == State::kText) {
+    text_.put(kEscape);  // no key has followed: the line is wrong
+  }
+  if (!is_plain(byte)) is_plain_ = false;
+  if (state_ == State::kText && !text_.put(byte)) {
+    count_damaged();
+    state_ = State::kLost;
+  }
+  return watch(byte);
+}
+
+// Looks for a stop that does not wait for the end of its line.
+inline bool Receiver::watch(uint8_t byte) {
+  typed_.put(byte);
+  if (!typed_.is_urgent() || port_status().state != tiniscript::State::kRunning) return false;
+  typed_.begin();
+  return stop_at_mark(state_ == State::kText);
+}
+
+// A line has ended; `is_there`: all of it waits to be read.
+bool Receiver::end_line(bool is_there) {
+  const bool is_stop = typed_.is_whole();
+  begin_line();
+  state_ = State::kText;
+  is_cut_ = false;
+  if (is_stop) return stop_at_mark(is_there);
+  if (!is_there) lose_line();
+  return false;
+}
+
+// -- frames -----------------------------------------------------------------------------------------
+
+inline bool Receiver::take_packet_byte(uint8_t byte) {
+  if (state_ == State::kBegin) {
+    begin_packet();
+  } else if (state_ == State::kLine && ends_line(byte)) {
+    has_ended_ = true;
+    return end_line(!is_cut_ && end_packet(Packet::kText));
+  }
+  if (ends_line(byte)) has_ends_ = true;
+  add(byte);
+  if (!is_plain(byte) && state_ == State::kLine) state_ = State::kFrame;
+  return state_ == State::kLine ? watch(byte) : take_frame_byte(byte);
+}
+
+// Looks for a typed stop with a line of its own. It waits: the frame may be whole.
+inline bool Receiver::take_frame_byte(uint8_t byte) {
+  if (keys_.takes(byte) || is_control(byte)) {
+    if (ends_line(byte) && typed_.is_strict()) state_ = State::kHeld;
+    typed_.begin();
+  } else {
+    typed_.put(byte);
+  }
+  if (state_ != State::kHeld || !is_dropping_) return false;
+  state_ = State::kFrame;  // what is dropped is never whole
   stop();
   return true;
 }
 
-// Takes a byte that is not 0.
-inline void Receiver::sort(uint8_t byte) {
-  if (place_ >= Place::kBlank && place_ <= Place::kCrLf) {
-    // The second byte of a request is its type, and no frame to a robot begins like this.
-    if (is_printable(byte) && byte < 0x80) {
-      place_ = Place::kAfterText;
-    } else if (place_ == Place::kCr && byte == '\n') {
-      place_ = Place::kCrLf;
-      return add(byte);
-    } else {
-      place_ = Place::kFrame;
-      drop();
-    }
-  }
-  if (place_ == Place::kAfterText && is_blank(byte)) return;
-  if (place_ <= Place::kAfterText) {
-    begin(byte);
-  } else {
-    go_on(byte);
-  }
-}
-
-// A line has ended that is a typed stop; `before` is where the receiver was before its end. Returns
-// whether all of it has found a place as text, and a mark behind it.
-bool Receiver::is_marked(Place before) {
-  const bool is_in_packet = before >= Place::kHead && before <= Place::kOther && !is_dropping_ &&
-                            packet_[filled()] == Packet::kText;
-  if (before != Place::kText && !is_in_packet) return false;
-  if (place_ == Place::kAfterText) pass_on(kLineStop);
-  if (place_ != Place::kAfterText) return false;
-  marks_ = static_cast<uint8_t>(marks_ + 1);
-  return true;
-}
-
-// Determines the kind of a packet from its first byte, as far as possible. A frame after text has a
-// zero before it, so while text waits, or a line of it is open, what follows it is text.
-void Receiver::begin(uint8_t byte) {
-  if (byte == 0x7f) return skip();
-  const bool goes_on = place_ == Place::kAfterText &&
-                       (is_kept_ || first_ != behind_ || packet_[filled()] == Packet::kText);
-  if (is_letter(byte) || (goes_on && is_printable(byte))) {
-    place_ = Place::kText;
-    return pass_on(byte);
-  }
+// Counts a packet that begins while all places are taken.
+void Receiver::begin_packet() {
+  state_ = State::kLine;
+  is_plain_ = true;
+  has_ends_ = false;
   is_dropping_ = packet_[filled()] != Packet::kNone;
-  if (!is_dropping_) {
-    length_[filled()] = 0;
-    if (is_first()) has_begun_ = true;
-  }
-  if (byte >= kTextFrom) {
-    place_ = Place::kOther;
-  } else if (is_blank(byte)) {
-    place_ = byte == '\r' ? Place::kCr : Place::kBlank;
-  } else {
-    place_ = byte > ' ' ? Place::kHead : Place::kFrame;
-  }
-  if (!is_blank(byte)) drop();
-  add(byte);
-}
-
-// Takes a further byte of a packet.
-void Receiver::go_on(uint8_t byte) {
-  const bool is_text = is_printable(byte) || byte == '\t';
-  if (place_ == Place::kSkip) return;
-  if (place_ >= Place::kText) {
-    if (ends_line(byte)) return end_text(place_ == Place::kText ? kLineEnd : kLineCut);
-    if (place_ == Place::kText) pass_on(byte);
+  if (is_dropping_) {
+    dropped_ = static_cast<uint8_t>(dropped_ + 1);
     return;
   }
-  if (place_ == Place::kHead) {
-    place_ = is_printable(byte) ? Place::kLine : Place::kFrame;  // request types are smaller
-  } else if (!is_frame() && ends_line(byte)) {
-    place_ = Place::kAfterText;
-    if (!end(Packet::kText)) lose();
-    return;
-  } else if (place_ == Place::kLine && !is_text) {
-    place_ = Place::kFrame;
-  } else if (place_ == Place::kOther && !is_text) {
-    return skip();
-  }
-  if (length_[filled()] == most_bytes() && !is_dropping_) {
-    if (is_frame()) return skip();
-    place_ = Place::kText;
-    end(Packet::kText);
-    is_begun_ = true;
-    if (packet_[filled()] != Packet::kText) {
-      place_ = Place::kLost;
-      is_lost_ = true;
-    }
-    if (place_ == Place::kText) pass_on(byte);
-    return;
-  }
-  add(byte);
-}
-
-void Receiver::skip() {
-  damaged_ = static_cast<uint8_t>(damaged_ + 1);
-  place_ = Place::kSkip;
-}
-
-// Counts a packet that begins while another one waits.
-void Receiver::drop() {
-  if (is_dropping_) dropped_ = static_cast<uint8_t>(dropped_ + 1);
+  length_[filled()] = 0;
+  if (is_first()) has_begun_ = true;
 }
 
 // Leaves a waiting packet and its length unchanged.
 void Receiver::add(uint8_t byte) {
+  if (is_dropping_) return;
   const uint8_t length = length_[filled()];
-  if (is_dropping_ || length == kPacketBytes) return;
+  if (length == most_bytes()) {
+    is_dropping_ = true;
+    return count_damaged();
+  }
   bytes_[filled()][length] = byte;
   length_[filled()] = static_cast<uint8_t>(length + 1);
 }
 
-void Receiver::zero() {
-  if (place_ >= Place::kBlank && place_ <= Place::kHeld && place_ != Place::kOther) {
-    end(Packet::kFrame);
-    place_ = Place::kBegin;
-  } else {
-    cut();
-  }
-  if (zeros_ != kStopRun) return;
-  zeros_ = 0;  // four more zeros are another stop
-  due_stop_ = Cause::kSequence;
-}
-
-// Starts over; the open packet never ended.
-void Receiver::cut() {
-  const Place place = place_;
-  place_ = Place::kBegin;
-  if (place >= Place::kBlank && place <= Place::kText) damaged_ = static_cast<uint8_t>(damaged_ + 1);
-  if (place == Place::kText || place == Place::kLost) pass_on(kLineCut);
-}
-
 // A line that may overtake older text, or a frame, is dropped. Returns whether the packet waits.
-bool Receiver::end(Packet packet) {
+bool Receiver::end_packet(Packet packet) {
   if (is_dropping_) return false;
-  is_begun_ = false;
   taken_ = 0;
-  if (packet == Packet::kFrame || (first_ == behind_ && is_first())) {
-    may_stop_[filled()] = place_ == Place::kHeld;
+  if (packet == Packet::kFrame || (text_.is_empty() && is_first())) {
+    may_stop_[filled()] = state_ == State::kHeld;
     packet_[filled()] = packet;
     if (packet == Packet::kFrame) fill_on();
     return true;
@@ -198,34 +177,42 @@ bool Receiver::end(Packet packet) {
   return false;
 }
 
-// Passes a byte of text on. Where there is no room, the rest of its line is skipped. The last place is
-// for a kLineCut: if that is taken, it tells of what is lost now, too.
-void Receiver::pass_on(uint8_t byte) {
-  const uint8_t at = behind_;
-  const uint8_t behind = static_cast<uint8_t>(at + 1) % kTextBytes;
-  const uint8_t room = static_cast<uint8_t>(first_ - behind) % kTextBytes;
-  if (byte == kLineCut) {
-    if (room == 0) return;
-  } else if (room < 2) {
-    if (place_ != Place::kLost) damaged_ = static_cast<uint8_t>(damaged_ + 1);
-    place_ = Place::kLost;
-    is_lost_ = true;
-    return;
+// -- both -------------------------------------------------------------------------------------------
+
+void Receiver::begin_line() {
+  line_ = Line::kNothing;
+  keys_.begin();
+  typed_.begin();
+}
+
+// Leaves a mark behind a typed stop, where all before it waits to be read. A stop that finds no place
+// for it belongs to no block.
+bool Receiver::stop_at_mark(bool is_there) {
+  if (is_there && text_.put(kLineStop)) {
+    marks_ = static_cast<uint8_t>(marks_ + 1);
+  } else {
+    stop();
   }
-  text_[at] = byte;
-  asm volatile("" ::: "memory");  // barrier: `take_text` reads the byte after the index
-  behind_ = behind;
+  return true;
 }
 
-// A line has found no room as a packet.
-void Receiver::lose() {
+// The line that has begun never ends.
+void Receiver::cut_line() {
+  count_damaged();
+  text_.put_last(kLineCut);
+}
+
+// Bytes of the line have found no place.
+void Receiver::lose_line() {
   is_lost_ = true;
-  pass_on(kLineCut);
+  text_.put_last(kLineCut);
 }
 
-void Receiver::end_text(uint8_t byte) {
-  place_ = Place::kAfterText;
-  pass_on(byte);
+void Receiver::disconnect() {
+  if (line_ == Line::kSome) cut_line();
+  begin_line();
+  state_ = State::kText;
+  is_cut_ = false;
 }
 
 bool Receiver::take_text(uint8_t* byte) {
@@ -234,20 +221,12 @@ bool Receiver::take_text(uint8_t* byte) {
       *byte = bytes_[looked_at()][taken_++];
       return true;
     }
-    const bool is_over = !is_begun_;
     asm volatile("" ::: "memory");  // barrier: the bytes are read before the interrupt may write
     packet_[looked_at()] = Packet::kNone;
-    if (is_over) {
-      *byte = kLineEnd;
-      return true;
-    }
+    *byte = kLineEnd;
+    return true;
   }
-  const uint8_t first = first_;
-  if (first == behind_) return false;
-  *byte = text_[first];
-  asm volatile("" ::: "memory");
-  first_ = static_cast<uint8_t>(first + 1) % kTextBytes;
-  return true;
+  return text_.take(byte);
 }
 
 }  // namespace tiniscript

@@ -1,11 +1,13 @@
 // Splits bytes into packets: frames, lines of text, and what stops a robot: a run of zeros, or a
 // line that is a typed stop.
 //
+// Everything is text until a 0x00. After it everything is frames, until a second passes without a
+// byte or the connection is lost; there CR or LF behind nothing but printable ASCII ends a line of
+// text, because no whole frame looks so, and text goes on.
 // Knows where a packet begins and ends; `frames.h` checks whether a frame is whole. Holds frames
 // until they are released, kWindow of them; a frame that finds no place is dropped. Text is passed
-// on as it arrives.
-// Finds the same packets as `receiver.py`. `put` may be called from an interrupt, everything else
-// from the main loop.
+// on as it arrives. Finds the same packets as `receiver.py`, in the same states. `put` may be called
+// from an interrupt, everything else from the main loop.
 
 #ifndef TINISCRIPT_LINK_RECEIVER_H_
 #define TINISCRIPT_LINK_RECEIVER_H_
@@ -14,16 +16,19 @@
 #include <stdint.h>
 
 #include "../vm/small.h"
+#include "key_sequence.h"
 #include "messages.h"
 #include "sizes.h"
+#include "text_ring.h"
 #include "typed_stop.h"
+#include "zero_run.h"
 
 namespace tiniscript {
 
 enum class Packet : uint8_t { kNone, kFrame, kText };
 
-// What `take_text` returns beside the bytes of a line. kLineStop is behind the end of a line that is
-// a typed stop.
+// What `take_text` returns beside the bytes of a line. A kLineCut is in the place of a line's end
+// that never came, or of bytes that found no room; a kLineStop is behind what was a typed stop.
 constexpr uint8_t kLineEnd = '\n';
 constexpr uint8_t kLineCut = 0;
 constexpr uint8_t kLineStop = '\r';
@@ -56,6 +61,9 @@ class PacketPlaces<1> {
 
 class Receiver : private PacketPlaces<kWindow> {
  public:
+  // What has not ended: nothing, a packet that may be a line of text, or a frame with CR or LF in it.
+  enum class Unfinished : uint8_t { kNothing, kLine, kLineEnds };
+
   // Takes a byte at the time `now_ms`. Returns whether the motors go off at once: it completes a run
   // of four zeros, the stop sequence, or a typed stop. Eight zeros are two stops. A byte with a
   // framing error is 0.
@@ -65,24 +73,20 @@ class Receiver : private PacketPlaces<kWindow> {
   }
 
   // The halves of `put`: between them the caller turns the motors off.
-  tini_always_inline bool stops(uint8_t byte, uint16_t now_ms) {
-    if (byte != 0) return false;
-    const uint8_t zeros = static_cast<uint8_t>(zeros_ + 1);
-    zeros_ = zeros;
-    if (zeros != kStopRun || is_quiet(now_ms)) return false;
-    last_ms_ = now_ms;
-    return true;
-  }
+  tini_always_inline bool stops(uint8_t byte, uint16_t now_ms) { return zeros_.stops(byte, now_ms); }
   bool take(uint8_t byte, uint16_t now_ms);
 
 #ifdef __AVR__
-  // Where `zeros_` and `last_ms_` lie: its interrupt does `stops` in assembly.
-  static constexpr size_t zeros_at() { return offsetof(Receiver, zeros_); }
-  static constexpr size_t last_ms_at() { return offsetof(Receiver, last_ms_); }
+  // Where the count of zeros lies: its interrupt does `stops` in assembly.
+  static constexpr size_t zeros_at() { return offsetof(Receiver, zeros_) + ZeroRun::zeros_at(); }
+  static constexpr size_t last_ms_at() { return offsetof(Receiver, zeros_) + ZeroRun::last_ms_at(); }
 #endif
 
   // Takes the byte that completes a stop.
-  void take_last_zero() { take(0, last_ms_); }
+  void take_last_zero() { take(0, zeros_.last_ms()); }
+
+  // The connection is lost: what comes next is text, and what has not ended never will.
+  void disconnect();
 
   // Whether a frame waits, the bytes of the first one and their number.
   bool has_frame() const { return packet_[looked_at()] == Packet::kFrame; }
@@ -93,11 +97,18 @@ class Receiver : private PacketPlaces<kWindow> {
   bool frame_may_stop() const { return may_stop_[looked_at()]; }
   void let_frame() { may_stop_[looked_at()] = false; }
 
-  // Whether a typed stop is in the unfinished frame: it stops when no byte has come for kHeldMs.
-  bool is_held() const { return *const_cast<const volatile Place*>(&place_) == Place::kHeld; }
+  // Whether a typed stop is in the unfinished frame, or Ctrl-C is all that has come of a line: it
+  // stops when no byte has come for kHeldMs.
+  bool is_held() const { return state() == State::kHeld || line() == Line::kControlC; }
 
   // Whether what has come of a line would be a typed stop if it ended here.
-  bool is_at_stop() const { return typed_.is_whole(); }
+  bool is_at_stop() const { return state() < State::kFrame && typed_.is_whole(); }
+
+  // What a silence of a second ends.
+  Unfinished unfinished() const {
+    if (state() == State::kLine) return Unfinished::kLine;
+    return state() >= State::kFrame && has_ends_ ? Unfinished::kLineEnds : Unfinished::kNothing;
+  }
 
   // Whether a typed stop waits among the text: whether it belongs to an open block is decided where
   // text is read, and nothing starts before.
@@ -114,28 +125,28 @@ class Receiver : private PacketPlaces<kWindow> {
   }
 
   // Whether text may wait.
-  bool has_text() const { return packet_[looked_at()] == Packet::kText || first_ != behind_; }
+  bool has_text() const { return packet_[looked_at()] == Packet::kText || !text_.is_empty(); }
 
-  // Takes the next byte of text. kLineEnd: the line is whole. kLineCut: it never ends, or bytes of
-  // it were lost. False: none waits.
+  // Takes the next byte of text, or one of those above. False: none waits.
   bool take_text(uint8_t* byte);
 
-  // Whether a line has found no room since the last call. A kLineCut tells where.
+  // Whether bytes of a line have been lost since the last call. A kLineCut tells where.
   bool take_lost() {
     const bool is_lost = is_lost_;
     is_lost_ = false;
     return is_lost;
   }
 
-  // Whether a second of silence leaves the open line or program of text as it is. The caller limits
-  // its time.
-  void keep_line(bool is_kept) { is_kept_ = is_kept; }
-
-  // Whether any byte has arrived since the last call.
+  // Whether any byte has arrived since the last call, and whether CR or LF has where text comes.
   bool has_heard() {
     if (!has_heard_) return false;
     has_heard_ = false;
     return true;
+  }
+  bool take_line_end() {
+    const bool has_ended = has_ended_;
+    has_ended_ = false;
+    return has_ended;
   }
 
   // Bytes of an unfinished packet may be read up to `length`. `has_begun` says whether another
@@ -159,40 +170,37 @@ class Receiver : private PacketPlaces<kWindow> {
   uint8_t dropped() const { return dropped_; }
 
  private:
-  enum class Place : uint8_t {
-    kBegin,      // the next byte begins a packet
-    kAfterText,  // the same, except for white space
-    kBlank,      // after white space; a frame may also begin
-    kCr,         // the same after CR, and after CR and LF
-    kCrLf,
-    kHead,       // after the first byte of a frame or a line of text
-    kLine,       // probably in a line of text, otherwise in a frame
-    kOther,      // probably in a line of text, otherwise in noise
-    kFrame,
-    kHeld,  // in a frame with a typed stop in it
-    kText,
-    kLost,  // in a line of text whose bytes found no room
-    kSkip,  // in noise, up to the next 0x00
+  enum class State : uint8_t {
+    kText,   // between two lines of text, or in one
+    kLost,   // in a line of text whose bytes have found no room
+    kBegin,  // behind a 0x00
+    kLine,   // in a frame, or in a line of text: all of it is printable
+    kFrame,  // in a frame
+    kHeld,   // in a frame with a typed stop in it
   };
 
-  tini_always_inline bool is_quiet(uint16_t now_ms) const {
-    return static_cast<uint16_t>(now_ms - last_ms_) >= kSilenceMs;
-  }
-  void zero();
-  void sort(uint8_t byte);
-  void cut();
-  void begin(uint8_t byte);
-  void go_on(uint8_t byte);
-  void skip();
-  void drop();
-  void add(uint8_t byte);
-  bool end(Packet packet);
-  void pass_on(uint8_t byte);
-  void end_text(uint8_t byte);
-  void lose();
-  bool is_marked(Place before);
+  // What has come of a line of text.
+  enum class Line : uint8_t { kNothing, kControlC, kSkipped, kSome };
 
-  bool is_frame() const { return place_ == Place::kFrame || place_ == Place::kHeld; }
+  // Read where the interrupt may write.
+  State state() const { return *const_cast<const volatile State*>(&state_); }
+  Line line() const { return *const_cast<const volatile Line*>(&line_); }
+
+  void fall_silent();
+  bool take_zero();
+  bool take_text_byte(uint8_t byte);
+  bool take_packet_byte(uint8_t byte);
+  bool take_frame_byte(uint8_t byte);
+  bool watch(uint8_t byte);
+  bool end_line(bool is_there);
+  bool stop_at_mark(bool is_there);
+  void begin_line();
+  void begin_packet();
+  void add(uint8_t byte);
+  bool end_packet(Packet packet);
+  void cut_line();
+  void lose_line();
+  void count_damaged() { damaged_ = static_cast<uint8_t>(damaged_ + 1); }
 
   // Whether no frame waits before the packet that is being filled.
   bool is_first() const { return filled() == looked_at(); }
@@ -202,29 +210,30 @@ class Receiver : private PacketPlaces<kWindow> {
     return kHasLargeFrames && bytes_[filled()][0] > kLargeFirst ? kSmallPacket : kPacketBytes;
   }
 
-  // The waiting packets. A line that may be a frame waits in `bytes_` like one, as the last.
+  // The waiting packets. A line behind a 0x00 waits in `bytes_` like a frame, as the last.
   volatile Packet packet_[kWindow];
   volatile bool has_begun_;
   volatile Cause due_stop_;
+  ZeroRun zeros_;
+  State state_;
+  Line line_;
+  bool is_plain_;     // all of the line is printable ASCII
+  bool is_cut_;       // a 0x00 has cut a line: the rest of it is lost
+  bool is_dropping_;  // the packet finds no place
+  bool has_ends_;     // CR or LF is in the frame
   TypedStop typed_;
+  KeySequence keys_;
   volatile bool is_lost_;
+  volatile bool has_heard_;
+  volatile bool has_ended_;
   volatile bool may_stop_[kWindow];
   volatile uint8_t marks_;
   uint8_t marks_taken_;
   volatile uint8_t damaged_;
   volatile uint8_t dropped_;
-  Place place_;
-  bool is_dropping_;
-  bool is_begun_;            // the line in `bytes_` goes on in `text_`
-  volatile bool is_kept_;
-  volatile bool has_heard_;
-  uint8_t taken_;            // bytes of the line in `bytes_`
-  volatile uint8_t first_;   // the text that waits, in a ring
-  volatile uint8_t behind_;
-  uint8_t text_[kTextBytes];
-  uint8_t zeros_;
+  uint8_t taken_;  // bytes of the line in `bytes_`
+  TextRing text_;
   volatile uint8_t length_[kWindow];
-  uint16_t last_ms_;
   uint8_t bytes_[kWindow][kPacketBytes];
 };
 

@@ -57,6 +57,9 @@ class Reader {
   bool has_setup() const { return has_setup_; }
   bool may_have_setup();
 
+  // Whether nothing is open: no bracket, no block.
+  bool may_end() const { return brackets_ == 0 && stack_ == names_; }
+
   // Whether all that was added to so many bytes of code is S.
   bool is_stop_behind(uint8_t before) const;
 

@@ -37,6 +37,10 @@ enum class Remark : uint8_t {
   kLevelEsp32 = 20,  // , text esp32
   kFailed = 21,  // It had a fault. Begin with SI|
   kMute = 22,  // Too many. Wait 5 s.
+  kPause = 23,  // Stopped: wait a second
+  kEnter = 24,  // End the line with Enter (\n)
+  kNoZero = 25,  // Lines end with Enter, not with 0
+  kStartedAgain = 26,  // Started again
 };
 
 }  // namespace tiniscript

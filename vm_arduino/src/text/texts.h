@@ -24,8 +24,8 @@ constexpr uint8_t text_of(Remark remark) {
 }
 constexpr uint8_t name_of_fault(uint8_t fault) {
   return static_cast<uint8_t>(
-      fault > 66 ? 62 : fault < 64 ? fault + 52
-                             : fault - 5);
+      fault > 66 ? 66 : fault < 64 ? fault + 56
+                             : fault - 1);
 }
 
 // A code is the end of a text, a pair, or a letter from kFirstLetter on, in ASCII.

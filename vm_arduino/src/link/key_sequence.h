@@ -1,0 +1,43 @@
+// Finds the bytes that a terminal sends for a cursor key: `ESC [ A`, `ESC O A`, `ESC [ 1 ; 5 C`.
+
+#ifndef TINISCRIPT_LINK_KEY_SEQUENCE_H_
+#define TINISCRIPT_LINK_KEY_SEQUENCE_H_
+
+#include <stdint.h>
+
+namespace tiniscript {
+
+class KeySequence {
+ public:
+  // Takes a byte that does not end a line. Returns whether it belongs to a key, or may.
+  bool takes(uint8_t byte) {
+    const Place before = place_;
+    place_ = kNone;
+    if (byte == 0x1b) {
+      place_ = kEscape;
+    } else if (before == kEscape) {
+      if (byte != '[' && byte != 'O') return false;
+      place_ = kInside;
+    } else if (before == kInside) {
+      if (byte < ' ' || byte > '~') return false;
+      if (byte < '@') place_ = kInside;
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  // Whether only the ESC has come: if no key follows, it is a control byte like others.
+  bool is_escape() const { return place_ == kEscape; }
+
+  void begin() { place_ = kNone; }
+
+ private:
+  enum Place : uint8_t { kNone, kEscape, kInside };
+
+  Place place_;
+};
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_LINK_KEY_SEQUENCE_H_

@@ -1,0 +1,49 @@
+// The text that waits for the main loop: an interrupt puts bytes in, the main loop takes them out.
+
+#ifndef TINISCRIPT_LINK_TEXT_RING_H_
+#define TINISCRIPT_LINK_TEXT_RING_H_
+
+#include <stdint.h>
+
+#include "sizes.h"
+
+namespace tiniscript {
+
+class TextRing {
+ public:
+  bool is_empty() const { return first_ == behind_; }
+
+  // Puts a byte. False: there is no room. The last place is for `put_last`.
+  bool put(uint8_t byte) { return put(byte, 2); }
+
+  // Puts a byte that tells of lost ones. Where another one has the last place it tells of these, too.
+  void put_last(uint8_t byte) { put(byte, 1); }
+
+  bool take(uint8_t* byte) {
+    const uint8_t first = first_;
+    if (first == behind_) return false;
+    *byte = bytes_[first];
+    asm volatile("" ::: "memory");  // barrier: the byte is read before its place is free
+    first_ = static_cast<uint8_t>(first + 1) % kTextBytes;
+    return true;
+  }
+
+ private:
+  bool put(uint8_t byte, uint8_t wanted_room) {
+    const uint8_t at = behind_;
+    const uint8_t behind = static_cast<uint8_t>(at + 1) % kTextBytes;
+    if (static_cast<uint8_t>(first_ - behind) % kTextBytes < wanted_room) return false;
+    bytes_[at] = byte;
+    asm volatile("" ::: "memory");  // barrier: `take` reads the byte after the index
+    behind_ = behind;
+    return true;
+  }
+
+  volatile uint8_t first_;
+  volatile uint8_t behind_;
+  uint8_t bytes_[kTextBytes];
+};
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_LINK_TEXT_RING_H_

@@ -1,0 +1,61 @@
+// Counts the zeros that stop a robot: four in a row, whatever is around them.
+//
+// A second of silence begins a new count. Knows the time of the last byte, and no packet.
+
+#ifndef TINISCRIPT_LINK_ZERO_RUN_H_
+#define TINISCRIPT_LINK_ZERO_RUN_H_
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "../vm/small.h"
+#include "messages.h"
+
+namespace tiniscript {
+
+class ZeroRun {
+ public:
+  // Whether this byte completes a run. Call it once for each byte, before `take`; an AVR's interrupt
+  // does it in assembly, at `zeros_at` and `last_ms_at`.
+  tini_always_inline bool stops(uint8_t byte, uint16_t now_ms) {
+    if (byte != 0) return false;
+    const uint8_t zeros = static_cast<uint8_t>(zeros_ + 1);
+    zeros_ = zeros;
+    if (zeros != kStopRun || is_quiet(now_ms)) return false;
+    last_ms_ = now_ms;
+    return true;
+  }
+
+  // Takes the same byte. Returns whether a second of silence was before it.
+  tini_always_inline bool take(uint8_t byte, uint16_t now_ms) {
+    const bool was_quiet = is_quiet(now_ms);
+    last_ms_ = now_ms;
+    if (was_quiet) zeros_ = 1;
+    if (byte != 0) zeros_ = 0;
+    return was_quiet;
+  }
+
+  // Whether the zero that was taken last has completed a run. Four more are another one.
+  tini_always_inline bool is_whole() {
+    if (zeros_ != kStopRun) return false;
+    zeros_ = 0;
+    return true;
+  }
+
+  uint16_t last_ms() const { return last_ms_; }
+
+  static constexpr size_t zeros_at() { return offsetof(ZeroRun, zeros_); }
+  static constexpr size_t last_ms_at() { return offsetof(ZeroRun, last_ms_); }
+
+ private:
+  tini_always_inline bool is_quiet(uint16_t now_ms) const {
+    return static_cast<uint16_t>(now_ms - last_ms_) >= kSilenceMs;
+  }
+
+  uint8_t zeros_;
+  uint16_t last_ms_;
+};
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_LINK_ZERO_RUN_H_
