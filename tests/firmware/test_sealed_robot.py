@@ -19,9 +19,10 @@ from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
+    FIRST_EVENT,
     KEY_TEACHER,
-    LAST_WITHOUT_RADIO,
     MESSAGES,
+    OF_RADIO,
     OWNERS,
     SEALS,
     STATE_FAULTED,
@@ -68,7 +69,7 @@ def test_what_is_not_sealed_has_no_authority() -> None:
     recorded(table, session, FOREVER)
     open_to_all = {"HELLO", "PING", "STATUS", "STOP", "CLAIM", "AUTHENTICATE", "IDENTIFY"}
     for message in MESSAGES:
-        if message.number > LAST_WITHOUT_RADIO or message.name in open_to_all:
+        if message.number >= FIRST_EVENT or message.name in {*open_to_all, *OF_RADIO}:
             continue
         payload = bytes(sum(field.low for field in message.request))
         frame = Frame(message.number, (session._seq + 1) & 0xFF, session._epoch, payload)

@@ -25,10 +25,10 @@ from tiniscript.link.messages import (
     MESSAGES,
     PAYLOAD_BYTES,
     REPLY,
+    RETIRED,
     SEALED,
     SMALL_FRAME,
     STATUSES,
-    TEXT_FROM,
     TEXT_LEVEL,
     TEXT_LEVELS,
     payload_bytes,
@@ -48,6 +48,17 @@ def test_numbers_are_used_once_and_leave_the_bits_alone() -> None:
     assert max(lower) < FIRST_STATUS
     for each in MESSAGES:
         assert each.acts == (FIRST_ACTING <= each.number < FIRST_EVENT)
+
+
+def test_no_request_is_or_ends_a_line() -> None:
+    """Its number is the second byte on the wire where the first may be one of a line.
+
+    A sealed request has a 0 as its fourth byte, so that its first one on the wire is 4 at most.
+    """
+    for each in MESSAGES:
+        assert each.number < 0x20 or each.number >= FIRST_EVENT
+        assert each.number not in b"\r\n" and each.number not in RETIRED
+    assert set(b"\r\n") == set(RETIRED)
 
 
 def test_features_share_no_bit_and_levels_have_the_names_of_their_table() -> None:
@@ -70,14 +81,21 @@ def test_every_payload_fits_a_frame() -> None:
 
 
 @each_row("length", range(PAYLOAD_BYTES - 2, payload_bytes(LARGE_FRAME) + 1))
-def test_no_frame_begins_like_text(length: int) -> None:
-    for seq in range(256):
-        frame = Frame(1, seq, 1, b"\1" * length)
-        wire = encoded(frame)
-        is_large = length > PAYLOAD_BYTES
-        assert len(wire) == length + HEAD_BYTES + CRC_BYTES + 2 + is_large
-        assert wire[0] <= (HEAD_BYTES + 1 if is_large else SMALL_FRAME + 1) < TEXT_FROM
-        assert 0 not in wire[:-1] and decoded(wire[:-1]) == frame
+def test_no_frame_can_be_a_line(length: int) -> None:
+    """Of a computer or a robot, sealed or not: the receiver looks at two bytes."""
+    for number in (each.number for each in MESSAGES if each.number < FIRST_EVENT):
+        for flags in ((False, False), (True, False), (False, True)):
+            payload = b"\0" * flags[1] + b"\1" * (length - flags[1])
+            frame = Frame(number, 77, 1, payload, *flags)
+            wire = encoded(frame)
+            is_large = length > PAYLOAD_BYTES
+            assert len(wire) == length + HEAD_BYTES + CRC_BYTES + 2 + (is_large and not flags[1])
+            assert wire[0] <= (HEAD_BYTES + 1 if is_large or flags[1] else SMALL_FRAME + 1)
+            assert 0 not in wire[:-1] and decoded(wire[:-1]) == frame
+            first, second = wire[:2]
+            assert not 0x20 <= first <= 0x7E or (
+                not 0x20 <= second <= 0x7E and second not in b"\r\n"
+            )
 
 
 @pytest.mark.parametrize("is_sealed", [False, True])

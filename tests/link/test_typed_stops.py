@@ -12,8 +12,6 @@ import pytest
 
 from tests.machines.damage import CppDamage, cpp_damage
 from tests.support.campaign import wanted
-from tiniscript.link.frames import begins_text
-from tiniscript.link.session import Session
 
 PREFIXES = 100_000  # in the tests
 FRAMES = 1_000_000
@@ -48,16 +46,6 @@ def test_few_damaged_frames_stop() -> None:
     """One with any bytes in it has to have a line S among them, and to be damaged."""
     frames, stops = false_stops(cpp_damage(), FRAMES // 5, SEED, is_damaged=True, is_odd=False)
     assert stops <= frames / 1000
-
-
-def test_a_request_that_would_be_text_gets_another_number(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Such a frame is rare: here all with some numbers are."""
-    asked = Session(0x40, 9600, 1)
-    monkeypatch.setattr("tiniscript.link.session.begins_text", lambda wire: wire[2] < 0x7F)
-    asked.hello()
-    frames = asked.poll(0).strip(b"\0")
-    assert frames[2] == 0x7F
-    assert begins_text(b"\r\nA") and not begins_text(b"\r\n\x7f") and not begins_text(b"\n\nA")
 
 
 if __name__ == "__main__":

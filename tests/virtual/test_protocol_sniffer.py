@@ -97,6 +97,7 @@ def test_all_frames_of_a_computer_are_for_a_robot() -> None:
     session = Session(7, 9600, 5)
     session.hello()
     firsts = [session.poll(0), bytes(8), bytes(2)]
+    assert firsts[0][0] == 0
     numbers = [each.number for each in BY_NAME.values() if each.number < 32]
     for _ in range(20_000):
         payload = chance.randbytes(chance.randrange(PAYLOAD_BYTES))
@@ -106,7 +107,7 @@ def test_all_frames_of_a_computer_are_for_a_robot() -> None:
         if number == BY_NAME["STATUS"].number:
             payload = b""
         data = encoded(Frame(number, chance.randrange(256), chance.randrange(256), payload))
-        firsts += [data, b"\0" + data]
+        firsts.append(b"\0" + data)
     for data in firsts:
         assert is_for_robot(data) is True, data.hex()
         assert False not in [is_for_robot(data[:k]) for k in range(4)], data.hex()
@@ -115,7 +116,8 @@ def test_all_frames_of_a_computer_are_for_a_robot() -> None:
 @each_row("text, after", [
     ("SI|F(2,80)\n", 5), ("W(1)\r\n", 2), ("POST = 5\n", 6), ("S // stop\n", 10), ("S\r", 2),
     ("PING|\n", 6),  # a method may be called so: at the end of the line it is none
-    ("// HTTP/1.1\n", 3), ("año = 5\n", 2), ("SHOW(1) \n", 5), ("S\0", 2),
+    ("// HTTP/1.1\n", 1), ("año = 5\n", 2), ("SHOW(1) \n", 5), ("S\0", 2), ("1\n", 2), (" S", 1),
+    ("\x1b[A", 3), ("\3\3\3", 3), ("\0F(1)\n", 3), ("\0S\n", 3), ("\ufeffS", 1), ("\t\tS", 3),
     ('SHOW("GET / HTTP/1.1")\n', 5),
 ])  # fmt: skip
 def test_a_line_of_text_is_for_a_robot_as_soon_as_it_can_be_told(text: str, after: int) -> None:

@@ -10,7 +10,8 @@ from tests.firmware.test_typed_stops import RUNS, SILENCE_MS
 from tests.support.virtual_robot import robot_in
 from tests.virtual.test_simulator import until, visit
 from tiniscript.link.messages import STOP_BYTES
-from tiniscript.virtual.protocol_sniffer import is_at_stop, is_for_robot
+from tiniscript.link.typed_stop import is_at_stop
+from tiniscript.virtual.protocol_sniffer import is_for_robot
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.simulator import Simulator
 

@@ -318,11 +318,11 @@ def tables(command: str) -> str:
     )
 
 
-def array(name: str, rows: Iterable[tuple[str, str]], some: int = 0, macro: str = TASKS) -> str:
-    """Return a table; the second of each row is a comment. The last `some` need a macro."""
+def array(name: str, rows: Iterable[tuple[str, str]], some: int = 0) -> str:
+    """Return a table; the second of each row is a comment. The last `some` need tasks."""
     lines = [f"    {row},  // {comment or '--'}\n" for row, comment in rows]
     if some:
-        lines[-some:] = [only_with(macro, "".join(lines[-some:]))]
+        lines[-some:] = [only_with(TASKS, "".join(lines[-some:]))]
     return f"const uint8_t {name} tini_progmem = {{\n{''.join(lines)}}};\n"
 
 

@@ -12,13 +12,15 @@ from tiniscript.base.languages import SOURCE, text
 from tiniscript.link import messages
 from tiniscript.link.messages import FIRST_EVENT, MESSAGES, SHARED_REPLIES, Field, Message
 from tools.generate.cpp_header import (
-    array,
     camel,
     constants,
     constants_of,
     cpp_file,
     enumeration,
+    only_with,
 )
+
+UNKNOWN_REQUEST = 255  # no payload is so long
 
 
 def header(command: str) -> str:
@@ -31,9 +33,9 @@ def header(command: str) -> str:
     parts = (
         constants(("kLinkMajor", messages.MAJOR), ("kLinkMinor", messages.MINOR))
         + constants_of(
-            messages, "SMALL_FRAME", "LARGE_FRAME", "LARGE_WINDOW", "LARGE_MINOR", "TEXT_FROM",
-            "HEAD_BYTES", "CRC_BYTES", "REPLY", "SEALED", "NAME_BYTES", "MOST_BALANCE",
-            "MOST_LEAST", "STOP_RUN", "SILENCE_MS", "HELD_MS", "DEAD_MAN_MS", "LISTEN_MS",
+            messages, "SMALL_FRAME", "LARGE_FRAME", "LARGE_WINDOW", "HEAD_BYTES",
+            "CRC_BYTES", "REPLY", "SEALED", "NAME_BYTES", "MOST_BALANCE", "MOST_LEAST",
+            "STOP_RUN", "SILENCE_MS", "ZERO_MS", "TEXT_MS", "HELD_MS", "DEAD_MAN_MS", "LISTEN_MS",
             "AGAIN_MS", "KEY_BYTES", "CHALLENGE_BYTES", "TAG_BYTES", "AUTHORITY_MS", "KEY_TRIES",
             "KEY_PAUSE_MS", "LONG_MS", "CLAIM_MS", "FORGET_MS", "NETWORK_BYTES",
             "WIFI_TEXT_BYTES", "PASSWORD_BYTES", "LEAST_PASSWORD", "CLASS_BYTES",
@@ -48,13 +50,11 @@ def header(command: str) -> str:
         enumeration("Message", named),
         "// Requests are the numbers from 1 up to this one; from kFirstActing on they act.\n"
         + constants_of(messages, "FIRST_ACTING")
-        + "#ifdef ARDUINO_ARCH_ESP32\n"
-        + constants(("kLastRequest", _requests()[-1].number)).rstrip("\n")
-        + "\n#else  // it has no radio of its own\n"
-        + constants(("kLastRequest", messages.LAST_WITHOUT_RADIO)).rstrip("\n")
-        + "\n#endif\n",
+        + constants(("kLastRequest", _requests()[-1].number)),
         "// How long the payload of each request may be, from the first one on: least and most.\n"
-        "extern const uint8_t kRequestBytes[][2] tini_progmem;\n",
+        "// What this robot does not know has kUnknownRequest as its least.\n"
+        + constants(("kUnknownRequest", UNKNOWN_REQUEST))
+        + "extern const uint8_t kRequestBytes[][2] tini_progmem;\n",
         "// Where each field of a request begins.\n" + constants(*_places()),
         "// What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.\n"
         + enumeration("Answer", statuses),
@@ -79,10 +79,21 @@ def header(command: str) -> str:
 
 def tables(command: str) -> str:
     """Return `messages.cpp`: the table that the header declares."""
-    rows = [(f"{{{_length_range(each.request)}}}", each.name) for each in _requests()]
-    of_radio = len(rows) - messages.LAST_WITHOUT_RADIO
-    table = array("kRequestBytes[][2]", rows, of_radio, "ARDUINO_ARCH_ESP32")
+    requests = {each.number: each for each in _requests()}
+    rows = [_length_row(requests.get(number)) for number in range(1, max(requests) + 1)]
+    table = f"const uint8_t kRequestBytes[][2] tini_progmem = {{\n{''.join(rows)}}};\n"
     return cpp_file(command, "link/messages.cpp", (), table, "sizes.h")
+
+
+def _length_row(request: Message | None) -> str:
+    """Return the row of a number; None: it is retired."""
+    unknown = "    {kUnknownRequest, 0},"
+    if request is None:
+        return f"{unknown}  // retired\n"
+    row = f"    {{{_length_range(request.request)}}},  // {request.name}\n"
+    if request.name in messages.OF_RADIO:
+        return only_with("ARDUINO_ARCH_ESP32", row, f"{unknown}\n")
+    return row
 
 
 def _length_range(fields: tuple[Field, ...]) -> str:
@@ -94,7 +105,8 @@ def _length_range(fields: tuple[Field, ...]) -> str:
 
 def _requests() -> list[messages.Message]:
     found = [each for each in MESSAGES if each.number < messages.FIRST_EVENT]
-    assert [each.number for each in found] == list(range(1, len(found) + 1))
+    numbers = sorted([*(each.number for each in found), *messages.RETIRED])
+    assert numbers == list(range(1, len(numbers) + 1))
     return found
 
 
@@ -123,6 +135,8 @@ def message_rows() -> Rows:
         )
         for each in MESSAGES
     ]
+    rows += [(number, "retired", "", "", "") for number in messages.RETIRED]
+    rows.sort(key=lambda row: row[0])
     head = ("number", "message", "from the computer", "from the robot, after the status", "meaning")
     return head, rows
 

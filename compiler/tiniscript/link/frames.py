@@ -50,11 +50,6 @@ def encoded(frame: Frame) -> bytes:
     return wire + b"\0"
 
 
-def begins_text(wire: bytes) -> bool:
-    """Return whether a receiver takes it for text: CR, LF and a printable byte."""
-    return wire[:2] == b"\r\n" and 0x20 <= wire[2] < 0x7F
-
-
 def decoded(wire: bytes) -> Frame | None:
     """Return the frame in a packet's bytes (without the 0x00), or None if it is damaged."""
     try:

@@ -67,17 +67,14 @@ WIFI_STATES = (
 )
 
 
-MAJOR = 1  # if it differs, robot and computer understand only each other's HELLO
-MINOR = 2  # grows when messages, statuses or features are added
+MAJOR = 2  # if it differs, robot and computer understand only each other's HELLO
+MINOR = 0  # grows when messages, statuses or features are added
 
-# Bytes of a frame before COBS. A small one is so short that its first byte on the wire is 0x40 at
-# most; a large one has a 0 behind its head, so that this byte is 4 at most. Any robot takes small
-# ones; HELLO says whether it takes large ones, and how many requests it holds before it has
-# answered the first.
+# Bytes of a frame before COBS. A large one has a 0 behind its head, so that its first byte on the
+# wire is 4 at most. Any robot takes small ones; HELLO says whether it takes large ones, and how many
+# requests it holds before it has answered the first.
 SMALL_FRAME, LARGE_FRAME = 63, 250
 LARGE_WINDOW = 4
-LARGE_MINOR = 2  # a computer of an older version takes no large frame
-TEXT_FROM = 0x41  # a packet whose first byte is this or more is no frame
 HEAD_BYTES = 3  # type, sequence number, epoch
 CRC_BYTES = 4
 STATUS_BYTES = 1  # before the fields of a reply
@@ -103,7 +100,9 @@ SEALED_PAYLOAD_BYTES = payload_bytes(SMALL_FRAME, is_sealed=True)
 
 STOP_BYTES = 8  # zeros that a computer sends to stop a robot
 STOP_RUN = 4  # zeros in a row that stop it
-SILENCE_MS = 1000  # after this silence the next byte begins a packet
+SILENCE_MS = 1000  # after this silence everything is text, until a 0x00
+ZERO_MS = 400  # after this silence a sender of frames sends a 0x00 first
+TEXT_MS = 1100  # text waits so long behind a frame
 HELD_MS = 100  # after this silence a typed stop acts in what began as a frame
 DEAD_MAN_MS = 1000  # dead-man timer: without a valid frame, an attached program ends
 LISTEN_MS = 3000  # without a valid frame, a robot sends no more events
@@ -243,12 +242,9 @@ MESSAGES = (
     _message(8, "LIVE", True, "mode:u8 code:rest=0..", _RECEIPT,
              "Runs code once. The program that the robot holds does not change."),
     _message(9, "PROGRAM", True, "mode:u8 code:rest=0..", _RECEIPT, "A whole program in one frame."),
-    _message(10, "BEGIN", True, "mode:u8 isa_major:u8 isa_minor:u8 start:u8 header_length:u8 devices:u16 code_length:u16",
-             "next:u16", "Begins a longer program: what its image's header says before its checksum."),
     _message(11, "DATA", True, "offset:u16 bytes:rest=1..", "next:u16",
              "What lies behind the checksum, from `offset` on. The robot takes only what begins at `next`."),
     _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "The program is whole: its image's checksum."),
-    _message(13, "ABORT", True, "", "", "Drops the program that was begun."),
     _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8. OK once it is kept; until then SAVING or LOW_SUPPLY: ask again."),
     _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES + PACE_BYTES}", f"wheels:u8 balance:i8 least:u8 pace:rest=0..{PACE_BYTES}",
              "Sets the motors' trim, bytes like those of the reply, with `pace` or without; without any only reports it. OK as for NAME."),
@@ -262,6 +258,9 @@ MESSAGES = (
     _message(20, "TEXT", True, "is_allowed:u8", "features:u16", "Lets lines of text drive a robot with an owner, or not, until power-off."),
     _message(21, "WIFI", True, f"step:u8 text:rest=0..{WIFI_TEXT_BYTES}", f"mode:u8 state:u8 address:u32 network:rest=0..{NETWORK_BYTES}",
              "Sets, forgets or reports the robot's WiFi: `step` of WIFI_STEPS. Only sealed. OK as for NAME."),
+    _message(22, "BEGIN", True, "mode:u8 isa_major:u8 isa_minor:u8 start:u8 header_length:u8 devices:u16 code_length:u16",
+             "next:u16", "Begins a longer program: what its image's header says before its checksum."),
+    _message(23, "ABORT", True, "", "", "Drops the program that was begun."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", "value:i32 is_yes_no:u8", "A value that a program shows."),
     _message(33, "FAULT", False, "", "run:u8 fault:u8 at:u16 program:u32",
@@ -270,7 +269,8 @@ MESSAGES = (
     _message(35, "DONE", False, "", "run:u8", "The program has ended."),
 )
 FIRST_ACTING = 6
-LAST_WITHOUT_RADIO = 20  # requests after this one are known to robots with WiFi alone
+RETIRED = (10, 13)  # a request that is LF or CR on the wire could be the end of a line
+OF_RADIO = ("WIFI",)  # requests that only robots with WiFi know
 FIRST_EVENT = 32
 # Replies with the same fields share a type: its name, and its fields.
 SHARED_REPLIES = {

@@ -65,7 +65,7 @@ class FetchReply(NamedTuple):
 
 
 class EmptyReply(NamedTuple):
-    """What is in the reply to STOP, CLEAR, ABORT, NAME, CLAIM, IDENTIFY."""
+    """What is in the reply to STOP, CLEAR, NAME, CLAIM, IDENTIFY, ABORT."""
 
 
 class ReceiptReply(NamedTuple):
@@ -78,7 +78,7 @@ class ReceiptReply(NamedTuple):
 
 
 class NextReply(NamedTuple):
-    """What is in the reply to BEGIN, DATA."""
+    """What is in the reply to DATA, BEGIN."""
 
     next: int
 
@@ -169,10 +169,8 @@ REPLIES: dict[str, type[SentReply]] = {
     "START": ReceiptReply,
     "LIVE": ReceiptReply,
     "PROGRAM": ReceiptReply,
-    "BEGIN": NextReply,
     "DATA": NextReply,
     "COMMIT": ReceiptReply,
-    "ABORT": EmptyReply,
     "NAME": EmptyReply,
     "TRIM": TrimReply,
     "CLAIM": EmptyReply,
@@ -181,4 +179,6 @@ REPLIES: dict[str, type[SentReply]] = {
     "UNDO": ReceiptReply,
     "TEXT": TextReply,
     "WIFI": WifiReply,
+    "BEGIN": NextReply,
+    "ABORT": EmptyReply,
 }

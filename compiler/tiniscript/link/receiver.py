@@ -1,46 +1,36 @@
 """Splits bytes into packets: frames, lines of text, and the run of zeros that stops a robot.
 
+Everything is text until a 0x00. After a 0x00 everything is frames, until a second passes without a
+byte. A frame ends with 0x00. In frames, CR or LF behind one or more bytes that since the last 0x00
+are all 0x20 to 0x7e ends a line of text, and text goes on.
+
 Knows where a packet begins and ends; `frames` checks whether a frame is undamaged. Holds one packet
-until it is taken, or several frames; packets that find no place are dropped, a stop is not.
-The C++ version is `vm_arduino/src/link/receiver.cpp`.
+until it is taken, or several frames; packets that find no place are dropped, a stop is not. The C++
+version is `vm_arduino/src/link/receiver.cpp`.
 """
 
 from __future__ import annotations
 
 from collections import deque
+from enum import Enum, auto
 from typing import NamedTuple
 
-from tiniscript.link.messages import (
-    HEAD_BYTES,
-    LARGE_FRAME,
-    SILENCE_MS,
-    SMALL_FRAME,
-    STOP_RUN,
-    TEXT_FROM,
-)
+from tiniscript.link.messages import HEAD_BYTES, LARGE_FRAME, SILENCE_MS, SMALL_FRAME, STOP_RUN
 
 # A frame and the first byte of its COBS. A packet that begins with a byte of more than LARGE_FIRST
 # is no large frame.
 SMALL_PACKET, LARGE_PACKET = SMALL_FRAME + 1, LARGE_FRAME + 1
 LARGE_FIRST = HEAD_BYTES + 1
-LONGEST = 255  # a longer text counts as this long
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+LINE_ENDS = b"\r\n"
 
-# places in the stream
-_BEGIN = "begin"  # the next byte begins a packet
-_AFTER_TEXT = "after text"  # the same, but white space is skipped
-_BLANK = "blank"  # after white space, which may also be the first byte of a frame
-_CR, _CR_LF = "cr", "cr lf"  # the same after CR, and after CR and LF
-_HEAD = "head"  # after the first byte of a frame or of a line of text
-_LINE = "line"  # probably in a line of text; otherwise in a frame
-_FRAME = "frame"
-_OTHER = "other"  # probably in a line of text; otherwise in noise
-_TEXT = "text"
-_SKIP = "skip"  # in noise, up to the next 0x00
 
-_BLANKS = (_BLANK, _CR, _CR_LF)
-_MAYBE_FRAME = (*_BLANKS, _HEAD, _LINE, _FRAME)
-_LETTERS = b"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-_DELETE = 0x7F
+class State(Enum):
+    TEXT = auto()  # in text: between lines or in one
+    LOST = auto()  # in a line of text that found no place, or that a 0x00 has cut
+    BEGIN = auto()  # behind a 0x00: nothing has come yet
+    LINE = auto()  # behind a 0x00: all bytes so far may be a line of text or a frame
+    FRAME = auto()  # in a frame
 
 
 class Packet(NamedTuple):
@@ -55,16 +45,18 @@ class Receiver:
     def __init__(self, most_bytes: int = LARGE_PACKET, window: int = 1) -> None:
         """A frame has `most_bytes` on the wire, without its 0x00; `window` of them may wait."""
         self.packet: Packet | None = None
-        self.damaged = 0  # packets that were cut, too long, or invalid
+        self.damaged = 0  # packets that were cut, too long, or ended by silence
         self.dropped = 0  # packets that arrived while one was waiting
-        self._place = _BEGIN
-        self._data = bytearray()
-        self._length = 0
-        self._is_dropping = False
+        self._state = State.TEXT
+        self._zeros = ZeroRun()
+        self._key = CursorKey()
+        self._data = bytearray()  # of the open packet, as many as fit
+        self._length = 0  # of the open packet; 0 between two
+        self._is_dropping = False  # the open packet has found no place
+        self._is_cut = False  # a 0x00 has cut a line, and its rest may come
         self._most_bytes = most_bytes
         self._window = window
         self._behind: deque[Packet] = deque()  # frames behind the packet that waits
-        self._zeros = 0
         self._last_ms = 0
 
     def take(self) -> Packet | None:
@@ -75,110 +67,101 @@ class Receiver:
     def put(self, byte: int, now_ms: int) -> bool:
         """Take a byte; return whether it completes a run of four zeros, which is a stop.
 
-        Eight zeros are two stops. A byte with a framing error counts as 0.
+        A byte with a framing error counts as 0.
         """
-        is_quiet = (now_ms - self._last_ms) % 0x10000 >= SILENCE_MS
+        if now_ms - self._last_ms >= SILENCE_MS:
+            self._end_silence()
         self._last_ms = now_ms
-        if is_quiet:
-            self._cut()
-            self._zeros = 0
         if byte == 0:
-            return self._zero()
-        self._zeros = 0
-        if self._place in _BLANKS:
-            # the second byte of a request is its type, and no frame of a robot begins like this
-            if _is_printable(byte) and byte < 0x80:
-                self._place = _AFTER_TEXT
-            elif self._place == _CR and byte == 0x0A:
-                self._place = _CR_LF
-                self._add(byte)
-                return False
-            else:
-                self._place = _FRAME
-                self.dropped += self._is_dropping
-        if self._place == _AFTER_TEXT and byte in b" \t\r\n":
-            return False
-        if self._place in (_BEGIN, _AFTER_TEXT):
-            self._begin(byte)
+            self._put_zero()
+        elif self._state in (State.TEXT, State.LOST):
+            self._put_text(byte)
         else:
-            self._go_on(byte)
-        return False
+            self._put_framed(byte)
+        return self._zeros.put(byte)
+
+    def _end_silence(self) -> None:
+        self._zeros.begin()
+        self._key.begin()
+        if self._state not in (State.TEXT, State.LOST):
+            self._lose()
+            self._state, self._is_cut = State.TEXT, False
+
+    def _put_zero(self) -> None:
+        if self._state is State.FRAME:
+            self._end_frame()
+            self._is_cut = False
+        elif self._length:  # a line, which no 0x00 ends
+            self._lose()
+            self._is_cut = True
+        self._state = State.BEGIN
+
+    def _put_text(self, byte: int) -> None:
+        if byte in LINE_ENDS:
+            self._end_line()
+        elif self._length:
+            self._add(byte)
+        elif not self._is_skipped(byte):
+            self._begin(byte)
+            self._state = State.LOST if self._is_dropping else State.TEXT
+
+    def _put_framed(self, byte: int) -> None:
+        if self._state is State.BEGIN:
+            self._begin(byte)
+            self._state = State.LINE if _is_printable(byte) else State.FRAME
+        elif self._state is State.FRAME:
+            self._add(byte)
+        elif byte in LINE_ENDS:
+            self._end_line()
+        else:
+            self._add(byte)
+            if not _is_printable(byte):
+                self._state = State.FRAME
+            elif self._length > self._room():  # no frame is so long
+                is_lost = self._is_dropping or self._is_cut
+                self._state = State.LOST if is_lost else State.TEXT
+
+    def _is_skipped(self, byte: int) -> bool:
+        """Return whether a byte between two lines belongs to none."""
+        is_of_key = self._key.put(byte)
+        return is_of_key or byte <= 0x20 or byte == 0x7F or byte in BYTE_ORDER_MARK
 
     def _begin(self, byte: int) -> None:
-        """Classify a packet by its first byte, as far as possible."""
         self._is_dropping = not self._has_place()
+        self.dropped += self._is_dropping
         self._data.clear()
-        self._length = 0
-        if byte == _DELETE:
-            self._skip()
-            return
-        if byte in _LETTERS:
-            self._place = _TEXT
-        elif byte >= TEXT_FROM:
-            self._place = _OTHER
-        elif byte in b" \t\r\n":
-            self._place = _CR if byte == 0x0D else _BLANK
-        else:
-            self._place = _HEAD if byte > 0x20 else _FRAME
-        self.dropped += self._place not in _BLANKS and self._is_dropping
         self._add(byte)
-
-    def _go_on(self, byte: int) -> None:
-        """Take a byte of a packet that has begun."""
-        is_text = _is_printable(byte) or byte == 0x09
-        if self._place == _SKIP:
-            return
-        if self._place == _HEAD:  # the type of a request is smaller
-            self._place = _LINE if _is_printable(byte) else _FRAME
-        elif self._place != _FRAME and byte in b"\r\n":
-            self._end(is_text=True)
-            self._place = _AFTER_TEXT
-            return
-        elif self._place == _LINE and not is_text:
-            self._place = _FRAME
-        elif self._place == _OTHER and not is_text:
-            self._skip()
-            return
-        if self._length == self._room() and not self._is_dropping:
-            if self._place == _FRAME:
-                self._skip()
-                return
-            self._place = _TEXT
-        self._add(byte)
-
-    def _skip(self) -> None:
-        self.damaged += 1
-        self._place = _SKIP
 
     def _add(self, byte: int) -> None:
-        if len(self._data) < self._room():
+        if not self._data or len(self._data) < self._room():
             self._data.append(byte)
-        self._length = min(self._length + 1, LONGEST)
+        self._length += 1
 
-    def _zero(self) -> bool:
-        if self._place in _MAYBE_FRAME:
-            self._end(is_text=False)
-            self._place = _BEGIN
-        else:
-            self._cut()
-        self._zeros = (self._zeros + 1) % STOP_RUN  # the next four are another stop
-        return self._zeros == 0
+    def _end_line(self) -> None:
+        is_lost = self._is_dropping or self._is_cut
+        if self._length and not is_lost:
+            if self.packet is None:
+                self.packet = Packet(True, bytes(self._data), self._length)
+            else:  # it would come before its turn
+                self.dropped += 1
+        self._state, self._length, self._is_cut = State.TEXT, 0, False
+        self._key.begin()
 
-    def _cut(self) -> None:
-        """Drop the open packet, which has not ended, and begin a new one."""
-        self.damaged += self._place in (*_MAYBE_FRAME, _OTHER, _TEXT)
-        self._place = _BEGIN
+    def _end_frame(self) -> None:
+        if self._length > self._room():
+            self._lose()
+        elif not self._is_dropping:
+            packet = Packet(False, bytes(self._data), self._length)
+            if self.packet is None:
+                self.packet = packet
+            else:
+                self._behind.append(packet)
+        self._length = 0
 
-    def _end(self, is_text: bool) -> None:
-        if self._is_dropping:
-            return
-        packet = Packet(is_text, bytes(self._data), self._length)
-        if self.packet is None:
-            self.packet = packet
-        elif is_text:  # it would come before its turn
-            self.dropped += 1
-        else:
-            self._behind.append(packet)
+    def _lose(self) -> None:
+        """End the open packet, if there is one, before its end."""
+        self.damaged += self._length > 0 and not self._is_dropping
+        self._length = 0
 
     def _has_place(self) -> bool:
         """Return whether a packet that begins now may wait: frames do, and nothing behind text."""
@@ -187,9 +170,46 @@ class Receiver:
         return not self.packet.is_text and len(self._behind) < self._window - 1
 
     def _room(self) -> int:
-        return self._most_bytes if self._data[:1] <= bytes([LARGE_FIRST]) else SMALL_PACKET
+        return self._most_bytes if self._data[0] <= LARGE_FIRST else SMALL_PACKET
+
+
+class ZeroRun:
+    """Counts zeros in a row: four are a stop, eight are two."""
+
+    def __init__(self) -> None:
+        self._count = 0
+
+    def begin(self) -> None:
+        self._count = 0
+
+    def put(self, byte: int) -> bool:
+        """Take a byte; return whether it completes a run."""
+        self._count = (self._count + 1) % STOP_RUN if byte == 0 else 0
+        return byte == 0 and self._count == 0
+
+
+class CursorKey:
+    """Finds what a terminal sends for a cursor key: ESC [ parameters letter, or ESC O letter."""
+
+    _ESCAPE = 0x1B
+
+    def __init__(self) -> None:
+        self._before = 0  # ESC, [ or O of a sequence that goes on, else 0
+
+    def begin(self) -> None:
+        self._before = 0
+
+    def put(self, byte: int) -> bool:
+        """Take a byte; return whether it belongs to a sequence."""
+        before, self._before = self._before, 0
+        if byte == self._ESCAPE or (before == self._ESCAPE and byte in b"[O"):
+            self._before = byte
+            return True
+        if before == ord("[") and 0x30 <= byte <= 0x3F:
+            self._before = before
+            return True
+        return before in b"[O" and 0x40 <= byte <= 0x7E
 
 
 def _is_printable(byte: int) -> bool:
-    """Return whether a byte may be in a line of text; bytes beyond ASCII are UTF-8."""
-    return byte >= 0x20 and byte != _DELETE
+    return 0x20 <= byte <= 0x7E

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple, TypeVar
 from tiniscript.bytecode.image import isa_of
 from tiniscript.link.authority import NOT_OWNER, KeyRing
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest, Requester
-from tiniscript.link.frames import Frame, begins_text, decoded, encoded
+from tiniscript.link.frames import Frame, decoded
 from tiniscript.link.handshake import EXCHANGES, NEED_NO_HELLO, Handshake, ping, status
 from tiniscript.link.messages import (
     BY_NAME,
@@ -60,6 +60,7 @@ from tiniscript.link.receiver import Receiver
 from tiniscript.link.requests import OK, DeviceInfo, Exchange, Reply, refused, reply_of
 from tiniscript.link.robot_state import RobotState
 from tiniscript.link.sealing import SEALED_ALONE, UNSEALED, Sealing
+from tiniscript.link.sender import Sender
 from tiniscript.link.transmission import TRIES, StopSequence, Transmission, Window
 
 HEARTBEAT_MS = 200  # between two frames while a program runs
@@ -115,6 +116,7 @@ class Session(Requester):
         self.sends_heartbeat: Callable[[], bool] = lambda: True
         self.damaged = 0  # count of damaged frames
         self._receiver = Receiver()
+        self._sender = Sender()
         self._seq = nonce & 0xFF
         self._epoch = 0
         self._baud = baud
@@ -202,7 +204,7 @@ class Session(Requester):
         self._sent_ms = now_ms
         if seal is not None:
             self._sealing.sealed_ms = now_ms
-        return self._transmission.sent(now_ms)
+        return self._transmission.sent(now_ms, self._sender)
 
     def wakes_at(self) -> int | None:
         """Return when to call `poll` next if nothing arrives, or None."""
@@ -264,8 +266,6 @@ class Session(Requester):
             return
         payload = written(message.request, request.values)
         frame = Frame(message.number, number(), self._epoch, payload)
-        while begins_text(encoded(frame)):
-            frame = frame._replace(seq=number())
         largest = self.robot.values.largest if self.robot else 0
         self._transmission = Transmission(self._baud, largest)
         self._transmission.begin(frame, now_ms + request.pause_ms, seal)
@@ -319,7 +319,7 @@ class Session(Requester):
             self._close()
             return b""
         self._sent_ms = now_ms
-        return self._stop.sent(now_ms)
+        return self._stop.sent(now_ms, self._sender)
 
     # -- what arrives -----------------------------------------------------------------------------
 

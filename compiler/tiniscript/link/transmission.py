@@ -21,6 +21,7 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.requests import OFFSET_BYTES, Pieces
 from tiniscript.link.seal import Seal
+from tiniscript.link.sender import Sender
 
 ROUND_MS = 120  # round trip through two radios and a robot, without the bytes
 RETRY_MS = 80  # added for each try,
@@ -66,17 +67,16 @@ class Transmission:
         ours = self.frame
         return ours is not None and (frame.number, frame.seq) == (ours.number, ours.seq)
 
-    def sent(self, now_ms: int) -> bytes:
+    def sent(self, now_ms: int, sender: Sender) -> bytes:
         """Return the bytes to send now."""
         assert self.frame is not None
         wire = encoded(self.frame if self.seal is None else self.seal.closed(self.frame))
         wait_ms = ROUND_MS + RETRY_MS * min(self.tries, RETRY_STEPS)
         wait_ms += -(-(len(wire) + self._largest + 2) * 10_000 // self._baud)
-        # a 0x00 before a retry and before HELLO ends any partial packet in the robot's receiver
-        is_first = self.tries == 0 and self.frame.number != BY_NAME["HELLO"].number
+        is_repeated = self.tries > 0 or self.frame.number == BY_NAME["HELLO"].number
         self.tries += 1
         self.due_ms = now_ms + wait_ms
-        return wire if is_first else b"\0" + wire
+        return sender.frames(wire, now_ms, is_repeated)
 
 
 AHEAD_MS = 200  # a stop waits behind so much of the line's time at most
@@ -126,13 +126,11 @@ class Window(Transmission):
         is_data = frame.number == _DATA.number and not self._is_over
         return is_data and any(piece.seq == frame.seq for piece in self._under_way)
 
-    def sent(self, now_ms: int) -> bytes:
+    def sent(self, now_ms: int, sender: Sender) -> bytes:
         """Return the frames that may be sent now."""
         if self._under_way and now_ms >= self._lost_ms:
             self._go_back()
-        # a 0x00 before a retry ends any partial packet in the robot's receiver
-        wire = b"\0" if self._is_again else b""
-        self._is_again = False
+        wire = b""
         while self._sent < len(self._data) and len(self._under_way) < self._window:
             if self.seal is not None and self.seal.is_spent:
                 break
@@ -141,7 +139,10 @@ class Window(Transmission):
             self._sent = min(self._sent + self._most, len(self._data))
             self._under_way.append(SentPiece(frame.seq, self._sent))
         self._wait(now_ms)
-        return wire
+        if not wire:
+            return b""
+        is_again, self._is_again = self._is_again, False
+        return sender.frames(wire, now_ms, is_again)
 
     def take(self, frame: Frame, next_offset: int | None, now_ms: int) -> bool:
         """Take the reply to a frame that is under way; return whether all has arrived.
@@ -205,7 +206,7 @@ class StopSequence:
     def is_over(self, now_ms: int) -> bool:
         return now_ms >= self._began_ms + CONFIRM_MS
 
-    def sent(self, now_ms: int) -> bytes:
+    def sent(self, now_ms: int, sender: Sender) -> bytes:
         """Return the bytes to send now."""
         self.due_ms = now_ms + STOP_MS
-        return bytes(STOP_BYTES)
+        return sender.zeros(bytes(STOP_BYTES), now_ms)

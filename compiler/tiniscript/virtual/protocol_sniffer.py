@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.link.messages import TEXT_FROM
-
 LONGEST = 2048  # bytes of a first line that is still open
 
 _TOKEN = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"  # of RFC 9110: any method
@@ -23,54 +21,36 @@ _KNOWN = re.compile(
     re.IGNORECASE,
 )
 _LINE_END = re.compile(rb"[\r\n\0]")
-# a typed stop, if its line ended here: `link/typed_stop.h` says where one begins
-_STOP = re.compile(
-    rb"(?:\A|[\0-\x08\n-\x1f\x7f](?:(?<=\x1b)[\[O][0-?]*[@-\x7f])?)[ \t;]*S(?:TOP)?[ \t;]*\Z",
-    re.IGNORECASE,
-)
-_EMPTY_LINES = re.compile(rb"[\r\n]+(?=[A-Za-z]|\Z)")  # servers of HTTP skip them
+_LINE = re.compile(rb"[ -~]{2}")  # how a line begins, and no frame
 
 
 def is_for_robot(data: bytes) -> bool | None:
     """Return whether bytes that begin like this may reach a robot; None: not known yet.
 
-    Waiting costs nothing: a robot acts only when a frame or a line of text has ended, and
-    `is_at_stop` finds the typed stop that silence ends.
+    A client of frames begins with a 0x00. Waiting costs nothing: a robot acts only when a frame or
+    a line of text has ended, and `is_at_stop` finds the typed stop that silence ends.
     """
-    rest = data.lstrip(b"\0")
-    if len(data) - len(rest) > 1:
+    if data[:2] == b"\0\0":
         return True  # the stop sequence: zeros alone do nothing else
-    empty = _EMPTY_LINES.match(rest)
-    rest = rest[empty.end() :] if empty else rest
-    if not rest:
-        return None
-    return _is_frame(rest) if rest[0] < TEXT_FROM else _is_text(rest)
-
-
-def is_at_stop(data: bytes) -> bool:
-    """Return whether bytes end with a line that is a typed stop if nothing more comes."""
-    return _STOP.search(data) is not None
-
-
-def _is_frame(data: bytes) -> bool | None:
-    """A frame has eight bytes and more without a zero, and a type that is not 0: no 0x01 first."""
-    if data[0] == 1 or 0 in data[:3]:
-        return False  # STUN, bare or framed
-    if len(data) < 3:
-        return None
-    return data[:2] != b"\x16\x03"  # TLS; a STATUS that is so long does not exist
+    if data[:1] < b" ":
+        if 0 in data[1:3] or data[:2] in (b"\0\1", b"\x16\x03"):
+            return False  # STUN, whose length may come first, and TLS
+        if len(data) < 3:
+            return None
+    is_framed = data[0] == 0
+    if is_framed and not _LINE.match(data, 1):
+        return True
+    return _is_text(data[is_framed:])
 
 
 def _is_text(data: bytes) -> bool | None:
-    line = _LINE_END.split(data, 1)[0]
+    line, *behind = _LINE_END.split(data.lstrip(b"\r\n"), 1)  # servers of HTTP skip empty lines
     if _REQUEST.match(line) or _KNOWN.match(line):
         return False
     method = _METHOD.match(line)
-    if method is None or (method.end() < len(line) and line[method.end()] not in b" \t"):
+    if line and (method is None or line[method.end() : method.end() + 1] not in b" \t"):
         return True  # `F(`: no method
-    target = line[method.end() :].lstrip(b" \t")
-    if target[:1] == b"=":
-        return True  # `X = 5`: no target
-    if len(line) < len(data):
-        return True  # the line has ended, and is no request
+    target = line[method.end() :].lstrip(b" \t") if method else b""
+    if target[:1] == b"=" or behind:
+        return True  # `X = 5`: no target; and a line that has ended, and is no request
     return None if len(data) <= LONGEST else False

@@ -19,8 +19,9 @@ from time import monotonic, sleep
 
 from tiniscript.link.messages import SILENCE_MS
 from tiniscript.link.sharing.peers import is_of_this_user
+from tiniscript.link.typed_stop import is_at_stop
 from tiniscript.virtual.directory import LOCAL
-from tiniscript.virtual.protocol_sniffer import is_at_stop, is_for_robot
+from tiniscript.virtual.protocol_sniffer import is_for_robot
 
 READ_BYTES = 1024
 KEPT_BYTES = 65_536  # buffer for a client that does not read; more is lost, as on a serial line

@@ -19,7 +19,14 @@ constexpr uint8_t kMostMistakes = 16;
 constexpr uint16_t kPauseMs = 5000;
 // Of silence behind bytes that no line end follows: it is told, or they are a line where none ends.
 constexpr uint16_t kTailMs = 2000;
-constexpr uint16_t kWholeMs = 3000;
+constexpr uint16_t kUnendedMs = 3000;
+constexpr uint16_t kBriefMs = 150;  // of silence before a line counts again
+
+// The last two letters of SI, SB and PING, in capitals.
+constexpr uint8_t kCapital = 0xdf;
+constexpr uint16_t kSi = 'S' << 8 | 'I';
+constexpr uint16_t kSb = 'S' << 8 | 'B';
+constexpr uint16_t kNg = 'N' << 8 | 'G';
 
 // What radio modules say, and words that ask for all others; 0x80 in the last letter of each.
 const uint8_t kSpoken[] tini_progmem = {'O', 'K' | 0x80, 'A', 'T' | 0x80,
@@ -33,30 +40,27 @@ bool is_latched() { return port_status().state >= State::kStopped; }
 
 }  // namespace
 
-void Console::pass(uint16_t passed_ms, bool has_heard) {
+void Console::pass(uint16_t passed_ms, uint16_t silence_left_ms) {
   is_due_ = true;
-  if (wait_ms_ != 0) {
-    wait_ms_ = passed_ms < wait_ms_ ? static_cast<uint16_t>(wait_ms_ - passed_ms) : 0;
-    if (has_heard && wait_ms_ < least_wait_ms_) wait_ms_ = least_wait_ms_;
+  for (uint16_t& left_ms : left_ms_) {
+    left_ms = passed_ms < left_ms ? static_cast<uint16_t>(left_ms - passed_ms) : 0;
   }
-  ends_ms_ = passed_ms < ends_ms_ ? static_cast<uint16_t>(ends_ms_ - passed_ms) : 0;
-  quiet_ms_ = passed_ms < kPatienceMs - quiet_ms_ ? static_cast<uint16_t>(quiet_ms_ + passed_ms)
-                                                  : kPatienceMs;
+  if (left_ms_[kWait] == 0 && silence_left_ms <= (is_brief_ ? kSilenceMs - kBriefMs : 0)) {
+    is_discarding_ = false;
+  }
 }
 
 void Console::discard() {
-  wait_ms_ = least_wait_ms_ = kSilenceMs;
-  has_told_ = false;
-  begin_silence();
-  is_open_ = false;
+  left_ms_[kWait] = kSilenceMs;
+  is_discarding_ = true;
+  is_brief_ = has_told_ = is_open_ = false;
   refused_ = has_tail_ ? Remark::kPause : Remark::kNone;  // the rest of a line is none
   remark_ = Remark::kNone;
   help_ = nullptr;
-  starts_.begin(false);
 }
 
 void Console::begin_silence() {
-  quiet_ms_ = 0;
+  left_ms_[kPatience] = kPatienceMs;
   is_silent_ = false;
 }
 
@@ -74,14 +78,16 @@ bool Console::drop() {
 tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
   uint8_t byte;
   is_due_ = false;
-  if (receiver->take_line_end()) ends_ms_ = kPatienceMs;
+  if (receiver->take_line_end()) left_ms_[kEnds] = kPatienceMs;
   for (uint8_t left = kBytesATurn; left != 0; left--) {
     // A stop does not wait until the answers before it are said.
     has_mark_ = receiver->has_mark();
     if (has_answer() && !has_mark_) return Act::kNone;
-    if (!receiver->take_text(&byte)) break;
-    has_mark_ = receiver->has_mark();
-    if (is_silent_ && byte != kLineEnd) end_silence();
+    if (!receiver->take_text(&byte)) {
+      if (left_ms_[kPatience] > kPatienceMs - kUnendedMs || !is_unended()) break;
+      byte = kLineEnd;
+    }
+    if (is_silent_) end_silence();
     begin_silence();
     if (byte == kLineStop) {
       receiver->take_mark();
@@ -90,40 +96,48 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
     if (byte == kLineCut) {
       const bool is_lost = receiver->take_lost();
       if (is_lost) is_ignoring_ = true;  // the line may have opened a block
-      refused_ = Remark::kNone;
+      const bool is_told = !is_discarding_ && !is_chatter();
       drop();
-      if (wait_ms_ == 0 && !starts_.is_chatter()) {
-        tell(is_lost ? Remark::kCut : Remark::kNoZero, is_heard);
-      }
-      has_tail_ = false;
-      starts_.begin(false);
+      if (is_told) tell(is_lost ? Remark::kCut : Remark::kNoZero, is_heard);
+    } else if (byte != kLineEnd) {
+      take(byte, is_heard);
       continue;
     }
-    const Act act = take(byte, is_heard);
+    has_tail_ = false;
+    const Act act = byte == kLineEnd ? end_line(is_heard) : Act::kNone;
+    refused_ = Remark::kNone;
+    begins_ = 1;
     if (act != Act::kNone) return act;
   }
-  if (quiet_ms_ >= kPauseMs) mistakes_ = 0;
-  if (quiet_ms_ == kPatienceMs) {
-    if (is_open_ && is_patient()) say(Remark::kGivenUp);
+  const uint16_t left_ms = left_ms_[kPatience];
+  if (left_ms <= kPatienceMs - kPauseMs) mistakes_ = 0;
+  if (left_ms == 0) {
+    if (is_open_) say(Remark::kGivenUp);
     is_open_ = false;
-  } else if (quiet_ms_ >= kSilenceMs && !is_silent_) {
+  } else if (left_ms <= kPatienceMs - kSilenceMs && !is_silent_) {
     is_silent_ = true;
-    fall_silent();
+    is_ignoring_ = false;
+    if (is_open_ && is_waiting_) say(Remark::kWaiting);
+  } else if (left_ms <= kPatienceMs - kTailMs && has_tail_ && !is_unended()) {
+    has_tail_ = false;
+    if (!is_waiting_) {
+      if (!is_chatter()) tell(Remark::kEnter, is_heard);
+      if (!reader_.has_setup()) is_open_ = false;
+    }
   }
-  return has_tail_ ? end_tail(is_heard) : Act::kNone;
+  return Act::kNone;
 }
 
-// A second has passed without a byte.
-void Console::fall_silent() {
-  is_ignoring_ = false;
-  if (is_open_ && is_waiting_) say(Remark::kWaiting);
+// Whether what has come is a program but for its line end, where no line has ended for a minute: some
+// apps end none.
+bool Console::is_unended() const {
+  return has_tail_ && is_open_ && left_ms_[kEnds] == 0 && reader_.has_setup() && reader_.may_end();
 }
 
-// More has come than the end of a line: what was before goes on only where there is time for that.
-void Console::end_silence() {
+// A line goes on behind a second of silence, or another one begins.
+inline void Console::end_silence() {
   refused_ = Remark::kNone;
-  if (!is_patient()) is_open_ = false;
-  starts_.begin(is_open_);
+  begins_ = reader_.next_column();
 }
 
 void Console::tell(Remark remark, bool is_heard) {
@@ -132,44 +146,36 @@ void Console::tell(Remark remark, bool is_heard) {
   say(remark);
 }
 
-Console::Act Console::take(uint8_t byte, bool is_heard) {
-  if (byte == kLineEnd) {
-    const Act act = end_line(is_heard);
-    starts_.begin(is_open_);
-    return act;
-  }
+// Takes a byte of a line. A start begins a program anew where an unfinished one goes on, and behind a
+// radio module's message, which has no line end of its own.
+inline void Console::take(uint8_t byte, bool is_heard) {
   has_tail_ = true;
-  const uint8_t letters = starts_.put(byte);
-  if (letters != 0) start_again(letters, is_heard);
   read(byte);
-  return Act::kNone;
+  const uint16_t last = last_;
+  if (byte > ' ') last_ = static_cast<uint16_t>(last << 8 | (byte & kCapital));
+  if (byte != '|' || !is_open_ || (last != kSi && last != kSb && last != kNg)) return;
+  const bool is_message = is_chatter();
+  if (!is_message && (reader_.problem() == Problem::kNone || reader_.column() != begins_)) return;
+  if (!is_message) tell(Remark::kStartedAgain, is_heard);
+  is_open_ = false;
+  if (last == kNg) {
+    read('P');
+    read('I');
+  }
+  read(static_cast<uint8_t>(last >> 8));
+  read(static_cast<uint8_t>(last));
+  read(byte);
+}
+
+// Whether the line begins with what a radio module says.
+bool Console::is_chatter() {
+  return is_open_ && (first_ == '+' || reader_.begins_like('O', 'K'));
 }
 
 void Console::read(uint8_t byte) {
   if (refused_ != Remark::kNone || (!is_open_ && !begin(byte))) return;
   reader_.put(byte);
   if (!has_moved_ && !is_ignored() && reader_.wants_room()) has_room();
-}
-
-// A start of so many letters begins a program in place of what has come before it.
-void Console::start_again(uint8_t letters, bool is_heard) {
-  if (is_open_ && !starts_.is_message()) tell(Remark::kStartedAgain, is_heard);
-  is_open_ = false;
-  refused_ = Remark::kNone;
-  while (letters != 0) read(starts_.letter(--letters));
-}
-
-// Bytes have come, and no line end. A whole program is taken all the same, where no line has ended for
-// a minute: some apps end none.
-Console::Act Console::end_tail(bool is_heard) {
-  if (quiet_ms_ < kTailMs) return Act::kNone;
-  if (is_open_ && ends_ms_ == 0 && reader_.has_setup() && reader_.may_end()) {
-    if (quiet_ms_ < kWholeMs) return Act::kNone;
-    return end_line(is_heard);
-  }
-  has_tail_ = false;
-  if (!is_waiting_ && !starts_.is_chatter()) tell(Remark::kEnter, is_heard);
-  return Act::kNone;
 }
 
 // Begins a program in memory that nobody uses.
@@ -213,10 +219,8 @@ bool Console::has_room() {
   return false;
 }
 
-Console::Act Console::end_line(bool is_heard) {
-  has_tail_ = false;
+inline Console::Act Console::end_line(bool is_heard) {
   if (refused_ != Remark::kNone && !is_heard) refuse();
-  refused_ = Remark::kNone;
   if (!is_open_) return Act::kNone;
   const Text text = reader_.put(kLineEnd);
   const bool has_setup = reader_.has_setup();
@@ -228,7 +232,7 @@ Console::Act Console::end_line(bool is_heard) {
   if (text == Text::kProgram && reader_.is_stop()) return has_mark_ ? Act::kNone : Act::kStop;
   if (is_ignored()) {
     is_open_ = is_waiting_ = false;
-    if (wait_ms_ != 0 && text != Text::kNothing && !has_told_) {
+    if (is_discarding_ && text != Text::kNothing && !has_told_) {
       has_told_ = true;
       tell(Remark::kPause, is_heard);
     }
@@ -272,7 +276,7 @@ Console::Act Console::end_line(bool is_heard) {
 
 // Whether the line is read, and nothing but S does anything.
 bool Console::is_ignored() const {
-  return wait_ms_ != 0 || (is_ignoring_ && !reader_.has_setup());
+  return is_discarding_ || (is_ignoring_ && !reader_.has_setup());
 }
 
 // Says why the line cannot be read now.
@@ -280,11 +284,6 @@ void Console::refuse() {
   is_talking_ = true;
   say(refused_);
   refused_ = Remark::kNone;
-}
-
-// Whether there is time for the rest of the line: it begins with a SETUP word, or a block is open.
-bool Console::is_patient() {
-  return is_waiting_ || reader_.has_setup() || reader_.may_have_setup();
 }
 
 }  // namespace tiniscript

@@ -12,7 +12,6 @@
 #include "../text/reader.h"
 #include "../text/remarks.h"
 #include "receiver.h"
-#include "start_finder.h"
 
 namespace tiniscript {
 
@@ -22,8 +21,8 @@ class Console {
   // was read.
   enum class Act : uint8_t { kNone, kStop, kEnd, kStart };
 
-  // Passes the time. `has_heard`: bytes of any kind have arrived meanwhile.
-  void pass(uint16_t passed_ms, bool has_heard);
+  // Passes the time. `silence_left_ms`: until a second has passed without a byte of any kind, or 0.
+  void pass(uint16_t passed_ms, uint16_t silence_left_ms);
 
   // Whether time has passed since the last turn: without that and without text none is needed.
   bool is_due() const { return is_due_; }
@@ -32,11 +31,9 @@ class Console {
   Act turn(Receiver* receiver, bool is_heard);
 
   // The robot was stopped: what arrives before a second of silence is ignored, and no answer is due
-  // any more.
+  // any more. Where the stop was typed here, lines count again after a second, and a short silence.
   void discard();
-
-  // The stop was typed here: what arrives after a second counts, if a short silence is before it.
-  void discard_briefly() { least_wait_ms_ = kBriefMs; }
+  void discard_briefly() { is_brief_ = true; }
 
   // Whether a typed stop would belong to the program that is read.
   bool is_in_block() const { return is_open_ && is_waiting_ && awaited_ != ')'; }
@@ -64,41 +61,37 @@ class Console {
   void say(Remark remark) { remark_ = remark; }
   bool has_answer() const { return remark_ != Remark::kNone; }
 
-  // The same, unless a client is heard: what no program came of is for people.
+  // The same, unless a client is heard: what no program came of is told to people alone.
   void tell(Remark remark, bool is_heard);
-
-  // Bytes have come that no line end follows, and none of them is read.
-  void note_tail() { has_tail_ = true; }
   uint8_t write(uint8_t* out);
 
   // Writes a line with a value that a program shows.
   uint8_t write_value(int32_t value, bool is_yes_no, uint8_t* out);
 
  private:
-  static constexpr uint16_t kBriefMs = 150;
+  // Times that run down to 0: what is left of kPatienceMs since the last byte of text, until lines count
+  // again after a stop, until nobody knows any more that lines end here.
+  enum Time : uint8_t { kPatience, kWait, kEnds, kTimes };
 
-  Act take(uint8_t byte, bool is_heard);
+  bool is_unended() const;
+  bool is_chatter();
+  void take(uint8_t byte, bool is_heard);
   void read(uint8_t byte);
-  void start_again(uint8_t letters, bool is_heard);
-  Act end_tail(bool is_heard);
   Act end_line(bool is_heard);
-  void fall_silent();
   void end_silence();
   void begin_silence();
   bool begin(uint8_t byte);
   bool has_room();
   void refuse();
   bool is_ignored() const;
-  bool is_patient();
 
   // writing
   bool put_words();
 
   uint8_t* image_;
-  uint16_t quiet_ms_;  // time since the last byte of text
-  uint16_t wait_ms_;   // until lines count again after a stop
-  uint16_t least_wait_ms_;  // so long from each byte on
-  uint16_t ends_ms_;   // until nobody knows any more that lines end here
+  uint16_t left_ms_[kTimes];
+  uint16_t last_;      // the last two letters or signs, in capitals
+  uint8_t begins_;     // the column where the line began, or went on behind a second of silence
   uint8_t length_;     // of the code before this line
   uint8_t first_;      // the first byte of the program
   uint8_t awaited_;    // the word that the last line has left open, or ')'
@@ -111,13 +104,14 @@ class Console {
   bool has_lost_;
   bool is_waiting_;    // for the end of a block that an earlier line has opened
   bool is_talking_;
+  bool is_discarding_;
+  bool is_brief_;      // the wait: a stop was typed here
   bool has_told_;      // that lines do not count yet
   bool has_tail_;      // bytes have come since the last line end
   bool is_ignoring_;   // lines without a SETUP word: their program is lost
   bool is_silent_;     // a second has passed
   bool is_due_;
   bool has_mark_;      // a typed stop waits behind
-  StartFinder starts_;
   Reader reader_;
 };
 

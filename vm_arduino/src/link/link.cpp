@@ -45,26 +45,20 @@ void Link::pass(uint16_t now_ms) {
   // next call.
   const bool is_held = receiver_->is_held();
   const bool is_at_stop = receiver_->is_at_stop();
-  const Receiver::Unfinished unfinished = receiver_->unfinished();
+  const bool is_line = receiver_->has_open_line();
   const bool has_heard = receiver_->has_heard();
   const uint16_t before = left_ms_[kSilence];
-  console_.pass(passed, has_heard);
   for (uint16_t& left_ms : left_ms_) {
     left_ms = passed < left_ms ? static_cast<uint16_t>(left_ms - passed) : 0;
   }
-  if (left_ != 0 && left_ms_[kFrameSent] != 0) left_ms_[kFrameSent] = kTextMs;
+  if (kHasLargeFrames && left_ != 0 && left_ms_[kFrameSent] != 0) left_ms_[kFrameSent] = kTextMs;
   if (has_heard) {
     left_ms_[kSilence] = kSilenceMs;
   } else if (before != 0) {
     end_silence(is_held, is_at_stop, before);
-    if (left_ms_[kSilence] == 0) tell_unfinished(unfinished);
+    if (is_line && left_ms_[kSilence] == 0) console_.tell(Remark::kCut, is_listened_to());
   }
-}
-
-// A second of silence has ended a packet that looks like a person's.
-inline void Link::tell_unfinished(Receiver::Unfinished unfinished) {
-  if (unfinished == Receiver::Unfinished::kLine) console_.note_tail();
-  if (unfinished == Receiver::Unfinished::kLineEnds) console_.tell(Remark::kCut, is_listened_to());
+  console_.pass(passed, left_ms_[kSilence]);
 }
 
 // What the silence behind a typed stop does: that of kHeldMs in what began as a frame, that of

@@ -181,7 +181,6 @@ class Link {
 
   void pass(uint16_t now_ms);
   void end_silence(bool is_held, bool is_at_stop, uint16_t before_ms);
-  void tell_unfinished(Receiver::Unfinished unfinished);
   // The purpose of an image: to be stored, to run once, or to run as soon as its frame ends.
   enum class Use : uint8_t { kStored, kLive, kAhead };
 

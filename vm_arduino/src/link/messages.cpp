@@ -16,10 +16,10 @@ const uint8_t kRequestBytes[][2] tini_progmem = {
     {1, 1},  // START
     {1, kPayloadBytes},  // LIVE
     {1, kPayloadBytes},  // PROGRAM
-    {9, 9},  // BEGIN
+    {kUnknownRequest, 0},  // retired
     {3, kPayloadBytes},  // DATA
     {4, 4},  // COMMIT
-    {0, 0},  // ABORT
+    {kUnknownRequest, 0},  // retired
     {1, 16},  // NAME
     {0, 11},  // TRIM
     {1, 17},  // CLAIM
@@ -29,7 +29,11 @@ const uint8_t kRequestBytes[][2] tini_progmem = {
     {1, 1},  // TEXT
 #ifdef ARDUINO_ARCH_ESP32
     {1, 33},  // WIFI
+#else
+    {kUnknownRequest, 0},
 #endif
+    {9, 9},  // BEGIN
+    {0, 0},  // ABORT
 };
 
 }  // namespace tiniscript

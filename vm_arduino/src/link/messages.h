@@ -14,13 +14,11 @@
 
 namespace tiniscript {
 
-constexpr uint8_t kLinkMajor = 1;
-constexpr uint8_t kLinkMinor = 2;
+constexpr uint8_t kLinkMajor = 2;
+constexpr uint8_t kLinkMinor = 0;
 constexpr uint8_t kSmallFrame = 63;
 constexpr uint8_t kLargeFrame = 250;
 constexpr uint8_t kLargeWindow = 4;
-constexpr uint8_t kLargeMinor = 2;
-constexpr uint8_t kTextFrom = 65;
 constexpr uint8_t kHeadBytes = 3;
 constexpr uint8_t kCrcBytes = 4;
 constexpr uint8_t kReply = 128;
@@ -30,6 +28,8 @@ constexpr uint8_t kMostBalance = 40;
 constexpr uint8_t kMostLeast = 40;
 constexpr uint8_t kStopRun = 4;
 constexpr uint16_t kSilenceMs = 1000;
+constexpr uint16_t kZeroMs = 400;
+constexpr uint16_t kTextMs = 1100;
 constexpr uint8_t kHeldMs = 100;
 constexpr uint16_t kDeadManMs = 1000;
 constexpr uint16_t kListenMs = 3000;
@@ -84,10 +84,8 @@ enum class Message : uint8_t {
   kStart = 7,  // Starts the program that the robot holds.
   kLive = 8,  // Runs code once. The program that the robot holds does not change.
   kProgram = 9,  // A whole program in one frame.
-  kBegin = 10,  // Begins a longer program: what its image's header says before its checksum.
   kData = 11,  // What lies behind the checksum, from `offset` on. The robot takes only what begins at `next`.
   kCommit = 12,  // The program is whole: its image's checksum.
-  kAbort = 13,  // Drops the program that was begun.
   kName = 14,  // Names the robot: UTF-8. OK once it is kept; until then SAVING or LOW_SUPPLY: ask again.
   kTrim = 15,  // Sets the motors' trim, bytes like those of the reply, with `pace` or without; without any only reports it. OK as for NAME.
   kClaim = 16,  // Gives the robot a key after its button was held: `which` of KEYS. Without a key: takes that key away. OK as for NAME.
@@ -96,6 +94,8 @@ enum class Message : uint8_t {
   kUndo = 19,  // The robot holds the previous program again. What runs ends; nothing starts.
   kText = 20,  // Lets lines of text drive a robot with an owner, or not, until power-off.
   kWifi = 21,  // Sets, forgets or reports the robot's WiFi: `step` of WIFI_STEPS. Only sealed. OK as for NAME.
+  kBegin = 22,  // Begins a longer program: what its image's header says before its checksum.
+  kAbort = 23,  // Drops the program that was begun.
   kShow = 32,  // A value that a program shows.
   kFault = 33,  // The program has ended with a fault.
   kStopped = 34,  // The robot was stopped: it has a new epoch. Repeated: it is still stopped.
@@ -104,13 +104,11 @@ enum class Message : uint8_t {
 
 // Requests are the numbers from 1 up to this one; from kFirstActing on they act.
 constexpr uint8_t kFirstActing = 6;
-#ifdef ARDUINO_ARCH_ESP32
-constexpr uint8_t kLastRequest = 21;
-#else  // it has no radio of its own
-constexpr uint8_t kLastRequest = 20;
-#endif
+constexpr uint8_t kLastRequest = 23;
 
 // How long the payload of each request may be, from the first one on: least and most.
+// What this robot does not know has kUnknownRequest as its least.
+constexpr uint8_t kUnknownRequest = 255;
 extern const uint8_t kRequestBytes[][2] tini_progmem;
 
 // Where each field of a request begins.
@@ -127,13 +125,6 @@ constexpr uint8_t kLiveModeAt = 0;
 constexpr uint8_t kLiveCodeAt = 1;
 constexpr uint8_t kProgramModeAt = 0;
 constexpr uint8_t kProgramCodeAt = 1;
-constexpr uint8_t kBeginModeAt = 0;
-constexpr uint8_t kBeginIsaMajorAt = 1;
-constexpr uint8_t kBeginIsaMinorAt = 2;
-constexpr uint8_t kBeginStartAt = 3;
-constexpr uint8_t kBeginHeaderLengthAt = 4;
-constexpr uint8_t kBeginDevicesAt = 5;
-constexpr uint8_t kBeginCodeLengthAt = 7;
 constexpr uint8_t kDataOffsetAt = 0;
 constexpr uint8_t kDataBytesAt = 2;
 constexpr uint8_t kCommitChecksumAt = 0;
@@ -146,6 +137,13 @@ constexpr uint8_t kAuthenticateTagAt = 1;
 constexpr uint8_t kTextIsAllowedAt = 0;
 constexpr uint8_t kWifiStepAt = 0;
 constexpr uint8_t kWifiTextAt = 1;
+constexpr uint8_t kBeginModeAt = 0;
+constexpr uint8_t kBeginIsaMajorAt = 1;
+constexpr uint8_t kBeginIsaMinorAt = 2;
+constexpr uint8_t kBeginStartAt = 3;
+constexpr uint8_t kBeginHeaderLengthAt = 4;
+constexpr uint8_t kBeginDevicesAt = 5;
+constexpr uint8_t kBeginCodeLengthAt = 7;
 
 // What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.
 enum class Answer : uint8_t {

@@ -61,9 +61,6 @@ class PacketPlaces<1> {
 
 class Receiver : private PacketPlaces<kWindow> {
  public:
-  // What has not ended: nothing, a packet that may be a line of text, or a frame with CR or LF in it.
-  enum class Unfinished : uint8_t { kNothing, kLine, kLineEnds };
-
   // Takes a byte at the time `now_ms`. Returns whether the motors go off at once: it completes a run
   // of four zeros, the stop sequence, or a typed stop. Eight zeros are two stops. A byte with a
   // framing error is 0.
@@ -104,10 +101,10 @@ class Receiver : private PacketPlaces<kWindow> {
   // Whether what has come of a line would be a typed stop if it ended here.
   bool is_at_stop() const { return state() < State::kFrame && typed_.is_whole(); }
 
-  // What a silence of a second ends.
-  Unfinished unfinished() const {
-    if (state() == State::kLine) return Unfinished::kLine;
-    return state() >= State::kFrame && has_ends_ ? Unfinished::kLineEnds : Unfinished::kNothing;
+  // Whether what a second of silence ends may be a person's line: all of it is printable, or CR or LF
+  // is in it.
+  bool has_open_line() const {
+    return state() == State::kLine || (state() >= State::kFrame && has_ends_);
   }
 
   // Whether a typed stop waits among the text: whether it belongs to an open block is decided where

@@ -8,10 +8,12 @@ namespace tiniscript {
 namespace {
 
 constexpr uint8_t kLast = 0x80;  // marks the last letter of a word
-constexpr uint8_t kLetters = 4;  // of STOP
 
-const uint8_t kStop[] tini_progmem = {'s', 't', 'o', 'p'};
+// What a line is that stops. The second word begins at kStopAt.
+// clang-format off
 const uint8_t kWords[] tini_progmem = {
+    's' | kLast,
+    's', 't', 'o', 'p' | kLast,
     's', 't', 'o', 'p', 'n', 'o', 'w' | kLast,
     'a', 'l', 't', 'o' | kLast,
     'p', 'a', 'r', 'a' | kLast,
@@ -20,82 +22,57 @@ const uint8_t kWords[] tini_progmem = {
     'd', 'e', 't', 'e', 'n', 't', 'e' | kLast,
     'h', 'a', 'l', 't' | kLast,
     0};
+// clang-format on
+
+constexpr uint8_t kStopAt = 5;  // letters of STOP NOW, without a mark
 
 bool is_letter_or_digit(uint8_t byte) {
   const uint8_t small = byte | 0x20;
   return static_cast<uint8_t>(small - 'a') < 26 || static_cast<uint8_t>(byte - '0') < 10;
 }
 
-uint8_t letter_of_stop(uint8_t at) { return flash_byte(kStop + at % kLetters); }
-
 }  // namespace
 
-void TypedStop::begin() {
-  count_ = fit_ = hurry_ = slashes_ = 0;
-  is_loose_ = false;
-}
-
 tini_noinline void TypedStop::put(uint8_t byte) {
-  if (byte == '\b' || byte == 0x7f) {  // deletes a letter, as the reader of text does
-    if (count_ != 0) count_--;
-    if (fit_ > count_) fit_ = count_;
-    hurry_ = 0;
-    return;
-  }
-  if (slashes_ == 2 || byte == ' ' || byte == '\t') return;
-  slashes_ = byte == '/' ? static_cast<uint8_t>(slashes_ + 1) : 0;
+  if (byte == ' ' || byte == '\t') return;
   const uint8_t before = hurry_;
   hurry_ = 0;
-  if (!is_letter_or_digit(byte)) {
+  if (byte == '\b' || byte == 0x7f) {  // deletes a letter, as the reader of text does
+    if (count_ != 0) count_--;
+    return;
+  }
+  const bool begins_comment = byte == '/' && count_ == 0;  // one sign more: no word has it
+  if (!is_letter_or_digit(byte) && !begins_comment) {
     if (byte != ';') is_loose_ = true;
     return;
   }
-  const uint8_t small = byte | 0x20;
-  if (small == letter_of_stop(before)) {
+  byte |= 0x20;
+  if (byte == flash_byte(kWords + kStopAt + before % 4)) {
     hurry_ = static_cast<uint8_t>(before % kUrgent + 1);
-  } else if (small == 's') {
-    hurry_ = before == kTwoS ? kUrgent : before % kLetters == 1 ? kTwoS : 1;
+  } else if (byte == 's') {
+    hurry_ = before == kTwoS ? kUrgent : before % 4 == 1 ? kTwoS : 1;
+  }
+  if (byte == 's' && word() <= kStop) {
+    count_ = 0;
+    is_loose_ = true;
   }
   const uint8_t count = count_;
-  if (count < kLongest) word_[count] = small;
-  if (count == kMost) {
-    fit_ = 0;
-    return;
-  }
-  const uint8_t wanted = count != 0 && word_[1] == 't' ? letter_of_stop(count) : 's';
-  if (fit_ == count && small == wanted) fit_ = static_cast<uint8_t>(count + 1);
-  count_ = static_cast<uint8_t>(count + 1);
+  if (count < kLongest) word_[count] = byte;
+  if (count != 255) count_ = static_cast<uint8_t>(count + 1);
 }
 
-bool TypedStop::is_whole() const {
-  const uint8_t count = count_;
-  if (count == 0) return false;
-  if (fit_ != count) return is_word();
-  return count == 1 || word_[1] == 's' || count % kLetters == 0;
-}
-
-bool TypedStop::is_strict() const {
-  const bool is_stop = count_ == 1 || (count_ == kLetters && word_[1] == 't');
-  return is_stop && fit_ == count_ && !is_loose_;
-}
-
-// Whether the line's letters are one of the words.
-bool TypedStop::is_word() const {
-  const uint8_t count = count_;
-  if (count > kLongest) return false;
-  const uint8_t* word = kWords;
-  for (;;) {
-    bool is_it = true;
-    uint8_t letter;
-    uint8_t at = 0;
+// The number of the word that the line is so far.
+tini_noinline uint8_t TypedStop::word() const {
+  const uint8_t* letter = kWords;
+  for (uint8_t number = 0; flash_byte(letter) != 0; number++) {
+    const uint8_t* mine = word_;
+    uint8_t other = 0;  // bits in which they differ
     do {
-      letter = flash_byte(word++);
-      if (letter == 0) return false;
-      if (at >= count || word_[at] != (letter & ~kLast)) is_it = false;
-      at++;
-    } while ((letter & kLast) == 0);
-    if (is_it && at == count) return true;
+      other |= static_cast<uint8_t>(flash_byte(letter) ^ *mine++);
+    } while ((flash_byte(letter++) & kLast) == 0);
+    if (other == kLast && mine == word_ + count_) return number;
   }
+  return kNoWord;
 }
 
 }  // namespace tiniscript

@@ -53,9 +53,8 @@ class Reader {
   // Whether its first instruction has been read, or the buffer may be too small for it.
   bool wants_room() const;
 
-  // Whether the program begins with a SETUP word, and whether that may still become so.
+  // Whether the program begins with a SETUP word.
   bool has_setup() const { return has_setup_; }
-  bool may_have_setup();
 
   // Whether nothing is open: no bracket, no block.
   bool may_end() const { return brackets_ == 0 && stack_ == names_; }
@@ -70,6 +69,12 @@ class Reader {
   // wrong. Else the number of words there, or 255.
   uint8_t find_unknown(const uint8_t* table);
 
+  // Whether what begins the program is an unknown word with these letters first.
+  bool begins_like(uint8_t first, uint8_t second) const {
+    return problem_ == Problem::kUnknownWord && length_ == 0 && buffer_[0] == first &&
+           (buffer_[1] & 0x7f) == second;  // the last letter of a word is marked
+  }
+
   // After kMore: the word for which it waits, or ')'.
   uint8_t awaited() const;
 
@@ -81,6 +86,9 @@ class Reader {
   // After kProblem: what it is, and its column from 1; all columns from 255 on are 255.
   Problem problem() const { return problem_; }
   uint8_t column() const { return token_column_; }
+
+  // The column of the next byte.
+  uint8_t next_column() const { return static_cast<uint8_t>(column_ + 1); }
 
   // After kRange: the number in thousandths, and the least (0) or the most (4) that goes there.
   int32_t value() const { return static_cast<int32_t>(value_); }

@@ -66,11 +66,6 @@ uint8_t Reader::find_unknown(const uint8_t* table) {
   return problem_ == Problem::kUnknownWord && length_ == 0 ? find(table, 0) : uint8_t{255};
 }
 
-bool Reader::may_have_setup() {
-  const uint8_t word = state_ == kBegin ? open_word() : uint8_t{0};
-  return word >= kWordSi && word <= kWordPing;
-}
-
 bool Reader::find_in_kit() {
   const uint8_t* entry = robot_words();
   uint8_t sensors = 0;

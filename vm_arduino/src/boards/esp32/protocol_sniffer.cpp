@@ -2,8 +2,6 @@
 
 #include "protocol_sniffer.h"
 
-#include "../../link/messages.h"
-
 namespace tiniscript {
 
 namespace {
@@ -27,10 +25,11 @@ bool is_blank(uint8_t byte) { return byte == ' ' || byte == '\t'; }
 
 bool is_end(uint8_t byte) { return byte == '\r' || byte == '\n' || byte == 0; }
 
-bool is_letter(uint8_t byte) { return lower(byte) >= 'a' && lower(byte) <= 'z'; }
+bool is_printable(uint8_t byte) { return byte >= ' ' && byte < 0x7f; }
 
 bool is_of_method(uint8_t byte) {
-  if (is_letter(byte) || (byte >= '0' && byte <= '9')) return true;
+  if (lower(byte) >= 'a' && lower(byte) <= 'z') return true;
+  if (byte >= '0' && byte <= '9') return true;
   for (const char* mark = kMarks; *mark != 0; mark++) {
     if (byte == static_cast<uint8_t>(*mark)) return true;
   }
@@ -76,6 +75,12 @@ bool is_request(Text line, size_t target) {
 }
 
 Protocol sniffed_text(const uint8_t* bytes, size_t length) {
+  const Protocol undecided = length <= kFirstBytes ? Protocol::kUnknownYet : Protocol::kOther;
+  while (length != 0 && (*bytes == '\r' || *bytes == '\n')) {  // servers of HTTP skip empty lines
+    bytes++;
+    length--;
+  }
+  if (length == 0) return undecided;
   Text line = {bytes, 0};
   while (line.length < length && !is_end(bytes[line.length])) line.length++;
   size_t method_end = 0;
@@ -89,32 +94,27 @@ Protocol sniffed_text(const uint8_t* bytes, size_t length) {
     if (line.has(target) && bytes[target] == '=') return Protocol::kForRobot;  // `X = 5`
   }
   if (line.length < length) return Protocol::kForRobot;  // the line has ended, and is no request
-  return length <= kFirstBytes ? Protocol::kUnknownYet : Protocol::kOther;
+  return undecided;
 }
 
-// A frame has eight bytes and more without a zero, and a type that is not 0: no 0x01 first.
-Protocol sniffed_frame(const uint8_t* bytes, size_t length) {
-  for (size_t k = 0; k < length && k < 3; k++) {
-    if (bytes[k] == 0) return Protocol::kOther;
-  }
-  if (bytes[0] == 1) return Protocol::kOther;  // STUN
-  if (length < 3) return Protocol::kUnknownYet;
-  const bool is_tls = bytes[0] == 0x16 && bytes[1] == 0x03;
-  return is_tls ? Protocol::kOther : Protocol::kForRobot;
+// Whether bytes begin like STUN, whose length may come first, or like TLS.
+bool is_binary(const uint8_t* bytes, size_t length) {
+  if (length < 2) return false;
+  if (bytes[1] == 0 || (length > 2 && bytes[2] == 0)) return true;
+  return (bytes[0] == 0 && bytes[1] == 1) || (bytes[0] == 0x16 && bytes[1] == 3);
 }
 
 }  // namespace
 
 Protocol sniffed(const uint8_t* bytes, size_t length) {
-  size_t at = 0;
-  while (at < length && bytes[at] == 0) at++;
-  if (at > 1) return Protocol::kForRobot;  // the stop sequence: zeros alone do nothing else
-  size_t behind = at;
-  while (behind < length && (bytes[behind] == '\r' || bytes[behind] == '\n')) behind++;
-  if (behind == length || is_letter(bytes[behind])) at = behind;  // servers of HTTP skip these
-  if (at == length) return length <= kFirstBytes ? Protocol::kUnknownYet : Protocol::kOther;
-  return bytes[at] < kTextFrom ? sniffed_frame(bytes + at, length - at)
-                               : sniffed_text(bytes + at, length - at);
+  if (length > 1 && bytes[0] == 0 && bytes[1] == 0) return Protocol::kForRobot;  // a stop sequence
+  if (length == 0 || bytes[0] < ' ') {
+    if (is_binary(bytes, length)) return Protocol::kOther;
+    if (length < 3) return Protocol::kUnknownYet;
+  }
+  if (bytes[0] != 0) return sniffed_text(bytes, length);
+  const bool is_line = is_printable(bytes[1]) && is_printable(bytes[2]);
+  return is_line ? sniffed_text(bytes + 1, length - 1) : Protocol::kForRobot;
 }
 
 }  // namespace tiniscript
