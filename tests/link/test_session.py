@@ -41,13 +41,13 @@ def answer(sent: bytes, values: dict[str, int | bytes], status: int = 0, epoch: 
     payload = bytes((status, 0, 0))
     if not status:
         payload = b"\0" + messages.written(messages.BY_NUMBER[frame.number].reply, values)
-    return encoded(Frame(frame.number, frame.seq, epoch, payload, is_reply=True))
+    return b"\0" + encoded(Frame(frame.number, frame.seq, epoch, payload, is_reply=True))
 
 
 def event(name: str, seq: int, values: dict[str, int | bytes], epoch: int = 11) -> bytes:
     message = BY_NAME[name]
     payload = messages.written(message.reply, values)
-    return encoded(Frame(message.number, seq, epoch, payload, is_reply=True))
+    return b"\0" + encoded(Frame(message.number, seq, epoch, payload, is_reply=True))
 
 
 def greeted(baud: int = 9600, now_ms: int = 0, features: int = 0) -> Session:
@@ -187,7 +187,7 @@ def test_text_and_echoes_are_told() -> None:
 def test_what_a_newer_robot_sends_is_no_harm() -> None:
     session = greeted()
     for frame in (Frame(40, 0, 10, b"new", is_reply=True), Frame(35, 1, 10, b"", is_reply=True)):
-        session.receive(encoded(frame), 5)
+        session.receive(b"\0" + encoded(frame), 5)
     request = session.ping()
     data = session.poll(6)
     sent = decoded(data.strip(b"\0"))
@@ -388,7 +388,7 @@ def places_told(*replies: bytes) -> list[tuple[int, int]]:
         sent = decoded(session.poll(now_ms).strip(b"\0"))
         assert sent and sent.number == 2 and sent.payload == b"\1"
         reply = Frame(2, sent.seq, 10, b"\0" + payload, is_reply=True)
-        session.receive(encoded(reply), now_ms + 1)
+        session.receive(b"\0" + encoded(reply), now_ms + 1)
     return [(each.run, each.at) for each in session.events() if isinstance(each, PlaceEvent)]
 
 

@@ -27,9 +27,9 @@ LINE_ENDS = b"\r\n"
 
 class State(Enum):
     TEXT = auto()  # in text: between lines or in one
-    LOST = auto()  # in a line of text that found no place, or that a 0x00 has cut
+    LOST = auto()  # in a line of text that found no place
     BEGIN = auto()  # behind a 0x00: nothing has come yet
-    LINE = auto()  # behind a 0x00: all bytes so far may be a line of text or a frame
+    LINE = auto()  # behind a 0x00: all bytes are printable, so a line of text or a frame
     FRAME = auto()  # in a frame
 
 
@@ -49,11 +49,11 @@ class Receiver:
         self.dropped = 0  # packets that arrived while one was waiting
         self._state = State.TEXT
         self._zeros = ZeroRun()
-        self._key = CursorKey()
+        self._key = KeySequence()
         self._data = bytearray()  # of the open packet, as many as fit
         self._length = 0  # of the open packet; 0 between two
-        self._is_dropping = False  # the open packet has found no place
-        self._is_cut = False  # a 0x00 has cut a line, and its rest may come
+        self._is_dropping = False  # the open packet has found no place, or is too long for a frame
+        self._is_cut = False  # a 0x00 has cut a line: the rest of it is lost
         self._most_bytes = most_bytes
         self._window = window
         self._behind: deque[Packet] = deque()  # frames behind the packet that waits
@@ -89,7 +89,7 @@ class Receiver:
 
     def _put_zero(self) -> None:
         if self._state is State.FRAME:
-            self._end_frame()
+            self._end_packet(is_text=False)
             self._is_cut = False
         elif self._length:  # a line, which no 0x00 ends
             self._lose()
@@ -99,38 +99,35 @@ class Receiver:
     def _put_text(self, byte: int) -> None:
         if byte in LINE_ENDS:
             self._end_line()
-        elif self._length:
+        elif self._length or not self._is_skipped(byte):
+            if not self._length:
+                self._begin()
+                self._state = State.LOST if self._is_dropping else State.TEXT
             self._add(byte)
-        elif not self._is_skipped(byte):
-            self._begin(byte)
-            self._state = State.LOST if self._is_dropping else State.TEXT
 
     def _put_framed(self, byte: int) -> None:
-        if self._state is State.BEGIN:
-            self._begin(byte)
-            self._state = State.LINE if _is_printable(byte) else State.FRAME
-        elif self._state is State.FRAME:
-            self._add(byte)
-        elif byte in LINE_ENDS:
+        if self._state is State.LINE and byte in LINE_ENDS:
             self._end_line()
-        else:
-            self._add(byte)
-            if not _is_printable(byte):
-                self._state = State.FRAME
-            elif self._length > self._room():  # no frame is so long
-                is_lost = self._is_dropping or self._is_cut
-                self._state = State.LOST if is_lost else State.TEXT
+            return
+        if self._state is State.BEGIN:
+            self._begin()
+            self._state = State.LINE
+        if not _is_printable(byte):
+            self._state = State.FRAME
+        self._add(byte)
+        if self._length > self._room() and not self._is_dropping:
+            self._is_dropping = True
+            self.damaged += 1
 
     def _is_skipped(self, byte: int) -> bool:
         """Return whether a byte between two lines belongs to none."""
         is_of_key = self._key.put(byte)
         return is_of_key or byte <= 0x20 or byte == 0x7F or byte in BYTE_ORDER_MARK
 
-    def _begin(self, byte: int) -> None:
+    def _begin(self) -> None:
         self._is_dropping = not self._has_place()
         self.dropped += self._is_dropping
         self._data.clear()
-        self._add(byte)
 
     def _add(self, byte: int) -> None:
         if not self._data or len(self._data) < self._room():
@@ -138,29 +135,26 @@ class Receiver:
         self._length += 1
 
     def _end_line(self) -> None:
-        is_lost = self._is_dropping or self._is_cut
-        if self._length and not is_lost:
-            if self.packet is None:
-                self.packet = Packet(True, bytes(self._data), self._length)
-            else:  # it would come before its turn
-                self.dropped += 1
+        if self._length and not self._is_cut:
+            self._end_packet(is_text=True)
         self._state, self._length, self._is_cut = State.TEXT, 0, False
         self._key.begin()
 
-    def _end_frame(self) -> None:
-        if self._length > self._room():
-            self._lose()
-        elif not self._is_dropping:
-            packet = Packet(False, bytes(self._data), self._length)
-            if self.packet is None:
-                self.packet = packet
-            else:
-                self._behind.append(packet)
+    def _end_packet(self, is_text: bool) -> None:
+        packet = Packet(is_text, bytes(self._data), self._length)
         self._length = 0
+        if self._is_dropping:
+            return
+        if self.packet is None:
+            self.packet = packet
+        elif is_text:  # it would come before its turn
+            self.dropped += 1
+        else:
+            self._behind.append(packet)
 
     def _lose(self) -> None:
         """End the open packet, if there is one, before its end."""
-        self.damaged += self._length > 0 and not self._is_dropping
+        self.damaged += self._length > 0
         self._length = 0
 
     def _has_place(self) -> bool:
@@ -188,27 +182,23 @@ class ZeroRun:
         return byte == 0 and self._count == 0
 
 
-class CursorKey:
-    """Finds what a terminal sends for a cursor key: ESC [ parameters letter, or ESC O letter."""
-
-    _ESCAPE = 0x1B
+class KeySequence:
+    """Finds what a terminal sends for a cursor key: ESC [ A, ESC O A, ESC [ 1 ; 5 C."""
 
     def __init__(self) -> None:
-        self._before = 0  # ESC, [ or O of a sequence that goes on, else 0
+        self._is_escape = False  # only the ESC has come
+        self._is_inside = False
 
     def begin(self) -> None:
-        self._before = 0
+        self._is_escape = self._is_inside = False
 
     def put(self, byte: int) -> bool:
-        """Take a byte; return whether it belongs to a sequence."""
-        before, self._before = self._before, 0
-        if byte == self._ESCAPE or (before == self._ESCAPE and byte in b"[O"):
-            self._before = byte
-            return True
-        if before == ord("[") and 0x30 <= byte <= 0x3F:
-            self._before = before
-            return True
-        return before in b"[O" and 0x40 <= byte <= 0x7E
+        """Take a byte; return whether it belongs to a key, or may."""
+        was_escape, was_inside = self._is_escape, self._is_inside
+        self._is_escape = byte == 0x1B
+        is_begun = was_escape and byte in b"[O"
+        self._is_inside = is_begun or (was_inside and 0x20 <= byte < 0x40)
+        return self._is_escape or is_begun or (was_inside and _is_printable(byte))
 
 
 def _is_printable(byte: int) -> bool:

@@ -1,6 +1,7 @@
 """Which lines are typed stops: of all their characters only ASCII letters and digits are looked at.
 
-Knows spellings, no receiver and no time. The C++ version is `vm_arduino/src/link/typed_stop.h`.
+Nothing behind // counts. Knows spellings, no receiver and no time. The C++ version is
+`vm_arduino/src/link/typed_stop.h`.
 """
 
 from __future__ import annotations
@@ -8,29 +9,37 @@ from __future__ import annotations
 import re
 
 _WORDS = re.compile(rb"S+|(?:STOP)+|STOPNOW|ALTO|PARA|PARAR|PARE|DETENTE|HALT")
-_AT_ONCE = re.compile(rb"S[ \t]*S[ \t]*S|STOP[ \t]*STOP", re.IGNORECASE)
-_NO_LETTERS = re.compile(rb"[^A-Za-z0-9]")
-_COMMENT = re.compile(rb"(?:[\0-\x20\x7f]|\xef\xbb\xbf)*//")
+_AT_ONCE = re.compile(rb"SSS|STOPSTOP", re.IGNORECASE)
+_BLANKS = re.compile(rb"[ \t]")
 # what a terminal sends for a cursor key, as far as it has come
-_KEY = re.compile(rb"\x1b(?:\[[0-?]*[@-~]?|O[@-~]?)")
+_KEY = re.compile(rb"\x1b(?:[\[O][ -?]*[@-~]?)?")
+_DELETES = b"\b\x7f"
 _LINE_END = re.compile(rb"[\r\n\0]")
 _CTRL_C = re.compile(rb"\x03+")
 
 
 def is_typed_stop(line: bytes) -> bool:
     """Return whether a line of text, without its end, is a typed stop."""
-    line = _KEY.sub(b"", line)
-    letters = _NO_LETTERS.sub(b"", line).upper()
-    return not _COMMENT.match(line) and _WORDS.fullmatch(letters) is not None
+    letters = bytearray()
+    for byte in _read(line):
+        if byte in _DELETES:
+            del letters[-1:]
+        elif byte < 0x80 and chr(byte).isalnum():
+            letters.append(byte)
+    return _WORDS.fullmatch(letters.upper()) is not None
 
 
 def stops_at_once(line: bytes) -> bool:
     """Return whether what has come of a line stops what runs before the line ends."""
-    line = _KEY.sub(b"", line)
-    return not _COMMENT.match(line) and _AT_ONCE.search(line) is not None
+    return _AT_ONCE.search(_BLANKS.sub(b"", _read(line))) is not None
 
 
 def is_at_stop(data: bytes) -> bool:
     """Return whether text ends with a line that stops what runs if nothing more comes."""
     line = _LINE_END.split(data)[-1]
     return is_typed_stop(line) or stops_at_once(line) or _CTRL_C.fullmatch(line) is not None
+
+
+def _read(line: bytes) -> bytes:
+    """Return what is looked at: no keys, and no comment."""
+    return _KEY.sub(b"", line).partition(b"//")[0]
