@@ -18,6 +18,7 @@ from tests.support.pty_robot import PtyRobot, on, uploading
 from tiniscript import compile_text, robots
 from tiniscript.library import opening
 from tiniscript.link import errors, known_ports, ports, requests
+from tiniscript.link.messages import MAJOR
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import DeviceInfo
 
@@ -165,8 +166,8 @@ def test_nobody_something_else_and_another_version(
     tsc: Tsc, pty_robot: PtyRobot, hasty: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with monkeypatch.context() as newer:
-        newer.setattr("tiniscript.link.handshake.MAJOR", 2)
-        tsc("ping", "--port", pty_robot.port).gives(3, "speaks version 1 of the link")
+        newer.setattr("tiniscript.link.handshake.MAJOR", MAJOR + 1)
+        tsc("ping", "--port", pty_robot.port).gives(3, f"speaks version {MAJOR} of the link")
     pty_robot.switch_off()
     tsc("ping", "--port", pty_robot.port).gives(3, "nothing answers")
     for said in (b"Hello from another sketch\r\n", bytes(range(1, 256)) * 3, b"\xff" * 99):

@@ -22,6 +22,7 @@ from tiniscript.link.messages import (
     BY_NAME,
     KEY_OWNER,
     KEY_TEACHER,
+    MAJOR,
     OWNED,
     SEALS,
     STATE_RUNNING,
@@ -90,7 +91,7 @@ class Between:
         if self.zeros_ms is not None and now_ms >= self.zeros_ms + self.waits_ms:
             epoch = (self.epoch + self.draw.randrange(2)) & 0xFF
             said += encoded(Frame(STOPPED, self.draw.randrange(256), epoch, b"\1", True))
-        return said
+        return b"\0" * bool(said) + said
 
     def changed(self, said: bytes) -> bytes:
         """Return the answers of the robot with bits of HELLO cleared."""
@@ -140,7 +141,7 @@ def talk(between: Between, session: Session, request: PendingRequest[Any] | None
 
 def state_of(end: End) -> int:
     """Return what the robot does; anybody may ask."""
-    end.passes(20, b"\0" + encoded(Frame(HELLO, 1, 0, b"\1" + bytes(5) + b"\1\2\3\4")))
+    end.passes(20, b"\0" + encoded(Frame(HELLO, 1, 0, bytes([MAJOR, *bytes(5), 1, 2, 3, 4]))))
     said = end.passes(20, b"\0" + encoded(Frame(STATUS, 2, 0)))
     frames = [decoded(packet) for packet in said.split(b"\0") if packet]
     return next(frame.payload[1] for frame in frames if frame and frame.number == STATUS)

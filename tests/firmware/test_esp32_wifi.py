@@ -26,7 +26,7 @@ from tiniscript.link import wifi
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, WIFI_RESTS, written
+from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, MAJOR, MINOR, WIFI_RESTS, written
 from tiniscript.link.payloads import WifiReply
 from tiniscript.link.session import Session
 
@@ -247,7 +247,7 @@ def test_no_two_transports_have_the_same_challenge() -> None:
     again = Esp32Robot(kept=robot.kept())  # no challenge before
     again.wait(300)
     hello = written(BY_NAME["HELLO"].request, {
-        "major": 1, "minor": 1, "isa_major": 2, "isa_minor": 0, "kit": 0, "nonce": 5,
+        "major": MAJOR, "minor": MINOR, "isa_major": 2, "isa_minor": 0, "kit": 0, "nonce": 5,
     })  # fmt: skip
     asks = b"\0" + encoded(Frame(1, 1, 0, hello))
     first, second = Bytes(asks), Bytes(asks)

@@ -21,6 +21,7 @@ from tiniscript.link.messages import (
     BY_NAME,
     FIRST_EVENT,
     KEY_TEACHER,
+    MAJOR,
     MESSAGES,
     OF_RADIO,
     OWNERS,
@@ -101,7 +102,8 @@ def test_a_stranger_keeps_no_program_running() -> None:
         recorded(table, session, FOREVER)
         begun_ms = table.robot.now_ms
         if is_greeting:
-            table.robot.wait(5, b"\0" + encoded(Frame(hello, 1, 0, b"\1" + bytes(5) + b"abcd")))
+            payload = bytes([MAJOR, *bytes(5), *b"abcd"])
+            table.robot.wait(5, b"\0" + encoded(Frame(hello, 1, 0, payload)))
         while table.robot.now_ms < begun_ms + 1010:
             table.robot.wait(50, b"\0" + encoded(Frame(ping, 1, 0)))
         assert "MOTORS 0 0" in table.robot.did[-2] + table.robot.did[-1]
@@ -151,7 +153,7 @@ def refused_by_a_stranger(table: Owned, session: Session, is_cut: bool) -> Reply
         if frame and frame.number == BY_NAME["AUTHENTICATE"].number and len(frame.payload) > 1:
             for name in ("WRONG_KEY", "TOO_MANY_TRIES", "STALE", "NOT_OWNER"):
                 said = frame._replace(payload=bytes([STATUSES[name], 4, 0]), is_reply=True)
-                session.receive(encoded(said), table.robot.now_ms)
+                session.receive(b"\0" + encoded(said), table.robot.now_ms)
             data = b"" if is_cut else data
         session.receive(table.robot.step(data), table.robot.now_ms)
     return request.outcome
@@ -178,7 +180,8 @@ def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
     recorded(table, session, FOREVER)
     session.events()
     session.stop(table.robot.now_ms)
-    forged = encoded(Frame(BY_NAME["STOPPED"].number, 9, session._epoch + 1, b"\1", is_reply=True))
+    stopped = Frame(BY_NAME["STOPPED"].number, 9, session._epoch + 1, b"\1", is_reply=True)
+    forged = b"\0" + encoded(stopped)
     for _ in range(500):  # the zeros do not arrive
         session.poll(table.robot.now_ms)
         session.receive(forged, table.robot.now_ms)

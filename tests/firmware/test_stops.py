@@ -100,7 +100,7 @@ def test_a_stop_works_every_time(how: str) -> None:
     """Stop, button, stop, button: whoever stops goes on sending, as where nothing comes back."""
     robot, session = switched_on(), computer()
     waiting(robot, session)
-    stop = bytes(8) if how == "zeros" else encoded(Frame(BY_NAME["STOP"].number, 7, 0))
+    stop = bytes(8) if how == "zeros" else b"\0" + encoded(Frame(BY_NAME["STOP"].number, 7, 0))
     for _ in range(300):  # more often than a number of 8 bits can tell
         robot.push(2)
         assert happened(robot)[-1] == "MOTORS 80 80"

@@ -18,7 +18,7 @@ from tests.support.images import image_of
 from tiniscript import compile_text
 from tiniscript.bytecode.image import HEADER_BYTES
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import BY_NAME, RUN, SAVE
+from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, RUN, SAVE
 from tiniscript.link.requests import OK
 
 TRIALS = 1000  # in the tests; a campaign runs more
@@ -67,7 +67,8 @@ class Trials:
             self.seq, self.epoch, self.heard = 0, 0, b""
         self.lives -= 1
         kit = KIT.fingerprint.to_bytes(2, "little")
-        self.put(self.frame("HELLO", bytes((1, 2, 2, 0)) + kit + self.rng.randbytes(4)), 12)
+        payload = bytes((MAJOR, MINOR, 2, 0)) + kit + self.rng.randbytes(4)
+        self.put(b"\0" + self.frame("HELLO", payload), 12)
 
     def frame(self, name: str, payload: bytes = b"") -> bytes:
         self.seq = (self.seq + 1) % 256

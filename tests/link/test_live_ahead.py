@@ -35,7 +35,7 @@ def greeted(epoch: int = EPOCH) -> CppLink:
     robot = cpp_link()
     robot.begin(epoch=epoch)
     payload = struct.pack("<BBBBHI", messages.MAJOR, 0, ISA_MAJOR, ISA_MINOR, KIT.fingerprint, 7)
-    assert robot.step(0, encoded(Frame(HELLO, 1, 0, payload))).sent
+    assert robot.step(0, b"\0" + encoded(Frame(HELLO, 1, 0, payload))).sent
     return robot
 
 

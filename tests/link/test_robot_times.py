@@ -18,9 +18,9 @@ ANSWERS = 17  # to mistakes, without a pause of five seconds: the last one says 
 def robot_with_session() -> CppLink:
     cpp = cpp_link()
     cpp.begin(kit=KIT)
-    hello = {"major": 1, "minor": 0, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR,
+    hello = {"major": messages.MAJOR, "minor": 0, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR,
              "kit": KIT, "nonce": 3}  # fmt: skip
-    cpp.step(0, encoded(Frame(1, 1, 0, messages.written(BY_NAME["HELLO"].request, hello))))
+    cpp.step(0, b"\0" + encoded(Frame(1, 1, 0, messages.written(BY_NAME["HELLO"].request, hello))))
     return cpp
 
 
@@ -36,8 +36,8 @@ def ends_at(cpp: CppLink, from_ms: int, until_ms: int) -> int | None:
 def test_an_attached_program_ends_a_second_after_the_last_valid_frame(start: int) -> None:
     cpp = robot_with_session()
     live = messages.written(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
-    cpp.step(start, encoded(Frame(8, 2, 10, live)))
-    cpp.step(start + 700, encoded(Frame(2, 3, 10)))
+    cpp.step(start, b"\0" + encoded(Frame(8, 2, 10, live)))
+    cpp.step(start + 700, b"\0" + encoded(Frame(2, 3, 10)))
     cpp.step(start + 900, encoded(Frame(2, 4, 10))[:-2] + b"\1\0")  # damaged: does not count
     assert ends_at(cpp, start + 900, start + 2000) == start + 700 + DEAD_MAN_MS
 

@@ -26,7 +26,7 @@ FORWARD = bytes.fromhex("448c50")  # F(5,80)
 LOW, SAVING = STATUSES["LOW_SUPPLY"], STATUSES["SAVING"]
 
 DESCRIPTION: dict[str, int | bytes] = {
-    "major": 1, "minor": 0, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR, "kit": KIT,
+    "major": messages.MAJOR, "minor": 0, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR, "kit": KIT,
     "id": 7, "nonce": 8,
     "largest": 63, "window": 1, "features": 0, "room": 389, "state": 0, "run": 0, "program": 0,
     "length": 0, "slot": 0, "saved": 0, "fault": 0, "fault_at": 0, "fault_program": 0,

@@ -167,7 +167,7 @@ class Firmware(Nobody):
             )
         else:
             payload = bytes([STATUSES["UNKNOWN_MESSAGE"], 0, 0])
-        return encoded(Frame(frame.number, frame.seq, 7, payload, is_reply=True))
+        return b"\0" + encoded(Frame(frame.number, frame.seq, 7, payload, is_reply=True))
 
 
 QUESTIONS = {BY_NAME[name].number for name in ("HELLO", "STATUS", "PING")}

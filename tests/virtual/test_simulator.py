@@ -13,7 +13,7 @@ from tiniscript.link.messages import BY_NAME
 from tiniscript.virtual import transports as limits
 from tiniscript.virtual.simulator import FULL_BYTES, HEARTBEAT_MS, SILENT_S, Heartbeat, Simulator
 
-PING = encoded(Frame(BY_NAME["PING"].number, 1, 0))
+PING = b"\0" + encoded(Frame(BY_NAME["PING"].number, 1, 0))
 TURNS = 3000  # far more than anything here takes
 
 
