@@ -1,0 +1,237 @@
+"""Everything is text until a 0x00: what arrives of a sender that keeps the rule, and of one that
+does not.
+
+The properties are functions that raise. Each one is seen to hold for the sender of the computer,
+and to fail for a sender that leaves out what it is about.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+
+import pytest
+
+from tests.link.test_large_frames import IMAGE, Answering, Taking
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import (
+    FIRST_EVENT,
+    LARGE_FRAME,
+    MESSAGES,
+    SILENCE_MS,
+    SMALL_FRAME,
+    STOP_BYTES,
+    TEXT_MS,
+    payload_bytes,
+)
+from tiniscript.link.receiver import Receiver
+from tiniscript.link.sender import Sender
+
+SEEDS = 20
+FRAMES = 300  # of a seed
+PAUSES_MS = (0, 1, 5, 100, 200, 399, 400, 401, 700, 999, 1000, 1001, 1099, 1100, 1101, 5000)
+LINES = (b"SI|F(1,60)", b"// OK", b"OK+LOST", b"a\xc3\xb1o = 5", b"F(2,80)", b"1", b";")
+REQUESTS = [each.number for each in MESSAGES if each.number < FIRST_EVENT]
+EVENTS = [each.number for each in MESSAGES if each.number >= FIRST_EVENT]
+
+
+class TextSender(Sender):
+    """Sends text, too, as a robot does."""
+
+    text_ms = TEXT_MS
+
+    def text(self, line: bytes, now_ms: int) -> bytes:
+        """Return a line of text, or nothing where it has to wait behind a frame."""
+        if self._sent_ms is not None and now_ms - self._sent_ms < self.text_ms:
+            return b""
+        self._sent_ms = None  # the next frame needs a 0x00
+        return line + b"\r\n"
+
+
+class Line:
+    """A way from a sender to a receiver, which takes a millisecond for each byte."""
+
+    def __init__(self) -> None:
+        self.receiver = Receiver()
+        self.now_ms = 0
+
+    def put(self, data: bytes) -> tuple[list[Frame | None], list[bytes]]:
+        """Return the frames, None for a damaged one, and the lines that arrive."""
+        frames: list[Frame | None] = []
+        lines: list[bytes] = []
+        for byte in data:
+            self.now_ms += 1
+            self.receiver.put(byte, self.now_ms)
+            packet = self.receiver.take()
+            if packet is None:
+                continue
+            if packet.is_text:
+                lines.append(packet.data)
+            else:
+                frames.append(decoded(packet.data))
+        return frames, lines
+
+
+def random_frame(draw: random.Random) -> Frame:
+    """Return a frame of a computer or of a robot, of any length."""
+    is_reply, is_sealed = draw.random() < 0.5, draw.random() < 0.4
+    most = payload_bytes(draw.choice((SMALL_FRAME, SMALL_FRAME, LARGE_FRAME)))
+    payload = draw.randbytes(draw.randint(0, most))
+    if draw.random() < 0.3:
+        payload = bytes(draw.choice(b"\0\0\r\n S~") for _ in payload)
+    if is_sealed:
+        payload = b"\0" + payload[: most - 1]
+    number = draw.choice(REQUESTS + EVENTS * is_reply)
+    return Frame(number, draw.randrange(256), draw.randrange(256), payload, is_reply, is_sealed)
+
+
+def all_arrive(sender: TextSender, draw: random.Random) -> None:
+    """Frames and lines, whatever the pauses between them."""
+    line = Line()
+    for _ in range(FRAMES):
+        line.now_ms += draw.choice(PAUSES_MS)
+        if draw.random() < 0.3:
+            said = draw.choice(LINES)
+            data = sender.text(said, line.now_ms)
+            assert not data or line.put(data) == ([], [said])
+        else:
+            frame = random_frame(draw)
+            data = sender.frames(encoded(frame), line.now_ms)
+            assert line.put(data) == ([frame], [])
+    assert line.receiver.damaged == line.receiver.dropped == 0
+
+
+def torn_ones_arrive_when_repeated(sender: TextSender, draw: random.Random) -> None:
+    """A pause comes between any two bytes, and ends what came before it; or some bytes are lost."""
+    line = Line()
+    for _ in range(FRAMES):
+        frame = random_frame(draw)
+        data = sender.frames(encoded(frame), line.now_ms)
+        at = draw.randrange(len(data))
+        line.receiver.put(data[0], line.now_ms)  # nobody looks
+        for byte in data[1:at]:
+            line.now_ms += 1
+            line.receiver.put(byte, line.now_ms)
+        line.now_ms += draw.choice((0, 20, 150, 900, SILENCE_MS, 1500))
+        for byte in data[at:] if draw.random() < 0.5 else b"":
+            line.receiver.put(byte, line.now_ms)
+        line.receiver.take()
+        line.now_ms += draw.choice((0, 30, 200))
+        data = sender.frames(encoded(frame), line.now_ms, is_repeated=True)
+        assert line.put(data)[0][-1:] == [frame]
+
+
+def no_two_zeros_come_before_a_frame(sender: TextSender, draw: random.Random) -> None:
+    """Of a session that sends a program over a line that loses much, stops and says HELLO."""
+    lost = tuple(draw.randrange(12) for _ in range(draw.randrange(6)))
+    robot = Answering(Taking(lost), baud=draw.choice((9600, 115_200)))
+    session = robot.session
+    session._sender = sender
+    sent: list[bytes] = []
+    poll = session.poll
+
+    def watched(now_ms: int) -> bytes:
+        data = poll(now_ms)
+        sent.append(data)
+        return data
+
+    session.poll = watched  # type: ignore[method-assign]
+    robot.run(session.upload(IMAGE))
+    robot.now_ms += draw.choice((0, 300, 500))
+    session.stop(robot.now_ms)
+    for _ in range(draw.randrange(1, 20)):
+        session.poll(robot.now_ms)
+        robot.now_ms += 10
+    session._stop.end()
+    session.is_attached = False
+    request = session.hello()
+    robot.run(request, robot.now_ms + 3000)
+    assert any(data == bytes(STOP_BYTES) for data in sent)
+    before = b""
+    for data in sent:
+        zeros = len(data) - len(data.lstrip(b"\0"))
+        assert zeros <= 1 or data == bytes(STOP_BYTES), data.hex()
+        assert b"\0\0" not in data.strip(b"\0"), data.hex()
+        if data and data != bytes(STOP_BYTES):
+            is_begun = before[-1:] == b"\0"
+            assert zeros or is_begun, "the first frame has no 0x00 before it"
+        before = data or before
+
+
+Property = Callable[[TextSender, random.Random], None]
+
+
+@pytest.mark.parametrize("seed", range(SEEDS))
+@pytest.mark.parametrize("law", [
+    all_arrive, torn_ones_arrive_when_repeated, no_two_zeros_come_before_a_frame
+])  # fmt: skip
+def test_a_sender_that_keeps_the_rule(law: Property, seed: int) -> None:
+    law(TextSender(), random.Random(seed))
+
+
+class Late(TextSender):
+    """Sends a 0x00 only where the receiver takes what comes for text already."""
+
+    def frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
+        if self._sent_ms is not None and not is_repeated:
+            self._sent_ms = max(self._sent_ms, now_ms - 399) if now_ms < self._sent_ms + 3000 else 0
+        return super().frames(frames, now_ms, is_repeated)
+
+
+class WithoutFirst(TextSender):
+    """Sends none before the first frame, and none behind text."""
+
+    def frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
+        self._sent_ms = now_ms if self._sent_ms is None else self._sent_ms
+        return super().frames(frames, now_ms, is_repeated)
+
+
+class WithoutRepeated(TextSender):
+    """Sends none before a frame that is repeated."""
+
+    def frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
+        return super().frames(frames, now_ms, False)
+
+
+class Twice(TextSender):
+    """Sends one for each reason."""
+
+    def frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
+        return b"\0" * is_repeated + super().frames(frames, now_ms, False)
+
+
+class Hasty(TextSender):
+    """Sends text right behind a frame."""
+
+    text_ms = 100
+
+
+@pytest.mark.parametrize(("law", "sender"), [
+    (all_arrive, Late), (all_arrive, WithoutFirst), (all_arrive, Hasty),
+    (torn_ones_arrive_when_repeated, WithoutRepeated),
+    (no_two_zeros_come_before_a_frame, Twice),
+])  # fmt: skip
+def test_a_sender_that_does_not_is_noticed(law: Property, sender: type[TextSender]) -> None:
+    def fails(seed: int) -> bool:
+        try:
+            law(sender(), random.Random(seed))
+        except AssertionError:
+            return True
+        return False
+
+    assert any(map(fails, range(SEEDS)))
+
+
+def test_heartbeats_cost_no_zero_and_the_rule_looks_at_what_was_sent() -> None:
+    sender = Sender()
+    assert sender.frames(b"a\0", 0) == b"\0a\0"  # nothing was sent before
+    for now_ms in range(200, 2000, 200):
+        assert sender.frames(b"a\0", now_ms) == b"a\0"
+    assert sender.frames(b"a\0", 2199) == b"a\0"
+    assert sender.frames(b"a\0", 2599) == b"\0a\0"
+    assert sender.frames(b"a\0", 2600, is_repeated=True) == b"\0a\0"
+    assert sender.frames(b"a\0", 3000, is_repeated=True) == b"\0a\0"  # two reasons, one 0x00
+    assert sender.zeros(bytes(8), 3001) == bytes(8)
+    assert sender.frames(b"a\0", 3400, is_repeated=True) == b"a\0"  # one was sent last
+    assert sender.zeros(bytes(8), 3401) == bytes(8)
+    assert sender.frames(b"a\0", 3801) == b"\0a\0"
