@@ -114,7 +114,7 @@ def check_answers(items: list[tuple[int, int, bytes, bool]]) -> None:
             if session.poll(now_ms):
                 seq = (seq + 1) & 0xFF
         frame = Frame(number, (seq + delta) & 0xFF, delta & 0xFF, payload, is_reply=True)
-        session.receive(encoded(frame) if is_frame else payload + b"\0", now_ms)
+        session.receive(b"\0" + encoded(frame) if is_frame else payload + b"\0", now_ms)
         session.events()
         now_ms += 10 * (delta & 0x1F)
     session.stop(now_ms)

@@ -41,6 +41,7 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.receiver import LARGE_PACKET, SMALL_PACKET, Receiver
 from tiniscript.link.requests import OK
+from tiniscript.link.sender import Sender
 from tiniscript.link.session import Session
 from tiniscript.link.sharing.protocol import of_event
 from tiniscript.link.statuses import name_of
@@ -205,7 +206,7 @@ def meaning(packet: bytes) -> str:
     body = packet.rstrip(b"\0")
     if not body:
         return ""
-    if body[0] >= 0x41 or re.fullmatch(rb"(?:[\x20-\x7e]+\r\n)+", body):
+    if body[0] >= 0x41 or re.match(rb"[\r\n]*[ -~](?:[ -~\r\n]|\Z)", body):  # no frame begins so
         return repr(body.decode("latin-1"))
     frame = decoded(body)
     return "damaged" if frame is None else frame_text(frame)
@@ -303,13 +304,16 @@ def _said(head: str, values: Mapping[str, int | bytes]) -> str:
     return " ".join([head, *(f"{name}={shown(value)}" for name, value in values.items())])
 
 
-class Sender:
-    """No session: frames and bytes as the rows want them."""
+class HandSender:
+    """No session: frames and bytes as the rows want them, with a 0x00 before frames by the rule."""
 
     def __init__(self) -> None:
+        self.sender = Sender()
         self.data = b""
+        self.is_frame = self.is_hello = False
 
     def asked(self, words: list[str]) -> None:
+        self.is_frame = words[0] == "sends"
         if words[0] == "bytes":
             self.data = bytes.fromhex(" ".join(words[1:]))
             return
@@ -327,10 +331,16 @@ class Sender:
             if field.name in texts
         }
         payload = written(message.request, values)
+        self.is_hello = name == "HELLO"
         self.data = encoded(Frame(message.number, int(seq), int(epoch), payload))
 
     def poll(self, now_ms: int) -> bytes:
         data, self.data = self.data, b""
+        if data and self.is_frame:
+            return self.sender.frames(data, now_ms, self.is_hello)
+        if data.endswith(b"\0"):
+            return self.sender.zeros(data, now_ms)
+        self.sender = Sender() if data else self.sender  # text: the next frame needs a 0x00
         return data
 
     def receive(self, data: bytes, now_ms: int) -> None: ...
@@ -338,8 +348,8 @@ class Sender:
         return []
 
 
-def computer_of(case: LinkCase) -> Sender | SessionSide:
-    return SessionSide() if has_session(case) else Sender()
+def computer_of(case: LinkCase) -> HandSender | SessionSide:
+    return SessionSide() if has_session(case) else HandSender()
 
 
 def has_session(case: LinkCase) -> bool:

@@ -40,7 +40,7 @@ void look_at_sent() {
     const std::string packet = sent.substr(begin, k - begin);
     begin = k + 1;
     if (packet.empty()) continue;
-    if (static_cast<uint8_t>(packet[0]) >= kTextFrom || packet[0] == '/') continue;  // text
+    if (packet.size() > 1 && (packet[1] & kReply) == 0) continue;  // text
     uint8_t bytes[kPacketBytes];
     must(packet.size() <= sizeof bytes);
     memcpy(bytes, packet.data(), packet.size());
