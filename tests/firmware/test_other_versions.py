@@ -8,28 +8,26 @@ from struct import pack as struct_pack
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT, computer, happened, send, switched_on
+from tests.firmware.test_host_firmware import computer, happened, send, switched_on
 from tests.firmware.test_persistence import EACH, FIRST, SECOND, bytes_of, saved
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.images import image_of
-from tests.support.owners import Keys
 from tiniscript.bytecode.image import REFUSALS, pack, sealed, unpack
-from tiniscript.link.authority import FREE, OF_ANOTHER, RobotKey, whose
-from tiniscript.link.messages import KEY_OWNER
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 OTHER_VERSION = REFUSALS["OTHER_VERSION"][0]
-# `F(5, 80)`, as version 0.1.0 has compiled it.
-OLD = bytes.fromhex("54530100000000000300101604fa443250")
-MOST_OLD = 430  # bytes of code
-OWNER = SECOND - 40  # where the first slot of the keys lies
+# `F(5, 80)`, as version 0.1.0 has compiled it: it does not say how long its header is.
+VERSION_1 = bytes.fromhex("54530100000000000300101604fa443250")
 
 
-def old(code: bytes, start: int = 0) -> bytes:
-    """Return an image of version 0.1.0: a header of 14 bytes, the checksum at its end."""
-    head = b"TS\1\0" + struct_pack("<BBHH", start, 0, 0, len(code))
-    return head + struct_pack("<I", zlib.crc32(head + code)) + code
+def version_3(code: bytes, start: str = "SI") -> bytes:
+    """Return an image of a later version, 3.0."""
+    image = pack(start, 0, code)
+    return sealed(image[:2] + b"\3\0" + image[4:])
+
+
+VERSION_3 = version_3(b"\x44\x32\x50")
 
 
 def kept(*slots: tuple[int, int, bytes]) -> bytes:
@@ -49,15 +47,10 @@ def met(memory: bytes) -> tuple[HostFirmware, Session]:
     return robot, session
 
 
-def test_what_0_1_0_has_made_is_known() -> None:
-    assert old(OLD[14:]) == OLD
-
-
 @pytest.mark.parametrize("place", [FIRST, SECOND])
-@pytest.mark.parametrize("length", [0, 3, 389, MOST_OLD])
+@pytest.mark.parametrize("length", [0, 3, 389])
 def test_a_robot_says_that_its_program_is_of_another_version(place: int, length: int) -> None:
-    """Up to the largest one of 0.1.0, which reaches into the slot behind it."""
-    memory = kept((place, 7, old(random.Random(length).randbytes(length))))
+    memory = kept((place, 7, version_3(random.Random(length).randbytes(length))))
     robot, session = met(memory)
     assert saved(robot, session) == "OTHER_VERSION"
     for ask in (session.start, session.fetch):
@@ -67,11 +60,11 @@ def test_a_robot_says_that_its_program_is_of_another_version(place: int, length:
     robot.push()
     robot.wait(500)
     assert not [line for line in robot.did if "MOTORS" in line]
-    assert robot.memory()[place : place + length + 18] == memory[place : place + length + 18]
+    assert robot.memory()[place : place + length + 19] == memory[place : place + length + 19]
 
 
 def test_the_next_program_replaces_it() -> None:
-    robot, session = met(kept((FIRST, 0, old(bytes(20), 1)), (SECOND, 1, OLD)))
+    robot, session = met(kept((FIRST, 0, version_3(bytes(20), "SB")), (SECOND, 1, VERSION_3)))
     assert saved(robot, session) == "OTHER_VERSION"
     image = image_of("SB|F(0.1, 60)")
     assert robot.until(session, session.upload(image)) == OK
@@ -82,12 +75,19 @@ def test_the_next_program_replaces_it() -> None:
     assert again.done(session, session.fetch()).image[15:] == image.code
 
 
+@pytest.mark.parametrize("place", [FIRST, SECOND])
+def test_a_program_of_version_1_counts_as_none(place: int) -> None:
+    robot, session = met(kept((place, 7, VERSION_1)))
+    assert saved(robot, session) == "NOTHING"
+    assert robot.memory()[place : place + 2] == b"\xff\xff", "the slot is empty"
+
+
 def test_one_of_this_version_before_it_counts() -> None:
     mine = bytes_of("SB|F(0.1, 60)")
-    robot, session = met(kept((FIRST, 3, mine), (SECOND, 4, OLD)))
+    robot, session = met(kept((FIRST, 3, mine), (SECOND, 4, VERSION_3)))
     assert saved(robot, session) == "STORED"
     later = sealed(mine[:3] + b"\2" + mine[4:])  # of a later minor version
-    robot, session = met(kept((FIRST, 3, later), (SECOND, 2, OLD)))
+    robot, session = met(kept((FIRST, 3, later), (SECOND, 2, VERSION_3)))
     assert saved(robot, session) == "OTHER_VERSION"
 
 
@@ -103,8 +103,8 @@ def test_a_program_with_a_longer_header_is_run() -> None:
 
 
 def test_name_and_trim_outlive_an_update() -> None:
-    """They lie where they lay: what version 0.1.0 has kept is found."""
-    robot, session = met(kept((FIRST, 0, OLD)))
+    """They lie where they lay, whatever version the program is of."""
+    robot, session = met(kept((FIRST, 0, VERSION_3)))
     assert robot.until(session, session.name(b"Ada")) == OK
     memory = bytearray(robot.memory())
     assert memory[4 : 4 + EACH] != EMPTY[4 : 4 + EACH]
@@ -139,18 +139,3 @@ def test_a_pace_that_other_firmware_has_kept_is_none(pace: tuple[int, int]) -> N
     robot.talk(session, 1000)
     begun, ended = [int(line.split()[0]) for line in robot.did if "MOTORS" in line][-2:]
     assert ended - begun == pytest.approx(741, abs=2)
-
-
-def test_an_owner_beside_a_program_of_version_0_1_0_gives_the_robot_up() -> None:
-    """That program lies over the other slot of the keys, which has no generation then."""
-    key, keys = bytes(range(1, 17)), Keys()
-    body = key + bytes(16)
-    record = struct_pack("<I", zlib.crc32(body)) + body
-    memory = kept((SECOND, 1, old(bytes(MOST_OLD))), (OWNER, 31, record))
-    robot, session = met(memory)
-    assert session.robot and whose(session.robot) == OF_ANOTHER
-    keys.found = [RobotKey(session.robot.id, KEY_OWNER, key)]
-    session = Session(8, 9600, KIT.fingerprint, keys=keys)
-    assert robot.until(session, session.disown(KEY_OWNER)) == OK
-    _, session = met(robot.memory())
-    assert session.robot and whose(session.robot) == FREE

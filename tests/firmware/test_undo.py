@@ -22,7 +22,7 @@ from tests.firmware.test_host_firmware import (
     stored,
     switched_on,
 )
-from tests.firmware.test_other_versions import OLD, kept
+from tests.firmware.test_other_versions import VERSION_3, kept
 from tests.firmware.test_persistence import (
     DRIVES,
     FIRST,
@@ -69,7 +69,7 @@ def with_byte(text: str, at: int, value: int) -> bytes:
 OF_ANOTHER_KIT = sealed(with_byte("SI|SHOW(DISTANCE)", 6, 0x11))  # a byte of what it needs
 THAT_NO_VERIFIER_TAKES = sealed(with_byte(A, -1, 0xFE))
 CANNOT_RUN = {
-    "old": OLD,
+    "version": VERSION_3,
     "kit": OF_ANOTHER_KIT,
     "minor": sealed(with_byte(A, 3, ISA_MINOR + 1)),
     "verifier": THAT_NO_VERIFIER_TAKES,

@@ -74,10 +74,7 @@ Content read(const Store& store, Area area) {
     }
     found.push_back(byte);
     if (area == Area::kProgram && found.size() == kHeaderBytes) {
-      // of version 1 the header ends with the checksum, and says nothing of its length
-      const bool is_old = found[kHeaderLengthAt] == 0;
-      length = is_old ? kBehindChecksum : found[kHeaderLengthAt];
-      length += found[kCodeLengthAt] + found[kCodeLengthAt + 1] * 256U;
+      length = found[kHeaderLengthAt] + found[kCodeLengthAt] + found[kCodeLengthAt + 1] * 256U;
       if (length < kMemoryBytes) found.reserve(length);
     }
   }

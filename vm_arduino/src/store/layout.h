@@ -68,15 +68,13 @@ constexpr uint8_t kFirstOwnerSlot = 2 + kSmallRecords;
 constexpr uint16_t kProgramsBegin = kRecordsBegin + kSmallRecords * kRecordSlot;
 constexpr uint16_t kProgramDistance = (kMemoryBytes - kProgramsBegin) / 2;
 
-// After each of the two programs is a slot of the record kOwner. Programs stay where version 1 put
-// them, whose images may reach into it.
+// After each of the two programs is a slot of the record kOwner.
 constexpr uint8_t kOwnerSlot = kBodyAt + kOwnerBytes;
 constexpr uint16_t kProgramSlot = kProgramDistance - kOwnerSlot;
 
 // The largest image and the largest program that can be saved.
 constexpr uint16_t kImageBytes = kProgramSlot - kBodyAt;
 constexpr uint16_t kStoredCodeBytes = kImageBytes - kHeaderBytes;
-constexpr uint16_t kOldImageBytes = kProgramDistance - kBodyAt;
 
 constexpr uint16_t place_of(uint8_t slot) {
   return static_cast<uint16_t>(slot < 2 ? kProgramsBegin + slot * kProgramDistance

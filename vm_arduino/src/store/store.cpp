@@ -19,7 +19,6 @@ constexpr uint8_t kEmptied = 0xff;
 // The known state of a slot: its generation, or that it holds nothing.
 constexpr uint8_t kRefused = kGenerations;  // added to the generation: the slot does not count
 constexpr uint8_t kNothing = 0xff;
-constexpr uint8_t kOverlaid = 0xfe;  // the program of version 1 before the slot reaches into it
 
 // The write steps of a slot. `docs/store.md` says why they come in this order.
 enum class WriteStep : uint8_t {
@@ -107,16 +106,12 @@ tini_noinline uint32_t checksum(uint32_t crc, uint16_t place, uint16_t at, uint1
   return crc;
 }
 
-// The length of an image, or 0 if it does not fit. An image of version 1 does not state the length
-// of its header, which ends with the checksum.
+// The length of an image, or 0 if it is none or does not fit. Images of version 1 are none: they
+// state no length of a header.
 uint16_t image_bytes(uint8_t header, uint8_t low, uint8_t high) {
-  uint16_t most = kImageBytes;
-  if (header < kHeaderBytes) {
-    header = kBehindChecksum;
-    most = kOldImageBytes;
-  }
+  if (header < kHeaderBytes) return 0;
   const uint16_t code = static_cast<uint16_t>(low | high << 8);
-  return code > most - header ? 0 : plus(code, header);
+  return code > kImageBytes - header ? 0 : plus(code, header);
 }
 
 bool is_program(uint8_t slot) { return slot < 2; }
@@ -283,11 +278,6 @@ tini_noinline bool Store::is_in(uint8_t slot, const uint8_t* bytes, uint16_t cou
 void Store::look() {
   const uint16_t place = place_;
   uint8_t& held = held_[slot_];
-  step_ = kEmptyingEnd;
-  if (held == kOverlaid) {
-    held = kNothing;
-    return;
-  }
   const uint8_t generation = nvm_read(place);
   const uint8_t first = nvm_read(place + 1);
   const uint8_t mark = generation ^ kMarkOf;
@@ -320,9 +310,7 @@ bool Store::is_sound() {
   const uint16_t behind = plus(check, kCheckBytes);
   uint32_t crc = checksum(0, place_, 0, check);
   crc = checksum(crc, place_, behind, length);
-  if (checksum(crc, place_, check, behind) != kBehindItself) return false;
-  if (length > kImageBytes) held_[slot_ + kFirstOwnerSlot] = kOverlaid;
-  return true;
+  return checksum(crc, place_, check, behind) == kBehindItself;
 }
 
 // The slot of an area with the latest generation below `end`.

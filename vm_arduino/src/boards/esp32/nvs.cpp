@@ -56,8 +56,7 @@ uint16_t room_of(uint8_t slot) {
   return slot < 2 ? kProgramSlot - kBodyAt : kRecordBytes;
 }
 
-// The slot of a place. A program of version 1 could reach behind its slot, but none is on this
-// chip.
+// The slot of a place.
 uint8_t slot_of(uint16_t place) {
   for (uint8_t slot = 0; slot < kSlots; slot++) {
     const uint16_t begin = place_of(slot);
