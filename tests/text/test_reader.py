@@ -246,6 +246,17 @@ def test_limits_of_the_language(right: str, wrong: str) -> None:
     assert one(wrong).problem == "LIMIT"
 
 
+def test_a_name_may_begin_in_the_deepest_block() -> None:
+    """All that waits makes room for it: 16 blocks that count, and a DEF."""
+    begin, end = "DEF A;" + "LOOP(2);" * 16, "END_LOOP;" * 16 + "END_DEF;A"
+    early, late = (
+        [row.split()[0] for row in code_of(text + end)]
+        for text in (f"V=1;{begin}S;", f"{begin}V=1;S;")
+    )
+    opened = 2 + 1 + 2 * 16
+    assert late == early[2:opened] + early[:2] + early[opened:]
+
+
 def test_at_most_255_bytes_of_code() -> None:
     assert len(one("S;" * 255).code) == 255
     assert one("S;" * 256).problem == "FULL"

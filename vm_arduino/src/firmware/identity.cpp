@@ -3,6 +3,7 @@
 #include "../link/frames.h"
 #include "../link/text_level.h"
 #include "../store/layout.h"
+#include "../vm/small.h"
 #include "firmware.h"
 #include "persistence.h"
 #include "state.h"

@@ -1,8 +1,8 @@
 #include "persistence.h"
 
-#include "../link/frames.h"
 #include "../store/nvm.h"
 #include "../vm/flags.h"
+#include "../vm/small.h"
 #include "identity.h"
 #include "program.h"
 #include "run.h"

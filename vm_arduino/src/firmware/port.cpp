@@ -78,6 +78,7 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 #else
   *has_room = false;
   *room = sizeof live - kHeaderBytes;
+  static_assert(sizeof live - kHeaderBytes <= 255, "a reader moves out of it");
   if (is_image_running(live)) return nullptr;
   link.drop_ahead();
   return live;

@@ -19,11 +19,6 @@ uint8_t seed_of(uint8_t type) {
 
 }  // namespace
 
-tini_noinline void copy_bytes(const void* from, uint8_t* to, uint8_t length) {
-  const uint8_t* bytes = static_cast<const uint8_t*>(from);
-  while (length-- != 0) *to++ = *bytes++;
-}
-
 tini_noinline bool same_bytes(const uint32_t* number, const uint8_t* bytes) {
   const uint8_t* here = reinterpret_cast<const uint8_t*>(number);
   for (uint8_t k = 0; k < sizeof *number; k++) {

@@ -29,7 +29,6 @@ inline bool is_large(uint8_t end) {
 inline uint8_t payload_at(uint8_t end) { return is_large(end) ? kPayloadAt + 1 : kPayloadAt; }
 
 // Numbers are little-endian on the wire and in the memory of every supported chip.
-void copy_bytes(const void* from, uint8_t* to, uint8_t length);
 bool same_bytes(const uint32_t* number, const uint8_t* bytes);
 uint16_t get16(const uint8_t* bytes);
 uint32_t get32(const uint8_t* bytes);

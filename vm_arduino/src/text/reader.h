@@ -47,7 +47,8 @@ class Reader {
   // Takes a byte. CR, LF or both end a line.
   tini_noinline Text put(uint8_t byte);
 
-  // Goes on in another buffer. The words that were read last are forgotten.
+  // Goes on in another buffer. The words that were read last are forgotten. The one before has at
+  // most 255 bytes, and lies elsewhere.
   void move(uint8_t* buffer, uint16_t room);
 
   // Whether its first instruction has been read, or the buffer may be too small for it.

@@ -40,8 +40,8 @@ tini_noinline void Reader::move(uint8_t* buffer, uint16_t room) {
 #endif
   uint8_t* const end = buffer + room;
   const ptrdiff_t way = end - end_;
-  __builtin_memmove(buffer, buffer_, static_cast<size_t>(length_ + letters_));
-  __builtin_memmove(stack_ + way, stack_, static_cast<size_t>(end_ - stack_));
+  copy_bytes(buffer_, buffer, static_cast<uint8_t>(length_ + letters_));
+  copy_bytes(stack_, stack_ + way, static_cast<uint8_t>(end_ - stack_));
   if (kReadsDefs && def_ != nullptr) {
     def_ = reinterpret_cast<Def*>(reinterpret_cast<uint8_t*>(def_) + way);
   }

@@ -111,14 +111,16 @@ void Reader::find_name() {
 
 // Adds the word as a name, `more` bytes before its letters.
 void Reader::add_name(uint8_t info, uint8_t more) {
+  // At the begin of an instruction only blocks wait: those that are counted, and a DEF.
+  static_assert((kBlocks + 1) * sizeof(Block) <= 255, "what waits is copied at once");
   const uint16_t bytes = static_cast<uint16_t>(1 + more + letters_);
   if (!has_room(static_cast<uint16_t>(letters_ + bytes - 1))) return;
   uint8_t* const waits = stack_ - bytes;
-  __builtin_memmove(waits, stack_, static_cast<size_t>(names_ - stack_));
+  copy_bytes(stack_, waits, static_cast<uint8_t>(names_ - stack_));
   stack_ = waits;
   names_ -= bytes;
   *names_ = info;
-  __builtin_memmove(names_ + 1 + more, buffer_ + length_, letters_);
+  copy_bytes(buffer_ + length_, names_ + 1 + more, letters_);
 }
 
 }  // namespace tiniscript
