@@ -12,10 +12,12 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import Done
+from tests.support.needs import need
 from tests.support.platformio import OFFLINE, SKETCH, copied, pio, prepared
 from tiniscript import compile_text, robots
 from tiniscript.cli import main
 from tools.bench.firmware_size import environments
+from tools.builds.platformio_offline import ARDUINO, BOARDS, DEBIAN
 
 FLASH_BYTES, RAM_BYTES = 32_256, 2048  # of an Uno
 
@@ -86,6 +88,13 @@ SKETCHES = ("uno", "nano", "mega", "nano_liner", "mega_liner", "mega_grabber", "
 
 NEW_NANOS = {"nano_new": "nano", "nano_new_liner": "nano_liner",
              "nano_new_tinibot2": "nano_tinibot2"}  # fmt: skip
+# Boards of PlatformIO, and where Arduino's `boards.txt` has them.
+ARDUINO_BOARDS = {
+    "uno": "uno",
+    "nanoatmega328": "nano.menu.cpu.atmega328old",
+    "nanoatmega328new": "nano.menu.cpu.atmega328",
+    "megaatmega2560": "mega.menu.cpu.atmega2560",
+}
 # Their platform cannot be had everywhere: tests/firmware/test_esp32_builds.py builds them.
 ESP32 = {"esp32dev": "tinibot32", "esp32c3": "tinibotc3"}
 
@@ -125,6 +134,17 @@ def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None
         )
 
 
+@pytest.mark.parametrize(("board", "arduino"), ARDUINO_BOARDS.items())
+def test_a_board_holds_what_its_fuses_leave(board: str, arduino: str) -> None:
+    """The bootloader's section is that of its high fuse, whatever the bootloader takes of it."""
+    found = ARDUINO / "boards.txt"
+    need("" if found.exists() else f"{DEBIAN[ARDUINO]} is not installed")
+    rows = dict(re.findall(rf"^{re.escape(arduino)}\.(\S+)=(\S+)$", found.read_text("utf-8"), re.M))
+    flash, least = {"atmega328p": (32_768, 512), "atmega2560": (262_144, 1024)}[rows["build.mcu"]]
+    section = least << (~int(rows["bootloader.high_fuses"], 16) >> 1 & 3)
+    assert BOARDS[board][4] == flash - section == int(rows["upload.maximum_size"])
+
+
 @pytest.mark.sampled(of="builds of PlatformIO", keep=2)
 @pytest.mark.parametrize(("new", "old"), NEW_NANOS.items())
 def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
@@ -139,7 +159,7 @@ def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
         made.append((project / ".pio" / "build" / name / "firmware.hex").read_bytes())
     assert made[0] == made[1]
     assert "nanoatmega328new" in pio(project, "project", "config").out.partition(f"env:{new}\n")[2]
-    assert held == [32_256, 30_720]  # bytes that the bootloader leaves
+    assert held == [30_720] * 2
 
 
 @pytest.mark.sampled(of="builds of PlatformIO", keep=2)

@@ -85,9 +85,8 @@ def main() -> int:
         sizes = f"{sketch.flash:,} | {sketch.holds:,} | {sketch.ram:,}"
         print(f"| {sketch.robot} | {sketch.board} | {sizes} | {free} |")
     print(
-        f"\nBytes; of a Nano with an old bootloader, a new one leaves 32,256. "
-        f"{firmware_stack.LEAST_FREE} must stay free where the deepest interrupt comes in the "
-        "deepest place of the program."
+        f"\nBytes. {firmware_stack.LEAST_FREE} must stay free where the deepest interrupt comes "
+        "in the deepest place of the program."
     )
     if uno.missing():
         print(uno.missing())

@@ -93,7 +93,7 @@ def _pins(*parts: int | range) -> frozenset[int]:
 # reset; 18 and 19 are its own USB, and 19 is pulled up until the firmware runs. So is 6, for JTAG.
 _ESP32 = _pins(0, 2, 4, 5, range(12, 20), 21, 22, 23, 25, 26, 27, 32, 33)
 _ESP32C3 = _pins(range(11), 18, 19)
-# Bits of `needs`. A Nano's old bootloader leaves no room for tasks.
+# Bits of `needs`. A Nano's bootloader leaves no room for tasks.
 _TASKS, _WAYS = 1, 2
 
 

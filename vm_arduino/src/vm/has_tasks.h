@@ -3,7 +3,7 @@
 //
 // Tasks take about 1,200 bytes of flash and 88 of RAM. An Uno has them with the compiler's options
 // of platformio.ini (`tiniscript_with_tasks`). With those of the Arduino IDE it has none, nor has a
-// Nano, whose old bootloader leaves 30,720 bytes.
+// Nano, whose bootloader leaves 30,720 bytes.
 //
 // An ATmega328P has discs in the place of the reader of text (`tiniscript_with_discs`).
 
