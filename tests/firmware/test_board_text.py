@@ -109,6 +109,13 @@ def test_a_wrong_line_leaves_what_runs_where_there_is_room_for_two(robot: Uno) -
     assert states(robot) == FORWARD
 
 
+def test_an_uno_has_the_texts_that_it_can_say(sketch: Path) -> None:
+    """The reasons of a DEF, other levels and discs take no flash."""
+    firmware = sketch.read_bytes()
+    assert packed(rows("en", is_small=True)).texts in firmware
+    assert packed(rows("en")).texts not in firmware
+
+
 @pytest.mark.sampled(of="long ways of a chip")
 def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Path) -> None:
     """As `tsc firmware` makes it. The other language takes no flash."""

@@ -8,12 +8,24 @@ from tools.generate.packed_texts import DEEPEST, END, FIRST_LETTER, Pair, packed
 from tools.generate.remark_tables import rows
 
 
+@pytest.mark.parametrize("is_small", [False, True])
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_what_a_robot_says_comes_back(language: str) -> None:
-    said = rows(language)
+def test_what_a_robot_says_comes_back(language: str, is_small: bool) -> None:
+    said = rows(language, is_small)
     data = packed(said)
     assert unpacked(data) == said
     assert data.size < 0.75 * sum(len(text) + 1 for text in said)
+
+
+def test_what_a_small_robot_never_says() -> None:
+    """All that it says keeps its number."""
+    every, few = rows("en"), rows("en", is_small=True)
+    unsaid = [text for text, kept in zip(every, few, strict=True) if text != kept]
+    assert unsaid == [
+        "DEF goes outside blocks", ", text mega", ", text esp32", "STUCK", "STUCK_LEFT",
+        "STUCK_RIGHT",
+    ]  # fmt: skip
+    assert set(few) == {*every, ""} - {*unsaid}
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,11 @@ from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.codegen.text.problems import PROBLEMS, REMARKS, said
 from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answered, language_number
+from tiniscript.robots.text_levels import LEVELS
 from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, packed
 from tools.generate.text_tables import bytes_of_table, file_of, numbers_of
+
+SMALLEST = "uno"
 
 
 def remarks_header(command: str) -> str:
@@ -60,11 +63,30 @@ def texts_header(command: str) -> str:
     )
 
 
-def rows(language: str) -> list[str]:
-    """Return all that a robot says in a language, in the order of the table."""
+def rows(language: str, is_small: bool = False) -> list[str]:
+    """Return all that a robot says in a language, in the order of the table.
+
+    `is_small`: what an ATmega328P never says is empty, so that all others keep their numbers.
+    """
     names = [name for _, name, _ in sorted((*FAULTS, *LINK_FAULTS))]
-    problems = (said("problem", each, language) for each in PROBLEMS)
-    return [*problems, *(said("remark", each, language) for each in REMARKS), *names]
+    rows = [("problem", each) for each in PROBLEMS] + [("remark", each) for each in REMARKS]
+    unsaid = _unsaid() if is_small else set()
+    return [
+        *("" if each in unsaid else said(*each, language) for each in rows),
+        *("" if ("fault", each) in unsaid else each for each in names),
+    ]
+
+
+def _unsaid() -> set[tuple[str, str]]:
+    """Return what a robot of the smallest level never says.
+
+    Its own level is the only one, it has no place for words that it does not read, and with discs
+    on its wheels it reads no text.
+    """
+    levels = {("remark", f"LEVEL_{name.upper()}") for name in LEVELS if name != SMALLEST}
+    words = {("problem", name) for name in PROBLEMS if name in LEVELS[SMALLEST].lacks}
+    faults = {("fault", name) for _, name, _ in FAULTS if name.startswith("STUCK")}
+    return levels | words | faults
 
 
 def texts(command: str) -> str:
@@ -76,7 +98,21 @@ def texts(command: str) -> str:
         [
             "namespace {",
             "",
+            "#ifdef tiniscript_has_discs",
+            "",
             *(row for each in answered() for row in (*_tables(each, rows(each)), "")),
+            "#else",
+            "",
+            "// An ATmega328P that reads text: what it never says is empty.",
+            'static_assert(!kReadsDefs, "it never says where a DEF goes");',
+            "",
+            *(
+                row
+                for each in answered()
+                for row in (*_tables(each, rows(each, is_small=True)), "")
+            ),
+            "#endif",
+            "",
             "}  // namespace",
             "",
             *_chosen("packed_texts()", ""),
@@ -85,7 +121,9 @@ def texts(command: str) -> str:
             "",
             *_chosen("pair_of(uint8_t code)", "Pairs", "[code - 1]"),
         ],
+        "../vm/has_tasks.h",
         "kit_words.h",
+        "reader.h",
     )
 
 
