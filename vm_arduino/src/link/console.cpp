@@ -54,7 +54,7 @@ void Console::discard() {
   left_ms_[kWait] = kSilenceMs;
   is_discarding_ = true;
   is_brief_ = has_told_ = is_open_ = false;
-  refused_ = has_tail_ ? Remark::kPause : Remark::kNone;  // the rest of a line is none
+  refused_ = tail_ != Remark::kNone ? Remark::kPause : Remark::kNone;  // the rest of a line is none
   remark_ = Remark::kNone;
   help_ = nullptr;
 }
@@ -94,16 +94,20 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
       return is_in_block() ? Act::kEnd : Act::kStop;
     }
     if (byte == kLineCut) {
-      const bool is_lost = receiver->take_lost();
-      if (is_lost) is_ignoring_ = true;  // the line may have opened a block
-      const bool is_told = !is_discarding_ && !is_chatter();
+      // Of a 0x00 it is told a moment later, unless a client comes.
+      tail_ = is_chatter() ? Remark::kNone : Remark::kNoZero;
       drop();
-      if (is_told) tell(is_lost ? Remark::kCut : Remark::kNoZero, is_heard);
-    } else if (byte != kLineEnd) {
+      if (receiver->take_lost()) {
+        is_ignoring_ = true;  // the line may have opened a block
+        if (!is_discarding_) tell(Remark::kCut, is_heard);
+        tail_ = Remark::kNone;
+      }
+    } else if (byte == kLineEnd) {
+      tail_ = Remark::kNone;
+    } else {
       take(byte, is_heard);
       continue;
     }
-    has_tail_ = false;
     const Act act = byte == kLineEnd ? end_line(is_heard) : Act::kNone;
     refused_ = Remark::kNone;
     begins_ = 1;
@@ -118,12 +122,13 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
     is_silent_ = true;
     is_ignoring_ = false;
     if (is_open_ && is_waiting_) say(Remark::kWaiting);
-  } else if (left_ms <= kPatienceMs - kTailMs && has_tail_ && !is_unended()) {
-    has_tail_ = false;
+  } else if (tail_ != Remark::kNone && !is_unended() &&
+             left_ms <= kPatienceMs - (tail_ == Remark::kEnter ? kTailMs : kZeroMs)) {
     if (!is_waiting_) {
-      if (!is_chatter()) tell(Remark::kEnter, is_heard);
+      if (!is_chatter()) tell(tail_, is_heard);
       if (!reader_.has_setup()) is_open_ = false;
     }
+    tail_ = Remark::kNone;
   }
   return Act::kNone;
 }
@@ -131,7 +136,7 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
 // Whether what has come is a program but for its line end, where no line has ended for a minute: some
 // apps end none.
 bool Console::is_unended() const {
-  return has_tail_ && is_open_ && left_ms_[kEnds] == 0 && reader_.has_setup() && reader_.may_end();
+  return is_open_ && left_ms_[kEnds] == 0 && reader_.has_setup() && reader_.may_end();
 }
 
 // A line goes on behind a second of silence, or another one begins.
@@ -149,7 +154,7 @@ void Console::tell(Remark remark, bool is_heard) {
 // Takes a byte of a line. A start begins a program anew where an unfinished one goes on, and behind a
 // radio module's message, which has no line end of its own.
 inline void Console::take(uint8_t byte, bool is_heard) {
-  has_tail_ = true;
+  tail_ = Remark::kEnter;
   read(byte);
   const uint16_t last = last_;
   if (byte > ' ') last_ = static_cast<uint16_t>(last << 8 | (byte & kCapital));

@@ -107,7 +107,7 @@ class Console {
   bool is_discarding_;
   bool is_brief_;      // the wait: a stop was typed here
   bool has_told_;      // that lines do not count yet
-  bool has_tail_;      // bytes have come since the last line end
+  Remark tail_;        // what is told of bytes that no line end follows
   bool is_ignoring_;   // lines without a SETUP word: their program is lost
   bool is_silent_;     // a second has passed
   bool is_due_;

@@ -201,8 +201,8 @@ tini_noinline void Link::handle(uint8_t end) {
 
   Said& last = this->last();
   uint8_t& last_epoch = this->last_epoch();
-  const bool is_known = seq == last.seq && type == last.number && epoch == last_epoch;
-  const bool is_repeat = is_known && is_marked == is_sealed();
+  const bool is_last = seq == last.seq && type == last.number && epoch == last_epoch;
+  const bool is_repeat = is_last && is_marked == is_sealed();
   if (is_open_ && is_repeat && !is_hello && type != static_cast<uint8_t>(Message::kStop)) {
     said_ = last;
     left_ms_[kFrameSent] = 0;  // it is repeated
@@ -221,15 +221,15 @@ tini_noinline void Link::handle(uint8_t end) {
   } else if (is_marked && !is_sealed()) {
     if (type == static_cast<uint8_t>(Message::kStop)) halt(Cause::kMessage);
     refusal = Answer::kNotOwner;
-  } else if (type == 0 || type > kLastRequest ||
-             flash_byte(&kRequestBytes[type - 1][0]) == kUnknownRequest) {
+  } else if (type == 0 || type > kLastRequest) {
     refusal = Answer::kUnknownMessage;
   } else if (is_hello && length != 0 && payload[kHelloMajorAt] != kLinkMajor) {
     said_.detail = kLinkMajor;
     refusal = Answer::kOtherLink;
   } else if (length < flash_byte(&kRequestBytes[type - 1][0]) ||
              length > flash_byte(&kRequestBytes[type - 1][1])) {
-    refusal = Answer::kBadLength;
+    const bool is_known = flash_byte(&kRequestBytes[type - 1][0]) != kUnknownRequest;
+    refusal = is_known ? Answer::kBadLength : Answer::kUnknownMessage;
   } else if (type >= kFirstActing && !is_next) {
     refusal = Answer::kStale;
   } else if (is_forbidden(type)) {
