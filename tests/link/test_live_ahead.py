@@ -125,6 +125,6 @@ def test_a_stop_ends_the_frame_and_then_the_run() -> None:
 def test_another_frame_after_one_that_was_cut_runs_its_own_code() -> None:
     robot = greeted()
     assert not robot.step(10, live(CODES[1])[:-1]).did
-    step = robot.step(10 + messages.SILENCE_MS, live(CODES[0]))
+    step = robot.step(10 + messages.SILENCE_MS, b"\0" + live(CODES[0]))
     expected = greeted().step(10, live(CODES[0]), is_late=True)
-    assert step == expected
+    assert step == (b"\0" + expected.sent, expected.did)

@@ -160,7 +160,7 @@ def test_no_sealed_frame_is_a_line_of_text() -> None:
         wire = encoded(seal(sent=counters(chance) - 1).closed(random_frame(chance, False)))
         assert wire[0] <= 4
         receiver = Receiver()
-        for byte in wire:
+        for byte in b"\0" + wire:
             receiver.put(byte, 0)
         assert receiver.packet and not receiver.packet.is_text
 

@@ -125,9 +125,17 @@ def test_a_damaged_line_is_said_to_be_damaged_whatever_else_is_wrong() -> None:
 # -- characters ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("space", "\t\f\v\u00a0\u2000\u200b\u202f\u3000\ufeff")
+@pytest.mark.parametrize("space", "\t\u00a0\u2000\u200b\u202f\u3000\ufeff")
 def test_spaces(space: str) -> None:
     assert one(f"F{space}(2,{space}80){space}") == one("F(2,80)")
+
+
+@pytest.mark.parametrize("control", [chr(k) for k in range(1, 0x20) if chr(k) not in "\t\n\r\b"])
+@pytest.mark.parametrize("line", ["F(2,{}80)", "F(2,80){}", "F(2,80) // {}", "F{}(2,80)"])
+def test_no_control_byte_is_overlooked(line: str, control: str) -> None:
+    """A flipped bit makes one of a point or a digit: `F(0.5,80)` must not drive for 5 s."""
+    found = one(line.format(control))
+    assert found.problem == "CHARACTER" and found.column == line.index("{") + 1
 
 
 @pytest.mark.parametrize("dash", "\u2010\u2013\u2014\u2015\u2212")

@@ -145,9 +145,9 @@ std::string row_of(const char* what, const uint8_t* bytes, size_t length, size_t
 void take_lines(std::string* line, std::string* rows) {
   uint8_t byte;
   while (receiver.take_text(&byte)) {
-    if (byte == kLineEnd) {
+    if (byte == kLineEnd && !line->empty()) {
       const uint8_t* const bytes = reinterpret_cast<const uint8_t*>(line->data());
-      *rows += row_of("text", bytes, std::min<size_t>(line->size(), 255), kSmallPacket) + "\n";
+      *rows += row_of("text", bytes, line->size(), kSmallPacket) + "\n";
     }
     if (byte == kLineStop) continue;  // `test_typed_stops.py` is about these
     if (byte == kLineEnd || byte == kLineCut) {

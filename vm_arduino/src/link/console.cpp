@@ -13,6 +13,7 @@ namespace {
 
 constexpr uint16_t kPatienceMs = 60000;  // for the rest of a line with a SETUP word or of a block
 constexpr uint8_t kBytesATurn = 8;
+constexpr Remark kWhole = Remark::kOk;  // in the place of what is told: a whole program has come
 // So many mistakes are answered without a pause of this length between two bytes: then something that
 // echoes or answers each line is on the other side. The next one is told that.
 constexpr uint8_t kMostMistakes = 16;
@@ -21,12 +22,7 @@ constexpr uint16_t kPauseMs = 5000;
 constexpr uint16_t kTailMs = 2000;
 constexpr uint16_t kUnendedMs = 3000;
 constexpr uint16_t kBriefMs = 150;  // of silence before a line counts again
-
-// The last two letters of SI, SB and PING, in capitals.
-constexpr uint8_t kCapital = 0xdf;
-constexpr uint16_t kSi = 'S' << 8 | 'I';
-constexpr uint16_t kSb = 'S' << 8 | 'B';
-constexpr uint16_t kNg = 'N' << 8 | 'G';
+constexpr uint8_t kCapital = 0xdf;  // bits of a letter
 
 // What radio modules say, and words that ask for all others; 0x80 in the last letter of each.
 const uint8_t kSpoken[] tini_progmem = {'O', 'K' | 0x80, 'A', 'T' | 0x80,
@@ -78,15 +74,17 @@ bool Console::drop() {
 tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
   uint8_t byte;
   is_due_ = false;
-  if (receiver->take_line_end()) left_ms_[kEnds] = kPatienceMs;
   for (uint8_t left = kBytesATurn; left != 0; left--) {
-    // A stop does not wait until the answers before it are said.
-    has_mark_ = receiver->has_mark();
-    if (has_answer() && !has_mark_) return Act::kNone;
+    // A stop does not wait until the answers before it are said, nor does anything where a client is
+    // heard: there they wait for a pause.
+    if (has_answer() && !is_heard && !receiver->has_mark()) return Act::kNone;
     if (!receiver->take_text(&byte)) {
-      if (left_ms_[kPatience] > kPatienceMs - kUnendedMs || !is_unended()) break;
+      if (tail_ != kWhole || left_ms_[kPatience] > kPatienceMs - kUnendedMs) break;
       byte = kLineEnd;
+    } else if (byte == kLineEnd) {
+      left_ms_[kEnds] = kPatienceMs;
     }
+    has_mark_ = receiver->has_mark();
     if (is_silent_) end_silence();
     begin_silence();
     if (byte == kLineStop) {
@@ -99,7 +97,7 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
       drop();
       if (receiver->take_lost()) {
         is_ignoring_ = true;  // the line may have opened a block
-        if (!is_discarding_) tell(Remark::kCut, is_heard);
+        tell(is_discarding_ ? Remark::kPause : Remark::kCut, is_heard);
         tail_ = Remark::kNone;
       }
     } else if (byte == kLineEnd) {
@@ -122,27 +120,38 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
     is_silent_ = true;
     is_ignoring_ = false;
     if (is_open_ && is_waiting_) say(Remark::kWaiting);
-  } else if (tail_ != Remark::kNone && !is_unended() &&
+  } else if (tail_ > kWhole &&
              left_ms <= kPatienceMs - (tail_ == Remark::kEnter ? kTailMs : kZeroMs)) {
-    if (!is_waiting_) {
-      if (!is_chatter()) tell(tail_, is_heard);
-      if (!reader_.has_setup()) is_open_ = false;
-    }
-    tail_ = Remark::kNone;
+    end_tail(is_heard);
   }
   return Act::kNone;
 }
 
-// Whether what has come is a program but for its line end, where no line has ended for a minute: some
-// apps end none.
-bool Console::is_unended() const {
-  return is_open_ && left_ms_[kEnds] == 0 && reader_.has_setup() && reader_.may_end();
+// No line end has followed, and none may come: some apps end no line. Where no line has ended for a
+// minute, a whole program is taken all the same, but later. Otherwise it is told.
+inline void Console::end_tail(bool is_heard) {
+  const Remark tail = tail_;
+  tail_ = Remark::kNone;
+  if (is_open_) {
+    if (reader_.has_setup()) {
+      if (left_ms_[kEnds] == 0 && reader_.may_end()) {
+        tail_ = kWhole;
+        return;
+      }
+    } else if (!is_waiting_) {
+      const bool is_message = is_chatter();
+      is_open_ = false;
+      if (is_message) return;
+    }
+    if (is_waiting_) return;
+  }
+  tell(tail, is_heard);
 }
 
 // A line goes on behind a second of silence, or another one begins.
 inline void Console::end_silence() {
   refused_ = Remark::kNone;
-  begins_ = reader_.next_column();
+  begins_ = static_cast<uint8_t>(reader_.last_column() + 1);
 }
 
 void Console::tell(Remark remark, bool is_heard) {
@@ -151,24 +160,32 @@ void Console::tell(Remark remark, bool is_heard) {
   say(remark);
 }
 
-// Takes a byte of a line. A start begins a program anew where an unfinished one goes on, and behind a
-// radio module's message, which has no line end of its own.
+// Takes a byte of a line. A start begins a program anew where an unfinished one would go on, and
+// behind a radio module's message, which has no line end of its own. Of its SETUP word only the length
+// and a letter are looked at: the reader knows the others.
 inline void Console::take(uint8_t byte, bool is_heard) {
   tail_ = Remark::kEnter;
   read(byte);
-  const uint16_t last = last_;
-  if (byte > ' ') last_ = static_cast<uint16_t>(last << 8 | (byte & kCapital));
-  if (byte != '|' || !is_open_ || (last != kSi && last != kSb && last != kNg)) return;
-  const bool is_message = is_chatter();
-  if (!is_message && (reader_.problem() == Problem::kNone || reader_.column() != begins_)) return;
-  if (!is_message) tell(Remark::kStartedAgain, is_heard);
+  const uint8_t before = before_;
+  const uint8_t last = last_;
+  if (byte <= ' ') return;
+  before_ = last;
+  last_ = byte & kCapital;
+  const bool is_ping = before == 'N';
+  if (byte != '|' || !is_open_ || (before != 'S' && !is_ping)) return;
+  if (!is_chatter()) {
+    if (!is_waiting_ && begins_ == 1) return;
+    const uint8_t letters = is_ping ? 4 : 2;
+    if (static_cast<uint8_t>(reader_.last_column() - begins_) != letters) return;
+    tell(Remark::kStartedAgain, is_heard);
+  }
   is_open_ = false;
-  if (last == kNg) {
+  if (is_ping) {
     read('P');
     read('I');
   }
-  read(static_cast<uint8_t>(last >> 8));
-  read(static_cast<uint8_t>(last));
+  read(before);
+  read(last);
   read(byte);
 }
 

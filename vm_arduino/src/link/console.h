@@ -73,7 +73,7 @@ class Console {
   // again after a stop, until nobody knows any more that lines end here.
   enum Time : uint8_t { kPatience, kWait, kEnds, kTimes };
 
-  bool is_unended() const;
+  void end_tail(bool is_heard);
   bool is_chatter();
   void take(uint8_t byte, bool is_heard);
   void read(uint8_t byte);
@@ -90,7 +90,8 @@ class Console {
 
   uint8_t* image_;
   uint16_t left_ms_[kTimes];
-  uint16_t last_;      // the last two letters or signs, in capitals
+  uint8_t before_;     // the last but one of the letters and signs, in capitals
+  uint8_t last_;
   uint8_t begins_;     // the column where the line began, or went on behind a second of silence
   uint8_t length_;     // of the code before this line
   uint8_t first_;      // the first byte of the program

@@ -208,7 +208,6 @@ tini_noinline void Link::handle(uint8_t end) {
     left_ms_[kFrameSent] = 0;  // it is repeated
     return;
   }
-  if (is_hello) left_ms_[kFrameSent] = 0;  // who says it may not have heard frames
   said_.number = type & static_cast<uint8_t>(~kSealed);
   said_.seq = seq;
   said_.detail = 0;
@@ -225,6 +224,7 @@ tini_noinline void Link::handle(uint8_t end) {
     refusal = Answer::kUnknownMessage;
   } else if (is_hello && length != 0 && payload[kHelloMajorAt] != kLinkMajor) {
     said_.detail = kLinkMajor;
+    left_ms_[kFrameSent] = 0;
     refusal = Answer::kOtherLink;
   } else if (length < flash_byte(&kRequestBytes[type - 1][0]) ||
              length > flash_byte(&kRequestBytes[type - 1][1])) {
@@ -343,6 +343,7 @@ Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
 
 uint8_t Link::hello(const uint8_t* payload) {
   const bool is_new = !is_open_ || !same_bytes(&nonce_, payload + kHelloNonceAt);
+  left_ms_[kFrameSent] = 0;  // who says it may have heard no frame before
   if (is_new) renew();
   if (is_new || may_seal()) expire();
   if (is_new) forget_answer();

@@ -58,10 +58,10 @@ inline bool Receiver::take_zero() {
 
 inline bool Receiver::take_text_byte(uint8_t byte) {
   if (ends_line(byte)) {
-    has_ended_ = true;
     if (line_ == Line::kSome) return end_line(state_ == State::kText && text_.put(kLineEnd));
     const bool is_control_c = line_ == Line::kControlC;
     begin_line();
+    if (text_.is_empty()) text_.put(kLineEnd);  // only to tell that lines end here
     if (is_control_c) stop();
     return is_control_c;
   }
@@ -114,19 +114,24 @@ inline bool Receiver::take_packet_byte(uint8_t byte) {
   if (state_ == State::kBegin) {
     begin_packet();
   } else if (state_ == State::kLine && ends_line(byte)) {
-    has_ended_ = true;
     return end_line(!is_cut_ && end_packet(Packet::kText));
   }
-  if (ends_line(byte)) has_ends_ = true;
   add(byte);
-  if (!is_plain(byte) && state_ == State::kLine) state_ = State::kFrame;
+  if (state_ == State::kLine && !is_plain(byte)) {
+    state_ = State::kFrame;
+    may_be_line_ = false;
+  }
   return state_ == State::kLine ? watch(byte) : take_frame_byte(byte);
 }
 
 // Looks for a typed stop with a line of its own. It waits: the frame may be whole.
 inline bool Receiver::take_frame_byte(uint8_t byte) {
-  if (keys_.takes(byte) || is_control(byte)) {
-    if (ends_line(byte) && typed_.is_strict()) state_ = State::kHeld;
+  const bool is_key = keys_.takes(byte);
+  if (ends_line(byte)) {
+    may_be_line_ = true;
+    if (typed_.is_strict()) state_ = State::kHeld;
+  }
+  if (is_key || is_control(byte)) {
     typed_.begin();
   } else {
     typed_.put(byte);
@@ -141,7 +146,7 @@ inline bool Receiver::take_frame_byte(uint8_t byte) {
 void Receiver::begin_packet() {
   state_ = State::kLine;
   is_plain_ = true;
-  has_ends_ = false;
+  may_be_line_ = true;
   is_dropping_ = packet_[filled()] != Packet::kNone;
   if (is_dropping_) {
     dropped_ = static_cast<uint8_t>(dropped_ + 1);

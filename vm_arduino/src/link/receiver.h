@@ -104,7 +104,7 @@ class Receiver : private PacketPlaces<kWindow> {
   // Whether what a second of silence ends may be a person's line: all of it is printable, or CR or LF
   // is in it.
   bool has_open_line() const {
-    return state() == State::kLine || (state() >= State::kFrame && has_ends_);
+    return state() >= State::kLine && *const_cast<const volatile bool*>(&may_be_line_);
   }
 
   // Whether a typed stop waits among the text: whether it belongs to an open block is decided where
@@ -134,16 +134,11 @@ class Receiver : private PacketPlaces<kWindow> {
     return is_lost;
   }
 
-  // Whether any byte has arrived since the last call, and whether CR or LF has where text comes.
+  // Whether any byte has arrived since the last call.
   bool has_heard() {
     if (!has_heard_) return false;
     has_heard_ = false;
     return true;
-  }
-  bool take_line_end() {
-    const bool has_ended = has_ended_;
-    has_ended_ = false;
-    return has_ended;
   }
 
   // Bytes of an unfinished packet may be read up to `length`. `has_begun` says whether another
@@ -217,20 +212,19 @@ class Receiver : private PacketPlaces<kWindow> {
   bool is_plain_;     // all of the line is printable ASCII
   bool is_cut_;       // a 0x00 has cut a line: the rest of it is lost
   bool is_dropping_;  // the packet finds no place
-  bool has_ends_;     // CR or LF is in the frame
+  bool may_be_line_;  // the packet may be a person's
   TypedStop typed_;
   KeySequence keys_;
   volatile bool is_lost_;
   volatile bool has_heard_;
-  volatile bool has_ended_;
   volatile bool may_stop_[kWindow];
   volatile uint8_t marks_;
   uint8_t marks_taken_;
   volatile uint8_t damaged_;
   volatile uint8_t dropped_;
   uint8_t taken_;  // bytes of the line in `bytes_`
-  TextRing text_;
   volatile uint8_t length_[kWindow];
+  TextRing text_;
   uint8_t bytes_[kWindow][kPacketBytes];
 };
 

@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "../vm/small.h"
 #include "sizes.h"
 
 namespace tiniscript {
@@ -29,7 +30,7 @@ class TextRing {
   }
 
  private:
-  bool put(uint8_t byte, uint8_t wanted_room) {
+  tini_noinline bool put(uint8_t byte, uint8_t wanted_room) {
     const uint8_t at = behind_;
     const uint8_t behind = static_cast<uint8_t>(at + 1) % kTextBytes;
     if (static_cast<uint8_t>(first_ - behind) % kTextBytes < wanted_room) return false;

@@ -88,8 +88,8 @@ class Reader {
   Problem problem() const { return problem_; }
   uint8_t column() const { return token_column_; }
 
-  // The column of the next byte.
-  uint8_t next_column() const { return static_cast<uint8_t>(column_ + 1); }
+  // The column of the last byte.
+  uint8_t last_column() const { return column_; }
 
   // After kRange: the number in thousandths, and the least (0) or the most (4) that goes there.
   int32_t value() const { return static_cast<int32_t>(value_); }
@@ -173,6 +173,11 @@ class Reader {
   uint32_t value_;  // of the number's digits so far; behind the number its thousandths
   uint8_t first_;   // where the code of this instruction begins, behind its readings
 
+  // What the console asks for, near to the begin: that takes less code.
+  uint8_t setup_;
+  bool has_setup_;
+  uint8_t brackets_;  // that are open
+
   // characters
   uint8_t place_;
   uint8_t letters_;  // of the word behind the code
@@ -190,13 +195,10 @@ class Reader {
 
   // the parser
   uint8_t state_;
-  uint8_t setup_;
-  bool has_setup_;
   uint8_t what_;      // the instruction, by its word
   uint8_t op_;        // its opcode
   uint8_t kinds_;     // of its arguments from this one on
   uint8_t target_;    // the variable or the actuator that it sets
-  uint8_t brackets_;  // that are open
   uint8_t shape_;     // whether this argument is just a number
   uint8_t forever_column_;  // of FOREVER among these arguments, or 0
   uint8_t depth_;         // values that wait

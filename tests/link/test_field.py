@@ -1,0 +1,182 @@
+"""What people, apps and radio modules really send, to the whole link of a robot.
+
+A right line behind their bytes runs, or an answer says why not: nothing is met with silence. A glitch
+that is a 0x00, at any byte, has no other program run than the one that was typed, and a person and a
+computer in turns at one port are both heard.
+`python -m tests.link.test_field 100000` tries more than the tests.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from functools import lru_cache, partial
+
+import pytest
+
+from tests.machines.link import CppLink, cpp_link, link_library
+from tests.support.campaign import each_seed, wanted
+from tests.support.link_cases import KIT
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.messages import SILENCE_MS, TEXT_MS
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+SEEDS = 150  # of a property, in the tests
+LINES = ("SI|F(0.5,60)", "si|f(0.5, 60)", "SI|F(0.5,60);W(1)", "SB|F(0.5,60)", "PING|check_connection")
+PROGRAMS = ("SI|W(1);F(20,60)", "SI|F(20,60) UNTIL(DISTANCE<10)", "W(1);F(20,60)", "SI|LOOP(2)\nF(1,60)\nEND_LOOP")
+LINE_ENDS = (b"\n", b"\r", b"\r\n", b"\n\n", b"\r\n\r\n", b"")
+# from Bluetooth apps, terminals, radio modules, editors, and lines that are noisy at rest
+BEFORE = (
+    b"\n", b"\r\n", b"\r", b"\n\n", b"\r\n\r\n", b"1\n", b";\n;\n", b"OK+CONN", b"OK+LOST\r\n", b"AT\r\n", b"OK",
+    b"+CONNECTED\r\n", b"+DISC:SUCCESS\r\n", b"ERROR:(0)\r\n", b"\xef\xbb\xbf", b"\x1b[A\x1b[B", b"\x1b[1;5C", b"\x1b",
+    b"\t\n\t\n", b"\x07", b"\xff\xfe", b"// hi\n\n", b"\x7f\x7f", b"\x08", b"\0", b"\0\0", b"hello\0", b"\x03",
+    b"!B5", b" ", b"u", b"\0\n\n", b"\0\r\n", b"\xc3\xb1", b"\x01\x02", b"F(1,80", b"FFFF", b"SI|F(", b"SI|LOOP(2)\n",
+    b"S", b"stop", b"(\n", b"HELP\n", b"\xf0", b"\xff" * 40, b"x" * 90,
+)  # fmt: skip
+PAUSES_MS = (0, 0, 50, 300, 1200, 2500, 3500)
+
+
+class Robot:
+    """A robot whose clock goes on by a millisecond for each byte, or as one likes."""
+
+    def __init__(self, cpp: CppLink) -> None:
+        self.cpp = cpp
+        self.now_ms = 5000
+        self.sent = b""
+        self.did: list[str] = []
+        cpp.begin(kit=KIT)
+        self.wait(20)
+
+    def type(self, data: bytes) -> None:
+        for byte in data:
+            self._step(1, bytes([byte]))
+
+    def wait(self, passed_ms: int) -> None:
+        for _ in range(passed_ms // 20):
+            self._step(20)
+
+    def _step(self, passed_ms: int, data: bytes = b"") -> None:
+        self.now_ms += passed_ms
+        step = self.cpp.step(self.now_ms, data)
+        self.sent += step.sent
+        self.did += step.did
+
+    @property
+    def answers(self) -> list[bytes]:
+        return re.findall(rb"// [^\r]*\r\n", self.sent)
+
+    @property
+    def programs(self) -> set[str]:
+        """What was begun: each row has the program's checksum."""
+        return {row for row in self.did if row.startswith("TEXT")}
+
+
+def never_silence(cpp: CppLink, seed: int) -> str:
+    draw = random.Random(seed)
+    robot = Robot(cpp)
+    before = [draw.choice(BEFORE) for _ in range(draw.randint(0, 4))]
+    answered = 0  # before the last silence: a mistake takes all lines with it that follow at once
+    in_frames = False  # where only what ends is a line
+    for data in before:
+        robot.type(data)
+        pause_ms = draw.choice(PAUSES_MS)
+        robot.wait(pause_ms)
+        in_frames = in_frames or b"\0" in data
+        if pause_ms > SILENCE_MS:
+            answered, in_frames = len(robot.answers), False
+    line = draw.choice(LINES).encode() + draw.choice(LINE_ENDS[: -1 if in_frames else None])
+    done = len(robot.did)
+    robot.type(line)
+    robot.wait(4200)
+    is_done = any(row.startswith("TEXT") for row in robot.did[done:])
+    assert is_done or len(robot.answers) > answered, f"seed {seed}: silence for {before} {line!r}"
+    return "runs" if is_done else "told"
+
+
+@lru_cache
+def programs_of(cpp: CppLink, text: str) -> frozenset[str]:
+    robot = Robot(cpp)
+    robot.type(text.encode() + b"\n")
+    robot.wait(100)
+    assert len(robot.programs) == 1
+    return frozenset(robot.programs)
+
+
+def no_other_program(cpp: CppLink, seed: int) -> str:
+    """A glitch is at one byte of a program: a 0x00, in its place or before it."""
+    draw = random.Random(seed)
+    text = draw.choice(PROGRAMS)
+    data = text.encode() + b"\n"
+    at = draw.randrange(len(data))
+    # without its first byte a first line is another one, and the next ones are lines of their own
+    behind = at + (at > 0 and draw.randrange(2))
+    wanted_programs = programs_of(cpp, text)
+    robot = Robot(cpp)
+    robot.type(data[:at] + b"\0" + data[behind:])
+    robot.wait(4200)
+    assert robot.programs <= wanted_programs, f"seed {seed}: {text!r} with a 0x00 at {at}"
+    assert robot.programs or robot.answers, f"seed {seed}: silence for {text!r}, a 0x00 at {at}"
+    return "runs" if robot.programs else "told"
+
+
+def both_are_heard(cpp: CppLink, seed: int) -> str:
+    """A person and a computer, in turns, on one port."""
+    draw = random.Random(seed)
+    robot = Robot(cpp)
+    session = Session(draw.getrandbits(32), 115_200, KIT)
+    session.is_attached = False
+
+    def ask(request: PendingRequest[object]) -> None:
+        end_ms = robot.now_ms + 3000
+        while request.outcome is None and robot.now_ms < end_ms:
+            before = len(robot.sent)
+            robot.type(session.poll(robot.now_ms))
+            robot.wait(20)
+            session.receive(robot.sent[before:], robot.now_ms)
+        assert request.outcome and request.outcome.status == OK, f"seed {seed}: {request.outcome}"
+
+    heard = 0
+    ask(session.hello())
+    for _ in range(12):
+        robot.wait(draw.choice((0, 20, 160, 360, 440, 900, 1200)))
+        if draw.random() < 0.5:
+            ask(session.status())
+            continue
+        done, text = len(robot.did), draw.choice(("SI|F(1,60)", "F(2,80)"))
+        robot.type(text.encode() + b"\n")
+        robot.wait(40)
+        if "STOP" in robot.did:  # a computer's frame without a 0x00, where the person's line has ended
+            return "a frame was a stop"
+        begun = {row for row in robot.did[done:] if row.startswith("TEXT")}
+        assert begun == programs_again(text), f"seed {seed}: {text!r} did {robot.did[done:]}"
+        heard += 1
+    robot.wait(TEXT_MS + 100)
+    return f"{heard} lines"
+
+
+def programs_again(text: str) -> frozenset[str]:
+    return KNOWN[text]
+
+
+KNOWN: dict[str, frozenset[str]] = {}
+PROPERTIES = (never_silence, no_other_program, both_are_heard)
+
+
+def know(cpp: CppLink) -> None:
+    for text in ("SI|F(1,60)", "F(2,80)"):
+        KNOWN[text] = programs_of(cpp, text)
+
+
+@pytest.mark.parametrize("holds", PROPERTIES, ids=lambda holds: holds.__name__)
+def test_a_law_of_the_wire(holds: object) -> None:
+    know(cpp_link())
+    for seed in range(SEEDS):
+        holds(cpp_link(), seed)  # type: ignore[operator]
+
+
+if __name__ == "__main__":
+    given = wanted(10_000, 1_000_000)
+    know(link_library())
+    for each in PROPERTIES:
+        each_seed(partial(each, link_library()), given)
