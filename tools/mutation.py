@@ -82,7 +82,7 @@ MODULES = (
     Module("robot-link", (f"{_CPP}/link/*.cpp",), ("tests/link/test_link_cases.py", "tests/link", _HOST, "tests/firmware/test_owners.py", "tests/firmware/test_text.py")),
     Module("store", (f"{_CPP}/store/*.cpp",), ("tests/firmware/test_store.py", "tests/firmware/test_persistence.py", "tests/firmware/test_undo.py", _HOST)),
     Module("firmware", (f"{_CPP}/firmware/*.cpp",), (_HOST, *(f"tests/firmware/test_{name}.py" for name in ("persistence", "undo", "stops", "button", "owners", "trim", "text", "other_versions", "actuator_stops")))),
-    Module("avr-boards", (f"{_CPP}/boards/*.cpp", f"{_CPP}/boards/avr/*.cpp", f"{_CPP}/link/*.S"), tuple(f"tests/firmware/test_{name}.py" for name in ("boards", "board_devices", "board_sonar", "board_stops", "uno_robot", "uno_line", "uno_watchdog", "uno_supply", "uno_stops"))),
+    Module("avr-boards", (f"{_CPP}/boards/*.cpp", f"{_CPP}/boards/avr/*.cpp", f"{_CPP}/boards/avr/*.S", f"{_CPP}/link/*.S"), tuple(f"tests/firmware/test_{name}.py" for name in ("boards", "board_devices", "board_sonar", "board_stops", "uno_robot", "uno_line", "uno_watchdog", "uno_supply", "uno_stops"))),
     Module("esp32-boards", (f"{_CPP}/boards/esp32/*.cpp",), tuple(f"tests/firmware/test_esp32_{name}.py" for name in ("robot", "store", "transports", "wifi", "broker", "protocol_sniffer"))),
     Module("page", (f"{_JS}/**/*.js",), ("tests/studio",)),
 )

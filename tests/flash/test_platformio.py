@@ -134,6 +134,14 @@ def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None
         )
 
 
+@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
+def test_an_interrupt_without_a_vector_is_refused(project: Path) -> None:
+    """Tables lie where `vectors.S` has none."""
+    clock = project / "src" / "boards" / "avr" / "clock.cpp"
+    with changed(clock, ("ISR(TIMER0_OVF_vect", "ISR(ADC_vect) {}\n\nISR(TIMER0_OVF_vect")):
+        pio(project, "run", "-e", "uno").gives(1, out="an interrupt has no vector in vectors.S")
+
+
 @pytest.mark.parametrize(("board", "arduino"), ARDUINO_BOARDS.items())
 def test_a_board_holds_what_its_fuses_leave(board: str, arduino: str) -> None:
     """The bootloader's section is that of its high fuse, whatever the bootloader takes of it."""
