@@ -15,6 +15,7 @@ from tests.text.test_plain import NUMBERS
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.codegen.text.problems import LONGEST, PROBLEMS
+from tiniscript.syntax.lexer import scan
 
 KIT = robots.load("tinibot").kit
 MORE = Answer()
@@ -170,7 +171,8 @@ WRONG = {
     "F(2,80 5)": ("CLOSE", 8), "X=(1 2)": ("CLOSE", 6), "X=ABS(1 2)": ("CLOSE", 9),
     "F(1,80;L(1,50)": ("CLOSE", 5), "W(1 2)": ("CLOSE", 5),
     "DEF F": ("RESERVED", 5), "TASK": ("LACKS", 1), "F(20 CM,60)": ("LACKS", 6),
-    "ROUND(1)": ("RESERVED", 1),
+    "ROUND(1)": ("RESERVED", 1), "SI|F": ("OPEN", 5), "SI|F // note": ("OPEN", 6),
+    "X = 1 <=": ("VALUE", 9), "SB": ("SETUP", 3), "FO\b": ("OPEN", 2),
 }  # fmt: skip
 
 
@@ -178,6 +180,37 @@ WRONG = {
 def test_what_is_wrong_and_where(line: str) -> None:
     answer = one(line)
     assert (answer.problem, answer.column) == WRONG[line]
+
+
+# What begins an instruction but is none yet is told where it stands, and so is a FOREVER.
+AT_ITS_WORD = ("UNKNOWN_WORD", "INSTRUCTION", "FOREVER_HERE")
+RIGHT = (
+    "SI|F(2, 80)", "sb | L(FOREVER, 50) UNTIL(DISTANCE < 9 OR NOT LIGHT_L >= 5)",
+    "PING|CHECK_CONNECTION", "SPEED = -(2 + 3) * MIN(4, ABS(5)) <> 7 / 2",
+    "X = TRUE; Y = NOT X <> FALSE",
+    "DEF TURN; R(0.5, 60); END_DEF; LOOP(2); TURN; END_LOOP",
+    "DISTANCE; SHOW(ROUND(DISTANCE, 0))",
+    "IF(LIGHT_R > 5); S; ELSEIF(TRUE); M(1, 2); ELSE; BEEP(1, 440); ENDIF",
+    "WHILE(RANDOM(1, 6) <= 3); BREAK; END_WHILE; W(FOREVER) UNTIL(TIME % 2 = 1 AND FALSE)",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("behind", ["", "  ", "// note", " // note"])
+@pytest.mark.parametrize("line", RIGHT)
+def test_what_is_missing_at_the_end_is_missing_behind_the_last_character(
+    line: str, behind: str
+) -> None:
+    """Of a right line that is cut behind any of its tokens nothing but its rest is missing.
+
+    It belongs before a comment.
+    """
+    refused, gap = 0, behind.find("/") > 0
+    for token in scan(line).tokens[:-1]:
+        answer = one(line[: token.end] + behind)
+        if answer.problem and answer.problem not in AT_ITS_WORD:
+            assert answer.column == token.end + 1 + gap, line[: token.end]
+            refused += 1
+    assert refused > 0
 
 
 def test_columns_from_255_on_are_255() -> None:

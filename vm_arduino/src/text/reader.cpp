@@ -64,6 +64,7 @@ tini_noinline Text Reader::put(uint8_t byte) {
   if (byte == '\r') return end_line();
   if (byte == '\n') return was_after_cr ? Text::kGoesOn : end_line();
   if ((byte & 0xc0) != 0x80 && column_ != 255) column_++;
+  if (byte > ' ' && place_ != kComment) last_column_ = column_;
   if (check_ == kNoCheck) {
     if (byte == '~') {
       if (place_ != kComment) take(' ');
@@ -179,7 +180,8 @@ void Reader::take(uint8_t letter) {
       return;
     }
     if ((letter == '\b' || letter == 0x7f) && column_ != 255) {
-      column_ = static_cast<uint8_t>(column_ - 2);  // this byte, and the letter that it takes back
+      // this byte, and the letter that it takes back
+      last_column_ = column_ = static_cast<uint8_t>(column_ - 2);
       if (--letters_ == 0) place_ = kBetween;
       return;
     }
@@ -200,7 +202,7 @@ void Reader::take(uint8_t letter) {
     token(kNumberToken);
   } else if (place != kBetween) {
     if (place == '/' && letter == '/') {
-      token_column_ = before_column_;
+      last_column_ = static_cast<uint8_t>(column_ - 2);
       place_ = kComment;
       return;
     }

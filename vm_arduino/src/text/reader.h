@@ -184,6 +184,7 @@ class Reader {
   uint8_t column_;
   uint8_t token_column_;  // or that of the problem
   uint8_t before_column_;  // of the token before
+  uint8_t last_column_;    // of the last character but blanks and comments
   uint8_t lead_;          // the first byte of a character of UTF-8 that is not whole
   uint8_t second_;
   uint8_t byte_;

@@ -26,6 +26,9 @@ void Reader::token(uint8_t token) {
   if (problem_ != Problem::kNone) return;
   if (token == kNewline) {
     if (brackets_ != 0 || state_ == kBegin) return;
+    // what is missing belongs behind the last character
+    token_column_ = last_column_;
+    if (token_column_ != 255) token_column_++;
     token = ';';
   }
   const Problem problem = parse(token);
@@ -235,7 +238,7 @@ Problem Reader::end_assignment(uint8_t token) {
     variables_++;
     *names_ |= kind;
   } else if (((target_ ^ kind) & kNameYesNo) != 0) {
-    return Problem::kKind;
+    return before(Problem::kKind);
   }
   emit_numbered(byte_of(Op::kSetVar), byte_of(Op::kSetVar0), number);
   state_ = kInstruction;
