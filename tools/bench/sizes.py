@@ -110,7 +110,7 @@ bool port_text_is_beside(bool) { return false; }
 bool port_may_prepare_upload(bool) { return sink; }
 void port_take_text(uint8_t* image, bool) { sink = *image; }
 void port_end() { sink = 0; }
-const uint8_t words[] tini_progmem = {0};
+const uint8_t words[] tini_progmem = {0, 0};
 const uint8_t* robot_words() { return words; }
 uint16_t robot_language() { return 0; }
 Answer port_rename(const uint8_t* name, uint8_t at) { sink = name[at]; return (Answer)sink; }
@@ -143,7 +143,7 @@ READER = """
 #include "vm/crc32.h"
 using namespace tiniscript;
 volatile uint8_t sink;
-const uint8_t words[] tini_progmem = {0};
+const uint8_t words[] tini_progmem = {0, 0};
 const uint8_t* tiniscript::robot_words() { return words; }
 uint16_t tiniscript::robot_language() { return 0; }
 uint8_t buffer[389];

@@ -9,10 +9,11 @@ from tiniscript.base.kit import Kit
 
 LAST_LETTER = 0x80  # marks the last letter of a word
 _YES_NO, _ACTUATOR = 1, 2
+_GOES, _TURNS = 1, 2
 
 
 def kit_words(kit: Kit) -> bytes:
-    """Return the table of a kit: its sensors, its actuators, and a 0."""
+    """Return the table of a kit: its sensors, its actuators, a 0, and whether it goes and turns."""
     table = bytearray()
     for device in kit.sensors:
         table += packed(device.name) + bytes((_YES_NO * device.is_yes_no,))
@@ -20,7 +21,7 @@ def kit_words(kit: Kit) -> bytes:
         table += packed(device.name) + bytes((_ACTUATOR | _YES_NO * device.is_yes_no,))
         if not device.is_yes_no:
             table += packed_range(device.low, device.high)
-    return bytes((*table, 0))
+    return bytes((*table, 0, _GOES * bool(kit.speed) | _TURNS * bool(kit.turn)))
 
 
 def packed(word: str) -> bytes:

@@ -16,9 +16,14 @@ constexpr uint8_t kDeviceIsYesNo = 1;
 constexpr uint8_t kDeviceIsActuator = 2;
 constexpr uint8_t kRangeBytes = 8;
 
+// Bits behind the table.
+constexpr uint8_t kKitGoes = 1;
+constexpr uint8_t kKitTurns = 2;
+
 // The sensors and then the actuators, in flash: the letters of each, 0x80 in the last one; what it
 // is; behind an actuator that is a number its least and its largest value, thousandths of 32 bits,
-// little-endian. A 0 ends the table.
+// little-endian. A 0 ends the table; behind it bits say whether the kit says how fast it goes and
+// turns.
 const uint8_t* robot_words();
 
 // The language in which a person is answered: both letters of its code, as 0x6573 for es. Of one
@@ -29,6 +34,17 @@ uint16_t robot_language();
 inline const uint8_t* behind_device(const uint8_t* device) {
   const bool has_range = flash_byte(device) == kDeviceIsActuator;
   return device + 1 + (has_range ? kRangeBytes : 0);
+}
+
+// Whether the kit says how fast it goes or turns.
+inline bool robot_has_way(bool is_turn) {
+  const uint8_t* word = robot_words();
+  while (flash_byte(word) != 0) {
+    while (flash_byte(word++) < 0x80) {
+    }
+    word = behind_device(word);
+  }
+  return (flash_byte(word + 1) & (is_turn ? kKitTurns : kKitGoes)) != 0;
 }
 
 }  // namespace tiniscript

@@ -16,7 +16,7 @@ Receiver receiver;  // where `link/receiver.h` looks for it on an AVR
 namespace {
 
 TiniLink* only = nullptr;
-const uint8_t no_words[] tini_progmem = {0};
+const uint8_t no_words[] tini_progmem = {0, 0};
 
 uint32_t checksum_of(const uint8_t* image) {
   uint32_t found = 0;
