@@ -19,7 +19,7 @@ enum class Problem : uint8_t {
   kCharacter = 2,  // Unknown sign
   kNumber = 3,  // Write it like 5 or 0.5
   kTooBig = 4,  // Max is 2147483.647
-  kSetup = 5,  // SI| or SB| goes first
+  kSetup = 5,  // Put | before this. Phone: ?123 then =\<
   kPing = 6,  // PING|CHECK_CONNECTION alone
   kInstruction = 7,  // Begin with a word like F
   kUnknownWord = 8,  // Unknown word
@@ -40,11 +40,11 @@ enum class Problem : uint8_t {
   kUntil = 23,  // UNTIL goes after F B L R W
   kBlock = 24,  // First open a block
   kBreak = 25,  // BREAK goes in a loop
-  kDef = 26,  // DEF goes outside blocks
+  kDef = 26,  // Not in a block
   kTaken = 27,  // This name is taken
   kLimit = 28,  // Too many, or too deep
   kFull = 29,  // Too long. Make it shorter
-  kLacks = 30,  // This robot cannot read it
+  kLacks = 30,  // Needs tsc, or a Mega or ESP32
   kComma = 31,  // Put , before this
 };
 
