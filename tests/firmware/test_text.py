@@ -51,14 +51,17 @@ ANSWERS = (
     ("F(2,80)#", "8: Unknown sign", "8: Signo desconocido"),
     ("W(5.)", "3: Write it like 5 or 0.5", "3: Escribelo como 5 o 0.5"),
     ("X = 2147483.648", "5: Max is 2147483.647", "5: Lo maximo es 2147483.647"),
-    ("SI F(1,50)", "4: SI| or SB| goes first", "4: SI| o SB| va al principio"),
+    ("Si F(1,80)", "4: Put | before this. Phone: ?123 then =\\<",
+     "4: Pon | antes de esto. Movil: ?123 y =\\<"),
+    ("sb", "3: Put | before this. Phone: ?123 then =\\<",
+     "3: Pon | antes de esto. Movil: ?123 y =\\<"),
+    ("SI|F", "5: Put ( before this", "5: Pon ( antes de esto"),
     ("PING|S", "6: PING|CHECK_CONNECTION alone", "6: PING|CHECK_CONNECTION solo"),
     ("X=1; X + 1", "6: Begin with a word like F", "6: Empieza con algo como F"),
     ("SI|FOO(1)", "4: Unknown word", "4: Palabra desconocida"),
     ("X = X + 1", "5: No value yet. Write X = 0", "5: Sin valor. Escribe X = 0"),
     ("ROUND(1)", "1: This word cannot go here", "1: Esta palabra no va aqui"),
-    ("F(20 CM, 60)", "6: This robot cannot read it", "6: Este robot no lo lee"),
-    ("WHEN(TRUE)", "1: This robot cannot read it", "1: Este robot no lo lee"),
+    ("LOOP(2);TASK", "9: Not in a block", "9: No va en un bloque"),
     ("F(1,50) R(1,50)", "9: Put ; before this", "9: Pon ; antes de esto"),
     ("F 2, 80", "3: Put ( before this", "3: Pon ( antes de esto"),
     ("F(2 80)", "5: Put , before this", "5: Pon , antes de esto"),
@@ -99,6 +102,34 @@ def test_every_sentence_in_its_language(language: str) -> None:
         answers = typed(robot, line + "\n", 1100)
         assert answers[0] == f"// {spanish if language == 'es' else english}", line
         robot.wait(4000)
+
+
+@pytest.mark.parametrize(
+    "language, says",
+    [
+        ("en", "Needs tsc, or a Mega or ESP32"),
+        ("es", "Usa tsc, un Mega o un ESP32"),
+        ("pt", "Use tsc, um Mega ou um ESP32"),
+    ],
+)
+def test_an_uno_says_what_tasks_ways_and_defs_need(language: str, says: str) -> None:
+    defines = ("tiniscript_no_defs",)
+    robot = HostFirmware(robots.load("tinibot").kit, language=language, defines=defines)
+    robot.wait(1000)
+    lines = {"F(20 CM, 60)": 6, "r(90 deg, 60)": 6, "TASK": 1, "SI|WHEN(TRUE)": 4, "S;END_TASK": 3,
+             "EndWhen": 1, "ENDTASK = 5": 1, "DEF A": 1}  # fmt: skip
+    for line, column in lines.items():
+        assert typed(robot, line + "\n", 1100) == [f"// {column}: {says}"], line
+        robot.wait(4000)
+
+
+def test_typed_tasks_and_ways_run() -> None:
+    """Their image says what they need, so that whoever holds it can run it."""
+    robot = switched_on()
+    text = "SI|F(FOREVER, 60); WHEN(TRUE); B(9 cm, 60); W(1); END_WHEN"
+    assert typed(robot, text + "\n", 500) == ["// OK"]
+    assert happened(robot) == ["MOTORS 60 60", "MOTORS -60 -60", "MOTORS 0 0"]
+    assert typed(robot, "S\n", 500) == ["// STOPPED"]
 
 
 @pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
@@ -616,6 +647,7 @@ def test_a_line_of_a_program_may_come_late_and_indented(blanks: str) -> None:
     [
         ("LOOP(2)\n", "END_LOOP"), ("LOOP(FOREVER)\n", "END_LOOP"), ("IF(TRUE)\n", "ENDIF"),
         ("IF(TRUE);ELSE\n", "ENDIF"), ("WHILE(TRUE)\n", "END_WHILE"), ("DEF A\n", "END_DEF"),
+        ("TASK\n", "END_TASK"), ("WHEN(TRUE)\nS\n", "END_WHEN"),
         ("X=(1\n", ")"), ("LOOP(2)\nX=1+", "END_LOOP"), ("LOOP(2)\nX=-", "END_LOOP"),
         ("IF(TRUE)\nX=TRUE AND NOT ", "ENDIF"), ("IF(TRUE)\nX=MIN(1,", "ENDIF"),
         ("DEF A\nF(1,", "END_DEF"),

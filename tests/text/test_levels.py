@@ -75,13 +75,13 @@ def test_a_word_that_a_level_lacks_is_told_at_each_place() -> None:
     ]
 
 
-@pytest.mark.parametrize("level", ["uno", "mega", "esp32"])
-def test_tasks_are_told_as_words(level: str) -> None:
+def test_an_uno_lacks_tasks_and_ways() -> None:
     """So that somebody sends them compiled."""
-    text = "TASK; S; ENDTASK; when(TRUE); F(FOREVER, 60); END_WHEN"
-    words = ("TASK", "ENDTASK", "when", "END_WHEN")
-    told_of = [("TS308", word, {"word": word.upper()}) for word in words]
-    assert told(text, LEVELS[level]) == told_of
+    text = "TASK; S; ENDTASK; when(TRUE); F(FOREVER, 60); R(9 DEG, 60); F(9cm, 60); END_WHEN"
+    words = ("TASK", "ENDTASK", "when", "DEG", "cm", "END_WHEN")
+    assert told(text) == [("TS308", word, {"word": word.upper()}) for word in words]
+    for level in ("mega", "esp32"):
+        assert told(text, LEVELS[level]) == []
 
 
 def test_code_may_have_255_bytes() -> None:
@@ -132,6 +132,10 @@ def most(text: str, level: Level = UNO) -> int:
         ("LOOP(2);S;END_LOOP", 4 + 9 + 8),
         ("DEF AB;END_DEF", 2 + 8 + 9 + 7),
         ("SHOW(TRUE AND TRUE)", 3 + 3 + 4),
+        ("TASK;END_TASK", 3 + 9 + 8),
+        ("WHEN(TRUE);END_WHEN", 5 + 9 + 8),
+        ("F(1 DEG,5)", 1 + 1 + 3),  # a word lies behind the code
+        ("F(1°,5)", 4),
     ],
 )
 def test_what_a_reader_needs(text: str, bytes_: int) -> None:

@@ -19,7 +19,7 @@ from tests.vm.test_cases import CASES, compiled, having, robot_and_senses
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import disassemble
-from tiniscript.bytecode.opcodes import BY_NAME, OPS, UNO_OPS
+from tiniscript.bytecode.opcodes import BY_NAME, OPS
 from tiniscript.bytecode.verify import verify
 from tiniscript.codegen.text.line import PlainCode, plain_code
 from tiniscript.robots.text_levels import CODE_BYTES
@@ -30,7 +30,7 @@ FUSED = re.compile(
     r"PUSH_READ|(SET_VAR|ADD_VAR|WAIT|BEEP|MOTORS|LOOP|UNTIL|IF|IF_VAR)(8|16)|MOVE8|IF_NOT|INC_|DEC_"
     r"|ADD_VAR|AND$|OR$|END$|\w+_FAR$"
 )
-PLAIN = {op.name for op in UNO_OPS if not FUSED.match(op.name)}
+PLAIN = {op.name for op in OPS if not FUSED.match(op.name)}
 ENOUGH = 4 * 500  # random programs
 
 
@@ -86,6 +86,18 @@ def names(text: str, kit: Kit = TINIBOT) -> str:
             "IF(DISTANCE < 5); ELSEIF(DISTANCE < LIGHT_L); ENDIF",
             "READ_2 PUSH_SENSOR_2 PUSH_NUM_5 LT IF ELSE READ_1 PUSH_SENSOR_2 PUSH_SENSOR_1 LT IF",
         ),
+        # ways, tasks where they stand, and a FOREVER that lasts
+        ("F(20 CM, 60)", "PUSH_NUM_20 PUSH_NUM_60 GO_F"),
+        ("r(90°, 60) UNTIL(TRUE)", "PUSH_NUM_90 PUSH_NUM_60 WATCH_GO_R PUSH_TRUE UNTIL"),
+        ("TASK; S; END_TASK; S; TASK; ENDTASK", "TASK STOP END_TASK STOP TASK END_TASK"),
+        (
+            "DISTANCE; WHEN(DISTANCE < 9); SHOW(DISTANCE); ENDWHEN; SHOW(DISTANCE)",
+            "READ_2 WHEN READ_2 PUSH_SENSOR_2 PUSH_NUM_9 LT LOOK READ_2 PUSH_SENSOR_2 SHOW END_WHEN"
+            " PUSH_SENSOR_2 SHOW",
+        ),
+        ("F(FOREVER, 9); W(FOREVER); TASK; END_TASK",
+         "PUSH_NUM_9 WATCH_FOREVER_F PUSH_FALSE UNTIL WATCH_FOREVER_WAIT PUSH_FALSE UNTIL"
+         " TASK END_TASK"),
         # DEFs where they stand, called or not
         ("S; DEF A; END_DEF; S", "STOP DEF RETURN STOP"),
         ("S; DEF A; S; END_DEF; A; DEF C; END_DEF", "STOP DEF STOP RETURN CALL DEF RETURN"),
@@ -159,7 +171,7 @@ def test_the_page_names_every_instruction_of_plain_code_and_no_other() -> None:
     for name in PLAIN:
         kind = re.sub(r"_\d+$", "", name)
         kind = {"PUSH_NUM": "PUSH_NUM_n"}.get(kind, kind)
-        kind = re.sub(r"(MOVE|WATCH|WATCH_FOREVER)_[BLR]$", r"\1_F", kind)
+        kind = re.sub(r"(MOVE|GO|WATCH|WATCH_GO|WATCH_FOREVER)_[BLR]$", r"\1_F", kind)
         assert kind in named, name
     known = {op.name for op in OPS}
     assert named & known <= PLAIN | {"AND", "OR"}  # which are words of the language, too

@@ -15,6 +15,7 @@ from tests.text.test_plain import NUMBERS
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.codegen.text.problems import LONGEST, PROBLEMS
+from tiniscript.robots.text_levels import LEVELS, OF_TASKS_AND_WAYS
 from tiniscript.syntax.lexer import scan
 
 KIT = robots.load("tinibot").kit
@@ -170,7 +171,15 @@ WRONG = {
     "F(2 80)": ("COMMA", 5), "F(2-1 (80))": ("COMMA", 7), "X=MIN(1 DISTANCE)": ("COMMA", 9),
     "F(2,80 5)": ("CLOSE", 8), "X=(1 2)": ("CLOSE", 6), "X=ABS(1 2)": ("CLOSE", 9),
     "F(1,80;L(1,50)": ("CLOSE", 5), "W(1 2)": ("CLOSE", 5),
-    "DEF F": ("RESERVED", 5), "TASK": ("LACKS", 1), "F(20 CM,60)": ("LACKS", 6),
+    "DEF F": ("RESERVED", 5), "LOOP(2);TASK": ("DEF", 9), "TASK;BREAK": ("BREAK", 6),
+    "END_TASK": ("BLOCK", 1), "TASK;END_WHEN": ("BLOCK", 6), "TASK A": ("SEPARATOR", 6),
+    "WHEN(5)": ("WANTS_YES_NO", 6), "WHEN;S": ("OPEN", 1),
+    "TASK;END_TASK;M(FOREVER,1)": ("FOREVER_HERE", 17),
+    "S;F(FOREVER,80);S": ("FOREVER_HERE", 5), "L(1 CM,60)": ("RESERVED", 5),
+    "F(1°,60)": ("RESERVED", 4), "F(-1 CM,60)": ("RANGE", 4), "X=1cm": ("RESERVED", 4),
+    "F(1,60 CM)": ("RESERVED", 8), "F(1 CM)": ("COUNT", 5), "F(1 CM+1,60)": ("CLOSE", 7),
+    "F((1 CM),60)": ("CLOSE", 6), "F(TRUE CM,60)": ("WANTS_NUMBER", 3), "W(1 CM)": ("RESERVED", 5),
+    "F(5X,60)": ("NUMBER", 3),
     "ROUND(1)": ("RESERVED", 1), "SI|F": ("OPEN", 5), "SI|F // note": ("OPEN", 6),
     "X = 1 <=": ("VALUE", 9), "SB": ("SETUP", 3), "FO\b": ("OPEN", 2),
 }  # fmt: skip
@@ -188,7 +197,8 @@ RIGHT = (
     "SI|F(2, 80)", "sb | L(FOREVER, 50) UNTIL(DISTANCE < 9 OR NOT LIGHT_L >= 5)",
     "PING|CHECK_CONNECTION", "SPEED = -(2 + 3) * MIN(4, ABS(5)) <> 7 / 2",
     "X = TRUE; Y = NOT X <> FALSE",
-    "DEF TURN; R(0.5, 60); END_DEF; LOOP(2); TURN; END_LOOP",
+    "DEF TURN; R(90 DEG, 60); END_DEF; LOOP(2); TURN; END_LOOP",
+    "TASK; F(20cm, 60); END_TASK; WHEN(DISTANCE < 9); S; END_WHEN",
     "DISTANCE; SHOW(ROUND(DISTANCE, 0))",
     "IF(LIGHT_R > 5); S; ELSEIF(TRUE); M(1, 2); ELSE; BEEP(1, 440); ENDIF",
     "WHILE(RANDOM(1, 6) <= 3); BREAK; END_WHILE; W(FOREVER) UNTIL(TIME % 2 = 1 AND FALSE)",
@@ -226,18 +236,23 @@ def test_every_problem_has_its_test() -> None:
 
 
 def test_a_reader_without_defs_reads_all_else() -> None:
-    """It knows the words, so that they are no names."""
+    """It knows the words, so that they are no names, and says of each what it needs."""
     small, large = TextReader(KIT, flags=NO_DEFS), TextReader(KIT)
-    for text in ("DEF A; F(1, 50); END_DEF; A", "def", "DEF=1", "X=1; DEF A"):
-        assert small.read(text.encode()).problem == "LACKS", text
-        assert small.read(text.encode()).column == text.upper().index("DEF") + 1
-    for text in ("END_DEF", "LOOP(2); END_DEF", "X=DEF", "ENDDEF=1", *WRONG):
-        if "DEF " not in text:
-            assert small.read(text.encode()) == large.read(text.encode()), text
-    for case in all_cases():
-        program = case.parts.get("tiniscript", "S").encode()
-        if b"DEF" not in program.upper():
-            assert small.read(program) == large.read(program), case.id
+    lacks = LEVELS["uno"].lacks
+    words = sorted(OF_TASKS_AND_WAYS)
+    texts = [text % word for word in words for text in ("%s", "X=1;%s=2", "F(5 %s,60)")]
+    for text in ("DEF A; F(1, 50); END_DEF; A", "def", "DEF=1", "X=1; DEF A", *texts):
+        word = next(token for token in scan(text).tokens if token.text in lacks)
+        assert small.read(text.encode()) == Answer(problem="LACKS", column=word.start + 1), text
+    texts = ["END_DEF", "LOOP(2); END_DEF", "X=DEF", "ENDDEF=1"]
+    cases = [case.parts.get("tiniscript", "S") for case in all_cases()]
+    for text in (*texts, *WRONG, *cases):
+        answer = small.read(text.encode())
+        if text in texts or not lacks & {token.text for token in scan(text).tokens}:
+            other = large.read(text.encode())  # whose FOREVER waits for tasks
+            assert answer == other or (answer.problem == "FOREVER_HERE" and other.problem), text
+        else:
+            assert answer.problem, text
     small.close()
     large.close()
 
@@ -253,6 +268,10 @@ def test_texts_are_short_and_plain() -> None:
 
 def blocks(depth: int) -> str:
     return "LOOP(1);" * depth + "END_LOOP;" * depth
+
+
+def tasks(*depths: int) -> str:
+    return "".join(f"WHEN(TRUE);{blocks(depth)}ENDWHEN;" for depth in depths)
 
 
 def deep(values: int) -> str:
@@ -278,6 +297,15 @@ def chain(calls: int) -> str:
          "DEF A;" + blocks(8) + "END_DEF;DEF C;" + "IF(TRUE);" * 4 + "A;" + "ENDIF;" * 4
          + "END_DEF;" + "IF(TRUE);" * 5 + "C;" + "ENDIF;" * 5),
         (chain(8), chain(9)),
+        # tasks, and what is open in all of them together
+        ("TASK;ENDTASK;" * 4, "TASK;ENDTASK;" * 5),
+        (blocks(4) + tasks(6, 5) + blocks(5), blocks(4) + tasks(6, 5) + blocks(6)),
+        (blocks(10) + tasks(2, 4), blocks(10) + tasks(2, 5)),
+        ("DEF A;" + blocks(9) + "END_DEF;TASK;A;END_TASK;" + blocks(7),
+         "DEF A;" + blocks(9) + "END_DEF;TASK;A;END_TASK;" + blocks(8)),
+        (blocks(16) + "DEF A;" + blocks(16) + "END_DEF;TASK;S;END_TASK;A",
+         blocks(16) + "DEF A;" + blocks(16) + "END_DEF;TASK;IF(TRUE);ENDIF;END_TASK;A"),
+        (chain(5) + ";TASK;A2;END_TASK", chain(5) + ";TASK;A3;END_TASK"),
         ("".join(f"DEF A{k};END_DEF;" for k in range(16)),
          "".join(f"DEF A{k};END_DEF;" for k in range(17))),
     ],
@@ -325,6 +353,29 @@ def test_what_lies_in_the_buffer() -> None:
     for room in range(least):
         assert read_lines(KIT, text + b"\n", room)[0].problem == "FULL"
     assert read_lines(KIT, text + b"\n", least)[0].is_program
+
+
+# -- tasks --------------------------------------------------------------------------------------
+
+
+def test_a_forever_waits_for_the_tasks_that_let_it_last() -> None:
+    """They may come behind it, as long as the program goes on."""
+    move = "SI|F(FOREVER, 60)"
+    assert one(f"{move}; TASK; END_TASK").is_program
+    assert one(f"TASK; END_TASK; {move[3:]}").is_program
+    assert one(move) == Answer(problem="FOREVER_HERE", column=6)
+    assert one(f"{move}; W(FOREVER)") == Answer(problem="FOREVER_HERE", column=6)
+    loop = "LOOP(1);F(FOREVER, 60)\nEND_LOOP"
+    assert read_lines(KIT, f"{loop};WHEN(TRUE)\nS\nEND_WHEN\n".encode())[-1].is_program
+    assert read_lines(KIT, f"{loop}\nS\n".encode())[1:] == [
+        Answer(problem="FOREVER_HERE", column=1),  # it stands in a line before
+        one("S"),
+    ]
+
+
+def test_a_way_keeps_its_bracket_open() -> None:
+    assert read_lines(KIT, b"F(20 CM\n// cm\n,60)\n") == [MORE, MORE, one("F(20cm,60)")]
+    assert read_lines(KIT, b"R(90\xc2\xb0\n,60)\n") == [MORE, one("R(90 DEG,60)")]
 
 
 # -- code ---------------------------------------------------------------------------------------

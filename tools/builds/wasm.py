@@ -50,6 +50,7 @@ ROBOT = Module(
     "compiler/tiniscript/virtual/robot.wasm",
     ("extras/wasm/robot.cpp", "extras/wasm/watched.cpp", "extras/wasm/watched_run.cpp"),
     ("src/firmware", "src/link", "src/store", "src/text", "src/vm"),
+    ("-Dtiniscript_no_defs",),
 )
 ROBOT_ESP32 = ROBOT._replace(
     path="compiler/tiniscript/virtual/robot_esp32.wasm", flags=("-Dtiniscript_like_esp32",)

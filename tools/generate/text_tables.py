@@ -16,14 +16,14 @@ from tiniscript.bytecode.image import STARTS
 from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.codegen.text.problems import PROBLEMS, said
 from tiniscript.robots.kit_words import packed, packed_range
-from tiniscript.robots.text_levels import UNREAD
+from tiniscript.robots.text_levels import OF_TASKS_AND_WAYS, UNREAD
 from tools.generate.cpp_header import camel, cpp_file, enumeration
 
 FIRST_WORD = 0x40  # the token of the first word; those of signs lie below and above
 # Roles in the order in which the reader wants their words: those with brackets first.
 ROLES = ("move", "wait", "motors", "beep", "show", "loop", "question", "stop", "start", "else",
          "def", "break", "end", "value", "operator", "function", "forever", "setup",
-         "later")  # fmt: skip
+         "task", "later")  # fmt: skip
 ANY, YES_NO, NUMBER, FIRST_RANGE = 1, 2, 3, 4  # kinds of arguments
 OPCODES = {"W": "WAIT", "M": "MOTORS", "BEEP": "BEEP", "SHOW": "SHOW", "LOOP": "LOOP", "IF": "IF",
            "ELSEIF": "IF", "WHILE": "IF", "UNTIL": "UNTIL"}  # fmt: skip
@@ -33,9 +33,12 @@ def role_of(word: Word) -> str:
     """Return the role by which the reader tells words apart: one of ROLES.
 
     A word that no level reads is like those of later versions: its name is taken, and that is all.
+    They are not said, and no more are other spellings of the ends of tasks.
     """
     if word.text in UNREAD:
         return "later"
+    if word.text in OF_TASKS_AND_WAYS:
+        return "later" if word.text in ALIASES else "task"
     if word.text in ("LOOP", "DEF", "ELSE"):
         return word.text.lower()
     roles = {"block": "question", "arm": "question", "until": "question", "alias": "end"}
@@ -70,8 +73,7 @@ def words_in_order() -> list[Word]:
         role = ROLES.index(role_of(word))
         return role, number if role_of(word) in ("setup", "value", "function") else 0
 
-    read = [word for word in WORDS.values() if ALIASES.get(word.text) not in UNREAD]
-    return sorted(read, key=place)
+    return sorted(WORDS.values(), key=place)
 
 
 def ranges() -> list[tuple[int, int]]:
@@ -109,8 +111,9 @@ def bytes_before(name: str) -> int:
 
 
 def bytes_of(role: str) -> int:
-    """Return how many letters the words of this role have."""
-    return sum(len(word.text) for word in words_in_order() if word.role.name == role)
+    """Return how many letters the words of this role have, those of tasks apart."""
+    words = (word for word in words_in_order() if word.text not in OF_TASKS_AND_WAYS)
+    return sum(len(word.text) for word in words if word.role.name == role)
 
 
 def words_header(command: str) -> str:
@@ -144,9 +147,11 @@ def words_header(command: str) -> str:
             f"constexpr uint8_t kTimeRange = {FIRST_RANGE + ranges().index((0, HIGHEST))};",
             "",
             "// All words one after the other, 0x80 in the last letter of each, and a 0.",
-            "// Other spellings begin at kAliasesAt, words of later versions at kLaterWordsAt.",
+            "// Other spellings begin at kAliasesAt, words of tasks and ways at kTaskWordsAt,",
+            "// their other spellings and words of later versions at kLaterWordsAt.",
             f"constexpr uint8_t kAliasesAt = {bytes_before('alias')};",
             f"constexpr uint8_t kAliasBytes = {bytes_of('alias')};",
+            f"constexpr uint8_t kTaskWordsAt = {bytes_before('task')};",
             f"constexpr uint8_t kLaterWordsAt = {bytes_before('later')};",
             f"constexpr uint8_t kDefAt = {bytes_before('DEF')};",
             f"constexpr uint8_t kDefBytes = {len('DEF')};",

@@ -13,7 +13,7 @@ from tiniscript.codegen.text.memory import MOST_BRACKETS, Reader
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.robots.text_levels import CODE_BYTES, LONGEST_WORD, Level
-from tiniscript.semantics.ir import Program, first_way
+from tiniscript.semantics.ir import Program
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse
 
@@ -27,8 +27,6 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
         for token in tokens
         if token.kind is WORD and (token.text in level.lacks or len(token.text) > LONGEST_WORD)
     ]
-    if found and (program.tasks or first_way(program)):  # they have no plain code
-        return found
     plain = plain_code(program)
     limit = min(CODE_BYTES, level.room)
     if plain.length > limit:

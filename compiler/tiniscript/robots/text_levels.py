@@ -18,8 +18,7 @@ def _block_words(*blocks: str) -> frozenset[str]:
     return frozenset((*blocks, *ends, *(each for each, end in ALIASES.items() if end in ends)))
 
 
-NO_TASKS_OR_WAYS = _block_words(*TASKS) | WAYS.keys()
-NO_DEFS_TASKS_OR_WAYS = _block_words("DEF") | NO_TASKS_OR_WAYS
+OF_TASKS_AND_WAYS = _block_words(*TASKS) | WAYS.keys()
 
 
 class Level(NamedTuple):
@@ -51,9 +50,9 @@ def _program_bytes(board: str) -> int:
 LEVELS = {
     level.name: level
     for level in (
-        Level("uno", "uno", 2, NO_DEFS_TASKS_OR_WAYS),
-        Level("mega", "mega", 4, NO_TASKS_OR_WAYS),
-        Level("esp32", "esp32dev", 4, NO_TASKS_OR_WAYS),
+        Level("uno", "uno", 2, _block_words("DEF") | OF_TASKS_AND_WAYS),
+        Level("mega", "mega", 4),
+        Level("esp32", "esp32dev", 4),
     )
 }
 
@@ -61,10 +60,8 @@ LEVELS = {
 NO_TEXT = Level("none", "uno", 0, frozenset((*WORDS, *ALIASES)))
 
 # Words that no level reads: a robot knows that their names are taken, and no more. `line` writes
-# those with fixed values out.
-UNREAD = frozenset.intersection(*(level.lacks for level in LEVELS.values())).union(
-    word.text for word in WORDS.values() if word.stands_for
-)
+# these out.
+UNREAD = frozenset(word.text for word in WORDS.values() if word.stands_for)
 
 
 def level_of(chip: str, has_discs: bool = False) -> Level:

@@ -35,9 +35,10 @@ uint8_t byte_of(size_t begun, uint32_t length, uint32_t k) {
 void read(size_t begun, uint32_t length, uint16_t room) {
   reader.begin(buffer, room);
   Text found = Text::kNothing;
-  for (uint32_t k = 0; k <= length && found != Text::kProblem; k++) {
+  for (uint32_t k = 0; k <= length; k++) {
     const Text now = reader.put(byte_of(begun, length, k));
     if (now != Text::kGoesOn) found = now;
+    if (now == Text::kProblem && reader.has_problem()) break;
   }
   say(found);
 }

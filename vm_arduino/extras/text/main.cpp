@@ -71,7 +71,7 @@ void read_texts(Read* read) {
     for (const uint8_t byte : text) {
       const Text now = read->reader.put(byte);
       if (now != Text::kGoesOn) found = now;
-      if (found == Text::kProblem) break;
+      if (now == Text::kProblem && read->reader.has_problem()) break;
     }
     read->say(found);
   }

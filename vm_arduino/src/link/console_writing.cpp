@@ -25,6 +25,9 @@ constexpr uint8_t kLongestWord = 24;
 // From here on words are not said: END_DEF where there are no DEFs, and other spellings.
 constexpr uint8_t kSkippedAt = kReadsDefs ? kAliasesAt : kAliasesAt - kEndDefBytes;
 
+// Nor those of tasks and ways where there are none, and of later versions.
+constexpr uint8_t kSaidTo = kReadsDefs ? kLaterWordsAt : kTaskWordsAt;
+
 // The line that is written, and its bytes so far. Only while it is written.
 uint8_t* line;
 uint8_t size;
@@ -118,7 +121,7 @@ bool Console::put_words() {
   for (;;) {
     if (!kReadsDefs && word == kWords + kDefAt) word += kDefBytes;
     if (word == kWords + kSkippedAt) word = kWords + kAliasesAt + kAliasBytes;
-    if (word == kWords + kLaterWordsAt) word = robot_words();
+    if (word == kWords + kSaidTo) word = robot_words();
     if (flash_byte(word) == 0) return false;
     if (size > kWireBytes - kLineEndBytes - kLongestWord) break;
     word = put_word(word);

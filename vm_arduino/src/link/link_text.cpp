@@ -59,8 +59,6 @@ Remark Link::start_text(const Console& console) {
     return Remark::kRefused;
   }
   uint8_t* const image = made_;
-  image[kIsaMajorAt] = kIsaMajor;
-  image[kIsaMinorAt] = 0;
   port_take_text(image, start != 0);
   put_checksum(image);
   port_seal(image);

@@ -12,6 +12,9 @@ namespace {
 constexpr uint8_t kUnfinished = 0x80;  // what follows is no ASCII
 constexpr uint8_t kOdd = 0x81;         // a character that means nothing
 constexpr uint8_t kBroken = 0x82;      // no UTF-8
+#ifdef tiniscript_reads_defs
+constexpr uint8_t kDegree = 0x83;  // a sign for DEG
+#endif
 
 // Of a checksum: nothing has come, all digits have come, what came was a comment.
 constexpr uint8_t kNoCheck = 0;
@@ -24,9 +27,13 @@ constexpr uint32_t kTooBig = 0x10000000;  // ten times that is more than any num
 // Characters of two and three bytes: the first one, the second of three or 0, the last one and how
 // many more may follow, and what they are.
 const uint8_t kRelatives[] tini_progmem = {
-    0xc2, 0x00, 0xa0, 0,    ' ',  0xe2, 0x80, 0x80, 11,   ' ',  0xe2, 0x80,
-    0xaf, 0,    ' ',  0xe2, 0x80, 0x90, 5,    '-',  0xe2, 0x88, 0x92, 0,
-    '-',  0xe3, 0x80, 0x80, 0,    ' ',  0xef, 0xbb, 0xbf, 0,    ' ',  0,
+    0xc2, 0x00, 0xa0, 0,    ' ',     0xe2, 0x80, 0x80, 11,   ' ',     0xe2, 0x80,
+    0xaf, 0,    ' ',  0xe2, 0x80,    0x90, 5,    '-',  0xe2, 0x88,    0x92, 0,
+    '-',  0xe3, 0x80, 0x80, 0,       ' ',  0xef, 0xbb, 0xbf, 0,       ' ',
+#ifdef tiniscript_reads_defs
+    0xc2, 0x00, 0xb0, 0,    kDegree, 0xc2, 0x00, 0xba, 0,    kDegree,
+#endif
+    0,
 };
 
 // Each sign and its token, or 0 if it may be the first half of another.
@@ -45,6 +52,9 @@ const uint8_t kSigns[] tini_progmem = {
     '*',      token_of(Op::kMul),
     '%',      token_of(Op::kMod),
     '=',      token_of(Op::kEq),
+#ifdef tiniscript_reads_defs
+    kDegree,  kWordDeg,
+#endif
     0,
 };
 
@@ -160,7 +170,13 @@ Text Reader::end_line() {
   is_damaged_ = false;
   crc_ = 0;
   if (problem_ != Problem::kNone) return Text::kProblem;
+  const bool lacks_tasks = wants_tasks();
+  if (lacks_tasks) {
+    token_column_ = lasting_column_;
+    lasting_column_ = 1;  // in a line before
+  }
   if (stack_ != names_) return Text::kMore;
+  if (lacks_tasks) return Text::kProblem;
   return state_ == kBegin ? Text::kNothing : Text::kProgram;
 }
 
@@ -195,7 +211,8 @@ void Reader::take(uint8_t letter) {
       place_ = kPoint;
       return;
     }
-    if (is_word || letter == '.' || place == kPoint) {
+    const bool may_be_unit = kReadsDefs && (capital == 'C' || capital == 'D');
+    if ((is_word && !may_be_unit) || letter == '.' || place == kPoint) {
       report(Problem::kNumber);
       return;
     }

@@ -23,12 +23,20 @@ typedef uint16_t SensorBits;
 typedef uint32_t SensorBits;
 #endif
 
-// Whether this robot's reader has DEFs. An ATmega328P has no room for them; tiniscript_no_defs is
-// for tests of that.
+// Whether this robot's reader has DEFs, and with them tasks and ways. An ATmega328P has no room for
+// them; tiniscript_no_defs is for tests of that.
 #if defined(__AVR_ATmega328P__) || defined(tiniscript_no_defs)
 constexpr bool kReadsDefs = false;
 #else
+#define tiniscript_reads_defs
 constexpr bool kReadsDefs = true;
+#endif
+
+// What only such a reader keeps takes no memory of any other, in which nothing uses or defines it.
+#ifdef tiniscript_reads_defs
+#define tini_with_defs
+#else
+#define tini_with_defs static
 #endif
 
 enum class Text : uint8_t {
@@ -85,11 +93,14 @@ class Reader {
   uint8_t length() const { return length_; }
 
   // After kProblem: what it is, and its column from 1; all columns from 255 on are 255.
-  Problem problem() const { return problem_; }
+  Problem problem() const { return wants_tasks() ? Problem::kForeverHere : problem_; }
   uint8_t column() const { return token_column_; }
 
   // The column of the last byte.
   uint8_t last_column() const { return column_; }
+
+  // Whether no further line of a text could mend it.
+  bool has_problem() const { return problem_ != Problem::kNone; }
 
   // After kRange: the number in thousandths, and the least (0) or the most (4) that goes there.
   int32_t value() const { return static_cast<int32_t>(value_); }
@@ -109,6 +120,9 @@ class Reader {
   void digit(uint8_t value);
   tini_noinline void scale(uint8_t digit);
   void report(Problem problem) { problem_ = problem; }
+  bool wants_tasks() const {
+    return kReadsDefs && lasting_column_ != 0 && tasks_ == 0 && !has_problem();
+  }
 
   // words, in reader_names.cpp
   void end_word();
@@ -136,7 +150,10 @@ class Reader {
   Problem close(uint8_t type);
   Problem next_arm();
   Problem leave_loop();
+  void open_routine(uint8_t type, uint8_t ends);
+  void close_routine(Block* block);
   Problem define(uint8_t token);
+  Problem begin_task(bool is_when);
   Problem call();
 
   // expressions, in reader_values.cpp
@@ -149,6 +166,7 @@ class Reader {
   Problem binary(uint8_t op);
   void apply(uint8_t op);
   void push_kind(bool is_yes_no);
+  Problem end_way(bool is_turn);
   Problem end_value();
 
   // code and memory, in reader_code.cpp
@@ -182,10 +200,10 @@ class Reader {
   uint8_t place_;
   uint8_t letters_;  // of the word behind the code
   uint8_t column_;
-  uint8_t token_column_;  // or that of the problem
+  uint8_t token_column_;   // or that of the problem
   uint8_t before_column_;  // of the token before
   uint8_t last_column_;    // of the last character but blanks and comments
-  uint8_t lead_;          // the first byte of a character of UTF-8 that is not whole
+  uint8_t lead_;           // the first byte of a character of UTF-8 that is not whole
   uint8_t second_;
   uint8_t byte_;
   uint8_t check_;  // what has come of a checksum
@@ -196,28 +214,37 @@ class Reader {
 
   // the parser
   uint8_t state_;
-  uint8_t what_;      // the instruction, by its word
-  uint8_t op_;        // its opcode
-  uint8_t kinds_;     // of its arguments from this one on
-  uint8_t target_;    // the variable or the actuator that it sets
-  uint8_t shape_;     // whether this argument is just a number
+  uint8_t what_;            // the instruction, by its word
+  uint8_t op_;              // its opcode
+  uint8_t kinds_;           // of its arguments from this one on
+  uint8_t target_;          // the variable or the actuator that it sets
+  uint8_t shape_;           // whether this argument is just a number
   uint8_t forever_column_;  // of FOREVER among these arguments, or 0
-  uint8_t depth_;         // values that wait
-  uint16_t value_kinds_;  // a bit for each, the last one lowest: whether it is a yes/no
-  SensorBits read_;       // that are surely read
-  SensorBits known_;      // the same, and those that this instruction has read
+  uint8_t depth_;           // values that wait
+  uint16_t value_kinds_;    // a bit for each, the last one lowest: whether it is a yes/no
+  SensorBits read_;         // that are surely read
+  SensorBits known_;        // the same, and those that this instruction has read
   uint8_t variables_;
-  uint8_t defs_;
   uint8_t blocks_;
-  uint8_t deepest_;  // blocks open at once in this routine
-  uint8_t calls_;    // calls open at once in it
-  Def* def_;         // the DEF that is open, or null
 
   // the name that was read last
   uint8_t found_;
   uint8_t number_;
   const uint8_t* entry_;
+
+  // DEFs, tasks and ways
+  tini_with_defs uint8_t defs_;
+  tini_with_defs uint8_t tasks_;
+  tini_with_defs uint8_t deepest_;        // blocks open at once in this routine
+  tini_with_defs uint8_t calls_;          // calls open at once in it
+  tini_with_defs uint8_t beside_blocks_;  // both in the other tasks, all of them together
+  tini_with_defs uint8_t beside_calls_;
+  tini_with_defs Def* def_;                // the DEF that is open, or null
+  tini_with_defs uint8_t lasting_column_;  // of a FOREVER that wants tasks, or 0
+  tini_with_defs bool is_way_;             // whether this move goes one
 };
+
+#undef tini_with_defs
 
 #ifdef __AVR__
 

@@ -1,4 +1,4 @@
-// The reader's blocks: headers, arms, ends, and the DEFs that a program calls.
+// The reader's blocks: headers, arms, ends, the DEFs that a program calls, and its tasks.
 
 #include "reader_parts.h"
 
@@ -6,9 +6,10 @@ namespace tiniscript {
 
 // Opens a block whose first code is the next one. `ends`: an operand that wants its end, or 0.
 void Reader::open(uint8_t type, uint8_t ends) {
-  if (!kReadsDefs || type != kDefBlock) {
+  if (!kReadsDefs || (type & kBlockType) < kDefBlock) {
     blocks_++;
-    if (blocks_ > kBlocks) report(Problem::kLimit);
+    const uint8_t beside = kReadsDefs ? beside_blocks_ : uint8_t{0};
+    if (static_cast<uint8_t>(blocks_ + beside) > kBlocks) report(Problem::kLimit);
     if (kReadsDefs && deepest_ < blocks_) deepest_ = blocks_;
   }
   if (!has_room(sizeof(Block) - 1)) return;
@@ -57,12 +58,8 @@ Problem Reader::close(uint8_t type) {
     } else {
       resolve(static_cast<uint8_t>(to - 1));
     }
-  } else if (kReadsDefs && type == kDefBlock) {
-    emit(byte_of(Op::kReturn));
-    def_->blocks = deepest_;
-    def_->calls = calls_;
-    def_->read = read_;
-    def_ = nullptr;
+  } else if (kReadsDefs && type >= kDefBlock) {
+    close_routine(block);
     blocks_++;  // it is not counted
   } else {
     emit(byte_of(block->type == kLoopBlock ? Op::kNext : Op::kAgain));
@@ -77,7 +74,10 @@ Problem Reader::close(uint8_t type) {
 
 uint8_t Reader::awaited() const {
   if (brackets_ != 0) return ')';
-  return static_cast<uint8_t>(kWordEndif + (top()->type & kBlockType));
+  const uint8_t type = top()->type & kBlockType;
+  if (kReadsDefs && type == kTaskBlock) return kWordEndTask;
+  if (kReadsDefs && type == kWhenBlock) return kWordEndWhen;
+  return static_cast<uint8_t>(kWordEndif + type);
 }
 
 // BREAK leaves the innermost loop.
@@ -87,11 +87,46 @@ Problem Reader::leave_loop() {
     if (at == names_) return Problem::kBreak;
     Block* const block = reinterpret_cast<Block*>(at);
     if (block->type == kIfBlock) continue;
-    if (kReadsDefs && block->type == kDefBlock) return Problem::kBreak;
+    if (kReadsDefs && (block->type & kBlockType) >= kDefBlock) return Problem::kBreak;
     emit(byte_of(block->type == kLoopBlock ? Op::kBreakLoop : Op::kBreak));
     link(&block->ends);
     return Problem::kNone;
   }
+}
+
+#ifdef tiniscript_reads_defs
+
+// Opens a DEF or a task, which stands beside the main task. The depths of that wait in its block.
+void Reader::open_routine(uint8_t type, uint8_t ends) {
+  open(type, ends);
+  if (problem_ != Problem::kNone) return;
+  Block* const block = top();
+  block->after = static_cast<SensorBits>(deepest_ | calls_ << 8);
+  block->taken = static_cast<SensorBits>(beside_blocks_ | beside_calls_ << 8);
+  // What a DEF needs counts where it is called.
+  const bool is_def = type == kDefBlock;
+  beside_blocks_ = is_def ? uint8_t{0} : static_cast<uint8_t>(beside_blocks_ + deepest_);
+  beside_calls_ = is_def ? uint8_t{0} : static_cast<uint8_t>(beside_calls_ + calls_);
+  deepest_ = calls_ = 0;
+}
+
+// A DEF or a task ends.
+void Reader::close_routine(Block* block) {
+  const bool is_def = block->type == kDefBlock;
+  if (is_def) {
+    emit(byte_of(Op::kReturn));
+    *def_ = {def_->at, deepest_, calls_, read_};
+    def_ = nullptr;
+  } else {
+    emit(byte_of(block->type == kTaskBlock ? Op::kEndTask : Op::kEndWhen));
+    buffer_[block->to - 2] = static_cast<uint8_t>(length_ - block->to);
+  }
+  const uint8_t blocks = is_def ? uint8_t{0} : deepest_;
+  const uint8_t calls = is_def ? uint8_t{0} : calls_;
+  deepest_ = static_cast<uint8_t>(block->after);
+  calls_ = static_cast<uint8_t>(block->after >> 8);
+  beside_blocks_ = static_cast<uint8_t>(block->taken + blocks);
+  beside_calls_ = static_cast<uint8_t>((block->taken >> 8) + calls);
 }
 
 // The token behind DEF.
@@ -105,20 +140,40 @@ Problem Reader::define(uint8_t token) {
   add_name(kNameDef, sizeof(Def));
   if (problem_ != Problem::kNone) return problem_;
   def_ = reinterpret_cast<Def*>(names_ + 1);
-  deepest_ = 0;
-  calls_ = 0;
-  emit_open(byte_of(Op::kDef), kDefBlock);
+  emit(byte_of(Op::kDef));
+  emit(0);
+  open_routine(kDefBlock, static_cast<uint8_t>(length_ - 1));
   def_->at = length_;
+  return Problem::kNone;
+}
+
+// TASK or WHEN. Its end is filled in when it comes: a short distance in two bytes.
+Problem Reader::begin_task(bool is_when) {
+  if (stack_ != names_) return Problem::kDef;
+  if (tasks_ == kTasks) return Problem::kLimit;
+  tasks_++;
+  emit(byte_of(is_when ? Op::kWhen : Op::kTask));
+  emit(0);
+  emit(0);
+  open_routine(is_when ? kWhenBlock : kTaskBlock, 0);
+  if (!is_when) return Problem::kNone;
+  first_ = length_;
+  op_ = byte_of(Op::kLook);
+  kinds_ = kYesNoKind;
+  forever_column_ = 0;
+  state_ = kArguments;
   return Problem::kNone;
 }
 
 // The name of a DEF alone calls it.
 Problem Reader::call() {
   const Def* const def = reinterpret_cast<const Def*>(entry_);
-  if (def == def_) return Problem::kUnknownWord;
+  if (def == def_) return before(Problem::kUnknownWord);
   const uint8_t calls = static_cast<uint8_t>(def->calls + 1);
   const uint8_t blocks = static_cast<uint8_t>(blocks_ + def->blocks);
-  if (calls > kCalls || blocks > kBlocks) return Problem::kLimit;
+  if (calls + beside_calls_ > kCalls || blocks + beside_blocks_ > kBlocks) {
+    return before(Problem::kLimit);
+  }
   if (calls_ < calls) calls_ = calls;
   if (deepest_ < blocks) deepest_ = blocks;
   read_ |= def->read;
@@ -126,5 +181,7 @@ Problem Reader::call() {
   emit(static_cast<uint8_t>(length_ + 1 - def->at));
   return Problem::kNone;
 }
+
+#endif
 
 }  // namespace tiniscript

@@ -43,8 +43,7 @@ Problem Reader::before(Problem problem) {
 }
 
 Problem Reader::parse(uint8_t token) {
-  // TASK, WHEN, CM and DEG are for robots that get a compiled program.
-  if (token >= kWordTask && token <= kWordDeg) return Problem::kLacks;
+  if (!kReadsDefs && token >= kWordTask && token <= kWordEndwhen) return Problem::kLacks;
   const uint8_t state = state_;
   switch (state) {
     case kBegin:
@@ -116,11 +115,17 @@ Problem Reader::instruction(uint8_t token) {
     if (token == kWordElse) return next_arm();
     if (token == kWordBreak) return leave_loop();
     if (token <= kWordEnddef) return close((token - kWordEndif) & 3);
+    if (kReadsDefs) {
+      if (token == kWordTask || token == kWordWhen) return begin_task(token == kWordWhen);
+      if (token == kWordEndTask || token == kWordEndtask) return close(kTaskBlock);
+      if (token == kWordEndWhen || token == kWordEndwhen) return close(kWhenBlock);
+    }
     return token < kNameToken ? Problem::kReserved : Problem::kInstruction;
   }
   if (token < kFirstWord) return token == ')' ? Problem::kClose : Problem::kInstruction;
   state_ = kArguments;
   forever_column_ = 0;
+  if (kReadsDefs) is_way_ = false;
   const uint8_t* const row = kCommandRows[token - kFirstWord];
   kinds_ = flash_byte(row);
   op_ = flash_byte(row + 1);
@@ -207,11 +212,15 @@ void Reader::end_arguments() {
 // What follows the brackets of a move or a wait: its UNTIL, or its end.
 Problem Reader::end_move(uint8_t token) {
   uint8_t op = op_;
-  if (token == kWordUntil) {
+  if (kReadsDefs && is_way_) emit(byte_of(Op::kEscape));
+  const bool has_until = token == kWordUntil;
+  if (has_until || (kReadsDefs && is_forever())) {
     const uint8_t step = what_ == kWordW ? kWatchWait : kWatchMove;
     op = static_cast<uint8_t>(op + step);
     if (is_forever()) op = static_cast<uint8_t>(op + step / 2);
     emit(op);
+  }
+  if (has_until) {
     first_ = length_;
     known_ = 0;
     depth_ = 0;
@@ -222,8 +231,14 @@ Problem Reader::end_move(uint8_t token) {
     return Problem::kNone;
   }
   if (is_forever()) {
-    token_column_ = forever_column_;
-    return Problem::kForeverHere;
+    if (!kReadsDefs) {
+      token_column_ = forever_column_;
+      return Problem::kForeverHere;
+    }
+    // beside other tasks: whether there are any is known at the end of the program
+    if (lasting_column_ == 0) lasting_column_ = forever_column_;
+    emit(byte_of(Op::kPushFalse));
+    op = byte_of(Op::kUntil);
   }
   emit(op);
   state_ = kInstruction;

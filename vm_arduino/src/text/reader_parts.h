@@ -39,7 +39,7 @@ enum Wanted : uint8_t {
   kOperand,
   kAfterMinus,  // an operand, to whose number the minus belongs
   kOperator,
-  kAfterForever,
+  kAfterForever,  // or behind CM or DEG
 };
 
 // Whether an argument is just a number.
@@ -58,12 +58,13 @@ constexpr uint8_t kBracket = 0x80;
 constexpr uint8_t kSecond = 0x40;
 constexpr uint8_t kBase = 0xff;
 
-// Types of blocks, in the order of the words that end them.
-enum BlockType : uint8_t { kIfBlock, kLoopBlock, kWhileBlock, kDefBlock };
-constexpr uint8_t kBlockType = 3;
-constexpr uint8_t kForeverBlock = 4 | kLoopBlock;  // one that does not count
+// Types of blocks, in the order of the words that end them; from kDefBlock on at the top level.
+enum BlockType : uint8_t { kIfBlock, kLoopBlock, kWhileBlock, kDefBlock, kTaskBlock, kWhenBlock };
+constexpr uint8_t kBlockType = 7;
+constexpr uint8_t kForeverBlock = 8 | kLoopBlock;  // one that does not count
 
-// A block whose end has not come yet.
+// A block whose end has not come yet. In a DEF or a task `after` and `taken` are depths, blocks in
+// the low byte and calls above: of the main task, and those beside it.
 struct __attribute__((packed)) Reader::Block {
   uint8_t type;
   uint8_t ends;       // the last of the operands that want its end; each holds the one before

@@ -126,9 +126,12 @@ Problem Reader::operators(uint8_t token) {
     const uint8_t bracket = *stack_;
     const uint8_t op = bracket & static_cast<uint8_t>(~(kBracket | kSecond));
     // whether its argument may be the last one
-    const bool is_last = bracket == kBase ? kinds_ < 16
-                                          : (bracket & kSecond) != 0 || op == 0 ||
-                                                op == byte_of(Op::kAbs);
+    const bool is_last = bracket == kBase
+                             ? kinds_ < 16
+                             : (bracket & kSecond) != 0 || op == 0 || op == byte_of(Op::kAbs);
+    if (kReadsDefs && bracket == kBase && (token == kWordCm || token == kWordDeg)) {
+      return end_way(token == kWordDeg);
+    }
     if (!is_end && !is_comma && token != ')') {
       if (brackets_ == 0) return Problem::kSeparator;
       return is_last ? Problem::kClose : Problem::kComma;
@@ -163,6 +166,22 @@ Problem Reader::operators(uint8_t token) {
   }
   return Problem::kNone;
 }
+
+#ifdef tiniscript_reads_defs
+
+// CM or DEG behind the first value of a move, where the kit says how fast it goes or turns.
+Problem Reader::end_way(bool is_turn) {
+  if (what_ > kWordR || kinds_ < 16 || is_turn != (what_ >= kWordL) || !robot_has_way(is_turn)) {
+    return Problem::kReserved;
+  }
+  is_way_ = true;
+  const Problem problem = end_value();
+  push(kBase);  // as behind FOREVER: the bracket is open
+  state_ = kAfterForever;
+  return problem == Problem::kNone ? problem : before(problem);
+}
+
+#endif
 
 Problem Reader::binary(uint8_t op) {
   const uint8_t binding = binding_of(op);

@@ -65,8 +65,10 @@ constexpr uint8_t kWordWhen = 0x6d;
 constexpr uint8_t kWordEndWhen = 0x6e;
 constexpr uint8_t kWordCm = 0x6f;
 constexpr uint8_t kWordDeg = 0x70;
-constexpr uint8_t kWordSend = 0x71;
-constexpr uint8_t kWordsEnd = 0x72;
+constexpr uint8_t kWordEndtask = 0x71;
+constexpr uint8_t kWordEndwhen = 0x72;
+constexpr uint8_t kWordSend = 0x73;
+constexpr uint8_t kWordsEnd = 0x74;
 
 // The words up to this one take arguments in brackets.
 constexpr uint8_t kCommands = 13;
@@ -80,10 +82,12 @@ constexpr uint8_t kDeviceRange = 8;  // of the kit
 constexpr uint8_t kTimeRange = 4;
 
 // All words one after the other, 0x80 in the last letter of each, and a 0.
-// Other spellings begin at kAliasesAt, words of later versions at kLaterWordsAt.
+// Other spellings begin at kAliasesAt, words of tasks and ways at kTaskWordsAt,
+// their other spellings and words of later versions at kLaterWordsAt.
 constexpr uint8_t kAliasesAt = 87;
 constexpr uint8_t kAliasBytes = 27;
-constexpr uint8_t kLaterWordsAt = 186;
+constexpr uint8_t kTaskWordsAt = 186;
+constexpr uint8_t kLaterWordsAt = 215;
 constexpr uint8_t kDefAt = 50;
 constexpr uint8_t kDefBytes = 3;
 constexpr uint8_t kEndDefBytes = 7;  // before kAliasesAt

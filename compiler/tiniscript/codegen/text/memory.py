@@ -13,7 +13,7 @@ from typing import NamedTuple
 from tiniscript.base.fixed_point import read_literal
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Span
-from tiniscript.base.words import FUNCTIONS, WORDS, Word
+from tiniscript.base.words import FUNCTIONS, TASKS, WAYS, WORDS, Word
 from tiniscript.bytecode.opcodes import SHORTS
 from tiniscript.codegen.lower_expression import push_bytes
 from tiniscript.syntax.blocks import ENDS
@@ -25,6 +25,7 @@ MOST_BRACKETS = 254  # open at once
 _BLOCK_BYTES = 3  # and three sets of sensors
 _DEF_BYTES = 3  # in front of the name of a DEF, and a set of sensors
 _JUMP = 2  # bytes of an instruction with a short jump
+_TASK = 3  # of one that begins a task
 
 
 class Need(NamedTuple):
@@ -64,6 +65,7 @@ class Reader:
         self.length = 0  # of the code
         self.used = 0  # at the other end
         self.brackets = 0
+        self.is_way = False  # of the instruction whose brackets have been read
         self.one_too_many: Span | None = None  # the first bracket behind MOST_BRACKETS
         self.sensors = {each.name: k for k, each in enumerate(kit.sensors)}
         self.actuators = {each.name: k for k, each in enumerate(kit.actuators)}
@@ -112,7 +114,7 @@ class Reader:
     def take(self) -> Token:
         """Go past the next token; a word comes letter by letter."""
         token = self.tokens[self.i]
-        if token.kind is WORD:
+        if token.kind is WORD and token.end - token.start == len(token.text):  # no degree sign
             self.i += 1
             self.has_room(len(token.text) - 1)
         else:
@@ -151,6 +153,12 @@ class Reader:
             self.add_name(name, self.def_bytes)
             self.emit(_JUMP)
             self.open("DEF", name)
+        elif token.text in TASKS:
+            self.emit(_TASK)
+            self.open(token.text)
+            if token.text == "WHEN":
+                self.arguments()
+                self.emit(1)
         elif token.text == "ELSE":
             self.next_arm()
             self.blocks[-1].has_else = True
@@ -193,12 +201,16 @@ class Reader:
             self.open(word)
         is_forever = self.arguments()
         if its.role.lasts:
+            code = 2 if self.is_way else 1
             if self.token.kind is WORD:
                 self.take()
-                self.emit(1)
+                self.emit(code)
                 self.known = 0
                 self.arguments()
-            self.emit(1)
+                code = 1
+            elif is_forever:
+                code += 2
+            self.emit(code)
         elif word == "LOOP":
             self.emit(1 if is_forever else _JUMP)
             self.open(word)
@@ -230,7 +242,7 @@ class Reader:
         if word == "IF":
             self.read &= block.after & (-1 if block.has_else else block.before)
         else:
-            self.emit(1 if word == "DEF" else _JUMP)
+            self.emit(1 if word in ("DEF", *TASKS) else _JUMP)
             if word == "DEF":
                 self.defs[block.name] = self.read
             self.read = block.before
@@ -241,7 +253,7 @@ class Reader:
     def arguments(self) -> bool:
         """Read what stands in the brackets of an instruction; return whether it is FOREVER."""
         self.open_bracket()
-        is_forever = False
+        is_forever = self.is_way = False
         while True:
             self.push()
             self.skip_newlines()
@@ -252,6 +264,7 @@ class Reader:
                 self.pop()
             else:
                 self.value()
+                self.skip_newlines()
             if self.take().kind == ")":
                 self.brackets -= 1
                 return is_forever
@@ -323,6 +336,9 @@ class Reader:
                 self.take()
                 self.binary(*BINARY[token.text])
                 return True
+            if token.kind is WORD and token.text in WAYS:
+                self.take()
+                self.is_way = True
             self.reduce(OPEN + 1)
             if not self.waiting or token.kind not in (")", ","):
                 return False
