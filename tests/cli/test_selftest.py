@@ -98,7 +98,7 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     first, second = (f"sensor {each.name}" for each in pty_robot.kit.sensors[:2])
     assert found[first]["finding"] == "stuck"
     assert found[second]["verdict"] == "ok"
-    pty_robot.damages = 150
+    pty_robot.damages = 100
     code, found = found_by(pty_robot)
     assert code == 3
     assert found["line"]["finding"] == "line_bad"

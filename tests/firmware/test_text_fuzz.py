@@ -21,7 +21,7 @@ from tiniscript.base.words import WORDS
 SEEDS = 24  # in the tests; a campaign runs more
 TURNS = 25
 SAVING = b"// Still saving. Send it again."
-MISTAKE = re.compile(rb"// (\d+: |Too late|Bytes were lost|It was stopped)")
+MISTAKE = re.compile(rb"// (\d+: |Too late|Bytes were lost|It was stopped|It had a fault)")
 LINE = b"SI|M(13,17);W(9)\n"
 LINES = ("SI|F(1,50)\n", "F(9,50)\r", "SB|R(1,30)\r\n", "S\n", "STOP", "s", "HELP\n", "PING|\n",
          "SI|LOOP(FOREVER);\n", "END_LOOP\n", "LOOP(2)\n", "  STOP\n", "IF(DISTANCE<10)\n",

@@ -35,7 +35,7 @@ class Heartbeat:
         self._open = self._open[:LONGEST]
         for each in whole:
             if each and len(each) < LONGEST:
-                self._frame = each + b"\0"
+                self._frame = b"\0" + each + b"\0"  # it is repeated
 
     def forget(self) -> None:
         """Forget the last frame, because another client connects."""
