@@ -105,16 +105,21 @@ bool is_stop(const uint8_t* payload, size_t length) {
   return length >= kLeastStop;
 }
 
-// Whether a message is text, where frames have a zero, and a typed stop is in it or is how it ends.
-bool has_typed_stop(const uint8_t* payload, size_t length) {
-  TypedStop typed;
-  typed.begin();
-  bool is_found = false;
+// The stop in a message of somebody of whom no other one is known. It begins with text, or with
+// frames if it has a zero, and ends where a line does. What a frame holds is no stop of a stranger.
+Found find_stop(const uint8_t* payload, size_t length) {
+  bool is_framed = false;
   for (size_t k = 0; k < length; k++) {
-    if (payload[k] == 0) return false;
-    if (typed.put(payload[k])) is_found = true;
+    if (payload[k] == 0) is_framed = true;
   }
-  return is_found || typed.is_whole();
+  StopFinder finder = StopFinder();
+  finder.begin(is_framed);
+  Found most = Found::kNothing;
+  for (size_t k = 0; k < length; k++) {
+    const Found found = finder.put(payload[k], 0);
+    if (found > most) most = found;
+  }
+  return finder.is_at_stop() ? Found::kStop : most;
 }
 
 void part() {
@@ -186,7 +191,7 @@ void greet() {
 }
 
 void pass_on(const uint8_t* bytes, size_t length) {
-  for (size_t k = 0; k < length; k++) pipe().put(bytes[k]);
+  for (size_t k = 0; k < length; k++) pipe().put(bytes[k], static_cast<uint16_t>(now_ms()));
 }
 
 // A message of a client. Who has the robot keeps it until it leaves or is silent; a stop of anybody
@@ -194,7 +199,8 @@ void pass_on(const uint8_t* bytes, size_t length) {
 void on_peer(const char* who, const uint8_t* payload, size_t length) {
   const bool is_taken = peer[0] != 0 && !is_same(who, peer) && now_ms() - peer_ms < kPeerMs;
   if (is_taken) {
-    if (is_stop(payload, length) || has_typed_stop(payload, length)) return pipe().stop();
+    const Found found = is_stop(payload, length) ? Found::kStop : find_stop(payload, length);
+    if (found > Found::kInFrame) return pipe().stop(found == Found::kOfRun);
     if (length != 0) __builtin_memcpy(refused, who, sizeof refused);
     return;
   }

@@ -47,7 +47,8 @@ class Heard : public BLECharacteristicCallbacks {
   void onWrite(BLECharacteristic* its) override {
     const uint8_t* const bytes = its->getData();
     const size_t length = its->getLength();
-    for (size_t k = 0; k < length; k++) pipe().put(bytes[k]);
+    const uint16_t now_ms = static_cast<uint16_t>(millis());
+    for (size_t k = 0; k < length; k++) pipe().put(bytes[k], now_ms);
   }
 };
 

@@ -12,8 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../../link/messages.h"
-#include "../../link/typed_stop.h"
+#include "stop_finder.h"
 
 namespace tiniscript {
 
@@ -100,20 +99,26 @@ class Pipe {
     return true;
   }
 
-  // A byte of the client.
-  void put(uint8_t byte) {
+  // A byte of the client. The main loop does not see a stop that has lost bytes, or whose state has:
+  // what stops by all bytes and not by those that find room is a stop beside the ring.
+  void put(uint8_t byte, uint16_t now_ms) {
     has_parted_ = false;
     Rings* const its = rings();
     const bool has_room =
         its != nullptr && its->in.room() > 1 && its->in.put(byte);  // one for `part`
     if (!has_room) lost_.add();
-    look_for_stop(byte, has_room);
+    const Found found = all_.put(byte, now_ms);
+    const Found passed = has_room ? passed_.put(byte, now_ms) : Found::kNothing;
+    if (found > passed) stop(found == Found::kOfRun);
   }
 
   // The client has left.
   void part() {
     __atomic_store_n(&is_connected_, false, __ATOMIC_RELEASE);
-    if (!has_parted_ && rings() != nullptr) look_for_stop(0, rings()->in.put(kParted));
+    if (!has_parted_ && rings() != nullptr) {
+      all_.begin();
+      if (rings()->in.put(kParted)) passed_.begin();
+    }
     has_parted_ = true;  // further ones change nothing until a byte comes
   }
 
@@ -167,26 +172,14 @@ class Pipe {
 
   Rings* rings() const { return __atomic_load_n(&rings_, __ATOMIC_ACQUIRE); }
 
-  // The main loop cannot see a stop whose line or run of zeros has lost a byte, or began behind one.
-  void look_for_stop(uint8_t byte, bool has_room) {
-    if (byte != 0 && has_begun_) is_cut_ = false;
-    if (!has_room) is_cut_ = true;
-    zeros_ = byte == 0 ? static_cast<uint8_t>(zeros_ % kStopRun + 1) : 0;
-    const bool is_stop = typed_.put(byte) || zeros_ == kStopRun;
-    if (is_stop && is_cut_) stops_.add();
-    has_begun_ = has_room && (byte == 0 || ends_line(byte));
-  }
-
   Rings* rings_;
   uint16_t began_;     // the place of the client's first byte, and above it which turn that is
   uint16_t followed_;  // the reader's: the last one that it has gone to
   bool is_connected_;
   bool has_key_;
   bool has_parted_;  // the radio's: nothing has come since
-  TypedStop typed_;  // in all bytes of the client, with those that were lost
-  uint8_t zeros_;    // the last bytes that are 0, up to kStopRun
-  bool is_cut_;      // a byte was lost since the line began in which the next one is
-  bool has_begun_;   // the last byte has ended a line, and the main loop gets it
+  StopFinder all_;     // in all bytes of the client
+  StopFinder passed_;  // in those that found room
   Tally stops_;
   Tally silent_stops_;
   Tally lost_;

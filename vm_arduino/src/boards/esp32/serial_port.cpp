@@ -38,7 +38,8 @@ void serial_port_turn() {
   const bool is_there = port.hasClient();
   if (has_client && has_left && is_there) pipe.part();
   if (is_there && (has_left || !has_client)) pipe.begin();
-  for (; left > 0; left--) pipe.put(static_cast<uint8_t>(port.read()));
+  const uint16_t now_ms = static_cast<uint16_t>(millis());
+  for (; left > 0; left--) pipe.put(static_cast<uint8_t>(port.read()), now_ms);
   if (!is_there && has_client) pipe.part();
   has_client = is_there;
   uint8_t bytes[64];

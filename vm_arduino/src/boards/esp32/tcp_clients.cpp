@@ -32,7 +32,8 @@ struct Client {
 
   bool has_key() const { return is_admitted && radio_pipe(transport).has_key(); }
   size_t first_length;
-  size_t first_line;  // where those begin that have come since the last second of silence
+  StopFinder finder;   // in them
+  bool was_silent;     // for a second behind one of them, of which the main loop does not know
   uint8_t first[kFirstBytes];
   size_t out_length;
   size_t out_sent;
@@ -109,27 +110,24 @@ void accept_next() {
   client->socket = found;
   client->is_admitted = false;
   client->accepted_ms = client->heard_ms = now_ms();
-  client->first_length = client->first_line = client->out_length = client->out_sent = 0;
+  client->first_length = client->out_length = client->out_sent = 0;
+  client->finder = StopFinder();
+  client->was_silent = false;
 }
 
 void pass_on(Client* client, const uint8_t* bytes, size_t length) {
   Pipe& pipe = radio_pipe(client->transport);
-  for (size_t k = 0; k < length; k++) pipe.put(bytes[k]);
+  for (size_t k = 0; k < length; k++) pipe.put(bytes[k], static_cast<uint16_t>(now_ms()));
 }
 
-// Whether a typed stop is in the first bytes since silence; `ends`: or would be if its line ended.
-bool stops(const Client& client, bool ends) {
-  TypedStop typed;
-  typed.begin();
-  bool is_stop = false;
-  for (size_t k = client.first_line; k < client.first_length; k++) {
-    if (typed.put(client.first[k])) is_stop = true;
-  }
-  return is_stop || (ends && typed.is_whole());
-}
-
-// Looks at the first bytes, and lets the client in or hangs up.
+// Looks at the first bytes, and lets the client in or hangs up. A stop among them that the main loop
+// does not see, or not yet, lets nobody in.
 void look(Client* client, const uint8_t* bytes, size_t length) {
+  Found most = Found::kNothing;
+  for (size_t k = 0; k < length; k++) {
+    const Found found = client->finder.put(bytes[k], static_cast<uint16_t>(now_ms()));
+    if (found > most) most = found;
+  }
   const size_t room = kFirstBytes - client->first_length;
   const size_t more = length < room ? length : room;
   __builtin_memcpy(client->first + client->first_length, bytes, more);
@@ -139,19 +137,23 @@ void look(Client* client, const uint8_t* bytes, size_t length) {
   if (protocol == Protocol::kOther || (protocol == Protocol::kUnknownYet && is_full)) {
     return close_client(client);
   }
+  const bool is_passed_on = protocol == Protocol::kForRobot && !client->was_silent;
+  if (most > Found::kInFrame && !is_passed_on) {
+    radio_pipe(client->transport).stop(most == Found::kOfRun);
+  }
   if (protocol == Protocol::kUnknownYet) return;
   if (!radio_pipe(client->transport).begin()) return close_client(client);
   client->is_admitted = true;
   pass_on(client, client->first, client->first_length);
   pass_on(client, bytes + more, length - more);
-  if (client->first_line != 0 && stops(*client, false)) radio_pipe(client->transport).stop();
 }
 
 // A second of silence ends a typed stop while something runs, and a line begins behind it. It lets
 // nobody in.
 void end_silence(Client* client) {
-  if (stops(*client, true)) radio_pipe(client->transport).stop(true);
-  client->first_line = client->first_length;
+  if (client->finder.is_at_stop()) radio_pipe(client->transport).stop(true);
+  client->finder.begin();
+  client->was_silent = client->first_length != 0;
 }
 
 void receive(Client* client) {

@@ -1,0 +1,135 @@
+// Finds stops in the bytes of a client: typed ones and runs of four zeros.
+//
+// For whoever sees bytes that the receiver does not get: a radio's task and the broker's. Has the
+// receiver's states and laws (`../../link/receiver.h`), and nothing of its packets. Knows neither
+// whether something runs nor whether a frame is whole.
+
+#ifndef TINISCRIPT_ESP32_STOP_FINDER_H_
+#define TINISCRIPT_ESP32_STOP_FINDER_H_
+
+#include <stdint.h>
+
+#include "../../link/key_sequence.h"
+#include "../../link/typed_stop.h"
+#include "../../link/zero_run.h"
+
+namespace tiniscript {
+
+// What a byte completes; the greater one counts.
+enum class Found : uint8_t {
+  kNothing,
+  kInFrame,  // a stop of its packet, if that is no whole frame
+  kOfRun,    // a stop of what runs
+  kStop,
+};
+
+class StopFinder {
+ public:
+  // A connection begins. `is_framed`: with frames.
+  void begin(bool is_framed = false) {
+    state_ = is_framed ? State::kBegin : State::kText;
+    begin_line();
+  }
+
+  Found put(uint8_t byte, uint16_t now_ms) {
+    const bool are_zeros = zeros_.stops(byte, now_ms);
+    if (zeros_.take(byte, now_ms)) fall_silent();
+    zeros_.is_whole();
+    if (byte == 0) return take_zero() || are_zeros ? Found::kStop : Found::kNothing;
+    return state_ == State::kText ? take_text_byte(byte) : take_packet_byte(byte);
+  }
+
+  // Whether what has come of a line stops what runs, if silence follows.
+  bool is_at_stop() const {
+    return line_ == Line::kControlC || (state_ != State::kFrame && typed_.is_whole());
+  }
+
+ private:
+  enum class State : uint8_t { kText, kBegin, kLine, kFrame };
+  enum class Line : uint8_t { kNothing, kControlC, kSkipped, kSome };
+
+  static bool is_printable(uint8_t byte) { return byte >= ' ' && byte < 0x7f; }
+
+  void begin_line() {
+    line_ = Line::kNothing;
+    is_plain_ = true;
+    keys_.begin();
+    typed_.begin();
+  }
+
+  void fall_silent() {
+    state_ = State::kText;
+    if (line_ != Line::kSome) line_ = Line::kNothing;
+    typed_.begin();
+  }
+
+  // Whether it ends a line that is a typed stop.
+  bool take_zero() {
+    const bool is_line = state_ == State::kLine || line_ == Line::kSome;
+    const bool is_stop = is_line && is_plain_ && typed_.is_whole();
+    begin_line();
+    state_ = State::kBegin;
+    return is_stop;
+  }
+
+  Found end_line(bool is_stop) {
+    begin_line();
+    state_ = State::kText;
+    return is_stop ? Found::kStop : Found::kNothing;
+  }
+
+  Found watch(uint8_t byte) {
+    typed_.put(byte);
+    return typed_.is_urgent() ? Found::kOfRun : Found::kNothing;
+  }
+
+  Found take_text_byte(uint8_t byte) {
+    if (ends_line(byte)) return end_line(line_ == Line::kControlC || typed_.is_whole());
+    if (keys_.takes(byte)) {
+      if (line_ != Line::kSome) line_ = Line::kSkipped;
+      return Found::kNothing;
+    }
+    if (line_ != Line::kSome) {
+      if (byte <= ' ' || byte == kDelete) {
+        line_ = byte == kControlC && line_ <= Line::kControlC ? Line::kControlC : Line::kSkipped;
+        return Found::kNothing;
+      }
+      line_ = Line::kSome;
+      is_plain_ = true;
+    }
+    if (!is_printable(byte)) is_plain_ = false;
+    return watch(byte);
+  }
+
+  Found take_packet_byte(uint8_t byte) {
+    if (state_ == State::kLine && ends_line(byte)) return end_line(typed_.is_whole());
+    if (state_ == State::kBegin) state_ = State::kLine;
+    if (!is_printable(byte)) state_ = State::kFrame;
+    return state_ == State::kLine ? watch(byte) : take_frame_byte(byte);
+  }
+
+  Found take_frame_byte(uint8_t byte) {
+    const bool is_key = keys_.takes(byte);
+    const bool is_stop = ends_line(byte) && typed_.is_strict();
+    if (is_key || (byte < ' ' && byte != '\t') || byte == kDelete) {
+      typed_.begin();
+    } else {
+      typed_.put(byte);
+    }
+    return is_stop ? Found::kInFrame : Found::kNothing;
+  }
+
+  static constexpr uint8_t kControlC = 3;
+  static constexpr uint8_t kDelete = 0x7f;
+
+  ZeroRun zeros_;
+  State state_;
+  Line line_;
+  bool is_plain_;  // all of the line is printable ASCII
+  TypedStop typed_;
+  KeySequence keys_;
+};
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_ESP32_STOP_FINDER_H_
