@@ -71,9 +71,12 @@ class CppDamage(Process):
 
 
 def built(sources: Path, is_large: bool) -> Path:
-    code = ("src/link/receiver.cpp", "src/link/frames.cpp", "src/vm/crc32.cpp")
+    code = (
+        "src/link/receiver.cpp", "src/link/typed_stop.cpp", "src/link/frames.cpp",
+        "src/vm/crc32.cpp",
+    )  # fmt: skip
     inputs = [sources / name for name in (*code, "extras/damage/main.cpp", "extras/host/wire.h")]
-    for folder in ("vm", "link"):
+    for folder in ("vm", "link", "boards/esp32"):
         inputs += sorted((sources / "src" / folder).glob("*.h"))
     return compiled(inputs, (*FLAGS, *LARGE * is_large))
 
