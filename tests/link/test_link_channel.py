@@ -26,6 +26,8 @@ from tiniscript.link.session import Session
 from tiniscript.link.statuses import name_of
 
 UNDOS = 100
+PIECE_BYTES = 20  # as Bluetooth Low Energy sends them,
+PAUSES_MS = (5, 5, 5, 5, 5, 30, 30, 30, 100, 300, 1500)  # the last is a silence for the receiver
 LARGE_COUNTS = (80, 81, 160, 400, 1000, 2700)  # of moves, for a robot that is large
 OUTCOMES = {LOST: "lost", CANCELLED: "cancelled"}
 
@@ -83,6 +85,7 @@ class Radio:
     def __init__(self, draw: random.Random, baud: int, faults: float) -> None:
         self.draw, self.byte_ms, self.faults = draw, 10_000 / baud, faults
         self.shuffles = 0.0  # how often a frame comes twice, or before the one that it follows
+        self.is_split = False  # into pieces of PIECE_BYTES, with a pause before some of them
         self.is_out = False
         self._queue: deque[tuple[float, int]] = deque()
         self._last_ms = 0.0
@@ -101,7 +104,9 @@ class Radio:
             200, 600
         )
         self._last_ms = max(self._last_ms, now_ms + late_ms)
-        for byte in data:
+        for at, byte in enumerate(data):
+            if self.is_split and at % PIECE_BYTES == 0 and self.draw.random() < 0.2:
+                self._last_ms += self.draw.choice(PAUSES_MS)
             self._last_ms += self.byte_ms
             self._queue.append((self._last_ms, byte))
 
@@ -127,6 +132,7 @@ class World:
     """A computer, a robot and two radios. A disconnect takes both radios out for a while."""
 
     STEP_MS = 5
+    is_split = False
 
     def __init__(self, cpp: CppLink, draw: random.Random, faults: float, drops: float) -> None:
         self.cpp, self.draw, self.drops = cpp, draw, drops
@@ -173,6 +179,12 @@ class World:
         """What others hear."""
 
 
+class Split(World):
+    """Radios that send pieces."""
+
+    is_split = True
+
+
 def program(draw: random.Random, is_large: bool = False) -> bytes:
     """Return code that no other program of the test has: moves of random times and powers."""
     move = BY_NAME["MOVE8_F"].code
@@ -192,6 +204,7 @@ def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
     world.run(first)
     assert first.outcome and first.outcome.status == 0 and cpp.held() == old
     world.there.faults = world.back.faults = faults
+    world.there.is_split = world.back.is_split = world.is_split
     world.drops = drops
     if cpp.is_large:
         world.there.shuffles = world.back.shuffles = draw.choice((0, 0, 0.02, 0.2))
@@ -248,6 +261,13 @@ def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> N
     assert found["done"] > count * least, found
 
 
+@pytest.mark.parametrize(("is_large", "count", "least"), [(False, 150, 0.85), (True, 50, 0.6)])
+def test_uploads_in_pieces(is_large: bool, count: int, least: float) -> None:
+    """A pause of a second within a frame makes text of its rest: the frame is repeated behind a 0x00."""
+    found = Counter(one_upload(cpp_link(is_large), seed, Split) for seed in range(count))
+    assert found["done"] > count * least, found
+
+
 def one_undo(cpp: CppLink, seed: int) -> str:
     """Bring the program before back several times; return how many were confirmed."""
     draw = random.Random(seed)
@@ -284,6 +304,6 @@ def test_undos_over_a_bad_radio() -> None:
 
 
 if __name__ == "__main__":
-    given = wanted(10_000, 1_000_000, "large", "undos")
-    one = one_undo if given.undos else one_upload
+    given = wanted(10_000, 1_000_000, "large", "undos", "pieces")
+    one = one_undo if given.undos else partial(one_upload, world_of=Split if given.pieces else World)
     each_seed(partial(one, link_library(given.large)), given)

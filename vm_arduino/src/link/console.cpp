@@ -85,7 +85,7 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
       left_ms_[kEnds] = kPatienceMs;
     }
     has_mark_ = receiver->has_mark();
-    if (is_silent_) end_silence();
+    if (is_silent_ && byte != kLineEnd) end_silence();
     begin_silence();
     if (byte == kLineStop) {
       receiver->take_mark();
@@ -148,7 +148,7 @@ inline void Console::end_tail(bool is_heard) {
   tell(tail, is_heard);
 }
 
-// A line goes on behind a second of silence, or another one begins.
+// A line goes on behind a second of silence, or begins there.
 inline void Console::end_silence() {
   refused_ = Remark::kNone;
   if (!kStrictLines) begins_ = static_cast<uint8_t>(reader_.last_column() + 1);

@@ -15,14 +15,6 @@
 
 namespace tiniscript {
 
-// Whether a start counts only where a line begins, and a program only where its line ends. A Nano with
-// text and owners has no room for more.
-#ifdef tiniscript_strict_lines
-constexpr bool kStrictLines = true;
-#else
-constexpr bool kStrictLines = false;
-#endif
-
 class Console {
  public:
   // What a line asks of the link: to stop the robot, to end what runs, to start the program that

@@ -10,11 +10,12 @@ namespace {
 // The CRC-32 of any bytes followed by their own CRC-32.
 constexpr uint32_t kBehindItself = 0x2144df1c;
 
-// The CRC-32 of a frame is seeded with the major version, so that a peer of another version rejects
-// the frame. HELLO is seeded with 0, so that both peers can find out that versions differ.
-uint8_t seed_of(uint8_t type) {
+// The CRC-32 of a frame is seeded with 256 times the major version, so that a peer of another version
+// rejects the frame. HELLO is seeded with 0, so that both peers can find out that versions differ. (A
+// seed below 256 would meet the type's byte: with 2, one damaged bit made a HELLO of a STATUS.)
+uint16_t seed_of(uint8_t type) {
   const uint8_t number = static_cast<uint8_t>(type & ~(kReply | kSealed));
-  return number == static_cast<uint8_t>(Message::kHello) ? 0 : kLinkMajor;
+  return number == static_cast<uint8_t>(Message::kHello) ? 0 : kLinkMajor << 8;
 }
 
 }  // namespace

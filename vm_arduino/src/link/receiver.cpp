@@ -61,7 +61,7 @@ inline bool Receiver::take_text_byte(uint8_t byte) {
     if (line_ == Line::kSome) return end_line(state_ == State::kText && text_.put(kLineEnd));
     const bool is_control_c = line_ == Line::kControlC;
     begin_line();
-    if (text_.is_empty()) text_.put(kLineEnd);  // only to tell that lines end here
+    if (!kStrictLines && text_.is_empty()) text_.put(kLineEnd);  // only to tell that lines end here
     if (is_control_c) stop();
     return is_control_c;
   }

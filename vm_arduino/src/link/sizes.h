@@ -1,5 +1,5 @@
-// How large the frames of this robot are, and how many of them wait until it has looked at them. HELLO
-// says both.
+// How large the frames of this robot are, and how many of them wait until it has looked at them, which
+// HELLO says; and how much its text may miss.
 //
 // An AVR has memory for one small frame. tiniscript_like_esp32 is for robots on a computer that have
 // the sizes of an ESP32.
@@ -26,6 +26,14 @@ constexpr uint8_t kTextBytes = 32;  // of text that nobody has taken yet, and on
 #endif
 
 constexpr bool kHasLargeFrames = kLargestFrame > kSmallFrame;
+
+// Whether a start counts only where a line begins, and a program only where its line ends. A Nano with
+// text and owners has no room for more.
+#ifdef tiniscript_strict_lines
+constexpr bool kStrictLines = true;
+#else
+constexpr bool kStrictLines = false;
+#endif
 
 // Of a frame that is not sealed; a large one has a 0 before it.
 constexpr uint8_t kPayloadBytes =

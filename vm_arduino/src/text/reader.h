@@ -78,9 +78,9 @@ class Reader {
   // wrong. Else the number of words there, or 255.
   uint8_t find_unknown(const uint8_t* table);
 
-  // Whether what begins the program is an unknown word with these letters first.
+  // Whether an unknown word with these letters first begins the program. (Some code may look so, too.)
   bool begins_like(uint8_t first, uint8_t second) const {
-    return problem_ == Problem::kUnknownWord && length_ == 0 && buffer_[0] == first &&
+    return problem_ == Problem::kUnknownWord && buffer_[0] == first &&
            (buffer_[1] & 0x7f) == second;  // the last letter of a word is marked
   }
 
