@@ -11,7 +11,7 @@ import pytest
 from tests.firmware.test_esp32_transports import RADIOS, Ends, Make, booted, ended, uploaded
 from tests.firmware.test_esp32_wifi import joined
 from tests.firmware.test_host_firmware import happened
-from tests.firmware.test_typed_stops import HELD_MS, PREFIXES, SILENCE_MS, SPELLINGS
+from tests.firmware.test_typed_stops import ALL, HELD_MS, SILENCE_MS, spellings_behind
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Bytes, End, Network, session, talk
 from tests.support.owners import Keys
@@ -52,9 +52,11 @@ def stops(robot: Esp32Robot, end: End | None, ends: Ends, data: bytes, what: str
 def stops_behind_every_prefix(
     robot: Esp32Robot, driver: Session, driver_end: End | None, end: End | None
 ) -> None:
-    for k, (name, prefix) in enumerate(PREFIXES.items()):
-        ends = drives(robot, driver, driver_end)
-        stops(robot, end, ends, prefix + SPELLINGS[k % len(SPELLINGS)], name)
+    for k, (name, prefix) in enumerate(ALL.items()):
+        spellings = spellings_behind(name)
+        for spelling in (spellings[k % len(spellings)], spellings[-1 - k % len(spellings)]):
+            ends = drives(robot, driver, driver_end)
+            stops(robot, end, ends, prefix + spelling, f"{name} {spelling!r}")
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -72,7 +74,7 @@ def test_a_typed_stop_over_a_network() -> None:
     end.leave()
 
 
-@pytest.mark.parametrize("word", [b"S", b"\r\n sToP; ", b";s", b"\x1b[A stop"])
+@pytest.mark.parametrize("word", [b"S", b"\r\n sToP; ", b"SS", b"PARA", b"Stop.", b"\x03"])
 def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
     """Of somebody in a network who may yet be a web page: it lets nobody in."""
     robot, owner = joined(Keys())
@@ -98,6 +100,20 @@ def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
     other.leave()
 
 
+@pytest.mark.parametrize("words", [[b"SSS"], [b"S", b"s", b"S"], [b"STOP ", b"STOP"]])
+def test_a_stranger_who_sends_no_line_end_stops(words: list[bytes]) -> None:
+    """A request has none of these before its target; and it lets nobody in."""
+    robot, owner = joined(Keys())
+    ends = drives(robot, owner)
+    end = Network(robot)
+    for word in words:
+        assert not stands(robot)
+        end.send(word)
+        talk(robot, ends, LATE_MS)
+    assert stands(robot)
+    end.leave()
+
+
 def test_a_typed_stop_over_the_cable_while_a_radio_drives() -> None:
     robot = booted()
     stops_behind_every_prefix(robot, session(1, robot), RADIOS[0](robot), None)
@@ -120,7 +136,7 @@ def test_who_comes_next_begins_a_line(make: Make) -> None:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-@pytest.mark.parametrize("stop", [b"S\n", b" stop ;\r", bytes(4)])
+@pytest.mark.parametrize("stop", [b"S\n", b" stop ;\r", bytes(4), b"Stop.\n", b"SSS", b"\0S\0"])
 def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
     """Wherever the ring ends in it, and where the robot reads before the rest comes."""
     robot = booted()
@@ -145,7 +161,7 @@ def test_what_is_lost_stops_nobody(make: Make) -> None:
     ends = drives(robot, driver)
     client = session(2, robot)
     code = b"Z\n\nS\n\xcc\x03"
-    for before in (b"F(1,80)\n" * 400, WHOLE * 400, b"SS\nS S\n\0\0S" * 400):
+    for before in (b"F(1,80)\n" * 400, WHOLE * 400, b"FT\nS T\n\0\0FT" * 400):
         end.send(before)
         talk(robot, ends, 20)
         frame = encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1" + code))

@@ -1,13 +1,15 @@
 """A typed stop on a simulated Uno: in every state of the receiver, in all spellings, at both rates.
 
 From the end of its line to the motor pins it takes less than a millisecond, in what began as a
-frame less than that behind 100 ms of silence. What came before it starts nothing afterwards.
+frame less than that behind 100 ms of silence; there only the strict spellings count. What came
+before it starts nothing afterwards.
 `python -m tests.firmware.test_typed_stops 10000` types it behind so many random bytes.
 """
 
 from __future__ import annotations
 
 import random
+import re
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -53,22 +55,39 @@ PREFIXES = {
     "a bracket": b"(\n",
     "a blank": b" \n",
     "a line": b"F(1,80)\n",
-    "a line that is cut": b"F(1,\x03",
+    "a line that is cut": b"F(1,\x03\n",
     "half a program": b"SI|F(1,\n",
     "a lost line": b"F(1,80);" * 12 + b"\n",
     "a long number": b"9" * 90 + b"\n",
     "noise": b"\x7f\x80\xff\n",
-    "a frame that has begun": b"\x08\x02\x02\n",
-    "a frame": b"\x08\x02\x02\x0a\xd7\xec\xe4\x2f\0",
-    "a damaged frame": b"\x08\x02\x02\x0b\xd7\xec\xe4\x2f\0",
+    "a frame": b"\0\x08\x02\x02\x0a\xd7\xec\xe4\x2f\0",
+    "a damaged frame": b"\0\x08\x02\x02\x0b\xd7\xec\xe4\x2f\0",
+    "a zero": b"\0",
     "zeros": b"\0\0",
+    "a line behind a zero": b"\0F(1,80)\r\n",
     "a mistake": b"FORWARD!\n",
     "six questions": b"HELP\n" * 6,
     "eight questions": b"HELP\n" * 8,
     "UTF-8": "ñandú\n".encode(),
+    "a byte order mark": b"\xef\xbb\xbf",
+    "a module's message": b"OK+CONN\r\n",
 }
+# The same in what began as a frame.
+FRAMED = {
+    "a frame that has begun": b"\0\x08\x02\x02\n",
+    "a zero and lines without anything": b"\0\n\n",
+    "a zero and UTF-8": "\0ñandú\n".encode(),
+    "a zero and a cursor key": b"\0\x1b[A",
+    "a zero and noise": b"\0\x7f\x80\xff\n",
+}
+ALL = PREFIXES | FRAMED
+STRICT = (b"S\n", b"s\r", b"STOP\r\n", b"stop\n", b" \t;S ;\n", b";sToP\r\n")
+LOOSE = (
+    b"SS\n", b"S.\r", b"Stop.\r\n", b"stop!\n", b"S()\n", b"stop();\r\n", b"STOP NOW\n", b"alto\r",
+    b"PARA\n", b"parar\r\n", b"detente\n", b"halt\r", "¡Alto!\n".encode(), b"S\0", b"STOP\0",
+)  # fmt: skip
+SPELLINGS = STRICT + LOOSE
 FROM_ONE_STATE = 25  # random stops; what follows happens to a robot that has seen the last of them
-SPELLINGS = (b"S\n", b"s\r", b"STOP\r\n", b"stop\n", b" \t;S ;\n", b";sToP\r\n")
 
 
 @pytest.fixture(scope="session", params=BAUDS)
@@ -129,7 +148,7 @@ def stop_behind(
     uno.send(prefix + spelling)
     uno.run_ms(len(prefix + spelling) * byte_ms + HELD_MS + 10)
     end = next(
-        k for k in reversed(range(len(uno.received))) if uno.received[k].value not in b"\r\n"
+        k for k in reversed(range(len(uno.received))) if uno.received[k].value not in b"\r\n\0"
     )
     line_end = uno.received[end + 1]  # of CR LF the first one
     off = max(uno.pins[name].cycle for name in ("left", "right"))
@@ -148,18 +167,194 @@ def stop_behind(
     return late_ms
 
 
-@pytest.mark.parametrize("name", PREFIXES)
+@pytest.mark.parametrize("name", ALL)
 def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> None:
     """No sample here: a commit that loses a stop must not pass. Each spelling is typed behind each
-    prefix, at one of the rates; half of them are typed at the other one. Behind the last one the
-    robot is asked whether it is latched."""
+    prefix at one of the rates, the others at the other one. Behind the last one the robot is asked
+    whether it is latched."""
     uno, baud = driving_at
-    spellings = SPELLINGS[(list(PREFIXES).index(name) + BAUDS.index(baud)) % 2 :: 2]
+    spellings = spellings_behind(name)[(list(ALL).index(name) + BAUDS.index(baud)) % 2 :: 2]
     for spelling in spellings:
         with uno.aside():
-            stop_behind(uno, baud, PREFIXES[name], spelling)
-            if spelling == SPELLINGS[-1]:
+            stop_behind(uno, baud, ALL[name], spelling)
+            if spelling == spellings[-1]:
                 is_latched(uno)
+
+
+def spellings_behind(name: str) -> tuple[bytes, ...]:
+    """Return which are a stop behind a prefix. What a 0x00 ends or begins has to be printable."""
+    if name in FRAMED:
+        return STRICT
+    prefix = PREFIXES[name]
+    line = re.split(rb"[\r\n\0]|\x1b\[[\d;]*.|\x1bO.", prefix)[-1].lstrip(b" \t\b\x7f")
+    found = tuple(each for each in SPELLINGS if each[-1] != 0 or _is_printable(line))
+    return tuple(each for each in found if prefix[-1:] != b"\0" or _is_printable(each[:-2]))
+
+
+def _is_printable(line: bytes) -> bool:
+    return all(0x20 <= byte < 0x7F for byte in line)
+
+
+@pytest.mark.parametrize("name", FRAMED)
+def test_a_loose_spelling_in_a_frame_is_none(driving_at: tuple[Uno, int], name: str) -> None:
+    uno, _ = driving_at
+    with uno.aside():
+        uno.send(FRAMED[name] + b"stop!\nS()\nalto\n")
+        uno.run_ms(HELD_MS + 50)
+        assert states(uno) == FORWARD
+
+
+# -- what does not wait for the end of its line ---------------------------------------------------
+
+
+def off_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
+    """Send bytes; return the ms from the last of them to the pins, which are off."""
+    uno.send(data)
+    uno.run_ms(len(data) * byte_ms + 10)
+    assert states(uno) == OFF, data
+    off = max(uno.pins[name].cycle for name in ("left", "right"))
+    return (off - uno.received[-1].cycle) / CYCLES_PER_MS
+
+
+@pytest.mark.parametrize(
+    "data", [b"SSS", b"s s\tS", b"FFFFSSS", b"SI|F(1,80)SSS", b"STOPSTOP", b"stop stop", b"\0xSSS",
+             b"F(1,stop STOP", b"S" * 40],
+)  # fmt: skip
+def test_who_sends_no_line_end_stops(driving_at: tuple[Uno, int], data: bytes) -> None:
+    """A held button's row of S, and a second STOP."""
+    uno, baud = driving_at
+    with uno.aside():
+        assert off_ms(uno, data, 10_000 / baud) < MOST_MS
+
+
+def test_a_row_of_s_without_line_ends_stops_at_the_third(driving_at: tuple[Uno, int]) -> None:
+    uno, _ = driving_at
+    with uno.aside():
+        for sent in range(1, 9):
+            uno.send(b"S")
+            uno.run_ms(400)
+            assert (states(uno) == OFF) == (sent >= 3), sent
+        is_latched(uno)
+
+
+@pytest.mark.parametrize("data", [b"S", b"STOP", b"alto", b"S.", b"Stop now"])
+def test_one_without_a_line_end_stops_after_a_second(
+    driving_at: tuple[Uno, int], data: bytes
+) -> None:
+    uno, baud = driving_at
+    with uno.aside():
+        uno.send(data)
+        uno.run_ms(SILENCE_MS - 50)
+        assert states(uno) == FORWARD
+        uno.run_ms(50 + len(data) * 10_000 / baud + 2 * TURN_MS)
+        assert states(uno) == OFF
+
+
+@pytest.mark.parametrize(
+    "data", [b"SS", b"S.S.S", b"// SSS", b"STO STO", b"CLASS", b"F(1,80)S S", b"ALT OSTOP"],
+)  # fmt: skip
+def test_what_is_none_without_a_line_end(driving_at: tuple[Uno, int], data: bytes) -> None:
+    uno, _ = driving_at
+    with uno.aside():
+        uno.send(data)
+        uno.run_ms(200)
+        assert states(uno) == FORWARD
+
+
+@pytest.mark.parametrize("prefix", [b"", b"\n", b"F(1,80)\r\n"])
+@pytest.mark.parametrize("data", [b"\x03", b"\x03\x03\x03"])
+def test_ctrl_c_alone_stops_behind_silence(
+    driving_at: tuple[Uno, int], prefix: bytes, data: bytes
+) -> None:
+    uno, baud = driving_at
+    with uno.aside():
+        late_ms = off_behind_silence(uno, prefix + data, 10_000 / baud)
+        assert HELD_MS - TURN_MS < late_ms < HELD_MS + BUSY_TURN_MS
+        is_latched(uno)
+    with uno.aside():
+        assert off_ms(uno, prefix + data + b"\r", 10_000 / baud) < MOST_MS
+    for other in (b"x" + data, b"\0" + data, data + b"x"):
+        with uno.aside():
+            uno.send(other)
+            uno.run_ms(3 * HELD_MS)
+            assert states(uno) == FORWARD, other
+
+
+def off_behind_silence(uno: Uno, data: bytes, byte_ms: float) -> float:
+    uno.send(data)
+    uno.run_ms(len(data) * byte_ms + HELD_MS + 2 * BUSY_TURN_MS)
+    assert states(uno) == OFF, data
+    off = max(uno.pins[name].cycle for name in ("left", "right"))
+    return (off - uno.received[-1].cycle) / CYCLES_PER_MS
+
+
+# -- when lines count again -----------------------------------------------------------------------
+
+AGAIN = b"SI|F(1,60)\n"
+EACH_MS = 300
+PAUSE = "// Stopped: wait a second\r\n"
+
+
+def repeat_until_it_drives(uno: Uno, most_ms: int) -> int:
+    """Send a line every EACH_MS; return after how many ms the robot drives, or most_ms."""
+    passed_ms = 0
+    while passed_ms < most_ms:
+        uno.send(AGAIN)
+        uno.run_ms(EACH_MS)
+        passed_ms += EACH_MS
+        if states(uno) == FORWARD:
+            return passed_ms
+    return most_ms
+
+
+@pytest.mark.parametrize("stop", [b"S\n", b"PARA\n", b"SSS"])
+def test_a_remote_that_repeats_is_heard_again_after_a_second(
+    driving_at: tuple[Uno, int], stop: bytes
+) -> None:
+    uno, _ = driving_at
+    with uno.aside():
+        before = len(uno.sent)
+        uno.send(stop)
+        uno.run_ms(50)
+        assert states(uno) == OFF
+        again_ms = repeat_until_it_drives(uno, 3000)
+        assert SILENCE_MS - 100 < again_ms <= SILENCE_MS + 2 * EACH_MS
+        assert said(uno, before).count(PAUSE) == 1, "what is dropped is told once"
+
+
+def test_behind_the_stop_sequence_a_second_of_silence_is_needed(
+    driving_at: tuple[Uno, int],
+) -> None:
+    uno, _ = driving_at
+    with uno.aside():
+        before = len(uno.sent)
+        uno.send(bytes(8))
+        uno.run_ms(50)
+        assert states(uno) == OFF
+        assert repeat_until_it_drives(uno, 3000) == 3000
+        assert said(uno, before).count(PAUSE) == 1
+        uno.run_ms(SILENCE_MS)
+        assert repeat_until_it_drives(uno, 3000) == EACH_MS
+
+
+def test_in_an_open_block_a_spelling_belongs_to_the_program(
+    driving_at: tuple[Uno, int],
+) -> None:
+    """What runs ends; the robot is stopped for good only if the line is wrong there."""
+    uno, _ = driving_at
+    for line, is_stopped in ((b"S", False), (b"STOP;STOP", False), (b"STOP NOW", True)):
+        with uno.aside():
+            for each in (b"SI|LOOP(2)", line):
+                uno.send(each + b"\r\n")
+                uno.run_ms(100)
+            assert states(uno) == OFF, line
+            before = len(uno.sent)
+            uno.send(b"F(0.1,80)\r\nEND_LOOP\r\n")
+            uno.run_ms(200)
+            assert ("// OK" in said(uno, before)) is not is_stopped, said(uno, before)
+
+
+# -------------------------------------------------------------------------------------------------
 
 
 def is_latched(uno: Uno) -> None:
@@ -252,7 +447,7 @@ BAUD = 115_200
 LOST = "// Bytes were lost. Begin again."
 LINES = (
     "F(0.1,80)", "SI|F(0.1,80)", "SB|F(0.1,80)", "SHOW(1)", "X=1", "HELP", "FOO", "(1)", "1=2",
-    "S(", "PING|CHECK_CONNECTION", "ñandú", "F(0.1,80);" * 6,
+    "E(", "PING|CHECK_CONNECTION", "ñandú", "F(0.1,80);" * 6,
 )  # fmt: skip
 TWENTY = 20
 QUIET_MS = 700  # longer than a program of these lines
