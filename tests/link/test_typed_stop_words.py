@@ -8,7 +8,8 @@ from tiniscript.link.typed_stop import is_at_stop, is_typed_stop, stops_at_once
 
 @each_row("line", [
     b"S", b"s", b"SS", b"s s", b"S.", b"S()", b"STOP", b"Stop.", b"stop!", b"stop();", b"STOP NOW",
-    b"stopstop", b"STOP;STOP", b"alto", b"PARA", b"parar", b"Pare", b"DETENTE", b"!HALT!",
+    b"stopstop", b"STOP;STOP",
+    b"STOPS", b"SSTOP", b"s stop now", b"alto", b"PARA", b"parar", b"Pare", b"DETENTE", b"!HALT!",
     b"\x1b[AS", b"S\x1b[1;5C", b"S // now", b"SX\b", b"\xc2\xa1ALTO!", b" \t;S;",
 ])  # fmt: skip
 def test_a_stop(line: bytes) -> None:
@@ -17,7 +18,7 @@ def test_a_stop(line: bytes) -> None:
 
 
 @each_row("line", [
-    b"", b"// S", b" // STOP", b"ST", b"STO", b"STOPX", b"STOPS", b"SSTOP", b"PARAS", b"NOW", b"S1",
+    b"", b"// S", b" // STOP", b"ST", b"STO", b"STOPX", b"SNOW", b"PARAS", b"NOW", b"S1",
     b"F(20,60)", b"\x1b[S", b"S\b", b"STOP ALTO",
 ])  # fmt: skip
 def test_no_stop(line: bytes) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-_WORDS = re.compile(rb"S+|(?:STOP)+|STOPNOW|ALTO|PARA|PARAR|PARE|DETENTE|HALT")
+_WORDS = re.compile(rb"(?:S|STOP)+|(?:S|STOP)*STOPNOW|ALTO|PARA|PARAR|PARE|DETENTE|HALT")
 _AT_ONCE = re.compile(rb"SSS|STOPSTOP", re.IGNORECASE)
 _BLANKS = re.compile(rb"[ \t]")
 # what a terminal sends for a cursor key, as far as it has come
