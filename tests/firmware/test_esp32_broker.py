@@ -263,7 +263,13 @@ def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto) -> None:
     robot, _, owner, ends = driving(broker)
     stranger = broker.connected()
     topic = f"{ROOT}/aula/{ID}/in/{stranger.peer}"
-    for none in (b"ST\n", b"SI", b"// S\n", b"\0\3S.\n", encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1Z\nS\n"))):
+    for none in (
+        b"ST\n",
+        b"SI",
+        b"// S\n",
+        b"\0\3S.\n",
+        encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1Z\nS\n")),
+    ):
         stranger.publish(topic, none)
         talk(robot, ends, 100)
     for stop in (b"S\n", b"F(1,80)\r\n ; stop ;\r", b"Stop", b"SS\n", b"PARA", b"\0S.\n", b"S\0",

@@ -9,7 +9,7 @@ import pytest
 from tests.firmware.test_typed_stops import RUNS, SILENCE_MS
 from tests.support.virtual_robot import robot_in
 from tests.virtual.test_simulator import until, visit
-from tiniscript.link.messages import STOP_BYTES
+from tiniscript.link.messages import STOP_BYTES, TEXT_MS
 from tiniscript.link.typed_stop import is_at_stop
 from tiniscript.virtual.protocol_sniffer import is_for_robot
 from tiniscript.virtual.robot import VirtualRobot
@@ -35,7 +35,7 @@ def test_the_next_client_begins_a_line(simulator: Simulator) -> None:
         until(simulator, lambda: not simulator.robot.is_running)
 
 
-@pytest.mark.parametrize("word", [b"S", b"\r\nsToP ", b"\tS", b"\x1bS"])
+@pytest.mark.parametrize("word", [b"S", b"\r\nsToP ", b"\tS", b"\x1bS", b"SSSS", b"Stop.", b"PARA"])
 def test_silence_ends_the_stop_of_who_may_be_a_web_page(simulator: Simulator, word: bytes) -> None:
     assert is_for_robot(word) is None
     with visit(simulator) as client:
@@ -49,10 +49,14 @@ def test_silence_ends_the_stop_of_who_may_be_a_web_page(simulator: Simulator, wo
 
 def test_the_host_knows_such_lines_as_a_robot_does() -> None:
     chance, robot, found = Random(4), robot_in(), set()
-    parts = [b"S", b"sTOP", b"T", b" ", b"\t;", b"\x1b", b"\x1b[", b"O", b"1", b"A", b"\x7f", b"\1"]
+    parts = [
+        b"S", b"sTOP", b"T", b" ", b"\t;", b"\x1b", b"\x1b[", b"O", b"1", b"A", b"\x7f", b"\1",
+        b".", b"NOW", b"alto", b"PARA", b"R",
+    ]  # fmt: skip
     for _ in range(200):
-        word = b"".join(chance.choices(parts, k=chance.randrange(1, 4))) + b"S"
-        wait(robot, SILENCE_MS + 50)
+        word = b"".join(chance.choices(parts, k=chance.randrange(1, 4)))
+        word += chance.choice((b"S", b"S", b"Stop", b"Halt!", b"now"))
+        wait(robot, TEXT_MS + SILENCE_MS)  # what the robot has to say comes behind its frames
         wait(robot, 100, RUNS)
         assert robot.is_running
         wait(robot, SILENCE_MS + 100, b"\n" + word)

@@ -71,13 +71,13 @@ bool Console::drop() {
   return is_lost;
 }
 
-tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
+tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool may_say) {
   uint8_t byte;
   is_due_ = false;
   for (uint8_t left = kBytesATurn; left != 0; left--) {
-    // A stop does not wait until the answers before it are said, nor does anything where a client is
-    // heard: there they wait for a pause.
-    if (has_answer() && !is_heard && !receiver->has_mark()) return Act::kNone;
+    // A stop does not wait until the answers before it are said, nor does anything where they wait for
+    // frames: of these the last one is said.
+    if (has_answer() && may_say && !receiver->has_mark()) return Act::kNone;
     if (!receiver->take_text(&byte)) {
       if (kStrictLines || tail_ != kWhole || left_ms_[kPatience] > kPatienceMs - kUnendedMs) break;
       byte = kLineEnd;
@@ -93,7 +93,7 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
     }
     if (byte == kLineCut) {
       // Of a 0x00 it is told a moment later, unless a client comes.
-      tail_ = is_chatter() ? Remark::kNone : Remark::kNoZero;
+      tail_ = is_chatter() ? Remark::kNone : is_discarding_ ? Remark::kPause : Remark::kNoZero;
       drop();
       if (receiver->take_lost()) {
         is_ignoring_ = true;  // the line may have opened a block
@@ -308,6 +308,7 @@ bool Console::is_ignored() const {
 // Says why the line cannot be read now.
 void Console::refuse() {
   is_talking_ = true;
+  if (refused_ == Remark::kPause) has_told_ = true;
   say(refused_);
   refused_ = Remark::kNone;
 }

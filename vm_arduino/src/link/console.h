@@ -28,7 +28,8 @@ class Console {
   bool is_due() const { return is_due_; }
 
   // Takes text that has arrived. `is_heard`: a client's frames arrive, so mistakes get no answer.
-  Act turn(Receiver* receiver, bool is_heard);
+  // `may_say`: an answer would be said soon.
+  Act turn(Receiver* receiver, bool is_heard, bool may_say);
 
   // The robot was stopped: what arrives before a second of silence is ignored, and no answer is due
   // any more. Where the stop was typed here, lines count again after a second, and a short silence.

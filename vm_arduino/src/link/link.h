@@ -130,7 +130,7 @@ class Link {
     is_open_ = false;
     due_ = 0;
     left_ = 0;
-    left_ms_[kListen] = 0;
+    left_ms_[kListen] = left_ms_[kFrameSent] = 0;
     console_.hang_up();
   }
 

@@ -24,7 +24,8 @@ void Link::talk() {
 // Does what a line asks for.
 tini_noinline void Link::talk() {
   Console* const console = near(&console_);
-  const Console::Act act = console->turn(receiver_, is_listened_to());
+  const bool may_say = left_ms_[kFrameSent] == 0;
+  const Console::Act act = console->turn(receiver_, is_listened_to(), may_say);
   if (act == Console::Act::kStop) halt(Cause::kText);
   if (act == Console::Act::kEnd) port_end();
   if (act == Console::Act::kStart) console->say(start_text(*console));

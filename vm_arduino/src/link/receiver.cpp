@@ -6,7 +6,7 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kControlCByte = 3;
+constexpr uint8_t kControlC = 3;
 constexpr uint8_t kEscape = 0x1b;
 constexpr uint8_t kDelete = 0x7f;
 
@@ -31,23 +31,30 @@ inline void Receiver::fall_silent() {
     state_ = State::kText;
     is_cut_ = false;
   }
-  if (line_ != Line::kSome) line_ = Line::kNothing;
+  line_ = line_ >= Line::kSome ? Line::kPaused : Line::kNothing;
+  keys_.begin();
   typed_.begin();
 }
 
 // Frames come from here on. What a 0x00 ends is a frame, or a line that is cut: a typed stop counts
-// all the same.
+// all the same. In frames it waits, or comes a second time: it may be what is left of one.
 inline bool Receiver::take_zero() {
   bool is_stop = false;
+  Line next = Line::kNothing;
   if (state_ >= State::kFrame) {
     is_stop = !end_packet(Packet::kFrame) && state_ == State::kHeld;
     is_cut_ = false;
-  } else if (state_ == State::kLine || line_ == Line::kSome) {
+  } else if (state_ == State::kLine || line_ >= Line::kSome) {
     is_stop = is_plain_ && typed_.is_whole();
     is_cut_ = true;
     if (!is_stop) cut_line();
+    if (is_stop && state_ == State::kLine && line_ != Line::kHeld) {
+      next = Line::kHeld;
+      is_stop = false;
+    }
   }
   begin_line();
+  line_ = next;
   state_ = State::kBegin;
   if (is_stop) stop();
   if (zeros_.is_whole()) due_stop_ = Cause::kSequence;
@@ -58,22 +65,23 @@ inline bool Receiver::take_zero() {
 
 inline bool Receiver::take_text_byte(uint8_t byte) {
   if (ends_line(byte)) {
-    if (line_ == Line::kSome) return end_line(state_ == State::kText && text_.put(kLineEnd));
-    const bool is_control_c = line_ == Line::kControlC;
-    begin_line();
+    if (line_ >= Line::kSome) return end_line(state_ == State::kText && text_.put(kLineEnd));
+    if (line_ != Line::kHeld) line_ = Line::kNothing;
     if (!kStrictLines && text_.is_empty()) text_.put(kLineEnd);  // only to tell that lines end here
-    if (is_control_c) stop();
-    return is_control_c;
+    return false;
   }
   const bool was_escape = keys_.is_escape();
   if (keys_.takes(byte)) {
-    if (line_ != Line::kSome) line_ = Line::kSkipped;
+    if (line_ < Line::kSome) line_ = Line::kSkipped;
     return false;
   }
   if (line_ != Line::kSome) {
-    if (byte <= ' ' || byte == kDelete) {
-      const bool is_control_c = byte == kControlCByte && line_ <= Line::kControlC;
-      line_ = is_control_c ? Line::kControlC : Line::kSkipped;
+    if (byte == kControlC && line_ != Line::kSkipped) {
+      line_ = Line::kHeld;
+      return false;
+    }
+    if (line_ != Line::kPaused && (byte <= ' ' || byte == kDelete)) {
+      line_ = Line::kSkipped;
       return false;
     }
     line_ = Line::kSome;
@@ -97,13 +105,15 @@ inline bool Receiver::watch(uint8_t byte) {
   return stop_at_mark(state_ == State::kText);
 }
 
-// A line has ended; `is_there`: all of it waits to be read.
+// A line has ended; `is_there`: all of it waits to be read. Behind a 0x00 only S and STOP stop at once.
 bool Receiver::end_line(bool is_there) {
   const bool is_stop = typed_.is_whole();
+  const bool is_doubtful = state_ == State::kLine && !typed_.is_strict();
   begin_line();
   state_ = State::kText;
   is_cut_ = false;
-  if (is_stop) return stop_at_mark(is_there);
+  if (is_stop && !is_doubtful) return stop_at_mark(is_there);
+  if (is_stop) line_ = Line::kHeld;
   if (!is_there) lose_line();
   return false;
 }
@@ -119,6 +129,7 @@ inline bool Receiver::take_packet_byte(uint8_t byte) {
   add(byte);
   if (state_ == State::kLine && !is_plain(byte)) {
     state_ = State::kFrame;
+    line_ = Line::kNothing;
     may_be_line_ = false;
   }
   return state_ == State::kLine ? watch(byte) : take_frame_byte(byte);
@@ -214,7 +225,7 @@ void Receiver::lose_line() {
 }
 
 void Receiver::disconnect() {
-  if (line_ == Line::kSome) cut_line();
+  if (line_ >= Line::kSome) cut_line();
   begin_line();
   state_ = State::kText;
   is_cut_ = false;

@@ -94,9 +94,9 @@ class Receiver : private PacketPlaces<kWindow> {
   bool frame_may_stop() const { return may_stop_[looked_at()]; }
   void let_frame() { may_stop_[looked_at()] = false; }
 
-  // Whether a typed stop is in the unfinished frame, or Ctrl-C is all that has come of a line: it
-  // stops when no byte has come for kHeldMs.
-  bool is_held() const { return state() == State::kHeld || line() == Line::kControlC; }
+  // Whether a typed stop is in the unfinished frame or was all between two 0x00, or Ctrl-C is all that
+  // has come of a line: it stops when no byte has come for kHeldMs.
+  bool is_held() const { return state() == State::kHeld || line() == Line::kHeld; }
 
   // Whether what has come of a line would be a typed stop if it ended here.
   bool is_at_stop() const { return state() < State::kFrame && typed_.is_whole(); }
@@ -171,8 +171,9 @@ class Receiver : private PacketPlaces<kWindow> {
     kHeld,   // in a frame with a typed stop in it
   };
 
-  // What has come of a line of text.
-  enum class Line : uint8_t { kNothing, kControlC, kSkipped, kSome };
+  // What has come of a line of text: nothing, a stop that waits for silence, bytes that are skipped,
+  // some of it, or some before a second of silence and nothing since.
+  enum class Line : uint8_t { kNothing, kHeld, kSkipped, kSome, kPaused };
 
   // Read where the interrupt may write.
   State state() const { return *const_cast<const volatile State*>(&state_); }

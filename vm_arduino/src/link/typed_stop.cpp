@@ -36,13 +36,14 @@ bool is_letter_or_digit(uint8_t byte) {
 tini_noinline void TypedStop::put(uint8_t byte) {
   if (byte == ' ' || byte == '\t') return;
   const uint8_t before = hurry_;
+  if (before == kComment) return;
   hurry_ = 0;
   if (byte == '\b' || byte == 0x7f) {  // deletes a letter, as the reader of text does
     if (count_ != 0) count_--;
     return;
   }
-  const bool begins_comment = byte == '/' && count_ == 0;  // one sign more: no word has it
-  if (!is_letter_or_digit(byte) && !begins_comment) {
+  if (!is_letter_or_digit(byte)) {
+    if (byte == '/') hurry_ = before == kSlash ? kComment : kSlash;
     if (byte != ';') is_loose_ = true;
     return;
   }

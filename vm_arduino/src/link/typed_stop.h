@@ -1,7 +1,7 @@
 // Finds a typed stop in the bytes of a line, whatever its spelling.
 //
-// Only ASCII letters and digits count, in any case. Knows no packets and no time. `docs/link.md` says
-// which stop counts where.
+// Only ASCII letters and digits count, in any case, and none behind `//`. Knows no packets and no time.
+// `docs/link.md` says which stop counts where.
 
 #ifndef TINISCRIPT_LINK_TYPED_STOP_H_
 #define TINISCRIPT_LINK_TYPED_STOP_H_
@@ -31,8 +31,8 @@ class TypedStop {
   bool is_strict() const { return !is_loose_ && word() <= kStop; }
 
   // Whether the byte was the last of three S in a row, or of a second STOP, wherever in a line: these
-  // do not wait for its end. A comment has none.
-  bool is_urgent() const { return hurry_ == kUrgent && word_[0] != '/'; }
+  // do not wait for its end.
+  bool is_urgent() const { return hurry_ == kUrgent; }
 
  private:
   static constexpr uint8_t kLongest = 7;  // letters of a word: DETENTE
@@ -41,9 +41,12 @@ class TypedStop {
   static constexpr uint8_t kStop = 1;  // S and STOP
   static constexpr uint8_t kNoWord = 255;
 
-  // How far the line ends like STOP STOP: letters of it, or two S.
+  // How far the line ends like STOP STOP: letters of it, or two S. Or it ends with a slash, or has a
+  // comment.
   static constexpr uint8_t kUrgent = 8;
   static constexpr uint8_t kTwoS = 9;
+  static constexpr uint8_t kSlash = 16;
+  static constexpr uint8_t kComment = 17;
 
   uint8_t word() const;
 
