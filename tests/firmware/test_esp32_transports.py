@@ -192,7 +192,13 @@ def test_an_upload_that_another_one_has_overtaken_is_not_begun_any_more() -> Non
 
 def test_notifications_are_as_long_as_was_agreed() -> None:
     robot = booted()
-    for mtu, longest in ((23, 20), (40, 37), (100, 49), (512, 49), (5, 20)):  # HELLO's answer: a 0x00, and 48
+    for mtu, longest in (
+        (23, 20),
+        (40, 37),
+        (100, 49),
+        (512, 49),
+        (5, 20),
+    ):  # HELLO's answer: a 0x00, and 48
         client = session(mtu, robot)
         end = LowEnergy(robot, mtu)
         end.mtu = max(mtu, LEAST_MTU)

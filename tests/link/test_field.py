@@ -1,8 +1,8 @@
 """What people, apps and radio modules really send, to the whole link of a robot.
 
-A right line behind their bytes runs, or an answer says why not: nothing is met with silence. A glitch
-that is a 0x00, at any byte, has no other program run than the one that was typed, and a person and a
-computer in turns at one port are both heard.
+A right line behind their bytes runs, or an answer says why not: nothing is met with silence. A
+glitch that is a 0x00, at any byte, has no other program run than the one that was typed, and a
+person and a computer in turns at one port are both heard.
 `python -m tests.link.test_field 100000` tries more than the tests.
 """
 
@@ -11,6 +11,7 @@ from __future__ import annotations
 import random
 import re
 from functools import lru_cache, partial
+from typing import Any
 
 import pytest
 
@@ -23,16 +24,28 @@ from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 SEEDS = 150  # of a property, in the tests
-LINES = ("SI|F(0.5,60)", "si|f(0.5, 60)", "SI|F(0.5,60);W(1)", "SB|F(0.5,60)", "PING|check_connection")
-PROGRAMS = ("SI|W(1);F(20,60)", "SI|F(20,60) UNTIL(DISTANCE<10)", "W(1);F(20,60)", "SI|LOOP(2)\nF(1,60)\nEND_LOOP")
+LINES = (
+    "SI|F(0.5,60)",
+    "si|f(0.5, 60)",
+    "SI|F(0.5,60);W(1)",
+    "SB|F(0.5,60)",
+    "PING|check_connection",
+)
+PROGRAMS = (
+    "SI|W(1);F(20,60)",
+    "SI|F(20,60) UNTIL(DISTANCE<10)",
+    "W(1);F(20,60)",
+    "SI|LOOP(2)\nF(1,60)\nEND_LOOP",
+)
 LINE_ENDS = (b"\n", b"\r", b"\r\n", b"\n\n", b"\r\n\r\n", b"")
 # from Bluetooth apps, terminals, radio modules, editors, and lines that are noisy at rest
 BEFORE = (
-    b"\n", b"\r\n", b"\r", b"\n\n", b"\r\n\r\n", b"1\n", b";\n;\n", b"OK+CONN", b"OK+LOST\r\n", b"AT\r\n", b"OK",
-    b"+CONNECTED\r\n", b"+DISC:SUCCESS\r\n", b"ERROR:(0)\r\n", b"\xef\xbb\xbf", b"\x1b[A\x1b[B", b"\x1b[1;5C", b"\x1b",
-    b"\t\n\t\n", b"\x07", b"\xff\xfe", b"// hi\n\n", b"\x7f\x7f", b"\x08", b"\0", b"\0\0", b"hello\0", b"\x03",
-    b"!B5", b" ", b"u", b"\0\n\n", b"\0\r\n", b"\xc3\xb1", b"\x01\x02", b"F(1,80", b"FFFF", b"SI|F(", b"SI|LOOP(2)\n",
-    b"S", b"stop", b"(\n", b"HELP\n", b"\xf0", b"\xff" * 40, b"x" * 90,
+    b"\n", b"\r\n", b"\r", b"\n\n", b"\r\n\r\n", b"1\n", b";\n;\n", b"OK+CONN", b"OK+LOST\r\n",
+    b"AT\r\n", b"OK", b"+CONNECTED\r\n", b"+DISC:SUCCESS\r\n", b"ERROR:(0)\r\n", b"\xef\xbb\xbf",
+    b"\x1b[A\x1b[B", b"\x1b[1;5C", b"\x1b", b"\t\n\t\n", b"\x07", b"\xff\xfe", b"// hi\n\n",
+    b"\x7f\x7f", b"\x08", b"\0", b"\0\0", b"hello\0", b"\x03", b"!B5", b" ", b"u", b"\0\n\n",
+    b"\0\r\n", b"\xc3\xb1", b"\x01\x02", b"F(1,80", b"FFFF", b"SI|F(", b"SI|LOOP(2)\n", b"S",
+    b"stop", b"(\n", b"HELP\n", b"\xf0", b"\xff" * 40, b"x" * 90,
 )  # fmt: skip
 PAUSES_MS = (0, 0, 50, 300, 1200, 2500, 3500)
 
@@ -127,7 +140,7 @@ def both_are_heard(cpp: CppLink, seed: int) -> str:
     session = Session(draw.getrandbits(32), 115_200, KIT)
     session.is_attached = False
 
-    def ask(request: PendingRequest[object]) -> None:
+    def ask(request: PendingRequest[Any]) -> None:
         end_ms = robot.now_ms + 3000
         while request.outcome is None and robot.now_ms < end_ms:
             before = len(robot.sent)
@@ -146,7 +159,9 @@ def both_are_heard(cpp: CppLink, seed: int) -> str:
         done, text = len(robot.did), draw.choice(("SI|F(1,60)", "F(2,80)"))
         robot.type(text.encode() + b"\n")
         robot.wait(40)
-        if "STOP" in robot.did:  # a computer's frame without a 0x00, where the person's line has ended
+        if (
+            "STOP" in robot.did
+        ):  # a computer's frame without a 0x00, where the person's line has ended
             return "a frame was a stop"
         begun = {row for row in robot.did[done:] if row.startswith("TEXT")}
         assert begun == programs_again(text), f"seed {seed}: {text!r} did {robot.did[done:]}"

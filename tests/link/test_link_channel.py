@@ -263,7 +263,7 @@ def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> N
 
 @pytest.mark.parametrize(("is_large", "count", "least"), [(False, 150, 0.85), (True, 50, 0.6)])
 def test_uploads_in_pieces(is_large: bool, count: int, least: float) -> None:
-    """A pause of a second within a frame makes text of its rest: the frame is repeated behind a 0x00."""
+    """Behind a second of silence the rest of a frame is text; the frame comes again."""
     found = Counter(one_upload(cpp_link(is_large), seed, Split) for seed in range(count))
     assert found["done"] > count * least, found
 
@@ -305,5 +305,7 @@ def test_undos_over_a_bad_radio() -> None:
 
 if __name__ == "__main__":
     given = wanted(10_000, 1_000_000, "large", "undos", "pieces")
-    one = one_undo if given.undos else partial(one_upload, world_of=Split if given.pieces else World)
+    one = (
+        one_undo if given.undos else partial(one_upload, world_of=Split if given.pieces else World)
+    )
     each_seed(partial(one, link_library(given.large)), given)

@@ -205,7 +205,7 @@ SHOWN = ("machine and verifier", "link, with text", "reader of text alone")
 MUST = {
     "machine and verifier": Size(7168, 400),
     "store": Size(1600, 24),
-    "link, with text": Size(16_000, 404),
+    "link, with text": Size(16_000, 456),
     "reader of text, with answers": Size(6500, 60),
 }
 

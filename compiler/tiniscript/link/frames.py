@@ -73,8 +73,8 @@ def checksum(data: bytes) -> int:
     """Return the CRC-32 of a frame.
 
     The CRC starts with 256 times the major version, so that frames of another version are
-    rejected. For HELLO it starts with 0, because every version must understand HELLO. (A start below
-    256 would meet the type's byte: with 2, one damaged bit made a HELLO of a STATUS.)
+    rejected. For HELLO it starts with 0, because every version must understand HELLO. (A start
+    below 256 would meet the type's byte: with 2, one damaged bit made a HELLO of a STATUS.)
     """
     is_hello = data[0] & ~(REPLY | SEALED) == _HELLO
     return zlib.crc32(data, 0 if is_hello else MAJOR << 8)

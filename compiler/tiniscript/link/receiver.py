@@ -99,7 +99,7 @@ class Receiver:
     def _put_text(self, byte: int) -> None:
         if byte in LINE_ENDS:
             self._end_line()
-        elif self._length or not self._is_skipped(byte):
+        elif not self._key.put(byte) and (self._length or not _is_skipped(byte)):
             if not self._length:
                 self._begin()
                 self._state = State.LOST if self._is_dropping else State.TEXT
@@ -118,11 +118,6 @@ class Receiver:
         if self._length > self._room() and not self._is_dropping:
             self._is_dropping = True
             self.damaged += 1
-
-    def _is_skipped(self, byte: int) -> bool:
-        """Return whether a byte between two lines belongs to none."""
-        is_of_key = self._key.put(byte)
-        return is_of_key or byte <= 0x20 or byte == 0x7F or byte in BYTE_ORDER_MARK
 
     def _begin(self) -> None:
         self._is_dropping = not self._has_place()
@@ -203,3 +198,8 @@ class KeySequence:
 
 def _is_printable(byte: int) -> bool:
     return 0x20 <= byte <= 0x7E
+
+
+def _is_skipped(byte: int) -> bool:
+    """Return whether a byte between two lines belongs to none."""
+    return byte <= 0x20 or byte == 0x7F or byte in BYTE_ORDER_MARK

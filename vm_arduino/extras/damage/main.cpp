@@ -253,8 +253,9 @@ struct Typed {
   uint16_t pause_ms;
 };
 
-// What a stop may be at a byte. kEither: the laws leave it open, or it depends on what was deleted.
-enum class Law : uint8_t { kNone, kStop, kHeld, kEither };
+// What a stop may be at a byte. kHeld: of its frame, if that is not whole. kWaits: where silence follows.
+// kEither: the laws leave it open, or it depends on what was deleted.
+enum class Law : uint8_t { kNone, kStop, kHeld, kWaits, kEither };
 
 const char* const kWords[] = {"s", "stop", "stopnow", "alto", "para", "parar", "pare", "detente", "halt"};
 
@@ -265,15 +266,14 @@ bool ends_with(const std::string& all, const char* end) {
   return all.size() >= length && all.compare(all.size() - length, length, end) == 0;
 }
 
-// The bytes with something in the place of each cursor key, and of the beginning of one.
-std::string without_keys(const std::string& bytes, const char* place = "\1") {
+// The bytes without cursor keys, and without the beginning of one.
+std::string without_keys(const std::string& bytes) {
   std::string found;
   for (size_t k = 0; k < bytes.size(); k++) {
     if (bytes[k] != 0x1b) {
       found += bytes[k];
       continue;
     }
-    found += place;
     if (k + 1 == bytes.size() || (bytes[k + 1] != '[' && bytes[k + 1] != 'O')) continue;
     for (k++; k + 1 < bytes.size() && bytes[k + 1] >= ' ' && bytes[k + 1] < '@';) k++;
     if (k + 1 < bytes.size() && bytes[k + 1] >= '@' && bytes[k + 1] <= '~') k++;
@@ -287,15 +287,19 @@ std::string small(const std::string& bytes) {
   return found;
 }
 
-// Whether a line of text is a typed stop: of words of S and STOP the last one counts.
+// Whether a line of text is a typed stop: of words of S and STOP the last one counts, none in a comment.
 Law of_line(const std::string& line) {
   std::string letters;
   bool is_deleted = false;  // maybe an S that had made another one one
+  char before = 0;
   for (const char byte : small(line)) {
+    if (byte == ' ' || byte == '\t') continue;
+    if (byte == '/' && before == '/') break;
+    before = byte;
     if (byte == '\b' || byte == 0x7f) {
       is_deleted |= letters.size() > 1 && letters.find('s', 1) != std::string::npos;
       if (!letters.empty()) letters.pop_back();
-    } else if ((byte >= 'a' && byte <= 'z') || (byte >= '0' && byte <= '9') || (byte == '/' && letters.empty())) {
+    } else if ((byte >= 'a' && byte <= 'z') || (byte >= '0' && byte <= '9')) {
       letters += byte;
     }
   }
@@ -318,15 +322,14 @@ Law of_unended(const std::string& line) {
     if (byte != ' ' && byte != '\t') near += byte;
   }
   if (!ends_with(near, "sss") && !ends_with(near, "stopstop")) return Law::kNone;
-  const size_t first = near.find_first_of("abcdefghijklmnopqrstuvwxyz0123456789/");
   if (near.find_first_of("\b\x7f") != std::string::npos) return Law::kEither;
-  return near[first] == '/' ? Law::kNone : Law::kStop;
+  return near.find("//") == std::string::npos ? Law::kStop : Law::kNone;
 }
 
 // Whether the part of a frame behind its last control byte is one S or STOP, blanks and `;`.
 bool is_strict(const std::string& packet) {
   std::string line;
-  for (const char byte : small(without_keys(packet))) {
+  for (const char byte : small(packet)) {
     if ((static_cast<uint8_t>(byte) < ' ' && byte != '\t') || byte == 0x7f) {
       line.clear();
     } else if (byte != ' ' && byte != '\t' && byte != ';') {
@@ -373,6 +376,7 @@ Law law_of(const std::vector<Typed>& all, size_t restart, bool is_running) {
   size_t line = last;
   while (line > text && !is_end(all[line - 1].byte)) line--;
   const std::string bytes = without_keys(between(std::max(line, restart), last));
+  const bool is_behind_zero = is_framed && line == text;
   // A line of text that has begun before a silence is the same one for some: a control byte in it, say.
   size_t before = line;
   while (line == quiet && before > 0 && all[before - 1].byte != 0 && !is_end(all[before - 1].byte)) before--;
@@ -381,21 +385,24 @@ Law law_of(const std::vector<Typed>& all, size_t restart, bool is_running) {
   if (is_end(byte)) {
     const std::string whole = between(line, last);
     const bool is_control_c = !whole.empty() && whole.find_first_not_of('\3') == std::string::npos;
-    if (!is_control_c) return of_line(bytes);
-    return is_new ? Law::kStop : Law::kEither;
+    if (is_control_c) return is_new ? Law::kWaits : Law::kEither;
+    const Law law = of_line(bytes);
+    return law == Law::kStop && is_behind_zero && !is_strict(bytes) ? Law::kWaits : law;
   }
   if (byte != 0) {
-    return is_running ? of_unended(without_keys(between(std::max(line, restart), last + 1), "")) : Law::kNone;
+    return is_running ? of_unended(without_keys(between(std::max(line, restart), last + 1))) : Law::kNone;
   }
   bool has_begun = false;
-  for (const char each : without_keys(between(line, last), "")) {
+  for (const char each : without_keys(between(line, last))) {
     const bool is_skipped = static_cast<uint8_t>(each) <= ' ' || each == 0x7f;
     if (!has_begun && is_skipped) continue;
     has_begun = true;
     if (!is_printable(static_cast<uint8_t>(each))) return Law::kNone;
   }
-  if (!is_new && of_line(bytes) == Law::kStop) return Law::kEither;
-  return of_line(bytes);
+  const Law law = of_line(bytes);
+  if (law != Law::kStop) return law;
+  if (is_behind_zero) return Law::kWaits;
+  return is_new ? law : Law::kEither;
 }
 
 // What senders send before a line, and what people and modules leave unfinished.
@@ -456,7 +463,8 @@ void judge_typed(uint64_t seed) {
     const Found found = finder.put(byte, now_ms);
     law = law_of(all, restart, is_running);
     if (law == Law::kStop && !is_stop) note("a typed stop is not seen");
-    if (law == Law::kHeld && !is_stop && !receiver.is_held()) note("a stop in a frame is not seen");
+    const bool may_wait = law == Law::kHeld || law == Law::kWaits;
+    if (may_wait && !is_stop && !receiver.is_held()) note("a stop that waits is not seen");
     if (law == Law::kNone && is_stop && !was_held) note("a stop that nobody has typed");
     if (is_stop && receiver.due_stop() == Cause::kNone && !receiver.has_mark()) {
       note("the link does not know of a stop");
@@ -465,7 +473,7 @@ void judge_typed(uint64_t seed) {
     if (restart == 0 && law != Law::kEither) {
       const bool is_in_frame = law == Law::kHeld;
       const Found wanted = is_urgent ? Found::kOfRun
-                           : law == Law::kStop || are_zeros ? Found::kStop
+                           : law == Law::kStop || law == Law::kWaits || are_zeros ? Found::kStop
                            : is_in_frame ? Found::kInFrame
                                          : Found::kNothing;
       if (found != wanted && (is_running || found != Found::kOfRun)) note("a finder says something else");
@@ -527,7 +535,8 @@ void judge_typed(uint64_t seed) {
   put(ends_with_zero ? 0 : static_cast<uint8_t>("\r\n"[draw.below(2)]), 0);
   if (!is_over) {
     const bool is_sure = is_silent || begin == kZeroBegins;
-    if (is_loose && is_sure && law != Law::kStop) note("the judge does not see the stop");
+    const bool is_seen = law == Law::kStop || law == Law::kWaits;
+    if (is_loose && is_sure && !is_seen) note("the judge does not see the stop");
     if (!is_loose && (is_sure || begin < kFresh) && law != Law::kStop && law != Law::kHeld) {
       note("the judge does not see the strict stop");
     }

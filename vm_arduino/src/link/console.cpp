@@ -36,7 +36,7 @@ bool is_latched() { return port_status().state >= State::kStopped; }
 
 }  // namespace
 
-void Console::pass(uint16_t passed_ms, uint16_t silence_left_ms) {
+tini_noinline void Console::pass(uint16_t passed_ms, uint16_t silence_left_ms) {
   is_due_ = true;
   for (uint16_t& left_ms : left_ms_) {
     left_ms = passed_ms < left_ms ? static_cast<uint16_t>(left_ms - passed_ms) : 0;
@@ -46,7 +46,7 @@ void Console::pass(uint16_t passed_ms, uint16_t silence_left_ms) {
   }
 }
 
-void Console::discard() {
+tini_noinline void Console::discard() {
   left_ms_[kWait] = kSilenceMs;
   is_discarding_ = true;
   is_brief_ = has_told_ = is_open_ = false;
@@ -93,11 +93,11 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool
     }
     if (byte == kLineCut) {
       // Of a 0x00 it is told a moment later, unless a client comes.
-      tail_ = is_chatter() ? Remark::kNone : is_discarding_ ? Remark::kPause : Remark::kNoZero;
+      tail_ = is_chatter() ? Remark::kNone : Remark::kNoZero;
       drop();
       if (receiver->take_lost()) {
         is_ignoring_ = true;  // the line may have opened a block
-        tell(is_discarding_ ? Remark::kPause : Remark::kCut, is_heard);
+        tell(Remark::kCut, is_heard);
         tail_ = Remark::kNone;
       }
     } else if (byte == kLineEnd) {
@@ -195,7 +195,7 @@ inline void Console::take(uint8_t byte, bool is_heard) {
 
 // Whether the line begins with what a radio module says.
 bool Console::is_chatter() {
-  return is_open_ && (first_ == '+' || reader_.begins_like('O', 'K'));
+  return is_open_ && (first_ == '+' || (!kStrictLines && reader_.begins_like('O', 'K')));
 }
 
 void Console::read(uint8_t byte) {
@@ -308,7 +308,6 @@ bool Console::is_ignored() const {
 // Says why the line cannot be read now.
 void Console::refuse() {
   is_talking_ = true;
-  if (refused_ == Remark::kPause) has_told_ = true;
   say(refused_);
   refused_ = Remark::kNone;
 }

@@ -16,7 +16,7 @@ class KeySequence {
     if (byte == 0x1b) {
       place_ = kEscape;
     } else if (before == kEscape) {
-      if (byte != '[' && byte != 'O') return false;
+      if (byte != '[' && byte != 'O') return false;  // an ESC alone is nothing
       place_ = kInside;
     } else if (before == kInside) {
       if (byte < ' ' || byte > '~') return false;
@@ -27,9 +27,8 @@ class KeySequence {
     return true;
   }
 
-  // Whether only the ESC has come: if no key follows, it is a control byte like others.
-  bool is_escape() const { return place_ == kEscape; }
-
+  // Whether a key has begun.
+  bool is_active() const { return place_ != kNone; }
   void begin() { place_ = kNone; }
 
  private:

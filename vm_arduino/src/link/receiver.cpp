@@ -45,7 +45,7 @@ inline bool Receiver::take_zero() {
     is_stop = !end_packet(Packet::kFrame) && state_ == State::kHeld;
     is_cut_ = false;
   } else if (state_ == State::kLine || line_ >= Line::kSome) {
-    is_stop = is_plain_ && typed_.is_whole();
+    is_stop = is_plain_ && typed_.found() != TypedStop::kNone;
     is_cut_ = true;
     if (!is_stop) cut_line();
     if (is_stop && state_ == State::kLine && line_ != Line::kHeld) {
@@ -64,15 +64,14 @@ inline bool Receiver::take_zero() {
 // -- text -------------------------------------------------------------------------------------------
 
 inline bool Receiver::take_text_byte(uint8_t byte) {
+  if ((byte == kEscape || keys_.is_active()) && keys_.takes(byte)) {
+    if (line_ < Line::kSome) line_ = Line::kSkipped;
+    return false;
+  }
   if (ends_line(byte)) {
     if (line_ >= Line::kSome) return end_line(state_ == State::kText && text_.put(kLineEnd));
     if (line_ != Line::kHeld) line_ = Line::kNothing;
     if (!kStrictLines && text_.is_empty()) text_.put(kLineEnd);  // only to tell that lines end here
-    return false;
-  }
-  const bool was_escape = keys_.is_escape();
-  if (keys_.takes(byte)) {
-    if (line_ < Line::kSome) line_ = Line::kSkipped;
     return false;
   }
   if (line_ != Line::kSome) {
@@ -86,8 +85,6 @@ inline bool Receiver::take_text_byte(uint8_t byte) {
     }
     line_ = Line::kSome;
     is_plain_ = true;
-  } else if (was_escape && state_ == State::kText) {
-    text_.put(kEscape);  // no key has followed: the line is wrong
   }
   if (!is_plain(byte)) is_plain_ = false;
   if (state_ == State::kText && !text_.put(byte)) {
@@ -107,13 +104,15 @@ inline bool Receiver::watch(uint8_t byte) {
 
 // A line has ended; `is_there`: all of it waits to be read. Behind a 0x00 only S and STOP stop at once.
 bool Receiver::end_line(bool is_there) {
-  const bool is_stop = typed_.is_whole();
-  const bool is_doubtful = state_ == State::kLine && !typed_.is_strict();
+  const TypedStop::Found found = typed_.found();
+  const bool was_text = state_ < State::kBegin;
   begin_line();
   state_ = State::kText;
   is_cut_ = false;
-  if (is_stop && !is_doubtful) return stop_at_mark(is_there);
-  if (is_stop) line_ = Line::kHeld;
+  if (found == TypedStop::kStrict || (found != TypedStop::kNone && was_text)) {
+    return stop_at_mark(is_there);
+  }
+  if (found != TypedStop::kNone) line_ = Line::kHeld;
   if (!is_there) lose_line();
   return false;
 }
@@ -137,12 +136,11 @@ inline bool Receiver::take_packet_byte(uint8_t byte) {
 
 // Looks for a typed stop with a line of its own. It waits: the frame may be whole.
 inline bool Receiver::take_frame_byte(uint8_t byte) {
-  const bool is_key = keys_.takes(byte);
   if (ends_line(byte)) {
     may_be_line_ = true;
-    if (typed_.is_strict()) state_ = State::kHeld;
+    if (typed_.found() == TypedStop::kStrict) state_ = State::kHeld;
   }
-  if (is_key || is_control(byte)) {
+  if (is_control(byte)) {
     typed_.begin();
   } else {
     typed_.put(byte);

@@ -99,7 +99,7 @@ class Receiver : private PacketPlaces<kWindow> {
   bool is_held() const { return state() == State::kHeld || line() == Line::kHeld; }
 
   // Whether what has come of a line would be a typed stop if it ended here.
-  bool is_at_stop() const { return state() < State::kFrame && typed_.is_whole(); }
+  bool is_at_stop() const { return state() < State::kFrame && typed_.found() != TypedStop::kNone; }
 
   // Whether what a second of silence ends may be a person's line: all of it is printable, or CR or LF
   // is in it.

@@ -22,7 +22,7 @@ constexpr uint16_t kTextBytes = 256;
 #else
 constexpr uint8_t kLargestFrame = kSmallFrame;
 constexpr uint8_t kWindow = 1;
-constexpr uint8_t kTextBytes = 32;  // of text that nobody has taken yet, and one more
+constexpr uint8_t kTextBytes = 64;  // of text that nobody has taken yet, and one more
 #endif
 
 constexpr bool kHasLargeFrames = kLargestFrame > kSmallFrame;

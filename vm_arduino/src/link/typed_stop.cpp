@@ -26,44 +26,55 @@ const uint8_t kWords[] tini_progmem = {
 
 constexpr uint8_t kStopAt = 5;  // letters of STOP NOW, without a mark
 
-bool is_letter_or_digit(uint8_t byte) {
-  const uint8_t small = byte | 0x20;
-  return static_cast<uint8_t>(small - 'a') < 26 || static_cast<uint8_t>(byte - '0') < 10;
-}
-
 }  // namespace
 
+// Most bytes of a program are no letters: they are looked at first.
 tini_noinline void TypedStop::put(uint8_t byte) {
   if (byte == ' ' || byte == '\t') return;
   const uint8_t before = hurry_;
   if (before == kComment) return;
   hurry_ = 0;
-  if (byte == '\b' || byte == 0x7f) {  // deletes a letter, as the reader of text does
-    if (count_ != 0) count_--;
-    return;
-  }
-  if (!is_letter_or_digit(byte)) {
-    if (byte == '/') hurry_ = before == kSlash ? kComment : kSlash;
-    if (byte != ';') is_loose_ = true;
-    return;
-  }
-  byte |= 0x20;
-  if (byte == flash_byte(kWords + kStopAt + before % 4)) {
+  const uint8_t count = count_;
+  const uint8_t small = byte | 0x20;
+  if (static_cast<uint8_t>(small - 'a') >= 26) {
+    if (byte == '\b' || byte == 0x7f) {  // deletes a letter, as the reader of text does
+      if (count != 0) count_ = static_cast<uint8_t>(count - 1);
+      return;
+    }
+    if (static_cast<uint8_t>(byte - '0') >= 10) {
+      if (byte == '/') hurry_ = before == kSlash ? kComment : kSlash;
+      if (byte != ';') is_loose_ = true;
+      return;
+    }
+  } else if (small == flash_byte(kWords + kStopAt + before % 4)) {
     hurry_ = static_cast<uint8_t>(before % kUrgent + 1);
-  } else if (byte == 's') {
+  } else if (small == 's') {
     hurry_ = before == kTwoS ? kUrgent : before % 4 == 1 ? kTwoS : 1;
   }
-  if (byte == 's' && word() <= kStop) {
+  add(small);
+}
+
+// Adds a letter or a digit of the line. Another S begins a word anew behind an S or a STOP.
+inline void TypedStop::add(uint8_t small) {
+  if (count_ >= kLongest) {
+    if (count_ != 255) count_++;
+    return;
+  }
+  if (small == 's' && word() <= kStop) {
     count_ = 0;
     is_loose_ = true;
   }
-  const uint8_t count = count_;
-  if (count < kLongest) word_[count] = byte;
-  if (count != 255) count_ = static_cast<uint8_t>(count + 1);
+  word_[count_++] = small;
+}
+
+tini_noinline TypedStop::Found TypedStop::found() const {
+  const uint8_t number = word();
+  return number == kNoWord ? kNone : number <= kStop && !is_loose_ ? kStrict : kLoose;
 }
 
 // The number of the word that the line is so far.
 tini_noinline uint8_t TypedStop::word() const {
+  if (static_cast<uint8_t>(count_ - 1) >= kLongest) return kNoWord;
   const uint8_t* letter = kWords;
   for (uint8_t number = 0; flash_byte(letter) != 0; number++) {
     const uint8_t* mine = word_;

@@ -23,12 +23,10 @@ class TypedStop {
   // Takes a byte that does not end a line.
   void put(uint8_t byte);
 
-  // Whether the line would be a stop if it ended here: S and STOP as often as one likes, STOP NOW, or
-  // a word of people who speak Spanish, Portuguese or English.
-  bool is_whole() const { return word() != kNoWord; }
-
-  // Whether it would be one in a packet that is, or was, a frame: one S or STOP, blanks and `;`.
-  bool is_strict() const { return !is_loose_ && word() <= kStop; }
+  // What the line would be if it ended here. kLoose: S and STOP as often as one likes, STOP NOW, or a
+  // word of people who speak Spanish, Portuguese or English. kStrict: one S or STOP, blanks and `;`.
+  enum Found : uint8_t { kNone, kLoose, kStrict };
+  Found found() const;
 
   // Whether the byte was the last of three S in a row, or of a second STOP, wherever in a line: these
   // do not wait for its end.
@@ -48,6 +46,7 @@ class TypedStop {
   static constexpr uint8_t kSlash = 16;
   static constexpr uint8_t kComment = 17;
 
+  void add(uint8_t small);
   uint8_t word() const;
 
   uint8_t word_[kLongest];  // the letters and digits of the line, small; an S or a STOP before an S is left out

@@ -41,13 +41,14 @@ class StopFinder {
 
   // Whether what has come of a line stops what runs, if silence follows.
   bool is_at_stop() const {
-    return line_ == Line::kControlC || (state_ != State::kFrame && typed_.is_whole());
+    return line_ == Line::kControlC || (state_ != State::kFrame && is_typed());
   }
 
  private:
   enum class State : uint8_t { kText, kBegin, kLine, kFrame };
   enum class Line : uint8_t { kNothing, kControlC, kSkipped, kSome };
 
+  bool is_typed() const { return typed_.found() != TypedStop::kNone; }
   static bool is_printable(uint8_t byte) { return byte >= ' ' && byte < 0x7f; }
 
   void begin_line() {
@@ -66,7 +67,7 @@ class StopFinder {
   // Whether it ends a line that is a typed stop.
   bool take_zero() {
     const bool is_line = state_ == State::kLine || line_ == Line::kSome;
-    const bool is_stop = is_line && is_plain_ && typed_.is_whole();
+    const bool is_stop = is_line && is_plain_ && is_typed();
     begin_line();
     state_ = State::kBegin;
     return is_stop;
@@ -84,7 +85,7 @@ class StopFinder {
   }
 
   Found take_text_byte(uint8_t byte) {
-    if (ends_line(byte)) return end_line(line_ == Line::kControlC || typed_.is_whole());
+    if (ends_line(byte)) return end_line(line_ == Line::kControlC || is_typed());
     if (keys_.takes(byte)) {
       if (line_ != Line::kSome) line_ = Line::kSkipped;
       return Found::kNothing;
@@ -102,16 +103,15 @@ class StopFinder {
   }
 
   Found take_packet_byte(uint8_t byte) {
-    if (state_ == State::kLine && ends_line(byte)) return end_line(typed_.is_whole());
+    if (state_ == State::kLine && ends_line(byte)) return end_line(is_typed());
     if (state_ == State::kBegin) state_ = State::kLine;
     if (!is_printable(byte)) state_ = State::kFrame;
     return state_ == State::kLine ? watch(byte) : take_frame_byte(byte);
   }
 
   Found take_frame_byte(uint8_t byte) {
-    const bool is_key = keys_.takes(byte);
-    const bool is_stop = ends_line(byte) && typed_.is_strict();
-    if (is_key || (byte < ' ' && byte != '\t') || byte == kDelete) {
+    const bool is_stop = ends_line(byte) && typed_.found() == TypedStop::kStrict;
+    if ((byte < ' ' && byte != '\t') || byte == kDelete) {
       typed_.begin();
     } else {
       typed_.put(byte);
