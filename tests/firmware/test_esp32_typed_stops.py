@@ -163,7 +163,7 @@ def test_what_is_lost_stops_nobody(make: Make) -> None:
     code = b"Z\n\nS\n\xcc\x03"
     for before in (b"F(1,80)\n" * 400, WHOLE * 400, b"FT\nS T\n\0\0FT" * 400):
         end.send(before)
-        talk(robot, ends, 20)
+        talk(robot, ends, 60)
         frame = encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1" + code))
         assert b"\nS\n" in frame
         end.send(b"\0" + frame)

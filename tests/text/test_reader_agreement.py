@@ -63,10 +63,16 @@ def is_right(data: bytes, kit: Kit) -> bool:
         return False
 
 
+CONTROL = re.compile(rb"[\x01-\x07\x0b\x0c\x0e-\x1f]")
+
+
 def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | None:
     """The reader says of a text what the compiler says; None: it is too long for a robot."""
     answer = reader_of(kit, room).read(data)
     right = is_right(data, kit)
+    if right and CONTROL.search(data):  # on a wire it is noise
+        assert not answer.is_program, f"{answer}\n{data!r}"
+        return None
     if right and UNREAD & {token.text for token in scan(decode(data)).tokens}:
         # a word with fixed values is right where `line_of` writes it out
         assert answer.problem in ("FULL", "RESERVED"), f"{answer}\n{data!r}"

@@ -307,7 +307,7 @@ bool Console::is_ignored() const {
 
 // Says why the line cannot be read now.
 void Console::refuse() {
-  is_talking_ = true;
+  is_talking_ = has_told_ = true;
   say(refused_);
   refused_ = Remark::kNone;
 }

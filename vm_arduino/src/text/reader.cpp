@@ -122,8 +122,8 @@ uint8_t Reader::character(uint8_t byte) {
   const uint8_t second = second_;
   lead_ = 0;
   if (byte < 0x80) {
-    if (lead != 0 || byte == 0) return kBroken;
-    return byte == '\v' || byte == '\f' ? ' ' : byte;
+    if (lead != 0 || (byte < ' ' && byte != '\t' && byte != '\b')) return kBroken;
+    return byte;
   }
   if (byte >= 0xc0) {
     if (lead != 0 || byte < 0xc2 || byte > 0xf4) return kBroken;
