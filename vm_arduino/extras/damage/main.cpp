@@ -382,10 +382,12 @@ Law law_of(const std::vector<Typed>& all, size_t restart, bool is_running) {
   while (line == quiet && before > 0 && all[before - 1].byte != 0 && !is_end(all[before - 1].byte)) before--;
   const bool is_new = std::all_of(all.begin() + static_cast<long>(before), all.begin() + static_cast<long>(line),
                                   [](const Typed& each) { return each.byte <= ' '; });
+  const std::string whole = between(line, is_end(byte) ? last : last + 1);
+  if (!whole.empty() && whole.find_first_not_of('\3') == std::string::npos) {
+    return is_new ? Law::kWaits : Law::kEither;
+  }
+  if (byte == 3 && !is_new) return Law::kEither;
   if (is_end(byte)) {
-    const std::string whole = between(line, last);
-    const bool is_control_c = !whole.empty() && whole.find_first_not_of('\3') == std::string::npos;
-    if (is_control_c) return is_new ? Law::kWaits : Law::kEither;
     const Law law = of_line(bytes);
     return law == Law::kStop && is_behind_zero && !is_strict(bytes) ? Law::kWaits : law;
   }
@@ -458,6 +460,7 @@ void judge_typed(uint64_t seed) {
     now_ms = static_cast<uint16_t>(now_ms + pause_ms);
     all.push_back({byte, pause_ms});
     if (pause_ms >= kSilenceMs) was_held = false;
+    const bool waited = receiver.is_held();
     const bool are_zeros = receiver.stops(byte, now_ms);
     const bool is_stop = receiver.take(byte, now_ms);
     const Found found = finder.put(byte, now_ms);
@@ -466,14 +469,16 @@ void judge_typed(uint64_t seed) {
     const bool may_wait = law == Law::kHeld || law == Law::kWaits;
     if (may_wait && !is_stop && !receiver.is_held()) note("a stop that waits is not seen");
     if (law == Law::kNone && is_stop && !was_held) note("a stop that nobody has typed");
+    if (law == Law::kNone && receiver.is_held() && !waited) note("a stop waits that nobody has typed");
     if (is_stop && receiver.due_stop() == Cause::kNone && !receiver.has_mark()) {
       note("the link does not know of a stop");
     }
     const bool is_urgent = is_stop && byte != 0 && !is_end(byte) && !was_held;
     if (restart == 0 && law != Law::kEither) {
       const bool is_in_frame = law == Law::kHeld;
+      const bool ends_waiting = law == Law::kWaits && (byte == 0 || is_end(byte));
       const Found wanted = is_urgent ? Found::kOfRun
-                           : law == Law::kStop || law == Law::kWaits || are_zeros ? Found::kStop
+                           : law == Law::kStop || ends_waiting || are_zeros ? Found::kStop
                            : is_in_frame ? Found::kInFrame
                                          : Found::kNothing;
       if (found != wanted && (is_running || found != Found::kOfRun)) note("a finder says something else");
