@@ -293,6 +293,22 @@ def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
     assert happened(robot)[-1] == "MOTORS 0 0"
 
 
+@pytest.mark.parametrize("make", RADIOS)
+def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
+    """The app behind another one may end none: its program runs after three seconds all the same."""
+    robot = booted()
+    end, typed = make(robot), Bytes(b"SHOW(1)\n")
+    talk(robot, [(end, typed)], 100)
+    assert b"// OK" in typed.heard
+    end.leave()
+    talk(robot, [], AUTHORITY_MS)
+    ends: Ends = [(make(robot), Bytes(b"SI|F(60, 50)"))]
+    talk(robot, ends, 2900)
+    assert "MOTORS 50 50" not in happened(robot)
+    talk(robot, ends, 300)
+    assert happened(robot)[-1] == "MOTORS 50 50"
+
+
 def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
     """Both would be read in the same memory: no program is of two."""
     robot = booted()

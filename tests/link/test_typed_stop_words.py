@@ -18,7 +18,8 @@ def test_a_stop(line: bytes) -> None:
 
 
 @each_row("line", [
-    b"", b"// S", b" // STOP", b"ST", b"STO", b"STOPX", b"SNOW", b"PARAS", b"NOW", b"S1",
+    b"", b"// S", b" // STOP", b"/ \x1b[A/ S",
+    b"ST", b"STO", b"STOPX", b"SNOW", b"PARAS", b"NOW", b"S1",
     b"F(20,60)", b"\x1b[S", b"S\b", b"STOP ALTO",
 ])  # fmt: skip
 def test_no_stop(line: bytes) -> None:

@@ -13,6 +13,7 @@ _AT_ONCE = re.compile(rb"SSS|STOPSTOP", re.IGNORECASE)
 _BLANKS = re.compile(rb"[ \t]")
 # what a terminal sends for a cursor key, as far as it has come
 _KEY = re.compile(rb"\x1b(?:[\[O][ -?]*[@-~]?)?")
+_COMMENT = re.compile(rb"/[ \t]*/")
 _DELETES = b"\b\x7f"
 _LINE_END = re.compile(rb"[\r\n\0]")
 _CTRL_C = re.compile(rb"\x03+")
@@ -42,4 +43,4 @@ def is_at_stop(data: bytes) -> bool:
 
 def _read(line: bytes) -> bytes:
     """Return what is looked at: no keys, and no comment."""
-    return _KEY.sub(b"", line).partition(b"//")[0]
+    return _COMMENT.split(_KEY.sub(b"", line), 1)[0]

@@ -49,7 +49,10 @@ class Console {
   // Whether the last one who spoke to the robot was a person.
   bool is_talking() const { return is_talking_; }
   void pick_up() { is_talking_ = true; }
-  void hang_up() { is_talking_ = false; }
+  void hang_up() {
+    is_talking_ = false;
+    left_ms_[kEnds] = 0;
+  }
 
   // The program that was read: its image, without a header.
   const Reader& reader() const { return reader_; }
