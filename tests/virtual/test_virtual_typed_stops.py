@@ -35,6 +35,16 @@ def test_the_next_client_begins_a_line(simulator: Simulator) -> None:
         until(simulator, lambda: not simulator.robot.is_running)
 
 
+def test_blank_lines_cost_no_client_its_line(simulator: Simulator) -> None:
+    for _ in range(2):
+        with visit(simulator) as client:
+            client.sendall(b"\n\n" + RUNS)
+            until(simulator, lambda: simulator.robot.is_running)
+            client.sendall(b"S\n")
+            until(simulator, lambda: not simulator.robot.is_running)
+            wait(simulator.robot, SILENCE_MS + 100)
+
+
 @pytest.mark.parametrize("word", [b"S", b"\r\nsToP ", b"\tS", b"\x1bS", b"SSSS", b"Stop.", b"PARA"])
 def test_silence_ends_the_stop_of_who_may_be_a_web_page(simulator: Simulator, word: bytes) -> None:
     assert is_for_robot(word) is None

@@ -82,6 +82,7 @@ class Simulator:
         self._wall_s = self._traffic_s = monotonic()
         self._owed_ms = 0.0  # of the robot's time, less than one
         self._visits = 0
+        self._last = b""  # byte of the client
         self._let_go_ms: int | None = None
         self._wanted_ms = 0  # how long a push lasts that has to wait
         self._up_until_ms = 0  # a button that was let go stays up so long
@@ -125,13 +126,16 @@ class Simulator:
         if self.transports.visits != self._visits:
             self._visits = self.transports.visits
             self._heartbeat.forget()
-            self.there.put(b"\0", self.robot.now_ms)  # ends what the one before has begun
+            if self._last not in b"\0\r\n":  # ends what the one before has begun
+                self.there.put(b"\0", self.robot.now_ms)
+            self._last = b""
             self.back.clear()
         if self.transports.take_stop() and self.robot.is_running:
             self.there.put(bytes(STOP_BYTES), self.robot.now_ms)
         if data:
             self._traffic_s = wall_s
             self._heartbeat.on_bytes(data, wall_s)
+            self._last = data[-1:]
             self.there.put(data, self.robot.now_ms)
         self._go_on(passed_s)
         self.transports.send(b"")
