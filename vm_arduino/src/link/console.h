@@ -49,8 +49,11 @@ class Console {
   // Whether the last one who spoke to the robot was a person.
   bool is_talking() const { return is_talking_; }
   void pick_up() { is_talking_ = true; }
-  void hang_up() {
-    is_talking_ = false;
+  void hang_up() { is_talking_ = false; }
+
+  // Nobody is connected any more: whether the lines of whoever comes next end is not known.
+  void forget_client() {
+    hang_up();
     left_ms_[kEnds] = 0;
   }
 

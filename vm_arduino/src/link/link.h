@@ -131,7 +131,7 @@ class Link {
     due_ = 0;
     left_ = 0;
     left_ms_[kListen] = left_ms_[kFrameSent] = 0;
-    console_.hang_up();
+    console_.forget_client();
   }
 
   // Whether it was told to stop since this was asked last, also where the robot stood already: what

@@ -21,6 +21,7 @@ class Console {
   static void tell(Remark, bool) {}
   static void pick_up() {}
   static void hang_up() {}
+  static void forget_client() {}
 };
 
 }  // namespace tiniscript
