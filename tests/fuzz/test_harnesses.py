@@ -21,9 +21,12 @@ SEED = 1
 
 # Inputs in which something was wrong: they stay right. Those of a harness, as hexadecimal digits.
 FOUND: dict[str, tuple[str, ...]] = {
-    "link": (  # a BEGIN that is answered BUSY leaves the program that was begun before
+    "link": (
+        # a BEGIN that is answered BUSY leaves the program that was begun before
         "00010a010002001b230600000040320a0910020000110000030040320b08000000aa4e4e4e4e4e4e"
         "4ec26e40320402000040320a09000200000f000f0400030040320b0600000144325040320402000040320a09000200000f000f0400030040320b0600000144325040320c04e2027ea740320a0900020000ff0000ffff40320a0900020000e8030000ff000096004032",
+        # text that asks whether the kit says how fast it turns
+        "008f53497c4628464f52455645522c36308f293b5748454e2854525545293b52288f3930204445472c3630293b454e445f855748454e0a4032",
     ),
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "../../src/link/frames.h"
+#include "../../src/text/kit_words.h"
 #include "../../src/vm/crc32.h"
 #include "../link/simulated_port.h"
 #include "input.h"
@@ -136,7 +137,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   port.device_info.sensors = 3;
   port.device_info.actuators = 1;
   port.hashes = {1, 2, 3, 4};
-  port.words = {0};
+  port.words = {0, kKitGoes | kKitTurns};
   receiver = Receiver();
   link_half = Link();
   epoch = input.u8();
