@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Callable
 from itertools import pairwise
 
@@ -111,6 +112,42 @@ def test_a_threshold_and_thousandths() -> None:
     assert is_true(workshop, "BRIGHT", lambda board: board.analog(2, 2910))
     assert not is_true(workshop, "BRIGHT", lambda board: board.analog(2, 2950))
     assert is_true(robots.load("liner"), "BATTERY > 1.456", lambda board: board.analog(7, 729))
+
+
+DIM = (
+    (
+        "[[kit.sensors]]",
+        '[[kit.sensors]]\nname = "DIM"\nkind = "number"\nunit = "%"\nrange = [0, 1023]\n\n'
+        "[[kit.sensors]]",
+    ),
+    ("[body]\n", '[board.sensors.DIM]\ndriver = "analog"\npin = "A2"\n\n[body]\n'),
+)
+# Of every reading how long it took, and how many there were.
+READS = "BEGUN_{0} = TIME;X = {1};LONGEST = MAX(LONGEST, TIME - BEGUN_{0});COUNT = COUNT + 1;"
+SEEN_AT_THE_END = """
+WHEN(TIME > 0.5)
+M(MIN(100, 10000 * LONGEST), MIN(100, COUNT / 10));W(5)
+END_WHEN
+"""
+
+
+@pytest.mark.sampled("seed", keep=4)
+@pytest.mark.parametrize("seed", range(24))
+def test_each_task_gets_its_readings_in_time(seed: int) -> None:
+    """Whatever others read: none waits longer than a few conversions and a round of the tasks."""
+    draw = random.Random(seed)
+    tasks = []
+    for number in range(draw.randint(2, 4)):
+        reads = [READS.format(number, draw.choice(["LIGHT_R", "LIGHT_L", "DIM"]))
+                 for _ in range(draw.randint(1, 3))]  # fmt: skip
+        pause = draw.choice(["", "W(0.001)", "W(0.003)", "W(0.01)"])
+        tasks.append(f"LOOP(FOREVER)\n{''.join(reads)}{pause}\nEND_LOOP")
+    own, *others = tasks[:3]
+    text = f"SI|LONGEST = 0;COUNT = 0\n{own}\n"
+    text += "".join(f"TASK\n{each}\nEND_TASK\n" for each in others) + SEEN_AT_THE_END
+    board = started(on_board("tinibot", "mega", *DIM), text).ran(START + 530)
+    longest, count = (int(board.motors(START + 529)[pin].removeprefix("pwm ")) for pin in (0, 3))
+    assert 0 < longest <= 3 * 26 and count > 20
 
 
 # -- what a robot has besides

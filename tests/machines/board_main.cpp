@@ -97,7 +97,7 @@ void setup() {
 
 void loop() {
   const uint32_t now_ms = board_now_ms();
-  board_tick(now_ms);
+  if (board_has_news()) board_tick(now_ms);
   if (test_turn != nullptr) test_turn();
   switch (board_button(now_ms)) {
     case Press::kNothing:

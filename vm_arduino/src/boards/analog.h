@@ -11,16 +11,17 @@ namespace tiniscript {
 
 void analog_begin();
 
-// If the channel has been measured since the last call, puts 0 to 1023 into `*value` and returns
-// true. Otherwise starts the measurement, unless it is under way, and returns false.
+// If the channel has been measured in the last two milliseconds (without tasks: since the last
+// call), puts 0 to 1023 into `*value` and returns true: so no task takes another one's value away.
+// Otherwise starts the measurement, unless one is under way, and returns false.
 bool analog_read(uint8_t channel, int32_t* value);
 
-// Discards the measurement that is under way.
+// Discards what has been measured, and the measurement that is under way.
 void analog_forget();
 
 // The same for the supply: an AVR measures its voltage against the chip's band gap. This takes some
 // 3 ms, and channels wait meanwhile. Call it in every turn of the main loop: `analog_tick`, called
-// once a turn, gives up a measurement that nobody asked for.
+// once a millisecond, gives up a measurement that nobody asked for, and forgets what is old.
 Supply analog_supply();
 void analog_tick();
 

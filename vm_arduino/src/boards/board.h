@@ -19,7 +19,7 @@ uint32_t board_now_ms();
 // Whether the clock has advanced since the last call, or the button has moved since it was read.
 bool board_has_news();
 
-// Does the work that is due; call it at least once a millisecond.
+// Does the work that is due; call it where there is news: about once a millisecond.
 void board_tick(uint32_t now_ms);
 
 Press board_button(uint32_t now_ms);

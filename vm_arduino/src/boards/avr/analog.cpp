@@ -4,6 +4,9 @@
 
 #include <avr/io.h>
 
+#include "../../vm/has_tasks.h"
+#include "../../vm/small.h"
+
 namespace tiniscript {
 
 namespace {
@@ -24,49 +27,96 @@ constexpr uint16_t kMostCount = 281;  // 1024 * 1.1 V / 4.0 V: the supply is too
 // the last of these conversions (104 us each) counts.
 constexpr uint8_t kSupplyTries = 24;
 
-uint8_t measured;       // the channel of the last conversion, or kNoChannel
-uint8_t tries;          // conversions of the reference still to come
-bool is_supply_wanted;  // somebody asked in this turn of the main loop
+#ifdef tiniscript_has_tasks
+constexpr bool kHasOthers = true;
+#else
+constexpr bool kHasOthers = false;
+#endif
+#ifdef MUX5
+typedef uint16_t Channels;
+#else
+typedef uint8_t Channels;
+#endif
+
+struct Converter {
+  uint8_t measured;       // the channel of the last conversion, or kNoChannel
+  uint8_t tries;          // conversions of the reference still to come
+  bool is_supply_wanted;  // somebody asked in this turn of the main loop
+  // Where there are tasks, values wait for all that ask.
+  Channels bit;           // of `measured`; 0: it is old
+  Channels fresh;         // have been measured
+  Channels old;           // had been at the last tick: they are forgotten at the next
+  uint16_t counts[8 * sizeof(Channels)];
+};
+
+Converter converter;
 
 void convert() { ADCSRA |= 1 << ADSC; }
+
+bool is_converting() { return (ADCSRA & 1 << ADSC) != 0; }
 
 }  // namespace
 
 void analog_begin() {
   ADCSRA = 1 << ADEN | 1 << ADPS2 | 1 << ADPS1 | 1 << ADPS0;  // 125 kHz
-  analog_forget();
+  near(&converter)->measured = kNoChannel;
 }
 
 bool analog_read(uint8_t channel, int32_t* value) {
-  if ((ADCSRA & 1 << ADSC) != 0 || measured == kBandGap) return false;
-  if (measured != channel) {
-    measured = channel;
-    ADMUX = static_cast<uint8_t>(kFromSupply | (channel % kChannels));
-#ifdef MUX5
-    ADCSRB = channel >= kChannels ? 1 << MUX5 : 0;
-#endif
-    convert();
-    return false;
+  Converter* const it = near(&converter);
+  if (kHasOthers) {
+    const uint8_t measured = it->measured;
+    if (measured < kBandGap && !is_converting()) {
+      it->counts[measured] = ADC;
+      it->fresh |= it->bit;
+      it->measured = kNoChannel;
+    }
+    const Channels bit = static_cast<Channels>(1 << channel);
+    if ((it->fresh & bit) != 0) {
+      *value = it->counts[channel];
+      return true;
+    }
+    if (it->measured != kNoChannel) return false;
+    it->bit = bit;
+  } else {
+    if (is_converting() || it->measured == kBandGap) return false;
+    if (it->measured == channel) {
+      it->measured = kNoChannel;
+      *value = ADC;
+      return true;
+    }
   }
-  measured = kNoChannel;
-  *value = ADC;
-  return true;
+  it->measured = channel;
+  ADMUX = static_cast<uint8_t>(kFromSupply | (channel % kChannels));
+#ifdef MUX5
+  ADCSRB = channel >= kChannels ? 1 << MUX5 : 0;
+#endif
+  convert();
+  return false;
 }
 
-void analog_forget() { measured = kNoChannel; }
+void analog_forget() {
+  Converter* const it = near(&converter);
+  if (kHasOthers) {
+    it->fresh = it->bit = 0;
+  } else {
+    it->measured = kNoChannel;
+  }
+}
 
 Supply analog_supply() {
-  is_supply_wanted = true;
-  if ((ADCSRA & 1 << ADSC) != 0) return Supply::kMeasuring;
-  if (measured != kBandGap) {
-    measured = kBandGap;
-    tries = kSupplyTries;
+  Converter* const it = near(&converter);
+  it->is_supply_wanted = true;
+  if (is_converting()) return Supply::kMeasuring;
+  if (it->measured != kBandGap) {
+    it->measured = kBandGap;
+    it->tries = kSupplyTries;
     ADMUX = kFromSupply | kBandGap;
 #ifdef MUX5
     ADCSRB = 0;
 #endif
-  } else if (--tries == 0) {
-    measured = kNoChannel;
+  } else if (--it->tries == 0) {
+    it->measured = kNoChannel;
     return ADC > kMostCount ? Supply::kLow : Supply::kEnough;
   }
   convert();
@@ -74,8 +124,15 @@ Supply analog_supply() {
 }
 
 void analog_tick() {
-  if (measured == kBandGap && !is_supply_wanted) measured = kNoChannel;
-  is_supply_wanted = false;
+  Converter* const it = near(&converter);
+  if (kHasOthers) {
+    const Channels lasting = static_cast<Channels>((it->fresh | it->bit) & ~it->old);
+    it->fresh &= lasting;
+    it->bit &= lasting;
+    it->old = lasting;
+  }
+  if (it->measured == kBandGap && !it->is_supply_wanted) it->measured = kNoChannel;
+  it->is_supply_wanted = false;
 }
 
 }  // namespace tiniscript
