@@ -102,6 +102,30 @@ def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
     assert states(robot) == OFF
 
 
+@pytest.mark.sampled("later_ms", "board", keep=2)
+@BOARDS
+@pytest.mark.parametrize("later_ms", [100, 200, 500, 5000])
+def test_an_echo_from_before_an_interruption_ends_no_move(later_ms: int, robot: Uno) -> None:
+    """A ping is under way when a WHEN takes the motors: behind that a new one is heard."""
+    robot.sonar("trigger", "echo", 350)
+    wired = computer(robot)
+    back = f"WHEN(LIGHT_R + LIGHT_L > 1000);B({later_ms / 1000}, 60);END_WHEN"
+    send(wired, f"F(FOREVER, 60)UNTIL(DISTANCE < 300);S;{back}", is_detached=True)
+    wired.run(300)
+    robot.run_until("trigger", "low", 60)
+    robot.run_ms(35)
+    robot.sonar("trigger", "echo", 250)  # of the next ping
+    robot.analog("A0", 1023)
+    begun = robot.run_until("trigger", "low", 60)
+    wired.run(6)
+    assert driven(robot, begun.cycle)[0][1:] == (-60, -60)
+    robot.sonar("trigger", "echo", 350)
+    robot.analog("A0", 0)
+    wired.run(later_ms + 200)
+    assert [each[1:] for each in driven(robot, begun.cycle)] == [(-60, -60), (60, 60)]
+    assert states(robot) == FORWARD
+
+
 @each_board
 def test_a_stop_in_the_middle_of_busy_tasks(robot: Uno) -> None:
     """It is at the pins as soon as in any program; then nothing starts again."""

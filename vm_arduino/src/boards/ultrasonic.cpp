@@ -156,7 +156,8 @@ bool may_ping() {
 uint16_t echo_of(uint8_t number) {
   Sonar* const it = near(&sonar);
   const Reading& mine = it->readings[number];
-  if (it->ping != Ping::kNone && is_over() && asked() == number) return mine.echo_us;
+  // Nobody has waited for an echo that is found so late.
+  if (it->ping != Ping::kNone && is_over() && !is_spaced && asked() == number) return mine.echo_us;
   if (it->ping != Ping::kNone && asked() == number) return kNothing;
   // A sensor without an echo holds its line high for longer and ignores triggers meanwhile.
   const bool is_busy = it->ping == Ping::kNone && is_high(ultrasonic_at(number).echo.pin);
