@@ -7,6 +7,8 @@ How much text it takes, in which pieces, and that no part of a program is run al
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from tests.firmware.test_host_firmware import (
@@ -27,7 +29,7 @@ from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.base.kit import NUMBER, Device, Kit
 from tiniscript.link.frames import Frame, encoded
-from tiniscript.link.messages import BY_NAME, SAVED_STORED, STATUSES
+from tiniscript.link.messages import BY_NAME, SAVED_STORED, STATE_RUNNING, STATUSES
 from tiniscript.link.payloads import StatusReply
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -225,6 +227,28 @@ def test_a_line_moves_and_its_end_is_told() -> None:
     assert done_after(robot, "f ( 0.2 , 50 )\r") == LINE
 
 
+@pytest.mark.parametrize("line", [
+    "hola", "W(1); hola", "SI|W(1);hola", "F(1,80);F(1,180)", "SI|F(1,)", "SB|X=", "X=1;X=TRUE",
+    "W(1);LOOP(2);END_IF", "SI|LOOP(2);\nBAD", "SI|F(1,80);W(1)~12345678", "S;S;W",
+    "F(1,50) R(1,50)", "F(1,80);\x0eF(1,80)", "PING|W(1)", "W(1);TASK;X",
+    "abcdefghijklmnopqrst", "9" * 300,
+])  # fmt: skip
+def test_a_wrong_line_changes_nothing(line: str) -> None:
+    """What runs goes on, and a program that is in memory only stays there; a second time, too."""
+    robot, session = holding("SB|B(30, 60)", saves=False)
+    before = fetched(robot, session)
+    robot.wait(4000)
+    assert pushed(robot) == ["MOTORS -60 -60"]
+    robot.did.clear()
+    for _ in range(2):
+        (said,) = typed(robot, line + "\n", 1500)
+        assert re.match(r"// \d+: ", said)
+        assert robot.did == []
+    held = status(robot, session)
+    assert (held.saved, held.state) == (SAVED_MEMORY, STATE_RUNNING)
+    assert fetched(robot, session) == before
+
+
 @pytest.mark.parametrize("saves", [True, False])
 def test_the_program_that_it_holds_is_untouched(saves: bool) -> None:
     """Also one that is in memory only: there is room for two programs."""
@@ -257,24 +281,6 @@ def test_a_program_of_frames_replaces_sb() -> None:
     typed(robot, "SB|F(0.2,50)\n")
     send(robot, session, "SB|L(0.1, 40)")
     assert pushed(robot)[0] == "MOTORS -40 40"
-
-
-@pytest.mark.parametrize(
-    ("line", "ends"),
-    [
-        ("FOO(1)\n", False), ("SI|F(1,\n", False), ("F(1,500)\n", False), ("SB|X=\n", False),
-        ("F(1,50) R(1,50)\n", False), ("F(1,50)~0\n", False), ("\x01\x02\n", False),
-        ("9" * 300 + "\n", False), ("HELP\n", False), ("// no\n", False),
-        ("PING|CHECK_CONNECTION\n", False),
-        ("SI|LOOP(2);\nBAD\n", True), ("F(1,50); F(1,500)\n", True),
-    ],
-)  # fmt: skip
-def test_a_bad_line_ends_what_runs_only_behind_a_whole_instruction(line: str, ends: bool) -> None:
-    """And only where there is no room for two programs."""
-    robot = switched_on()
-    typed(robot, "SI|F(30,50)\n", 300)
-    typed(robot, line, 2000)
-    assert happened(robot) == ["MOTORS 50 50"] + ["MOTORS 0 0"] * (ends and not robot.has_draft)
 
 
 # -- what ends a run that text has started --------------------------------------------------------
@@ -373,7 +379,7 @@ def test_s_in_an_open_block_ends_what_runs_also_without_the_end_of_its_line(text
     typed(robot, RUNS_ON, 300)
     typed(robot, "LOOP(2)\n", 300)
     assert typed(robot, text, 900) == []
-    assert happened(robot) == ["MOTORS 50 50"] + ["MOTORS 0 0"] * (not robot.has_draft)
+    assert happened(robot) == ["MOTORS 50 50"]
     assert robot.wait(200) == b"// Waiting for END_LOOP\r\n"
     assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
     assert typed(robot, "\nF(0.1,30)\nEND_LOOP\n", 400) == ["// OK", "// DONE"]

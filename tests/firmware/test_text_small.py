@@ -23,10 +23,10 @@ from tests.firmware.test_text import (
 )
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
-from tiniscript.link.messages import SAVED_STORED, STATE_STOPPED
+from tiniscript.link.messages import SAVED_NOTHING, SAVED_STORED, STATE_STOPPED
 from tiniscript.link.requests import OK
 
-LOST = "// OK. The old program is lost."
+LOST = "// The old program is lost."
 OTHERWISE = {  # tests of robots that have room for two programs
     "test_the_program_that_it_holds_is_untouched",
     "test_sb_waits_for_the_button_and_is_gone_with_the_power",
@@ -61,7 +61,7 @@ def test_a_program_in_memory_only_is_lost_and_that_is_said(has_stored: bool) -> 
     send(robot, session, "SB|L(0.1, 40)", saves=False)
     assert status(robot, session).saved == SAVED_MEMORY
     robot.wait(4000)
-    assert typed(robot, "SI|F(0.2,50)\n", 400) == [LOST, "// DONE"]
+    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", LOST, "// DONE"]
     assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
     assert pushed(robot) == (SAVED_BACK if has_stored else [])
     assert robot.is_lit == has_stored
@@ -76,7 +76,7 @@ def test_sb_keeps_the_button_until_the_next_line() -> None:
         robot.wait(400)
     assert happened(robot) == LINE * 2
     robot.did.clear()
-    assert typed(robot, "SI|R(0.1,40)\n", 300) == [LOST, "// DONE"]
+    assert typed(robot, "SI|R(0.1,40)\n", 300) == ["// OK", LOST, "// DONE"]
     assert pushed(robot) == SAVED_BACK
     assert fetched(robot, session) == before
 
@@ -84,21 +84,32 @@ def test_sb_keeps_the_button_until_the_next_line() -> None:
 # -- what runs, and a new line --------------------------------------------------------------------
 
 
-def test_a_new_line_ends_what_runs_when_its_first_instruction_has_been_read() -> None:
-    """Or when that needs the room of what runs."""
+def test_a_new_line_ends_what_runs_when_it_is_whole() -> None:
+    """Or when it needs the room of what runs."""
     robot, session = holding()
     send(robot, session, "SI|F(30, 60)", saves=False, is_detached=True)
     robot.wait(4000)
-    typed(robot, "SI|R(0.2, 40)")
+    typed(robot, "SI|R(0.2, 40);W(0.1)")
     assert happened(robot)[-1] == "MOTORS 60 60"
-    typed(robot, ";")
-    assert happened(robot)[-2:] == ["MOTORS 60 60", "MOTORS 0 0"]
-    assert typed(robot, "\n", 400) == [LOST, "// DONE"]
-    assert happened(robot)[-3:] == ["MOTORS 40 -40", "MOTORS 0 0", "FINISHED"]
+    assert typed(robot, "\n", 600) == ["// OK", LOST, "// DONE"]
+    assert happened(robot)[-4:] == ["MOTORS 0 0", "MOTORS 40 -40", "MOTORS 0 0", "FINISHED"]
     typed(robot, "SI|F(30,50)\n", 300)
     typed(robot, "SI|X = " + "1.2345 + " * 12)
     assert happened(robot)[-2:] == ["MOTORS 50 50", "MOTORS 0 0"]
     assert typed(robot, "0; SHOW(X)\n", 100) == ["// OK", "// 14.82", "// DONE"]
+
+
+@pytest.mark.parametrize("line", [
+    "X" * 50, "SI|" + "F(0.1,50);W(0.2);" * 8 + "hola", "SI|X=" + "1.2345+" * 12 + "hola",
+    "SI|" + "F(0.1,50);W(0.2);" * 8 + "\0",
+])  # fmt: skip
+def test_a_wrong_line_that_needed_the_room_tells_what_is_lost(line: str) -> None:
+    robot, session = holding("SB|B(30, 60)", saves=False)
+    first, *more = typed(robot, line + "\n", 1500)
+    assert first.startswith("// ") and more.count(LOST) == 1
+    assert status(robot, session).saved == SAVED_NOTHING
+    robot.wait(4000)
+    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
 
 
 # -- what comes in between ------------------------------------------------------------------------

@@ -216,7 +216,7 @@ bool Console::begin(uint8_t byte) {
   // It no longer knows the mistake of the line before, which a stop behind has kept from being said.
   if (remark_ == Remark::kMistake) remark_ = Remark::kNone;
   is_open_ = true;
-  has_lost_ = is_waiting_ = false;
+  is_waiting_ = false;
   length_ = 0;
   first_ = byte;
   return true;
@@ -225,7 +225,7 @@ bool Console::begin(uint8_t byte) {
 // Moves the program to where there is room for all of it. False: not now.
 bool Console::has_room() {
   if (has_moved_) return true;
-  has_lost_ = port_status().saved == Saved::kMemory;
+  const bool is_lost = port_status().saved == Saved::kMemory;
   uint16_t room;
   if (!text_may_drive()) {
     refused_ = Remark::kNotOwner;
@@ -238,6 +238,7 @@ bool Console::has_room() {
       refused_ = Remark::kNone;
       reader_.move(image_ + kHeaderBytes, room);
       has_moved_ = true;
+      if (is_lost) has_lost_ = true;
       return true;
     }
   }

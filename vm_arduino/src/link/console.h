@@ -61,9 +61,6 @@ class Console {
   const Reader& reader() const { return reader_; }
   uint8_t* image() const { return image_; }
 
-  // Whether the program that the robot held is lost.
-  bool has_lost() const { return has_lost_; }
-
   // Sets the answer that is due. Writes it as a line of at most kWireBytes and returns its length.
   void say(Remark remark) { remark_ = remark; }
   bool has_answer() const { return remark_ != Remark::kNone; }
@@ -109,7 +106,7 @@ class Console {
   bool is_open_;       // the reader has begun a line or a program
   bool has_moved_;     // it lies where there is room for a whole program
   Remark refused_;     // there is none: the line is not read, and this is the reason
-  bool has_lost_;
+  bool has_lost_;      // the program that the robot held: it is told behind the next answer
   bool is_waiting_;    // for the end of a block that an earlier line has opened
   bool is_talking_;
   bool is_discarding_;

@@ -186,6 +186,9 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
   put_text<put>(text);
   if (text == text_of(Problem::kRange)) put_number(reader_.limit(4));
   if (remark == Remark::kWaiting) put_token(awaited_);
+  // Of a program for the button that another one replaces nobody needs to be told.
+  if (remark == Remark::kLost || remark == Remark::kOkButton) has_lost_ = false;
+  if (remark_ == Remark::kNone && has_lost_) remark_ = Remark::kLost;
   if (remark == Remark::kFault) put_text<put>(name_of_fault(port_status().fault));
   return ended_line();
 }

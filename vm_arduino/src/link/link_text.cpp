@@ -64,8 +64,7 @@ Remark Link::start_text(const Console& console) {
   put_checksum(image);
   port_seal(image);
   is_attached_ = false;
-  if (start != 0) return Remark::kOkButton;
-  return console.has_lost() ? Remark::kOkLost : Remark::kOk;
+  return start != 0 ? Remark::kOkButton : Remark::kOk;
 }
 
 // Sends a line of an answer; to a person, what has happened as well.

@@ -17,7 +17,7 @@ enum class Remark : uint8_t {
   kNone = 0,
   kOk = 1,  // OK
   kOkButton = 2,  // OK. The button starts it.
-  kOkLost = 3,  // OK. The old program is lost.
+  kLost = 3,  // The old program is lost.
   kWaiting = 4,  // Waiting for
   kGivenUp = 5,  // Too late. Begin again.
   kStopped = 6,  // STOPPED
