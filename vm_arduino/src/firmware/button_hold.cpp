@@ -2,6 +2,7 @@
 
 #include "../link/has_owners.h"
 #include "../robot.h"
+#include "../vm/small.h"
 #include "persistence.h"
 #include "state.h"
 
@@ -20,8 +21,12 @@ enum class Phase : uint8_t {
   kDownSinceReset,
 };
 
-Phase phase;
-uint16_t down_ms;
+struct Hold {
+  Phase phase;
+  uint16_t down_ms;
+};
+
+Hold hold;
 
 // A press has lasted long enough for a claim.
 void confirm() {
@@ -35,35 +40,37 @@ void confirm() {
 }  // namespace
 
 void pass_button_hold(uint16_t passed_ms) {
-  if (phase == Phase::kUp) return;
-  const uint16_t before_ms = down_ms;
-  down_ms =
+  Hold* const it = near(&hold);
+  if (it->phase == Phase::kUp) return;
+  const uint16_t before_ms = it->down_ms;
+  it->down_ms =
       passed_ms < kMostMs - before_ms ? static_cast<uint16_t>(before_ms + passed_ms) : kMostMs;
   if (!kHasOwners) return;
-  if (phase == Phase::kDown && before_ms < kClaimMs && down_ms >= kClaimMs) confirm();
+  if (it->phase == Phase::kDown && before_ms < kClaimMs && it->down_ms >= kClaimMs) confirm();
   // Tried again until the store is free.
-  if (phase == Phase::kDownSinceReset && down_ms >= kForgetMs && forget_keys()) {
-    phase = Phase::kUp;
+  if (it->phase == Phase::kDownSinceReset && it->down_ms >= kForgetMs && forget_keys()) {
+    it->phase = Phase::kUp;
     robot_beep(kSignHertz, kSignMs);
   }
 }
 
 void begin_press() {
-  phase = Phase::kEdge;
-  down_ms = 0;
+  hold.phase = Phase::kEdge;
+  hold.down_ms = 0;
 }
 
 void hold_press() {
-  if (phase == Phase::kEdge) {
-    phase = Phase::kDown;
-  } else if (phase == Phase::kUp) {
-    phase = Phase::kDownSinceReset;
-    down_ms = 0;
+  Hold* const it = near(&hold);
+  if (it->phase == Phase::kEdge) {
+    it->phase = Phase::kDown;
+  } else if (it->phase == Phase::kUp) {
+    it->phase = Phase::kDownSinceReset;
+    it->down_ms = 0;
   }
 }
 
-void end_press() { phase = Phase::kUp; }
+void end_press() { hold.phase = Phase::kUp; }
 
-bool is_long_press() { return down_ms >= kLongMs; }
+bool is_long_press() { return hold.down_ms >= kLongMs; }
 
 }  // namespace tiniscript
