@@ -53,7 +53,7 @@ tini_noinline uint8_t ended_line() {
 }
 
 // Puts a word in flash whose last letter is marked. Returns what is behind it.
-tini_noinline const uint8_t* put_word(const uint8_t* word) {
+const uint8_t* put_word(const uint8_t* word) {
   uint8_t letter;
   do {
     letter = flash_byte(word++);
@@ -133,7 +133,7 @@ bool Console::put_words() {
   return true;
 }
 
-tini_noinline uint8_t Console::write_value(int32_t value, bool is_yes_no, uint8_t* out) {
+uint8_t Console::write_value(int32_t value, bool is_yes_no, uint8_t* out) {
   begin_line(out);
   if (is_yes_no) {
     put_token(value != 0 ? kWordTrue : kWordFalse);

@@ -154,7 +154,7 @@ inline void Link::check() {
 }
 
 // Answers a frame.
-tini_noinline void Link::on_frame() {
+void Link::on_frame() {
   begin_request();
   if (is_ready_ && ahead_ + kCrcBytes == receiver_->length() && go_live()) {
     due_ |= kDueReply;
