@@ -13,13 +13,18 @@ import pytest
 from tests.oracle import programs as oracle_programs
 from tests.studio.programs import programs
 from tests.studio.random_in_page import compare, round_trip, without_places
+from tests.studio.test_blocks import of_word
 from tests.studio.test_page_for_everyone import SCREENS
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tests.support.needs import need
 from tests.support.studio import SETTLED, Pages, finger, hears, image, in_phase, shown, speak, write
 from tiniscript import check, compile, robots
-from tiniscript.studio.block_form import data_of
+from tiniscript.base.languages import languages
+from tiniscript.base.words import WORDS
+from tiniscript.lessons import catalogue
+from tiniscript.studio.block_form import data_of, kinds_in
+from tiniscript.studio.block_kinds import FIXED, KINDS
 from tiniscript.studio.block_reading import read
 from tools.builds.page_texts import page_texts
 from tools.builds.studio import BLOCKLY, stale
@@ -73,6 +78,10 @@ def becomes(page: Page, text: str) -> None:
             return
         page.wait_for_timeout(50)
     assert text_of(page) == text
+
+
+def becomes_other(page: Page, text: str) -> None:
+    hears(page, lambda: text_of(page) != text, f"another text than {text}")
 
 
 def block(page: Page, words: str) -> Locator:
@@ -465,7 +474,8 @@ def test_the_names_of_the_program_are_blocks_unless_it_is_too_long(page: Page) -
     assert "HOP" in flyout(page, "My words")
 
 
-# Opens one group after the other: how far its lowest block is below the pane, in pixels.
+# Opens one group after the other: how far its lowest block is below the pane, in pixels, and its
+# widest one beside it.
 LOWEST = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].map((row) => {
   const { x, y, width, height } = row.getBoundingClientRect();
   const words = document.elementFromPoint(x + width / 2, y + height / 2);
@@ -473,11 +483,13 @@ LOWEST = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].map(
     words.dispatchEvent(new PointerEvent(type, { bubbles: true, cancelable: true })));
   press();
   const blocks = [...document.querySelectorAll('.blocklyFlyout .blocklyDraggable')];
-  const bottoms = blocks.filter((block) => block.checkVisibility())
-    .map((block) => block.getBoundingClientRect().bottom);
+  const boxes = blocks.filter((block) => block.checkVisibility())
+    .map((block) => block.getBoundingClientRect());
   press();
-  const { bottom } = document.querySelector('#blocks').getBoundingClientRect();
-  return [row.textContent, bottoms.length, Math.max(...bottoms) - bottom, height];
+  const { bottom, right } = document.querySelector('#blocks').getBoundingClientRect();
+  const below = Math.max(...boxes.map((box) => box.bottom)) - bottom;
+  const beside = Math.max(...boxes.map((box) => box.right)) - right;
+  return [row.textContent, boxes.length, below, beside, height];
 })"""
 
 
@@ -493,8 +505,198 @@ def test_no_group_of_the_toolbox_scrolls(page: Page) -> None:
                 assert rows.evaluate("e => e.scrollHeight <= e.clientHeight"), (screen, level)
                 groups = page.evaluate(LOWEST)
                 assert len(groups) > 3
-                for words, count, below, height in groups:
+                for words, count, below, _, height in groups:
                     assert count and below <= 1 and height >= 40, (screen, name, level, words)
+
+
+@pytest.mark.parametrize("screen", SCREENS[:3])
+def test_no_block_of_the_toolbox_is_cut(pages: Pages, screen: tuple[int, int]) -> None:
+    width, height = screen
+    page = pages.open(view="blocks", viewport={"width": width, "height": height})
+    page.select_option("#level", "all")
+    for language in languages():
+        speak(page, language)
+        for name in robots.names():
+            page.select_option("#robot", name)
+            shown(page)
+            for words, _, below, beside, _ in page.evaluate(LOWEST):
+                assert below <= 1 and beside <= 1, (language, name, words)
+
+
+# Opens one group after the other: the kinds of the blocks that can be dragged out.
+OFFERED = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].flatMap((row) => {
+  const { x, y, width, height } = row.getBoundingClientRect();
+  const words = document.elementFromPoint(x + width / 2, y + height / 2);
+  const press = () => ['pointerdown', 'pointerup'].forEach((type) =>
+    words.dispatchEvent(new PointerEvent(type, { bubbles: true, cancelable: true })));
+  press();
+  const list = '.blocklyFlyout .blocklyBlockCanvas > .blocklyDraggable';
+  const blocks = [...document.querySelectorAll(list)].filter((block) => block.checkVisibility());
+  press();
+  return blocks.map((block) => block.classList[0]);
+})"""
+
+
+def offered(page: Page) -> set[str]:
+    shown(page)
+    return set(page.evaluate(OFFERED))
+
+
+def test_every_word_that_has_a_block_can_be_dragged_out(page: Page) -> None:
+    """And to begin with, those of several things at once. A grey block is what nobody can read."""
+    kinds = set(KINDS) - {"grey"} - ({"fixed"} if not FIXED else set())
+    with_names = "SI|SPEED = 5;\nDEF HOP;\n  F(1, SPEED);\nEND_DEF;\nHOP;\n"
+    page.select_option("#robot", "grabber")
+    start(page, with_names, "all")
+    assert offered(page) == kinds
+    for word in (name for name, its in WORDS.items() if its.role.name != "later"):
+        assert kinds_in(read(of_word(word), robots.load("grabber").kit)) <= kinds, word
+    for name in robots.names():
+        page.select_option("#robot", name)
+        start(page, with_names, "all")
+        has_actuators = bool(robots.load(name).kit.actuators)
+        assert offered(page) == kinds - (set() if has_actuators else {"set"}), name
+        page.select_option("#level", "few")
+        assert {"when", "task"} <= offered(page), name
+
+
+def test_a_lesson_offers_its_words_while_it_is_open(pages: Pages) -> None:
+    """To somebody who has chosen few blocks, so many that one of its answers is made of them alone.
+    What another lesson offers goes."""
+    page = pages.open(view="blocks")
+    page.locator("#level").wait_for()
+    few = offered(page)
+    assert page.input_value("#level") == "few" and "show" not in few
+    page.click("#side_lessons")
+    page.locator("#lesson:enabled").wait_for()
+    for number, folder in enumerate(catalogue.folders(), 1):
+        lesson = catalogue.load(folder)
+        kit = robots.load(lesson.robot).kit
+        page.select_option("#lesson", str(number))
+        page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
+        page.locator("#lesson:enabled").wait_for()
+        found = offered(page)
+        found |= {"call"} if "def" in found else set()  # of a word that somebody has made
+        answers = [kinds_in(read(each.program, kit)) for each in catalogue.answers(folder)[0]]
+        assert any(kinds <= found for kinds in answers), (number, answers, found)
+        if number == 1:
+            assert found == few
+    page.select_option("#lesson", "1")
+    page.locator("#lesson_page[data-lesson='1']").wait_for()
+    assert offered(page) == few
+    page.click("#view_text")
+    page.select_option("#lesson", "6")
+    page.locator("#lesson_page[data-lesson='6']").wait_for()
+    page.click("#view_blocks")
+    assert "show" in offered(page)
+    speak(page, "es")
+    shown(page)
+    page.locator("#lesson_page[data-lesson='6']").wait_for()
+    assert "show" in offered(page)
+
+
+def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> None:
+    """Where the robot can tell: in the first world it stops before the wall."""
+    for robot in robots.names():
+        page.select_option("#robot", robot)
+        asks = "DISTANCE" in robots.load(robot).kit.names
+        for group, words in (
+            ("Move", "or until"), ("Wait", "or until"), ("Repeat", "while"), ("Decide", "if"),
+            ("Events", "each time"),
+        ):  # fmt: skip
+            start(page, "SI|S;\n", "usual")
+            drag(page, group, words, block(page, "stop"))
+            becomes_other(page, "SI|S;\n")
+            said = "DISTANCE > 20" if words == "while" else "DISTANCE < 20"
+            assert (said in text_of(page)) == asks, (robot, words, text_of(page))
+            assert not [each for each in check(text_of(page), robot) if each.severity == "mistake"]
+    page.select_option("#robot", "tinibot")
+    page.select_option("#world", "obstacles")
+    start(page, "SI|S;\n", "usual")
+    drag(page, "Move", "or until", block(page, "stop"))
+    becomes(page, "SI|S;\nF(5, 60) UNTIL(DISTANCE < 20);\n")
+    page.select_option("#speed", "20")
+    page.click("#run")
+    in_phase(page, "ended")
+    assert page.locator("#values div", has_text="Collisions").inner_text().split()[-1] == "0"
+
+
+def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
+    """Dragged out, chosen later, and back; a number stays where it still fits."""
+    page.select_option("#robot", "grabber")
+    start(page, "SI|S;\n")
+    drag(page, "Robot", "lamp", block(page, "stop"))
+    becomes(page, "SI|S;\nLED(TRUE);\n")
+    for device, text in (("gripper", "GRIPPER(0)"), ("lamp", "LED(TRUE)")):
+        page.locator(f"{PROGRAM} .blocklyDropdownText", has_text=re.compile("lamp|gripper")).click()
+        page.locator(".blocklyMenuItem", has_text=device).click()
+        becomes(page, f"SI|S;\n{text};\n")
+    start(page, "SI|LED(0);\n")  # what a text says stays, and the compiler says what is wrong
+    assert text_of(page) == "SI|LED(0);\n"
+    assert page.locator(f"{PROGRAM} .wrong").count() == 1
+
+
+def test_what_stands_at_the_top_is_put_in_no_other_block(page: Page) -> None:
+    page.select_option("#robot", "tinibot32")
+    for group, words, own in (
+        ("Events", "each time", "WHEN(DISTANCE < 20);\nEND_WHEN;\n"),
+        ("Events", "at the same time", "TASK;\nEND_TASK;\n"),
+        ("My words", "new word", "DEF HOP;\nEND_DEF;\n"),
+    ):
+        start(page, "SI|LOOP(3);\nEND_LOOP;\n", "usual")
+        loop = block(page, "repeat")
+        inside = 20 - round(box_of(loop)["height"])
+        drag(page, group, words, loop, off=(12, inside))
+        becomes_other(page, "SI|LOOP(3);\nEND_LOOP;\n")
+        assert own in text_of(page) and "LOOP(3);\nEND_LOOP;\n" in text_of(page)
+
+
+# What is dragged where, and which numbers are typed then: the first one is number 0.
+IN_BLOCKS = {
+    13: ([("Repeat", "forever", "when it starts", "below"), ("Move", "forward", "forever", "in"),
+          ("Events", "each time", "forever", "below"), ("Move", "turn right", "each time", "in"),
+          ("Move", "back", "each time", "in")],
+         {1: "60", 2: "30", 3: "0.4", 4: "60"}),
+    14: ([("Move", "forward", "when it starts", "below"), ("Move", "turn left", "forward", "below"),
+          ("Move", "forward", "turn left", "below"), ("Events", "same time", "forward", "below"),
+          ("Repeat", "times", "same time", "in"), ("Wait", "wait", "times", "in"),
+          ("Robot", "lamp", "times", "in"), ("Wait", "wait", "times", "in"),
+          ("Robot", "lamp", "times", "in")],
+         {0: "5", 1: "60", 2: "0.51", 4: "3.33", 5: "60", 6: "15", 7: "0.3", 8: "0.3"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("number", IN_BLOCKS)
+def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, number: int) -> None:
+    """By somebody who drags, and has chosen few blocks."""
+    page = pages.open(view="blocks", viewport={"width": 1366, "height": 900})
+    page.locator("#level").wait_for()
+    page.click("#side_lessons")
+    page.locator("#lesson:enabled").wait_for()
+    page.select_option("#lesson", str(number))
+    page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
+    page.locator("#lesson_steps button").last.click()
+    start(page, "SI|")
+    dragged, numbers = IN_BLOCKS[number]
+    for group, words, target, place in dragged:
+        before, to = text_of(page), block(page, target)
+        inside = (76 if target == "each time" else 40) - round(box_of(to)["height"])
+        drag(page, group, words, to, off=(12, inside) if place == "in" else (0, 0))
+        becomes_other(page, before)
+    if number == 14:  # every other time the lamp goes out
+        page.locator(f"{PROGRAM} .blocklyDropdownText", has_text="yes").last.click()
+        page.locator(".blocklyMenuItem", has_text="no").click()
+    for k, typed in numbers.items():
+        page.locator(f"{PROGRAM} .blocklyNumberField").nth(k).click()
+        page.keyboard.press("Control+a")
+        page.keyboard.type(typed)
+        page.keyboard.press("Enter")
+        page.locator(".blocklyWidgetDiv input").wait_for(state="detached")
+        shown(page)
+    page.select_option("#speed", "20")
+    page.click("#lesson_check")
+    page.locator("#lesson_said[data-verdict]").wait_for(timeout=240_000)
+    assert page.locator("#lesson_said").get_attribute("data-verdict") == "passed", text_of(page)
 
 
 def test_more_cases_of_an_if(page: Page) -> None:

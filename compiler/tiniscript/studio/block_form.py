@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from tiniscript.studio.block_kinds import KIND_OF
+
 # A part: `NUMBER` and its decimal, `NAME` or `SENSOR` and the name; else what is done to the parts
 # before, with an empty text. `BRACKETS` stand around a lone number; `NOTHING` is an empty place.
 Value = tuple[tuple[str, str], ...]
@@ -74,6 +76,15 @@ def size_of(form: Form) -> int:
         for body in (form.body, *(stack.body for stack in form.loose))
         for block in in_order(body)
     )
+
+
+def kinds_in(form: Form) -> set[str]:
+    """Return the kinds of a program's blocks; a number alone is in its place already."""
+    found: set[str] = set()
+    for block in in_order(form.body):
+        found.add(block.kind)
+        found.update(KIND_OF[op] for value in block.values for op, _ in value if op != "NUMBER")
+    return found
 
 
 def in_order(blocks: tuple[Block, ...]) -> list[Block]:

@@ -19,14 +19,16 @@ class Kind(NamedTuple):
 
     `field` is what is written in it: `name`, `line`, `sensor` or `actuator`; `words` are the words
     to choose from instead, and `units` of those the units behind the first value, instead of
-    seconds. `gives` is what a block gives that is a value, and `part` which part of an expression
-    it is, where its words are none. `says` is what it says in all languages.
+    seconds. `is_top`: it stands inside no other block. `gives` is what a block gives that is a
+    value, and `part` which part of an expression it is, where its words are none. `says` is what it
+    says in all languages.
     """
 
     name: str
     colour: str
     values: tuple[str, ...] = ()
     bodies: int = 0
+    is_top: bool = False
     gives: str = ""
     part: str = ""
     field: str = ""
@@ -64,9 +66,9 @@ KINDS = {kind.name: kind for kind in (
     Kind("forever", "control", bodies=1),
     Kind("while", "control", ("truth",), bodies=1),
     Kind("break", "control"),
-    Kind("def", "words", bodies=1, field="name"),
-    Kind("task", "control", bodies=1),
-    Kind("when", "control", ("truth",), bodies=1),
+    Kind("def", "words", bodies=1, is_top=True, field="name"),
+    Kind("task", "events", bodies=1, is_top=True),
+    Kind("when", "events", ("truth",), bodies=1, is_top=True),
     Kind("comment", "others", field="line"),
     Kind("grey", "grey", field="line", says="%1"),
     Kind("number", "numbers", gives="number", part="NUMBER", says="%1"),
@@ -88,7 +90,10 @@ KINDS = {kind.name: kind for kind in (
 )}
 # fmt: on
 
-
+# The kind of each part of an expression, and of words: of F the first one, a move without UNTIL.
+KIND_OF = {name.upper(): name for name in KINDS}
+for _kind in reversed(KINDS.values()):
+    KIND_OF.update((word, _kind.name) for word in (_kind.part, *_kind.words) if word)
 SAYS = {**{kind.name: kind.says for kind in KINDS.values()}, **SUMS, **COMPARISONS, **FIXED}
 
 

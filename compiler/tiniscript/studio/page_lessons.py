@@ -6,10 +6,12 @@ this when lessons are first looked at.
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from tiniscript.base.words import WORDS
 from tiniscript.bytecode.image import unpack
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.lesson import Lesson
@@ -21,6 +23,9 @@ from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.variation import is_mirrored, point_of, varied
 from tiniscript.library.compiling import compiled, for_robot, maker
 from tiniscript.link.session import Session
+from tiniscript.studio.block_form import kinds_in
+from tiniscript.studio.block_kinds import KIND_OF
+from tiniscript.studio.block_reading import read
 from tiniscript.studio.checking import profile_of
 from tiniscript.studio.simulation import NONCE, Marks, Simulation
 from tiniscript.studio.world_form import Form, form_of
@@ -29,6 +34,7 @@ from tiniscript.virtual.world import World
 
 MISTAKES = "mistakes"
 STEPS, TASK = 2, 3  # of a page's headings, behind what is needed
+CODE, WORD = re.compile("`([^`]+)`"), re.compile(r"\w+")  # in its sentences
 
 
 def titles(language: str) -> list[dict[str, Any]]:
@@ -66,6 +72,24 @@ def steps(number: int, language: str) -> list[dict[str, Any]]:
         {"blocks": [_shown(each) for each in parts], "hint": " ".join(hints)}
         for parts, hints in found
     ]
+
+
+def taught(number: int, language: str) -> list[str]:
+    """Return the kinds of blocks that a lesson speaks of, and those that its task asks for."""
+    lesson = _lesson(number)
+    kit = profile_of(lesson.robot).kit
+    words = {word for each in lesson.criteria for word in each.words}
+    found: set[str] = set()
+    for step in steps(number, language):
+        said = step["hint"]
+        for block in step["blocks"]:
+            text = "\n".join(row[0] for row in block["rows"] if row)
+            if block["kind"] == "program":
+                found |= kinds_in(read(text, kit))
+            else:
+                said += f"\n{text}"
+        words.update(word for code in CODE.findall(said) for word in WORD.findall(code))
+    return sorted(found | {KIND_OF[word] for word in words & WORDS.keys() & KIND_OF.keys()})
 
 
 def _shown(block: Block) -> dict[str, Any]:

@@ -142,7 +142,8 @@ ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "replay": _replay,
     "lesson_titles": lambda fields, data: {"lessons": _lessons().titles(fields["language"])},
     "lesson_steps": lambda fields, data: {
-        "steps": _lessons().steps(fields["number"], fields["language"])
+        "steps": _lessons().steps(fields["number"], fields["language"]),
+        "taught": _lessons().taught(fields["number"], fields["language"]),
     },
     "lesson_world": _lesson_world,
     "lesson_check": _lesson_check,

@@ -35,6 +35,8 @@ export class Blocks {
   #level = 'few';
   /** @type {{names: string[], words: string[]}} */
   #used = { names: [], words: [] };
+  /** @type {string[]} */
+  #taught = [];
   /** Ids of the blocks, and where each is in the text. @type {[string, Range][]} */
   #places = [];
   #isTouched = false; // by somebody, who may have scrolled
@@ -110,13 +112,13 @@ export class Blocks {
     const workspace = withoutSound(() => Blockly.inject(this.#place, {
       ...this.#looks,
       plugins: { connectionChecker: 'tiniscript' },
-      toolbox: toolbox(this.#level, this.#used),
+      toolbox: this.#offered(),
       trashcan: !isNarrow,
       comments: false,
       collapse: false,
       disable: false,
       move: { scrollbars: true, drag: true, wheel: true },
-      zoom: { controls: !isNarrow, wheel: false, pinch: true, startScale: isNarrow ? 0.62 : 0.75, minScale: 0.4, maxScale: 1.6 },
+      zoom: { controls: !isNarrow, wheel: false, pinch: true, startScale: isNarrow ? 0.6 : 0.75, minScale: 0.4, maxScale: 1.6 },
     }));
     workspace.MAX_UNDO = 0;
     hideMeasure();
@@ -155,13 +157,27 @@ export class Blocks {
   setRobot(robot) {
     setRobot(robot);
     setActuators(robot);
-    this.#workspace.updateToolbox(toolbox(this.#level, this.#used));
+    this.#offer();
   }
 
   /** @param {Level} level */
   setLevel(level) {
     this.#level = level;
-    this.#workspace.updateToolbox(toolbox(level, this.#used));
+    this.#offer();
+  }
+
+  /** @param {string[]} kinds of blocks that the open lesson speaks of */
+  setTaught(kinds) {
+    this.#taught = kinds;
+    this.#offer();
+  }
+
+  #offered() {
+    return toolbox(this.#level, this.#used, this.#taught);
+  }
+
+  #offer() {
+    this.#workspace.updateToolbox(this.#offered());
   }
 
   /** The blocks as a PNG file; null without any. @returns {Promise<Blob | null>} */
@@ -251,7 +267,7 @@ export class Blocks {
     const used = { names: of('assign'), words: of('def') };
     if (JSON.stringify(used) === JSON.stringify(this.#used)) return;
     this.#used = used;
-    if (!this.#workspace.isDragging()) this.#workspace.updateToolbox(toolbox(this.#level, used));
+    if (!this.#workspace.isDragging()) this.#offer();
   }
 
   /** Says at each block what the compiler says of it. @param {Finding[]} findings */

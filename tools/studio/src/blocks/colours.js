@@ -7,6 +7,7 @@ export const COLOURS = {
   time: '#00607a',
   control: '#8a3c00',
   choose: '#8a3c00',
+  events: '#6f5b00',
   sensors: '#0d6040',
   decide: '#3f5c12',
   numbers: '#6226b0',

@@ -29,8 +29,20 @@ export class Checker extends Blockly.ConnectionChecker {
 
   /** @param {Blockly.Connection} a @param {Blockly.Connection} b */
   doTypeChecks(a, b) {
-    return Checker.isLenient || super.doTypeChecks(a, b);
+    return Checker.isLenient || (super.doTypeChecks(a, b) && (isAtTop(a) || !isOfTop(b)) && (isAtTop(b) || !isOfTop(a)));
   }
+}
+
+/** Whether what hangs on a connection is inside no other block. @param {Blockly.Connection} connection */
+function isAtTop(connection) {
+  const block = connection.getSourceBlock();
+  return connection === block.nextConnection && !block.getSurroundParent();
+}
+
+/** Whether a connection is that by which a block hangs that stands inside no other. @param {Blockly.Connection} connection */
+function isOfTop(connection) {
+  const block = connection.getSourceBlock();
+  return connection === block.previousConnection && Boolean(KINDS[block.type]?.is_top);
 }
 
 /**
@@ -78,8 +90,9 @@ class DeviceField extends Blockly.FieldDropdown {
  * @param {string} message
  * @param {(number: number) => Blockly.Field | string} what a field, or the name of a place
  * @param {(name: string) => Place} kindOf
+ * @param {boolean} [isFolded] a question begins a row, so that it is seen beside a lesson, too
  */
-function add(block, message, what, kindOf) {
+function add(block, message, what, kindOf, isFolded = false) {
   let label = '';
   /** @type {Blockly.Field[]} */
   let fields = [];
@@ -87,6 +100,12 @@ function add(block, message, what, kindOf) {
     const text = label.trim();
     if (text) fields.push(new Blockly.FieldLabel(text));
     label = '';
+  };
+  const endRow = () => {
+    if (!fields.length) return;
+    const input = block.appendDummyInput();
+    for (const field of fields) input.appendField(field, field.name);
+    fields = [];
   };
   for (const part of message.split(/(%\d|%%)/)) {
     if (part === '%%') label += '%';
@@ -98,16 +117,17 @@ function add(block, message, what, kindOf) {
         fields.push(found);
         continue;
       }
+      if (isFolded && kindOf(found) === 'truth') {
+        endRow();
+        block.appendEndRowInput();
+      }
       const input = block.appendValueInput(found).setCheck(CHECKS[kindOf(found)]);
       for (const field of fields) input.appendField(field, field.name);
       fields = [];
     }
   }
   flush();
-  if (fields.length) {
-    const input = block.appendDummyInput();
-    for (const field of fields) input.appendField(field, field.name);
-  }
+  endRow();
 }
 
 /** @param {Blockly.Field} field @param {string} name */
@@ -121,12 +141,13 @@ function build(block, kind, shape) {
   const first = firstField(block, shape);
   const unit = Object.keys(shape.units).length ? new UnitField(shape.units) : null;
   if (unit) first?.setValidator(() => unit.forceRerender());
+  if (kind === 'set') first?.setValidator((word) => fill(block, kind, shape.values, word));
   let value = 0;
   add(block, onBlock(kind), (number) => {
     if (first && number === 1) return named(first, 'WORD');
     if (unit && number === 3) return named(unit, 'UNIT');
     return `V${value++}`;
-  }, (name) => shape.values[Number(name.slice(1))] ?? 'any');
+  }, (name) => shape.values[Number(name.slice(1))] ?? 'any', !shape.gives);
   for (let k = 0; k < shape.bodies; k += 1) block.appendStatementInput(`B${k}`);
   block.setInputsInline(true);
   if (shape.gives) block.setOutput(true, CHECKS[shape.gives]);
@@ -139,19 +160,19 @@ function build(block, kind, shape) {
 }
 
 /**
- * Gives every place a value that is there while nothing else is.
+ * Gives every place a value of its kind that is there while nothing else is.
  * @param {Blockly.Block} block
  * @param {string} kind
  * @param {Place[]} values
+ * @param {string} [word] that is on it from now on
  */
-function fill(block, kind, values) {
+function fill(block, kind, values, word = String(block.getFieldValue('WORD') ?? '')) {
   values.forEach((place, k) => {
-    const word = String(block.getFieldValue('WORD') ?? '');
     const { sample } = rangeOf(kind, word, k);
     const device = kind === 'set' ? devices('actuator').find((each) => each.text === word) : undefined;
-    block.getInput(`V${k}`)?.connection?.setShadowState(
-      place === 'truth' || device?.is_yes_no ? truth() : { type: 'number', fields: { WORD: Number(sample) } },
-    );
+    const value = place === 'truth' || device?.is_yes_no ? truth() : { type: 'number', fields: { WORD: Number(sample) } };
+    const connection = block.getInput(`V${k}`)?.connection;
+    if (connection?.getShadowState()?.type !== value.type) connection?.setShadowState(value);
   });
 }
 

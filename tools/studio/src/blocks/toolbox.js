@@ -1,5 +1,6 @@
 // What can be dragged out: for beginners, as usual, and everything. The words of the robot are in
-// it, and the names that the program has. A group is short enough to be seen at once.
+// it, the names that the program has, and for beginners what the open lesson speaks of, too. A group
+// is short enough to be seen at once.
 
 import { devices } from './shapes.js';
 import { known, text } from '../page/texts.js';
@@ -11,6 +12,7 @@ import { FIXED } from '../page/words.js';
 export const LEVELS = /** @type {Level[]} */ (['few', 'usual', 'all']);
 
 const MOST_NAMES = 6; // of a program, in a group
+const AHEAD = 'DISTANCE'; // of a robot that looks ahead
 
 /** @param {number} value */
 function number(value) {
@@ -28,17 +30,30 @@ function item(type, values = [], word = '') {
   return { kind: 'block', type, inputs, ...(word ? { fields: { WORD: word } } : {}) };
 }
 
-/** A question that a robot can answer, to put into an IF. */
-function question() {
-  const sensor = devices('sensor')[0];
+/** What a question asks: what is ahead of the robot, where it can tell. */
+function asked() {
+  const sensors = devices('sensor');
+  return sensors.find((device) => device.text === AHEAD) ?? sensors[0];
+}
+
+/** A question that a robot can answer, to put into an IF. @param {string} [sign] between sensor and number */
+function question(sign = 'LT') {
+  const sensor = asked();
   if (!sensor) return {};
   const block = { type: 'sensor', fields: { WORD: sensor.text } };
-  return { V0: { block: sensor.is_yes_no ? block : { type: 'compare', fields: { WORD: 'LT' }, inputs: { V0: { block }, V1: number(20) } } } };
+  return { V0: { block: sensor.is_yes_no ? block : { type: 'compare', fields: { WORD: sign }, inputs: { V0: { block }, V1: number(20) } } } };
+}
+
+/** A comparison, where the robot has something to compare. */
+function comparison() {
+  const { block } = /** @type {any} */ (question()).V0 ?? {};
+  return block?.type === 'compare' ? { kind: /** @type {const} */ ('block'), ...block } : { ...item('compare', [1, 1]), fields: { WORD: 'LT' } };
 }
 
 /** @param {string} type @param {object} [extraState] @returns {Item} */
 function asking(type, extraState) {
-  return { kind: 'block', type, inputs: question(), ...(extraState ? { extraState } : {}) };
+  // A WHILE goes on until something is near.
+  return { kind: 'block', type, inputs: question(type === 'while' ? 'GT' : 'LT'), ...(extraState ? { extraState } : {}) };
 }
 
 /** @param {string} type @param {number[]} values @param {string} word @returns {Item} */
@@ -49,70 +64,74 @@ function until(type, values, word = '') {
 
 /**
  * @param {{names: string[], words: string[]}} used names of variables and of own words
- * @returns {[Level, string, [Level, Item][]][]}
+ * @returns {[string, [Level, Item][]][]} each group, and from which level on each block is in it
  */
 function groups(used) {
   const sensors = devices('sensor').map((device) => device.text);
   const actuators = devices('actuator');
+  const measured = asked();
   return [
-    ['few', 'move', [
+    ['move', [
       ['few', item('move', [2, 80], 'F')], ['few', item('move', [2, 80], 'B')],
       ['few', item('move', [0.5, 60], 'L')], ['few', item('move', [0.5, 60], 'R')], ['few', item('stop')],
       ['usual', until('move_until', [5, 60], 'F')], ['all', item('motors', [50, 80])],
     ]],
-    ['few', 'time', [
+    ['time', [
       ['few', item('wait', [1])], ['few', item('beep', [0.5, 440])], ['usual', item('show', [1])],
       ...FIXED.map((word) => /** @type {[Level, Item]} */ (['few', item('fixed', [], word.text)])),
       ['usual', until('wait_until', [5])], ['all', item('time')], ['all', item('endless')],
     ]],
-    ['few', 'control', [
+    ['control', [
       ['few', item('loop', [3])], ['few', item('forever')], ['usual', asking('while')], ['usual', item('break')],
     ]],
-    ['few', 'choose', [
+    ['choose', [
       ['few', asking('if', { arms: 1, hasElse: false })], ['few', asking('if', { arms: 1, hasElse: true })],
     ]],
-    ['few', 'sensors', [
+    ['events', [['few', asking('when')], ['few', item('task')]]],
+    ['sensors', [
       ...sensors.map((name) => /** @type {[Level, Item]} */ (['few', item('sensor', [], name)])),
       ...actuators.map((device) => /** @type {[Level, Item]} */ (['few', item('set', device.is_yes_no ? [] : [0], device.text)])),
-      ...sensors.slice(0, 1).map((name) => /** @type {[Level, Item]} */ (['usual', item('read', [], name)])),
+      ...(measured ? [/** @type {[Level, Item]} */ (['usual', item('read', [], measured.text)])] : []),
     ]],
-    ['few', 'decide', [
-      ['few', { ...item('compare', [1, 1]), fields: { WORD: 'LT' } }], ['usual', { ...item('logic'), fields: { WORD: 'AND' } }],
+    ['decide', [
+      ['few', comparison()], ['usual', { ...item('logic'), fields: { WORD: 'AND' } }],
       ['usual', item('not')], ['usual', item('truth')],
     ]],
-    ['usual', 'numbers', [
+    ['numbers', [
       ['usual', item('number')], ['usual', item('math', [1, 1])], ['usual', item('random', [1, 6])],
       ['all', item('round', [1, 0])], ['all', item('abs', [-1])], ['all', item('extreme', [1, 2])],
       ['all', item('negative', [1])], ['all', item('brackets', [1])],
     ]],
-    ['usual', 'names', [
+    ['names', [
       ['usual', item('assign', [0], used.names[0] ?? 'X')],
       ...(used.names.length ? used.names.slice(0, MOST_NAMES) : ['X']).map((name) => /** @type {[Level, Item]} */ (['usual', item('name', [], name)])),
     ]],
-    ['usual', 'words', [
+    ['words', [
       ['usual', item('def', [], 'HOP')],
       ...used.words.slice(0, MOST_NAMES).map((name) => /** @type {[Level, Item]} */ (['usual', item('call', [], name)])),
     ]],
-    ['usual', 'others', [['usual', item('comment')], ['all', item('start')]]],
+    ['others', [['usual', item('comment')], ['all', item('start')]]],
   ];
 }
 
 /**
  * @param {Level} level
  * @param {{names: string[], words: string[]}} used
+ * @param {string[]} taught kinds of blocks that the open lesson speaks of
  * @returns {any}
  */
-export function toolbox(level, used) {
+export function toolbox(level, used, taught) {
   const most = LEVELS.indexOf(level);
-  const isShown = (/** @type {Level} */ each) => LEVELS.indexOf(each) <= most;
+  const isShown = (/** @type {[Level, Item]} */ [from, { type }]) => LEVELS.indexOf(from) <= most || taught.includes(type);
+  const shown = groups(used).map(([name, items]) => /** @type {const} */ ([name, items.filter(isShown)]));
   return {
     kind: 'categoryToolbox',
-    contents: groups(used).filter(([its]) => isShown(its)).map(([, name, items]) => ({
+    contents: shown.filter(([, items]) => items.length).map(([name, items]) => ({
       kind: 'category',
       name: text(known(`group/${name}`)),
       categorystyle: name,
       cssConfig: { icon: `category ${name}` },
-      contents: items.filter(([its]) => isShown(its)).map(([, each]) => ({ ...each, gap: 8 })),
+      contents: items.map(([, each]) => ({ ...each, gap: 8 })),
     })),
   };
 }

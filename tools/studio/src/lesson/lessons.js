@@ -159,9 +159,10 @@ export class Lessons {
     this.#number = number;
     this.#choice.value = String(number);
     this.#forget();
-    const { steps } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
+    const { steps, taught } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
     if (asked !== this.#asked) return;
     this.#steps = steps;
+    so.taught.say(taught);
     if (isOther && !element('lessons', HTMLElement).hidden) await this.#seeWorld(1);
     this.#go(isOther ? 0 : this.#step);
     this.#setReady(true);

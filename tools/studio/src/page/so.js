@@ -36,6 +36,7 @@ export const so = {
   language: new Fact(''),
   areWordsShown: new Fact(false), // of the text, on blocks and at readings
   robot: new Fact(''), // its name
+  taught: new Fact(/** @type {string[]} */ ([])), // kinds of blocks that the open lesson speaks of
   text: new Fact(''), // of the program
   /** What the compiler says of the newest text; null while it is at work. */
   checked: new Fact(/** @type {import('../python.js').Checked | null} */ (null)),

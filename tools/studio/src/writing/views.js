@@ -74,6 +74,7 @@ export class Views {
     so.language.watch(() => this.#showWords());
     so.areWordsShown.watch(() => this.#showWords());
     so.robot.watch(() => this.#setRobot());
+    so.taught.watch((kinds) => this.#blocks?.setTaught(kinds));
     so.text.watch(() => this.#textChanged());
     so.checked.watch((answer) => {
       if (answer) this.#showFindings(answer.findings);
@@ -207,6 +208,7 @@ export class Views {
         if (!this.#isStale()) this.#page.editor.toggleBreakpoint(place);
       },
     });
+    this.#blocks.setTaught(so.taught.value);
     this.#pane.dataset['state'] = 'empty';
     if (this.#isReady) this.#refresh(true);
   }
