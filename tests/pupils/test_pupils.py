@@ -14,7 +14,7 @@ from tests.support.rows import each_row
 from tiniscript.base.source import Edit, Source, applied
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.diagnostics.fixing import edits_of, fixed, offers
 
 ENTRIES = entries()
 # Repairs that write a number in another way: a unit, a letter for a digit, `X++`, `50.`, and how
@@ -87,10 +87,34 @@ def test_each_repair_helps_and_keeps_the_numbers(entry: Entry) -> None:
         is_counted = is_counted or CONVERTED.search(entry.program) is not None
         is_always = diagnostic.code is codes.WANTS_CONDITION and fix == "TRUE"  # `WHILE(1)`
         is_always |= fix == "TASK"  # `TAREA 1`
+        is_always |= "most" in diagnostic.values  # F(1, 800)
         stem = diagnostic.values.get("found", "").rstrip("0123456789")  # of `STOP2`
         is_always |= diagnostic.code is codes.UNKNOWN_WORD and diagnostic.values["near"] == stem
         if diagnostic.code not in OTHER_NUMBERS and not (is_counted or is_always):
             assert not loses_a_number(entry.program, edits), fix
+
+
+# Of these the thing to try is one text: what it says is written when somebody presses a button.
+WRITTEN = {
+    codes.OUT_OF_RANGE: ("fix", "most"),
+    codes.LONG_TIME: ("fix", "way"),
+    codes.USED_BEFORE_SET: ("line", "before", "zero"),
+    **dict.fromkeys((codes.SWAPPED, codes.ZERO_BEFORE, codes.TURNED_ROUND, codes.EXACT,
+                     codes.FROZEN_UNTIL, codes.LATE_CHECK, codes.UNUSED_READING), ("fix",)),
+}  # fmt: skip
+
+
+@each_row("entry", ENTRIES)
+def test_what_a_message_says_to_write_is_offered(entry: Entry) -> None:
+    """Also a warning's, which is gone then; `tsc check --fix` makes none of a warning."""
+    found, text = check(entry.program), entry.program
+    for diagnostic, edits in zip(found, offers(text, found, check), strict=True):
+        names_one = any(diagnostic.values.get(gap) for gap in WRITTEN.get(diagnostic.code, ()))
+        assert edits or not names_one, diagnostic
+        if edits and not diagnostic.is_mistake:
+            after = check(applied(text, edits))
+            assert mistakes(after) == 0 and diagnostic not in after
+            assert diagnostic.repair is None
 
 
 @each_row("entry", ENTRIES)

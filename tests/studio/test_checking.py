@@ -9,7 +9,8 @@ import pytest
 from tests.pupils import corpus
 from tests.studio.programs import LACKING, said
 from tests.support.texts import LANGUAGES
-from tiniscript import check, compile, robots
+from tiniscript import check, compile, compile_text, robots
+from tiniscript.diagnostics.fixing import fixed
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.studio import checking, worker
 from tiniscript.studio.description import description
@@ -61,6 +62,56 @@ def test_the_first_value_of_a_variable_is_offered_in_place_of_its_declaration() 
     program = "var vel\nF(2, 80)"
     (finding,) = checking.check(program.encode(), "tinibot", "en").findings
     assert changed_by(program, finding.repair) == "vel = 0\nF(2, 80)"
+
+
+@pytest.mark.parametrize(
+    ("program", "wanted"),
+    [
+        ("R(90, 60)", "R(90 DEG, 60)"),
+        ("SI|F(30, 60)  // 30 cm", "SI|F(30 CM, 60)  // 30 cm"),
+        ("R(MIN(90, 80), POWER)", ""),  # nobody knows its power: it is another mistake
+        ("R(MIN(90, 80), DISTANCE)", "R(MIN(90, 80) DEG, DISTANCE)"),
+        ("R(90, 60) UNTIL(DISTANCE < 5)", "R(90 DEG, 60) UNTIL(DISTANCE < 5)"),
+        ("R(90 // degrees\n, 60)", ""),
+        ("F(1, 800)", "F(1, 100)"),
+        ("F(1, 800) UNTIL(DISTANCE < 5)", "F(1, 100) UNTIL(DISTANCE < 5)"),
+        ("F(-2, 80) UNTIL(DISTANCE < 5)", "B(2, 80) UNTIL(DISTANCE < 5)"),
+        ("contador = contador + 1", "CONTADOR = 0; contador = contador + 1"),
+        ("// mine\nSI|LOOP(3)\nN = N + 1\nEND_LOOP",
+         "// mine\nSI|N = 0\nLOOP(3)\nN = N + 1\nEND_LOOP"),
+        ("SI|Q = NOT Q", "SI|Q = FALSE; Q = NOT Q"),
+        ("SI|Q = Q OR DISTANCE < 5", "SI|Q = FALSE; Q = Q OR DISTANCE < 5"),
+        ("SI|F(2, V)\nV = 50", "SI|V = 50\nF(2, V)"),
+        ("LOOP(3)\nF(2, V)\nEND_LOOP\n  V = 50\nS", "V = 50\nLOOP(3)\nF(2, V)\nEND_LOOP\nS"),
+        ("F(2,\r\nV)\r\nV = 50\r\n", "V = 50\nF(2,\r\nV)\r\n"),
+        ("F(2, V); V = 50; V = 60", "V = 50; F(2, V); V = 50; V = 60"),
+        ("SI|F(80, 2)", "SI|F(2, 80)"),
+        ("SI|DISTANCE", "SI|SHOW(DISTANCE)"),
+        ("SI|R(90, 60)~1A2B", ""),
+    ],
+)  # fmt: skip
+def test_a_button_does_what_the_message_names(program: str, wanted: str) -> None:
+    """And leaves the rest; the command repairs none of it, as it is not sure."""
+    finding = checking.check(program.encode(), "tinibot", "en").findings[0]
+    assert (changed_by(program, finding.repair) if finding.repair else "") == wanted
+    if wanted:
+        assert finding.message not in check(wanted)
+        assert not [each for each in check(wanted) if each.severity == "mistake"]
+    kit = robots.load("tinibot").kit
+    left = fixed(program, lambda text: compile_text(text, kit).diagnostics)
+    assert wanted.startswith("B(") or left.text == program  # -2 seconds forward are 2 back
+
+
+def test_each_of_many_mistakes_has_its_own_button() -> None:
+    """Pressed one after the other, and none of them again."""
+    program = "F(1, 800)\nN = N + 1\nM(50, 50)\nR(90, 60)\nR(90, 60)\n"
+    for _ in range(9):
+        findings = checking.check(program.encode(), "tinibot", "en").findings
+        repair = next((each.repair for each in findings if each.repair), ())
+        if not repair:
+            break
+        program = changed_by(program, repair)
+    assert program == ("N = 0\nF(1, 100)\nN = N + 1\nM(50, 50)\nR(90 DEG, 60)\nR(90 DEG, 60)\n")
 
 
 def test_some_mistakes_are_not_repaired() -> None:

@@ -113,6 +113,26 @@ def test_a_mistake_is_marked_where_it_is_and_its_button_repairs_it(page: Page) -
     assert page.inner_text("#status") == "1 error"
 
 
+@pytest.mark.parametrize(
+    ("program", "wanted"),
+    [
+        ("R(90, 60)", "R(90 DEG, 60)"),
+        ("F(1, 800)", "F(1, 100)"),
+        ("contador = contador + 1\nF(contador, 50)",
+         "CONTADOR = 0\ncontador = contador + 1\nF(contador, 50)"),
+    ],
+)  # fmt: skip
+def test_a_button_does_what_its_message_names(page: Page, program: str, wanted: str) -> None:
+    """And undo takes it back."""
+    write(page, program)
+    page.locator("#messages .repair").click()
+    page.locator("#messages .repair").wait_for(state="detached")
+    checked(page)
+    assert image(page) == compile(wanted).image
+    page.click("#undo")
+    page.locator("#messages .repair").wait_for()
+
+
 def test_a_repair_can_be_chosen_in_the_text(page: Page) -> None:
     write(page, "F(-2, 80)")
     page.hover(".cm-lintRange-error")

@@ -70,6 +70,13 @@ class Source:
         end = starts[line] if line < len(starts) else len(self.text)
         return self.text[starts[line - 1] : end].rstrip("\r\n")
 
+    def line_span(self, line: int) -> Span:
+        """Return where a line is, from 1, with its end; of the last one with the end before it."""
+        starts = self._starts()
+        if line < len(starts):
+            return Span(starts[line - 1], starts[line])
+        return Span(len(self.text[: starts[line - 1]].rstrip("\r\n")), len(self.text))
+
     def __getitem__(self, span: Span) -> str:
         return self.text[span.start : span.end]
 

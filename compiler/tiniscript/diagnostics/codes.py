@@ -28,7 +28,7 @@ class Diagnostic(NamedTuple):
     """One diagnostic in one place. `values` fill the gaps in its message.
 
     `place` is what the thing to try stands for, where that is not `span`. `repair` is what
-    `recovery` found, None where `repairs` looks for it.
+    who found it says of the change, None where `fixing` looks for it in the values.
     """
 
     code: Code

@@ -20,9 +20,12 @@ _GAPS: dict[Code, tuple[str, ...]] = {
     **dict.fromkeys((codes.UNKNOWN_WORD, codes.UNKNOWN_NAME, codes.WANTS_CONDITION,
                      codes.MIXED_COMPARE, codes.NAMED_ARGUMENT, codes.NAME_WITH_SPACE,
                      codes.WORDS_BEHIND, codes.SEVERAL_ORDERS, codes.REPEATED), _WRITTEN),
-    **dict.fromkeys((codes.MISSING_OPEN, codes.OUT_OF_RANGE, codes.UNIT_PAIR, codes.OTHER_LANGUAGE,
-                     codes.QUESTION_BEHIND, codes.NOT_CALLABLE), ("fix",)),
-    codes.EMPTY_BRACKETS: ("word",),
+    **dict.fromkeys((codes.MISSING_OPEN, codes.UNIT_PAIR, codes.OTHER_LANGUAGE,
+                     codes.QUESTION_BEHIND, codes.NOT_CALLABLE, codes.SWAPPED, codes.ZERO_BEFORE,
+                     codes.LATE_CHECK, codes.FROZEN_UNTIL, codes.FROZEN_WHILE, codes.TURNED_ROUND,
+                     codes.EXACT, codes.UNUSED_READING), ("fix",)),
+    codes.EMPTY_BRACKETS: ("word",), codes.OUT_OF_RANGE: ("fix", "most"),
+    codes.LONG_TIME: ("fix", "way"),
 }  # fmt: skip
 _ELSEWHERE = (codes.QUESTION_BEHIND, codes.NOT_CALLABLE)  # without a place they show a way
 
@@ -89,18 +92,30 @@ def _steps(found: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
 def offers(text: str, found: list[Diagnostic], check: Check) -> list[list[Edit]]:
     """Return for each diagnostic the changes that a reader may choose to make, or none.
 
-    With them the program has fewer mistakes. They may be a guess: somebody looks at them.
+    With them the program has fewer mistakes, or for a warning no more of them and the warning is
+    gone. They may be a guess, and change what the program does: somebody looks at them.
     """
     source, tried = Source(text), 0
     offered: list[list[Edit]] = []
     for diagnostic in found:
-        edits = edits_of(diagnostic) or [] if diagnostic.is_mistake and tried < OFFERS else []
+        edits = edits_of(diagnostic) or [] if tried < OFFERS else []
         lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
         is_tried = bool(edits) and not any("~" in line for line in lines)  # else it is copied again
         tried += is_tried
-        is_chosen = is_tried and is_better(check(applied(text, edits)), found, edits)
+        after = check(applied(text, edits)) if is_tried else []
+        is_chosen = is_tried and (
+            is_better(after, found, edits)
+            if diagnostic.is_mistake
+            else _lacks(after, diagnostic.code, found)
+        )
         offered.append(edits if is_chosen else [])
     return offered
+
+
+def _lacks(after: Sequence[Diagnostic], code: Code, found: Sequence[Diagnostic]) -> bool:
+    """Whether there is one warning fewer of this kind, and no mistake more."""
+    before, left = (sum(each.code is code for each in every) for every in (found, after))
+    return left < before and _mistakes(after) <= _mistakes(found)
 
 
 def is_better(

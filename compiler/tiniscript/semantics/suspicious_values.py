@@ -34,6 +34,8 @@ _PART = 45 * SECOND  # turns of more than one round have such parts
 _LENGTHS = ("cm", "mm", "m")
 _ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing behind its 0
 _ZERO_OF_TURN = re.compile(r"(?i)[LR]\s*\(\s*(0[1-9])\s*,\s*[1-9]")  # `L(03, 60)`
+# `R(90`, with brackets in a calculation, and what is behind it: the power, and UNTIL.
+_FIRST = re.compile(r"\w+\s*\((\s*(?:[^(),/]|/(?!/)|\((?:[^()]|\([^()]*\))*\))*?)(\s*[,)].*)", re.S)
 _UNTIL = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its condition
 LITTLE_POWER = 10_000  # thousandths of a percent
 
@@ -65,7 +67,7 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
         values = {"time": seconds, "power": percent, "fix": fix}
         return [Diagnostic(codes.SWAPPED, move.span, values)]
     may_last = is_ended and not (move.direction in ("L", "R") and kit.turn)
-    return ([] if may_last else _long(move, time, power, kit)) or of_power(move)
+    return ([] if may_last else _long(move, time, power, kit, text)) or of_power(move)
 
 
 def of_way(move: Move, kit: Kit) -> list[Diagnostic]:
@@ -122,7 +124,7 @@ def of_power(move: Move) -> list[Diagnostic]:
     return found
 
 
-def _long(move: Move, time: int, power: int | None, kit: Kit) -> list[Diagnostic]:
+def _long(move: Move, time: int, power: int | None, kit: Kit, text: str) -> list[Diagnostic]:
     """`R(90, 50)`, `F(90, 60)`, `W(1000)`: degrees, centimetres and milliseconds were meant."""
     word = move.direction
     shown = as_text(80_000 if power is None else power)
@@ -132,7 +134,9 @@ def _long(move: Move, time: int, power: int | None, kit: Kit) -> list[Diagnostic
     is_very_long = time >= VERY_LONG_TIME
     usage = f"{word}( , {shown})"
     length = as_text(time)
-    way = f"{word}({length} {UNIT_OF.get(word, '')}, {shown})"
+    parts = _FIRST.fullmatch(text)
+    first, rest = parts.groups() if parts else ("", f", {shown})")
+    way = first and f"{word}({first} {UNIT_OF.get(word, '')}{rest}"  # not behind a note
     speed = kit.speed or USUAL_SPEED
     is_far = is_round and time >= LONG_TIME and speed * (power or 0) * time >= FAR
     if turns and _is_turn(time, kit, is_long) and not (is_very_long and time % _PART):
@@ -142,8 +146,7 @@ def _long(move: Move, time: int, power: int | None, kit: Kit) -> list[Diagnostic
         values = {"centimetres": length, "word": word, "drive": usage}
         values |= {"way": way} if kit.speed else {}
     elif _is_milliseconds(time) if word == "W" else is_very_long:
-        power_shown = "" if word == "W" else f", {shown}"
-        values = {"time": length, "fix": f"{word}({as_text(time // 1000)}{power_shown})"}
+        values = {"time": length, "fix": f"{word}({as_text(time // 1000)}{rest}"}
     else:
         return []
     return [Diagnostic(codes.LONG_TIME, move.span, values)]

@@ -10,12 +10,14 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Source, Span
-from tiniscript.base.words import nearest
-from tiniscript.diagnostics.codes import Code, Diagnostic
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.base.words import COMPARATORS, nearest
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.syntax import ast
 
 NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there
+_YES_NO = frozenset(("TRUE", "FALSE", "NOT", "AND", "OR", *(name for name, _ in COMPARATORS)))
 ENOUGH = 100  # mistakes after which a suggestion helps nobody
 
 
@@ -41,6 +43,7 @@ class Scope:
         self.kit = kit
         self.diagnostics: list[Diagnostic] = []
         self.names = {device.name: Name("sensor", i) for i, device in enumerate(kit.sensors)}
+        self._yes_no_sensors = {device.name for device in kit.sensors if device.is_yes_no}
         for i, device in enumerate(kit.actuators):
             self.names[device.name] = Name("actuator", i)
         self._first = {each.name: each for each in reversed(_assignments(parsed.body))}
@@ -52,7 +55,22 @@ class Scope:
     def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:
         self.diagnostics.append(Diagnostic(code, span, values, place))
 
-    def line_to_move_up(self, name: str, used: Span) -> dict[str, str]:
+    def report_used(self, name: str, used: Span, near: str) -> None:
+        """Say that `name` is used before it has a value, and how it gets one first."""
+        said = self._line_to_move_up(name, used)
+        body = self.parsed.body
+        around = next((each for each in body if each.span.end > used.start), body[0])
+        begin = (around if said["line"] else body[0]).span.start
+        value = said["first"] or said["before"] or f"{name} = {said['zero']}"
+        between = "\n" if "\n" in self.source.text else "; "
+        edits = [Edit(Span(begin, begin), value + between)]
+        if said["line"]:
+            edits.append(Edit(self.source.line_span(int(said["line"])), ""))
+        values = {"name": name, "near": near, **said}
+        repair = Repair(tuple(edits), False)
+        self.diagnostics.append(Diagnostic(codes.USED_BEFORE_SET, used, values, None, repair))
+
+    def _line_to_move_up(self, name: str, used: Span) -> dict[str, str]:
         """Return the number and the text of the later line that only gives `name` a number."""
         here = self.source.position(used.start)[0]
         for node in self.parsed.body:
@@ -63,12 +81,22 @@ class Scope:
                 if line > here and is_alone and node.value.is_plain:
                     return {"line": str(line), "first": text}
                 break
-        return {"line": "", "first": "", "before": self._first_number(name)}
+        zero = "FALSE" if self._is_yes_no(name) else "0"
+        return {"line": "", "first": "", "before": self._first_number(name), "zero": zero}
 
     def _first_number(self, name: str) -> str:
         """Return `V = 80`, what gives `name` its first value, where that is a plain number."""
         node = self._first.get(name)
         return self.source[node.span] if node and node.value and node.value.is_plain else ""
+
+    def _is_yes_no(self, name: str) -> bool:
+        """Whether the first value that the text gives to `name` looks like a yes or no."""
+        node = self._first.get(name)
+        if node is None or node.value is None or not node.value.expression:
+            return False
+        last = node.value.expression[-1]
+        is_sensor = last.op == "NAME" and last.value in self._yes_no_sensors
+        return last.op in _YES_NO or is_sensor
 
     def near(self, word: str, known: Iterable[str]) -> str:
         """Return the nearest known word for a message, for the first ENOUGH mistakes.

@@ -52,8 +52,7 @@ class WrongCalls:
 
     def until_not_here(self, node: ast.Command, until: ast.Argument, word: Word | None) -> None:
         source = self.scope.source
-        before = source[Span(node.span.start, until.span.start)]
-        start = node.span.start + before.upper().rfind("UNTIL")
+        start = _start_of_until(source, node, until)
         call = source[Span(node.span.start, start)].rstrip()
         said = _ENDED.get("" if word is None else word.role.name, "F(5, 60) UNTIL({c})")
         example = said.format(call=call, c=source[until.span])
@@ -111,7 +110,8 @@ class WrongCalls:
         low, high = as_text(its.low), "" if its.high == HIGHEST else as_text(its.high)
         said = {} if of is None else meant(self.scope.source, *of)
         said |= {"low": low, "high": high, "found": as_text(number)}
-        self.scope.report(codes.OUT_OF_RANGE, span, of and of[0].span, word=word, name=its.name,
+        place = None if of is None else _without_until(self.scope.source, of[0])
+        self.scope.report(codes.OUT_OF_RANGE, span, place, word=word, name=its.name,
                           unit=its.unit, **said)  # fmt: skip
 
     def no_number(self, span: Span, word: str) -> None:
@@ -148,6 +148,19 @@ class WrongCalls:
         return found[k]
 
 
+def _start_of_until(source: Source, node: ast.Command, until: ast.Argument) -> int:
+    before = source[Span(node.span.start, until.span.start)]
+    return node.span.start + before.upper().rfind("UNTIL")
+
+
+def _without_until(source: Source, node: ast.Command) -> Span:
+    """Return where an instruction is, without the question that may end it."""
+    if node.until is None:
+        return node.span
+    call = source[Span(node.span.start, _start_of_until(source, node, node.until))]
+    return Span(node.span.start, node.span.start + len(call.rstrip()))
+
+
 _NEXT_QUESTION = re.compile(r"(?i)[\s;]{0,200}IF[ \t]*\(([^()\r\n;]{0,60}[<>=][^()\r\n;]{1,60})\)")
 
 
@@ -162,11 +175,11 @@ _ROUND = 50
 
 
 def meant(source: Source, node: ast.Command, word: Word) -> dict[str, str]:
-    """Return the values of a diagnostic, "" for none: `fix`, or an example."""
+    """Return the values of a diagnostic: `fix`, or an example, or none."""
     arguments = node.arguments or ()
     texts = [source[Span(each.span.start, each.unit.end if each.unit else each.span.end)]
              for each in arguments]  # fmt: skip
-    values = {"fix": "", "most": "", "tone": "", "sound": ""}
+    values: dict[str, str] = {}
     if len(texts) != 2 or not all(each.is_plain for each in arguments):
         return values
     first, second = texts

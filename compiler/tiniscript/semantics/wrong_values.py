@@ -64,11 +64,10 @@ class WrongValues:
         which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
         sensors = [each for each, its in names if its.what == "sensor"]
         if name == target or name in scope.set_somewhere:
-            first = scope.line_to_move_up(name, span)
             if any(each.code is codes.USED_BEFORE_SET and each.values["name"] == name
                    for each in scope.diagnostics[-ENOUGH:]):  # fmt: skip
                 return  # said once
-            scope.report(codes.USED_BEFORE_SET, span, None, name=name, near=near, **first)
+            scope.report_used(name, span, near)
         else:
             near = "" if which or is_variable else near
             only = next((each for each in sensors if name.startswith(each + "_")), "")
