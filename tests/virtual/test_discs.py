@@ -168,6 +168,137 @@ def test_a_task_that_takes_the_motors_gives_them_back_and_the_way_goes_on() -> N
     assert 8 < ahead < 25 and abs(ahead - aside - 60) < 8 and abs(turned + 90) < 6
 
 
+def interrupted(way: str, times: int, body: str) -> str:
+    """A way that a WHEN interrupts so often."""
+    return f"""X = 0; {way}; SHOW(1)
+WHEN(X < {times} AND TIME > 0.35 + X * 0.65)
+X = X + 1; {body}
+END_WHEN"""
+
+
+STANDING = ("M(0, 0); W(0.4)", "M(0, 0); W(0.05)", "M(0, 0)")
+WAYS = [(way, times) for way in ("F(100 CM, 80)", "F(100 CM, 60)", "R(360 DEG, 30)")
+        for times in (1, 3, 10)]  # fmt: skip
+WAYS += [("R(90 DEG, 80)", 1), ("R(240 DEG, 80)", 3)]
+INTERRUPTIONS = [(*way, STANDING[0]) for way in WAYS]
+INTERRUPTIONS += [("F(100 CM, 60)", 3, body) for body in STANDING[1:]]
+
+
+@pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
+@pytest.mark.parametrize(("way", "times", "body"), INTERRUPTIONS)
+def test_a_way_that_is_interrupted_is_as_long_and_as_straight(
+    profile: Robot, way: str, times: int, body: str
+) -> None:
+    """What the wheels roll on when a WHEN takes the motors is a part of the way."""
+    for seed in (2, 3, 5):
+        robot, talk = begun(interrupted(way, times, body), seed, profile)
+        talk.wait(13_000)
+        said = [line.split(" ", 1)[1] for line in trace(robot.take_events())]
+        assert said[-1] == "SHOW 1"
+        assert sum(line == said[0] for line in said) == times + 1, "it has gone on so often"
+        ahead, aside, turned = gone(robot)
+        if way[0] == "F":
+            assert abs(ahead - 100) <= 1.5 and abs(aside) <= 3.2
+        else:
+            assert abs(turned + int(way[2:].split()[0])) <= 6
+
+
+@pytest.mark.parametrize(("body", "more_cm", "off_cm"), [
+    ("M(0, 0); W(0.3); B(5 CM, 60)", -5, 0.6),  # a way of its own
+    ("M(0, 0); W(0.05); F(5 CM, 60)", 5, 0.7),
+    ("M(60, 60); W(0.2); M(-60, -60); W(0.2); M(0, 0); W(0.4)", 0, 0.5),  # as far ahead as back
+    ("M(-40, -40); W(0.2); M(40, 40); W(0.2); M(0, 0); W(0.4)", 0, 0.5),
+])  # fmt: skip
+def test_what_an_interruption_drives_is_not_a_part_of_the_way(
+    body: str, more_cm: float, off_cm: float
+) -> None:
+    """Not exactly: how far a wheel that is driven meanwhile would have rolled is a guess."""
+    for seed in (1, 2, 3):
+        robot, talk = begun(interrupted("F(100 CM, 60)", 3, body), seed)
+        talk.wait(13_000)
+        ahead, _, _ = gone(robot)
+        assert abs(ahead - 100 - 3 * more_cm) <= 1.5 + 3 * off_cm
+
+
+def test_two_ways_that_stand_still_are_both_gone_to_their_end() -> None:
+    """A higher WHEN interrupts a lower one's way, which has interrupted the main task's."""
+    text = """X = 0; F(60 CM, 60); SHOW(3)
+WHEN(X = 1 AND TIME > 1); X = 2; M(0, 0); W(0.4); SHOW(1); END_WHEN
+WHEN(X = 0 AND TIME > 0.6); X = 1; F(40 CM, 60); SHOW(2); END_WHEN"""
+    robot, talk = begun(text, 2)
+    talk.wait(9000)
+    ahead, _, _ = gone(robot)
+    said = [line.partition("SHOW ")[2] for line in trace(robot.take_events())]
+    assert [each for each in said if each] == ["1", "2", "3"]
+    assert abs(ahead - 100) <= 2
+
+
+def test_a_way_behind_one_that_was_ended_is_whole() -> None:
+    """What S has ended is not gone on with, though the same task goes the next way."""
+    text = """F(60 CM, 60); F(30 CM, 60); SHOW(1)
+TASK; W(0.5); S; W(60); END_TASK"""
+    robot, talk = begun(text, 2)
+    talk.wait(500)
+    before, _, _ = gone(robot)
+    talk.wait(5000)
+    assert abs(gone(robot)[0] - before - 30) <= 2
+
+
+class Flicker:
+    """The disc of a wheel flickers: it shows an edge so often, while the wheel hardly turns."""
+
+    def __init__(self, robot: VirtualRobot, number: int, hertz: float) -> None:
+        assert robot.wheels
+        self.wheel, self.wheels = wheel(robot, number), robot.wheels
+        self.has_two = robot.profile == TWO_CHANNELS
+        self.period_ms = 1000 / hertz
+        self.edges = robot.wheels.edges
+        self.shown = 0
+        self.next_ms = 0.0
+        robot.wheels.edges = self.flickering  # type: ignore[method-assign]
+
+    def flickering(self, now_ms: int) -> int:
+        self.wheels.go_on(now_ms)
+        if abs(self.wheel.speed) > 5:
+            self.next_ms = now_ms + self.period_ms
+        while self.next_ms <= now_ms:
+            self.next_ms += self.period_ms
+            self.wheel.counted += -1 if self.has_two and self.shown % 2 else 1
+            self.shown += 1
+        return self.edges(now_ms)
+
+
+@pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
+@pytest.mark.parametrize("hertz", [3, 8, 40, 300])
+@pytest.mark.parametrize("text", [
+    "F(30 CM, 60); SHOW(1)", "R(90 DEG, 60); SHOW(1)",
+    "W(60)\nWHEN(TIME > 0.1); F(30 CM, 60); SHOW(1); END_WHEN",
+])  # fmt: skip
+def test_a_way_ends_though_a_disc_flickers_at_rest(profile: Robot, hertz: float, text: str) -> None:
+    """A second after the motors were turned off at most: then no wheel turns."""
+    for numbers in ((0,), (0, 1)):
+        robot, talk = begun(text, 2, profile)
+        for number in numbers:
+            Flicker(robot, number, hertz)
+        driven_ms = 0
+        while not any(event.what == "SHOW" for event in robot.take_events()):
+            if any(wheel(robot, number).wanted for number in (0, 1)):
+                driven_ms = robot.now_ms
+            talk.wait(10)
+            assert robot.fault == "" and robot.now_ms < 8000
+        assert robot.now_ms - driven_ms <= 1050
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_edges_of_a_disc_that_flickers_are_no_part_of_a_way(number: int) -> None:
+    """While a WHEN lets the robot stand, no more count than wheels may roll."""
+    robot, talk = begun(interrupted("F(100 CM, 60)", 2, "M(0, 0); W(3)"), 2)
+    Flicker(robot, number, 40)
+    talk.wait(16_000)
+    assert trace(robot.take_events())[-1].endswith("SHOW 1")
+    assert abs(gone(robot)[0] - 100) <= 1.5 + 2 * 2
+
+
 @pytest.mark.parametrize("number", [0, 1])
 @pytest.mark.parametrize("text", [WAY, f"{WAY} UNTIL(DISTANCE = 1)",
                                   f"W(0.01); {WAY}\nTASK\nW(60)\nEND_TASK"])  # fmt: skip
@@ -242,6 +373,75 @@ def test_a_hand_that_turns_a_wheel_back(profile: Robot, sees: bool) -> None:
     assert robot.fault == "" and not robot.is_running
     off_cm = one.turned_cm - begun_cm - 60
     assert abs(off_cm) < 1.5 if sees else -14 < off_cm < -8
+
+
+def hold(one: Wheel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Somebody holds a wheel: it neither turns nor shows an edge."""
+    one.speed = 0.0
+    monkeypatch.setattr(one, "step", lambda has_two: 0.0)
+
+
+@pytest.mark.parametrize("number", [0, 1])
+@pytest.mark.parametrize(("text", "how"), [
+    (WAY, "held"), (WAY, "stopped"), (f"{WAY} UNTIL(TIME > 0.5)", "held"), (WAY, "lost"),
+    (f"{WAY}\nTASK; W(0.4); S; W(60); END_TASK", "held"),
+])  # fmt: skip
+def test_whatever_has_ended_a_way_the_next_program_goes_straight(
+    text: str, how: str, number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A wheel that stood left the other one's lead in the controller: the robot drove a curve."""
+    for seed in (1, 2):
+        robot, talk = begun(text.replace("60)", "80)", 1), seed)
+        talk.wait(50)
+        with monkeypatch.context() as held:
+            hold(wheel(robot, number), held)
+            talk.wait(420 if how == "stopped" else 900)
+        if how == "lost":
+            robot.step(robot.now_ms + 1500)
+        talk.until(talk.session.stop(robot.now_ms) or talk.session.clear())
+        talk.wait(1000)
+        before = robot.pose
+        assert talk.upload("F(100 CM, 80)").status == OK
+        talk.wait(7000)
+        assert robot.fault == "" and not robot.is_running
+        along = math.radians(before.heading)
+        x, y = robot.pose.x_cm - before.x_cm, robot.pose.y_cm - before.y_cm
+        assert abs(x * math.cos(along) + y * math.sin(along) - 100) <= 1.5
+        assert abs(y * math.cos(along) - x * math.sin(along)) <= 3.2
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_wheel_that_is_held_for_a_moment_bends_no_later_way(
+    number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Too short for a fault. The next way of the same program is straight."""
+    for seed in (1, 2):
+        robot, talk = begun("F(60 CM, 80); W(2); F(100 CM, 80)", seed)
+        talk.wait(300)
+        with monkeypatch.context() as held:
+            hold(wheel(robot, number), held)
+            talk.wait(450)
+        talk.wait(3000)
+        assert is_still(robot) and robot.is_running
+        before = robot.pose
+        talk.wait(7000)
+        assert robot.fault == "" and not robot.is_running
+        along = math.radians(before.heading)
+        x, y = robot.pose.x_cm - before.x_cm, robot.pose.y_cm - before.y_cm
+        assert abs(y * math.cos(along) - x * math.sin(along)) <= 3.2
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_wheel_that_stands_while_its_two_channels_flicker_is_stuck(
+    number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They show an edge ahead and one back for ever: the wheel gets no further."""
+    robot, talk = begun(WAY, profile=TWO_CHANNELS)
+    Flicker(robot, number, 20)
+    talk.wait(700)
+    hold(wheel(robot, number), monkeypatch)
+    talk.wait(650)
+    assert robot.fault == ("STUCK_LEFT", "STUCK_RIGHT")[number] and not robot.is_running
 
 
 def test_counts_that_wrap_around() -> None:

@@ -37,11 +37,16 @@ int32_t robot_speed(bool is_turn, uint8_t power);
 // none.
 bool robot_measures();
 
-// Sets both motors, not to 0, until it has gone a way above 0: thousandths of a centimetre, or of
-// a degree where the signs differ. It stops by itself; `robot_motors` and `robot_off` end it.
+// Sets both motors, not to 0, until it has gone a way: thousandths of a centimetre, or of a degree
+// where the signs differ. It stops by itself; `robot_motors` and `robot_off` end it.
 void robot_go(int8_t left, int8_t right, int32_t way);
 
-// Where it is on that way; `*rest` is what is left of it. From kStuck on it is the number of a fault.
+// Goes on with that way, which `robot_motors` has ended: with what is left of it now. As far as the
+// wheels have rolled since, or would have without other powers, they have gone.
+void robot_go_on(int8_t left, int8_t right);
+
+// Where it is on that way; `*rest` is what is left of it, 0 or more. From kStuck on it is the number
+// of a fault.
 enum class Going : uint8_t { kOn, kThere, kStuck = 4, kStuckLeft, kStuckRight };
 Going robot_going(int32_t* rest);
 

@@ -14,9 +14,12 @@ constexpr uint8_t kTurnMs = 10;      // of the controller
 constexpr uint16_t kStuckMs = 500;   // a wheel that drives and shows no edge for so long
 constexpr uint8_t kStandsMs = 250;   // the other one, for so long, does not turn either
 constexpr uint8_t kStillMs = 150;    // one that shows none for so long stands
+constexpr uint16_t kRestMs = 1000;   // and any does so long after its motor was turned off
 constexpr uint8_t kSlowMs = 150;     // one that shows none for so long gets more power
 constexpr uint16_t kGivesUpMs = 300;  // a correction that does nothing
+constexpr uint16_t kLongestMs = 1000;  // one at most
 constexpr int32_t kEdge = 64;        // positions are in 64ths of the way between two edges
+constexpr int32_t kFar = 5 * kEdge;  // so far ahead a wheel gets as little power as may be
 constexpr uint8_t kRollMs = 60;      // until the robot has seen how it rolls
 constexpr uint8_t kLeastRollMs = 10;
 constexpr uint8_t kMostRollMs = 200;
@@ -24,10 +27,18 @@ constexpr int8_t kCreep = 35;        // percent: slow, but it moves
 constexpr uint8_t kCorrections = 2;  // of one move
 constexpr uint8_t kWheels = 2;
 
-enum class Phase : uint8_t { kNone, kDrives, kRolls, kCorrects };
+enum class Phase : uint8_t {
+  kNone,
+  kDrives,
+  kRolls,
+  kCorrects,
+  kTaken,   // the motors are off, by something else, and the wheels roll
+  kDriven,  // something else drives
+};
 
 struct Wheel {
   int32_t edges;       // that it has gone in the direction of the move
+  uint16_t most;       // of them so far: the low part
   uint16_t counted;    // by the board, when it was last asked
   uint16_t edge_ms;    // when the last edge came,
   uint16_t before_ms;  // and the one before
@@ -36,6 +47,9 @@ struct Wheel {
   uint8_t first;       // and how far it was, in parts of the way between two
   bool is_backward;    // the move
   bool is_returning;   // its motor last drove it against the move
+  bool stands;         // its motor is off, and it cannot turn
+  uint8_t may_roll;    // edges, after something has taken its motor
+  uint8_t noise;       // edges while it could not turn, modulo 256
   int8_t power;        // in the direction of the move
 };
 
@@ -48,7 +62,7 @@ struct Guide {
   uint8_t roll_ms;     // a wheel rolls on as far as it would go in this time
   uint16_t turn_ms;    // when the controller last did something
   uint16_t begun_ms;   // when the move began
-  uint16_t off_ms;     // when both motors were turned off,
+  uint16_t off_ms;     // when both motors were turned off, or something else or a correction began
   int32_t off_at;      // where both wheels were then, together,
   int32_t off_roll;    // and how far they were to roll
   int16_t uneven;      // sum of what the left wheel was ahead
@@ -70,6 +84,13 @@ int32_t limited(int32_t value, int32_t most) {
 // Where a wheel is when it stands: in the middle between two edges, as far as is known.
 int32_t place(const Wheel& wheel) {
   return (wheel.edges - 1) * kEdge + wheel.first + kEdge / 2;
+}
+
+// Changes what `place` returns.
+void put(Wheel* wheel, int32_t at) {
+  at -= kEdge / 2;
+  wheel->first = static_cast<uint8_t>(at & (kEdge - 1));
+  wheel->edges = (at >> 6) + 1;
 }
 
 // Where it is while it turns: behind its last edge as far as the time since then tells.
@@ -106,13 +127,28 @@ void count(Wheel* wheel, uint16_t counted, bool has_two) {
   int16_t edges = static_cast<int16_t>(counted - wheel->counted);
   if (edges == 0) return;
   wheel->counted = counted;
+  const int16_t steps = edges < 0 ? static_cast<int16_t>(-edges) : edges;
+  if (wheel->stands) {
+    wheel->noise = static_cast<uint8_t>(wheel->noise + steps);
+    return;
+  }
+  if (guide.phase == Phase::kTaken) {
+    wheel->stands = wheel->may_roll < steps;
+    if (wheel->stands) return;
+    wheel->may_roll = static_cast<uint8_t>(wheel->may_roll - steps);
+  } else if (guide.phase == Phase::kNone || guide.phase == Phase::kDriven) {
+    wheel->edge_ms = static_cast<uint16_t>(now_ms);
+    return;
+  }
   // A disc with one channel tells no direction: it is that of the motor.
   const bool is_back = has_two ? wheel->is_backward : wheel->is_returning;
-  const int16_t steps = edges < 0 ? static_cast<int16_t>(-edges) : edges;
   if (is_back) edges = static_cast<int16_t>(-edges);
   wheel->edges += edges;
-  // A hand turns it back, or its channels are exchanged: not its motor.
-  if (wheel->power != 0 && (edges < 0) != wheel->is_returning) return;
+  // A hand turns it back, its channels are exchanged, or it only flickers: not its motor.
+  const uint16_t now = static_cast<uint16_t>(wheel->edges);
+  if (wheel->power > 0 && static_cast<int16_t>(now - wheel->most) <= 0) return;
+  if (wheel->power < 0 && edges > 0) return;
+  wheel->most = now;
   if (wheel->edges == 1) wheel->first_ms = since(guide.begun_ms);
   if (wheel->edges == 3 && guide.phase == Phase::kDrives) find_first(wheel);
   if (steps == 1) {
@@ -123,6 +159,27 @@ void count(Wheel* wheel, uint16_t counted, bool has_two) {
     wheel->before_ms = static_cast<uint16_t>(now_ms);
   }
   wheel->edge_ms = static_cast<uint16_t>(now_ms);
+}
+
+// Whether a move has the motors.
+bool is_moving() {
+  return guide.phase == Phase::kDrives || guide.phase == Phase::kRolls ||
+         guide.phase == Phase::kCorrects;
+}
+
+bool are_off() {
+  return guide.phase == Phase::kNone || guide.phase == Phase::kRolls ||
+         guide.phase == Phase::kTaken;
+}
+
+void count() {
+  const bool has_two = board_discs().has_two;
+  const bool are_at_rest = are_off() && since(guide.off_ms) >= kRestMs;
+  for (uint8_t k = 0; k < kWheels; k++) {
+    Wheel* const wheel = guide.wheels + k;
+    if (are_at_rest) wheel->stands = true;
+    count(wheel, board_edges(k != 0), has_two);
+  }
 }
 
 int8_t signed_power(const Wheel& wheel) {
@@ -160,6 +217,28 @@ void turn_off() {
   guide.phase = Phase::kRolls;
 }
 
+// What else has the motors: how far may a wheel roll on that is as fast as this one?
+void let_roll(Wheel* wheel) {
+  const uint16_t least_ms = static_cast<uint16_t>(2 * since(wheel->edge_ms));
+  if (wheel->is_returning || wheel->stands) wheel->two_ms = 0;
+  if (wheel->two_ms != 0 && wheel->two_ms < least_ms) wheel->two_ms = least_ms;
+  const int32_t most = limited(roll(*wheel) * 2 / kEdge, 250) + 2;
+  wheel->may_roll = wheel->stands ? 0 : static_cast<uint8_t>(most);
+  wheel->stands = false;
+  wheel->power = 0;
+}
+
+// What the wheels would have rolled by now if nothing else drove them is a part of the move.
+void coast() {
+  uint16_t rolled_ms = since(guide.off_ms);
+  if (rolled_ms > 2 * guide.roll_ms) rolled_ms = static_cast<uint16_t>(2 * guide.roll_ms);
+  for (Wheel& wheel : guide.wheels) {
+    if (wheel.two_ms == 0) continue;
+    put(&wheel, place(wheel) + static_cast<int32_t>(uint32_t{rolled_ms} * kEdge / wheel.two_ms));
+    wheel.two_ms = 0;
+  }
+}
+
 void drive() {
   Wheel* const left = guide.wheels;
   Wheel* const right = guide.wheels + 1;
@@ -168,7 +247,9 @@ void drive() {
   const int32_t ahead = left_at - right_at;
   const int32_t rest = guide.target - (left_at + right_at) / 2;
   if (rest <= (roll(*left) + roll(*right)) / 2) return turn_off();
-  guide.uneven = static_cast<int16_t>(limited(guide.uneven + limited(ahead, 1000), 24000));
+  if (ahead <= kFar && ahead >= -kFar) {  // more is no motor's: somebody holds the other wheel
+    guide.uneven = static_cast<int16_t>(limited(guide.uneven + ahead, 24000));
+  }
   // in 256ths of the power
   const int32_t less = limited((ahead * 12 + guide.uneven / 8) / 64, 64);
   int32_t power = guide.least + (rest / kEdge - 2) * 4;
@@ -186,9 +267,30 @@ void drive() {
   set_motors();
 }
 
-// Both motors are off: waits until the wheels stand, and looks where they are.
+// Lets the wheels be driven from now on, and counts from here.
+void begin_to_drive(uint16_t stood_ms) {
+  for (uint8_t k = 0; k < kWheels; k++) {
+    Wheel& wheel = guide.wheels[k];
+    wheel.counted = board_edges(k != 0);
+    wheel.edge_ms = static_cast<uint16_t>(now_ms);
+    wheel.before_ms = static_cast<uint16_t>(now_ms - stood_ms);
+    wheel.two_ms = 0;
+    wheel.most = static_cast<uint16_t>(wheel.edges);
+    wheel.is_returning = wheel.stands = false;
+    wheel.power = 0;
+  }
+  guide.phase = Phase::kDrives;
+  guide.going = Going::kOn;
+  guide.turn_ms = static_cast<uint16_t>(now_ms);
+  drive();
+}
+
+// Both motors are off: waits until the wheels stand, and looks where they are. A disc that flickers
+// does not say it.
 void settle() {
-  if (since(guide.off_ms) < kStillMs) return;
+  const uint16_t off_ms = since(guide.off_ms);
+  if (off_ms >= kRestMs) return end(Going::kThere);
+  if (off_ms < kStillMs) return;
   bool is_off = false;
   int32_t rolled = -guide.off_at;
   for (const Wheel& wheel : guide.wheels) {
@@ -208,11 +310,14 @@ void settle() {
   }
   guide.corrections++;
   guide.phase = Phase::kCorrects;
+  guide.off_ms = static_cast<uint16_t>(now_ms);
   for (Wheel& wheel : guide.wheels) {
     const int32_t missing = guide.target - place(wheel);
     wheel.two_ms = 0;
     wheel.edge_ms = static_cast<uint16_t>(now_ms);
-    if (missing < kEdge && missing > -kEdge) continue;
+    wheel.stands = missing < kEdge && missing > -kEdge;
+    if (wheel.stands) continue;
+    wheel.most = static_cast<uint16_t>(wheel.edges);
     wheel.is_returning = missing < 0;
     wheel.power = missing < 0 ? static_cast<int8_t>(-guide.least) : guide.least;
   }
@@ -227,11 +332,13 @@ void correct() {
     if (wheel.power > 0 ? missing < kEdge : missing > -kEdge) wheel.power = 0;
     if (wheel.power != 0) is_over = false;
   }
-  if (is_over || is_slow(kGivesUpMs)) return turn_off();
+  if (is_over || is_slow(kGivesUpMs) || since(guide.off_ms) >= kLongestMs) return turn_off();
   set_motors();
 }
 
 }  // namespace
+
+void guide_begin() { guide.uneven = 0; }
 
 void guide_go(int8_t left, int8_t right, int32_t way) {
   const Discs discs = board_discs();
@@ -251,37 +358,50 @@ void guide_go(int8_t left, int8_t right, int32_t way) {
   guide.least = guide.most < kCreep ? guide.most : kCreep;
   guide.corrections = 0;
   if (guide.roll_ms == 0) guide.roll_ms = kRollMs;
-  guide.phase = Phase::kDrives;
-  guide.going = Going::kOn;
-  for (uint8_t k = 0; k < kWheels; k++) {
-    Wheel& wheel = guide.wheels[k];
+  for (Wheel& wheel : guide.wheels) {
     wheel.edges = 0;
-    wheel.counted = board_edges(k != 0);
-    wheel.edge_ms = wheel.before_ms = static_cast<uint16_t>(now_ms);
-    wheel.two_ms = 0;
     wheel.first = kEdge / 2;
-    wheel.is_returning = false;
-    wheel.is_backward = (k == 0 ? left : right) < 0;
-    wheel.power = 0;
   }
-  guide.turn_ms = guide.begun_ms = static_cast<uint16_t>(now_ms);
-  drive();
+  guide.wheels[0].is_backward = left < 0;
+  guide.wheels[1].is_backward = right < 0;
+  guide.begun_ms = static_cast<uint16_t>(now_ms);
+  begin_to_drive(0);
+}
+
+void guide_go_on() {
+  coast();
+  begin_to_drive(kStillMs);
 }
 
 Going guide_going(int32_t* rest) {
+  if (guide.phase == Phase::kDriven) coast();
   const int32_t missing = guide.target - (position(guide.wheels[0]) + position(guide.wheels[1])) / 2;
   const uint32_t left = missing > 0 ? static_cast<uint32_t>(missing) : 0;
   *rest = static_cast<int32_t>((left >> 12) * guide.edge + (((left & 4095) >> 2) * guide.edge >> 10));
   return guide.going;
 }
 
-void guide_end() { guide.phase = Phase::kNone; }
+void guide_end(bool is_driven) {
+  const bool was_driven = guide.phase == Phase::kDriven;
+  if (was_driven == is_driven && !is_moving()) return;
+  count();
+  if (was_driven) {
+    coast();
+    guide.phase = Phase::kNone;
+  } else {
+    for (Wheel& wheel : guide.wheels) {
+      if (is_driven) put(&wheel, position(wheel));
+      let_roll(&wheel);
+    }
+    guide.phase = is_driven ? Phase::kDriven : Phase::kTaken;
+  }
+  guide.off_ms = static_cast<uint16_t>(now_ms);
+}
 
 void guide_tick() {
-  if (guide.phase == Phase::kNone) return;
-  const bool has_two = board_discs().has_two;
-  for (uint8_t k = 0; k < kWheels; k++) count(guide.wheels + k, board_edges(k != 0), has_two);
-  if (since(guide.turn_ms) < kTurnMs) return;
+  if (board_discs().cm == 0) return;
+  count();
+  if (!is_moving() || since(guide.turn_ms) < kTurnMs) return;
   guide.turn_ms = static_cast<uint16_t>(now_ms);
   if (guide.phase == Phase::kRolls) return settle();
   if (is_slow(kSlowMs) && guide.least < guide.most) guide.least++;

@@ -77,6 +77,7 @@ void begin_run(const uint8_t* image) {
   run_image = image;
   is_start_due = false;
   may_start = false;
+  guide_begin();
   robot_status.state = State::kRunning;
   robot_status.run++;
   board_release();
@@ -92,6 +93,7 @@ void tick_run() {
   }
   // No motor starts while a commit byte is being written.
   if (!is_running()) {
+    guide_tick();
     if (!is_prepared) prepare();
   } else if (!store.is_committing()) {
     guide_tick();
@@ -101,7 +103,7 @@ void tick_run() {
 
 void end_run(State state, bool is_done) {
   board_stop();
-  guide_end();
+  guide_end(false);
   if (!is_done) board_actuators_off();
   robot_off();
   may_start = false;
@@ -196,14 +198,19 @@ void robot_go(int8_t left, int8_t right, int32_t way) {
   guide_go(left, right, way);
 }
 
+void robot_go_on(int8_t left, int8_t right) {
+  robot_motors(left, right);
+  guide_go_on();
+}
+
 Going robot_going(int32_t* way) { return guide_going(way); }
 
 #endif
 
 void robot_motors(int8_t left, int8_t right) {
-  guide_end();
   const Levels levels = trimmed(port_tuning().trim, left, right);
   has_motors_on = (left | right) != 0;
+  guide_end(has_motors_on);
   board_motors(levels.left, levels.right);
 }
 

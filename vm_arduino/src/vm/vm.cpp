@@ -31,6 +31,9 @@ void Machine::start_prepared(const uint8_t* code, uint16_t length, int32_t* read
 #ifdef tiniscript_has_tasks
   find_tasks();
 #endif
+#ifdef tiniscript_has_discs
+  on_way_ = nullptr;
+#endif
   task_.me->clock_ms = now_ms;
 }
 

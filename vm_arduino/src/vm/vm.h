@@ -184,6 +184,9 @@ class Machine {
   int32_t* readings_;
   uint32_t now_ms_;
   Task task_;
+#ifdef tiniscript_has_discs
+  TaskRecord* on_way_;  // whose way the robot measures, or measured last, unless its move is over
+#endif
 };
 
 #ifdef tiniscript_has_tasks

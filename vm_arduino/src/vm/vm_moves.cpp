@@ -51,6 +51,9 @@ tini_noinline void Machine::keep_move(uint32_t move_ms) {
   me->rest_ms = move_ms;
   me->check = task_.pc;
   me->state &= static_cast<uint8_t>(~kHasBegun);
+#ifdef tiniscript_has_discs
+  if (on_way_ == me) on_way_ = nullptr;
+#endif
 }
 
 // How long after its clock, where it last looked, its UNTIL looks again.
@@ -66,6 +69,11 @@ inline uint32_t Machine::next_check_ms(const TaskRecord* me) const {
 __attribute__((weak)) bool robot_measures() { return false; }
 __attribute__((weak)) void robot_go(int8_t, int8_t, int32_t) {}
 __attribute__((weak)) Going robot_going(int32_t*) { return Going::kThere; }
+__attribute__((weak)) void robot_go_on(int8_t left, int8_t right) {
+  int32_t rest;
+  robot_going(&rest);
+  robot_go(left, right, rest);
+}
 
 #endif
 
@@ -101,7 +109,6 @@ inline void Machine::stand_still(TaskRecord* task) {
 #ifdef tiniscript_has_discs
     int32_t rest;
     if (robot_going(&rest) == Going::kThere || rest <= 0) return leave_move(task);
-    task->rest_ms = static_cast<uint32_t>(rest);
 #endif
   } else if (!task->is_forever()) {
     const uint32_t left_ms = task->rest_ms - late_ms(task);
@@ -190,12 +197,22 @@ tini_noinline bool Machine::go_on() {
   return pause();
 }
 
-// Lets the robot go a way that it measures.
+// Lets the robot go a way that it measures, or go on with it. It knows one: before it goes
+// another, it is asked for the rest of that.
 void Machine::go_way() {
 #ifdef tiniscript_has_discs
-  const Powers powers = task_.me->set = powers_of_move(task_.me);
-  robot_go(static_cast<int8_t>(powers), static_cast<int8_t>(powers >> 8),
-           static_cast<int32_t>(task_.me->rest_ms));
+  TaskRecord* const me = task_.me;
+  const Powers powers = me->set = powers_of_move(me);
+  const int8_t left = static_cast<int8_t>(powers);
+  const int8_t right = static_cast<int8_t>(powers >> 8);
+  if (on_way_ == me) return robot_go_on(left, right);
+  if (on_way_ != nullptr && on_way_->is(kIsMoving)) {
+    int32_t rest;
+    robot_going(&rest);
+    on_way_->rest_ms = static_cast<uint32_t>(rest);
+  }
+  on_way_ = me;
+  robot_go(left, right, static_cast<int32_t>(me->rest_ms));
 #endif
 }
 
