@@ -12,17 +12,21 @@ from pathlib import Path
 import pytest
 
 from tests.machines.board import Board
+from tests.machines.wired import Wired
 from tests.support.casefile import ROOT
 from tests.support.images import image_of
 from tests.support.uno_with_discs import ENVIRONMENT, ROBOT, Driven
 from tests.wiring.test_wiring import with_discs
 from tiniscript import robots
 from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.wheels import Roughness
+from tools.uno import CYCLES_PER_MS, Uno
 
 BOARDS = ("uno", "mega")
 each_board = pytest.mark.parametrize("name", BOARDS)
+MOTORS = "D5", "D6"  # their PWM
 LEFT, RIGHT = 0x88, 0x8A  # OCR1A and OCR1B are free on this robot: the counts are copied there
 COPIED = """
 #include "firmware/board.h"
@@ -94,6 +98,25 @@ def test_pulses_that_are_too_short_do_not_count(name: str, span_us: float, is_hi
 
 
 @each_board
+@pytest.mark.parametrize("span_us", [4, 10, 37, 150])
+def test_a_line_that_glitches_without_end_counts_again_afterwards(
+    name: str, span_us: float
+) -> None:
+    """Its interrupt is off in between, and the clock of the other disc's edges goes on."""
+    robot = robots.load("tinibot2", name)
+    board = counting(robot)
+    left, right = pins(robot)
+    pulses = round(40 / (2 * span_us / 1000))
+    for k in range(2 * pulses):
+        board.level(30 + k * span_us / 1000, left, k % 2 == 0)
+    for k in range(16):
+        board.level(30 + 2.3 * k, right, k % 2 == 0)
+        board.level(80 + 2.3 * k, left, k % 2 == 0)
+    board.ran(140)
+    assert counts(board, 135) == (16, 16)
+
+
+@each_board
 def test_two_channels_count_back(name: str) -> None:
     robot = with_discs(name, "two_channel")
     board = counting(robot)
@@ -121,6 +144,50 @@ def test_it_goes_and_turns_as_far_as_was_said(sketches: Callable[[str], Path]) -
         assert robot.drive("F(30 CM, 60); R(90 DEG, 60)") == "DONE"
         pose = robot.pose
     assert abs(pose.x_cm - 30) <= 1.5 and abs(pose.y_cm) <= 2 and abs(pose.heading + 90) <= 6
+
+
+def flicker(uno: Uno, hertz: int, milliseconds: int, run_ms: Callable[[int], None]) -> None:
+    """Let both discs change as fast as is said."""
+    half = CYCLES_PER_MS * 1000 // (2 * hertz)
+    at, level = uno.cycle, False
+    for _ in range(milliseconds):
+        while at < uno.cycle + CYCLES_PER_MS:
+            level = not level
+            for number, pin in enumerate(pins(ROBOT)):
+                uno.drive(f"D{pin}", level, at=at + number * half // 3)
+            at += half
+        run_ms(1)
+
+
+@pytest.mark.parametrize("program", ["F(200 CM, 60)", "M(60, 60); W(30)"])
+@pytest.mark.parametrize("hertz", [50_000, 3300])
+def test_a_typed_stop_gets_through_while_both_discs_flicker(
+    hertz: int, program: str, sketches: Callable[[str], Path]
+) -> None:
+    """Within a millisecond. The robot answers meanwhile, and no watchdog restarts it."""
+    baud = ROBOT.board.baud
+    with Uno(sketches(ENVIRONMENT), baud=baud, resets_on_open=False, tells_sleep=False) as uno:
+        robot = Wired(uno, Session(1, baud, ROBOT.kit.fingerprint))
+        for pin in pins(ROBOT):
+            uno.drive(f"D{pin}", False)
+        robot.run(300)
+        assert robot.until(robot.session.hello()) == OK
+        image = image_of(program, ROBOT.kit)
+        assert robot.until(robot.session.upload(image, is_detached=True)) == OK
+        robot.run(50)
+        begun = len(uno.events)
+        asked = robot.session.ping()
+        flicker(uno, hertz, 350, robot.run)  # wheels that show no edge are stuck later
+        assert asked.outcome and asked.outcome.status == OK
+        assert not any(event.what in ("reset", "watchdog") for event in uno.events[begun:])
+        assert [uno.pins[pin].state for pin in MOTORS] == ["pwm", "pwm"]
+        begun = len(uno.events)
+        uno.send(b"STOP\r")
+        flicker(uno, hertz, 20, uno.run_ms)
+        ended = [event.cycle for event in uno.events[begun:] if event.what == "received"][-1]
+        for pin in MOTORS:
+            change = uno.pins[pin]
+            assert change.state == "low" and 0 < change.cycle - ended < CYCLES_PER_MS
 
 
 def test_a_nano_with_discs_has_tasks(sketches: Callable[[str], Path]) -> None:

@@ -26,8 +26,10 @@ SEED = 12
 @pytest.mark.parametrize(("environment", "name", "more_cycles"), [
     ("uno", "tinibot", 0),
     ("nano_liner", "liner", 0),
+    ("uno_tinibot2", "tinibot2", 0),  # with an edge of each disc, too
     # Addresses of three bytes, ports far away, and the pulses of a servo
     ("mega_grabber", "grabber", 60),
+    ("mega_tinibot2", "tinibot2", 60),
 ])  # fmt: skip
 def test_a_stop_is_at_the_pins_in_12_us(
     environment: str,

@@ -22,7 +22,7 @@ from tiniscript.link.messages import KEY_OWNER
 from tiniscript.link.session import Session
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.text_levels import NO_TEXT, level_of
-from tools.uno import Stack, Uno
+from tools.uno import CYCLES_PER_MS, HERTZ, Stack, Uno
 
 LEAST_FREE = 150  # bytes
 FREE_FROM = "_end"  # the symbol behind all variables
@@ -43,6 +43,8 @@ TYPED = (
     "SI|LOOP(FOREVER);SHOW(-2147483.647);X=1/0.0;END_LOOP\n",
 )
 ANSWERS = ("END_LOOP", ", kit ", "// -5", "// TRUE", "// 2", "1: ", "-2147483.647", "FAULT DIVIDE")
+FLICKERS, IN_INTERRUPT_CYCLES = 200, 40
+SEEN_BITS = 9.5625  # from the start bit of a byte until the chip has it
 DIVIDES_BY_ZERO = "X = 0; X = 5 / X"
 
 
@@ -114,7 +116,7 @@ def wear_out(wired: Wired, robot: Robot) -> None:
     wired.run(2500)  # it is saved
     claim(wired, button)
     if level_of(robot.board.chip, robot.board.discs is not None) is NO_TEXT:
-        drive_a_way(wired, kit)
+        drive_a_way(wired, robot)
     else:
         type_deep(uno, kit)
     uno.reset("external")  # and looked at when the robot begins
@@ -152,9 +154,21 @@ def type_deep(uno: Uno, kit: Kit) -> None:
             raise RuntimeError(f"the robot has not said {answer} but {said}")
 
 
-def drive_a_way(wired: Wired, kit: Kit) -> None:
-    """Go by discs that never turn: with all that a way takes, until that is a fault."""
-    must(wired, wired.session.live(image_of("F(100 CM, 60) UNTIL(DISTANCE < 1)", kit).code))
+def drive_a_way(wired: Wired, robot: Robot) -> None:
+    """Go by discs that flicker, and then do not turn: with all that a way takes, until that is a
+    fault. Just before a byte comes an edge of the one, and in its interrupt one of the other.
+    """
+    text = "F(100 CM, 60) UNTIL(DISTANCE < 1)"
+    must(wired, wired.session.live(image_of(text, robot.kit).code))
+    discs = robot.board.discs
+    assert discs
+    uno, bit = wired.uno, HERTZ / robot.board.baud
+    begin = uno.cycle + CYCLES_PER_MS
+    uno.send(b"noise" * (FLICKERS // 5) + b"\0", begin)
+    for k in range(FLICKERS):
+        at = begin + round((10 * k + SEEN_BITS) * bit) - k
+        for number, name in enumerate(discs.pins.values()):
+            uno.drive(pin(robot, name), k % 2 == 0, at=at + number * IN_INTERRUPT_CYCLES)
     wired.run(1500)
 
 

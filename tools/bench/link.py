@@ -34,7 +34,9 @@ MUST_MS = {9600: 25.0, 115_200: 4.0}
 LIVE_US = 100
 STOP_US = 12
 TOGETHER_US = 12.0  # on an ATmega328P; a Mega's timers and ports have longer instructions
-STOPPED = "nano_liner", "mega", "mega_liner", "mega_grabber"  # and the Uno
+STOPPED = (  # and the Uno
+    "uno_tinibot2", "nano_liner", "mega", "mega_liner", "mega_grabber", "mega_tinibot2",
+)  # fmt: skip
 UPLOADS = 20  # the main loop is elsewhere each time: the slowest counts
 PHASE_CYCLES = 37
 

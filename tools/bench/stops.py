@@ -3,7 +3,8 @@
 What else the chip does at that moment decides how long a stop takes: an interrupt that is at work,
 or a part of the program that keeps interrupts off. So the last byte is sent at many places: all
 over the period of the clock, more often around the slowest one, and there with an edge of an echo
-just before. Meanwhile the robot runs a program that measures, plays, sends values and reads text.
+just before, or with one of each disc. Meanwhile the robot runs a program that measures, plays,
+sends values and reads text.
 
 No sweep meets all of that at once. So the simulator also tells for how long each place keeps
 interrupts off, and what may come before a stop is added up.
@@ -19,7 +20,7 @@ from typing import NamedTuple
 from tests.support.images import image_of
 from tiniscript.base.kit import Kit
 from tiniscript.robots.profile import Robot
-from tools.bench.firmware_stack import BOARDS, all_devices, connected, must, pin
+from tools.bench.firmware_stack import BOARDS, SEEN_BITS, all_devices, connected, must, pin
 from tools.uno import CYCLES_PER_MS, HERTZ, Masked, Uno
 
 TEXT = b"// nobody reads that\n", b"// nor this line, which nobody ends"
@@ -30,9 +31,9 @@ PERIOD = 16_384  # cycles between two interrupts of the clock
 COARSE = 64  # cycles: the interrupt takes longer
 FINE, AROUND = 4, 64
 ECHOES = range(-160, 33, 8)  # cycles
+EDGES = range(-480, 33, 16)  # of both discs
 SHORT_ECHO, LONG_ECHO = 1000, 8000  # cycles
 BITS = 10  # of a byte on the wire
-SEEN_BITS = 9.5625  # from its start bit until the chip has it
 QUIET_MS = 25
 PING_MS = 100  # pings are less apart
 RECEIVED = {"uno": 18, "mega": 25}  # the number of the interrupt that sees a stop
@@ -40,11 +41,14 @@ INSTRUCTION = 4  # cycles of the longest one
 
 
 class Place(NamedTuple):
-    """Where a stop falls: a cycle of the clock's period, and cycles from it to an echo's edge."""
+    """Where a stop falls: a cycle of the clock's period, and cycles from it to an edge: of an echo,
+    or of each disc.
+    """
 
     at: int
     echo: int | None = None
     is_rise: bool = False
+    edge: int | None = None
 
 
 class Slowest(NamedTuple):
@@ -73,6 +77,11 @@ class Busy:
                     pin(robot, device.pins[name]) for name in ("trigger", "echo")
                 )
                 self.chip.sonar(self._trigger, self._sonar, None)
+        discs = robot.board.discs
+        self._discs = [pin(robot, number) for number in discs.pins.values()] if discs else []
+        self._level = False  # of the discs
+        for name in self._discs:
+            self.chip.drive(name, self._level)
         self._wired = connected(self.chip, robot, baud)
         must(self._wired, self._wired.session.hello())
         must(self._wired, self._wired.session.upload(image_of(busy(robot.kit), robot.kit)))
@@ -86,6 +95,10 @@ class Busy:
     @property
     def has_echo(self) -> bool:
         return self._sonar != ""
+
+    @property
+    def has_discs(self) -> bool:
+        return self._discs != []
 
     def stop(self, place: Place) -> int:
         """Return the cycles of a stop whose last byte comes at a place."""
@@ -107,6 +120,10 @@ class Busy:
             before = SHORT_ECHO if place.is_rise else LONG_ECHO
             chip.drive(self._sonar, not place.is_rise, at=last + place.echo - before)
             chip.drive(self._sonar, place.is_rise, at=last + place.echo)
+        if place.edge is not None:
+            self._level = not self._level
+            for name in self._discs:
+                chip.drive(name, self._level, at=last + place.edge)
         since = len(chip.events)
         chip.send(text + STOP, begin)
         chip.run_to(last + round(BITS * BITS * bit))
@@ -157,6 +174,9 @@ def slowest(firmware: Path, robot: Robot, board: str, baud: int) -> Slowest:
         if stopped.has_echo:
             for place in with_echoes([center]):
                 stopped.stop(place)
+        if stopped.has_discs:
+            for place in with_edges([center]):
+                stopped.stop(place)
         return summed_up(stopped)
 
 
@@ -169,14 +189,20 @@ def with_echoes(places: Iterable[int]) -> list[Place]:
     return [Place(at, echo, rises) for at in places for echo in ECHOES for rises in (False, True)]
 
 
+def with_edges(places: Iterable[int]) -> list[Place]:
+    return [Place(at, edge=edge) for at in places for edge in EDGES]
+
+
 def sample(stopped: Busy, count: int, seed: int) -> list[Place]:
-    """Return so many places, half of them with the edge of an echo where there are echoes."""
+    """Return so many places, half of them with the edge of an echo where there are echoes. Where
+    there are discs, all of their edges come on top.
+    """
     chance = random.Random(seed)
     places = [Place(chance.randrange(PERIOD)) for _ in range(count)]
-    if not stopped.has_echo:
-        return places
-    echoes = chance.sample(with_echoes([places[0].at]), count // 2)
-    return [*places[count // 2 :], *echoes]
+    if stopped.has_echo:
+        echoes = chance.sample(with_echoes([places[0].at]), count // 2)
+        places = [*places[count // 2 :], *echoes]
+    return places + (with_edges([places[0].at]) if stopped.has_discs else [])
 
 
 def _us(cycles: int) -> float:

@@ -58,6 +58,7 @@ void board_tick(uint32_t now_ms) {
   analog_tick();
   ultrasonic_tick();
   sound_tick(now_ms);
+  discs_tick();
 #ifdef tiniscript_servos
   servo_tick(now_ms);
 #endif

@@ -26,39 +26,70 @@ constexpr uint16_t kGlitchUs = 300;   // no wheel is so fast that two edges are 
 constexpr uint16_t kOldUs = 30000;    // so that the time since an edge does not wrap around
 
 // What the interrupt of a disc notes. Two changes that are nearer than kGlitchUs were a glitch, and
-// neither counts.
+// neither counts. The interrupt is then off until the next tick: whatever a line does, the chip has
+// time for the rest.
 struct Counter {
   uint16_t edges;
-  uint16_t edge_us;    // when the last change came that is not known to be a glitch,
-  uint16_t before_us;  // and the one before
-  int8_t step;         // what the last one counted
+  uint16_t edge_us;  // when the last change came
+  int8_t step;       // what it counted
   bool is_high;
-  bool is_old;         // the last one was long ago
+  bool is_old;       // it was long ago, or a glitch
 };
 
 volatile Counter counters[2];
 
-tini_always_inline void on_change(volatile Counter* it, Disc disc) {
+// Returns whether it was a glitch. Only while the interrupt is off.
+tini_always_inline bool on_change(volatile Counter* it, Disc disc) {
   const bool is_now = is_high(disc.pin);
-  if (is_now == it->is_high) return;  // it was over before it was seen
-  it->is_high = is_now;
-  const uint16_t now_us = clock_us();
+  cli();
+  const uint16_t now_us = clock_us_inside();
+  sei();
   if (!it->is_old && static_cast<uint16_t>(now_us - it->edge_us) < kGlitchUs) {
     it->edges = static_cast<uint16_t>(it->edges - it->step);
-    it->edge_us = it->before_us;
-    it->step = 0;
-    return;
+    it->is_old = true;
+    it->is_high = !it->is_high;  // which `tick` compares with the line
+    return true;
   }
-  it->before_us = it->edge_us;
+  if (is_now == it->is_high) return true;  // it was over before it was seen
+  it->is_high = is_now;
   it->edge_us = now_us;
   it->is_old = false;
   it->step = kHasTwo && is_high(disc.second) == is_now ? -1 : 1;
   it->edges = static_cast<uint16_t>(it->edges + it->step);
+  return false;
 }
 
-void on_left() { on_change(counters, kLeftDisc); }
+tini_always_inline void on_edge(volatile Counter* it, Disc disc) {
+  do {
+    if (on_change(it, disc)) return;
+  } while (is_high(disc.pin) != it->is_high);
+  cli();  // until it returns, so that it does not interrupt itself
+  register8(kExternal) |= disc.interrupt;
+}
 
-void on_right() { on_change(counters + 1, kRightDisc); }
+// Two interrupts that do not call anything save few registers: each may come in all others.
+extern "C" void __vector_left_disc() __attribute__((signal, used, externally_visible));
+void __vector_left_disc() { on_edge(counters, kLeftDisc); }
+
+extern "C" void __vector_right_disc() __attribute__((signal, used, externally_visible));
+void __vector_right_disc() { on_edge(counters + 1, kRightDisc); }
+
+// Before that it turns itself off and lets the others in, as a stop waits for them: behind the
+// instruction that follows.
+tini_always_inline void interrupt(Disc disc, void (*function)()) {
+  asm volatile("sei\n\tcbi %[mask], %[bit]\n\t%~jmp %x[function]" ::[mask] "I"(kExternal - 0x20),
+               [bit] "I"(__builtin_ctz(disc.interrupt)), [function] "i"(function));
+}
+
+// Turns it on again, and sees what has changed while it was off.
+tini_always_inline void tick(volatile Counter* it, Disc disc) {
+  const bool is_on = (register8(kExternal) & disc.interrupt) != 0;
+  if (is_on && is_high(disc.pin) == it->is_high) return;
+  register8(kExternal) &= static_cast<uint8_t>(~disc.interrupt);
+  EIFR = disc.interrupt;
+  if (is_high(disc.pin) != it->is_high) on_change(it, disc);
+  register8(kExternal) |= disc.interrupt;
+}
 
 void begin(volatile Counter* it, Disc disc) {
   begin_pull_up(disc.pin);
@@ -70,9 +101,18 @@ void begin(volatile Counter* it, Disc disc) {
 }
 
 uint16_t edges_of(volatile Counter* it) {
-  const CriticalSection critical;
-  if (static_cast<uint16_t>(clock_us() - it->edge_us) > kOldUs) it->is_old = true;
-  return it->edges;
+  uint16_t edges;
+  uint16_t edge_us;
+  {
+    const CriticalSection critical;
+    edges = it->edges;
+    edge_us = it->edge_us;
+  }
+  if (static_cast<uint16_t>(clock_us() - edge_us) > kOldUs) {
+    const CriticalSection critical;
+    if (it->edge_us == edge_us) it->is_old = true;
+  }
+  return edges;
 }
 
 #else
@@ -119,6 +159,11 @@ void discs_begin() {
   begin(counters + 1, kRightDisc);
 }
 
+void discs_tick() {
+  tick(counters, kLeftDisc);
+  tick(counters + 1, kRightDisc);
+}
+
 uint16_t board_edges(bool is_right) { return edges_of(counters + is_right); }
 
 #else
@@ -127,6 +172,8 @@ void discs_begin() {
   begin(PCNT_UNIT_0, kLeftDisc);
   begin(PCNT_UNIT_1, kRightDisc);
 }
+
+void discs_tick() {}
 
 uint16_t board_edges(bool is_right) {
   const pcnt_unit_t unit = is_right ? PCNT_UNIT_1 : PCNT_UNIT_0;
@@ -146,13 +193,19 @@ Discs board_discs() { return kDiscs; }
 }  // namespace tiniscript
 
 #ifdef __AVR__
-tiniscript_interrupt(tiniscript_disc_left, tiniscript::on_left)
-tiniscript_interrupt(tiniscript_disc_right, tiniscript::on_right)
+ISR(tiniscript_disc_left, ISR_NAKED) {
+  tiniscript::interrupt(tiniscript::kLeftDisc, tiniscript::__vector_left_disc);
+}
+ISR(tiniscript_disc_right, ISR_NAKED) {
+  tiniscript::interrupt(tiniscript::kRightDisc, tiniscript::__vector_right_disc);
+}
 #endif
 
 #else
 
 void tiniscript::discs_begin() {}
+
+void tiniscript::discs_tick() {}
 
 #ifdef tiniscript_has_discs
 

@@ -20,6 +20,7 @@ struct Disc {
 };
 
 void discs_begin();
+void discs_tick();
 
 }  // namespace tiniscript
 

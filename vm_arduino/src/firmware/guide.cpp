@@ -38,17 +38,16 @@ enum class Phase : uint8_t {
 
 struct Wheel {
   int32_t edges;       // that it has gone in the direction of the move
-  uint16_t most;       // of them so far: the low part
   uint16_t counted;    // by the board, when it was last asked
   uint16_t edge_ms;    // when the last edge came,
   uint16_t before_ms;  // and the one before
   uint16_t two_ms;     // how long the last two took; 0: not known
-  uint16_t first_ms;   // how long the first edge took,
-  uint8_t first;       // and how far it was, in parts of the way between two
+  uint8_t first;       // how far the first one was, in parts of the way between two
   bool is_backward;    // the move
   bool is_returning;   // its motor last drove it against the move
   bool stands;         // its motor is off, and it cannot turn
-  uint8_t may_roll;    // edges, after something has taken its motor
+  uint8_t more;        // edges until it is further than before; after something has taken its motor:
+                       // that it may roll
   uint8_t noise;       // edges while it could not turn, modulo 256
   int8_t power;        // in the direction of the move
 };
@@ -63,8 +62,8 @@ struct Guide {
   uint16_t turn_ms;    // when the controller last did something
   uint16_t begun_ms;   // when the move began
   uint16_t off_ms;     // when both motors were turned off, or something else or a correction began
-  int32_t off_at;      // where both wheels were then, together,
-  int32_t off_roll;    // and how far they were to roll
+  uint16_t off_at;     // where both wheels were then, together, modulo 2^16,
+  uint16_t off_roll;   // and how far they were to roll
   int16_t uneven;      // sum of what the left wheel was ahead
   int32_t target;
   uint32_t edge;       // what a wheel, or the robot, goes between two edges
@@ -111,7 +110,7 @@ uint16_t gone(uint16_t time_ms) {
 // A disc stands anywhere between two edges. How far the first one was is seen from when it came,
 // beside when the third did: wheels speed up as they roll on.
 void find_first(Wheel* wheel) {
-  const uint16_t first = gone(wheel->first_ms);
+  const uint16_t first = gone(static_cast<uint16_t>(wheel->before_ms - guide.begun_ms));
   const uint16_t more = static_cast<uint16_t>(gone(since(guide.begun_ms)) - first);
   const uint32_t found = more == 0 ? kEdge : uint32_t{first} * (2 * kEdge) / more;
   wheel->first = found < kEdge ? static_cast<uint8_t>(found) : kEdge;
@@ -133,9 +132,9 @@ void count(Wheel* wheel, uint16_t counted, bool has_two) {
     return;
   }
   if (guide.phase == Phase::kTaken) {
-    wheel->stands = wheel->may_roll < steps;
+    wheel->stands = wheel->more < steps;
     if (wheel->stands) return;
-    wheel->may_roll = static_cast<uint8_t>(wheel->may_roll - steps);
+    wheel->more = static_cast<uint8_t>(wheel->more - steps);
   } else if (guide.phase == Phase::kNone || guide.phase == Phase::kDriven) {
     wheel->edge_ms = static_cast<uint16_t>(now_ms);
     return;
@@ -145,11 +144,12 @@ void count(Wheel* wheel, uint16_t counted, bool has_two) {
   if (is_back) edges = static_cast<int16_t>(-edges);
   wheel->edges += edges;
   // A hand turns it back, its channels are exchanged, or it only flickers: not its motor.
-  const uint16_t now = static_cast<uint16_t>(wheel->edges);
-  if (wheel->power > 0 && static_cast<int16_t>(now - wheel->most) <= 0) return;
   if (wheel->power < 0 && edges > 0) return;
-  wheel->most = now;
-  if (wheel->edges == 1) wheel->first_ms = since(guide.begun_ms);
+  if (wheel->power > 0 && (edges < 0 || wheel->more != 0)) {
+    const int16_t more = static_cast<int16_t>(wheel->more - edges);
+    wheel->more = static_cast<uint8_t>(more < 0 ? 0 : more > 255 ? 255 : more);
+    return;
+  }
   if (wheel->edges == 3 && guide.phase == Phase::kDrives) find_first(wheel);
   if (steps == 1) {
     if (wheel->edges > 2) wheel->two_ms = since(wheel->before_ms);
@@ -209,8 +209,9 @@ void end(Going going) {
 void turn_off() {
   const Wheel& left = guide.wheels[0];
   const Wheel& right = guide.wheels[1];
-  guide.off_at = position(left) + position(right);
-  guide.off_roll = guide.phase == Phase::kDrives ? roll(left) + roll(right) : 0;
+  guide.off_at = static_cast<uint16_t>(position(left) + position(right));
+  guide.off_roll =
+      guide.phase == Phase::kDrives ? static_cast<uint16_t>(roll(left) + roll(right)) : 0;
   for (Wheel& wheel : guide.wheels) wheel.power = 0;
   set_motors();
   guide.off_ms = static_cast<uint16_t>(now_ms);
@@ -223,7 +224,7 @@ void let_roll(Wheel* wheel) {
   if (wheel->is_returning || wheel->stands) wheel->two_ms = 0;
   if (wheel->two_ms != 0 && wheel->two_ms < least_ms) wheel->two_ms = least_ms;
   const int32_t most = limited(roll(*wheel) * 2 / kEdge, 250) + 2;
-  wheel->may_roll = wheel->stands ? 0 : static_cast<uint8_t>(most);
+  wheel->more = wheel->stands ? 0 : static_cast<uint8_t>(most);
   wheel->stands = false;
   wheel->power = 0;
 }
@@ -275,8 +276,8 @@ void begin_to_drive(uint16_t stood_ms) {
     wheel.edge_ms = static_cast<uint16_t>(now_ms);
     wheel.before_ms = static_cast<uint16_t>(now_ms - stood_ms);
     wheel.two_ms = 0;
-    wheel.most = static_cast<uint16_t>(wheel.edges);
     wheel.is_returning = wheel.stands = false;
+    wheel.more = 0;
     wheel.power = 0;
   }
   guide.phase = Phase::kDrives;
@@ -292,15 +293,17 @@ void settle() {
   if (off_ms >= kRestMs) return end(Going::kThere);
   if (off_ms < kStillMs) return;
   bool is_off = false;
-  int32_t rolled = -guide.off_at;
+  uint16_t place_of_both = 0;
   for (const Wheel& wheel : guide.wheels) {
     if (since(wheel.edge_ms) < kStillMs) return;
     const int32_t missing = guide.target - place(wheel);
     if (missing >= kEdge || missing <= -kEdge) is_off = true;
-    rolled += place(wheel);
+    place_of_both = static_cast<uint16_t>(place_of_both + place(wheel));
   }
+  const int16_t rolled = static_cast<int16_t>(place_of_both - guide.off_at);
   if (guide.off_roll > 0 && rolled > 0) {  // the next move knows better
-    const int32_t found = guide.roll_ms * (3 * guide.off_roll + rolled) / (4 * guide.off_roll);
+    const int32_t all = guide.off_roll;
+    const int32_t found = guide.roll_ms * (3 * all + rolled) / (4 * all);
     guide.roll_ms = static_cast<uint8_t>(found < kLeastRollMs  ? kLeastRollMs
                                          : found > kMostRollMs ? kMostRollMs
                                                                : found);
@@ -317,7 +320,7 @@ void settle() {
     wheel.edge_ms = static_cast<uint16_t>(now_ms);
     wheel.stands = missing < kEdge && missing > -kEdge;
     if (wheel.stands) continue;
-    wheel.most = static_cast<uint16_t>(wheel.edges);
+    wheel.more = 0;
     wheel.is_returning = missing < 0;
     wheel.power = missing < 0 ? static_cast<int8_t>(-guide.least) : guide.least;
   }

@@ -70,7 +70,7 @@ __attribute__((weak)) bool robot_measures() { return false; }
 __attribute__((weak)) void robot_go(int8_t, int8_t, int32_t) {}
 __attribute__((weak)) Going robot_going(int32_t*) { return Going::kThere; }
 __attribute__((weak)) void robot_go_on(int8_t left, int8_t right) {
-  int32_t rest;
+  int32_t rest = 0;
   robot_going(&rest);
   robot_go(left, right, rest);
 }
@@ -207,7 +207,7 @@ void Machine::go_way() {
   const int8_t right = static_cast<int8_t>(powers >> 8);
   if (on_way_ == me) return robot_go_on(left, right);
   if (on_way_ != nullptr && on_way_->is(kIsMoving)) {
-    int32_t rest;
+    int32_t rest = 0;
     robot_going(&rest);
     on_way_->rest_ms = static_cast<uint32_t>(rest);
   }

@@ -45,10 +45,7 @@ uint32_t clock_ms() {
 
 uint16_t clock_us() {
   const CriticalSection critical;
-  uint8_t turns = clock.turns;
-  const uint8_t count = TCNT0;
-  if ((TIFR0 & 1 << TOV0) != 0 && count != 0xff) turns++;  // an overflow whose interrupt is pending
-  return static_cast<uint16_t>((turns << 8 | count) << 2);
+  return clock_us_inside();
 }
 
 }  // namespace tiniscript

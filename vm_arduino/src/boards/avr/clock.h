@@ -33,8 +33,16 @@ uint32_t clock_ms();
 tini_always_inline uint8_t clock_8_ms() { return clock.low_8_ms; }
 tini_always_inline uint16_t clock_16_ms() { return clock.low_16_ms; }
 
-// Microseconds in steps of 4; they wrap around after 65 ms.
+// Microseconds in steps of 4; they wrap around after 65 ms. The second one is for callers with
+// interrupts off.
 uint16_t clock_us();
+
+tini_always_inline uint16_t clock_us_inside() {
+  uint8_t turns = clock.turns;
+  const uint8_t count = TCNT0;
+  if ((TIFR0 & 1 << TOV0) != 0 && count != 0xff) turns++;  // an overflow whose interrupt is pending
+  return static_cast<uint16_t>((turns << 8 | count) << 2);
+}
 
 }  // namespace tiniscript
 
