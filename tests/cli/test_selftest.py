@@ -15,11 +15,14 @@ import pytest
 
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.command import inside
+from tests.support.flicker import Flicker
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.simulated_port import simulated
+from tests.support.virtual_robot import robot_in
 from tiniscript import robots
 from tiniscript.cli import main
 from tiniscript.doctor import report
+from tiniscript.library.simulated import Simulated
 from tiniscript.link.messages import RESETS
 
 LIGHT, DISTANCE = 500_000, 42_000  # thousandths
@@ -183,6 +186,32 @@ def test_once_more_turns_the_motor_again(pty_robot: PtyRobot) -> None:
 
     asked(pty_robot, answer)
     assert sum("MOTORS 60 0" in line for line in pty_robot.did) == 3
+
+
+# -- discs
+
+HURRY = 50.0
+
+
+@pytest.mark.parametrize("number", [None, 0, 1])
+def test_a_disc_that_flickers_at_rest_is_wrong(number: int | None) -> None:
+    robot = robot_in(name="tinibot2", eeprom_us=0)
+    if number is not None:
+        Flicker(robot, number, 20)
+    running = Simulated(robot, HURRY)
+    try:
+        done = inside("selftest", "--port", running.port, "--robot", "tinibot2", "--yes", "--json")
+        said = inside("info", "--port", running.port, "--lang", "en").out
+    finally:
+        running.close()
+    (disc,) = [each for each in json.loads(done.out)["found"] if each["what"] == "discs"]
+    if number is None:
+        assert (done.code, disc["verdict"]) == (0, "ok") and "disc" not in said
+        return
+    edges = [int(disc["values"][side]) for side in ("left", "right")]
+    assert done.code == 3 and disc["verdict"] == "wrong"
+    assert edges[number] >= 18 and edges[1 - number] == 0
+    assert "a disc flickers: look at its sensor" in said
 
 
 # -- the report

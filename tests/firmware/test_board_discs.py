@@ -5,9 +5,11 @@ And how far a tinibot2 goes whose wheels turn discs.
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Callable
 from pathlib import Path
+from unittest import mock
 
 import pytest
 
@@ -144,6 +146,35 @@ def test_it_goes_and_turns_as_far_as_was_said(sketches: Callable[[str], Path]) -
         assert robot.drive("F(30 CM, 60); R(90 DEG, 60)") == "DONE"
         pose = robot.pose
     assert abs(pose.x_cm - 30) <= 1.5 and abs(pose.y_cm) <= 2 and abs(pose.heading + 90) <= 6
+
+
+def test_it_goes_as_far_if_a_when_interrupts_it(sketches: Callable[[str], Path]) -> None:
+    robot = Driven(sketches(ENVIRONMENT), 2, (92.5, 107.5), Roughness(0.005))
+    text = """X = 0; F(60 CM, 80)
+WHEN(X < 3 AND TIME > 0.35 + X * 0.65); X = X + 1; M(0, 0); W(0.4); END_WHEN"""
+    with robot.uno:
+        assert robot.until(robot.session.hello()) == OK
+        assert robot.until(robot.session.upload(image_of(text, ROBOT.kit))) == OK
+        robot.run(6000)
+        pose = robot.pose
+    assert abs(pose.x_cm - 60) <= 1.5 and abs(pose.y_cm) <= 2
+
+
+def test_it_goes_straight_after_a_wheel_was_held(sketches: Callable[[str], Path]) -> None:
+    """The fault is that of the wheel. The next program is as straight as the first one."""
+    robot = Driven(sketches(ENVIRONMENT), 1, (107.5, 92.5), Roughness(0.005))
+    held = robot.wheels.both[1]
+    with robot.uno:
+        with mock.patch.object(held, "step", lambda has_two: 0.0):
+            assert robot.drive("F(60 CM, 80)") == "FAULT"
+        assert robot.until(robot.session.clear()) == OK
+        before = robot.pose
+        assert robot.drive("F(100 CM, 80)") == "DONE"
+        pose = robot.pose
+    along = math.radians(before.heading)
+    x, y = pose.x_cm - before.x_cm, pose.y_cm - before.y_cm
+    assert abs(x * math.cos(along) + y * math.sin(along) - 100) <= 1.5
+    assert abs(y * math.cos(along) - x * math.sin(along)) <= 2.4
 
 
 def flicker(uno: Uno, hertz: int, milliseconds: int, run_ms: Callable[[int], None]) -> None:

@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 import pytest
 
+from tests.support.flicker import Flicker
 from tests.support.rows import each_row
 from tests.support.virtual_robot import Talk, floor, robot_in, trace
 from tiniscript import compile_text, robots, run
@@ -244,30 +245,6 @@ TASK; W(0.5); S; W(60); END_TASK"""
     assert abs(gone(robot)[0] - before - 30) <= 2
 
 
-class Flicker:
-    """The disc of a wheel flickers: it shows an edge so often, while the wheel hardly turns."""
-
-    def __init__(self, robot: VirtualRobot, number: int, hertz: float) -> None:
-        assert robot.wheels
-        self.wheel, self.wheels = wheel(robot, number), robot.wheels
-        self.has_two = robot.profile == TWO_CHANNELS
-        self.period_ms = 1000 / hertz
-        self.edges = robot.wheels.edges
-        self.shown = 0
-        self.next_ms = 0.0
-        robot.wheels.edges = self.flickering  # type: ignore[method-assign]
-
-    def flickering(self, now_ms: int) -> int:
-        self.wheels.go_on(now_ms)
-        if abs(self.wheel.speed) > 5:
-            self.next_ms = now_ms + self.period_ms
-        while self.next_ms <= now_ms:
-            self.next_ms += self.period_ms
-            self.wheel.counted += -1 if self.has_two and self.shown % 2 else 1
-            self.shown += 1
-        return self.edges(now_ms)
-
-
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
 @pytest.mark.parametrize("hertz", [3, 8, 40, 300])
 @pytest.mark.parametrize("text", [
@@ -373,6 +350,47 @@ def test_a_hand_that_turns_a_wheel_back(profile: Robot, sees: bool) -> None:
     assert robot.fault == "" and not robot.is_running
     off_cm = one.turned_cm - begun_cm - 60
     assert abs(off_cm) < 1.5 if sees else -14 < off_cm < -8
+
+
+def noise(talk: Talk) -> tuple[int, ...]:
+    return tuple(talk.until(talk.session.status()).values.noise)
+
+
+@pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_disc_that_flickers_at_rest_is_told_in_status(profile: Robot, number: int) -> None:
+    """Whether a program runs or not, and once wheels do not roll any more."""
+    robot, talk = begun("W(1)", profile=profile)
+    talk.wait(2000)
+    assert noise(talk) == (0, 0)
+    Flicker(robot, number, 40)
+    before = noise(talk)
+    talk.wait(2000)
+    after = noise(talk)
+    assert 75 <= after[number] - before[number] <= 90 and after[1 - number] == 0
+    talk.upload("M(60, 60); W(0.5); M(0, 0); W(3)")
+    talk.wait(1300)
+    before = noise(talk)
+    talk.wait(2000)
+    after = noise(talk)
+    assert 40 <= after[number] - before[number] <= 90 and after[1 - number] == 0
+
+
+@pytest.mark.parametrize("text", [
+    "F(60 CM, 60); W(0.4); R(90 DEG, 80); B(3 CM, 40)",
+    "M(90, 90); W(0.3); S; W(0.1); M(0, 90); W(1)",
+    interrupted("F(60 CM, 60)", 3, "M(0, 0); W(0.4)"), interrupted("F(60 CM, 60)", 2, "B(0.3, 80)"),
+])  # fmt: skip
+def test_edges_of_wheels_that_turn_and_roll_are_no_noise(text: str) -> None:
+    for seed in (1, 2, 3):
+        robot, talk = begun(text, seed)
+        talk.wait(8000)
+        assert noise(talk) == (0, 0) and wheel(robot, 0).counted > 20
+
+
+def test_a_robot_without_discs_tells_no_noise() -> None:
+    for name in ("tinibot", "tinibot32"):
+        assert noise(Talk(robot_in(name=name))) == ()
 
 
 def hold(one: Wheel, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -86,6 +86,7 @@ KEY_BYTES = 16
 CHALLENGE_BYTES = 8
 TAG_BYTES = 8
 PLACE_BYTES = 6  # of a reply to PING: where a program is (16 bits), and which (its checksum)
+NOISE_BYTES = 2  # of both discs
 COUNTER_BYTES = 4
 
 
@@ -231,7 +232,7 @@ MESSAGES = (
     _message(2, "PING", False, "asks:rest=0..1", f"state:u8 run:u8 place:rest=0..{PLACE_BYTES}",
              "Are you there? Also the heartbeat. With any byte: and where is your program?"),
     _message(3, "STATUS", False, "",
-             _STATUS + " damaged:u8 dropped:u8 framing:u8 overrun:u8",
+             _STATUS + f" damaged:u8 dropped:u8 framing:u8 overrun:u8 noise:rest=0..{NOISE_BYTES}",
              "What the robot does, its last fault, and how well it hears."),
     _message(4, "FETCH", False, "offset:u16", "length:u16 bytes:rest=0..",
              "The stored program's image, from `offset` on. `length` is that of the whole image."),

@@ -55,6 +55,7 @@ class StatusReply(NamedTuple):
     dropped: int
     framing: int
     overrun: int
+    noise: bytes
 
 
 class FetchReply(NamedTuple):

@@ -384,6 +384,10 @@ Going guide_going(int32_t* rest) {
   return guide.going;
 }
 
+uint16_t guide_noise() {
+  return static_cast<uint16_t>(guide.wheels[0].noise | guide.wheels[1].noise << 8);
+}
+
 void guide_end(bool is_driven) {
   const bool was_driven = guide.phase == Phase::kDriven;
   if (was_driven == is_driven && !is_moving()) return;

@@ -23,6 +23,7 @@ void guide_go_on();  // with that way, after something has ended it
 Going guide_going(int32_t* rest);
 void guide_end(bool is_driven);  // it sets no motor any more; `is_driven`: something else does
 void guide_tick();               // as often as may be
+uint16_t guide_noise();          // of both wheels, the left one in the low byte
 #else
 inline void guide_begin() {}
 inline void guide_end(bool) {}

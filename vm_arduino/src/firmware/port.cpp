@@ -4,6 +4,7 @@
 
 #include "../link/frames.h"
 #include "../vm/image.h"
+#include "guide.h"
 #include "identity.h"
 #include "pace.h"
 #include "persistence.h"
@@ -17,6 +18,14 @@ namespace tiniscript {
 const RobotStatus& port_status() { return robot_status; }
 
 LineErrors port_line_errors() { return board_line_errors(); }
+
+#ifdef tiniscript_has_discs
+bool port_noise(uint16_t* edges) {
+  if (board_discs().cm == 0) return false;
+  *edges = guide_noise();
+  return true;
+}
+#endif
 
 uint16_t port_room() { return kStoredCodeBytes; }
 

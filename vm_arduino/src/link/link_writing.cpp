@@ -9,6 +9,10 @@
 
 namespace tiniscript {
 
+#ifdef tiniscript_has_discs
+__attribute__((weak)) bool port_noise(uint16_t*) { return false; }
+#endif
+
 namespace {
 
 // The first part of the reply to HELLO.
@@ -131,6 +135,10 @@ void Link::reply() {
       put_all(&robot_status, sizeof robot_status);
       put16(both(byte_of(damaged_ + receiver_->damaged()), receiver_->dropped()));
       put16(both(port_line_errors().framing, port_line_errors().overrun));
+#ifdef tiniscript_has_discs
+      uint16_t edges;
+      if (port_noise(&edges)) put16(edges);
+#endif
       break;
     case Message::kFetch:
       fetch();

@@ -92,6 +92,10 @@ const RobotStatus& port_status();
 const Tuning& port_tuning();
 LineErrors port_line_errors();
 
+// Edges of both discs while no wheel could turn, modulo 256, the left one in the low byte. False: it
+// has no discs, as where no build defines this.
+bool port_noise(uint16_t* edges);
+
 // The largest code that fits, after a header of this version.
 uint16_t port_room();
 

@@ -93,6 +93,7 @@ class Description:
             "dropped": status.dropped,
             "framing": status.framing,
             "overrun": status.overrun,
+            "noise": [*status.noise] or None,
         }
 
     def line(self) -> str:
@@ -147,6 +148,9 @@ class Description:
             lines.append(self._fault())
         if status.damaged or status.dropped or status.framing or status.overrun:
             lines.append(say("info_hearing", **status._asdict()))
+        if any(status.noise):
+            left, right = status.noise
+            lines.append(say("info_noise", left=left, right=right))
         return "\n".join(lines)
 
     def _fault(self) -> str:

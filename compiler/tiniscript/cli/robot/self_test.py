@@ -37,6 +37,7 @@ PINGS = 20
 READINGS = 3
 NOTICED = 50  # a hand changes a reading by more than one part of so many of its range
 TURNING = 60  # percent
+STANDS = "W(2)"
 AGAIN = "4"
 ANSWERED = ("plain", "selftest_silent")  # failures that the robot has told: it is still there
 
@@ -87,6 +88,8 @@ class SelfTest:
         if robot is None:
             return
         self.connection.profile = robot
+        if status.noise:
+            self._discs()
         is_lifted = self._is_lifted()
         for sensor in robot.kit.sensors:
             self._sensor(sensor)
@@ -166,6 +169,24 @@ class SelfTest:
     def _trim(self) -> None:
         trim = told(self.connection.ask(lambda session: session.trim()).values)
         self._add("trim", OK, "self_trim_is", trim=words(trim, self.language))
+
+    def _discs(self) -> None:
+        """Let it stand, and longer than wheels roll: an edge is none of a wheel."""
+        before = self.connection.ask(lambda session: session.status()).values.noise
+        try:
+            self._shown_by(STANDS)
+        except CommandError as failure:
+            if failure.key not in ANSWERED:
+                raise
+            said = failure.sentence(self.language)
+            self._add("discs", WRONG, "self_plain", "then_doctor", said=said)
+            return
+        after = self.connection.ask(lambda session: session.status()).values.noise
+        left, right = (str((now - then) % 256) for now, then in zip(after, before, strict=True))
+        if left == right == "0":
+            self._add("discs", OK, "self_discs_rest")
+        else:
+            self._add("discs", WRONG, "self_discs_noise", "then_discs", left=left, right=right)
 
     # -- what it senses and does
 
