@@ -216,8 +216,8 @@ def test_a_typed_stop_gets_through_while_both_discs_flicker(
         uno.send(b"STOP\r")
         flicker(uno, hertz, 20, uno.run_ms)
         ended = [event.cycle for event in uno.events[begun:] if event.what == "received"][-1]
-        for pin in MOTORS:
-            change = uno.pins[pin]
+        for motor in MOTORS:
+            change = uno.pins[motor]
             assert change.state == "low" and 0 < change.cycle - ended < CYCLES_PER_MS
 
 

@@ -416,7 +416,8 @@ def test_whatever_has_ended_a_way_the_next_program_goes_straight(
             talk.wait(420 if how == "stopped" else 900)
         if how == "lost":
             robot.step(robot.now_ms + 1500)
-        talk.until(talk.session.stop(robot.now_ms) or talk.session.clear())
+        talk.session.stop(robot.now_ms)
+        talk.until(talk.session.clear())
         talk.wait(1000)
         before = robot.pose
         assert talk.upload("F(100 CM, 80)").status == OK
