@@ -10,10 +10,10 @@ import subprocess
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
-from struct import pack
 from typing import TYPE_CHECKING
 
 from tests.machines.host import SOURCES, WARNINGS, Ran, contents, kept, ran, run_request
+from tests.machines.pace import AT_ONCE, Pace
 from tiniscript.base.kit import Kit
 from tools.bench import avr_bench
 
@@ -59,15 +59,12 @@ def ran_on(
     kit: Kit,
     senses: Senses,
     not_ready: int = 0,
-    late_ms: int = 0,
+    pace: Pace = AT_ONCE,
     begin_ms: int = 0,
 ) -> Ran:
-    """Run an image, which is read and verified by the simulated chip.
-
-    A tick after a wait comes `late_ms` late.
-    """
-    request = pack("<cI", b"L", late_ms) + run_request(image, kit, senses, not_ready, begin_ms)
-    return ran(answer(chip, request))
+    """Run an image, which is read and verified by the simulated chip."""
+    request = run_request(image, kit, senses, not_ready, begin_ms)
+    return ran(answer(chip, b"P" + pace.packed(kit) + request))
 
 
 def answer(chip: str, request: bytes, most_seconds: int = 120) -> str:

@@ -28,6 +28,7 @@ from tiniscript.bytecode.verify import RULES, Refused
 
 if TYPE_CHECKING:
     from tests.machines import Senses
+    from tests.machines.pace import Pace
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 SOURCES = ROOT / "vm_arduino"
@@ -109,6 +110,10 @@ class Process:
     def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
         """Run an image, or raise what refuses it."""
         raise NotImplementedError
+
+    def run_at(self, pace: Pace, image: bytes, kit: Kit, senses: Senses) -> Ran:
+        """Run an image on a robot that is called at a pace, and that some readings keep waiting."""
+        return ran(self.ask(b"P", pace.packed(kit) + run_request(image, kit, senses)).decode())
 
     def verdicts(
         self, codes: Sequence[bytes], sensors: int, actuators: int, needs: int = 0

@@ -10,7 +10,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping, Sequence
 
-from tests.oracle.tasks import TaskRobot
+from tests.oracle.tasks import IsSlow, TaskRobot, always_ready
 from tests.oracle.text import Parser
 from tests.oracle.words import PAPER_KIT, Device, Kit, Mistake
 
@@ -26,10 +26,13 @@ def run(
     max_time_ms: int = 60_000,
     max_steps: int = 10_000_000,
     seed: int = 1,
+    is_slow: IsSlow = always_ready,
+    every_ms: int = 1,
 ) -> str:
     """Runs a program and returns all that the run prints; raises Mistake if it is wrong.
 
-    Readings are in thousandths, 0 or 1 for yes/no. Wrong use is a ValueError.
+    Readings are in thousandths, 0 or 1 for yes/no. Wrong use is a ValueError. `is_slow` says
+    whether a sensor is not ready at a time; the program goes on at multiples of `every_ms`.
     """
     ranges = {device.name: (device.low, device.high) for device in kit.sensors}
     for name, values in sensors.items():
@@ -42,5 +45,6 @@ def run(
     sys.setrecursionlimit(max(sys.getrecursionlimit(), 10_000))
     program = Parser(text, kit).program()
     robot = TaskRobot(program, kit, sensors, max_time_ms, max_steps, seed)
+    robot.is_slow, robot.every_ms = is_slow, every_ms
     robot.run()
     return "".join(robot.trace)

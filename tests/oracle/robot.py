@@ -5,7 +5,7 @@ Numbers are Python integers that count thousandths; yes/no values are bools.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from tests.oracle.arithmetic import (
@@ -88,26 +88,25 @@ class Robot:
         if self.steps > self.max_steps:
             raise Ending("LIMIT")
 
-    def read(self, names: Iterable[str]) -> None:
-        """Takes a reading of each sensor and keeps it."""
-        for name in names:
-            device = next(device for device in self.kit.sensors if device.name == name)
-            values = self.sensors.get(name) or (0,)
-            count = self.taken.get(name, 0)
-            self.taken[name] = count + 1
-            raw = values[min(count, len(values) - 1)]
-            self.kept[name] = bool(raw) if device.is_yes_no else raw
-            self.note(f"READ {name} {written(self.kept[name])}")
+    def read(self, name: str) -> None:
+        """Takes a reading of a sensor and keeps it."""
+        device = next(device for device in self.kit.sensors if device.name == name)
+        values = self.sensors.get(name) or (0,)
+        count = self.taken.get(name, 0)
+        self.taken[name] = count + 1
+        raw = values[min(count, len(values) - 1)]
+        self.kept[name] = bool(raw) if device.is_yes_no else raw
+        self.note(f"READ {name} {written(self.kept[name])}")
 
     # Statements
 
     def do(self, statement: Do) -> None:
-        """Does an instruction that takes no time and has nothing to do with the motors."""
-        self.read(statement.reads)
+        """Does an instruction that takes no time and has nothing to do with the motors.
+
+        Its readings have been taken.
+        """
         word, values = statement.word, self.values(statement)
-        if word == "READ":
-            self.read((statement.name,))
-        elif word == "BREAK":
+        if word == "BREAK":
             raise Break
         else:
             (value,) = values
@@ -136,14 +135,6 @@ class Robot:
         if not device.is_yes_no:
             value = within(1000 * whole(value), device.low, device.high)
         self.note(f"SET {name} {written(value)}")
-
-    def may_end(self, statement: Do) -> bool:
-        """Takes the readings of an UNTIL, if there is one, and checks it."""
-        if statement.until is None:
-            return False
-        self.step()
-        self.read(statement.until_reads)
-        return bool(self.value(statement.until))
 
     # Values
 

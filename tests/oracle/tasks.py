@@ -8,7 +8,7 @@ to wait.
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Iterable
 from dataclasses import dataclass, field
 
 from tests.oracle.arithmetic import whole, within
@@ -18,7 +18,14 @@ from tests.oracle.words import MOVES
 
 Turns = Generator[None, None, None]  # it gives its place away with `yield`
 Powers = tuple[int, int]
+IsSlow = Callable[[str, int], bool]  # whether a sensor is not ready at a time
+LATE = 20  # more than this, and a task's clock does not catch up
+PAUSE = 20  # between two looks of an UNTIL
 SIDES = {"F": (1, 1), "B": (-1, -1), "L": (-1, 1), "R": (1, -1)}
+
+
+def always_ready(name: str, now: int) -> bool:
+    return False
 
 
 @dataclass(eq=False)
@@ -46,6 +53,11 @@ class Runner:
         return self.moving or self.m is not None or self.insists
 
     @property
+    def is_interrupted(self) -> bool:
+        """Whether its move has lost the motors, or an S has ended it."""
+        return self.was_stopped or self.robbed_at is not None
+
+    @property
     def drives(self) -> bool:
         """Whether its move turns the wheels."""
         return self.driving_forever or self.driving_until is not None
@@ -60,6 +72,9 @@ class TaskRobot(Robot):
     owner: Runner | None = None  # of the motors
     wheels: Powers = (0, 0)
     is_first_round: bool = True  # behind the main task's first turn
+    is_slow: IsSlow = always_ready
+    every_ms: int = 1  # it goes on at multiples of this
+    was_slow: bool = False  # a reading was not ready in this round
 
     def play(self) -> None:
         whens = [task for task in self.program.tasks if task.condition is not None]
@@ -72,6 +87,11 @@ class TaskRobot(Robot):
         main.turns = self.body(self.program.main)
         self.runners.append(main)
         self.turn(main)
+        while self.was_slow:  # a reading does not end this turn
+            self.go_to(self.now)
+            self.turn(main)
+        for runner in self.runners[:-1]:
+            runner.clock = runner.due = self.now
         while any(runner.turns is not None for runner in self.runners):
             self.round()
 
@@ -79,16 +99,23 @@ class TaskRobot(Robot):
         """Goes to the next time at which something is due, and gives each its turn."""
         due = [each.due for each in self.runners if each.turns is not None and each.due is not None]
         next_time = min(due, default=self.max_time + 1)
-        if next_time > self.max_time:
-            self.now = self.max_time
-            raise Ending("LIMIT")
-        if next_time > self.now:
-            self.steps = 0
-        self.now = max(self.now, next_time)
+        self.go_to(next_time)
         for runner in self.runners:
             if runner.turns is not None and runner.due is not None and runner.due <= self.now:
                 self.turn(runner)
         self.is_first_round = False
+
+    def go_to(self, time: int) -> None:
+        """Goes on then; at the next possible time where a reading was not ready."""
+        time = max(time, self.now + self.was_slow)
+        self.was_slow = False
+        time += -time % self.every_ms
+        if time > self.max_time:
+            self.now = self.max_time
+            raise Ending("LIMIT")
+        if time > self.now:
+            self.steps = 0
+        self.now = time
 
     def turn(self, runner: Runner) -> None:
         """Lets one task go on until it has to wait, and then looks whose the motors are."""
@@ -112,6 +139,42 @@ class TaskRobot(Robot):
 
     # -- waiting ------------------------------------------------------------------------------
 
+    def begin(self) -> None:
+        """Begins a wait or a move where the one before has ended, or now where that is long ago."""
+        if self.now - self.who.clock > LATE:
+            self.who.clock = self.now
+
+    def reading(self, names: Iterable[str]) -> Turns:
+        """Takes readings. One that is not ready ends the turn."""
+        for name in names:
+            while self.is_slow(name, self.now):
+                self.was_slow = True
+                self.who.due = self.now
+                yield
+            self.read(name)
+
+    def looking(self, statement: Do) -> Generator[None, None, bool]:
+        """Looks at an UNTIL, if there is one. For a move that has lost the motors: no more."""
+        me = self.who
+        if statement.until is None:
+            return False
+        self.step()
+        for _ in self.reading(statement.until_reads):
+            yield
+            if statement.word in MOVES and (self.is_outranked or me.is_interrupted):
+                return False
+        return bool(self.value(statement.until))
+
+    def pausing(self, statement: Do, left: int | None) -> Generator[None, None, int]:
+        """Waits until the next look of an UNTIL, or the end; returns how long that was."""
+        me = self.who
+        pause = self.max_time + 1 if left is None else left
+        if statement.until is not None:
+            look = ((self.now - me.clock) // PAUSE + 1) * PAUSE
+            pause = look if left is None else min(look, left)
+        yield from self.until_clock(pause)
+        return pause
+
     def until_clock(self, duration: int) -> Turns:
         """Waits on the task's own clock."""
         me = self.who
@@ -126,6 +189,7 @@ class TaskRobot(Robot):
         me = self.who
         self.step()
         if not me.waited and self.program.tasks:
+            self.begin()
             me.clock += 1
             me.due = me.clock
             yield
@@ -153,8 +217,6 @@ class TaskRobot(Robot):
                 loser.due = None
             loser.robbed_at = self.now
             loser.driving_until, loser.driving_forever = None, False  # it stands still
-        elif loser is not None and loser is not self.who and loser.moving:
-            loser.due = None  # it had got them in this millisecond, and did not have its turn yet
         self.owner = self.who
 
     # -- statements ---------------------------------------------------------------------------
@@ -165,11 +227,12 @@ class TaskRobot(Robot):
         me = self.who
         while True:
             self.step()
-            self.read(task.reads)
+            yield from self.reading(task.reads)
             if self.value(task.condition):
                 yield from self.body(task.body)
             else:
                 me.m, me.insists = None, False
+            self.begin()
             yield from self.until_clock(20)
 
     def body(self, body: list[Statement]) -> Turns:
@@ -187,20 +250,20 @@ class TaskRobot(Robot):
     def choosing(self, statement: If) -> Turns:
         """Does the first arm whose condition holds."""
         for arm in statement.arms:
-            self.read(arm.reads)
+            yield from self.reading(arm.reads)
             if arm.condition is None or self.value(arm.condition):
                 yield from self.body(arm.body)
                 return
 
     def repeating(self, statement: Loop | While) -> Turns:
         if isinstance(statement, While):
-            self.read(statement.reads)
+            yield from self.reading(statement.reads)
             while self.value(statement.condition):
                 yield from self.body(statement.body)
                 yield from self.back_to_start()
-                self.read(statement.reads)
+                yield from self.reading(statement.reads)
             return
-        self.read(statement.reads)
+        yield from self.reading(statement.reads)
         turns = None if statement.count is None else whole(self.value(statement.count))
         while turns is None or turns > 0:
             yield from self.body(statement.body)
@@ -212,8 +275,11 @@ class TaskRobot(Robot):
         word, me = statement.word, self.who
         if word == "CALL":
             yield from self.body(self.program.defs[statement.name])
+            return
+        yield from self.reading(statement.reads)
+        if word == "READ":
+            yield from self.reading((statement.name,))
         elif word in (*MOVES, "W", "BEEP", "M", "S"):
-            self.read(statement.reads)
             values = self.values(statement)
             if word in MOVES:
                 yield from self.moving(statement, values)
@@ -222,6 +288,7 @@ class TaskRobot(Robot):
             elif word == "BEEP":
                 duration = max(0, values[0] or 0)
                 self.note(f"BEEP {within(whole(values[1] or 0), 31, 20_000)} {duration}")
+                self.begin()
                 yield from self.until_clock(duration)
             elif word == "M":
                 left, right = (within(whole(each or 0), -100, 100) for each in values)
@@ -253,16 +320,14 @@ class TaskRobot(Robot):
 
     def waiting(self, statement: Do, time: Value | None) -> Turns:
         left = None if time is None else max(0, time)
-        if statement.until is None:
-            if left is None:
-                left = self.max_time + 1
-            yield from self.until_clock(left)
+        if (yield from self.looking(statement)):
             return
-        while not self.may_end(statement):
-            pause = 20 if left is None else min(20, left)
-            yield from self.until_clock(pause)
+        self.begin()
+        while left is None or left > 0:
+            pause = yield from self.pausing(statement, left)
             left = None if left is None else left - pause
-            if left == 0:
+            if left != 0 and (yield from self.looking(statement)):
+                self.who.clock = self.now
                 return
 
     def moving(self, statement: Do, values: list[Value | None]) -> Turns:
@@ -271,16 +336,19 @@ class TaskRobot(Robot):
         power = within(whole(values[1] or 0), 0, 100)
         side = SIDES[statement.word]
         powers = side[0] * power, side[1] * power
-        if self.is_outranked:
-            me.m = None
-            yield from self.standing()
         while True:
-            if self.may_end(statement):
+            if self.is_outranked:
+                me.m = None
+                yield from self.standing()
+            if (yield from self.looking(statement)):
                 me.moving = False
                 return
+            if self.is_outranked:
+                continue  # they have been taken while it looked
             me.m, me.moving, me.insists = None, True, me.is_when
             self.seize()
             self.motors(*powers)
+            self.begin()
             started = me.clock
             yield from self.driving(statement, left)
             if me.was_stopped:
@@ -293,13 +361,13 @@ class TaskRobot(Robot):
             if left is not None:
                 left -= me.robbed_at - started
             me.robbed_at = None
-            yield from self.standing()
+            me.clock = self.now
 
     def standing(self) -> Turns:
         """Waits for the motors; when it has them, its clock is now."""
         me = self.who
         me.moving, me.insists, me.waited = True, me.is_when, True
-        if self.owner is not me:
+        while self.owner is not me:
             me.due = None
             yield
         me.clock = self.now
@@ -310,15 +378,14 @@ class TaskRobot(Robot):
         me.driving_forever = left is None
         me.driving_until = None if left is None else me.clock + left
         while left is None or left > 0:
-            if statement.until is None:
-                pause = self.max_time + 1 if left is None else left
-            else:
-                pause = 20 if left is None else min(20, left)
-            yield from self.until_clock(pause)
-            if me.was_stopped or me.robbed_at is not None:
+            pause = yield from self.pausing(statement, left)
+            if me.is_interrupted:
                 break
             left = None if left is None else left - pause
-            if left != 0 and self.may_end(statement):
+            if left != 0 and (yield from self.looking(statement)):
+                me.clock = self.now
+                break
+            if me.is_interrupted:
                 break
         me.driving_until, me.driving_forever = None, False
         if not me.was_stopped and me.robbed_at is None:

@@ -20,6 +20,7 @@ from tests.machines import Senses, avr
 from tests.machines import board as boards
 from tests.machines.chips import Chip
 from tests.machines.host import Ran, ran, run_request
+from tests.machines.pace import Pace
 from tests.machines.python import ran_python
 from tests.machines.qemu import emulated
 from tests.machines.qemu import missing as emulator_missing
@@ -239,7 +240,8 @@ def test_hard_programs_with_tasks(chip: str, name: str) -> None:
     image = compile_text(program.text, cpp_checks.KIT).image
     for not_ready, late_ms, begin_ms, max_ms in program.how:
         senses = Senses(program.readings, max_ms)
-        ran = avr.ran_on(chip, image, cpp_checks.KIT, senses, not_ready, late_ms, begin_ms)
+        pace = Pace(every_ms=late_ms + 1)
+        ran = avr.ran_on(chip, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
         assert ran.trace == cpp_checks.slow_run(image, senses, not_ready, late_ms), ran.trace
 
 
@@ -258,7 +260,8 @@ def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
 def test_late_tasks_behind_byte_256(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(0, 40, cpp_checks.FAR)):
         late_ms = (0, 7, 36)[number % 3]
-        ran = avr.ran_on(chip, image, cpp_checks.KIT, senses, late_ms=late_ms, begin_ms=2**32 - 100)
+        pace = Pace(every_ms=late_ms + 1)
+        ran = avr.ran_on(chip, image, cpp_checks.KIT, senses, pace=pace, begin_ms=2**32 - 100)
         assert ran.trace == cpp_checks.slow_run(image, senses, 0, late_ms), ran.trace
 
 

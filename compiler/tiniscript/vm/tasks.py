@@ -56,7 +56,7 @@ class TaskRecord:
         # its move, or the wait that an UNTIL watches
         self.powers: Powers | None = None  # None: a wait, the motors stay as they are
         self.move_ms = 0  # how long it may last from its clock on, or FOREVER
-        self.has_begun = False
+        self.has_begun = True  # it drives, or waits, or is over
         self.check = 0  # where that of its UNTIL begins, or where it goes on behind it
         self.after = 0  # behind the move
         self.is_moving = False  # its move drives or is blocked
@@ -186,6 +186,8 @@ class TaskMachine(Machine):
                 self._go_on(self._begin_move())
         elif task.to_its_end:
             self._end_move()
+        elif not task.has_begun and self._must_wait_for_motors():
+            self._go_on(self._block())  # they have been taken since its check began
 
     def _go_on(self, pc: int) -> None:
         """Go on where a step says."""
@@ -266,7 +268,7 @@ class TaskMachine(Machine):
     def prepare(self, move_ms: int, powers: Powers | None, after: int) -> int:
         self._keep(move_ms, powers, after)
         self.me.after = -1  # behind its UNTIL
-        return self._block() if powers is not None and self._is_below() else after
+        return self._block() if self._must_wait_for_motors() else after
 
     def _keep(self, move_ms: int, powers: Powers | None, check: int) -> None:
         me = self.me
@@ -282,10 +284,9 @@ class TaskMachine(Machine):
                 self._end_move()
             elif me.is_moving:  # it waited for the motors, or stood still
                 me.end_move()
+            me.has_begun = True
             return after
         if not me.has_begun:
-            if me.powers is not None and self._is_below():
-                return self._block()
             self._begin_watched()
         late_ms = (self.now_ms - me.clock_ms) % CLOCK_MS
         next_ms = (late_ms // CHECK_MS + 1) * CHECK_MS
@@ -360,6 +361,10 @@ class TaskMachine(Machine):
     def _is_below(self) -> bool:
         """Whether a higher task has the motors."""
         return self.holder is not None and self.holder.rank < self.me.rank
+
+    def _must_wait_for_motors(self) -> bool:
+        """Whether its move, or what is no wait that an UNTIL watches, may not begin."""
+        return self.me.powers is not None and self._is_below()
 
     def _take(self) -> None:
         """Give the motors to the task whose turn it is; no higher one has them."""

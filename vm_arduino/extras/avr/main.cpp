@@ -1,8 +1,8 @@
 // Runs one image, or code, on a simulated ATmega, for tests, and reports over the UART what the robot
 // did.
 //
-// The request begins with R for an image, with L and 4 bytes for an image whose ticks after a wait
-// come so many milliseconds late, and with U for code that is not verified. The clock is simulated
+// The request begins with R for an image, with P for one at a pace, and with U for code that is not
+// verified. The clock is simulated
 // as in `vm/runner.py`.
 
 #include "../../src/vm/vm.h"
@@ -31,7 +31,10 @@ const uint8_t* request_bytes(size_t place, size_t length, size_t zeros) {
 int main() {
   simulated::begin();
   const uint8_t kind = simulated::request.u8();
-  const uint32_t late_ms = kind == 'L' ? simulated::request.u32() : 0;
-  tiniscript::answer_run(simulated::request, kind != 'U', late_ms);
+  if (kind == 'P') {
+    tiniscript::answer_run_at_pace(simulated::request);
+  } else {
+    tiniscript::answer_run(simulated::request, kind != 'U');
+  }
   simulated::end();
 }

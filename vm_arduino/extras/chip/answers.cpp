@@ -87,6 +87,9 @@ bool answer_any(Request request, size_t end) {
     case 'R':
       answer_run(request);
       return true;
+    case 'P':
+      answer_run_at_pace(request);
+      return true;
     case 'V':
       answer_verdicts(request, end);
       return true;

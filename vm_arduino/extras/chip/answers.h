@@ -7,8 +7,8 @@
 
 namespace tiniscript {
 
-// Answers a request that begins with the letter of what it asks: R to run an image, or about many
-// at once: V for verdicts of codes, I for headers of images, A for arithmetic. False: it is another
+// Answers a request that begins with the letter of what it asks: R to run an image, P to do so at a pace, or
+// about many at once: V for verdicts of codes, I for headers of images, A for arithmetic. False: it is another
 // one.
 bool answer_any(Request request, size_t end);
 

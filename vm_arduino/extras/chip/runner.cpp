@@ -4,7 +4,6 @@
 #include "../../src/vm/verify.h"
 #include "../../src/vm/vm.h"
 #include "text.h"
-#include "traced_robot.h"
 
 namespace tiniscript {
 
@@ -22,8 +21,17 @@ struct Limits {
   uint32_t max_steps;
   uint32_t seed;
   uint32_t begin_ms;  // what the machine's clock says at the beginning
-  uint32_t late_ms;   // so late comes a tick after a wait
 };
+
+// The time of the next call: what the program waits for, or a slow sensor, rounded up.
+uint32_t next_call_ms(uint32_t wake_ms) {
+  const uint32_t now_ms = static_cast<uint32_t>(robot.now_ms);
+  if (wake_ms < now_ms) wake_ms = now_ms;
+  if (robot.was_slow && wake_ms == now_ms) wake_ms++;
+  robot.was_slow = false;
+  const uint32_t every_ms = robot.pace.every_ms;
+  return (wake_ms + every_ms - 1) / every_ms * every_ms;
+}
 
 // Adds the last line of an answer.
 void end(const char* what, uint32_t first, uint32_t second) {
@@ -50,6 +58,7 @@ uint32_t run(const Image& image, const Limits& limits) {
   machine.start(image.code, image.code_length, readings, robot.sensor_count, limits.seed,
                 limits.begin_ms);
   robot.has_tasks = machine.has_tasks();
+  const bool is_at_once = robot.pace.every_ms == 1 && robot.pace.slow == 0;
   uint32_t steps = 0;
   uint32_t left = limits.max_steps;  // before the clock must move
   for (;;) {
@@ -67,9 +76,8 @@ uint32_t run(const Image& image, const Limits& limits) {
       say_end(status);
       return steps;
     }
-    if (status == Status::kWaiting) {
-      uint32_t wake_ms = machine.wake_ms() - limits.begin_ms;
-      if (wake_ms > now_ms) wake_ms += limits.late_ms;
+    if (status == Status::kWaiting || (robot.was_slow && machine.left() != 0)) {
+      const uint32_t wake_ms = next_call_ms(machine.wake_ms() - limits.begin_ms);
       if (wake_ms > limits.max_ms) {
         robot.now_ms = limits.max_ms;
         left = 0;
@@ -77,7 +85,7 @@ uint32_t run(const Image& image, const Limits& limits) {
         if (wake_ms > now_ms) {
           left = limits.max_steps;
           // a tick that is too early changes nothing
-          if (limits.late_ms == 0) machine.tick(wake_ms - 1 + limits.begin_ms, kSlice);
+          if (is_at_once) machine.tick(wake_ms - 1 + limits.begin_ms, kSlice);
         }
         robot.now_ms = wake_ms;
       }
@@ -91,14 +99,14 @@ uint32_t run(const Image& image, const Limits& limits) {
 
 }  // namespace
 
-void answer_run(Request request, bool is_verified, uint32_t late_ms) {
+void answer_run(Request request, bool is_verified, const Pace& pace) {
   Limits limits;
   limits.max_ms = request.u32();
   limits.max_steps = request.u32();
   limits.seed = request.u32();
   limits.begin_ms = request.u32();
-  limits.late_ms = late_ms;
   if (!robot.read(&request)) return put_text("NO ROOM\n");
+  robot.pace = pace;
   const size_t length = static_cast<size_t>(request.u32());
   const uint8_t* const data = request_bytes(request.place(), length, kEndBytes);
   if (data == nullptr) return put_text("NO ROOM\n");
@@ -121,6 +129,16 @@ void answer_run(Request request, bool is_verified, uint32_t late_ms) {
   }
   const uint32_t steps = run(image, limits);
   end("RAN", machine.at(), steps);
+}
+
+void answer_run_at_pace(Request request) {
+  Pace pace;
+  pace.every_ms = request.u32();
+  pace.slow = request.u32();
+  pace.period_ms = request.u32();
+  pace.from_ms = request.u32();
+  pace.to_ms = request.u32();
+  answer_run(request, true, pace);
 }
 
 }  // namespace tiniscript

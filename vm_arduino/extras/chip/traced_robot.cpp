@@ -23,7 +23,7 @@ void put_device(size_t name, int32_t value, bool is_yes_no) {
 
 bool TracedRobot::read(Request* request) {
   now_ms = 0;
-  must_wait = is_off = false;
+  must_wait = was_slow = is_off = false;
   sensor_count = request->u8();
   if (sensor_count > kMostSensors) return false;
   for (uint8_t k = 0; k < sensor_count; k++) {
@@ -50,6 +50,7 @@ bool TracedRobot::read(Request* request) {
   turn = request->u32();
   not_ready = request->u32();
   asked = 0;
+  pace = kAtOnce;
   return true;
 }
 
@@ -57,6 +58,14 @@ bool TracedRobot::is_ready() {
   if (must_wait && !has_tasks) say("ASKED AGAIN AT ONCE\n");
   must_wait = not_ready != 0 && ++asked % not_ready == 0;
   return !must_wait;
+}
+
+bool TracedRobot::is_slow(uint8_t sensor) {
+  if (sensor >= 32 || (pace.slow >> sensor & 1) == 0) return false;
+  const uint32_t at_ms = static_cast<uint32_t>(now_ms) % pace.period_ms;
+  const bool is = pace.from_ms <= at_ms && at_ms < pace.to_ms;
+  was_slow |= is;
+  return is;
 }
 
 void TracedRobot::say(const char* what) const {
@@ -78,7 +87,7 @@ void robot_motors(int8_t left, int8_t right) {
 void robot_off() { robot.is_off = true; }
 
 bool robot_read(uint8_t sensor, int32_t* value) {
-  if (!robot.is_ready()) return false;
+  if (!robot.is_ready() || robot.is_slow(sensor)) return false;
   TracedRobot::Sensor& from = robot.sensors[sensor];
   const uint16_t last = static_cast<uint16_t>(from.count - 1);
   const uint16_t index = from.taken < last ? from.taken : last;

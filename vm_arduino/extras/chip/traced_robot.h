@@ -18,6 +18,18 @@ constexpr uint8_t kMostSensors = 255;
 constexpr uint8_t kMostActuators = 255;
 #endif
 
+// When a machine is called: at multiples of so many milliseconds. Some sensors, bits of their
+// numbers, are slow: not ready from one time to another in each period.
+struct Pace {
+  uint32_t every_ms;
+  uint32_t slow;
+  uint32_t period_ms;
+  uint32_t from_ms;
+  uint32_t to_ms;
+};
+
+constexpr Pace kAtOnce = {1, 0, 1, 0, 0};
+
 struct TracedRobot {
   struct Sensor {
     size_t name;      // where it begins in the request
@@ -38,10 +50,12 @@ struct TracedRobot {
   unsigned long now_ms;  // on Linux and macOS it does not wrap around
   uint32_t not_ready;  // every so many questions the robot is not ready; 0: always ready
   uint32_t asked;
+  Pace pace;
   uint32_t speed;
   uint32_t turn;
   bool has_tasks;  // each of them asks by itself
   bool must_wait;  // it was not ready, and this tick should be over
+  bool was_slow;   // in this call
   bool is_off;     // and no motor was set since
   uint8_t sensor_count;
   uint8_t actuator_count;
@@ -54,6 +68,7 @@ struct TracedRobot {
 
   // Whether it reads, or shows, what it is asked now.
   bool is_ready();
+  bool is_slow(uint8_t sensor);
 
   // Begins a line of the trace; the caller adds the rest.
   void say(const char* what) const;

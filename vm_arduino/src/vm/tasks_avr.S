@@ -25,6 +25,7 @@
 #define set_motors _ZN10tiniscript7Machine10set_motorsEj
 #define wait _ZN10tiniscript7Machine4waitEm
 #define go_on _ZN10tiniscript7Machine5go_onEv
+#define blocks _ZN10tiniscript7Machine6blocksEv
 #define comes_to_end _ZN10tiniscript7Machine12comes_to_endEv
 
 ; Points Z to something that lies far behind the machine's first byte.
@@ -140,11 +141,25 @@ waits_for_clock:
     call sends
     cpse r24, r1
     rjmp 8f
-    rjmp end_turn
+9:  rjmp end_turn
 8:  movw r30, me
 5:  ld r24, Z
-    sbrc r24, tini_has_time_bit
+    sbrc r24, tini_has_begun_bit
     rjmp 6f
+#ifdef tiniscript_has_discs
+    movw r24, r28
+    call blocks
+    tst r24
+    brne 9b
+    movw r30, me
+#else
+    rcall may_begin
+    tst r24
+    breq 9b
+#endif
+    ld r24, Z
+    sbrc r24, tini_has_time_bit
+    rjmp go_on_with_turn
     ori r24, 1 << tini_has_time_bit
     st Z, r24
     rcall set_clock
@@ -409,17 +424,16 @@ _ZN10tiniscript7Machine5driveEm:
     rcall enter
 drive_in_turn:
     rcall keep_move
-; go_on
+    tst r24
+    brne go_on_with_move
+    ret
+; go_on, where it may begin
 go_on_with_move:
     movw r30, me
     ld r24, Z
     sbrc r24, tini_has_begun_bit
     rjmp 3f
-    rcall may_begin
-    cpse r24, r1
-    rjmp 1f
-    ret
-1:  ldd r24, Z+tini_task_code_at
+    ldd r24, Z+tini_task_code_at
     sbrc r24, tini_waits_bit
     rjmp 2f
     rcall take
@@ -542,7 +556,16 @@ let_pass:
     std Z+tini_task_rest_at+3, r0
     ret
 
-; keep_move: the time is in r20 to r23. Z is the task's record then.
+; bool Machine::watch(uint32_t move_ms)
+    .global _ZN10tiniscript7Machine5watchEm
+    .type _ZN10tiniscript7Machine5watchEm, @function
+_ZN10tiniscript7Machine5watchEm:
+    rcall enter
+    movw r30, me
+    ldd r24, Z+tini_task_code_at
+    ori r24, 1 << tini_watches_bit
+    std Z+tini_task_code_at, r24
+; keep_move: the time is in r20 to r23. Returns what `may_begin` does.
 keep_move:
     movw r30, me
     std Z+tini_task_rest_at, r20
@@ -556,17 +579,6 @@ keep_move:
     ld r24, Z
     andi r24, ~(1 << tini_has_begun_bit) & 0xff
     st Z, r24
-    ret
-
-; bool Machine::watch(uint32_t move_ms)
-    .global _ZN10tiniscript7Machine5watchEm
-    .type _ZN10tiniscript7Machine5watchEm, @function
-_ZN10tiniscript7Machine5watchEm:
-    rcall enter
-    rcall keep_move
-    ldd r24, Z+tini_task_code_at
-    ori r24, 1 << tini_watches_bit
-    std Z+tini_task_code_at, r24
 ; The opposite of `blocks`: r24 is 0 where it does. Z is the task's record.
 may_begin:
     ldd r24, Z+tini_task_code_at
@@ -684,6 +696,8 @@ _ZN10tiniscript7Machine5untilEb:
     ld r24, Z
     sbrc r24, tini_has_begun_bit
     rcall set_clock
+    ori r24, 1 << tini_has_begun_bit
+    st Z, r24
     sbrc r24, tini_is_moving_bit
     rcall end_move
     rjmp yes

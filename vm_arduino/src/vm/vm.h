@@ -163,7 +163,7 @@ class Machine {
   void end_move();
   void leave_move(TaskRecord* task);
   void stand_still(TaskRecord* task);
-  bool blocks();
+  bool blocks() tini_called_by_assembly;
   void motors(Powers powers);
   void stop_motors();
   bool is_below() const;  // whether a higher task has the motors

@@ -127,7 +127,7 @@ bool Machine::wait(uint32_t duration_ms) {
 
 tini_noinline bool Machine::drive(uint32_t move_ms) {
   keep_move(move_ms);
-  return go_on();
+  return !blocks() && go_on();
 }
 
 // Begins to watch a move or a wait.
@@ -142,18 +142,18 @@ bool Machine::until(bool stop) {
   TaskRecord* const me = task_.me;
   if (!stop) return go_on();
   if (me->is(kHasBegun)) set_clock(me);
+  me->state |= kHasBegun;
   if (me->is(kIsMoving)) end_move();
   return true;
 }
 
-// Begins a move where it has not begun, and waits for its end, or for the next check of its UNTIL.
+// Begins a move that may where it has not begun, and waits for its end, or for the next check of its UNTIL.
 // Returns whether the next instruction may run now.
 tini_noinline bool Machine::go_on() {
   TaskRecord* const me = task_.me;
   const bool is_watched = me->is_watched();
   const bool measures = me->measures();
   if (!me->is(kHasBegun)) {
-    if (blocks()) return false;
     if (me->is_move()) {
       take();
       me->state |= kIsMoving | kDrives;

@@ -24,7 +24,7 @@ void Machine::find_tasks() {
       const DecodeForm form = decode_form_of(code_[at]);
       at = static_cast<uint16_t>(at + form.size());
       if (form.role() != kind || me == main_task()) continue;
-      me->state = kHasTime;
+      me->state = kAtFirst;
       me->pc = at;
       if (kind == ControlRole::kWhen) me->start = at;
       me++;
@@ -34,7 +34,7 @@ void Machine::find_tasks() {
     kind = ControlRole::kTask;
   }
   task_.me = task_.holder = main_task();
-  task_.me->state = kHasTime;
+  task_.me->state = kAtFirst;
 }
 
 // Sends the value that a SHOW has kept. Returns whether there was room.
@@ -153,6 +153,8 @@ bool Machine::begin_turn(TaskRecord* me) {
   me->framed = static_cast<uint8_t>(me->framed - task_.framed);  // `end_turn` adds what it is then
   task_.pc = me->pc;
   if (me->has_unsent() && !sends()) return false;
+  // the motors may have been taken since its check began
+  if (!me->is(kHasBegun) && blocks()) return false;
   if (!me->is(kHasTime)) {
     me->state |= kHasTime;
     set_clock(me);

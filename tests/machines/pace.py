@@ -1,0 +1,79 @@
+"""When a machine is called, and which readings keep it waiting: the same for every machine.
+
+`vm_arduino/extras/chip/runner.cpp` does in C++ what `trace_at` does here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from struct import pack
+from typing import TYPE_CHECKING, NamedTuple
+
+from tests.machines.python import lists_of
+from tiniscript.base.kit import Kit
+from tiniscript.base.trace import TracedRobot
+from tiniscript.bytecode.image import HEADER_BYTES
+from tiniscript.vm.runner import MachineOf
+from tiniscript.vm.state import DONE, FAULT
+
+if TYPE_CHECKING:
+    from tests.machines import Senses
+
+BUDGET = 60_000  # instructions of a call: more than a task runs in a turn
+
+
+class Pace(NamedTuple):
+    """A call at multiples of so many milliseconds; slow sensors, not ready from one time to
+    another in each period."""
+
+    every_ms: int = 1
+    slow: Sequence[str] = ()
+    period_ms: int = 1
+    from_ms: int = 0
+    to_ms: int = 0
+
+    def packed(self, kit: Kit) -> bytes:
+        """Return it as the request of a machine in C++ begins with it."""
+        names = [sensor.name for sensor in kit.sensors]
+        slow = sum(1 << names.index(name) for name in self.slow)
+        return pack("<5I", self.every_ms, slow, self.period_ms, self.from_ms, self.to_ms)
+
+    def is_slow(self, name: str, now_ms: int) -> bool:
+        return name in self.slow and self.from_ms <= now_ms % self.period_ms < self.to_ms
+
+
+AT_ONCE = Pace()
+
+
+class PacedRobot(TracedRobot):
+    """A robot whose slow sensors are not always ready."""
+
+    def __init__(self, pace: Pace, kit: Kit, senses: Senses) -> None:
+        super().__init__(kit, lists_of(kit, senses))
+        self.pace = pace
+        self.was_slow = False  # in this call
+
+    def read(self, sensor: int) -> int | None:
+        if self.pace.is_slow(self.kit.sensors[sensor].name, self.now_ms):
+            self.was_slow = True
+            return None
+        return super().read(sensor)
+
+
+def trace_at(pace: Pace, machine_of: MachineOf, image: bytes, kit: Kit, senses: Senses) -> str:
+    """Return the trace of an image, which is verified, of a machine that is called at this pace."""
+    robot = PacedRobot(pace, kit, senses)
+    machine = machine_of(image[HEADER_BYTES:], robot, len(kit.sensors), senses.seed)
+    while True:
+        robot.was_slow = False
+        status = machine.tick(robot.now_ms, BUDGET)
+        if status in (DONE, FAULT):
+            robot.say(status, (), f"FAULT {machine.fault}" if status == FAULT else "DONE")
+        else:
+            wake_ms = max(machine.wake_ms, robot.now_ms + robot.was_slow)
+            robot.now_ms = -(-wake_ms // pace.every_ms) * pace.every_ms
+            if robot.now_ms <= senses.max_ms:
+                continue
+            robot.now_ms = senses.max_ms
+            robot.say("LIMIT", (), "LIMIT")
+        return "".join(f"{event}\n" for event in robot.events)
