@@ -121,6 +121,15 @@ def test_a_fault_has_its_place_and_a_cut_run_its_end() -> None:
     assert tiniscript.run("LOOP(FOREVER);X = 1;END_LOOP", max_steps=500).steps == 500
 
 
+def test_a_run_is_cut_where_tsc_run_cuts_it(tsc: Tsc) -> None:
+    """A long calculation ends in both, and a loop that takes no time is cut."""
+    for count, ending in (("900000", "DONE"), ("FOREVER", "LIMIT")):
+        text = f"N = 0;LOOP({count});N = 1;END_LOOP;SHOW(1)"
+        trace = tiniscript.run(text, machine="cpp")
+        assert str(trace) == tsc("run", "-e", text, "--machine", "cpp").gives(0).out
+        assert trace.ending == ending
+
+
 def test_a_seed_makes_a_run_repeat() -> None:
     def shown(seed: int) -> str:
         return str(tiniscript.run("LOOP(5);SHOW(RANDOM(1, 1000));END_LOOP", seed=seed))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from tests.machines import host, wasm
 from tests.machines.python import run_python
 from tiniscript.base.kit import Kit
+from tiniscript.vm.runner import MAX_STEPS
 
 
 class Senses(NamedTuple):
@@ -15,7 +16,7 @@ class Senses(NamedTuple):
 
     readings: Mapping[str, Sequence[int]] = {}
     max_ms: int = 60_000
-    max_steps: int = 10_000_000
+    max_steps: int = MAX_STEPS
     seed: int = 1
 
 

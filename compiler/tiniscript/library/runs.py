@@ -16,7 +16,7 @@ from tiniscript.library.errors import UsageError, sentence
 from tiniscript.library.programs import Language, Program, program_of
 from tiniscript.library.source_map import Map
 from tiniscript.robots.profile import Robot
-from tiniscript.vm.runner import MachineOf
+from tiniscript.vm.runner import MAX_STEPS, MachineOf
 from tiniscript.vm.runner import run as run_code
 from tiniscript.vm.tasks import machine_of as python_machine
 
@@ -79,7 +79,7 @@ def run(
     *,
     sensors: Readings | None = None,
     max_time: float = 60,
-    max_steps: int = 1_000_000,
+    max_steps: int = MAX_STEPS,
     seed: int = 1,
     machine: Literal["python", "cpp"] = "python",
     language: Language = "en",

@@ -15,6 +15,7 @@ from tiniscript.vm.state import DONE, FAULT, WAITING, Robot
 from tiniscript.vm.tasks import machine_of as python_machine
 
 SLICE = 10_000  # instructions between two looks at the limit
+MAX_STEPS = 10_000_000  # instructions, where no other limit is asked for
 
 
 class AnyMachine(Protocol):
@@ -43,7 +44,7 @@ def run(
     kit: Kit,
     senses: Callable[[int], int],
     max_ms: int = 60_000,
-    max_steps: int = 10_000_000,
+    max_steps: int = MAX_STEPS,
     seed: int = 1,
     machine_of: MachineOf = python_machine,
 ) -> Iterator[Event | Ending]:

@@ -15,10 +15,9 @@ from tiniscript.cli.faults import fault_text
 from tiniscript.cli.options import sensor_lists, thousandths, whole_number
 from tiniscript.library.runs import begun, cpp_machine
 from tiniscript.robots.profile import Robot
-from tiniscript.vm.runner import MachineOf
+from tiniscript.vm.runner import MAX_STEPS, MachineOf
 
 LONGEST = 10**12  # milliseconds
-STEPS = 10_000_000
 
 
 def run(options: Namespace, language: str) -> int:
@@ -28,7 +27,7 @@ def run(options: Namespace, language: str) -> int:
         return replay(options, language)
     max_ms = thousandths("--max-time", options.max_time, 60_000, 0, LONGEST, language)
     pace = thousandths("--pace", options.pace, 1000, 0, 10**9, language)
-    max_steps = whole_number("--max-steps", options.max_steps, STEPS, 0, 10**15, language)
+    max_steps = whole_number("--max-steps", options.max_steps, MAX_STEPS, 0, 10**15, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     given = inputs.program(options)
     robot = inputs.robot(options, language)
