@@ -34,6 +34,8 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 SOURCES = ROOT / "vm_arduino"
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
 FLAGS = ("-std=c++11", "-O1", "-g1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+# As Python's machine does; a chip counts jumps back and calls.
+COUNTS_INSTRUCTIONS = "-Dtiniscript_counts_instructions"
 
 FOLDER = re.compile(rb'^(# \d+ ")[^"\n]*/', re.M)  # of a line that says where the next are from
 # Whose builds are used: root's tests in CI compile nothing that the user's have compiled.
@@ -110,6 +112,10 @@ class Process:
     def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
         """Run an image, or raise what refuses it."""
         raise NotImplementedError
+
+    def agrees(self, got: Ran, want: Ran, max_ms: int) -> bool:
+        """Whether it has done what the machine in Python has."""
+        return got == want
 
     def run_at(self, pace: Pace, image: bytes, kit: Kit, senses: Senses) -> Ran:
         """Run an image on a robot that is called at a pace, and that some readings keep waiting."""
@@ -247,7 +253,7 @@ def ran(answer: str) -> Ran:
 def built(sources: Path, builds: Path = BUILDS) -> Path:
     """Return the program made from `sources`, a folder like `vm_arduino`."""
     inputs = files_in(sources, "src", "src/vm", "extras/chip", "extras/host")
-    return compiled(inputs, FLAGS, builds)
+    return compiled(inputs, (*FLAGS, COUNTS_INSTRUCTIONS), builds)
 
 
 def files_in(sources: Path, *folders: str) -> list[Path]:

@@ -16,6 +16,7 @@ from threading import Timer
 from typing import TYPE_CHECKING
 
 from tests.machines import host
+from tests.machines.chips import agrees
 from tests.machines.host import SOURCES, WARNINGS, Process, Ran, contents, kept, ran, run_request
 from tests.machines.text_reader import Answer
 from tiniscript.base.kit import Kit
@@ -46,6 +47,9 @@ class Emulated(Process):
 
     def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
         return ran(self.ask(b"R", run_request(image, kit, senses)).decode())
+
+    def agrees(self, got: Ran, want: Ran, max_ms: int) -> bool:
+        return agrees(got, want, max_ms)
 
     def read(self, texts: Sequence[bytes], kit: Kit, room: int) -> list[Answer]:
         """Return what the reader of text says of each."""

@@ -153,5 +153,11 @@ KNOWN: tuple[Known, ...] = (
     Known("a stall that has been told", "vm_arduino/src/boards/avr/watchdog.cpp",
           "  has_stalled = false;\n", "",
           "tests/firmware/test_uno_watchdog.py::test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program"),
+    Known("a look at an UNTIL goes on below who has the motors", "compiler/tiniscript/vm/tasks.py",
+          "elif not task.has_begun and self", "elif task.has_set and self",
+          "tests/vm/test_slow_readings.py::test_random_programs_with_slow_readings"),
+    Known("the same in C++", "vm_arduino/src/vm/vm_tasks.cpp",
+          "  if (!me->is(kHasBegun) && blocks()) return false;\n", "",
+          "tests/vm/test_slow_readings.py::test_a_look_that_waits_for_an_echo_is_over_when_the_motors_are_taken"),
 )
 # fmt: on

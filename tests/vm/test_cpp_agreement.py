@@ -11,6 +11,7 @@ import time
 import zlib
 from collections import Counter
 from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import product
 from struct import pack as struct_pack
 
@@ -40,11 +41,12 @@ from tests.support.cpp_checks import (
 from tests.support.random_codes import random_codes, simple, some_programs
 from tests.support.rows import each_row
 from tests.vm.test_cases import disassemblies_alone, robot_and_senses
+from tiniscript import compile_text
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.disassembly import assemble
 from tiniscript.bytecode.image import EVERYTHING, GO, HEADER_BYTES, REFUSALS, TASKS, pack, sealed
 from tiniscript.bytecode.opcodes import BY_NAME, NEEDS_GO, OPS
-from tiniscript.bytecode.verify import RULES
+from tiniscript.bytecode.verify import RULES, loaded
 from tiniscript.vm.tasks import machine_of
 
 BATCH = 12_500
@@ -272,6 +274,22 @@ def test_images(seed: int) -> None:
 def test_images_of_programs(seed: int) -> None:
     """Header, code and devices, in this order, for robots of which some have other devices."""
     cpp_checks.check_whole_images(host(), seed, 2000)
+
+
+def test_needs_count_and_not_the_minor_version() -> None:
+    """Code that has what the image does not need is refused, in a header of each minor version."""
+    for text, bit in (("TASK;END_TASK;SHOW(1)", TASKS), ("F(2 CM, 100);SHOW(1)", GO)):
+        whole = compile_text(text, KIT).image
+        assert (whole[2:4], whole[14]) == (b"\2\1", bit)
+        for minor in range(3):
+            for needs in (bit, 0):
+                changed = bytearray(whole)
+                changed[3], changed[14] = minor, needs
+                image = sealed(bytes(changed))
+                ours = cpp_checks.refusal_of(partial(loaded, image, KIT))
+                theirs = cpp_checks.refusal_of(partial(host().run, image, KIT, Senses()))
+                want = "OTHER_VERSION" if minor > 1 else "" if needs else "UNKNOWN_OPCODE"
+                assert ours == theirs and want in ours and bool(want) == bool(ours), (text, minor)
 
 
 def test_long_images() -> None:

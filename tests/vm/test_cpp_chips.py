@@ -1,7 +1,7 @@
 """The cases, and samples of random programs, codes, images and numbers, on simulated chips.
 
-The ATmega328P (`uno`, and `nano` without tasks) and the ATmega2560 (`mega`) are started for each
-image: with `--whole` each runs 400 programs, and the first one some 2,000 codes. The chips of ESP
+The ATmega328P (`uno`, and `nano` without tasks) and the ATmega2560 (`mega`, and `portable`, whose
+machine is the C++ of all other chips) are started for each image: with `--whole` each runs 400 programs, and the first one some 2,000 codes. The chips of ESP
 boards (`lx6`, `lx106`, `rv32imc`) run in emulators that answer nearly as quickly as the host's
 process: each also judges 16,000 codes and runs those that are accepted, judges 10,000 images, and
 does 210,000 operations.
@@ -18,7 +18,7 @@ import pytest
 
 from tests.machines import Senses, avr
 from tests.machines import board as boards
-from tests.machines.chips import Chip
+from tests.machines.chips import Chip, agrees
 from tests.machines.host import Ran, ran, run_request
 from tests.machines.pace import Pace
 from tests.machines.python import ran_python
@@ -44,10 +44,7 @@ def _run_emulated(name: str, image: bytes, kit: Kit, senses: Senses) -> Ran:
     return emulated(name).run(image, kit, senses)
 
 
-CHIPS = {
-    name: Chip(avr.missing(), partial(avr.ran_on, name), 700, counts_jumps=True)
-    for name in avr.BUILT
-}
+CHIPS = {name: Chip(avr.missing(), partial(avr.ran_on, name), 700) for name in avr.BUILT}
 CHIPS |= {name: Chip(emulator_missing(name), partial(_run_emulated, name)) for name in chips.CHIPS}
 
 
@@ -97,7 +94,7 @@ def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
     if isinstance(got, str) or isinstance(want, str):
         assert got == want, image.hex(" ")
         return str(want)
-    assert CHIPS[chip].agrees(got, want, senses.max_ms), f"{image.hex(' ')}\n{got}\n{want}"
+    assert agrees(got, want, senses.max_ms), f"{image.hex(' ')}\n{got}\n{want}"
     return want.trace.splitlines()[-1]
 
 
@@ -225,15 +222,15 @@ def test_programs_with_tasks(chip: str) -> None:
     cpp_checks.check_task_programs(emulated(chip), 2000, 100)
 
 
-@some_chips(avr.UNO, avr.MEGA)
-def test_programs_with_tasks_in_assembly(chip: str) -> None:
+@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
+def test_programs_with_tasks_on_an_avr(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(3000, 60)):
         same_on_the_chip(chip, image, cpp_checks.KIT, senses)
         ran = avr.ran_on(chip, image, cpp_checks.KIT, senses, 2 + number % 3)
         assert ran.trace == cpp_checks.slow_run(image, senses, 2 + number % 3), ran.trace
 
 
-@some_chips(avr.UNO, avr.MEGA)
+@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
 @pytest.mark.parametrize("name", avr_tasks.PROGRAMS)
 def test_hard_programs_with_tasks(chip: str, name: str) -> None:
     program = avr_tasks.PROGRAMS[name]
@@ -245,7 +242,7 @@ def test_hard_programs_with_tasks(chip: str, name: str) -> None:
         assert ran.trace == cpp_checks.slow_run(image, senses, not_ready, late_ms), ran.trace
 
 
-@some_chips(avr.UNO, avr.MEGA)
+@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
 def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
     """Nothing else ends a tick there. They lie at all low bytes of an address, in a long loop."""
     calls = "D;" * 130
@@ -256,7 +253,7 @@ def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
         assert (ran.trace, ran.steps) == want
 
 
-@some_chips(avr.UNO, avr.MEGA)
+@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
 def test_late_tasks_behind_byte_256(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(0, 40, cpp_checks.FAR)):
         late_ms = (0, 7, 36)[number % 3]
@@ -272,8 +269,8 @@ def test_programs_with_ways(chip: str) -> None:
     cpp_checks.check_way_programs(emulated(chip), 2000, 100)
 
 
-@some_chips(avr.UNO, avr.MEGA)
-def test_programs_with_ways_in_assembly(chip: str) -> None:
+@some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
+def test_programs_with_ways_on_an_avr(chip: str) -> None:
     for image, kit, senses in cpp_checks.some_way_programs(3000, 60):
         if len(image) <= CHIPS[chip].most_bytes:
             same_on_the_chip(chip, image, kit, senses)

@@ -18,7 +18,7 @@ from tests.machines import Senses, avr, host
 from tests.machines.host import host as host_machine
 from tests.machines.pace import Pace, trace_at
 from tests.oracle.interpreter import PAPER_KIT, run
-from tests.oracle.task_programs import task_program
+from tests.oracle.task_programs import TaskAuthor, task_program
 from tests.support.campaign import each_seed, wanted
 from tests.support.kits import KITS
 from tiniscript import compile_text
@@ -55,6 +55,7 @@ MACHINES: dict[str, tuple[Run, str]] = {
     "host": (run_host, host.missing()),
     "uno": (partial(run_avr, avr.UNO), avr.missing()),
     "mega": (partial(run_avr, avr.MEGA), avr.missing()),
+    "portable": (partial(run_avr, avr.PORTABLE), avr.missing()),
 }
 each_machine = pytest.mark.parametrize(
     "machine",
@@ -71,12 +72,12 @@ LIGHTS = {"LIGHT_R": [9000, 0, 9000, 0], "DISTANCE": [5000]}
 
 
 @each_machine
-def test_a_check_that_waits_for_an_echo_is_over_when_the_motors_are_taken_again(machine: Run) -> None:
+def test_a_look_that_waits_for_an_echo_is_over_when_the_motors_are_taken(machine: Run) -> None:
     """The echo that comes at 150 ms is of a look at 120: the task has the motors back at 260."""
     image = compile_text(TAKEN_AGAIN.format("F(FOREVER, 40) UNTIL(DISTANCE < 10)"), KIT).image
     pace = Pace(slow=ECHO, period_ms=1000, from_ms=100, to_ms=150)
-    trace = machine(pace, image, Senses(LIGHTS, 300))
-    assert trace == """\
+    got = machine(pace, image, Senses(LIGHTS, 300))
+    want = """\
 0 READ LIGHT_R 9
 0 MOTORS -50 -50
 100 MOTORS 0 0
@@ -91,6 +92,7 @@ def test_a_check_that_waits_for_an_echo_is_over_when_the_motors_are_taken_again(
 300 READ LIGHT_R 0
 300 LIMIT
 """
+    assert got == want
 
 
 @each_machine
@@ -103,8 +105,8 @@ TASK;M(20, 30);F(FOREVER, 40) UNTIL(LIGHT_L > 5 AND DISTANCE < 10);SHOW(1);END_T
         KIT,
     ).image
     pace = Pace(slow=ECHO, period_ms=1000, from_ms=0, to_ms=70)
-    trace = machine(pace, image, Senses({"LIGHT_L": [9000], "DISTANCE": [5000]}, 300))
-    assert trace == """\
+    got = machine(pace, image, Senses({"LIGHT_L": [9000], "DISTANCE": [5000]}, 300))
+    want = """\
 0 MOTORS 20 30
 0 READ LIGHT_L 9
 20 MOTORS -50 -50
@@ -114,6 +116,7 @@ TASK;M(20, 30);F(FOREVER, 40) UNTIL(LIGHT_L > 5 AND DISTANCE < 10);SHOW(1);END_T
 120 SHOW 1
 120 DONE
 """
+    assert got == want
 
 
 @each_machine
@@ -126,8 +129,8 @@ F(0.01, 20);X = DISTANCE;SHOW(2);W(1)""",
         KIT,
     ).image
     pace = Pace(slow=ECHO, period_ms=1000, from_ms=0, to_ms=70)
-    trace = machine(pace, image, Senses({"DISTANCE": [5000]}, 100))
-    assert trace == """\
+    got = machine(pace, image, Senses({"DISTANCE": [5000]}, 100))
+    want = """\
 0 MOTORS 20 20
 10 MOTORS 0 0
 20 MOTORS -50 -50
@@ -137,13 +140,39 @@ F(0.01, 20);X = DISTANCE;SHOW(2);W(1)""",
 70 SHOW 2
 100 LIMIT
 """
+    assert got == want
+
+
+class RivalAuthor(TaskAuthor):
+    """Writes programs in which WHENs and TASKs take the motors from each other's moves, and these
+    have an UNTIL that reads."""
+
+    def task(self) -> None:
+        if self.rng.random() < 0.3:
+            super().task()
+            return
+        time = self.rng.choice(("0", "0.01", "0.03", "0.05"))
+        self.lines.append(f"WHEN({self.condition()});B({time}, 50)")
+        self.body(self.rng.randint(0, 1), 0)
+        self.lines.append("END_WHEN")
+
+    def until(self, chance: float) -> str:
+        found = self.rng.choice(("DISTANCE < 15", "LIGHT_L > 500", "DISTANCE < 8 AND LIGHT_L < 5"))
+        return f" UNTIL({found})" if self.rng.random() < 2 * chance else ""
+
+
+def rival_program(rng: random.Random) -> tuple[str, dict[str, list[int]]]:
+    text = RivalAuthor(rng).program()
+    distances = [1000 * rng.choice((5, 9, 50, 50, 50)) for _ in range(40)]
+    lights = [1000 * rng.choice((0, 0, 600)) for _ in range(40)]
+    return text, {"DISTANCE": distances, "LIGHT_L": lights}
 
 
 def a_pace(rng: random.Random) -> Pace:
     """An echo that takes a part of each period, of a robot that is called often or seldom."""
-    period_ms = rng.choice((7, 31, 50, 90, 170))
-    from_ms = rng.randrange(period_ms)
-    to_ms = rng.randint(from_ms, period_ms)
+    period_ms = rng.choice((31, 50, 90, 130, 170))
+    from_ms = rng.randrange(period_ms // 3)
+    to_ms = rng.randint(2 * from_ms, period_ms)
     slow = rng.choice((ECHO, ("LIGHT_L",), ("DISTANCE", "LIGHT_L")))
     return Pace(rng.choice((1, 1, 1, 3, 7, 25)), slow, period_ms, from_ms, to_ms)
 
@@ -151,7 +180,7 @@ def a_pace(rng: random.Random) -> Pace:
 def check_program(seed: int, machines: Sequence[Run]) -> None:
     """Machines do what the oracle does, with tasks and readings that come late."""
     rng = random.Random(seed)
-    text, readings = task_program(rng)
+    text, readings = rng.choice((task_program, rival_program))(rng)
     pace = a_pace(rng)
     want = run(
         text, PAPER_KIT, readings, MAX_MS, seed=seed + 1, is_slow=pace.is_slow,

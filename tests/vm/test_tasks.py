@@ -107,7 +107,8 @@ def test_others_go_on_while_a_reading_is_not_ready() -> None:
     machine = machine_for(text, robot, senses)
     for now_ms in range(10):
         robot.now_ms = now_ms
-        assert machine.tick(now_ms, 1000) == RUNNING
+        assert machine.tick(now_ms, 1000) == WAITING
+        assert machine.wake_ms <= now_ms
     assert [str(event) for event in robot.events] == ["0 SHOW 1", "5 SHOW 2"]
 
 

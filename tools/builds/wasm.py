@@ -24,12 +24,15 @@ from tools import ROOT
 SOURCES = "vm_arduino"
 COMMAND = "python -m tools.builds.wasm"
 
+# Who looks at a program follows it instruction by instruction.
+WATCHED = "-Dtiniscript_counts_instructions"
+
 # No library is linked, so what the machine calls is in its own sources or in wasm itself.
 FLAGS = (
     "-target", "wasm32-freestanding", "-mcpu=generic+bulk_memory+sign_ext", "-std=c++11", "-Oz",
     "-fno-exceptions", "-fno-rtti", "-fno-sanitize=all", "-fno-stack-protector", "-g0", "-nostdlib",
     "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror",
-    "-Wl,--no-entry", "-Wl,--strip-all", "-Wl,-z,stack-size=16384",
+    WATCHED, "-Wl,--no-entry", "-Wl,--strip-all", "-Wl,-z,stack-size=16384",
 )  # fmt: skip
 
 

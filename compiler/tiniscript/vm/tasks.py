@@ -117,6 +117,7 @@ class TaskMachine(Machine):
 
     @property
     def wake_ms(self) -> int:
+        """Return when the next task is due: it may be at once, or was."""
         waiting = (each.clock_ms for each in self.tasks if self._waits_for_clock(each))
         return min(waiting, default=self.now_ms + NEVER_MS)
 
@@ -157,7 +158,7 @@ class TaskMachine(Machine):
             if self.next_rank == len(self.tasks):
                 self.next_rank = 0
                 self.is_first_round = False
-                self.status = RUNNING if self.wake_ms <= self.now_ms else WAITING
+                self.status = WAITING
                 return False
             task = self.tasks[self.next_rank]
             self.next_rank += 1

@@ -47,6 +47,7 @@ void answer_late(Request request) {
     const uint32_t now_ms = static_cast<uint32_t>(robot.now_ms);
     if (machine.tick(now_ms, kSlice) != Status::kWaiting) break;
     const uint32_t more_ms = machine.wake_ms() - now_ms;
+    if (more_ms == 0x7fffffff) break;  // nothing happens by itself
     robot.now_ms += (more_ms < 0x80000000 ? more_ms : 0) + uint64_t{late};
   }
 }

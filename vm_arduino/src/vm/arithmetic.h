@@ -22,7 +22,7 @@ tini_always_inline Comparator comparator_of(Op op) {
 // Whether `a` and `b` compare so. It does not branch: three bits for each comparator, the first one
 // below, say whether it holds if `a` is more, equal or less.
 tini_always_inline bool relates(int32_t a, Comparator comparator, int32_t b) {
-  constexpr uint32_t kHolds = 2 | 5 << 3 | 4 << 6 | 6 << 9 | 1 << 12 | 3 << 15;
+  constexpr uint32_t kHolds = 2 | 5 << 3 | 4 << 6 | 6 << 9 | 1 << 12 | uint32_t{3} << 15;
   const uint8_t order = static_cast<uint8_t>((a <= b) + (a < b));
   return (kHolds >> (3 * static_cast<uint8_t>(comparator) + order) & 1) != 0;
 }

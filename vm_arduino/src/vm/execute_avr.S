@@ -11,10 +11,11 @@
 ;   r1     0
 ; A statement leaves the stack empty, so it may use a and b as it likes.
 
-#ifdef __AVR__
+#include "execute_avr.h"
+
+#ifdef tiniscript_in_assembly
 
 #include "bytecode_avr.S"
-#include "execute_avr.h"
 #include "wide_avr.h"
 
 #define vars r4         /* and r5: the first variable */

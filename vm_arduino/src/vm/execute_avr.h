@@ -6,7 +6,7 @@
 #include "has_tasks.h"
 
 // Moves that no discs measure.
-#if defined(__AVR__) && defined(tiniscript_has_tasks) && !defined(tiniscript_has_discs)
+#if defined(tiniscript_in_assembly) && defined(tiniscript_has_tasks) && !defined(tiniscript_has_discs)
 #define tiniscript_moves_in_assembly
 #endif
 
@@ -27,7 +27,7 @@
 #define tini_framed_at 19
 #ifdef tiniscript_has_tasks
 #define tini_others_at 29
-#define tini_round_at 30
+#define tini_is_quiet_at 30
 #define tini_me_at 31
 #define tini_after_at 33
 #define tini_holder_at 35

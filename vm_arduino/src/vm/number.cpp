@@ -1,6 +1,8 @@
-// For all chips but the AVR.
+// For all chips but an AVR whose machine is in assembly.
 
-#ifndef __AVR__
+#include "has_tasks.h"
+
+#ifndef tiniscript_in_assembly
 
 #include "number.h"
 

@@ -8,7 +8,9 @@
 ; r29 are saved by whoever uses them, and r1 is 0. Those functions bear the names that C++ gives
 ; them. What lies in `wide_avr.S` may be far: a linker that relaxes makes its calls short.
 
-#ifdef __AVR__
+#include "has_tasks.h"
+
+#ifdef tiniscript_in_assembly
 
 #include "bytecode_avr.S"
 #include "wide_avr.h"

@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "has_tasks.h"
+
 // Marks a function that is not copied into each of its callers; and one that finds the machine where
 // its caller has it, and does not know the address.
 #ifdef __AVR__
@@ -21,7 +23,7 @@
 #define tini_always_inline inline __attribute__((always_inline))
 
 // Marks a function that only assembly calls, which whole-program optimization would drop.
-#ifdef __AVR__
+#ifdef tiniscript_in_assembly
 #define tini_called_by_assembly __attribute__((used, externally_visible, noinline))
 #else
 #define tini_called_by_assembly

@@ -54,13 +54,14 @@ tini_always_inline bool Machine::jump(Running* run, uint16_t distance) {
 }
 
 tini_always_inline bool Machine::jump_back(Running* run, uint16_t distance) {
+  if (!kCountsInstructions) run->left--;
   run->next -= distance;
   return true;
 }
 
 // Goes back to the start of a loop.
 tini_always_inline bool Machine::again(Running* run, uint16_t distance) {
-  run->next -= distance;
+  jump_back(run, distance);
   return !has_tasks() || goes_back();
 }
 

@@ -95,7 +95,7 @@ constexpr uint8_t kHasOthers = 128;  // there are tasks beside the main one
 
 // Of a counted loop that is open: how often it still goes around. Of an open call: where it
 // continues. They lie in the order in which they were opened.
-#ifdef __AVR__
+#ifdef tiniscript_in_assembly
 struct Frame {
   uint8_t bytes[tini_frame_bytes];  // as `execute_avr.S` knows them
 };
@@ -114,11 +114,7 @@ struct Task {
   bool is_late;       // 2^31 ms have passed since the start: TIME can no longer express it
 #ifdef tiniscript_has_tasks
   uint8_t others;        // bits, see above
-#ifdef __AVR__
-  uint8_t round_ms;      // when a round began, of 256; less where a task has had a turn since then
-#else
-  uint32_t wake_ms;      // when the next round begins
-#endif
+  bool is_quiet;         // in this millisecond a round has gone by without a turn
   TaskRecord* me;        // whose turn it is; null: a round is over
   uint16_t after;        // behind the move that drives, where its UNTIL looks again before
   TaskRecord* holder;    // who has the motors; where nobody wants them, the main task

@@ -11,7 +11,7 @@
 
 #include "execute_avr.h"
 
-#if defined(__AVR__) && defined(tiniscript_has_tasks)
+#if defined(tiniscript_in_assembly) && defined(tiniscript_has_tasks)
 
 #define me r16          /* and r17 */
 #define me1 r17
@@ -56,8 +56,8 @@ _ZN10tiniscript7Machine9run_roundEv:
     rjmp go_on_with_turn
 
 begin_round:
-    ldd r24, Y+tini_now_at
-    std Y+tini_round_at, r24
+    ldi r24, 1
+    std Y+tini_is_quiet_at, r24
     rcall let_z_be_first
     movw me, r30
     rjmp look_at_task
@@ -266,9 +266,7 @@ end_turn:
     ldd r25, Y+tini_framed_at
     add r24, r25
     std Z+tini_task_framed_at, r24
-    ldd r24, Y+tini_now_at
-    dec r24
-    std Y+tini_round_at, r24
+    std Y+tini_is_quiet_at, r1
     st Y, r1
     ; pass_on
     rcall let_z_be_first

@@ -37,36 +37,32 @@ void Machine::start_prepared(const uint8_t* code, uint16_t length, int32_t* read
   task_.me->clock_ms = now_ms;
 }
 
-// With tasks an AVR begins a round in each millisecond: that takes less flash than to find out when
-// the next turn is.
 uint32_t Machine::wake_ms() const {
 #ifdef tiniscript_has_tasks
-#ifdef __AVR__
-  if (has_tasks()) return now_ms_ + (task_.round_ms == static_cast<uint8_t>(now_ms_));
-#else
-  if (has_tasks()) return task_.wake_ms;
-#endif
+  if (has_tasks()) return next_turn_ms();
 #endif
   return task_.me->clock_ms;
 }
 
-// Whether a wait goes on, or no round is due.
-inline bool Machine::is_early(uint32_t now_ms) const {
-#if defined(tiniscript_has_tasks) && defined(__AVR__)
-  if (has_tasks()) return task_.round_ms == static_cast<uint8_t>(now_ms);
-  return static_cast<int32_t>(late_ms(task_.me)) < 0;
-#else
-  return static_cast<int32_t>(now_ms - wake_ms()) < 0;
+// Whether the time has come for a round: in each millisecond there is one at least, which takes less
+// flash than to find out when the next turn is.
+inline bool Machine::is_due() const {
+#ifdef tiniscript_has_tasks
+  if (has_tasks()) return !task_.is_quiet;
 #endif
+  return static_cast<int32_t>(late_ms(task_.me)) >= 0;
 }
 
 // Ends a wait. False: it goes on.
 bool Machine::may_go_on(uint32_t now_ms) {
+#ifdef tiniscript_has_tasks
+  if (now_ms_ != now_ms) task_.is_quiet = false;
+#endif
   now_ms_ = now_ms;
   // No wait is longer than that, so no tick skips the whole second half of the clock.
   if (static_cast<int32_t>(now_ms - task_.started_ms) < 0) task_.is_late = true;
   if (status_ == Status::kWaiting) {
-    if (is_early(now_ms)) return false;
+    if (!is_due()) return false;
     status_ = Status::kRunning;
     if (!has_tasks() && task_.me->is(kToItsEnd) && !comes_to_end()) return false;
   }
@@ -88,10 +84,6 @@ Status Machine::tick(uint32_t now_ms, uint8_t budget) {
     robot_off();
     status_ = Status::kFault;
   }
-#if defined(tiniscript_has_tasks) && !defined(__AVR__)
-  // the next round is due
-  if (has_tasks() && status_ == Status::kWaiting && !is_early(now_ms)) return Status::kRunning;
-#endif
   return status_;
 }
 
@@ -103,7 +95,7 @@ bool Machine::goes_on(Fault fault) {
 // A run-time check has failed, which verified code never causes.
 bool Machine::fail() { return goes_on(Fault::kBadCode); }
 
-#ifdef __AVR__
+#ifdef tiniscript_in_assembly
 
 // The layout that `execute_avr.S` relies on.
 #define lies_at(member, place) static_assert(offsetof(Machine, member) == place, #member)
@@ -130,7 +122,7 @@ void Machine::check_places() {
 #ifdef tiniscript_has_tasks
   lies_at(status_, 0);
   lies_at(task_.others, tini_others_at);
-  lies_at(task_.round_ms, tini_round_at);
+  lies_at(task_.is_quiet, tini_is_quiet_at);
   lies_at(task_.me, tini_me_at);
   lies_at(task_.after, tini_after_at);
   lies_at(task_.holder, tini_holder_at);

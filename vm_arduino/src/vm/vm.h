@@ -23,11 +23,17 @@ namespace tiniscript {
 // code is cut off.
 constexpr uint8_t kEndBytes = 4;
 
-// The budget of a tick in a main loop.
+// The budget of a tick in a main loop. An AVR leaves it where an interrupt wants attention.
 #ifdef __AVR__
 constexpr uint8_t kTickBudget = 255;
 #else
 constexpr uint8_t kTickBudget = 32;
+#endif
+
+#ifdef tiniscript_counts_instructions
+constexpr bool kCountsInstructions = true;
+#else
+constexpr bool kCountsInstructions = false;
 #endif
 
 class Machine {
@@ -43,9 +49,9 @@ class Machine {
   void start_prepared(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
                       uint32_t seed, uint32_t now_ms);
 
-  // Runs at the time `now_ms` until the program must wait or ends, or for `budget` instructions. On
-  // the AVR the budget counts only jumps back and calls, as code between two of them is short; a
-  // tick also ends there early if `boards/avr/attention.h` requests it.
+  // Runs at the time `now_ms` until the program must wait or ends, or for a `budget` of jumps back and
+  // calls: code between two of them is short. In the assembly of an AVR a tick also ends there early
+  // if `boards/avr/attention.h` requests it. With `tiniscript_counts_instructions` all count.
   Status tick(uint32_t now_ms, uint8_t budget);
 
   const Task& task() const { return task_; }
@@ -56,13 +62,13 @@ class Machine {
   // The begin of the instruction that runs or has faulted.
   uint16_t at() const { return at_; }
 
-  // When the machine has work again, while the program waits.
+  // When the machine has work again, while the program waits; of tasks it may be at once, or was.
   uint32_t wake_ms() const;
 
   // Goes on to where the next instruction begins. False: none may run now.
   bool arrive(uint32_t now_ms);
 
-  // What is left of the last budget: instructions, or jumps on the AVR.
+  // What is left of the last budget.
   uint8_t left() const { return left_; }
 
  private:
@@ -72,6 +78,7 @@ class Machine {
     const uint8_t* at;    // where the instruction begins
     const uint8_t* next;  // its next operand, then the next instruction
     int32_t* top;         // behind the topmost value of the stack
+    uint8_t left;         // of the budget
 
     tini_always_inline uint8_t u8() { return *next++; }
     tini_always_inline int8_t i8() { return static_cast<int8_t>(u8()); }
@@ -82,15 +89,15 @@ class Machine {
     tini_always_inline int16_t i16() { return static_cast<int16_t>(u16()); }
   };
 
-  // The inner loop, in `vm_instructions.cpp`; for the AVR it is in `execute_avr.S`, which knows
-  // where members lie.
-#ifdef __AVR__
+  // The inner loop, in `vm_instructions.cpp`; in assembly it is `execute_avr.S`, which knows where
+  // members lie.
+#ifdef tiniscript_in_assembly
   void execute(uint8_t budget);
 #else
   bool execute(uint8_t budget);  // returns whether the next instruction may run now
 #endif
 
-  // What it is made of, in `steps.h`, but for the AVR.
+  // What it is made of, in `steps.h`.
   bool step(Running* run);
   bool halt(Fault fault);
   uint16_t offset(const uint8_t* at) const;
@@ -127,7 +134,7 @@ class Machine {
   bool sends() tini_called_by_assembly;
 
   uint32_t late_ms(const TaskRecord* task) const;
-  bool is_early(uint32_t now_ms) const;
+  bool is_due() const;
   bool may_go_on(uint32_t now_ms);
   bool goes_on(Fault fault);
   bool fail();
@@ -140,6 +147,7 @@ class Machine {
   bool begin_turn(TaskRecord* me);
   void end_turn();
   bool waits_for_clock(const TaskRecord* task) const;
+  uint32_t next_turn_ms() const;
   void begin_others();
   void end_round();
   bool pause();

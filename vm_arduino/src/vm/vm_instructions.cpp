@@ -1,6 +1,8 @@
-// For all chips but the AVR, which has `execute_avr.S`.
+// For all chips but an AVR whose machine is in assembly: `execute_avr.S`.
 
-#ifndef __AVR__
+#include "has_tasks.h"
+
+#ifndef tiniscript_in_assembly
 
 // Implements each instruction: a `case` for each opcode, in the order of the spec.
 //
@@ -306,17 +308,18 @@ tini_always_inline bool Machine::step(Running* run) {
   return halt(Fault::kBadCode);
 }
 
-// Runs instructions until the program must wait or ends, or the budget, which is not 0, is used up.
+// Runs instructions until the program must wait or ends, or the budget, which is not 0, is used up. A
+// computer on which somebody follows a program instruction by instruction counts these.
 bool Machine::execute(uint8_t budget) {
   const uint8_t* const begin = code_ + task_.pc;
-  Running run = {begin, begin, task_.stack + task_.depth};
+  Running run = {begin, begin, task_.stack + task_.depth, budget};
   bool goes_on;
   do {
-    budget--;
+    if (kCountsInstructions) run.left--;
     goes_on = step(&run);
-  } while (goes_on && budget != 0);
+  } while (goes_on && run.left != 0);
   at_ = offset(run.at);
-  left_ = budget;
+  left_ = run.left;
   task_.pc = offset(run.next);
   task_.depth = static_cast<uint8_t>(run.top - task_.stack);
   return goes_on;

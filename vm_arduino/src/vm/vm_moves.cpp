@@ -33,7 +33,7 @@ Powers powers_of_move(const TaskRecord* task) {
 // Sets a task's clock to now.
 tini_noinline void Machine::set_clock(TaskRecord* task) const { task->clock_ms = now_ms_; }
 
-#ifndef __AVR__
+#ifndef tiniscript_in_assembly
 
 // How far the clock of a task is behind now.
 uint32_t Machine::late_ms(const TaskRecord* task) const { return now_ms_ - task->clock_ms; }
@@ -147,8 +147,8 @@ bool Machine::until(bool stop) {
   return true;
 }
 
-// Begins a move that may where it has not begun, and waits for its end, or for the next check of its UNTIL.
-// Returns whether the next instruction may run now.
+// Begins a move where it has not begun, which it may now, and waits for its end, or for the next
+// check of its UNTIL. Returns whether the next instruction may run now.
 tini_noinline bool Machine::go_on() {
   TaskRecord* const me = task_.me;
   const bool is_watched = me->is_watched();

@@ -66,11 +66,24 @@ bool Machine::ends_program() {
   return pause();
 }
 
-#ifndef __AVR__
+// Whether it waits for its clock, and not for the motors or for nothing any more.
+bool Machine::waits_for_clock(const TaskRecord* task) const {
+  return task->is(kHasTime) || (task_.holder == task && task->is(kIsMoving));
+}
+
+// When the next task is due.
+uint32_t Machine::next_turn_ms() const {
+  int32_t more_ms = 0x7fffffff;  // nothing happens by itself
+  for (const TaskRecord* task = task_.records; task <= task_.records + kTasks; task++) {
+    const int32_t its_ms = static_cast<int32_t>(task->clock_ms - now_ms_);
+    if (its_ms < more_ms && waits_for_clock(task)) more_ms = its_ms;
+  }
+  return now_ms_ + static_cast<uint32_t>(more_ms);
+}
+
+#ifndef tiniscript_in_assembly
 
 namespace {
-
-constexpr int32_t kNeverMs = 0x7fffffff;  // from now: nothing happens by itself
 
 // Moves the first `count` of `all` frames behind the others.
 void to_the_end(Frame* frames, uint8_t count, uint8_t all) {
@@ -116,18 +129,18 @@ bool Machine::finds_turn(bool is_over) {
       begin_others();
       task = nullptr;
     }
-    task = task == nullptr ? task_.records : task + 1;
+    if (task == nullptr) {
+      task_.is_quiet = true;
+      task = task_.records;
+    } else {
+      task++;
+    }
     task_.me = task;
     // The frames of the next one come to the end of those that all tasks share.
     to_the_end(task_.frames, task->framed, task_.framed);
     is_over = waits_for_clock(task) && static_cast<int32_t>(late_ms(task)) >= 0;
     if (is_over && begin_turn(task)) return true;
   }
-}
-
-// Whether it waits for its clock, and not for the motors or for nothing any more.
-bool Machine::waits_for_clock(const TaskRecord* task) const {
-  return task->is(kHasTime) || (task_.holder == task && task->is(kIsMoving));
 }
 
 // The first turn is over.
@@ -140,12 +153,6 @@ void Machine::begin_others() {
 void Machine::end_round() {
   task_.me = nullptr;
   task_.others &= static_cast<uint8_t>(~kIsFirstRound);
-  int32_t more_ms = kNeverMs;
-  for (const TaskRecord* task = task_.records; task <= main_task(); task++) {
-    const int32_t its_ms = static_cast<int32_t>(task->clock_ms - now_ms_);
-    if (its_ms < more_ms && waits_for_clock(task)) more_ms = its_ms;
-  }
-  task_.wake_ms = now_ms_ + static_cast<uint32_t>(more_ms);
 }
 
 // Returns whether it goes on.
@@ -168,6 +175,7 @@ void Machine::end_turn() {
   me->pc = task_.pc;
   me->framed = static_cast<uint8_t>(me->framed + task_.framed);
   status_ = Status::kRunning;
+  task_.is_quiet = false;
   pass_on();
 }
 

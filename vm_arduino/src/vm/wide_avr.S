@@ -3,7 +3,9 @@
 ; a and b are numbers of 32 bits, high stands above b: 64 bits together. What a routine says nothing
 ; of, it leaves; all use r0. r1 is 0 before and after.
 
-#ifdef __AVR__
+#include "has_tasks.h"
+
+#ifdef tiniscript_in_assembly
 
 #include "wide_avr.h"
 
