@@ -16,12 +16,13 @@ from types import ModuleType, SimpleNamespace
 
 import pytest
 
-from tests.conform.spec_machine import Spec
+from tests.conform.spec_machine import Spec, runs
 from tests.machines import MACHINES, Senses
 from tests.oracle import verifier
 from tests.support.casefile import ROOT
 from tests.support.command import Done, Tsc
 from tests.support.waiting import has_ended, until
+from tiniscript import compile_text, robots
 from tiniscript.base.kit import Device, Kit
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.base.trace import TracedRobot
@@ -36,8 +37,23 @@ from tiniscript.conformance.port_checks import all_checks
 from tiniscript.vm.state import DONE, FAULT
 from tiniscript.vm.tasks import machine_of
 
+TINIBOT = tuple(line.removesuffix("\n") for line in robots.load("tinibot").kit.lines())
 PAGE = ROOT / "docs" / "conformance.md"
 FROM_SPEC = shlex.join([sys.executable, "-m", "tests.conform.spec_machine"])
+
+
+def test_a_sensor_without_readings_has_a_line_without_values() -> None:
+    """As docs/conformance.md says; the machine that is made from it reads 0 then."""
+    case = next(each for each in machine_cases() if not each.needs and each.readings)
+    rows = case._replace(readings={0: (), 1: (5000, -1)}).request().splitlines()
+    assert [row for row in rows if row.startswith("readings")] == [
+        "readings 0",
+        "readings 1 5000 -1",
+    ]
+    shown = compile_text("SHOW(LIGHT_R)", robots.load("tinibot").kit).image
+    case = case._replace(devices=TINIBOT, image=shown, readings={0: ()}, every_ms=(1,), begin_ms=0)
+    (rows,) = runs(case.request().splitlines(keepends=True))
+    assert Spec().answer(rows) == ["0 READ LIGHT_R 0", "0 SHOW 0", "0 DONE"]
 
 
 def machine(tmp_path: Path, source: str) -> str:

@@ -34,7 +34,7 @@ class MachineCase(NamedTuple):
     def request(self) -> str:
         """Return the lines that ask a machine for this run."""
         lists = [
-            f"readings {number} {' '.join(map(str, values))}"
+            " ".join(("readings", str(number), *map(str, values)))
             for number, values in sorted(self.readings.items())
         ]
         rows = (
