@@ -1,7 +1,8 @@
 """The cases, and samples of random programs, codes, images and numbers, on simulated chips.
 
 The ATmega328P (`uno`, and `nano` without tasks) and the ATmega2560 (`mega`, and `portable`, whose
-machine is the C++ of all other chips) are started for each image: with `--whole` each runs 400 programs, and the first one some 2,000 codes. The chips of ESP
+machine is the C++ of all other chips) are started for each image:
+with `--whole` each runs 400 programs, and the first one some 2,000 codes. The chips of ESP
 boards (`lx6`, `lx106`, `rv32imc`) run in emulators that answer nearly as quickly as the host's
 process: each also judges 16,000 codes and runs those that are accepted, judges 10,000 images, and
 does 210,000 operations.
