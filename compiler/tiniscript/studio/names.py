@@ -1,0 +1,68 @@
+"""Names of pupils: what is shown of one, and whether two are one to who reads them.
+
+`alike.txt` has Unicode's table of what looks alike.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+from unicodedata import category, normalize
+
+from tiniscript.base.source import printable
+
+NAME_CHARACTERS = 24
+# Letters and signs that show nothing, though they are of no category that says so.
+_BLANK = re.compile("[\u115f\u1160\u2800\u3164\uffa0\U00013441\U0001d159]")
+# What only changes how its neighbours look, or nothing.
+_UNSEEN = re.compile("[\u034f\u17b4\u17b5\u180b-\u180f\ufe00-\ufe0f\U000e0100-\U000e01ef]")
+_SHOWS_NOTHING = frozenset("CMZ")  # controls, marks without a letter, and spaces
+
+
+def plain_name(found: str) -> str:
+    """Return a pupil's name as one line that hides nothing; empty if nothing of it is seen."""
+    whole = " ".join(_BLANK.sub(" ", normalize("NFC", found)).split())
+    if all(category(each)[0] in _SHOWS_NOTHING for each in whole):
+        return ""
+    return printable(whole, NAME_CHARACTERS)
+
+
+def are_alike(one: str, other: str) -> bool:
+    """Whether two names are one: they look alike, or only their capitals are others."""
+    return not _looks(one).isdisjoint(_looks(other))
+
+
+def free_name(wanted: str, taken: Iterable[str]) -> str:
+    """Return a name that looks like none of those that are taken: `Ana`, or else `Ana (2)`."""
+    looks = {look for each in taken for look in _looks(each)}
+    name, k = wanted, 1
+    while not looks.isdisjoint(_looks(name)):
+        k += 1
+        name = f"{wanted} ({k})"
+    return name
+
+
+def _looks(name: str) -> set[str]:
+    """Return what a name looks like, as it is and in small letters."""
+    return {_folded(name), _folded(name.casefold())}
+
+
+def _folded(text: str) -> str:
+    """Return the same text for all that look the same, as Unicode's standard 39 folds it."""
+    table = _table()
+    text = _UNSEEN.sub("", text)
+    for form in ("NFD", "NFKD"):  # the table has what the normal forms leave
+        text = normalize(form, text).translate(table)
+    return normalize("NFC", text)
+
+
+@cache
+def _table() -> dict[int, str]:
+    found: dict[int, str] = {}
+    for line in Path(__file__).with_name("alike.txt").read_text(encoding="utf-8").splitlines():
+        if not line.startswith("# "):
+            looks, _, signs = line.partition(" ")
+            found |= dict.fromkeys(map(ord, signs), looks)
+    return found

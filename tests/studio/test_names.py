@@ -1,0 +1,58 @@
+"""Names of pupils: what hides nothing, and what a teacher takes for the same."""
+
+from __future__ import annotations
+
+import unicodedata
+
+import pytest
+
+from tiniscript.studio import names
+from tiniscript.studio.names import are_alike, free_name, plain_name
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [("José", "José"), ("Ana", "Аnа"), ("Ana", "Αna"), ("Ana", "𝐀𝐧𝐚"), ("Ana", "Ａｎａ"),
+     ("Ana", "ana"), ("Luis", "LUIS"), ("Luis", "Iuis"), ("Inés", "1nés"), ("mia", "rnia"),
+     ("Ola", "0la"), ("Ana", "A\ufe00na"), ("Ana", "An\u034fa"), ("Ana (2)", "Ana (２)"),
+     ("O’Neil", "O'Neil"), ("Ana-Luz", "Ana‑Luz"), ("Maße", "MASSE")],
+)  # fmt: skip
+def test_what_looks_alike_is_one_name(one: str, other: str) -> None:
+    assert are_alike(one, other) and are_alike(other, one)
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [("Ana", "Anna"), ("José", "Jose"), ("Ana", "Ana 2"), ("Núria", "Nuria"), ("Luz", "Lua"),
+     ("张伟", "王伟"), ("Ана", "Яна"), ("p1", "p2"), ("🤖", "🐈")],
+)  # fmt: skip
+def test_others_are_others(one: str, other: str) -> None:
+    assert not are_alike(one, other)
+
+
+@pytest.mark.parametrize(
+    "blank", ["\u3164", "\u115f", "\u1160", "\uffa0", "\u2800", "\u00a0", "\u200b", "\u2066",
+              "\u0301", "\ufe0f", "\U000e0020", "\U0001d159"]
+)  # fmt: skip
+def test_what_shows_nothing_is_no_name_and_hides_in_none(blank: str) -> None:
+    assert plain_name(blank * 3) == plain_name(f" {blank} {blank}") == ""
+    assert plain_name(f"Ana{blank}") != ""
+    seen = plain_name(f"Ana{blank}").rstrip("?")  # what a control becomes
+    assert are_alike(unicodedata.normalize("NFD", seen).rstrip("\u0301"), "Ana")
+
+
+def test_a_name_that_is_taken_gets_a_number() -> None:
+    assert free_name("Ana", []) == "Ana"
+    assert free_name("Ana", ["Luz", "Аna", "ANA (2)"]) == "Ana (3)"
+    taken: list[str] = []
+    for k in range(5):
+        taken.append(free_name("ana" if k % 2 else "Ana", taken))
+    assert taken == ["Ana", "ana (2)", "Ana (3)", "ana (4)", "Ana (5)"]
+
+
+def test_the_table_is_unicodes() -> None:
+    """Each row's signs fold to what they look like, and what they look like to itself."""
+    table = names._table()
+    assert len(table) > 2500
+    for sign, looks in table.items():
+        assert names._folded(chr(sign)) == names._folded(looks), hex(sign)
