@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Iterator
+from contextlib import closing
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -15,6 +17,7 @@ from tests.support.waiting import HANGS_S
 from tiniscript.cli.commands import studio as command
 from tiniscript.studio import class_keeping, classroom
 from tiniscript.studio import classroom as rate_of
+from tiniscript.studio.class_keeping import Keeper
 from tiniscript.studio.classroom import Classroom, Rate
 from tiniscript.studio.robot_link import BadRequest
 
@@ -291,7 +294,8 @@ def test_a_code_may_be_written_small_and_apart() -> None:
 
 @pytest.mark.parametrize(
     ("name", "shown"),
-    [("  Ana \n Luz ", "Ana Luz"), ("<b>x</b>", "<b>x</b>"), ("a\x1b[2J\u202eb", "a?[2J?b"),
+    [("  Ana \n Luz ", "Ana Luz"), ("Ana\u3164", "Ana"),
+     ("Jose\u0301", "Jos\u00e9"), ("<b>x</b>", "<b>x</b>"), ("a\x1b[2J\u202eb", "a?[2J?b"),
      ("x" * 1000, "x" * 24 + "…"), ("ñandú 🤖", "ñandú 🤖")],
 )  # fmt: skip
 def test_names_are_plain(name: str, shown: str) -> None:
@@ -322,7 +326,10 @@ def test_who_comes_back_to_a_computer_is_not_a_second_one() -> None:
     assert names() == ["Ana (2)", "Ana (3)", "Ana", "Ana (4)"]
 
 
-@pytest.mark.parametrize("name", ["", "   ", 5, None, ["a"]])
+@pytest.mark.parametrize(
+    "name",
+    ["", "   ", 5, None, ["a"], "\u3164", "\u115f \u1160", "\u2800", "\u200b", "\u0301", "\x1b"],
+)
 def test_nobody_joins_without_a_name(name: object) -> None:
     room = Room()
     try:
@@ -392,29 +399,211 @@ def test_what_a_page_tells_of_its_work_is_small_and_plain() -> None:
     assert not room.here(eve)["hand"]
 
 
+# -- the work
+
+
+WORK = {"text": "F(1, 50)", "robot": "tinibot", "lessons": ["01_first_line"]}
+GIVEN = {**WORK, "lessons": ("01_first_line",)}
+
+
+def names_of(room: Room) -> list[str]:
+    return [each["name"] for each in room.teaches("class_work")["pupils"]]
+
+
+def texts_of(room: Room) -> list[str]:
+    return [each["text"] for each in room.teaches("class_work")["pupils"]]
+
+
+def key_of(room: Room, index: int = 0) -> str:
+    return str(room.teaches("class")["kept"][index]["key"])
+
+
+def took(given: Json) -> Json:
+    return {"key": given["key"], "text": given["text"]}
+
+
 def test_a_name_gets_its_work_from_the_teacher_alone() -> None:
     room = Room()
-    work = {"name": "Ana", "text": "F(1, 50)", "robot": "tinibot", "lessons": ["01_first_line"]}
-    room.teaches("class_bring", **work)
+    room.teaches("class_bring", name="Ana", **WORK)
     eve = room.joins("Ana")  # whoever that is
     assert "given" not in room.here(eve)
-    assert room.teaches("class")["kept"] == [{"name": "Ana", "lessons": ("01_first_line",)}]
-    room.teaches("class_give_back")
-    given = {"text": "F(1, 50)", "robot": "tinibot", "lessons": ("01_first_line",)}
+    key, number = key_of(room), room.number("Ana")
+    row = {"key": key, "name": "Ana", "lessons": ("01_first_line",), "given": 0, "alike": [number]}
+    assert room.teaches("class")["kept"] == [row]
+    state = room.teaches("class_give_back", key=key, pupil=number)
+    assert state["kept"] == [{**row, "given": number}]
     for _ in range(2):  # an answer may be lost
-        assert room.here(eve)["given"] == given
-    assert "given" not in room.here(eve, took=True)
+        given = room.here(eve)["given"]
+        assert given == {"key": key, **GIVEN}
+    assert "given" not in room.here(eve, took=took(given))
     assert room.teaches("class")["kept"] == []
-    for wrong in ({"name": " "}, {"name": 5}, {"text": None}, {"robot": "x"}, {"lessons": [1]}):
+    assert room.teaches("class_give_back", key=key, pupil=number)["kept"] == []  # pressed again
+
+
+def test_work_is_brought_once_and_only_while_there_is_room() -> None:
+    room = Room()
+    work = {"name": "Ana", **WORK}
+    for wrong in (
+        {"name": " "}, {"name": 5}, {"name": "\u3164"}, {"text": None}, {"robot": "x"},
+        {"lessons": [1]},
+    ):  # fmt: skip
         with pytest.raises(BadRequest):
             room.teaches("class_bring", **{**work, **wrong})
-    for k in range(class_keeping.MOST_PUPILS):
-        room.teaches("class_bring", **{**work, "name": f"p{k}"})
+    for _ in range(2):  # a file is opened twice
+        for k in range(class_keeping.MOST_WORKS):
+            room.teaches("class_bring", **{**work, "name": f"p{k}"})
+    assert len(room.teaches("class")["kept"]) == class_keeping.MOST_WORKS
     with pytest.raises(BadRequest):
         room.teaches("class_bring", **{**work, "name": "more"})
-    room.here(eve, text="S")
+    more = {"do": "join", "code": room.made.code, "name": "more"}
+    assert room.made.answer("", HERE, more) == {"failure": "class_full"}
+    room.teaches("class_forget", key=key_of(room))
+    assert "token" in room.made.answer("", HERE, more)
+
+
+def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
+    room = Room()
+    room.teaches("class_bring", name="Ana", **WORK)
+    ana, eve = room.joins("Ana"), room.joins("Eve")
+    key = key_of(room)
+    right = {"key": key, "text": WORK["text"]}
+    room.here(ana, took=right)  # nobody has given it
+    room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
+    wrong: list[object] = [True, None, 5, [], {}, {"key": key}]
+    wrong += [{**right, "text": text} for text in ("F(1, 51)", None)]
+    wrong += [{**right, "key": other} for other in ("0" * 32, [key])]
+    for said in wrong:
+        assert room.here(ana, took=said)["given"]["key"] == key
+    assert "given" not in room.here(eve, took=right)  # it is not hers to say so
+    assert texts_of(room) == ["F(1, 50)"]
+    # The page has it: so it is her work from then on, even before she tells of it.
+    assert "given" not in room.here(ana, took=right)
+    assert room.teaches("class")["kept"] == [] and texts_of(room) == ["F(1, 50)"]
+    assert room.teaches("class")["pupils"][0]["lessons"] == ("01_first_line",)
+
+
+def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
+    """It was given to a page that was closed, and the pupil joins again, from another device."""
+    room = Room()
+    room.teaches("class_bring", name="Ana", **WORK)
+    first = room.joins("Ana")
+    key = key_of(room)
+    room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
+    assert room.here(first)["given"]["key"] == key
     room.teaches("class_remove", pupil=room.number("Ana"))
-    assert len(room.teaches("class")["kept"]) == class_keeping.MOST_PUPILS
+    second = room.joins("Ana", "198.51.100.1")
+    assert "given" not in room.here(second)
+    assert room.teaches("class")["kept"][0]["given"] == 0
+    room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
+    assert "given" not in room.here(second, took=took(room.here(second)["given"]))
+    assert texts_of(room) == ["F(1, 50)"]
+
+
+def test_a_crash_between_giving_and_having_loses_no_work(kept_at: Path) -> None:
+    """Whichever of the states of a class was the newest that was kept."""
+    room = Room()
+    room.teaches("class_bring", name="Ana", **WORK)
+    ana = room.joins("Ana")
+    states = [room.made.state_to_keep()]
+    room.teaches("class_give_back", key=key_of(room), pupil=room.number("Ana"))
+    states.append(room.made.state_to_keep())
+    given = room.here(ana)["given"]
+    room.here(ana, took=took(given))
+    states.append(room.made.state_to_keep())
+    for k, state in enumerate(states):
+        after = Room(0)
+        after.made.go_on(json.loads(json.dumps(state)))
+        assert "F(1, 50)" in texts_of(after)
+        assert ("given" in after.here(ana)) is (k == 1)
+        if k == 1:  # under the same key: a page that has it takes it no second time
+            assert after.here(ana)["given"] == {**given, "lessons": ("01_first_line",)}
+
+
+def test_the_teacher_chooses_between_an_impostor_and_who_comes_later() -> None:
+    room = Room()
+    room.teaches("class_bring", name="Ana", **WORK)
+    eve, ana = room.joins("Ana", "192.0.2.66"), room.joins("\u0410na")  # with a letter of Russian
+    pupils = room.teaches("class")["pupils"]
+    assert [each["name"] for each in pupils] == ["Ana", "\u0410na (2)"]
+    assert room.teaches("class")["kept"][0]["alike"] == [each["number"] for each in pupils]
+    room.teaches("class_give_back", key=key_of(room), pupil=pupils[0]["number"])
+    room.teaches("class_give_back", key=key_of(room), pupil=pupils[1]["number"])  # has looked
+    assert "given" not in room.here(eve)
+    given = room.here(ana)["given"]
+    room.here(eve, took=took(given), text="")
+    assert texts_of(room) == ["F(1, 50)"]
+
+
+def test_no_name_overwrites_the_work_of_who_is_absent() -> None:
+    room = Room()
+    ana = room.joins("Jos\u00e9")
+    room.here(ana, text="F(1, 50)")
+    room.teaches("class_remove", pupil=room.number("Jos\u00e9"))
+    for name in ("Jos\u00e9", "Jose\u0301", "jos\u00e9", "J\u043es\u00e9"):
+        eve = room.joins(name, "192.0.2.66")
+        room.here(eve, text="S")
+        number = room.teaches("class")["pupils"][0]["number"]
+        room.teaches("class_remove", pupil=number)
+    assert texts_of(room) == ["F(1, 50)", *["S"] * 4]
+    assert names_of(room) == [
+        "Jos\u00e9", "Jos\u00e9 (2)", "Jos\u00e9 (3)", "jos\u00e9 (4)", "J\u043es\u00e9 (5)",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("places", [classroom.PLACES, class_keeping.MOST_PUPILS])
+def test_no_number_of_names_pushes_kept_work_out(places: int) -> None:
+    """Not of one address, and, where the teacher has allowed that, not of a whole network's."""
+    room = Room()
+    room.teaches("class_places", places=places)
+    for k in range(29):
+        pupil = room.joins(f"p{k}", f"198.51.100.{k}")
+        room.here(pupil, text=f"SHOW({k})")
+        room.teaches("class_remove", pupil=room.number(f"p{k}"))
+    here = room.joins("p29", "198.51.100.29")
+    failures = []
+    for k in range(200):
+        room.here(here, text="SHOW(29)")
+        room.now_s += classroom.PLACE_S + 1
+        asked = {"do": "join", "code": room.made.code, "name": f"eve {k}"}
+        answer = room.made.answer("", "192.0.2.66", asked)
+        if "token" in answer:
+            room.here(answer["token"], text=f"S {k}")
+        failures += [answer["failure"]] if "failure" in answer else []
+    assert set(texts_of(room)) >= {f"SHOW({k})" for k in range(30)}
+    works = len(room.teaches("class_work")["pupils"])
+    assert works == min(30 + classroom.WORKS * places, class_keeping.MOST_WORKS)
+    assert failures[-1] == ("class_crowded" if places == classroom.PLACES else "class_full")
+    if places == classroom.PLACES:  # of others there is room
+        assert room.joins("Luz", "198.51.100.77")
+
+
+def test_who_comes_back_with_the_token_of_before_has_the_same_work() -> None:
+    """A tab was closed, or the teacher has removed the pupil."""
+    room = Room()
+    ana = room.joins("Ana")
+    room.here(ana, text="F(1, 50)")
+
+    def back(name: str = "ana", token: object = ana) -> Json:
+        asked = {"do": "join", "code": room.made.code, "name": name, "before": token}
+        return room.made.answer("", HERE, asked)
+
+    second = back()  # another tab, which is there, too
+    assert second["name"] == "ana (2)"
+    room.teaches("class_remove", pupil=room.number("ana (2)"))
+    room.now_s += classroom.PLACE_S + 1
+    assert back() == {"token": ana, "name": "Ana"}
+    room.teaches("class_remove", pupil=room.number("Ana"))
+    for token in ("", None, 5, "0" * 32, [ana]):
+        other = back(token=token)
+        assert other["name"] == "ana (2)"
+        room.teaches("class_remove", pupil=room.number("ana (2)"))
+    luz = back("Luz")  # the next child at this device
+    assert luz["name"] == "Luz" and luz["token"] != ana
+    assert texts_of(room) == ["F(1, 50)"]
+    assert back() == {"token": ana, "name": "Ana"}
+    assert texts_of(room) == ["F(1, 50)"] and room.teaches("class")["kept"] == []
+    wrong = {"do": "join", "code": "000000", "name": "Ana", "before": ana}
+    assert room.made.answer("", HERE, wrong) == {"failure": "class_wrong"}
 
 
 def test_who_was_removed_finds_the_work_again() -> None:
@@ -422,9 +611,11 @@ def test_who_was_removed_finds_the_work_again() -> None:
     ana = room.joins("Ana")
     room.here(ana, text="F(1, 50)", robot="tinibot")
     room.teaches("class_remove", pupil=room.number("Ana"))
-    assert [each["name"] for each in room.teaches("class_work")["pupils"]] == ["Ana"]
+    key = key_of(room)
+    assert room.teaches("class_text", key=key)["text"] == "F(1, 50)"
+    assert names_of(room) == ["Ana"]
     again = room.joins("Ana")
-    room.teaches("class_give_back")
+    room.teaches("class_give_back", key=key, pupil=room.number("Ana (2)"))
     assert room.here(again)["given"]["text"] == "F(1, 50)"
     room.teaches("class_anew")
     assert room.teaches("class_work") == {"pupils": []}
@@ -432,59 +623,163 @@ def test_who_was_removed_finds_the_work_again() -> None:
         room.here(again)
 
 
-def test_a_crash_ends_no_class(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The next `tsc studio --class` has the same pupils, with their tokens, and their work."""
+# -- the file
+
+
+@pytest.fixture
+def kept_at(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     file = tmp_path / "class.json"
     monkeypatch.setattr(class_keeping, "path", lambda: file)
+    return file
+
+
+@pytest.fixture
+def keeper(kept_at: Path) -> Iterator[Keeper]:
+    with closing(Keeper()) as made:
+        yield made
+
+
+def goes_on(room: Room, keeper: Keeper) -> int:
+    return command._go_on(command._Class(room.made, keeper))
+
+
+def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
+    """The next `tsc studio --class` has the same pupils, with their tokens, and their work."""
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.here(ana, text="F(1, 50)", robot="tinibot", lessons=["01_first_line"])
     room.here(luz, text="S")
     room.teaches("class_remove", pupil=room.number("Luz"))
-    newest = command._keep(room.made, "")
-    assert file.stat().st_mode & 0o077 == 0  # it has tokens
-    when_s = file.stat().st_mtime_ns
-    assert command._keep(room.made, newest) == newest and file.stat().st_mtime_ns == when_s
+    keeper.keep(room.made.state_to_keep())
+    assert kept_at.stat().st_mode & 0o077 == 0  # it has tokens
+    when_s = kept_at.stat().st_mtime_ns
+    keeper.keep(room.made.state_to_keep())
+    assert kept_at.stat().st_mtime_ns == when_s
     after = Room(0)
-    assert command._go_on(after.made) == 1
+    assert goes_on(after, keeper) == 1
     state = after.teaches("class")
     assert (state["code"], state["goes_on"]) == (room.made.code, True)
     assert [each["port"] for each in state["robots"]] == ["port0"]
     assert after.here(ana)["name"] == "Ana"
-    assert after.teaches("class_work") == room.teaches("class_work")
+    assert sorted(texts_of(after)) == sorted(texts_of(room)) == ["F(1, 50)", "S"]
     with pytest.raises(BadRequest):
         after.here(luz)
+    again = {"do": "join", "code": room.made.code, "name": "Luz", "before": luz}
+    assert after.made.answer("", HERE, again) == {"token": luz, "name": "Luz"}
     assert not after.teaches("class_anew")["goes_on"]
     room.teaches("class_over")
-    assert command._keep(room.made, newest) == "" and not file.exists()
-    assert command._go_on(Room().made) == 0
+    keeper.keep(room.made.state_to_keep())
+    assert not kept_at.exists() and goes_on(Room(), keeper) == 0
 
 
-def test_a_damaged_class_goes_on_with_what_is_whole(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    file = tmp_path / "class.json"
-    monkeypatch.setattr(class_keeping, "path", lambda: file)
+def test_a_damaged_class_goes_on_with_what_is_whole(kept_at: Path, keeper: Keeper) -> None:
     room = Room()
     token = room.joins("Ana")
     room.here(token, text="F(1, 50)", robot="tinibot")
-    command._keep(room.made, "")
-    whole = json.loads(file.read_text())
-    for data in ("", "{", "[" * 100_000, "[]", json.dumps({**whole, "form": 2}),
-                 json.dumps({**whole, "kept_s": whole["kept_s"] - 3700})):  # fmt: skip
-        file.write_text(data)
-        assert command._go_on(Room().made) == 0
+    keeper.keep(room.made.state_to_keep())
+    whole = json.loads(kept_at.read_text())
     row = whole["pupils"][0]
     bad = [5, {**row, "token": "x"}, {**row, "name": " "}, {**row, "address": 5}, {"name": "Eve"}]
     damaged = {**whole, "pupils": [*bad, row], "kept": [5, {"name": "Eve"}], "robots": [5, ""]}
-    file.write_text(json.dumps({**damaged, "code": "<b>"}))
+    odd = {**row, "token": [], "key": 5, "written": "\u2800", "given_to": token}
+    kept_at.write_text(json.dumps({**damaged, "kept": [{"name": "Eve"}, odd], "code": "<b>"}))
     after = Room(0)
-    assert command._go_on(after.made) == 1
+    assert goes_on(after, keeper) == 1
     assert after.here(token)["name"] == "Ana" and after.made.code != room.made.code
-    file.write_text(
-        json.dumps({**whole, "pupils": [{**row, "token": f"{k:032x}"} for k in range(99)]})
-    )
-    assert command._go_on(Room().made) == class_keeping.MOST_PUPILS
+    assert after.here(token)["given"]["text"] == "F(1, 50)"
+    many = [{**row, "token": f"{k:032x}"} for k in range(99)]
+    kept_at.write_text(json.dumps({**whole, "pupils": many, "kept": many}))
+    after = Room(0)
+    assert goes_on(after, keeper) == class_keeping.MOST_PUPILS
+    works = len(after.teaches("class_work")["pupils"])
+    assert works == class_keeping.MOST_WORKS
+
+
+def test_what_is_no_class_is_put_aside(kept_at: Path, keeper: Keeper) -> None:
+    """It may be one that another version, or a teacher, can read."""
+    aside = kept_at.with_name("class.unread.json")
+    for data in ("", "{", "[" * 100_000, "[]", '{"form": 2}'):
+        kept_at.write_text(data)
+        assert goes_on(Room(), keeper) == 0
+        assert aside.read_text() == data and not kept_at.exists()
+    keeper.keep(None)
+    assert not aside.exists()  # the class is over
+
+
+def test_a_full_disk_that_has_room_again_is_written_to_at_once(
+    kept_at: Path, keeper: Keeper, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    room = Room()
+    room.here(room.joins("Ana"), text="F(1, 50)")
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(class_keeping, "replace", full)
+        for _ in range(3):
+            keeper.keep(room.made.state_to_keep())
+    assert not kept_at.exists()
+    keeper.keep(room.made.state_to_keep())  # nothing has changed since
+    assert "F(1, 50)" in kept_at.read_text()
+
+
+def test_a_clock_that_is_behind_or_jumps_loses_no_work(kept_at: Path, keeper: Keeper) -> None:
+    """A board without a battery begins in the past, and hears the time later."""
+    room = Room()
+    token = room.joins("Ana")
+    room.here(token, text="F(1, 50)")
+    keeper.keep(room.made.state_to_keep())
+    whole = json.loads(kept_at.read_text())
+    for passed_s in (-50 * 365 * 86_400, -10, 0, 3500):  # since it was kept
+        kept_at.write_text(json.dumps({**whole, "kept_s": whole["kept_s"] - passed_s}))
+        after = Room(0)
+        assert goes_on(after, keeper) == 1
+        assert after.here(token)["name"] == "Ana" and after.made.code == room.made.code
+    for kept_s in (whole["kept_s"] - 3700, 5, -5, None, "x", 1e400):
+        kept_at.write_text(json.dumps({**whole, "kept_s": kept_s}))
+        after = Room(0)
+        assert goes_on(after, keeper) == 0
+        assert texts_of(after) == ["F(1, 50)"]
+        assert after.made.code != room.made.code and after.teaches("class")["goes_on"]
+        keeper.keep(after.made.state_to_keep())
+        assert "F(1, 50)" in kept_at.read_text()  # nor does the next crash lose it
+        with pytest.raises(BadRequest):
+            after.here(token)
+        again = {"do": "join", "code": after.made.code, "name": "Ana", "before": token}
+        assert after.made.answer("", HERE, again) == {"token": token, "name": "Ana"}
+        assert texts_of(after) == ["F(1, 50)"]
+
+
+def test_one_class_of_a_user_has_the_file(kept_at: Path, keeper: Keeper) -> None:
+    keeper.keep(Room().made.state_to_keep())
+    with pytest.raises(class_keeping.Taken):
+        Keeper()
+    assert kept_at.exists()
+    keeper.close()  # its command has ended
+    with closing(Keeper()) as other:
+        assert other.read() is not None
+        keeper.keep(None)  # and can do nothing more
+        assert kept_at.exists()
+
+
+def test_a_class_whose_folder_cannot_be_written_is_held_all_the_same(
+    kept_at: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Once there is room, it gets the file, unless another class has it."""
+    room = Room()
+
+    def full(*_: object) -> int:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "open", full)
+        early, late = Keeper(), Keeper()
+    with closing(early), closing(late):
+        early.keep(room.made.state_to_keep())
+        assert kept_at.exists()
+        late.keep(None)
+        assert kept_at.exists()
 
 
 # -- the teacher

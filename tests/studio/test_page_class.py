@@ -23,6 +23,7 @@ from tests.support.studio import (
     drives,
     hears,
     image,
+    noted,
     speak,
     write,
 )
@@ -134,7 +135,7 @@ def only_ana(taught: Class) -> None:
         if pupil["name"] != "Ana":
             taught.room.teach({"do": "class_remove", "pupil": pupil["number"]})
     for kept in taught.room.teach({"do": "class"})["kept"]:
-        taught.room.teach({"do": "class_forget", "name": kept["name"]})
+        taught.room.teach({"do": "class_forget", "key": kept["key"]})
 
 
 def asks(page: Page) -> None:
@@ -287,8 +288,7 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -
     room.teach({"do": "class_places", "places": 60})
     tokens = []
     found = room.teach({"do": "class"})
-    there = {each["name"] for each in (*found["pupils"], *found["kept"])}
-    for k in range(30 - len(there)):
+    for k in range(30 - len(found["pupils"]) - len(found["kept"])):
         asked = {"do": "join", "code": room.code, "name": f"Pupil {k + 1}"}
         tokens.append(room.answer("", "192.0.2.7", asked)["token"])
         text = "SI|F(1, 50);" * (k % 3 + 1)
@@ -410,7 +410,7 @@ def test_everything_is_seen_and_axe_finds_nothing(
 def test_the_work_of_a_class_is_saved_opened_and_given_back(
     ana: Page, teacher: Page, taught: Class, tmp_path: Path
 ) -> None:
-    """By a teacher's press alone: whoever takes a name gets nothing by it."""
+    """By a teacher's press alone, and to one: whoever takes a name gets nothing by it."""
     write(ana, "F(1, 77)")
     until(lambda: "F(1, 77)" in str(taught.room.work()), "the class has it")
     teacher.click("#class_settings")
@@ -427,15 +427,86 @@ def test_the_work_of_a_class_is_saved_opened_and_given_back(
         teacher.set_input_files("#class_window input[type=file]", tmp_path / name)
         teacher.locator("#class_said").filter(has_text=says).wait_for()
     assert image(ana) == compile("F(1, 33)").image
-    teacher.click("#class_bar [data-text=class_give_back]")
-    ana.locator("#note").filter(has_text="Your teacher gave you back your work.").wait_for()
+    row = opened_row(teacher, "Ana")
+    choice = row.locator("select")
+    assert choice.evaluate("(each) => each.selectedOptions[0].textContent") == "Ana"
+    eve = taught.room.answer(
+        "", "192.0.2.66", {"do": "join", "code": taught.room.code, "name": "\u0410na"}
+    )["token"]
+    row.locator("button:disabled").wait_for()  # two may be it: nobody is chosen for the teacher
+    assert axe(teacher, within="#class_giving") == []
+    choice.select_option(label="Ana")
+    row.locator("button").click()
+    noted(ana, "Your teacher gave you back your work.")
     checked(ana)
     assert image(ana) == compile("F(1, 77)").image
-    teacher.locator("#class_bar [data-text=class_give_back]").wait_for(state="hidden")
-    pupils = [each["name"] for each in taught.room.teach({"do": "class"})["pupils"]]
-    for kept in taught.room.teach({"do": "class"})["kept"]:
-        taught.room.teach({"do": "class_forget", "name": kept["name"]})
-    assert "Ana" in pupils
+    row.wait_for(state="detached")  # once her page has said so
+    assert "given" not in taught.room.answer(eve, "192.0.2.66", {"do": "here"})
+    write(ana, "F(1, 78)")  # and what she writes then stays
+    until(lambda: "F(1, 78)" in str(taught.room.work()), "the class has it")
+    assert image(ana) == compile("F(1, 78)").image
+    if teacher.locator("#class_giving[open]").count():
+        teacher.click("#class_giving [data-text=close]")
+    only_ana(taught)
+
+
+# The page hears what it is given, and its next words are lost.
+LOSES = """() => { window.own = fetch; window.fetch = (where, what) =>
+  what?.body?.includes('"took"') ? Promise.reject(new TypeError('lost')) : own(where, what); }"""
+
+
+def test_work_is_kept_until_the_page_has_said_that_it_has_it(
+    ana: Page, teacher: Page, taught: Class
+) -> None:
+    """Its word is lost, and the page is loaded again: it gets the same once more."""
+    write(ana, "F(1, 33)")
+    until(lambda: "F(1, 33)" in str(taught.room.work()), "the class has it")
+    asked = {"do": "class_bring", "name": "Ana", "text": "F(1, 77)", "robot": "", "lessons": []}
+    taught.room.teach(asked)
+    ana.evaluate(LOSES)
+    row = opened_row(teacher, "Ana")
+    row.locator("button").click()
+    row.filter(has_text="Ana is getting it.").wait_for()
+    noted(ana, "Your teacher gave you back your work.")
+    said(ana, "The teacher’s computer does not answer.")
+    assert "F(1, 77)" in str(taught.room.work())
+    ana.reload()
+    checked(ana)
+    row.wait_for(state="detached")
+    checked(ana)
+    assert image(ana) == compile("F(1, 77)").image
+    ana.click("#side_real")
+    only_ana(taught)
+
+
+def opened_row(teacher: Page, name: str) -> Locator:
+    """Open the window in which work is given back; return the row of this one."""
+    teacher.click("#class_bar [data-text=class_give_back]")
+    row = teacher.locator("#class_giving li").filter(has_text=name)
+    row.wait_for()
+    return row
+
+
+def test_who_closes_the_page_and_comes_back_is_the_same_pupil(
+    pages: Pages, taught: Class, teacher: Page
+) -> None:
+    page = joined(pages, taught, "Noa")
+    write(page, "F(1, 66)")
+    until(lambda: "F(1, 66)" in str(taught.room.work()), "the class has it")
+    page.evaluate("sessionStorage.clear()")  # as if it was closed
+    tile(teacher, "Noa").hover()
+    tile(teacher, "Noa").locator(".out").click()
+    page.locator("[data-pupil=class_gone]").wait_for(state="attached")
+    page.locator("#class_pupil input").nth(0).fill(taught.room.code)
+    page.locator("#class_pupil input").nth(1).fill("noa")
+    page.click("[data-text=class_join]")
+    said(page, "You are in the class, Noa.")
+    assert tile(teacher, "Noa").count() == 1
+    page.close()
+    only_ana(taught)
+    wrong = [each for each in pages.wrong if "403" not in each]
+    assert wrong == []
+    pages.wrong.clear()
 
 
 @pytest.mark.sampled("erases")

@@ -9,7 +9,7 @@ import gzip
 import json
 import os
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from http.client import HTTPConnection
 from pathlib import Path
 from threading import active_count
@@ -22,7 +22,7 @@ from tests.support.crowd import HALF_A_REQUEST, crowd
 from tests.support.page_server import ask, serves
 from tests.support.studio import Class
 from tests.support.waiting import HANGS_S
-from tiniscript.studio import serving
+from tiniscript.studio import class_keeping, serving
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
 
@@ -174,3 +174,24 @@ def test_the_command_says_what_is_wrong(
     done = tsc("studio", "--no-browser", "--lang", "en", *words)
     assert done.code == code and said in done.err, done.err
     assert "\x1b" not in done.err
+
+
+def test_the_second_class_of_a_user_is_refused_and_touches_nothing(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "index.html").write_text('<!doctype html>\n<html lang="en">\n')
+    monkeypatch.setattr(serving, "PAGE", tmp_path)
+    words = ("studio", "--class", "--address", HOST, "--no-browser", "--lang", "en")
+    with closing(class_keeping.Keeper()) as first:
+        room = Classroom(Hosting(), [])
+        room.answer("", ELSEWHERE, {"do": "join", "code": room.code, "name": "Ana"})
+        first.keep(room.state_to_keep())
+        kept = class_keeping.path().read_bytes()
+        done = tsc(*words)
+        assert done.code == 3 and "another tsc studio of yours has a class" in done.err
+        assert class_keeping.path().read_bytes() == kept
+    # The first one has ended, and leaves no lock behind; nor does one that cannot begin.
+    for _ in range(2):
+        done = tsc(*words, "--listen", "1", "--address", "203.0.113.5")
+        assert done.code == 3 and "203.0.113.5" in done.err
+    assert class_keeping.path().read_bytes() == kept

@@ -1,14 +1,17 @@
 """What is kept of a class: the work of its pupils, as data, and a file from which it goes on.
 
 The file is there while a class lasts: when the teacher's computer has crashed, `tsc studio --class`
-goes on from it, with the same code and the same pupils. A teacher can also keep the same work as a
-file of their own and open it again; that one has no tokens and no code. What is read may be damaged
-or somebody else's: all of it is checked, and limited. Knows no class.
+goes on from it, with the same code and the same pupils. Only the teacher ends a class: the next one
+has the work of a class that has not ended, however long ago that was. A teacher can also keep the
+same work as a file of their own and open it again; that one has no tokens and no code. What is read
+may be damaged or somebody else's: all of it is checked, and limited. Knows no class.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
+import os
 import re
 from contextlib import suppress
 from pathlib import Path
@@ -16,18 +19,17 @@ from time import time
 from typing import Any, NamedTuple
 
 from tiniscript import robots
-from tiniscript.base.files import contents, replace, settings_folder
-from tiniscript.base.source import printable
+from tiniscript.base.files import LOCK, contents, is_locked, replace, settings_folder
 
 Json = dict[str, Any]
 
-NAME_CHARACTERS = 24
 TEXT_CHARACTERS = 20_000  # of a program
 MOST_PUPILS = 60
+MOST_WORKS = 120  # of who is here and of who is not
 MOST_LESSONS = 40
 FORM = 1  # of the file; another one is not read
-GOES_ON_S = 3600.0  # a class that was seen last before is over
-FILE_BYTES = 12_000_000  # sixty programs in which each character takes six bytes, and more
+SAME_LESSON_S = 3600.0  # pupils of a class that was seen last before must join again
+FILE_BYTES = 24_000_000  # all works, in which each character takes six bytes, and more
 _LESSON = re.compile(r"\w{1,60}")
 _TOKEN = re.compile(r"[0-9a-f]{32}")
 
@@ -47,7 +49,8 @@ class Work(NamedTuple):
             return None
         if not isinstance(lessons, list) or not all(is_lesson(each) for each in lessons):
             return None
-        return cls(text[:TEXT_CHARACTERS], str(robot), tuple(lessons[:MOST_LESSONS]))
+        kept = text[:TEXT_CHARACTERS].encode("utf-8", "replace").decode()  # as the file has it
+        return cls(kept, str(robot), tuple(lessons[:MOST_LESSONS]))
 
 
 NOTHING = Work()
@@ -61,40 +64,102 @@ def is_token(found: object) -> bool:
     return isinstance(found, str) and _TOKEN.fullmatch(found) is not None
 
 
-def plain_name(found: str) -> str:
-    """Return a pupil's name as one line that hides nothing; empty if nothing is left."""
-    return printable(" ".join(found.split()), NAME_CHARACTERS)
-
-
 # -- the file -------------------------------------------------------------------------------------
+
+
+class Taken(Exception):
+    """Another `tsc studio` of this user has a class."""
+
+
+class Kept(NamedTuple):
+    """`is_same_lesson`: seen within the last hour, or, where the clock is behind, nobody knows."""
+
+    state: Json
+    is_same_lesson: bool
+
+
+class Keeper:
+    """The file of a class, for as long as a command has it: no other one reads or changes it."""
+
+    def __init__(self) -> None:
+        """Raises Taken."""
+        self._lock: int | None = None
+        self._newest = ""
+        if not self._is_ours():
+            raise Taken
+
+    def _is_ours(self) -> bool:
+        """Whether no other command has the file. Where nothing can be written there is no lock
+        until there is room; some file systems have none at all."""
+        if self._lock is not None:
+            return True
+        flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
+        try:
+            path().parent.mkdir(parents=True, exist_ok=True)
+            number = os.open(path().with_name(path().name + LOCK), flags, 0o600)
+        except OSError:
+            return True
+        is_ours = True
+        with suppress(OSError):
+            is_ours = is_locked(number)
+        if is_ours:
+            self._lock = number
+        else:
+            os.close(number)
+        return is_ours
+
+    def read(self) -> Kept | None:
+        """Return the class that has not ended, or None. What is no class is put aside."""
+        try:
+            found = json.loads(contents(path(), FILE_BYTES))
+            if not isinstance(found, dict) or found.get("form") != FORM:
+                raise ValueError
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError, RecursionError):
+            with suppress(OSError):
+                path().replace(_aside())
+            return None
+        when_s = found.get("kept_s")
+        return Kept(found, type(when_s) is int and time() - when_s <= SAME_LESSON_S)
+
+    def keep(self, of_class: Json | None) -> None:
+        """Keep a class if it is another than the newest that was kept. What could not be kept is
+        tried again; of one that is over, None, nothing is kept."""
+        if not self._is_ours():
+            return
+        if of_class is None:
+            forget()
+            self._newest = ""
+            return
+        digest = hashlib.sha256(json.dumps(of_class).encode()).hexdigest()
+        if digest != self._newest:
+            with suppress(OSError, ValueError):  # a full disk ends no lesson
+                _write(of_class)
+                self._newest = digest
+
+    def close(self) -> None:
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
 
 
 def path() -> Path:
     return settings_folder() / "class.json"
 
 
-def keep(of_class: Json) -> None:
-    """Keep a class, so that not even a power cut loses it. Raises OSError."""
-    folder = path().parent
-    folder.mkdir(parents=True, exist_ok=True)
+def _aside() -> Path:
+    return path().with_name("class.unread.json")
+
+
+def _write(of_class: Json) -> None:
+    """Write a class, so that not even a power cut loses it. Raises OSError or ValueError."""
     data = json.dumps({"form": FORM, "kept_s": int(time()), **of_class}, ensure_ascii=False)
     replace(path(), data.encode("utf-8", "replace"), mode=0o600, is_lasting=True)
 
 
-def kept() -> Json | None:
-    """Return the class that has not ended and was seen within the last hour, or None."""
-    try:
-        found = json.loads(contents(path(), FILE_BYTES))
-    except (OSError, ValueError, RecursionError):
-        return None
-    if not isinstance(found, dict) or found.get("form") != FORM:
-        return None
-    when_s = found.get("kept_s")
-    is_new = type(when_s) is int and 0 <= time() - when_s <= GOES_ON_S
-    return found if is_new else None
-
-
 def forget() -> None:
     """Delete what is kept of a class that is over."""
-    with suppress(OSError):
-        path().unlink()
+    for each in (path(), _aside()):
+        with suppress(OSError):
+            each.unlink()

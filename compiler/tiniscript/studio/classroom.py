@@ -3,9 +3,11 @@
 A pupil joins with the code of the class and gets a token. Whoever wants a robot stands in one
 queue; a turn ends when the pupil leaves the robot or is not heard, and after a time if somebody
 waits. A pupil reaches only the robot of their own turn: the page of a request is never one that a
-pupil names. A pupil's page tells of its work, and whether a hand is up; who joins again gets the
-work of that name back only from the teacher. Knows no HTTP, no file (`class_keeping`) and no clock
-of its own.
+pupil names. A pupil's page tells of its work, and whether a hand is up.
+
+Work belongs to the token of the page that made it. Nobody else's replaces it or pushes it out: the
+teacher gives it to another pupil, and a copy stays until that page has said that it has it. Knows
+no HTTP, no file (`class_keeping`) and no clock of its own.
 """
 
 from __future__ import annotations
@@ -22,15 +24,17 @@ from time import monotonic
 from tiniscript.lessons import catalogue
 from tiniscript.link.port_names import same_for_all
 from tiniscript.studio.class_keeping import (
+    MOST_LESSONS,
     MOST_PUPILS,
+    MOST_WORKS,
     NOTHING,
     Work,
     is_token,
-    plain_name,
 )
 from tiniscript.studio.entrances import new_token
 from tiniscript.studio.hosted_robot import HostedRobot
 from tiniscript.studio.hosting import Hosting, listed, port_of
+from tiniscript.studio.names import are_alike, free_name, plain_name
 from tiniscript.studio.robot_link import BadRequest, Json, robot_of, whole
 from tiniscript.studio.serving import REQUEST_BYTES
 
@@ -66,13 +70,15 @@ class Rate:
 
 @dataclass(eq=False)
 class Pupil:
-    """`waits` and `hand`: the pupil wants a robot, or help; who has a smaller number is earlier.
+    """`name` is another than the one that was `written` if somebody here has that.
 
-    `given` is work that the teacher has given back and the page has not got yet.
+    `waits` and `hand`: the pupil wants a robot, or help; who has a smaller number is earlier.
     """
 
     number: int
+    token: str
     name: str
+    written: str
     address: str
     heard_s: float
     work: Work = NOTHING
@@ -80,10 +86,25 @@ class Pupil:
     is_right: bool = True  # a program without mistakes
     waits: int | None = None
     hand: int | None = None
-    given: Work | None = None
     knows_end: bool = False
     # The page's name for `hosting`: no page of the teacher's has it.
     page: str = field(default_factory=lambda: f"pupil-{secrets.token_hex(16)}")
+
+
+@dataclass(eq=False)
+class Kept:
+    """Work of who is not here. What comes from a file has no token and no address.
+
+    `given_to` is the token of the pupil whose page the teacher wants to have it.
+    """
+
+    name: str
+    written: str
+    work: Work
+    token: str = ""
+    address: str = ""
+    given_to: str = ""
+    key: str = field(default_factory=new_token)  # for pages
 
 
 @dataclass(eq=False)
@@ -117,6 +138,7 @@ LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"  # none looks like another
 CODE_LETTERS = 6  # a thousand million codes
 JOIN_BYTES = 1000
 PLACES = 3  # of one address; the teacher may allow more
+WORKS = 3  # of one address for each of its places
 MOST_ROBOTS = 40
 TURN_S = 180
 SHORTEST_S, LONGEST_S = 10, 3600
@@ -157,7 +179,7 @@ class Classroom:
         self._wrong = Rate(*WRONG)
         self._requests = Rate(*REQUESTS)
         self._numbers = count(1)  # of pupils, of places in the queue and of hands
-        self._kept: dict[str, Work] = {}  # of who is not here, by name
+        self._kept: dict[str, Kept] = {}  # by key
         self._goes_on = False  # after a crash, and the teacher has not said otherwise
         self._over = ""  # or whether pupils' work is kept
         self._over_s = 0.0
@@ -208,43 +230,76 @@ class Classroom:
         plain = plain_name(name)
         if not plain:
             return {"failure": "class_nameless"}
-        names = [plain, *(f"{plain} ({k})" for k in range(2, MOST_PUPILS + 2))]
-        same = [token for token, each in self._pupils.items() if each.address == address]
-        again = [token for token in same if self._pupils[token].name in names]
-        if self._give_place_away(now_s, PLACE_S, again):  # who comes back is not a second one
-            same = [token for token in same if token in self._pupils]
+        back = self._back(request.get("before"), plain, now_s)
+        if isinstance(back, Pupil):  # the page has been away
+            back.heard_s, back.address = now_s, address
+            return {"token": back.token, "name": back.name}
+        if back is None:  # who comes back is not a second one
+            same = [each for each in self._of(address) if are_alike(each.written, plain)]
+            self._give_place_away(now_s, PLACE_S, same)
+        same = self._of(address)
         if len(same) >= self._places and not self._give_place_away(now_s, PLACE_S, same):
             return {"failure": "class_crowded"}
-        if len(self._pupils) >= MOST_PUPILS and not self._give_place_away(
-            now_s, SILENT_S, list(self._pupils)
-        ):
+        here = list(self._pupils.values())
+        if len(here) >= MOST_PUPILS and not self._give_place_away(now_s, SILENT_S, here):
             return {"failure": "class_full"}
-        taken = {each.name for each in self._pupils.values()}
-        free = next(each for each in names if each not in taken)
-        token = new_token()
-        self._pupils[token] = Pupil(next(self._numbers), free, address, now_s)
-        return {"token": token, "name": free}
+        if back is None:
+            if self._works(address) >= WORKS * self._places:
+                return {"failure": "class_crowded"}
+            if self._works() >= MOST_WORKS:
+                return {"failure": "class_full"}
+            back = Kept(free_name(plain, self._names()), plain, NOTHING, new_token())
+        self._begin(back, address, now_s)
+        return {"token": back.token, "name": back.name}
 
-    def _give_place_away(self, now_s: float, silent_s: float, tokens: list[str]) -> bool:
+    def _begin(self, work: Kept, address: str, now_s: float) -> None:
+        """Who has made this work is here from now on."""
+        self._kept.pop(work.key, None)
+        self._pupils[work.token] = Pupil(
+            next(self._numbers), work.token, work.name, work.written, address, now_s, work.work
+        )
+
+    def _back(self, token: object, written: str, now_s: float) -> Pupil | Kept | None:
+        """Return who comes back with the token of an earlier page, and the same name."""
+        for each in self._all():
+            is_here = isinstance(each, Pupil) and now_s - each.heard_s <= PLACE_S
+            if each.token and each.token == token and not is_here:
+                return each if are_alike(each.written, written) else None
+        return None
+
+    def _of(self, address: str) -> list[Pupil]:
+        return [each for each in self._pupils.values() if each.address == address]
+
+    def _works(self, address: str | None = None) -> int:
+        """Return how many works the class has, of an address or in all."""
+        return sum(address is None or each.address == address for each in self._all())
+
+    def _names(self) -> list[str]:
+        """Return the names of all who have a token."""
+        return [each.name for each in self._all() if each.token]
+
+    def _all(self) -> list[Kept | Pupil]:
+        return [*self._kept.values(), *self._pupils.values()]
+
+    def _give_place_away(self, now_s: float, silent_s: float, pupils: list[Pupil]) -> bool:
         """Take the place of the one of these that has been silent longest."""
-        of = {token: self._pupils[token] for token in tokens}
-        silent = [(each.heard_s, token) for token, each in of.items()
+        silent = [each for each in pupils
                   if now_s - each.heard_s > silent_s and self._turn(each) is None]  # fmt: skip
         if silent:
-            self._forget(min(silent)[1])
+            self._forget(min(silent, key=lambda each: each.heard_s))
         return bool(silent)
 
-    def _forget(self, token: str) -> None:
+    def _forget(self, gone: Pupil) -> None:
         """A pupil is here no more; the work stays, for who comes back."""
-        gone = self._pupils.pop(token)
+        del self._pupils[gone.token]
         if gone.work.text:
-            self._keep(gone.name, gone.work)
+            self._keep(Kept(gone.name, gone.written, gone.work, gone.token, gone.address))
+        for each in self._kept.values():
+            if each.given_to == gone.token:
+                each.given_to = ""
 
-    def _keep(self, name: str, work: Work) -> None:
-        self._kept.pop(name, None)
-        self._kept[name] = work
-        while len(self._kept) > MOST_PUPILS:
-            del self._kept[next(iter(self._kept))]
+    def _keep(self, kept: Kept) -> None:
+        self._kept[kept.key] = kept
 
     def _here(self, pupil: Pupil, request: Json) -> Json:
         """A page tells of its program, and hears its place: 0 is a turn, -1 none."""
@@ -266,7 +321,7 @@ class Classroom:
         place = -1 if turn is None else 0
         if pupil in waiting:
             place = waiting.index(pupil) + 1
-        given = {} if pupil.given is None else {"given": pupil.given._asdict()}
+        given = next((each for each in self._kept.values() if each.given_to == pupil.token), None)
         return {
             "name": pupil.name,
             "place": place,
@@ -275,7 +330,7 @@ class Classroom:
             "robot": turn.name if turn else "",
             "left_s": self._left_s(turn) if turn else 0,
             "hand": pupil.hand is not None,
-            **given,
+            **({"given": {"key": given.key, **given.work._asdict()}} if given else {}),
         }
 
     def _hear_work(self, pupil: Pupil, request: Json) -> None:
@@ -292,8 +347,18 @@ class Classroom:
             pupil.version += 1
         if isinstance(request.get("is_right"), bool):
             pupil.is_right = request["is_right"]
-        if request.get("took") is True:
-            pupil.given = None
+        self._hear_taken(pupil, request.get("took"))
+
+    def _hear_taken(self, pupil: Pupil, took: object) -> None:
+        """A page says that it has what it was given: the very text proves it."""
+        found = took if isinstance(took, dict) else {}
+        kept = self._kept.get(str(found.get("key")))
+        if kept is None or kept.given_to != pupil.token or found.get("text") != kept.work.text:
+            return
+        del self._kept[kept.key]
+        lessons = dict.fromkeys((*kept.work.lessons, *pupil.work.lessons))
+        pupil.work = kept.work._replace(lessons=tuple(lessons)[:MOST_LESSONS])
+        pupil.version += 1
 
     def _connect(self, pupil: Pupil, request: Json) -> Json:
         self._tend()
@@ -391,21 +456,20 @@ class Classroom:
                 self.code = _new_code()
             elif do == "class_over":
                 self._end(request.get("erases") is True)
-            elif do in ("class_stop", "class_next", "class_remove", "class_text", "class_hand"):
-                found = self._pupil(request)  # who may have gone a moment ago
-                if do == "class_text":
-                    work = found[1].work if found else NOTHING
-                    return {"version": found[1].version if found else 0, **work._asdict()}
-                if found:
-                    self._teach(do, *found)
+            elif do == "class_text":
+                return self._text(request)
+            elif do in ("class_stop", "class_next", "class_remove", "class_hand"):
+                pupil = self._pupil(request)
+                if pupil is not None:  # who may have gone a moment ago
+                    self._teach(do, pupil)
             elif do == "class_work":
                 return {"pupils": self.work()}
             elif do == "class_bring":
                 self._bring(request)
             elif do == "class_forget":
-                self._kept.pop(str(request.get("name")), None)
+                self._kept.pop(str(request.get("key")), None)
             elif do == "class_give_back":
-                self._give_back()
+                self._give_back(request)
             elif do == "class_anew":
                 self._begin_anew()
             elif do != "class":
@@ -413,7 +477,7 @@ class Classroom:
             self._tend()
             return self._state()
 
-    def _teach(self, do: str, token: str, pupil: Pupil) -> None:
+    def _teach(self, do: str, pupil: Pupil) -> None:
         robot = self._turn(pupil)
         if do == "class_hand":
             pupil.hand = None
@@ -424,31 +488,39 @@ class Classroom:
             if robot is not None:
                 robot.take_back()
             if do == "class_remove":
-                self._forget(token)
+                self._forget(pupil)
+
+    def _text(self, request: Json) -> Json:
+        """Return the work of a pupil, or kept work, of which the page names the key."""
+        found = self._pupil(request) or self._kept.get(str(request.get("key")))
+        version = found.version if isinstance(found, Pupil) else 0
+        return {"version": version, **(found.work if found else NOTHING)._asdict()}
 
     # -- what is kept -----------------------------------------------------------------------------
 
     def work(self) -> list[Json]:
         """Return the work of all pupils, of those who are not here, too."""
         with self._lock:
-            own = {each.name: each.work for each in self._pupils.values()}
-            found = {**self._kept, **{name: each for name, each in own.items() if each.text}}
-        return [{"name": name, **each._asdict()} for name, each in found.items()]
+            found = [(each.name, each.work) for each in self._all() if each.work.text]
+        return [{"name": name, **work._asdict()} for name, work in found]
 
     def _bring(self, request: Json) -> None:
-        """Keep work of a name that comes from a file. Raises BadRequest."""
+        """Keep work that comes from a file, once. Raises BadRequest."""
         name, work = request.get("name"), Work.of(request)
         plain = plain_name(name) if isinstance(name, str) else ""
-        if not plain or work is None or len(self._kept) >= MOST_PUPILS:
+        if not plain or work is None:
             raise BadRequest
-        self._keep(plain, work)
+        if any((each.name, each.work) == (plain, work) for each in self._kept.values()):
+            return
+        if self._works() >= MOST_WORKS:
+            raise BadRequest
+        self._keep(Kept(plain, plain, work))
 
-    def _give_back(self) -> None:
-        """Give each pupil the kept work of that name: their page puts it into the editor."""
-        for pupil in self._pupils.values():
-            work = self._kept.pop(pupil.name, None)
-            if work is not None:
-                pupil.given = work
+    def _give_back(self, request: Json) -> None:
+        """Give kept work to one pupil: their page puts it into the editor."""
+        kept, pupil = self._kept.get(str(request.get("key"))), self._pupil(request)
+        if kept is not None:  # the page may have taken it a moment ago
+            kept.given_to = pupil.token if pupil else ""
 
     def _begin_anew(self) -> None:
         """Begin another class: nobody is in it, and nothing is kept of the one before."""
@@ -469,41 +541,55 @@ class Classroom:
                 "turn_s": self._turn_s,
                 "places": self._places,
                 "robots": [each.port for each in self._robots],
-                "kept": [{"name": name, **each._asdict()} for name, each in self._kept.items()],
+                "kept": [
+                    {
+                        "name": each.name,
+                        "written": each.written,
+                        "token": each.token,
+                        "address": each.address,
+                        "given_to": each.given_to,
+                        "key": each.key,
+                        **each.work._asdict(),
+                    }
+                    for each in self._kept.values()
+                ],
                 "pupils": [
                     {
-                        "token": token,
+                        "token": each.token,
                         "name": each.name,
+                        "written": each.written,
                         "address": each.address,
                         **each.work._asdict(),
                     }
-                    for token, each in self._pupils.items()
+                    for each in self._pupils.values()
                 ],
             }
 
-    def go_on(self, kept: Json) -> int:
+    def go_on(self, kept: Json, is_same_lesson: bool = True) -> int:
         """Go on with a class from before a crash; return how many pupils it has. What is damaged
-        of it is left out."""
+        of it is left out. Of another lesson's all is kept, and pupils come with another code."""
         with self._lock:
             now_s = self._clock()
-            for each in _rows(kept, "kept"):
-                with suppress(BadRequest):
-                    self._bring(each)
-            for each in _rows(kept, "pupils")[:MOST_PUPILS]:
-                token, name, address = each.get("token"), each.get("name"), each.get("address")
-                work = Work.of(each) or NOTHING
-                if not is_token(token) or not isinstance(name, str) or not isinstance(address, str):
-                    continue
-                pupil = Pupil(next(self._numbers), plain_name(name), address, now_s, work)
-                if pupil.name:
-                    self._pupils[str(token)] = pupil
+            for row in _rows(kept, "pupils")[:MOST_PUPILS]:
+                found = _kept_in(row, Work.of(row) or NOTHING)
+                if found is not None and found.token and found.address:
+                    self._begin(found, found.address, now_s)
+            for row in _rows(kept, "kept"):
+                found = _kept_in(row, Work.of(row))
+                if found is not None and self._works() < MOST_WORKS:
+                    found.given_to = found.given_to if found.given_to in self._pupils else ""
+                    self._keep(found)
+            self._goes_on = bool(self._pupils or self._kept)
+            if not is_same_lesson:
+                for each in list(self._pupils.values()):
+                    self._forget(each)
+                return 0
             for port in kept["robots"] if isinstance(kept.get("robots"), list) else []:
                 with suppress(BadRequest):
                     self._give(_given({"port": port, "gives": True}), True)
             code = kept.get("code")
             if isinstance(code, str) and len(code) == CODE_LETTERS and set(code) <= set(LETTERS):
                 self.code = code
-            self._goes_on = bool(self._pupils or self._kept)
             return len(self._pupils)
 
     def _give(self, given: ClassRobot, is_given: bool) -> None:
@@ -543,7 +629,20 @@ class Classroom:
             "over": self._over,
             "goes_on": self._goes_on,
             "lessons": len(catalogue.folders()),
-            "kept": [{"name": name, "lessons": each.lessons} for name, each in self._kept.items()],
+            "kept": [
+                {
+                    "key": each.key,
+                    "name": each.name,
+                    "lessons": each.work.lessons,
+                    "given": self._number(each.given_to),
+                    "alike": [
+                        pupil.number
+                        for pupil in self._pupils.values()
+                        if are_alike(pupil.written, each.written)
+                    ],
+                }
+                for each in self._kept.values()
+            ],
             "pupils": [
                 {
                     "number": each.number,
@@ -570,11 +669,12 @@ class Classroom:
             ],
         }
 
-    def _pupil(self, request: Json) -> tuple[str, Pupil] | None:
-        for token, each in self._pupils.items():
-            if each.number == request.get("pupil"):
-                return token, each
-        return None
+    def _pupil(self, request: Json) -> Pupil | None:
+        number = request.get("pupil")
+        return next((each for each in self._pupils.values() if each.number == number), None)
+
+    def _number(self, token: str) -> int:
+        return self._pupils[token].number if token in self._pupils else 0
 
 
 def _may(asked: object) -> bool:
@@ -593,6 +693,25 @@ def _given(request: Json) -> ClassRobot:
 def _rows(kept: Json, name: str) -> list[Json]:
     found = kept.get(name)
     return [each for each in found if isinstance(each, dict)] if isinstance(found, list) else []
+
+
+def _kept_in(row: Json, work: Work | None) -> Kept | None:
+    """Return whose work it is in a row of a file; None if it is nobody's, or no work."""
+    name = row.get("name")
+    plain = plain_name(name) if isinstance(name, str) else ""
+    if work is None or not plain:
+        return None
+    found = Kept(plain, plain, work)
+    written, address = row.get("written"), row.get("address")
+    found.written = (plain_name(written) if isinstance(written, str) else "") or plain
+    found.address = address if isinstance(address, str) else ""
+    found.token, found.given_to = _token_in(row, "token"), _token_in(row, "given_to")
+    found.key = _token_in(row, "key") or found.key
+    return found
+
+
+def _token_in(row: Json, name: str) -> str:
+    return str(row[name]) if is_token(row.get(name)) else ""
 
 
 def _new_code() -> str:

@@ -46,7 +46,7 @@ def description() -> dict[str, Any]:
         "class": {
             "form": class_keeping.FORM,
             "file_bytes": class_keeping.FILE_BYTES,
-            "most_pupils": class_keeping.MOST_PUPILS,
+            "most_works": class_keeping.MOST_WORKS,
             "text_characters": class_keeping.TEXT_CHARACTERS,
             "most_lessons": class_keeping.MOST_LESSONS,
         },

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import socket
 import webbrowser
 from argparse import Namespace
-from contextlib import suppress
+from contextlib import closing
 from ipaddress import IPv4Address
 from threading import Thread
+from typing import NamedTuple
 
 from tiniscript.cli import inputs, page_build
 from tiniscript.cli.commands.robot import ended_by_signal
@@ -26,21 +25,35 @@ TURN_MINUTES = 3
 ELSEWHERE = "198.51.100.1"  # an address of documents, which nobody has
 
 
+class _Class(NamedTuple):
+    room: Classroom
+    keeper: class_keeping.Keeper
+
+
 def run(options: Namespace, language: str) -> int:
     port = whole_number("--listen", options.listen, PORT, 0, 65535, language)
     minutes = whole_number("--turn", options.turn, TURN_MINUTES, 1, 60, language)
-    hosting, classroom, went_on, newest = Hosting(), None, 0, ""
-    host = serving.HOST
-    if options.is_class:
-        host = _given(options.address) if options.address else _address()
-        classroom = Classroom(hosting, list(map(inputs.port, options.ports)), 60 * minutes)
-        went_on = _go_on(classroom)
-    elif options.address or options.ports or options.turn:
-        raise CommandError(2, "studio_needs_class")
+    hosting = Hosting()
+    if not options.is_class:
+        if options.address or options.ports or options.turn:
+            raise CommandError(2, "studio_needs_class")
+        return _serve(options, language, (serving.HOST, port), hosting)
+    host = _given(options.address) if options.address else _address()
+    room = Classroom(hosting, list(map(inputs.port, options.ports)), 60 * minutes)
+    with closing(_keeper()) as keeper:
+        return _serve(options, language, (host, port), hosting, _Class(room, keeper))
+
+
+def _serve(
+    options: Namespace, language: str, place: tuple[str, int], hosting: Hosting,
+    taught: _Class | None = None,
+) -> int:  # fmt: skip
+    went_on = _go_on(taught) if taught else 0
     if not serving.is_built() or building.is_possible():
         page_build.prepare(options, language)
+    host, port = place
     try:
-        server = _server(port, host, hosting, classroom)
+        server = _server(port, host, hosting, taught.room if taught else None)
     except OSError as why:
         address = f"http://{host}:{port}/"
         key = "studio_no_address" if options.is_class else "studio_taken"
@@ -51,8 +64,8 @@ def run(options: Namespace, language: str) -> int:
             thread.start()
             entrance = server.entrance()
             print(entrance, flush=True)
-            key = "studio_class" if classroom else "studio_here"
-            values = {"address": server.address, "code": classroom.code if classroom else ""}
+            key = "studio_class" if taught else "studio_here"
+            values = {"address": server.address, "code": taught.room.code if taught else ""}
             say_aside(key, language, **values)
             if went_on:
                 say_aside("studio_goes_on", language, pupils=went_on)
@@ -64,10 +77,10 @@ def run(options: Namespace, language: str) -> int:
                     entrance = server.entrance()
                     say_aside("studio_opened", language)
                     print(entrance, flush=True)
-                if classroom is not None:
-                    classroom.tend()
-                    newest = _keep(classroom, newest)
-                    if classroom.has_ended:
+                if taught is not None:
+                    taught.room.tend()
+                    taught.keeper.keep(taught.room.state_to_keep())
+                    if taught.room.has_ended:
                         break
     except KeyboardInterrupt:
         pass
@@ -78,23 +91,17 @@ def run(options: Namespace, language: str) -> int:
     return 0
 
 
-def _go_on(classroom: Classroom) -> int:
+def _keeper() -> class_keeping.Keeper:
+    try:
+        return class_keeping.Keeper()
+    except class_keeping.Taken:
+        raise CommandError(3, "studio_two_classes") from None
+
+
+def _go_on(taught: _Class) -> int:
     """Go on with a class that a crash has ended; return how many pupils it has."""
-    kept = class_keeping.kept()
-    return classroom.go_on(kept) if kept is not None else 0
-
-
-def _keep(classroom: Classroom, newest: str) -> str:
-    """Keep a class if it is another than the newest that was kept; return what is kept now."""
-    found = classroom.state_to_keep()
-    if found is None:
-        class_keeping.forget()
-        return ""
-    digest = hashlib.sha256(json.dumps(found).encode()).hexdigest()
-    if digest != newest:
-        with suppress(OSError):  # a full disk ends no lesson
-            class_keeping.keep(found)
-    return digest
+    kept = taught.keeper.read()
+    return taught.room.go_on(*kept) if kept is not None else 0
 
 
 def _server(port: int, host: str, hosting: Hosting, classroom: Classroom | None) -> serving.Server:

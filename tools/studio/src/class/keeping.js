@@ -34,7 +34,7 @@ export async function openWork(file) {
   }
   if (found?.tiniscript_class !== CLASS.form || !Array.isArray(found.pupils)) return null;
   let count = 0;
-  for (const each of found.pupils.slice(0, CLASS.most_pupils)) {
+  for (const each of found.pupils.slice(0, CLASS.most_works)) {
     const { name, text: program, robot, lessons } = each ?? {};
     if (![name, program, robot].every((part) => typeof part === 'string') || !Array.isArray(lessons)) continue;
     const isTaken = await post({ do: 'class_bring', name, text: program, robot, lessons }).then(() => true, () => false);

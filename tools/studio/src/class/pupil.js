@@ -16,10 +16,11 @@ import { CLASS, isRobot } from '../page/words.js';
 import { forgetAll, keepAt, kept } from '../page/kept.js';
 
 const PLACE = 'tiniscript.pupil';
+const BEFORE = 'tiniscript.pupil_before'; // the token of the last page here: work belongs to it
 const LOOK_MS = 1000;
 const SOON_MS = 300; // while the next turn may be one's own
 
-/** @typedef {{text: string, robot: string, lessons: string[]}} Given */
+/** @typedef {{key: string, text: string, robot: string, lessons: string[]}} Given */
 /** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: Given, over?: string}} Here */
 
 export class Pupil {
@@ -44,7 +45,9 @@ export class Pupil {
   #isUp = false;
   /** What the teacher's page knows. @type {Record<string, string>} */
   #told = {};
-  #took = false;
+  /** The work that was given last, and whether the class has yet to hear that it is here. @type {Given | null} */
+  #taken = null;
+  #isNews = false;
   #isEntering = false;
   #place = -1;
   #timer = 0;
@@ -83,7 +86,7 @@ export class Pupil {
     if (this.#isEntering) return; // who presses twice is one pupil
     this.#isEntering = true;
     try {
-      const answer = await post({ do: 'join', code: this.#code.value, name: this.#name.value });
+      const answer = await post({ do: 'join', code: this.#code.value, name: this.#name.value, before: kept(BEFORE) });
       if (answer.failure) this.#say(answer.failure);
       else this.#begin(answer.token);
     } catch {
@@ -96,6 +99,7 @@ export class Pupil {
   #begin(token) {
     askAs(token);
     keepAt(PLACE, token, 'sessionStorage'); // without a storage, a reload joins anew
+    keepAt(BEFORE, token);
     this.#told = {};
     this.#join.hidden = true;
     this.#hands.hidden = false;
@@ -120,10 +124,11 @@ export class Pupil {
 
   async #look() {
     clearTimeout(this.#timer);
-    const wants = this.#wants, hand = this.#hand, took = this.#took;
-    const now = this.#now();
+    const wants = this.#wants, hand = this.#hand, taken = this.#isNews ? this.#taken : null;
+    const now = taken ? this.#told : this.#now(); // two programs may be too large
     /** @type {Record<string, unknown>} */
-    const request = { do: 'here', took };
+    const request = { do: 'here' };
+    if (taken) request['took'] = { key: taken.key, text: taken.text };
     if (wants !== null) request['wants'] = wants;
     if (hand !== null) request['hand'] = hand;
     for (const [name, value] of Object.entries(now)) if (this.#told[name] !== value) request[name] = JSON.parse(value);
@@ -138,7 +143,8 @@ export class Pupil {
         return;
       }
       this.#show(answer);
-      this.#take(answer.given, took);
+      if (taken) this.#isNews = false;
+      this.#take(answer.given);
       if (answer.place > 0 && answer.place <= answer.robots) wait_ms = SOON_MS;
     } catch (why) {
       if (why instanceof Failed && why.reason === 'host_other') {
@@ -162,13 +168,12 @@ export class Pupil {
     };
   }
 
-  /** Takes work that the teacher gives back, once. @param {Given | undefined} given @param {boolean} took */
-  #take(given, took) {
-    if (!given || took) {
-      this.#took = false;
-      return;
-    }
-    this.#took = true;
+  /** Takes work that the teacher gives back, once; it is given until the class has heard of that. @param {Given | undefined} given */
+  #take(given) {
+    if (!given) return;
+    this.#isNews = true;
+    if (this.#taken?.key === given.key) return;
+    this.#taken = given;
     for (const name of given.lessons) keepDone(name);
     this.#page.put({ text: given.text, robot: isRobot(given.robot) ? given.robot : this.#work.robot });
     element('note', HTMLElement).textContent = text('class_given');

@@ -3,7 +3,8 @@
 // Everything that pupils and robots have written is put there as text, never as markup.
 
 import { BigCode, BigPupil } from './big.js';
-import { openWork, saveWork, workOfAll } from './keeping.js';
+import { Giving } from './giving.js';
+import { openWork, saveWork } from './keeping.js';
 import { button, labelled, made } from '../page/made.js';
 import { Pictures } from './pictures.js';
 import { sign } from './signs.js';
@@ -17,7 +18,7 @@ import { isSecond } from '../page/twice.js';
 
 /** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, left_s: number, version: number, is_right: boolean, hand: number, lessons: string[]}} PupilRow */
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */
-/** @typedef {{name: string, lessons: string[]}} KeptRow */
+/** @typedef {{key: string, name: string, lessons: string[], given: number, alike: number[]}} KeptRow `given` and `alike` are pupils: whose page is to have it, who may be who made it */
 /** @typedef {{code: string, turn_s: number, places: number, over: string, goes_on: boolean, lessons: number, kept: KeptRow[], pupils: PupilRow[], robots: RobotRow[]}} State */
 /** @typedef {{text: string, robot: string, version: number}} Known what is known of a program */
 
@@ -51,7 +52,8 @@ export class Teacher {
   #settings = made('dialog');
   #file = made('input');
   #end = pressedTwice('class_end', () => this.#ask({ do: 'class_over', erases: this.#erases.checked }));
-  #giveBack = button('class_give_back', () => this.#ask({ do: 'class_give_back' }));
+  #giving = new Giving((key, pupil) => this.#ask({ do: 'class_give_back', key, pupil }));
+  #giveBack = button('class_give_back', () => this.#giving.window.showModal());
   #anew = pressedTwice('class_anew', () => this.#ask({ do: 'class_anew' }));
   /** @type {State | null} */
   #state = null;
@@ -112,7 +114,7 @@ export class Teacher {
     const close = button('close', () => this.#settings.close());
     const stop = button('class_stop_all', () => element('stop', HTMLButtonElement).click());
     stop.className = 'stop';
-    this.#settings.id = 'class_window';
+    this.#settings.id = this.#settings.className = 'class_window';
     this.#settings.setAttribute('aria-labelledby', 'class_window_title');
     const title = made('h2', 'class_settings');
     title.id = 'class_window_title';
@@ -177,7 +179,7 @@ export class Teacher {
   /** @param {string} key */
   #remove(key) {
     if (this.#pupil(key)) this.#ofPupil('class_remove', key);
-    else this.#ask({ do: 'class_forget', name: nameOf(key) });
+    else this.#ask({ do: 'class_forget', key: keptOf(key) });
   }
 
   /** @param {string} key */
@@ -230,6 +232,7 @@ export class Teacher {
       this.#say('class_over');
       this.#settings.close();
       this.#big.window.close();
+      this.#giving.window.close();
       element('class', HTMLElement).replaceChildren(this.#said); // nobody is left to do the rest
       return;
     }
@@ -238,8 +241,8 @@ export class Teacher {
     const count = text('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place }) => place).length });
     say(this.#said, [count, hands.length ? text('class_hands', { names: named }) : '', this.#told || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
     document.documentElement.dataset['teacher'] = 'class_count';
-    const back = kept.filter(({ name }) => pupils.some((each) => each.name === name)).length;
-    this.#giveBack.hidden = !back;
+    this.#giveBack.hidden = !kept.length || !pupils.length;
+    this.#giving.show(kept, pupils);
     this.#anew.hidden = !goes_on;
     this.#showRobots(robots);
     const tiles = this.#tiles();
@@ -255,13 +258,11 @@ export class Teacher {
     if (this.#big.key) this.#showBig(this.#big.key);
   }
 
-  /** Who is here and who is not, by name. */
+  /** Who is here, and the work of who is not, by name. */
   #tiles() {
     const { pupils = [], kept = [] } = this.#state ?? {};
     const tiles = pupils.map((pupil) => ({ key: keyOf(pupil.number), name: pupil.name, lessons: pupil.lessons, pupil: /** @type {PupilRow | null} */ (pupil) }));
-    for (const { name, lessons } of kept) {
-      if (!pupils.some((each) => each.name === name)) tiles.push({ key: `kept ${name}`, name, lessons, pupil: null });
-    }
+    for (const { key, name, lessons } of kept) tiles.push({ key: `kept ${key}`, name, lessons, pupil: null });
     return tiles.sort((one, other) => one.name.localeCompare(other.name, undefined, { numeric: true }) || (one.key < other.key ? -1 : 1));
   }
 
@@ -292,9 +293,8 @@ export class Teacher {
     this.#fetching.set(key, version);
     try {
       const pupil = this.#pupil(key);
-      const found = pupil ? await post({ do: 'class_text', pupil: pupil.number })
-        : (await workOfAll()).find(({ name }) => name === nameOf(key)) ?? { text: '', robot: '' };
-      const known = { text: String(found.text), robot: String(found.robot || 'tinibot'), version: pupil ? Number(found.version) : 0 };
+      const found = await post({ do: 'class_text', ...(pupil ? { pupil: pupil.number } : { key: keptOf(key) }) });
+      const known = { text: String(found.text), robot: String(found.robot || 'tinibot'), version: Number(found.version) };
       this.#known.set(key, known);
       this.#pictures.want(key, known, (address) => {
         if (!this.#wall.picture(key, address)) URL.revokeObjectURL(address);
@@ -364,7 +364,7 @@ function keyOf(pupil) {
 }
 
 /** @param {string} key of who is not here */
-function nameOf(key) {
+function keptOf(key) {
   return key.replace(/^kept /, '');
 }
 
