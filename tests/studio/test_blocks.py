@@ -17,7 +17,16 @@ from tiniscript import compile_text, robots
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source
 from tiniscript.base.words import ALIASES, UNIT_OF, WORDS
-from tiniscript.studio.block_form import Block, Form, data_of, from_data, in_order, size_of
+from tiniscript.studio.block_form import (
+    LEFT_OUT,
+    Block,
+    Form,
+    beginning,
+    data_of,
+    from_data,
+    in_order,
+    size_of,
+)
 from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read
@@ -298,3 +307,31 @@ def test_a_very_long_program_stays_text() -> None:
     deep = f"X = {'(' * 5000}1{')' * 5000}{' + 1' * MOST_BLOCKS}"
     assert json.loads(answer(asked, deep.encode())) == {"size": 2 * MOST_BLOCKS + 2}
     assert size_of(read("/// F(1, 2)", TINIBOT)) == 3
+
+
+@each_row("program", programs())
+def test_the_beginning_of_a_program_is_of_its_first_blocks(program: Program) -> None:
+    form = read(program.text, robots.load(program.robot).kit)
+    whole = in_order(form.body)
+    for most in (1, 2, 7, 40, size_of(form)):
+        found = beginning(form, most)
+        assert size_of(found) <= most
+        first = in_order(found.body)
+        if size_of(form) <= most:
+            assert found == form
+            continue
+        assert first.pop() == LEFT_OUT and found.loose == ()
+        assert [(each.kind, each.word) for each in first] == [
+            (each.kind, each.word) for each in whole[: len(first)]
+        ]
+        assert [len(each.bodies) for each in first] == [
+            len(each.bodies) for each in whole[: len(first)]
+        ]
+
+
+def test_the_page_asks_for_the_beginning() -> None:
+    text = ";".join(["SHOW(1)"] * (2 * MOST_BLOCKS))
+    asked = {"do": "blocks", "robot": "tinibot"}
+    assert set(json.loads(answer(json.dumps(asked), text.encode()))) == {"size"}
+    found = json.loads(answer(json.dumps({**asked, "first": 150}), text.encode()))
+    assert found["size"] == 149 and found["body"][-1]["word"] == "…"

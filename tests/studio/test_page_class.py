@@ -330,6 +330,69 @@ def test_a_picture_is_seen_large_while_the_next_one_is_made(
     teacher.evaluate("() => released()")
 
 
+LONG = "SI|" + ";".join(["F(1, 50)", "IF(DISTANCE < 9)", "S", "END_IF"] * 120)
+# Time goes on only where a test says so; what has nothing to wait for is counted.
+STANDS = """() => { window.now = performance.now(); window.each = 0; window.slices = 0;
+  performance.now = () => (window.now += window.each);
+  const own = setTimeout; window.setTimeout = (does, ms, ...words) => {
+    window.slices += ms === 0; return own(does, ms, ...words); }; }"""
+SIZE = "async (each) => { await each.decode(); return [each.naturalWidth, each.naturalHeight]; }"
+
+
+def test_a_long_program_is_drawn_in_slices_and_not_to_its_end(
+    first: Page, pages: Pages, taught: Class
+) -> None:
+    """So that STOP ALL waits for none of it: `tools.bench.studio` measures how long it waits."""
+    teacher = teaches(pages, taught)
+    only_ana(taught)
+    picture = tile(teacher, "Ana").locator("img[src^=blob]")
+    picture.wait_for()
+    teacher.evaluate(STANDS)
+    teacher.evaluate("() => { window.each = 20; }")  # each step is as long as a slice
+    sizes = []
+    for text in (LONG, LONG + ";" + LONG[3:]):
+        before, slices = picture.get_attribute("src"), teacher.evaluate("slices")
+        write(first, text)
+        teacher.locator(f"#wall img[src^=blob]:not([src='{before}'])").wait_for()
+        assert teacher.evaluate("slices") - slices > 300  # each block is made, and drawn
+        sizes.append(picture.evaluate(SIZE))
+    assert sizes[0] == sizes[1]
+    write(first, "F(1, 50)")
+    teacher.close()
+
+
+def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, taught: Class) -> None:
+    """Whatever the page writes meanwhile; and the newest is drawn then. Others wait for nothing."""
+    teacher = teaches(pages, taught)
+    only_ana(taught)
+    picture = tile(teacher, "Ana").locator("img[src^=blob]")
+    picture.wait_for()
+    teacher.evaluate(STANDS)
+    teacher.evaluate("() => { window.now += 1000; }")
+    before = picture.get_attribute("src")
+
+    def changes(text: str) -> None:
+        with teacher.expect_response(
+            lambda found: '"class_text"' in (found.request.post_data or "")
+        ):
+            write(first, text)
+
+    changes("F(1, 51)")
+    teacher.locator(f"#wall img[src^=blob]:not([src='{before}'])").wait_for()
+    newest = picture.get_attribute("src")
+    for text in ("F(1, 52)", "F(1, 53);S"):
+        changes(text)
+    asked = {"do": "join", "code": taught.room.code, "name": "Teo"}
+    teo = taught.room.answer("", "192.0.2.7", asked)["token"]
+    taught.room.answer(teo, "192.0.2.7", {"do": "here", "text": "S", "robot": "tinibot"})
+    tile(teacher, "Teo").locator("img[src^=blob]").wait_for()
+    assert picture.get_attribute("src") == newest
+    teacher.evaluate("() => { window.now += 1000; }")
+    teacher.locator(f"#wall li:has-text('Ana') img[src^=blob]:not([src='{newest}'])").wait_for()
+    teacher.close()
+    only_ana(taught)
+
+
 def test_a_robot_that_does_not_confirm_a_stop_is_red(
     ana: Page, teacher: Page, robot: PtyRobot
 ) -> None:

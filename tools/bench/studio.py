@@ -32,6 +32,10 @@ VISITS = 3
 THROTTLED = 4  # times as slow a processor
 STARTS = 5
 FRAMES_MS = 8000  # of which pictures are looked at
+PUPILS, WRITERS = 30, 3
+WRITES_MS = 300  # between two changes of a writer
+PRESSES = 60
+STOP_LEAVES_MS = 50
 LATE_MS = 33.5  # two of 60 in a second are 33.3, and the clock of a page tells tenths
 SETTLES_MS = 1500  # after a start
 TASK = "ThreadControllerImpl::RunTask"  # of a thread, in Chromium's traces
@@ -62,6 +66,14 @@ FOLLOW = """() => {
   };
   requestAnimationFrame(look);
 }"""
+# When the button is pressed, as the browser has noted it, and when the request leaves.
+PRESSED = """() => { window.waits = []; const own = window.fetch;
+  const note = ({timeStamp}) => { window.pressed_ms = timeStamp; };
+  addEventListener('pointerdown', note, {capture: true});
+  window.fetch = (where, what) => {
+    if (what?.body?.includes('"stop_all"')) waits.push(performance.now() - pressed_ms);
+    return own(where, what);
+  }; }"""
 EMPTY = "document.documentElement.dataset.phase = 'running'"  # a page that draws nothing
 # A letter is typed in the middle of the program, and the compiler asked as the page asks it.
 TYPE = """async ([text, count]) => {
@@ -95,6 +107,8 @@ def main() -> None:
         for row in _moved(browser, server.address):
             print("{:44} {:>14}  {:>12}".format(*row), flush=True)
         for row in _drawn(browser, server.address):
+            print("{:44} {:>14}  {:>12}".format(*row), flush=True)
+        for row in _stopped(browser):
             print("{:44} {:>14}  {:>12}".format(*row), flush=True)
     with studio.served(_packed()) as server:
         for name, points in _rated(server.address).items():
@@ -184,6 +198,39 @@ def _drawn(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
     yield f"pictures whose work, times 4, is over {LATE_MS} ms", f"{late} of {len(slow)}", "0"
 
 
+def _stopped(browser: Browser) -> Iterator[tuple[str, str, str]]:
+    """STOP ALL of a teacher while pupils write as much as a page takes, as fast as it asks."""
+    with studio.taught([]) as (server, room):
+        room.teach({"do": "class_places", "places": PUPILS})
+        tokens = [
+            room.answer("", "192.0.2.7", {"do": "join", "code": room.code, "name": f"P{k}"})[
+                "token"
+            ]
+            for k in range(PUPILS)
+        ]
+
+        def writes(pupils: list[str], last: int) -> None:
+            for token in pupils:
+                told = {"do": "here", "text": f"{_program(480)} // {last}", "robot": "tinibot"}
+                room.answer(token, "192.0.2.7", told)
+
+        writes(tokens, 0)
+        context = browser.new_context(viewport={"width": 1366, "height": 768})
+        page = context.new_page()
+        page.set_default_timeout(120_000)
+        page.goto(server.entrance())
+        page.locator("#wall img[src^=blob]").nth(PUPILS - 1).wait_for()
+        page.evaluate(PRESSED)
+        for k in range(PRESSES):
+            writes(tokens[:WRITERS] if k % 2 else tokens, k)
+            page.wait_for_timeout(WRITES_MS)
+            page.click("#stop", no_wait_after=True)
+        waits = sorted(page.evaluate("window.waits"))
+        context.close()
+    yield "STOP ALL leaves the page, median", f"{median(waits):.0f} ms", ""
+    yield f"the slowest of {len(waits)}", f"{waits[-1]:.0f} ms", f"< {STOP_LEAVES_MS} ms"
+
+
 def _works_ms(events: list[dict[str, Any]]) -> list[float]:
     """Return the processor time of the page's main thread from each picture to the next."""
     draws = [each for each in events if each["name"] == "FireAnimationFrame"]
@@ -223,10 +270,10 @@ def _visited(browser: Browser, address: str) -> Iterator[Page]:
         context.close()
 
 
-def _program() -> str:
+def _program(lines: int = LINES) -> str:
     """Return a program of so many lines."""
     rows = ["SI|LOOP(3)"]
-    for k in range((LINES - 4) // 4):
+    for k in range((lines - 4) // 4):
         rows += [f"  IF(DISTANCE < {k})", "    R(0.5, 60)", "  END_IF", "  F(1, 80)"]
     return ";\n".join([*rows, "  S", "  W(1)", "END_LOOP"])
 

@@ -34,6 +34,9 @@ class Block(NamedTuple):
     place: Place = NOWHERE
 
 
+LEFT_OUT = Block("comment", "…")
+
+
 class Stack(NamedTuple):
     """Blocks that hang on nothing: instructions, or one value."""
 
@@ -72,7 +75,7 @@ def from_data(data: dict[str, Any]) -> Form:
 def size_of(form: Form) -> int:
     """Return how many blocks of the page a program needs, those of its values included."""
     return sum(
-        1 + sum(len(value) for value in block.values)
+        _own_size(block)
         for body in (form.body, *(stack.body for stack in form.loose))
         for block in in_order(body)
     )
@@ -85,6 +88,35 @@ def kinds_in(form: Form) -> set[str]:
         found.add(block.kind)
         found.update(KIND_OF[op] for value in block.values for op, _ in value if op != "NUMBER")
     return found
+
+
+def beginning(form: Form, most: int) -> Form:
+    """Return a form with no more than so many blocks, and a last one that says that there were."""
+    if size_of(form) <= most:
+        return form
+    body, _ = _first(form.body, most - 1)
+    return form._replace(body=body, loose=())
+
+
+def _first(blocks: tuple[Block, ...], most: int) -> tuple[tuple[Block, ...], int]:
+    """Return the first blocks and how many more may follow; -1 if some are left out."""
+    found: list[Block] = []
+    for block in blocks:
+        most -= _own_size(block)
+        if most < 0:
+            return (*found, LEFT_OUT), -1
+        bodies = []
+        for each in block.bodies:
+            body, most = _first(each, most) if most >= 0 else ((), most)
+            bodies.append(body)
+        found.append(block._replace(bodies=tuple(bodies)))
+        if most < 0:
+            break
+    return tuple(found), most
+
+
+def _own_size(block: Block) -> int:
+    return 1 + sum(len(value) for value in block.values)
 
 
 def in_order(blocks: tuple[Block, ...]) -> list[Block]:

@@ -14,7 +14,7 @@ from tiniscript.base import languages
 from tiniscript.bytecode.image import checksum
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.studio import checking
-from tiniscript.studio.block_form import data_of, from_data, in_order, size_of
+from tiniscript.studio.block_form import beginning, data_of, from_data, in_order, size_of
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import LOOSE, read
 
@@ -66,8 +66,10 @@ def _told(found: str | Message) -> Answer:
 
 
 def _blocks(fields: Answer, data: bytes) -> Answer:
-    """Return the blocks of the editor's text; of one with too many only their number."""
+    """Return the blocks of a text, or the `first` of them; of too many only their number."""
     form = read(data.decode(), checking.profile_of(fields["robot"]).kit)
+    if "first" in fields:
+        form = beginning(form, fields["first"])
     size = size_of(form)
     return {"size": size} if size > MOST_BLOCKS else {"size": size, **data_of(form)}
 

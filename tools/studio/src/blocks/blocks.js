@@ -3,7 +3,7 @@
 // The text is what is kept: a change of the blocks is told to the page, which asks for their text.
 
 import * as Blockly from 'blockly/core';
-import { formOf, keepPlaces, showForm } from './form.js';
+import { clear, drawForm, formOf, keepPlaces, showForm } from './form.js';
 import { setActuators } from './places.js';
 import { Checker, defineBlocks, setRobot } from './shapes.js';
 import { pictureOf } from './picture.js';
@@ -178,6 +178,16 @@ export class Blocks {
 
   #offer() {
     this.#workspace.updateToolbox(this.#offered());
+  }
+
+  /** Other blocks as a PNG file, made in slices: nobody sees them here. @param {Form} form @param {string} robot @param {number} most pixels */
+  async pictureOf(form, robot, most) {
+    setRobot(robot);
+    setActuators(robot);
+    await drawForm(this.#workspace, form);
+    const picture = await pictureOf(this.#workspace.getCanvas(), this.#workspace.getBlocksBoundingBox(), most);
+    clear(this.#workspace);
+    return picture;
   }
 
   /** The blocks as a PNG file; null without any. @returns {Promise<Blob | null>} */

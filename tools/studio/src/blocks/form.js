@@ -6,6 +6,7 @@ import * as Blockly from 'blockly/core';
 import { WAY } from './fields.js';
 import { wordOf, wordOn } from './places.js';
 import { Checker } from './shapes.js';
+import { atOnce, slowly } from './slices.js';
 import { KINDS } from '../page/words.js';
 
 /** @typedef {[number, number, number, number]} Range line and column, from 1, and those of the end */
@@ -143,42 +144,107 @@ function partOf(block) {
 export function showForm(workspace, form, stood) {
   /** @type {string[]} */
   const ids = [];
-  /** @type {Blockly.BlockSvg[]} */
-  const made = [];
-  Blockly.Events.disable();
-  Checker.isLenient = true;
-  try {
+  quietly(() => {
     workspace.clear();
+    /** @type {Blockly.BlockSvg[]} */
+    const made = [];
     const make = (/** @type {string} */ kind) => {
       const block = workspace.newBlock(kind);
       made.push(block);
       return block;
     };
-    const program = make('program');
-    program.setFieldValue(form.start || 'SI', 'WORD');
-    program.data = JSON.stringify({ isUnsaid: !form.start, isOneLine: form.is_one_line });
-    if (form.note) program.setCommentText(form.note);
-    hang(form.body, program.nextConnection, make, ids);
-    const loose = form.loose.map((stack) => (stack.body.length ? hang(stack.body, null, make, []) : valueBlock(stack.value, make)));
+    const tops = atOnce(making(form, make, ids));
     for (const block of made) block.initSvg();
     for (const block of made.reverse()) block.queueRender();
     Blockly.renderManagement.triggerQueuedRenders(workspace);
-    const left = new Map([...stood].map(([name, places]) => [name, [...places]]));
-    const { Coordinate } = Blockly.utils; // while they were drawn, blocks pushed each other
-    program.moveTo(new Coordinate(CORNER, CORNER));
-    let y = CORNER + program.getHeightWidth().height + DISTANCE;
-    for (const block of loose) {
-      if (!block) continue;
-      const known = left.get(JSON.stringify(stackOf(block)))?.shift();
-      block.moveTo(known ?? new Coordinate(CORNER, y));
-      if (!known) y += block.getHeightWidth().height + DISTANCE;
-    }
+    stand(tops, stood); // while they were drawn, blocks pushed each other
+  });
+  workspace.resizeContents();
+  return ids;
+}
+
+/**
+ * Replaces all blocks, to be looked at alone: the page goes on meanwhile.
+ * @param {Blockly.WorkspaceSvg} workspace
+ * @param {Form} form
+ */
+export async function drawForm(workspace, form) {
+  clear(workspace);
+  await slowly(drawing(workspace, form), (slice) => quietly(() => {
+    slice();
+    leaveQueue(workspace);
+  }));
+}
+
+/** @param {Blockly.WorkspaceSvg} workspace @param {Form} form @returns {Generator<void, void>} */
+function* drawing(workspace, form) {
+  const tops = yield* making(form, (kind) => workspace.newBlock(kind), []);
+  for (const block of workspace.getAllBlocks(false).reverse()) { // what is in a block before it
+    if (!block.getParent()) leaveQueue(workspace);
+    block.initSvg();
+    block.renderEfficiently();
+    yield;
+  }
+  stand(tops, new Map());
+}
+
+/**
+ * Blockly draws what it has queued at the next picture of the screen, all of it at once, unless the block
+ * around it all is not begun: then it only takes it out of its queue.
+ * @param {Blockly.WorkspaceSvg} workspace
+ */
+function leaveQueue(workspace) {
+  Blockly.renderManagement.triggerQueuedRenders(workspace);
+}
+
+/** @param {Blockly.WorkspaceSvg} workspace */
+export function clear(workspace) {
+  quietly(() => workspace.clear());
+}
+
+/** Nothing is told of what is done, and nothing of it refused. @param {() => void} act */
+function quietly(act) {
+  Blockly.Events.disable();
+  Checker.isLenient = true;
+  try {
+    act();
   } finally {
     Checker.isLenient = false;
     Blockly.Events.enable();
   }
-  workspace.resizeContents();
-  return ids;
+}
+
+/**
+ * Makes the blocks of a form, which nobody sees yet.
+ * @param {Form} form
+ * @param {Make} make
+ * @param {string[]} ids of the blocks of the body are added
+ * @returns {Generator<void, (Blockly.BlockSvg | null)[]>} the program, and the loose ones
+ */
+function* making(form, make, ids) {
+  const program = make('program');
+  program.setFieldValue(form.start || 'SI', 'WORD');
+  program.data = JSON.stringify({ isUnsaid: !form.start, isOneLine: form.is_one_line });
+  if (form.note) program.setCommentText(form.note);
+  yield* hang(form.body, program.nextConnection, make, ids);
+  /** @type {(Blockly.BlockSvg | null)[]} */
+  const tops = [program];
+  for (const { body, value } of form.loose) tops.push(body.length ? yield* hang(body, null, make, []) : valueBlock(value, make));
+  return tops;
+}
+
+/** Puts the program into the corner, and loose stacks where they stood, or below it. @param {(Blockly.BlockSvg | null)[]} tops @param {Stood} stood */
+function stand([program, ...loose], stood) {
+  const left = new Map([...stood].map(([name, places]) => [name, [...places]]));
+  const { Coordinate } = Blockly.utils;
+  program?.moveTo(new Coordinate(CORNER, CORNER));
+  let y = CORNER + (program?.getHeightWidth().height ?? 0) + DISTANCE;
+  for (const block of loose) {
+    if (!block) continue;
+    const known = left.get(JSON.stringify(stackOf(block)))?.shift();
+    block.moveTo(known ?? new Coordinate(CORNER, y));
+    if (!known) y += block.getHeightWidth().height + DISTANCE;
+  }
 }
 
 /** @typedef {(kind: string) => Blockly.BlockSvg} Make */
@@ -189,9 +255,9 @@ export function showForm(workspace, form, stood) {
  * @param {Blockly.Connection | null} place
  * @param {Make} make
  * @param {string[]} ids
- * @returns {Blockly.BlockSvg | null} the first
+ * @returns {Generator<void, Blockly.BlockSvg | null>} the first
  */
-function hang(blocks, place, make, ids) {
+function* hang(blocks, place, make, ids) {
   let first = null;
   let above = place;
   for (const each of blocks) {
@@ -207,12 +273,13 @@ function hang(blocks, place, make, ids) {
     block.data = JSON.stringify({ word: each.word, isApart: each.is_apart });
     if (each.note) block.setCommentText(each.note);
     each.values.forEach((value, k) => put(value, block.getInput(`V${k}`)?.connection ?? null, make));
-    each.bodies.forEach((body, k) => {
+    for (const [k, body] of each.bodies.entries()) {
       const input = block.getInput(`B${k}`) ?? block.getInput('OTHERWISE');
-      hang(body, input?.connection ?? null, make, ids);
-    });
+      yield* hang(body, input?.connection ?? null, make, ids);
+    }
     if (block.previousConnection) above?.connect(block.previousConnection);
     above = block.nextConnection;
+    yield;
   }
   return first;
 }

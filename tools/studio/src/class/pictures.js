@@ -1,20 +1,28 @@
 // Pictures of pupils' programs as blocks, made here of their text alone: nothing that a pupil has sent
-// is shown but as text. One is made at a time; a teacher's old computer has other things to do, too.
+// is shown but as text. They are made one at a time, in slices, of the first blocks, and of each pupil
+// once a second at most: whatever pupils write, STOP ALL waits for none of it.
+
+import { ROBOTS } from '../page/words.js';
 
 /** @typedef {{text: string, robot: string}} Program */
 /** @typedef {{key: string, program: Program, done: (address: string) => void}} Wish */
 
 const REST_MS = 80; // between two pictures
-const NO_PICTURE = ''; // of a program that is empty, or too long
+const AGAIN_MS = 1000; // between two of one pupil
+const FIRST = 150; // blocks
+const MOST_PIXELS = 2_000_000;
+const NO_PICTURE = ''; // of a program that is empty
 
 export class Pictures {
   #python;
   /** @type {Promise<import('../blocks/blocks.js').Blocks> | null} */
   #blocks = null;
-  #robot = '';
   /** What is wanted, the oldest first; each owner wants its newest program alone. @type {Map<string, Wish>} */
   #wanted = new Map();
+  /** When each owner's newest picture was begun. @type {Map<string, number>} */
+  #begun = new Map();
   #isBusy = false;
+  #areWordsOld = false;
   #place = document.createElement('div');
 
   /** @param {import('../python.js').Python} python */
@@ -37,42 +45,48 @@ export class Pictures {
   /** @param {string} owner */
   forget(owner) {
     this.#wanted.delete(owner);
+    this.#begun.delete(owner);
   }
 
   async #work() {
     if (this.#isBusy) return;
     this.#isBusy = true;
-    for (let next = this.#next(); next; next = this.#next()) {
-      next.done(await this.#picture(next.program).catch(() => NO_PICTURE));
+    while (this.#wanted.size) {
+      const next = this.#next();
+      if (next) {
+        next.done(await this.#picture(next.program).catch(() => NO_PICTURE));
+      }
       await new Promise((resolve) => setTimeout(resolve, REST_MS));
     }
     this.#isBusy = false;
   }
 
+  /** The oldest wish of whom no picture was begun just now. */
   #next() {
-    const [first] = this.#wanted.values();
-    if (first) this.#wanted.delete(first.key);
-    return first;
+    const now = performance.now();
+    const next = [...this.#wanted.values()].find(({ key }) => now - (this.#begun.get(key) ?? -AGAIN_MS) >= AGAIN_MS);
+    if (next) {
+      this.#wanted.delete(next.key);
+      this.#begun.set(next.key, now);
+    }
+    return next;
   }
 
   /** @param {Program} program */
   async #picture({ text, robot }) {
     if (!text.trim()) return NO_PICTURE;
     await this.#python.ready;
-    const form = await this.#python.ask({ do: 'blocks', robot }, new TextEncoder().encode(text));
-    if (!form.body) return NO_PICTURE;
-    this.#blocks ??= import('../blocks/blocks.js').then(({ Blocks }) => new Blocks(this.#place, robot, 'few', { changed() {}, toggle() {} }));
+    const form = await this.#python.ask({ do: 'blocks', robot, first: FIRST }, new TextEncoder().encode(text));
+    this.#blocks ??= import('../blocks/blocks.js').then(({ Blocks }) => new Blocks(this.#place, ROBOTS[0]?.name ?? '', 'few', { changed() {}, toggle() {} }));
     const blocks = await this.#blocks;
-    if (this.#robot !== robot) blocks.setRobot(robot);
-    this.#robot = robot;
-    blocks.begin();
-    blocks.show(form);
-    const file = await blocks.picture();
+    if (this.#areWordsOld) blocks.showWords();
+    this.#areWordsOld = false;
+    const file = await blocks.pictureOf(form, robot, MOST_PIXELS);
     return file ? URL.createObjectURL(file) : NO_PICTURE;
   }
 
-  /** The pictures' words are those of another language from now on. */
-  async showWords() {
-    (await this.#blocks)?.showWords();
+  /** The next pictures' words are those of another language; one that is being made stays as it is. */
+  showWords() {
+    this.#areWordsOld = true;
   }
 }

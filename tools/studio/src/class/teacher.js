@@ -146,8 +146,8 @@ export class Teacher {
     dispatchEvent(new Event('resize'));
   }
 
-  async #showWords() {
-    await this.#pictures.showWords();
+  #showWords() {
+    this.#pictures.showWords();
     for (const known of this.#known.values()) known.version = -1; // the words of the pictures are others
     if (this.#state) this.#show(this.#state);
   }

@@ -1,0 +1,36 @@
+// Work in slices: whoever presses a button meanwhile is heard.
+
+const SLICE_MS = 8;
+
+/**
+ * Does all steps of a work; between slices of them the page does what is asked of it. Each slice is one
+ * call of `within`.
+ * @template T
+ * @param {Iterator<void, T>} steps
+ * @param {(slice: () => void) => void} [within]
+ * @returns {Promise<T>}
+ */
+export async function slowly(steps, within = (slice) => slice()) {
+  for (;;) {
+    /** @type {IteratorResult<void, T> | undefined} */
+    let step;
+    within(() => {
+      const end = performance.now() + SLICE_MS;
+      do step = steps.next(); while (!step.done && performance.now() < end);
+    });
+    if (step?.done) return step.value;
+    await rest();
+  }
+}
+
+/** What was asked meanwhile comes first: a message is behind it. */
+export function rest() {
+  return new Promise((resolve) => { setTimeout(resolve, 0); });
+}
+
+/** Does all steps at once. @template T @param {Iterator<void, T>} steps @returns {T} */
+export function atOnce(steps) {
+  let step = steps.next();
+  while (!step.done) step = steps.next();
+  return step.value;
+}
