@@ -74,6 +74,7 @@ TYPES = {
 
 PAGE = Path(__file__).with_name("page")
 FIRST = "index.html"
+WORKER = "service_worker.js"
 FIRMWARE = "firmware.json"  # which files of firmware there are
 HOST = "127.0.0.1"
 NAMES = (HOST, "localhost")  # by which a browser here may call it
@@ -155,6 +156,13 @@ def _tagged(data: bytes, kind: str, packed: bytes = b"") -> File:
     return File(data, kind, f'"{hashlib.sha256(data).hexdigest()[:32]}"', packed)
 
 
+# For a browser that asks for a worker which this server has not: it is of a server that had this
+# address before, and goes.
+_GONE = File(
+    b"addEventListener('install', () => skipWaiting());\n"
+    b"addEventListener('activate', () => registration.unregister());\n",
+    TYPES[".js"],
+)
 _FOREIGN = File(b"This page is for this computer alone.\n", TYPES[".txt"])
 _MISSING = File(b"There is no such file.\n", TYPES[".txt"])
 _NO_REQUEST = File(b"That is no request.\n", TYPES[".txt"])
@@ -359,7 +367,9 @@ class _Handler(BaseHTTPRequestHandler):
             return
         name = urlsplit(self.path).path.removeprefix("/") or FIRST
         found = self.server.page.get(name)
-        if found is None:
+        if self.headers.get("Service-Worker") == "script" and name != WORKER:
+            self._send(HTTPStatus.OK, _GONE)
+        elif found is None:
             self._send(HTTPStatus.NOT_FOUND, _MISSING)
         elif found.tag in self.headers.get_all("If-None-Match", []):
             self._send(HTTPStatus.NOT_MODIFIED, found._replace(data=b"", packed=b""))

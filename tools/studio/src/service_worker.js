@@ -21,7 +21,10 @@ async function isKept(names) {
 self.addEventListener('install', (event) => {
   event.waitUntil(
     Promise.all(Object.values(LANGUAGES).map(async (names) => ((await isKept(names)) ? names : [])))
-      .then((kept) => keep([...new Set([...FILES, ...kept.flat()])])),
+      .then(async (kept) => {
+        await caches.delete(NAME); // what is there another server of this address may have put there
+        await keep([...new Set([...FILES, ...kept.flat()])]);
+      }),
   );
 });
 

