@@ -49,8 +49,7 @@ function* painting(whole, pen) {
     const { element } = next;
     const look = getComputedStyle(element);
     if (!(element instanceof SVGGraphicsElement) || look.display === 'none' || look.visibility === 'hidden' || element.matches(LEFT_OUT)) continue;
-    const moved = element.transform.baseVal.consolidate()?.matrix;
-    const place = moved ? next.place.multiply(new DOMMatrix([moved.a, moved.b, moved.c, moved.d, moved.e, moved.f])) : next.place;
+    const place = placeOf(element, next.place);
     const opacity = next.opacity * Number(look.opacity);
     pen.setTransform(place);
     if (element instanceof SVGTextElement) write(element, look, opacity, pen);
@@ -58,6 +57,13 @@ function* painting(whole, pen) {
     else paint(pathOf(element), element instanceof SVGImageElement ? { ...PLAIN, fill: '#fff' } : look, opacity, pen);
     yield;
   }
+}
+
+/** @param {SVGGraphicsElement} element @param {DOMMatrix} around @returns {DOMMatrix} */
+function placeOf(element, around) {
+  const moves = element.transform.baseVal;
+  return Array.from({ length: moves.numberOfItems }, (_, k) => moves.getItem(k).matrix)
+    .reduce((place, { a, b, c, d, e, f }) => place.multiply(new DOMMatrix([a, b, c, d, e, f])), around);
 }
 
 /** @param {SVGGraphicsElement} element @returns {Path2D | null} */

@@ -26,7 +26,7 @@ export class Giving {
     title.id = 'class_giving_title';
     const stop = button('class_stop_all', () => element('stop', HTMLButtonElement).click());
     stop.className = 'stop'; // the page's own is behind this window
-    this.window.append(made('header', '', title, button('close', () => this.window.close()), stop), made('p', 'class_give_told'), this.#list);
+    this.window.append(made('header', '', title, button('close', () => this.window.close()), stop), made('section', '', made('p', 'class_give_told'), this.#list));
     document.body.append(this.window);
   }
 
