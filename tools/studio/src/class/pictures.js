@@ -10,7 +10,7 @@ import { ROBOTS } from '../page/words.js';
 const REST_MS = 80; // between two pictures
 const AGAIN_MS = 1000; // between two of one pupil
 const FIRST = 150; // blocks
-const MOST_PIXELS = 2_000_000;
+const MOST_PIXELS = 1_200_000;
 const NO_PICTURE = ''; // of a program that is empty
 
 export class Pictures {
