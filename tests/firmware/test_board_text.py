@@ -6,12 +6,13 @@ What a line does is tested with the whole firmware on this computer: `test_text`
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from tests.firmware.test_board_tasks import each_board
-from tests.firmware.test_uno_robot import BAUD, FORWARD, NAMES, OFF, computer, states
+from tests.firmware.test_uno_robot import BAUD, FORWARD, NAMES, OFF, computer, states, switched_on
 from tests.machines.uno import needed
 from tests.support.platformio import copied, pio
 from tiniscript import robots
@@ -44,6 +45,22 @@ def since_the_line_end_ms(uno: Uno) -> float:
     """Return the time from the end of the last line that came to the last change of a motor."""
     pins = [uno.pins[name].cycle for name in ("left", "right")]
     return (max(pins) - uno.received[-1].cycle) / CYCLES_PER_MS
+
+
+@pytest.mark.parametrize("sketch_name", ["uno", "nano"])
+def test_a_program_whose_line_never_ends_runs(
+    sketch_name: str, sketches: Callable[[str], Path], memory: Path
+) -> None:
+    """On a Nano, too, which has no room for other rules; a second time, and only a whole one."""
+    with switched_on(sketches(sketch_name), memory) as robot:
+        for _ in range(2):
+            said = typed(robot, "SI|F(1, 60)", 2800)
+            assert (states(robot), said[:-1]) == (OFF, [])
+            assert typed(robot, "", 400)[-1:] == ["// OK"]
+            assert states(robot) == FORWARD
+            robot.run_ms(1500)
+        assert typed(robot, "SI|F(1", 3500) == ["// End the line with Enter (\\n)"]
+        assert states(robot) == OFF
 
 
 @each_board

@@ -79,9 +79,9 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool
     // frames: of these the last one is said.
     if (has_answer() && may_say && !receiver->has_mark()) return Act::kNone;
     if (!receiver->take_text(&byte)) {
-      if (kStrictLines || tail_ != kWhole || left_ms_[kPatience] > kPatienceMs - kUnendedMs) break;
+      if (tail_ != kWhole || left_ms_[kPatience] > kPatienceMs - kUnendedMs) break;
       byte = kLineEnd;
-    } else if (!kStrictLines && byte == kLineEnd) {
+    } else if (byte == kLineEnd) {
       left_ms_[kEnds] = kPatienceMs;
     }
     has_mark_ = receiver->has_mark();
@@ -108,7 +108,7 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool
     }
     const Act act = byte == kLineEnd ? end_line(is_heard) : Act::kNone;
     refused_ = Remark::kNone;
-    if (!kStrictLines) begins_ = 1;
+    if (!kStrictStarts) begins_ = 1;
     if (act != Act::kNone) return act;
   }
   const uint16_t left_ms = left_ms_[kPatience];
@@ -134,7 +134,7 @@ inline void Console::end_tail(bool is_heard) {
   tail_ = Remark::kNone;
   if (is_open_) {
     if (reader_.has_setup()) {
-      if (!kStrictLines && left_ms_[kEnds] == 0 && reader_.may_end()) {
+      if (left_ms_[kEnds] == 0 && reader_.may_end()) {
         tail_ = kWhole;
         return;
       }
@@ -151,7 +151,7 @@ inline void Console::end_tail(bool is_heard) {
 // A line goes on behind a second of silence, or begins there.
 inline void Console::end_silence() {
   refused_ = Remark::kNone;
-  if (!kStrictLines) begins_ = static_cast<uint8_t>(reader_.last_column() + 1);
+  if (!kStrictStarts) begins_ = static_cast<uint8_t>(reader_.last_column() + 1);
 }
 
 void Console::tell(Remark remark, bool is_heard) {
@@ -166,7 +166,7 @@ void Console::tell(Remark remark, bool is_heard) {
 inline void Console::take(uint8_t byte, bool is_heard) {
   tail_ = Remark::kEnter;
   read(byte);
-  if (kStrictLines) {
+  if (kStrictStarts) {
     if (byte == '|') first_ = byte;  // a start: no message that needs no answer
     return;
   }
@@ -195,7 +195,7 @@ inline void Console::take(uint8_t byte, bool is_heard) {
 
 // Whether the line begins with what a radio module says.
 bool Console::is_chatter() {
-  return is_open_ && (first_ == '+' || (!kStrictLines && reader_.begins_like('O', 'K')));
+  return is_open_ && (first_ == '+' || (!kStrictStarts && reader_.begins_like('O', 'K')));
 }
 
 void Console::read(uint8_t byte) {
@@ -286,7 +286,7 @@ inline Console::Act Console::end_line(bool is_heard) {
       is_ignoring_ = has_setup || was_waiting;
       if (!has_mark_ && first_ != '+' && !is_heard && mistakes_ <= kMostMistakes) {
         const uint8_t word = reader_.find_unknown(kSpoken);
-        if (word < kChatter && (!kStrictLines || first_ != '|')) break;
+        if (word < kChatter && (!kStrictStarts || first_ != '|')) break;
         is_talking_ = true;
         say(mistakes_ == kMostMistakes ? Remark::kMute
             : word < kAsking           ? Remark::kHelp

@@ -71,7 +71,7 @@ inline bool Receiver::take_text_byte(uint8_t byte) {
   if (ends_line(byte)) {
     if (line_ >= Line::kSome) return end_line(state_ == State::kText && text_.put(kLineEnd));
     if (line_ != Line::kHeld) line_ = Line::kNothing;
-    if (!kStrictLines && text_.is_empty()) text_.put(kLineEnd);  // only to tell that lines end here
+    if (text_.is_empty()) text_.put(kLineEnd);  // only to tell that lines end here
     return false;
   }
   if (line_ != Line::kSome) {
