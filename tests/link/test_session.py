@@ -15,7 +15,16 @@ from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import BY_NAME, BY_NUMBER, PLACES, STATUSES
+from tiniscript.link.messages import (
+    BY_NAME,
+    BY_NUMBER,
+    PLACES,
+    STATE_FAULTED,
+    STATE_IDLE,
+    STATE_RUNNING,
+    STATE_STOPPED,
+    STATUSES,
+)
 from tiniscript.link.outcomes import CANCELLED, LOST, PlaceEvent, TextEvent
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.requests import SHORT_BYTES
@@ -316,16 +325,33 @@ def test_a_busy_robot_is_asked_again_but_not_for_ever(busy_ms: int, ends: int) -
     assert now_ms <= DEADLINE_MS + 1000
 
 
-def test_a_stop_between_makes_what_waits_stale() -> None:
-    """The answer bears another epoch: what was wanted before is not wanted any more."""
+@pytest.mark.parametrize(
+    ("epoch", "found", "is_void"),
+    [
+        (11, {"state": STATE_STOPPED}, True),
+        (11, {"state": STATE_IDLE}, True),  # a stop, and its latch was released
+        (11, {"state": STATE_FAULTED}, False),
+        (12, {"state": STATE_FAULTED}, True),  # more than a fault
+        (11, {"state": STATE_IDLE, "nonce": 9}, False),  # a reset
+        (11, {"state": STATE_RUNNING, "nonce": 9}, False),
+        (11, {"state": STATE_STOPPED, "nonce": 9}, True),
+    ],
+)
+def test_hello_tells_whether_another_epoch_voids_what_waits(
+    epoch: int, found: dict[str, int], is_void: bool
+) -> None:
+    """The answer bears another epoch, which nothing has announced."""
     session = Session(1, kit=KIT)
     session.hello()
     first, second = session.live(FORWARD), session.live(FORWARD)
     session.receive(answer(session.poll(0), DESCRIPTION), 0)
     assert first.outcome is None  # HELLO begins an epoch, it ends none
-    session.receive(answer(session.poll(1), receipt(1), epoch=11), 1)
+    session.receive(answer(session.poll(1), receipt(1), epoch=epoch), 1)
     assert first.outcome and first.outcome.status == 0
-    assert second.outcome and second.outcome.status == STATUSES["STALE"]
+    assert second.outcome is None
+    session.receive(answer(session.poll(2), {**DESCRIPTION, **found}, epoch=epoch), 2)
+    assert (second.outcome is not None) == is_void
+    assert second.outcome is None or second.outcome.status == STATUSES["STALE"]
 
 
 def lost_at(session: Session, now_ms: int = 0) -> int:

@@ -36,6 +36,8 @@ class FakeLine:
         self.is_running = False
         self.is_closed = False
         self.stops = 0
+        self.halted: list[int] = []
+        self.withdrawn: list[PendingRequest[Any]] = []
         self.asked: list[PendingRequest[Any]] = []
 
     def listen(self, on_events: Callable[[list[Told]], None]) -> None:
@@ -59,6 +61,12 @@ class FakeLine:
     def stop(self) -> int:
         self.stops += 1
         return 0
+
+    def halt(self, run: int) -> None:
+        self.halted.append(run)
+
+    def withdraw(self, request: PendingRequest[Any]) -> None:
+        self.withdrawn.append(request)
 
     def event(self) -> Told:
         return 0, event("STOPPED")
@@ -103,6 +111,33 @@ def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
         assert [each for each in registry.all_found() if each.token == own.token] == [own]
         other = registry.found(line.address)
         assert other is not None and other.token == own.token
+
+
+def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
+    line: FakeLine, server: Server, command: SharedConnection
+) -> None:
+    asks(command, line)
+    asks(command, line, is_detached=True)
+    until(lambda: len(line.asked) == 2, "both requests arrive")
+    command.close()
+    until(lambda: line.withdrawn == line.asked, "they are withdrawn")
+    line.asked[0].outcome = Reply(OK, 0, ReceiptReply(1, 7, 0, 0))  # it was under way
+    line.is_running = True
+    line.tell(event("SHOW"))
+    until(lambda: line.halted == [7], "its run is ended")
+    assert line.stops == 0
+
+
+def test_a_run_whose_client_leaves_ends_without_a_stop_for_all(
+    line: FakeLine, server: Server, command: SharedConnection
+) -> None:
+    asks(command, line)
+    line.begin()
+    line.tell(event("SHOW"))
+    heard(command, "SHOW")
+    command.close()
+    until(lambda: line.halted == [7], "its run is ended")
+    assert line.stops == 0
 
 
 @pytest.mark.parametrize("end", ["STOPPED", "DONE"])

@@ -7,6 +7,7 @@ import signal
 import socket
 import time
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -14,10 +15,11 @@ import pytest
 from tests.support.command import FOREVER, LONG, Command, process
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.shared_pty_robot import Shared
-from tests.support.waiting import until
 from tiniscript import __version__, compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.frames import decoded
+from tiniscript.link.messages import STATE_IDLE
+from tiniscript.link.requests import OK
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.shared_connection import joined
@@ -198,9 +200,24 @@ def test_a_robot_stops_without_the_command_that_has_started_it(
         command.signal(number)
         pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
         assert int(pty_robot.timed[-1].split()[0]) <= gone_ms + within_ms, number
-        # The server's stop for the command that is gone may come behind a first upload: it says so.
-        until(lambda: on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0, "others drive")
+        on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").gives(0, "")  # others drive
         command.kill()
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGHUP, signal.SIGTERM])
+def test_an_upload_whose_command_is_killed_starts_nothing_and_refuses_nobody(
+    pty_robot: PtyRobot, link: Command, number: int
+) -> None:
+    pty_robot.bytes_per_ms = 1  # a long program takes a while
+    for options in ((), ("--detach",)):
+        pty_robot.heard = b""
+        command = Command("upload", "-e", LONG, *options, "--port", pty_robot.port)
+        pty_robot.until(lambda: len(pty_robot.heard) > 150, "a part has come")
+        command.signal(number)
+        command.process.wait()
+        on(pty_robot, "live", "SHOW(7)").gives(0, "", out="SHOW 7")
+        driven = [line for line in pty_robot.did if line.startswith("MOTORS")]
+        assert set(driven) <= {"MOTORS 0 0"}
 
 
 def test_a_program_ends_with_its_command_unless_it_needs_nobody(
@@ -342,16 +359,21 @@ def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
     assert command.ended().code == 3
 
 
-def test_a_run_that_begins_after_its_client_has_left_is_stopped() -> None:
-    """Its request was under way, and nobody attends to what it starts."""
-    with Shared() as (robot, _):
-        client = joined(robot.port, "upload")
-        assert client is not None
+def test_a_run_that_begins_after_its_client_has_left_ends_and_nobody_else_is_refused() -> None:
+    """The frame that starts it was under way."""
+    with Shared() as (robot, _), ExitStack() as stack:
+        other = joined(robot.port, "info")
+        assert other is not None
+        stack.callback(other.close)
         kit = robots.load("tinibot").kit
         image = unpack(compile_text(FOREVER, kit).image)
-        client.do(lambda session: session.upload(image, True, kit=kit.fingerprint))
-        client.close()
-        robot.until(lambda: "MOTORS 80 80" in robot.did, "the run begins")
-        late_ms = robot.robot_ms + 20_000
-        robot.until(lambda: not robot.moves or robot.robot_ms > late_ms, "it is stopped")
-        assert not robot.moves
+        for _ in range(5):
+            client = joined(robot.port, "upload")
+            assert client is not None
+            robot.heard = b""
+            client.do(lambda session: session.upload(image, True, kit=kit.fingerprint))
+            robot.until(lambda: len(robot.heard) > 10, "a part of it has come")
+            client.close()
+            robot.until(lambda: not robot.moves, "it ends")
+            assert other.wait(other.do(lambda session: session.clear())).status == OK
+            assert other.wait(other.do(lambda session: session.status())).values.state == STATE_IDLE

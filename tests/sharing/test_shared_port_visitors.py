@@ -157,7 +157,7 @@ def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:
             if part == "session":
                 shared.line.session._waiting.append(cast("Any", None))
             else:
-                shared.server._detached_requests.append(cast("Any", None))
+                shared.server._left_requests.append(cast("Any", None))
             with pytest.raises(AttributeError):
                 while True:
                     shared.line.event()

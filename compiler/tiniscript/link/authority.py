@@ -16,8 +16,8 @@ from tiniscript.link.payloads import AuthenticateReply, EmptyReply
 from tiniscript.link.requests import OK, TAKEN, DeviceInfo, Exchange, Reply, Request
 from tiniscript.link.seal import Seal, session_key, siphash
 
-NOT_OWNER, WRONG_KEY, HOLD_BUTTON = (
-    STATUSES[name] for name in ("NOT_OWNER", "WRONG_KEY", "HOLD_BUTTON")
+NOT_OWNER, WRONG_KEY, HOLD_BUTTON, STALE = (
+    STATUSES[name] for name in ("NOT_OWNER", "WRONG_KEY", "HOLD_BUTTON", "STALE")
 )
 MOST_PENDING = 1  # keys before a new one: a robot listens to few wrong keys
 HOLD_TRIES = 150  # while the button is not held down: 30 s
@@ -131,6 +131,8 @@ def show_keys(
         if which not in (None, each.which) or (each.is_stale and not is_needed):
             continue
         found = yield from _show(each, robot, nonce, epoch)
+        if found.status == STALE:  # a stop or a fault came between: the tag was one of before
+            found = yield from _show(each, robot, nonce, epoch)
         if ring is not None and found.status == OK:
             now = each._replace(is_pending=False, is_stale=False, seals=_seals(robot) or each.seals)
             if now != each:

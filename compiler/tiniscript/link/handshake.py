@@ -18,6 +18,7 @@ from tiniscript.link.messages import (
     OWNED,
     OWNERS,
     SEALS,
+    STATE_FAULTED,
     STATE_IDLE,
     STATE_RUNNING,
     STATUSES,
@@ -45,7 +46,8 @@ class Handshake:
     """`nonce` is a random number of 32 bits; `kit` and `isa` are those of our programs; `keys`
     has the keys of robots; `epoch` returns the robot's.
 
-    `is_open`: the robot has answered HELLO, and has not been lost since.
+    `is_open`: the robot has answered HELLO, and has not been lost since. `doubted` is the last
+    epoch of which it is known what has ended it, while that of a later one is not.
     """
 
     def __init__(
@@ -63,6 +65,11 @@ class Handshake:
         self._epoch = epoch
         self.robot: DeviceInfo | None = None
         self.is_open = False
+        self.doubted: int | None = None
+
+    @property
+    def is_in_doubt(self) -> bool:
+        return self.doubted is not None
 
     def hello(self) -> Exchange[HelloReply]:
         values = {
@@ -88,7 +95,7 @@ class Handshake:
             is_owned = bool(found.values.features & OWNED)
             if is_owned or must_seal:
                 shown = yield from self.show_keys(is_needed=must_seal and not is_owned)
-                if shown.status == STATUSES["STALE"]:  # the robot was stopped meanwhile
+                if shown.status == STATUSES["STALE"]:  # the robot was reset meanwhile
                     return refused(shown)
                 # what is shown is sealed, and says whether HELLO has told the truth
                 if not is_owned and (shown.status != OK or shown.values.features & OWNED):
@@ -98,8 +105,10 @@ class Handshake:
         return reply
 
     def open_then(self, make: Callable[[], Exchange[T]]) -> Exchange[T]:
-        """Open the session if needed, then make and run an exchange; anew, after a reset."""
-        if not self.is_open:
+        """Open the session if needed, then make and run an exchange; anew, after a reset or a
+        fault. What a stop has made void is not done again: the session sees to that.
+        """
+        if not self.is_open or self.is_in_doubt:
             hello = yield from self.hello()
             if hello.status != OK:
                 return refused(hello)
@@ -108,9 +117,10 @@ class Handshake:
         if reply.status != STATUSES["STALE"]:
             return reply
         hello = yield from self.hello()
-        if hello.status != OK or self._boot == boot or self._state.state != STATE_IDLE:
+        ended = STATE_FAULTED if self._boot == boot else STATE_IDLE
+        if hello.status != OK or self._state.state != ended:
             return reply
-        return (yield from self.with_key(make))  # it was reset before, and has done nothing of this
+        return (yield from self.with_key(make))  # that came before, and nothing of this was done
 
     def with_key(self, make: Callable[[], Exchange[T]]) -> Exchange[T]:
         """Make and run an exchange; again, if the robot wants to be shown its key before."""

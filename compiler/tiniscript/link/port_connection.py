@@ -112,6 +112,17 @@ class PortConnection(LinkConnection):
         self._wake()
         return began_ms
 
+    def halt(self, run: int) -> None:
+        """End a run whose client has gone; what others have asked for goes on."""
+        with self._news:
+            self.session.halt(run, self._now_ms())
+        self._wake()
+
+    def withdraw(self, request: PendingRequest[Any]) -> None:
+        """Do no more of a request whose client has gone."""
+        with self._news:
+            self.session.withdraw(request)
+
     def tell_places(self) -> None:
         self._takes_places = self.session.tells_places = True
 

@@ -28,6 +28,7 @@ from tiniscript.link.messages import (
     STATE_FAULTED,
     STATE_IDLE,
     STATE_RUNNING,
+    STATE_STOPPED,
     STATUSES,
     Malformed,
     read,
@@ -48,7 +49,9 @@ from tiniscript.link.outcomes import (
 )
 from tiniscript.link.payloads import (
     DoneEvent,
+    EmptyReply,
     FaultEvent,
+    HelloReply,
     NextReply,
     PingReply,
     ReceiptReply,
@@ -57,7 +60,16 @@ from tiniscript.link.payloads import (
     StoppedEvent,
 )
 from tiniscript.link.receiver import Receiver
-from tiniscript.link.requests import OK, DeviceInfo, Exchange, Reply, refused, reply_of
+from tiniscript.link.requests import (
+    OK,
+    DeviceInfo,
+    Exchange,
+    Reply,
+    Request,
+    refused,
+    reply_of,
+    single,
+)
 from tiniscript.link.robot_state import RobotState
 from tiniscript.link.sealing import SEALED_ALONE, UNSEALED, Sealing
 from tiniscript.link.sender import Sender
@@ -68,6 +80,9 @@ IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise
 DEAF_MS = 3000  # a heartbeat without an answer for this time means that the link is lost
 MOST_SHOWN = 5  # times that a key is shown again for one request
 _STALE, _BUSY = STATUSES["STALE"], STATUSES["BUSY"]
+_BY_MESSAGE = 2  # the cause of a robot that STOP has stopped
+_STARTING = ("PROGRAM", "COMMIT", "LIVE", "START")  # a run may begin with each
+_END_RUNS = ("upload", "live", "start", "undo")  # a robot ends what runs when it hears of them
 T = TypeVar("T")
 
 
@@ -80,18 +95,28 @@ class PendingExchange(PendingRequest[T]):
         limit_ms: int = DEADLINE_MS,
         starts: bool = False,
         is_own: bool = False,
+        ends_runs: bool = False,
+        halts: bool = False,
     ) -> None:
-        self.limit_ms, self.starts = limit_ms, starts
+        self.limit_ms, self.starts, self.ends_runs = limit_ms, starts, ends_runs
         self.exchange = exchange
         self.deadline_ms = 0
         self.is_own = is_own  # made by the session itself
+        self.halts = halts  # the run of a client that has gone
+        self.is_void = False  # it was asked for before a stop: nothing more of it is done
         self.is_busy = False  # the robot's last answer was BUSY
+        self.may_be_done = False  # the robot has not said whether it is
         self.shown = 0  # how often a key was shown again for it
         self.resumes: Interrupted | None = None
 
+    @property
+    def wanted(self) -> PendingExchange[Any]:
+        """The exchange itself, or the one for which a key is shown or a run is ended first."""
+        return self if self.resumes is None else self.resumes.pending
+
 
 class Interrupted(NamedTuple):
-    """An exchange whose request goes on when a key was shown again."""
+    """An exchange whose request goes on when a key was shown again, or a run is ended."""
 
     pending: PendingExchange[Any]
     transmission: Transmission
@@ -129,6 +154,7 @@ class Session(Requester):
         self._waiting: deque[PendingExchange[Any]] = deque()
         self._pending: PendingExchange[Any] | None = None
         self._transmission = Transmission(baud)
+        self._orphan: int | None = None  # the run of a client that has gone
 
     @property
     def robot(self) -> DeviceInfo | None:
@@ -160,6 +186,28 @@ class Session(Requester):
         """
         self._cancel(CANCELLED)
         self._stop.begin(now_ms)
+
+    def halt(self, run: int, now_ms: int) -> None:
+        """End a run whose client has gone. What others have asked for goes on."""
+        self._orphan = run
+        self._end_orphan(now_ms)
+
+    def withdraw(self, request: PendingRequest[Any]) -> None:
+        """Do no more of a request whose client has gone.
+
+        A frame that may have started a run is under way until it is answered.
+        """
+        if request in self._waiting:
+            self._waiting = deque(each for each in self._waiting if each is not request)
+        elif self._pending is None or self._pending.wanted is not request:
+            return
+        elif self._may_start():
+            self._pending.wanted.is_void = True
+            return
+        else:
+            self._pending = None
+            self._transmission.end()
+        request.outcome = Reply(CANCELLED)
 
     # -- bytes in, bytes out ----------------------------------------------------------------------
 
@@ -250,13 +298,32 @@ class Session(Requester):
         try:
             request = next(pending.exchange) if reply is None else pending.exchange.send(reply)
         except StopIteration as over:
-            self._pending = None
-            self._transmission.end()
-            if pending.resumes is not None:
-                self._resume(pending.resumes, over.value, now_ms)
-            else:
-                self._finish(pending, over.value)
+            self._end_exchange(pending, over.value, now_ms)
             return
+        message = BY_NAME[request.name]
+        acts = message.number >= FIRST_ACTING and request.name not in UNSEALED
+        if pending.is_void and acts:
+            pending.exchange.close()
+            self._end_exchange(pending, Reply(_STALE), now_ms)
+            return
+        self._begin(request, now_ms)
+        self._end_orphan(now_ms)
+
+    def _end_exchange(
+        self, pending: PendingExchange[Any], outcome: Reply[Any], now_ms: int
+    ) -> None:
+        self._pending = None
+        self._transmission.end()
+        if pending.resumes is None:
+            self._finish(pending, outcome)
+            self._end_orphan(now_ms)
+        elif pending.halts:
+            self._go_on(pending.resumes)
+        else:
+            self._resume(pending.resumes, outcome, now_ms)
+
+    def _begin(self, request: Request, now_ms: int) -> None:
+        """Send a request, and repeat it until it is answered."""
         message = BY_NAME[request.name]
         seal = self._sealing.of_request(request)
         number = partial(self._number, seal is not None)
@@ -302,7 +369,9 @@ class Session(Requester):
     def _resume(self, interrupted: Interrupted, shown: Reply[Any], now_ms: int) -> None:
         self._pending, transmission = interrupted
         seal = self._sealing.seal
-        if shown.status == NOT_OWNER or (shown.status == OK and seal is None):
+        if self._pending.is_void:
+            self._advance(Reply(_STALE), now_ms)
+        elif shown.status == NOT_OWNER or (shown.status == OK and seal is None):
             self._transmission = transmission
             self._authenticate_again(now_ms)
         elif shown.status == OK and transmission.epoch == self._epoch:
@@ -310,6 +379,43 @@ class Session(Requester):
             self._transmission.begin_again(now_ms, seal)
         else:
             self._advance(Reply(shown.status or _STALE, shown.detail), now_ms)
+
+    def _end_orphan(self, now_ms: int) -> None:
+        """End the run of a client that has gone, between two frames of what others ask for."""
+        if self._orphan is None:
+            return
+        if not self.is_running or self.run != self._orphan:
+            self._orphan = None  # it has ended
+            return
+        pending, transmission = self._pending, self._transmission
+        if pending is not None and (
+            pending.resumes is not None
+            or pending.ends_runs  # by itself
+            or transmission.is_sent
+            or transmission.is_of("AUTHENTICATE")  # its tag is one of this epoch
+        ):
+            return
+        self._orphan = None
+        stop = single(Request("STOP"), EmptyReply)
+        halt = PendingExchange(stop, DEAF_MS, is_own=True, halts=True)
+        if pending is None:
+            self._waiting.appendleft(halt)
+            return
+        halt.resumes = Interrupted(pending, transmission)
+        halt.deadline_ms = now_ms + halt.limit_ms
+        self._pending = halt
+        self._advance(None, now_ms)
+
+    def _go_on(self, interrupted: Interrupted) -> None:
+        """Go on with an exchange, of whose request nothing was sent."""
+        self._pending, self._transmission = interrupted
+        seal = None if self._transmission.is_of("HELLO") else self._sealing.seal
+        self._transmission.renew(self._epoch, self._number(seal is not None))
+        self._transmission.begin_again(self._transmission.due_ms, seal)
+
+    def _may_start(self) -> bool:
+        """Whether a frame is under way that may start a run."""
+        return self._transmission.is_sent and any(map(self._transmission.is_of, _STARTING))
 
     def _send_stop(self, now_ms: int) -> bytes:
         if not self._stop.is_due(now_ms):
@@ -325,13 +431,14 @@ class Session(Requester):
 
     def _lose_seal(self, frame: Frame, now_ms: int) -> None:
         """The robot does not know our seal. Anybody may say so: nothing is done twice for that."""
+        if self._pending:
+            self._pending.wanted.may_be_done = True
         if frame.epoch == self._epoch:
             self._authenticate_again(now_ms)
             return
-        self._epoch = frame.epoch  # it was stopped or restarted, or another session has begun
+        self._doubt(frame)
         self._sealing.seal = None
         self._handshake.is_open = False
-        self._cancel_waiting(_STALE)
         self._advance(Reply(_STALE if frame.number >= FIRST_ACTING else NOT_OWNER), now_ms)
 
     def _take_reply(self, frame: Frame, now_ms: int) -> None:
@@ -353,32 +460,90 @@ class Session(Requester):
             reply = Reply(UNPROVEN)
         if isinstance(self._transmission, Window) and self._goes_on(reply, frame, now_ms):
             return
-        is_other = frame.epoch != self._epoch
-        if is_other:
-            self._epoch = frame.epoch
-            if message.name != "HELLO":  # there was a stop: earlier requests are void
-                self._cancel_waiting(_STALE)
+        values = reply.values if reply.status == OK else None
+        if isinstance(values, HelloReply):
+            self._settle(values, frame)
+        else:
+            self._doubt(frame)
         if reply.status == _STALE:
             self._handshake.is_open = False  # a new HELLO tells the robot's state
         if message.name in UNSEALED and reply.status != OK:
             self._sealing.seal = None
-        if reply.status == OK:
-            is_other = is_other and self._state.may_be_reset(reply.values)
+        if values is not None:
+            is_other = self._handshake.is_in_doubt and not self._is_settled_by(values)
             if message.name == "CLEAR":
                 self._state.clear()
-            has_ended = self._state.learn(reply.values)
-            self._events += self._state.moved(reply.values)
-            if has_ended and not is_other and isinstance(reply.values, StatusReply):
-                self._tell_end(reply.values)
+            if message.name == "STOP" and self._pending and self._pending.halts:
+                self._tell_stop(StoppedEvent(_BY_MESSAGE))
+            has_ended = self._state.learn(values)
+            self._events += self._state.moved(values)
+            if has_ended and not is_other and isinstance(values, StatusReply):
+                self._tell_end(values)
             elif has_ended or (is_other and self._handshake.is_open):
                 again = self._look_again(has_ended, is_other)
                 self._waiting.appendleft(PendingExchange(again, DEAF_MS, is_own=True))
-            if self._pending and isinstance(reply.values, NextReply):
-                self._pending.done_bytes = reply.values.next
+            if self._pending and isinstance(values, NextReply):
+                self._pending.done_bytes = values.next
         self._advance(reply, now_ms)
         if self._state.is_cut:
             self._state.is_cut = False
             self._events.append(RestartedEvent())
+
+    # An epoch ends with a stop, a fault or a reset, or when another session begins. A stop alone
+    # voids what was asked for before it.
+
+    def _doubt(self, frame: Frame) -> None:
+        """The robot may have another epoch, which no event has announced."""
+        if frame.epoch != self._epoch and self._handshake.doubted is None:
+            self._handshake.doubted = self._epoch
+        self._epoch = frame.epoch
+
+    def _is_one_fault(self, state: int, epoch: int) -> bool:
+        """Whether one fault, and nothing else, has ended the epoch before this one."""
+        before = self._handshake.doubted
+        return state == STATE_FAULTED and before is not None and epoch == (before + 1) & 0xFF
+
+    def _is_settled_by(self, values: SentReply) -> bool:
+        """Whether a reply tells all that must be known of the epoch before for now."""
+        if isinstance(values, (PingReply, StatusReply)):
+            if self._state.may_be_reset(values):
+                return False
+            is_stop = not self._is_one_fault(values.state, self._epoch)
+        elif self._transmission.is_of("STOP"):
+            is_stop = not (self._pending and self._pending.halts)
+        else:
+            return True  # what needs to know more says HELLO
+        self._handshake.doubted = None
+        if is_stop:
+            self._void()
+        return True
+
+    def _settle(self, robot: HelloReply, frame: Frame) -> None:
+        """Find out from HELLO what has ended the epoch that is in doubt."""
+        self._epoch = frame.epoch
+        is_same = self.robot is not None and self.robot.values.nonce == robot.nonce
+        if is_same and self._pending and self._pending.wanted.may_be_done:
+            self._pending.wanted.is_void = True
+        if self._handshake.is_in_doubt:
+            is_fault = self._is_one_fault(robot.state, frame.epoch)
+            # HELLO is not sealed: where that counts, anybody may have said what it says
+            if robot.state == STATE_STOPPED or (
+                is_same and (not is_fault or self._handshake.is_doubted)
+            ):
+                self._void()
+        self._handshake.doubted = None
+
+    def _void(self) -> None:
+        """The robot was stopped: do nothing of what was asked for before."""
+        self._cancel_waiting(_STALE)
+        if self._pending is not None:
+            self._pending.wanted.is_void = True
+
+    def _tell_stop(self, event: StoppedEvent) -> None:
+        """Tell that STOP has stopped the robot, if its event has not."""
+        if not self.is_latched:
+            self._state.take(event)
+            self._events.append(event)
 
     def _goes_on(self, reply: Reply[SentReply], frame: Frame, now_ms: int) -> bool:
         """Take a reply to one of many DATA; return whether that was not the last one."""
@@ -440,10 +605,23 @@ class Session(Requester):
             elif self._handshake.is_open and self.is_latched and frame.epoch == self._epoch:
                 return  # a repeated answer to the same stop
         if isinstance(event, (StoppedEvent, FaultEvent)):
-            self._epoch = frame.epoch
-            self._cancel_waiting(_STALE)
+            self._take_end(event, frame)
         self._state.take(event)
         self._events.append(event)
+
+    def _take_end(self, event: StoppedEvent | FaultEvent, frame: Frame) -> None:
+        """Take the event that announces another epoch."""
+        self._doubt(frame)
+        is_halt = event == StoppedEvent(_BY_MESSAGE) and self._pending and self._pending.halts
+        if isinstance(event, StoppedEvent):
+            self._handshake.doubted = None
+            if not is_halt:
+                self._void()
+        elif self._is_one_fault(STATE_FAULTED, frame.epoch):
+            self._handshake.doubted = None
+            self._transmission.renew(self._epoch)
+            if self._pending and self._pending.resumes:
+                self._pending.resumes.transmission.renew(self._epoch)
 
     def _ask_for_proof(self, event: StoppedEvent) -> None:
         """Have the robot say under seal that it was stopped, if it was we who did that."""
@@ -472,10 +650,12 @@ class Session(Requester):
             exchange = self._handshake.with_key(make)
         else:
             exchange = self._handshake.open_then(make)
-        return self._add(exchange, starts)
+        return self._add(exchange, starts, name in _END_RUNS)
 
-    def _add(self, exchange: Exchange[T], starts: bool = False) -> PendingExchange[T]:
-        pending = PendingExchange(exchange, starts=starts)
+    def _add(
+        self, exchange: Exchange[T], starts: bool = False, ends_runs: bool = False
+    ) -> PendingExchange[T]:
+        pending = PendingExchange(exchange, starts=starts, ends_runs=ends_runs)
         self._waiting.append(pending)
         return pending
 
@@ -486,6 +666,8 @@ class Session(Requester):
 
     def _finish(self, pending: PendingExchange[Any], outcome: Reply[Any]) -> None:
         pending.outcome = outcome
+        if outcome.status == OK and pending.ends_runs:
+            self._orphan = None
         if not pending.starts or outcome.status != OK:
             return
         receipt: ReceiptReply = outcome.values
@@ -495,10 +677,8 @@ class Session(Requester):
 
     def _lose(self) -> None:
         """Give up: the robot does not answer, or is busy."""
-        pending, self._pending = self._pending, None
-        assert pending
-        if pending.resumes is not None:
-            pending = pending.resumes.pending
+        assert self._pending
+        pending, self._pending = self._pending.wanted, None
         # a robot that answers, but is busy for too long, is not lost
         is_busy = pending.is_busy and self._transmission.tries <= 1
         self._transmission.end()
@@ -517,9 +697,8 @@ class Session(Requester):
 
     def _cancel(self, status: int) -> None:
         if self._pending:
-            resumes = self._pending.resumes
-            (resumes.pending if resumes else self._pending).outcome = Reply(status)
-        self._pending = None
+            self._pending.wanted.outcome = Reply(status)
+        self._pending = self._orphan = self._handshake.doubted = None
         self._transmission.end()
         self._cancel_waiting(status)
 

@@ -38,6 +38,7 @@ class Transmission:
         self.seal: Seal | None = None
         self.epoch = 0  # that the frame bears
         self.tries = 0
+        self.is_sent = False  # a byte of it
         self.due_ms = 0  # when the frame is sent or repeated
 
     def begin(self, frame: Frame, due_ms: int, seal: Seal | None = None) -> None:
@@ -52,8 +53,22 @@ class Transmission:
         self.tries = 0
         self.due_ms = due_ms
 
+    def renew(self, epoch: int, seq: int | None = None) -> None:
+        """Give a frame of which no byte was sent the epoch in which it will be sent, and the
+        number behind that of a frame which came before it.
+        """
+        if self.frame is not None and not (self.is_sent or self.is_of("AUTHENTICATE")):
+            self.frame = self.frame._replace(
+                epoch=epoch, seq=self.frame.seq if seq is None else seq
+            )
+            self.epoch = epoch
+
     def end(self) -> None:
         self.frame = None
+
+    def is_of(self, name: str) -> bool:
+        """Return whether a request of this name is under way."""
+        return self.frame is not None and self.frame.number == BY_NAME[name].number
 
     @property
     def is_under_way(self) -> bool:
@@ -75,6 +90,7 @@ class Transmission:
         wait_ms += -(-(len(wire) + self._largest + 2) * 10_000 // self._baud)
         is_repeated = self.tries > 0 or self.frame.number == BY_NAME["HELLO"].number
         self.tries += 1
+        self.is_sent = True
         self.due_ms = now_ms + wait_ms
         return sender.frames(wire, now_ms, is_repeated)
 
@@ -128,6 +144,7 @@ class Window(Transmission):
 
     def sent(self, now_ms: int, sender: Sender) -> bytes:
         """Return the frames that may be sent now."""
+        self.is_sent = True
         if self._under_way and now_ms >= self._lost_ms:
             self._go_back()
         wire = b""

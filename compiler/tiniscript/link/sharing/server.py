@@ -2,8 +2,9 @@
 
 The requests of all clients go to the one session of the line, and all clients get the events of
 the robot. A run belongs to the client that has started it: when that client leaves or its
-heartbeats stop, the server stops the robot, as the robot stops itself when the command that holds
-the port ends. No client can delay the line or another client: a slow client misses events, and
+heartbeats stop, the server ends the run, as the robot stops itself when the command that holds
+the port ends. What a client that leaves has not finished starts nothing, and cancels nothing of
+others. No client can delay the line or another client: a slow client misses events, and
 one that breaks the protocol is disconnected.
 """
 
@@ -92,7 +93,7 @@ class Server:
         self._told: deque[Told] = deque()
         self._clients: list[ConnectedClient] = []
         self._owner: tuple[ConnectedClient, int] | None = None  # of the current run
-        self._detached_requests: list[ServedRequest] = []  # of clients that have left
+        self._left_requests: list[ServedRequest] = []  # of clients that have left
         self._is_closing = False
         self._selector = selectors.DefaultSelector()
         self._selector.register(self._listening, selectors.EVENT_READ)
@@ -120,7 +121,7 @@ class Server:
         requests = [request for client in self._clients for request in client.requests.values()]
         return self.has_run or any(
             request.pending.outcome is None and request.pending.starts and not request.is_detached
-            for request in (*requests, *self._detached_requests)
+            for request in (*requests, *self._left_requests)
         )
 
     def close(self) -> None:
@@ -156,7 +157,7 @@ class Server:
 
     def _attend(self) -> None:
         is_asked = any(client.requests for client in self._clients)
-        is_busy = self._owner or self._detached_requests or is_asked
+        is_busy = self._owner or self._left_requests or is_asked
         for key, mask in self._selector.select(PAUSE_S if is_busy else REST_S):
             if key.fileobj is self._listening:
                 self._let_in()
@@ -271,10 +272,10 @@ class Server:
                     done_bytes = request.pending.done_bytes
                     client.requests[number] = request._replace(told_bytes=done_bytes)
                     self._send(client, {"id": number, "done_bytes": done_bytes})
-        for request in self._detached_requests:
+        for request in self._left_requests:
             self._own(request, None)
-        self._detached_requests = [
-            request for request in self._detached_requests if request.pending.outcome is None
+        self._left_requests = [
+            request for request in self._left_requests if request.pending.outcome is None
         ]
 
     def _own(self, request: ServedRequest, client: ConnectedClient | None) -> None:
@@ -289,7 +290,7 @@ class Server:
         if not self._line.runs(run):
             return
         if client is None:
-            self._line.stop()
+            self._line.halt(run)
         else:
             self._owner = client, run
 
@@ -337,9 +338,9 @@ class Server:
             self._end_run()
 
     def _end_run(self) -> None:
-        """Stop the run of a client that has left."""
-        if self.has_run:
-            self._line.stop()
+        """End the run of a client that has left."""
+        if self._owner is not None:
+            self._line.halt(self._owner[1])
         self._owner = None
 
     def _drop(self, client: ConnectedClient) -> None:
@@ -348,7 +349,9 @@ class Server:
         self._clients.remove(client)
         self._selector.unregister(client.peer)
         client.peer.close()
-        self._detached_requests += client.requests.values()
+        for request in client.requests.values():
+            self._line.withdraw(request.pending)
+            self._left_requests.append(request)
         if self._owner is not None and self._owner[0] is client:
             self._end_run()
         self._tell_own_command(client, LeftEvent)

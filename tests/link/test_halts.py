@@ -1,0 +1,126 @@
+"""What is done for a client that has gone: its run ends, and nothing that others want."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from tests.link.test_unsent_requests import greeted, image, live, long_upload, upload
+from tests.machines.host_firmware import HostFirmware
+from tests.support.command import FOREVER
+from tests.support.pty_robot import drives_now
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.messages import SAVED_STORED
+from tiniscript.link.outcomes import CANCELLED
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+Ask = Callable[[Session], PendingRequest[Any]]
+DRIVES = image(FOREVER)
+
+
+def moves(robot: HostFirmware) -> bool:
+    return drives_now([line.split(" ", 1)[1] for line in robot.did])
+
+
+def driving() -> tuple[Session, HostFirmware, int]:
+    """Return a robot that drives for a client, and the run."""
+    session, robot = greeted()
+    assert robot.until(session, session.upload(DRIVES, saves=False)) == OK
+    robot.talk(session, 300)
+    assert moves(robot) and session.run is not None
+    return session, robot, session.run
+
+
+def name(session: Session) -> PendingRequest[Any]:
+    return session.name(b"Ana")
+
+
+def fetch(session: Session) -> PendingRequest[Any]:
+    return session.fetch()
+
+
+@pytest.mark.parametrize("wanted", [None, live, upload, long_upload, name, fetch])
+@pytest.mark.parametrize("after_ms", [0, 1, 20, 150])
+def test_its_run_ends_and_what_others_want_is_done(wanted: Ask | None, after_ms: int) -> None:
+    """Whatever of that is under way."""
+    session, robot, run = driving()
+    request = wanted(session) if wanted else None
+    robot.talk(session, after_ms)
+    session.halt(run, robot.now_ms)
+    began_ms = robot.now_ms
+    if request is not None:
+        assert robot.until(session, request) == OK
+    robot.talk(session, 1000)
+    assert not moves(robot)
+    ends = [line for line in robot.did if line.endswith("MOTORS 0 0")]
+    assert int(ends[-1].split()[0]) - began_ms < 300
+    events = [event.name for event in session.events()]
+    assert events.count("STOPPED") <= 1
+    if wanted in (live, upload, long_upload):
+        assert "SHOW" in events
+    assert session.is_open
+
+
+def test_a_run_of_another_goes_on() -> None:
+    session, robot, run = driving()
+    assert robot.until(session, session.upload(DRIVES, saves=False)) == OK
+    session.halt(run, robot.now_ms)
+    robot.talk(session, 1000)
+    assert moves(robot) and session.run != run
+
+
+@pytest.mark.parametrize("after_ms", range(5))
+def test_an_upload_that_is_withdrawn_starts_nothing_and_the_next_is_done(after_ms: int) -> None:
+    session, robot = greeted()
+    long = image("F(1, 80);" * 40)
+    gone = session.upload(long)
+    other = live(session)
+    robot.talk(session, after_ms)
+    session.withdraw(gone)
+    assert gone.outcome is not None and gone.outcome.status == CANCELLED
+    assert robot.until(session, other) == OK
+    robot.talk(session, 1000)
+    assert not moves(robot) and "MOTORS 80 80" not in "".join(robot.did)
+
+
+def test_one_that_waits_is_withdrawn() -> None:
+    session, robot = greeted()
+    first, gone, last = live(session), session.upload(DRIVES), live(session)
+    session.withdraw(gone)
+    assert gone.outcome is not None and gone.outcome.status == CANCELLED
+    assert robot.until(session, last) == OK and first.outcome
+    assert not moves(robot)
+
+
+@pytest.mark.parametrize("answers", [OK, "BUSY"])
+def test_a_frame_that_may_start_a_run_is_answered_first(answers: object) -> None:
+    """And nothing more is sent where the robot was busy."""
+    session, robot = greeted()
+    if answers == "BUSY":
+        assert robot.until(session, session.upload(image("SB|SHOW(1)"))) == OK
+    gone = session.upload(DRIVES, saves=False)
+    there = session.poll(robot.now_ms)
+    assert there
+    session.withdraw(gone)
+    assert gone.outcome is None
+    session.receive(robot.wait(40, there), robot.now_ms)
+    robot.talk(session, 300)
+    assert gone.outcome is not None
+    assert (gone.outcome.status == OK) == (answers == OK) == moves(robot)
+    status = session.status()
+    assert robot.until(session, status) == OK
+
+
+def test_a_program_that_was_sent_before_is_saved_all_the_same() -> None:
+    session, robot = greeted()
+    assert robot.until(session, session.upload(DRIVES)) == OK
+    assert session.run is not None
+    session.halt(session.run, robot.now_ms)
+    robot.talk(session, 3000)
+    status = session.status()
+    assert robot.until(session, status) == OK
+    assert status.outcome and status.outcome.values.saved == SAVED_STORED
+    assert not moves(robot)

@@ -1,0 +1,153 @@
+"""A request of which nothing was sent before a reset, a fault or a stop of the robot.
+
+After a reset or a fault it is answered as if it were asked then. A stop voids it, whatever tells
+of the stop.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tests.link.test_session_resets import KIT, reset, running
+from tests.machines.host_firmware import HostFirmware
+from tiniscript import compile_text
+from tiniscript.bytecode.image import Image, unpack
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.messages import STATUSES
+from tiniscript.link.payloads import EmptyReply, ReceiptReply
+from tiniscript.link.requests import OK, Exchange, Reply, Request, single
+from tiniscript.link.session import Session
+
+FAULTS = "SHOW(1 / DISTANCE)"  # at once
+FAULTS_SOON = "W(0.6); SHOW(1 / DISTANCE)"
+Happens = Callable[[HostFirmware], HostFirmware]
+Ask = Callable[[Session], PendingRequest[ReceiptReply]]
+
+
+def image(text: str) -> Image:
+    return unpack(compile_text(text, KIT).image)
+
+
+def live(session: Session) -> PendingRequest[ReceiptReply]:
+    return session.live(image("SHOW(2)").code)
+
+
+def upload(session: Session) -> PendingRequest[ReceiptReply]:
+    return session.upload(image("SHOW(2)"))
+
+
+def long_upload(session: Session) -> PendingRequest[ReceiptReply]:
+    return session.upload(image("SHOW(2);" * 30))
+
+
+def greeted() -> tuple[Session, HostFirmware]:
+    session, robot = Session(1, 9600, KIT.fingerprint), HostFirmware(KIT)
+    robot.wait(100)
+    assert robot.until(session, session.hello()) == OK
+    robot.talk(session, 300)
+    return session, robot
+
+
+def busy_line(session: Session, robot: HostFirmware, asks: str) -> None:
+    """Send a request that the robot does not hear."""
+    if asks == "heartbeat":
+        robot.now_ms += 2000
+    else:
+        getattr(session, asks)()
+    assert session.poll(robot.now_ms)
+
+
+def stopped_by_hand(robot: HostFirmware) -> HostFirmware:
+    robot.push()  # its STOPPED is lost
+    return robot
+
+
+ASKS = ["heartbeat", "status", "fetch", "identify", "clear"]
+
+
+@pytest.mark.parametrize("wanted", [live, upload, long_upload])
+@pytest.mark.parametrize("asks", ASKS)
+def test_it_is_done_after_a_reset(asks: str, wanted: Ask) -> None:
+    for seed in (0x9ABCDEF1, 3, 4, 5):
+        session, robot = greeted()
+        busy_line(session, robot, asks)
+        request = wanted(session)
+        robot = reset(robot, seed)
+        assert robot.until(session, request) == OK, seed
+
+
+@pytest.mark.parametrize("wanted", [live, upload, long_upload])
+@pytest.mark.parametrize("asks", ASKS)
+def test_it_is_void_after_a_stop(asks: str, wanted: Ask) -> None:
+    session, robot = running()
+    busy_line(session, robot, asks)
+    requests = [wanted(session), wanted(session)]
+    robot = stopped_by_hand(robot)
+    robot.codes()
+    for request in requests:
+        assert robot.until(session, request) == STATUSES["STALE"]
+    robot.talk(session, 1000)
+    assert robot.is_latched and not robot.codes()
+
+
+@pytest.mark.parametrize("wanted", [live, upload, long_upload])
+@pytest.mark.parametrize("is_told", [True, False])
+def test_it_is_done_behind_a_program_that_faults(is_told: bool, wanted: Ask) -> None:
+    session, robot = greeted()
+    assert robot.until(session, session.live(image(FAULTS_SOON).code)) == OK
+    session.fetch()
+    assert session.poll(robot.now_ms)
+    request = wanted(session)
+    told = robot.wait(1000)
+    if is_told:
+        session.receive(told, robot.now_ms)
+        assert [event.name for event in session.events()] == ["FAULT"]
+    assert robot.until(session, request) == OK
+
+
+@pytest.mark.parametrize("first", ["upload", "live"])
+@pytest.mark.parametrize("wanted", [live, upload, long_upload])
+def test_one_behind_a_program_that_faults_at_once_is_done(first: str, wanted: Ask) -> None:
+    session, robot = greeted()
+    faulty = image(FAULTS)
+    begun = session.live(faulty.code) if first == "live" else session.upload(faulty)
+    request = wanted(session)
+    assert robot.until(session, begun) == OK
+    assert robot.until(session, request) == OK
+    robot.talk(session, 1000)
+    assert "SHOW" in [event.name for event in session.events()]
+
+
+def test_a_stop_behind_that_fault_voids_it() -> None:
+    session, robot = greeted()
+    assert robot.until(session, session.live(image(FAULTS_SOON).code)) == OK
+    session.fetch()
+    assert session.poll(robot.now_ms)
+    request = live(session)
+    robot.wait(1000)
+    robot.wait(20, bytes(8))
+    assert robot.until(session, request) == STATUSES["STALE"]
+
+
+def two_steps() -> Exchange[EmptyReply]:
+    """Ask for something without an effect, then for something with one."""
+    reply = yield Request("PING", {"asks": b""})
+    if reply.status != OK:
+        return Reply(reply.status)
+    return (yield from single(Request("IDENTIFY"), EmptyReply))
+
+
+def test_a_stop_that_is_told_before_the_first_step_with_an_effect_voids_it() -> None:
+    """HELLO was sent for it, or PING, and then the robot says that it was stopped."""
+    session, robot = running()
+    request = session._add(two_steps())
+    assert session.poll(robot.now_ms)  # nobody hears it
+    stopped = robot.step(flags=1) + robot.wait(100)
+    session.receive(stopped, robot.now_ms)
+    assert [event.name for event in session.events()] == ["STOPPED"]
+    assert request.outcome is None
+    robot.did.clear()
+    assert robot.until(session, request) == STATUSES["STALE"]
+    assert robot.did == []
