@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import json
 import re
+import signal
 from typing import cast
 
 import pytest
 
-from tests.support.command import FOREVER, Command
+from tests.support.command import FOREVER, Command, process
 from tests.support.pty_robot import PtyRobot, on, uploading
+from tests.support.waiting import until
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
+from tiniscript.link import holders
 from tiniscript.link.port_connection import PortConnection
+from tiniscript.link.sharing import registry
 from tiniscript.link.transmission import CONFIRM_MS
 
 
@@ -106,3 +110,127 @@ def test_info_tells_what_the_uart_has_noticed(pty_robot: PtyRobot) -> None:
     assert "framing" not in on(pty_robot, "info").out
     fields = json.loads(on(pty_robot, "ping", "--json", "--count", "1").out)
     assert (fields["framing"], fields["overrun"]) == (0, 0)
+
+
+# -- past a holder that does not answer -----------------------------------------------------------
+
+
+def suspended(command: Command) -> Command:
+    """Return a command after Ctrl-Z."""
+    command.signal(signal.SIGSTOP)
+    until(lambda: holders.is_suspended(command.process.pid), "it is suspended")
+    return command
+
+
+@pytest.mark.parametrize("verb", ["monitor", "link"])
+def test_a_stop_gets_through_beside_a_suspended_tsc(pty_robot: PtyRobot, verb: str) -> None:
+    assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
+    holder = Command(verb, "--port", pty_robot.port)
+    until(lambda: registry.found(pty_robot.port) is not None, "it shares its port")
+    pty_robot.until(lambda: b"\x04" in pty_robot.heard, "it talks to the robot")
+    suspended(holder)
+    assert pty_robot.moves
+    for _ in range(2):
+        on(pty_robot, "stop").gives(0, "", out="has confirmed it")
+        assert not pty_robot.moves
+    assert holders.is_suspended(holder.process.pid)
+    holder.signal(signal.SIGCONT)
+    # It shares the port as before. What is asked before it has learned of the stop is told so.
+    until(lambda: "SHOW 4" in on(pty_robot, "live", "SHOW(4)").out, "others drive")
+    holder.signal(signal.SIGINT)
+    assert holder.ended().code == 0
+
+
+LOCKS = """
+import fcntl, os, sys, time
+port = os.open(sys.argv[1], os.O_RDWR | os.O_NOCTTY)
+fcntl.flock(port, fcntl.LOCK_EX)
+print("locked", flush=True)
+time.sleep(1000)
+"""
+
+
+@pytest.mark.parametrize("is_suspended", [True, False])
+def test_a_stop_gets_past_the_lock_of_another_program(
+    pty_robot: PtyRobot, is_suspended: bool
+) -> None:
+    assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
+    holder = Command(pty_robot.port, code=LOCKS)
+    holder.until("locked")
+    if is_suspended:
+        suspended(holder)
+    on(pty_robot, "info").gives(3, "another program is using")
+    on(pty_robot, "stop").gives(0, "", out="has confirmed it")
+    assert not pty_robot.moves
+    holder.kill()
+
+
+BRIDGE = """
+import socket, sys, threading, serial
+tcp = socket.create_server(("127.0.0.1", 0))
+print(tcp.getsockname()[1], flush=True)
+device = serial.Serial(sys.argv[1], timeout=0.005)
+peers = []
+def back():
+    while True:
+        data = device.read(200)
+        for peer in list(peers):
+            peer.sendall(data)
+threading.Thread(target=back, daemon=True).start()
+peer, _ = tcp.accept()
+peers.append(peer)
+while data := peer.recv(1000):
+    device.write(data)
+"""
+
+
+def test_the_suspended_holder_of_an_address_is_woken(pty_robot: PtyRobot) -> None:
+    """Nobody else reaches the robot."""
+    assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
+    bridge = Command(pty_robot.port, code=BRIDGE)
+    assert bridge.process.stdout
+    address = f"socket://127.0.0.1:{int(bridge.process.stdout.readline())}"
+    holder = Command("monitor", "--port", address)
+    until(lambda: registry.found(address) is not None, "it shares the address")
+    suspended(holder)
+    process("stop", "--port", address).gives(0, "", out="has confirmed it")
+    assert not pty_robot.moves
+    holder.kill()
+    bridge.kill()
+
+
+@pytest.mark.parametrize("is_known", [True, False])
+def test_who_holds_up_a_stop_is_named(is_known: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    now_s = [0.0]
+    monkeypatch.setattr(opening, "monotonic", lambda: now_s[0])
+    monkeypatch.setattr(opening, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))
+    woken = []
+
+    class Asleep(holders.Holder):
+        is_suspended = True
+
+        def wake(self) -> bool:
+            woken.append(self.pid)
+            return False
+
+    found = Asleep(77, "tsc monitor") if is_known else None
+    monkeypatch.setattr(holders, "holder", lambda *_: found)
+
+    def busy(*_: object, **__: object) -> PortConnection:
+        raise RobotError("port_busy", "en", {"port": "/dev/ttyUSB7", "why": ""})
+
+    monkeypatch.setattr(opening, "_opened_line", busy)
+    with pytest.raises(RobotError) as failed:
+        opening.connection_to("/dev/ttyUSB7", "stop", 9600, 1)
+    said = str(failed.value)
+    assert ("tsc monitor (process 77)" in said) == is_known
+    assert "lift it" in said and "batteries" in said
+    assert bool(woken) == is_known
+
+
+def test_a_process_that_has_ended_holds_nothing() -> None:
+    done = Command("--version")
+    pid = done.process.pid
+    done.ended()
+    assert not holders.is_suspended(pid)
+    assert holders.holder("/nowhere", pid) is None

@@ -2,20 +2,22 @@
 
 If two programs open the same port at once, the lock of the serial port decides; an address has no
 lock, so a locked file decides. The second program then looks for the server of the first one for
-some seconds before it reports a busy port. Failures are `RobotError`s: the command puts their
-reason and values into sentences of its own.
+some seconds before it reports a busy port. A stop does not wait for who is suspended, nor long for
+others: it goes past the lock of a serial port, or wakes the holder. Failures are `RobotError`s: the
+command puts their reason and values into sentences of its own.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+from contextlib import suppress
 from time import monotonic, sleep
 from typing import IO, TYPE_CHECKING
 
 from tiniscript.base.source import printable
 from tiniscript.library.errors import RobotError
-from tiniscript.link import errors, known_ports, port_names
+from tiniscript.link import errors, holders, known_ports, port_names
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import PSEUDO, is_address, is_at_broker, is_name
@@ -53,14 +55,16 @@ def connection_to(
     user has asked for. A robot's name becomes its address, which may be in use under another name.
     """
     address = port
-    end_s = monotonic() + (STOP_BUSY_S if verb == "stop" else BUSY_S)
+    is_stop = verb == "stop"
+    begun_s = monotonic()
     while True:
-        client = _joined(address, verb, asked_baud, language)
+        is_held_up = is_stop and _is_suspended(address)
+        client = None if is_held_up else _joined(address, verb, asked_baud, language)
         if client is not None:
             return client
         if is_name(address):
             address = _resolved(port, language)
-            end_s = monotonic() + (STOP_BUSY_S if verb == "stop" else BUSY_S)
+            begun_s = monotonic()
             continue
         try:
             lock = _claimed(address, language)
@@ -69,26 +73,66 @@ def connection_to(
                 registry.forget(name)  # the port is ours: its former owner has crashed
             return line
         except RobotError as failure:
-            if failure.reason != "port_busy" or monotonic() > end_s:
+            waited_s = monotonic() - begun_s
+            if failure.reason != "port_busy" or (waited_s > BUSY_S and not is_stop):
                 raise
+        if is_stop:
+            past = _past_holder(address, baud, kit, limit_s, language, port, waited_s)
+            if past is not None:
+                return past
         sleep(AGAIN_S)
+
+
+def _is_suspended(address: str) -> bool:
+    """Whether the command that shares a port is suspended: it does not answer."""
+    found = registry.found(address)
+    return found is not None and holders.is_suspended(found.pid)
+
+
+def _past_holder(
+    address: str, baud: int, kit: int, limit_s: float, language: str, port: str, waited_s: float
+) -> PortConnection | None:
+    """Return a connection past the holder of a busy port; None while it may still let others in.
+
+    A holder that cannot be passed is woken, if it is suspended. Raises RobotError in the end.
+    """
+    found = registry.found(address)
+    path = str(registry.lock_of(address)) if is_address(address) else address
+    holder = holders.holder(path, None if found is None else found.pid)
+    is_suspended = holder is not None and holder.is_suspended
+    if not is_suspended and waited_s <= BUSY_S:
+        return None
+    if sys.platform == "linux" and not is_address(address):
+        speed = baud if found is None else found.baud
+        with suppress(RobotError):
+            return _opened_line(address, speed, kit, limit_s, None, language, port, True)
+    if holder is not None:
+        holder.wake()
+    if waited_s <= STOP_BUSY_S:
+        return None
+    if holder is None:
+        raise RobotError("stop_held_unknown", language, {"port": shown(port)})
+    values = {"port": shown(port), "holder": holder.name, "pid": str(holder.pid)}
+    raise RobotError("stop_held", language, values)
 
 
 def _opened_line(
     address: str, baud: int, kit: int, limit_s: float, lock: IO[bytes] | None, language: str,
-    port: str,
+    port: str, is_past: bool = False,
 ) -> PortConnection:  # fmt: skip
     """Open a port and begin a session for this kit. Raises RobotError.
 
-    `port` is the port's name in sentences. The line closes the lock.
+    `port` is the port's name in sentences. The line closes the lock. `is_past`: a serial port that
+    another program has locked.
     """
     from tiniscript.link.keys import KeyFile
     from tiniscript.link.port_connection import PortConnection
-    from tiniscript.link.ports import opened
+    from tiniscript.link.ports import opened, opened_past_lock
     from tiniscript.link.session import Session
 
     try:
-        device = opened(address, baud, limit_s)
+        open_it = opened_past_lock if is_past else opened
+        device = open_it(address, baud, limit_s)
     except BaseException as failure:
         if lock is not None:
             lock.close()

@@ -75,6 +75,13 @@ def opened(port: str, baud: int, limit_s: float = OPEN_S) -> Port:
     return _transport(port).opened(port, baud, limit_s)
 
 
+def opened_past_lock(port: str, baud: int, limit_s: float = OPEN_S) -> Port:
+    """Open a serial port that another program has locked: both hear then. Raises PortError."""
+    from tiniscript.link.transports import serial
+
+    return cast(Port, serial.opened(port, baud, limit_s, is_exclusive=False))
+
+
 def in_reach() -> list[Seen]:
     """Search with Bluetooth LE for some seconds, and return the robots. Raises PortError."""
     with _installed():

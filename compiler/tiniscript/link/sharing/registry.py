@@ -135,7 +135,12 @@ def claimed(port: str) -> IO[bytes] | None:
     ends with the file, or with the process. Raises OSError where nothing can be locked.
     """
     _make_folder()
-    return _locked(_path(port).with_suffix(".lock"))
+    return _locked(lock_of(port))
+
+
+def lock_of(port: str) -> Path:
+    """Return the path of the file that is locked for an address."""
+    return _path(port).with_suffix(".lock")
 
 
 class _Lock(FileIO):

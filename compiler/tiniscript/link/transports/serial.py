@@ -56,7 +56,7 @@ def resolved(port: str) -> str:
     return port
 
 
-def opened(port: str, baud: int, limit_s: float) -> serial.SerialBase:
+def opened(port: str, baud: int, limit_s: float, is_exclusive: bool = True) -> serial.SerialBase:
     """Open a port, at the latest after `limit_s`. Raises PortError.
 
     Some drivers block in `open` for ever, so a daemon thread opens the port.
@@ -65,7 +65,7 @@ def opened(port: str, baud: int, limit_s: float) -> serial.SerialBase:
 
     def work() -> None:
         try:
-            done.append(_open(port, baud))
+            done.append(_open(port, baud) if is_exclusive else _open_shared(port, baud))
         except BaseException as failure:
             done.append(failure)
 
@@ -84,6 +84,10 @@ def _open(port: str, baud: int) -> serial.SerialBase:
     if port.startswith("rfc2217://"):
         del settings["write_timeout"]  # pyserial does not support it here
     return serial.serial_for_url(port, baudrate=baud, **settings)
+
+
+def _open_shared(port: str, baud: int) -> serial.SerialBase:
+    return serial.serial_for_url(port, baudrate=baud, timeout=READ_S, write_timeout=WRITE_S)
 
 
 def _failure(failure: BaseException) -> PortError:

@@ -1,0 +1,107 @@
+"""Which process holds a port, whether it is suspended, and how it is woken.
+
+A suspended command (Ctrl-Z) keeps its port, and neither shares it nor lets go of it. Linux tells
+who has a file open; of a command that shares its port the registration tells it, too.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+from tiniscript.base.source import printable
+
+NAME_CHARACTERS = 40
+PS_S = 1.0  # timeout of `ps`
+
+
+class Holder(NamedTuple):
+    pid: int
+    name: str  # of its program
+
+    @property
+    def is_suspended(self) -> bool:
+        return is_suspended(self.pid)
+
+    def wake(self) -> bool:
+        """Let a suspended process go on; return whether that was possible."""
+        if sys.platform == "win32" or not self.is_suspended:
+            return False
+        with suppress(OSError):
+            os.kill(self.pid, signal.SIGCONT)
+            return True
+        return False
+
+
+def holder(path: str, pid: int | None = None) -> Holder | None:
+    """Return the process that has a port or a lock open; `pid` is the one that says so of itself.
+
+    None where nobody tells.
+    """
+    found = next(_who_have(path), None) if sys.platform == "linux" else pid
+    found = pid if found is None else found
+    if found is None or found == os.getpid():
+        return None
+    name = _command(found)
+    return None if name is None else Holder(found, printable(name, NAME_CHARACTERS))
+
+
+def is_suspended(pid: int) -> bool:
+    """Whether a process is suspended, as with Ctrl-Z."""
+    if sys.platform == "linux":
+        with suppress(OSError, IndexError):
+            about = Path(f"/proc/{pid}/stat").read_bytes()
+            return about.rpartition(b")")[2].split()[0] in (b"T", b"t")
+        return False
+    return _said_by_ps(pid, "state").startswith("T")
+
+
+def _who_have(path: str) -> Iterator[int]:
+    """Yield the processes that have a file open, as far as this user may know that."""
+    try:
+        wanted = Path(path).stat()
+    except (OSError, ValueError):
+        return
+    for process in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):  # it has ended, or is another user's
+            if int(process.name) != os.getpid() and any(
+                os.path.samestat(wanted, each.stat()) for each in (process / "fd").iterdir()
+                if each.exists()
+            ):  # fmt: skip
+                yield int(process.name)
+
+
+def _command(pid: int) -> str | None:
+    """Return the name of a process's program, with the verb of a tsc; None if it has ended."""
+    words = []
+    if sys.platform == "linux":
+        with suppress(OSError):
+            data = Path(f"/proc/{pid}/cmdline").read_bytes()
+            words = data.decode("utf-8", "replace").split("\0")
+    else:
+        words = _said_by_ps(pid, "args").split()
+    if not any(words):
+        return None
+    verbs = [at for at, word in enumerate(words[:3]) if word in ("tiniscript", "tsc")]
+    verbs += [at for at, word in enumerate(words[:3]) if Path(word).name == "tsc"]
+    if verbs and len(words) > verbs[0] + 1:
+        return f"tsc {words[verbs[0] + 1]}".strip()
+    return Path(words[0]).name
+
+
+def _said_by_ps(pid: int, column: str) -> str:
+    if sys.platform == "win32":
+        return ""
+    with suppress(OSError, subprocess.SubprocessError):
+        done = subprocess.run(
+            ["ps", "-o", f"{column}=", "-p", str(pid)],
+            capture_output=True, text=True, timeout=PS_S, check=False,
+        )  # fmt: skip
+        return done.stdout.strip()
+    return ""
