@@ -12,6 +12,7 @@ import pytest
 
 from tests.support.command import Tsc
 from tiniscript.base import files
+from tiniscript.link import met_robots
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.keys import MOST, BadKeys, KeyFile, written
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
@@ -193,3 +194,62 @@ def test_claims_that_were_left_leave_few_keys() -> None:
     found = own.of_robot(ONE.id)
     assert sorted(key.which for key in found) == [0, 0, 1, 1]
     assert found[-1] == last._replace(is_stale=True) and own.of_robot(7) == [other]
+
+
+PLACE = "tcp://ana"
+
+
+def test_where_a_robot_was_met_is_kept_for_this_person_alone(own: KeyFile) -> None:
+    own.meet(PLACE, ONE.id)
+    own.meet("/dev/ttyUSB0", 7)
+    own.meet(PLACE, 8)
+    path = own.path.with_name("robots.json")
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
+    again = KeyFile(own.path)
+    assert (again.robot_at(PLACE), again.robot_at("/dev/ttyUSB0"), again.robot_at("")) == (
+        8,
+        7,
+        None,
+    )
+    assert not again.accepts(9)
+    own.accept(9)
+    assert again.accepts(9) and again.robot_at(PLACE) == 8
+    assert KeyFile(own.path, accepts_all=True).accepts(10)
+    KeyFile(own.path, is_for_virtual=True).meet(PLACE, 11)
+    assert again.robot_at(PLACE) == 8
+
+
+@pytest.mark.parametrize(
+    "data",
+    [b"", b"[]", b"{", b"\xff", b"[" * 100_000, b'{"places": [], "accepted": []}',
+     b'{"places": {"a": 7}, "accepted": []}', b'{"places": {}, "accepted": ["x"]}'],
+)  # fmt: skip
+def test_a_file_of_places_that_is_none_is_made_anew(own: KeyFile, data: bytes) -> None:
+    own.path.parent.mkdir()
+    own.path.with_name("robots.json").write_bytes(data)
+    assert own.robot_at(PLACE) is None and not own.accepts(7)
+    own.meet(PLACE, 7)
+    assert own.robot_at(PLACE) == 7
+
+
+def test_places_that_cannot_be_kept_end_nothing(own: KeyFile) -> None:
+    own.path.parent.write_bytes(b"a file where the folder should be")
+    own.meet(PLACE, 7)
+    assert own.robot_at(PLACE) is None
+    with pytest.raises(BadKeys):
+        own.accept(7)
+
+
+def test_no_more_places_are_kept_than_a_file_holds(
+    own: KeyFile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(met_robots, "KEPT", 3)
+    for number in range(5):
+        own.meet(f"tcp://{number}", number)
+    assert [own.robot_at(f"tcp://{number}") for number in range(5)] == [None, None, 2, 3, 4]
+
+
+@pytest.mark.parametrize("robot", ["", "7", "ANA", "1234567g", "123456789", "-1234567"])
+def test_only_an_id_is_accepted(tsc: Tsc, robot: str) -> None:
+    tsc("keys", f"--accept={robot}").gives(2, "is no id")

@@ -6,6 +6,7 @@ The robot is the firmware in C++ behind a pseudo-terminal.
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,8 @@ from unittest import mock
 
 import pytest
 
-from tests.support.command import FOREVER, Command, Done
+from tests.machines.host_firmware import EMPTY
+from tests.support.command import FOREVER, Command, Done, inside
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.cli import main
 from tiniscript.cli.commands import claim
@@ -185,3 +187,35 @@ def test_a_shared_port_has_the_authority_and_its_messages_no_key(
     client: Any = ClientRequests()
     for request in (client.claim(KEY_OWNER), client.disown(KEY_OWNER)):
         assert set(request.message) == {"do", "which"}
+
+
+def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
+    pty_robot: PtyRobot,
+) -> None:
+    """Whoever leads the connection there has a robot, and no key."""
+    claimed(pty_robot).gives(0)
+    pty_robot.switch_off()
+    pty_robot._memory = EMPTY
+    pty_robot.switch_on()  # another one, with an id of its own
+    refused = on(pty_robot, "upload", "-e", FOREVER, "--detach")
+    refused.gives(3, "another robot answers", "tsc keys --accept")
+    for words in (["upload", "-e", DRIVES], ["live", "F(0.2, 80)"], ["info"], ["name", "ANA"]):
+        on(pty_robot, *words).gives(3, "another robot answers")
+    on(pty_robot, "stop").gives(3, "has not confirmed the stop")
+    on(pty_robot, "info", "--lang", "es").gives(3, "responde otro robot")
+    on(pty_robot, "info", "--lang", "pt").gives(3, "responde outro robô")
+    driven = [line for line in pty_robot.did if line.startswith("MOTORS")]
+    assert set(driven) <= {"MOTORS 0 0"}
+    [robot] = re.findall("--accept ([0-9a-f]{8})", refused.err)
+    inside("keys", "--accept", robot.upper()).gives(0, "", out=robot)
+    assert on(pty_robot, "upload", "-e", DRIVES).code == 0
+    assert on(pty_robot, "stop").code == 0
+
+
+def test_who_claims_many_robots_at_one_cable_is_not_asked(pty_robot: PtyRobot) -> None:
+    for _ in range(2):
+        claimed(pty_robot).gives(0, out="yours")
+        assert on(pty_robot, "upload", "-e", DRIVES).code == 0
+        pty_robot.switch_off()
+        pty_robot._memory = EMPTY
+        pty_robot.switch_on()  # another one

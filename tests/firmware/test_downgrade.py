@@ -1,7 +1,9 @@
 """Who stands between a computer and a robot that seals, and clears bits of HELLO: is not believed.
 
 They have the line: what they do not pass on is not heard, and they answer in its place, whatever
-they like. They have no key. `python -m tests.firmware.test_downgrade 10000` has as many of them.
+they like. They may change the robot's id in HELLO, or lead the computer to a robot of their own
+that has its name. They have no key. `python -m tests.firmware.test_downgrade 10000` has as many of
+them.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ import pytest
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import image_of
 from tests.support.owners import FOREVER, Keys, Owned
+from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
@@ -24,6 +27,7 @@ from tiniscript.link.messages import (
     KEY_TEACHER,
     MAJOR,
     OWNED,
+    OWNERS,
     SEALS,
     STATE_RUNNING,
     STATE_STOPPED,
@@ -31,7 +35,7 @@ from tiniscript.link.messages import (
     read,
     written,
 )
-from tiniscript.link.outcomes import LOST, UNPROVEN
+from tiniscript.link.outcomes import LOST, OTHER_ROBOT, UNPROVEN
 from tiniscript.link.session import Session
 
 TRIALS = 150
@@ -40,6 +44,8 @@ HELLO, AUTHENTICATE, STATUS, STOPPED = (
 )
 LIMIT_MS = 9000
 CLEARED = (OWNED, SEALS, OWNED | SEALS)
+PLACE, NAME = "tcp://ana", b"ANA"
+OTHER_ID, OTHER_SEED = 0x00C0FFEE, 0x0BADCAFE
 
 
 class End:
@@ -48,13 +54,25 @@ class End:
     def __init__(self, which: int = KEY_OWNER) -> None:
         self.keys = Keys()
         self.table = Owned()
-        self.table.claimed(self.keys, which)
+        session = self.table.claimed(self.keys, which)
+        assert self.table.outcome(session, session.name(NAME)) == "OK"
+        self.keys.found = [key._replace(name=NAME.decode()) for key in self.keys.found]
 
     def passes(self, milliseconds: int, data: bytes = b"") -> bytes:
         return self.table.robot.wait(milliseconds, data)
 
-    def session(self, nonce: int, keys: Keys) -> Session:
-        return self.table.session(keys, nonce)
+    def session(self, nonce: int, keys: Keys, place: str = "") -> Session:
+        return self.table.session(keys, nonce, place)
+
+
+class Stranger(End):
+    """A robot of somebody in between, with the same name and without an owner."""
+
+    def __init__(self) -> None:
+        self.keys = Keys()
+        self.table = Owned(seed=OTHER_SEED)
+        session = self.table.session(self.keys)
+        assert self.table.outcome(session, session.name(NAME)) == "OK"
 
 
 class Between:
@@ -64,8 +82,9 @@ class Between:
 
     def __init__(
         self, end: End, draw: random.Random, cleared: int, passes_on: Callable[[Frame], bool],
-        cuts_stops: bool = True,
+        cuts_stops: bool = True, other_id: int | None = None,
     ) -> None:  # fmt: skip
+        self.other_id = other_id
         self.end, self.draw, self.cleared, self.passes_on = end, draw, cleared, passes_on
         self.cuts_stops = cuts_stops
         self.epoch = 0
@@ -94,13 +113,14 @@ class Between:
         return b"\0" * bool(said) + said
 
     def changed(self, said: bytes) -> bytes:
-        """Return the answers of the robot with bits of HELLO cleared."""
+        """Return the answers of the robot with bits of HELLO cleared, or another id."""
         found = b""
         for packet in filter(None, said.split(b"\0")):
             frame = decoded(packet)
             if frame and frame.number == HELLO and frame.payload[0] == 0:
                 values = read(BY_NAME["HELLO"].reply, frame.payload[1:])
                 values["features"] = int(values["features"]) & ~self.cleared
+                values["id"] = self.other_id or values["id"]
                 payload = b"\0" + written(BY_NAME["HELLO"].reply, values)
                 found += encoded(frame._replace(payload=payload))
             else:
@@ -208,6 +228,92 @@ def one_trial(end: End, seed: int) -> str:
     return f"{kind}, cleared" if cleared else kind
 
 
+def one_stranger(end: End, strange: Stranger, seed: int) -> str:
+    """Ask a robot for something where another one answers, or one with another id; return what."""
+    draw = random.Random(seed)
+    keys = Keys()
+    keys.found = list(end.keys.found)
+    how = draw.choice(("id", "robot", "id, greeted", "robot, greeted"))
+    is_place = draw.random() < 0.5
+    if is_place:  # nobody knows its name, but the robot has answered here
+        keys.found = [key._replace(name="") for key in keys.found]
+    place = PLACE if is_place else draw.choice(("", "tcp://bob"))
+    session = end.session(draw.getrandbits(32), keys, place)
+    honest(end, session, session.hello())
+    assert keys.places.get(PLACE) == (end.keys.found[0].id if is_place else None)
+    if state_of(end) != STATE_RUNNING:
+        begun(end, draw)
+    if "greeted" not in how:
+        session = end.session(draw.getrandbits(32), keys, place)
+    cleared = draw.choice((0, *CLEARED, OWNED | OWNERS))
+    if how.startswith("id"):
+        greets = draw.choice(({HELLO}, {HELLO, AUTHENTICATE}, {HELLO, STATUS}))
+        between = Between(end, draw, cleared, lambda f: f.number in greets, other_id=OTHER_ID)
+    else:
+        between = Between(strange, draw, cleared, everything, cuts_stops=draw.random() < 0.5)
+    kind = draw.choice(("stop", "upload", "live", "hello"))
+    request: PendingRequest[Any] | None = None
+    if kind == "stop":
+        session.stop(0)
+    elif kind == "upload":
+        request = session.upload(image_of(FOREVER), saves=False)
+    elif kind == "live":
+        request = session.live(image_of(FOREVER).code)
+    else:
+        request = session.hello()
+    told = talk(between, session, request)
+    assert "STOPPED" not in told, f"seed {seed}: {how}: a stop that nobody has heard is confirmed"
+    if request is None:
+        assert "LOST" in told, f"seed {seed}: {told}"
+    else:
+        expected = (OTHER_ROBOT,) if "greeted" not in how else (OTHER_ROBOT, UNPROVEN, LOST)
+        status = request.outcome.status if request.outcome else LOST
+        assert status in expected, f"seed {seed}: {how}: {kind}: {status}"
+    assert state_of(end) == STATE_RUNNING, "nobody has reached it"
+    return f"{kind}, {how}"
+
+
+def test_a_stranger_with_an_id_of_its_own_is_not_believed() -> None:
+    end, strange = End(), Stranger()
+    found = {one_stranger(end, strange, seed) for seed in range(1, TRIALS + 1)}
+    assert len(found) == 16  # each kind
+
+
+def test_who_is_accepted_or_has_a_key_here_is_believed() -> None:
+    end, strange = End(), Stranger()
+    keys = end.keys
+    session = end.session(1, keys, PLACE)
+    honest(end, session, session.hello())
+    session = strange.session(2, keys, PLACE)
+    request = session.hello()
+    honest(strange, session, request)
+    assert request.outcome and request.outcome.status == OTHER_ROBOT
+    other = request.outcome.detail
+    keys.accepted.add(other)
+    for _ in range(2):
+        honest(strange, session, request := session.hello())
+        assert request.outcome and request.outcome.status == 0
+        assert session.robot and session.robot.id == other
+    strange.table.claimed(keys)  # at another place
+    keys.accepted.clear()
+    session = strange.session(3, keys, PLACE)
+    honest(strange, session, request := session.hello())
+    assert request.outcome and request.outcome.status == 0
+    assert keys.places[PLACE] == other
+
+
+def test_a_robot_of_which_nothing_is_known_is_believed() -> None:
+    """And so is one where the robot of the key does not seal."""
+    strange = Stranger()
+    for key in ([], [RobotKey(7, KEY_OWNER, bytes(15) + b"\7", NAME.decode())]):
+        keys = Keys()
+        keys.found = key
+        keys.meet(PLACE, 7)
+        session = strange.session(4, keys, PLACE)
+        honest(strange, session, request := session.hello())
+        assert request.outcome and request.outcome.status == 0
+
+
 def test_nobody_between_takes_the_seals_away() -> None:
     end = End()
     assert len({one_trial(end, seed) for seed in range(1, TRIALS + 1)}) == 10  # each kind
@@ -259,5 +365,11 @@ def test_a_key_learns_that_its_robot_seals_from_the_robot_alone() -> None:
     assert keys.found[0].seals
 
 
+def either(ends: tuple[End, End, Stranger], seed: int) -> str:
+    """Play one of somebody in between, or one of a stranger with an id of its own."""
+    robot, other, strange = ends
+    return one_stranger(other, strange, seed) if seed % 2 else one_trial(robot, seed)
+
+
 if __name__ == "__main__":
-    each_seed(partial(one_trial, End()), wanted(10_000, 1))
+    each_seed(partial(either, (End(), End(), Stranger())), wanted(10_000, 1))

@@ -28,6 +28,17 @@ class Keys(KeyRing):
         self.found: list[RobotKey] = []
         self.next = first
         self.is_full = False
+        self.places: dict[str, int] = {}
+        self.accepted: set[int] = set()
+
+    def robot_at(self, place: str) -> int | None:
+        return self.places.get(place)
+
+    def meet(self, place: str, robot: int) -> None:
+        self.places[place] = robot
+
+    def accepts(self, robot: int) -> bool:
+        return robot in self.accepted
 
     def _kept(self) -> list[RobotKey]:
         return self.found
@@ -70,8 +81,8 @@ class Owned:
     def seals(self) -> bool:
         return self.DEFINES != WITHOUT_SEALS
 
-    def session(self, keys: Keys | None = None, nonce: int = 1) -> Session:
-        return Session(nonce, 115200, KIT.fingerprint, keys=keys)
+    def session(self, keys: Keys | None = None, nonce: int = 1, place: str = "") -> Session:
+        return Session(nonce, 115200, KIT.fingerprint, keys=keys, place=place)
 
     def outcome(self, session: Session, request: PendingRequest[Any]) -> str:
         return STATUS_NAMES.get(status := self.robot.until(session, request, 60_000), str(status))

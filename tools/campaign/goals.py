@@ -46,7 +46,7 @@ GOALS: tuple[Goal, ...] = (
          "uploads beside a stranger", 10_000, 500, "tests.link.test_sealed_channel {count} --seed {seed}", 1000),
     Goal("sealed-large", "The same for a robot with large frames.",
          "uploads beside a stranger", 10_000, 500, "tests.link.test_sealed_channel {count} --large --seed {seed}", 1000),
-    Goal("downgrade", "If somebody in between removes the seals from HELLO, refuses keys or answers for the robot, the computer says so; nothing counts as done, and no stop as confirmed.",
+    Goal("downgrade", "If somebody in between removes the seals from HELLO, changes its id, refuses keys, answers for the robot or leads to another one, the computer says so; nothing counts as done, and no stop as confirmed.",
          "requests and stops", 10_000, 2_000, "tests.firmware.test_downgrade {count} --seed {seed}", 2000),
     Goal("thieves", "Replayed, forged, reflected or cut frames on an owner's line, and frames of another session, do nothing; a stop works.",
          "frames", 100_000, 20_000, "tests.firmware.test_sealed_robot {count} --seed {seed}"),

@@ -235,7 +235,8 @@ class Client:
         """Return the error for a reply that is not OK."""
         reason = reason_of(self.line, reply)
         if reason != "status":
-            return RobotError(reason, self.language, {"port": opening.shown(self.port)})
+            values = {"port": opening.shown(self.port), "id": f"{reply.detail:08x}"}
+            return RobotError(reason, self.language, values)
         said = " ".join(sentence(reply.status, reply.detail, self.language)).strip()
         name = name_of(reply.status)
         kind = ProgramError if name == "TOO_LARGE" else RobotError

@@ -68,7 +68,7 @@ def connection_to(
             continue
         try:
             lock = _claimed(address, language)
-            line = _opened_line(address, baud, kit, limit_s, lock, language, port)
+            line = _opened_line(address, baud, kit, limit_s, lock, language, port, verb)
             for name in {port, address}:
                 registry.forget(name)  # the port is ours: its former owner has crashed
             return line
@@ -105,7 +105,7 @@ def _past_holder(
     if sys.platform == "linux" and not is_address(address):
         speed = baud if found is None else found.baud
         with suppress(RobotError):
-            return _opened_line(address, speed, kit, limit_s, None, language, port, True)
+            return _opened_line(address, speed, kit, limit_s, None, language, port, "stop", True)
     if holder is not None:
         holder.wake()
     if waited_s <= STOP_BUSY_S:
@@ -118,7 +118,7 @@ def _past_holder(
 
 def _opened_line(
     address: str, baud: int, kit: int, limit_s: float, lock: IO[bytes] | None, language: str,
-    port: str, is_past: bool = False,
+    port: str, verb: str = "", is_past: bool = False,
 ) -> PortConnection:  # fmt: skip
     """Open a port and begin a session for this kit. Raises RobotError.
 
@@ -139,8 +139,11 @@ def _opened_line(
         if isinstance(failure, PortError):
             raise port_error(port, failure, language) from None
         raise
-    keys = KeyFile(is_for_virtual=_is_virtual(address))
-    session = Session(int.from_bytes(os.urandom(4), "little"), baud, kit, keys=keys)
+    # who claims a robot has it before them: one of many, perhaps, at the same cable
+    keys = KeyFile(is_for_virtual=_is_virtual(address), accepts_all=verb == "claim")
+    place = port_names.same_for_all(port)  # an address may be another robot's tomorrow
+    nonce = int.from_bytes(os.urandom(4), "little")
+    session = Session(nonce, baud, kit, keys=keys, place=place)
     return PortConnection(device, session, lock, address)
 
 

@@ -13,6 +13,7 @@ from tiniscript.link import requests
 from tiniscript.link.messages import KEY_BYTES, KEY_TEACHER, OWNED, SEALS, STATUSES, YOURS
 from tiniscript.link.outcomes import UNKEPT
 from tiniscript.link.payloads import AuthenticateReply, EmptyReply
+from tiniscript.link.port_names import canonical
 from tiniscript.link.requests import OK, TAKEN, DeviceInfo, Exchange, Reply, Request
 from tiniscript.link.seal import Seal, session_key, siphash
 
@@ -75,6 +76,17 @@ class KeyRing:
 
         return key if self._change(with_it) else None
 
+    def robot_at(self, place: str) -> int | None:
+        """Return the robot of ours that has proved at a place who it is."""
+        return None
+
+    def meet(self, place: str, robot: int) -> None:
+        """One of our robots has proved at a place who it is."""
+
+    def accepts(self, robot: int) -> bool:
+        """Return whether a robot may answer in the place of one of ours."""
+        return False
+
     def settle(self, key: RobotKey) -> None:
         """The robot has taken a pending key: it replaces the one before."""
         settled = key._replace(is_pending=False, is_stale=False)
@@ -110,6 +122,18 @@ def has_to_seal(ring: KeyRing | None, robot: DeviceInfo | None) -> bool:
         return False
     keys = ring.of_robot(None if robot is None else robot.id)
     return any(key.seals and not key.is_pending for key in keys)
+
+
+def is_other(ring: KeyRing | None, place: str, robot: DeviceInfo) -> bool:
+    """Return whether somebody answers in the place of a robot of ours that seals: where that one
+    has answered before, or with its name. One whose key we have too has to prove itself.
+    """
+    ours = [] if ring is None else ring.of_robot(None)
+    ours = [key for key in ours if key.seals and not key.is_pending]
+    if ring is None or any(key.id == robot.id for key in ours) or ring.accepts(robot.id):
+        return False
+    before, name = ring.robot_at(place), canonical(robot.name)
+    return any(key.id == before or canonical(key.name) == name != "" for key in ours)
 
 
 def show_keys(

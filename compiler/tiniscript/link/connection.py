@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from tiniscript.bytecode.image import Image
-from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, UNPROVEN, Event
+from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, OTHER_ROBOT, UNPROVEN, Event
 from tiniscript.link.payloads import (
     EmptyReply,
     HelloReply,
@@ -198,6 +198,8 @@ def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
         return "stopped_elsewhere"
     if reply.status == UNPROVEN:
         return "unproven"
+    if reply.status == OTHER_ROBOT:
+        return "other_robot"
     if reply.status != LOST:
         return STATUS
     if line.robot is not None:

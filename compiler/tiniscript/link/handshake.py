@@ -23,7 +23,7 @@ from tiniscript.link.messages import (
     STATE_RUNNING,
     STATUSES,
 )
-from tiniscript.link.outcomes import UNPROVEN
+from tiniscript.link.outcomes import OTHER_ROBOT, UNPROVEN
 from tiniscript.link.payloads import (
     AuthenticateReply,
     EmptyReply,
@@ -44,7 +44,7 @@ T = TypeVar("T")
 
 class Handshake:
     """`nonce` is a random number of 32 bits; `kit` and `isa` are those of our programs; `keys`
-    has the keys of robots; `epoch` returns the robot's.
+    has the keys of robots; `epoch` returns the robot's; `place` is where it is reached.
 
     `is_open`: the robot has answered HELLO, and has not been lost since. `doubted` is the last
     epoch of which it is known what has ended it, while that of a later one is not.
@@ -58,11 +58,13 @@ class Handshake:
         state: RobotState,
         keys: KeyRing | None,
         epoch: Callable[[], int],
+        place: str = "",
     ) -> None:
         self._nonce, self._kit, self._isa = nonce, kit, isa
         self._state = state
         self._keys = keys
         self._epoch = epoch
+        self._place = place
         self.robot: DeviceInfo | None = None
         self.is_open = False
         self.doubted: int | None = None
@@ -83,6 +85,9 @@ class Handshake:
         reply = yield from requests.single(Request("HELLO", values), HelloReply)
         if reply.status == OK:
             found = requests.described(reply.values)
+            if authority.is_other(self._keys, self._place, found):
+                self.is_open = False
+                return Reply(OTHER_ROBOT, found.id)
             must_seal = authority.has_to_seal(self._keys, found)
             if must_seal and not found.values.features & SEALS:
                 self.is_open = False
@@ -118,6 +123,8 @@ class Handshake:
             return reply
         hello = yield from self.hello()
         ended = STATE_FAULTED if self._boot == boot else STATE_IDLE
+        if hello.status in (OTHER_ROBOT, UNPROVEN):
+            return refused(hello)
         if hello.status != OK or self._state.state != ended:
             return reply
         return (yield from self.with_key(make))  # that came before, and nothing of this was done
@@ -145,6 +152,8 @@ class Handshake:
         reply = yield from authority.show_keys(keys, robot, nonce, self._epoch, which, is_needed)
         if reply.status == OK:
             self._take_features(reply.values.features)
+            if keys is not None and robot.values.features & SEALS and self._place:
+                keys.meet(self._place, robot.id)
         return reply
 
     def _take_features(self, features: int) -> None:

@@ -17,6 +17,7 @@ from threading import Lock
 
 from tiniscript.base import files
 from tiniscript.base.source import printable
+from tiniscript.link import met_robots
 from tiniscript.link.authority import KeyRing, RobotKey
 from tiniscript.link.messages import KEY_BYTES, KEYS
 
@@ -44,10 +45,14 @@ class TooManyKeys(BadKeys):
 class KeyFile(KeyRing):
     """The keys in a file; the user's own where no path is given. Each call reads it anew."""
 
-    def __init__(self, path: Path | None = None, is_for_virtual: bool = False) -> None:
+    def __init__(
+        self, path: Path | None = None, is_for_virtual: bool = False, accepts_all: bool = False
+    ) -> None:
         """`is_for_virtual`: whoever answers may be a virtual robot that begins anew each time, with
-        the same id and without the owner that it had.
+        the same id and without the owner that it had. `accepts_all`: any robot may answer where
+        another one did.
         """
+        self._accepts_all = accepts_all
         self.path = path or files.settings_folder() / "keys.json"
         self._is_for_virtual = is_for_virtual
 
@@ -80,6 +85,13 @@ class KeyFile(KeyRing):
         with self._alone():
             self._write([key for key in self.all() if key.id != robot])
 
+    def accept(self, robot: int) -> None:
+        """Let a robot answer where another one did, or with its name. Raises BadKeys."""
+        try:
+            met_robots.accept(self._met, robot)
+        except OSError as failure:
+            raise BadKeys(failure.strerror or str(failure)) from None
+
     # -- as a KeyRing: where the file cannot be read there is no key ------------------------------
 
     def _kept(self) -> list[RobotKey]:
@@ -87,6 +99,20 @@ class KeyFile(KeyRing):
             found = self.all()
             return [key._replace(seals=False) for key in found] if self._is_for_virtual else found
         return []
+
+    @property
+    def _met(self) -> Path:
+        return self.path.with_name("robots.json")
+
+    def robot_at(self, place: str) -> int | None:
+        return met_robots.met(self._met).places.get(place)
+
+    def meet(self, place: str, robot: int) -> None:
+        if not self._is_for_virtual:
+            met_robots.meet(self._met, place, robot)
+
+    def accepts(self, robot: int) -> bool:
+        return self._accepts_all or robot in met_robots.met(self._met).accepted
 
     def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         try:

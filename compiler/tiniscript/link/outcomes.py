@@ -13,8 +13,9 @@ from typing import Literal, NamedTuple, get_args
 from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent, StoppedEvent
 
 # Outcomes that the session produces. UNKEPT: of a key; UNPROVEN: whoever answers does not seal, and
-# our key says that the robot does.
-LOST, CANCELLED, UNKEPT, UNPROVEN = -1, -2, -3, -4
+# our key says that the robot does; OTHER_ROBOT: another one answers than the one of our key, whose
+# id is the detail.
+LOST, CANCELLED, UNKEPT, UNPROVEN, OTHER_ROBOT = -1, -2, -3, -4, -5
 LOOK_S = 0.1  # between two checks for events: Windows handles Ctrl-C only then
 
 

@@ -130,9 +130,10 @@ class Session(Requester):
         kit: int = 0,
         isa: tuple[int, int] = isa_of(0),
         keys: KeyRing | None = None,
+        place: str = "",
     ) -> None:
         """`nonce` is a random number of 32 bits; `kit` and `isa` are those of our programs; `keys`
-        has the keys of robots.
+        has the keys of robots; `place` is where the robot is reached, by a name that stays.
         """
         self.tells_places = False  # PLACE events are wanted
         self.tells_starts = False  # STARTED events are wanted
@@ -149,7 +150,7 @@ class Session(Requester):
         self._sent_ms = 0  # time of the last transmission
         self._sealing = Sealing()
         self._state = RobotState()
-        self._handshake = Handshake(nonce, kit, isa, self._state, keys, lambda: self._epoch)
+        self._handshake = Handshake(nonce, kit, isa, self._state, keys, lambda: self._epoch, place)
         self._events: list[Event] = []
         self._waiting: deque[PendingExchange[Any]] = deque()
         self._pending: PendingExchange[Any] | None = None

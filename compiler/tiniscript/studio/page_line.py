@@ -48,6 +48,10 @@ class PageKeys(KeyRing):
     def _kept(self) -> list[RobotKey]:
         return self.keys
 
+    def accepts(self, robot: int) -> bool:
+        """Any: the person has chosen its port, of which the page has no name that stays."""
+        return True
+
     def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         after = change(self.keys)
         self.has_changed = self.has_changed or after != self.keys

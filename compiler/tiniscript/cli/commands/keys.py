@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from argparse import Namespace
 from pathlib import Path
@@ -19,7 +20,8 @@ from tiniscript.link.messages import KEYS
 
 
 def run(options: Namespace, language: str) -> int:
-    if sum(each is not None for each in (options.export, options.bring, options.forget)) > 1:
+    ways = options.export, options.bring, options.forget, options.accept
+    if sum(each is not None for each in ways) > 1:
         raise CommandError(2, "one_way")
     own = KeyFile()
     try:
@@ -35,6 +37,8 @@ def run(options: Namespace, language: str) -> int:
         _import(own, options.bring, language)
     elif options.forget is not None:
         _forget(own, found, options.forget, language)
+    elif options.accept is not None:
+        _accept(own, options.accept, language)
     elif options.json:
         print(json.dumps([_fields(key) for key in found], indent=2))
     else:
@@ -75,6 +79,16 @@ def _forget(own: KeyFile, found: list[RobotKey], robot: str, language: str) -> N
     except BadKeys as why:
         raise _own(own, "own_keys_full", why) from None
     say("keys_forgotten", language, robot=shown(robot))
+
+
+def _accept(own: KeyFile, robot: str, language: str) -> None:
+    if not re.fullmatch("[0-9a-fA-F]{8}", robot):
+        raise CommandError(2, "no_id", robot=shown(robot))
+    try:
+        own.accept(int(robot, 16))
+    except BadKeys as why:
+        raise _own(own, "own_keys_full", why) from None
+    say("robot_accepted", language, robot=robot.lower())
 
 
 def _own(own: KeyFile, key: str, why: BadKeys) -> CommandError:

@@ -219,7 +219,7 @@ class Connection(Client):
         reason = reason_of(self.line, reply)
         if reason == "status":
             return CommandError(3, "plain", said=self.said(reply))
-        return CommandError(3, reason, port=shown(self.port))
+        return CommandError(3, reason, port=shown(self.port), id=f"{reply.detail:08x}")
 
     def said(self, reply: Reply[object]) -> str:
         """Return the meaning of a robot's refusal, and what to do."""

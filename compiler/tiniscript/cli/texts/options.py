@@ -215,6 +215,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--export", "keys", NEW_KEYS, A_FILE),
     Option("--import", "keys", KEYS, A_FILE, "bring"),
     Option("--forget", "keys", TEXT, "ROBOT"),
+    Option("--accept", "keys", TEXT, "ID"),
     Option("--name", "robot", TEXT, "NAME"),
     Option("--listen", "robot", NUMBER, P),
     Option("--listen", "studio", NUMBER, P),

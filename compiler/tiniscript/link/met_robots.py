@@ -1,0 +1,70 @@
+"""Which robot of this person has answered where, and which other robots the person has accepted.
+
+The file lies beside that of the keys: whoever answers at a port is compared with it. Where it
+cannot be read nobody has been met.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+from tiniscript.base import files
+
+FILE_BYTES = 1_000_000
+KEPT = 2000  # places, and robots; the oldest go first
+MODE = 0o600  # only this person reads it
+
+
+class Met(NamedTuple):
+    """`places` maps each port to the id of the robot that has proved there who it is."""
+
+    places: dict[str, int]
+    accepted: list[int]
+
+
+def met(path: Path) -> Met:
+    """Return what is in the file."""
+    try:
+        fields = json.loads(files.contents(path, FILE_BYTES))
+        places = {str(place): int(robot, 16) for place, robot in fields["places"].items()}
+        return Met(places, [int(robot, 16) for robot in fields["accepted"]])
+    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return Met({}, [])
+
+
+def meet(path: Path, place: str, robot: int) -> None:
+    """Remember which robot is at a place. Where the file cannot be written it is not remembered."""
+    if met(path).places.get(place) == robot:
+        return
+
+    def with_it(before: Met) -> Met:
+        others = {each: other for each, other in before.places.items() if each != place}
+        return before._replace(places={**others, place: robot})
+
+    with suppress(OSError, ValueError):
+        _change(path, with_it)
+
+
+def accept(path: Path, robot: int) -> None:
+    """Remember that a robot may answer where another one did. Raises OSError."""
+
+    def with_it(before: Met) -> Met:
+        others = [each for each in before.accepted if each != robot]
+        return before._replace(accepted=[*others, robot])
+
+    _change(path, with_it)
+
+
+def _change(path: Path, change: Callable[[Met], Met]) -> None:
+    path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    with files.alone(path, MODE):
+        now = change(met(path))
+        fields = {
+            "places": {place: f"{robot:08x}" for place, robot in list(now.places.items())[-KEPT:]},
+            "accepted": [f"{robot:08x}" for robot in now.accepted[-KEPT:]],
+        }
+        files.replace(path, json.dumps(fields, indent=1).encode() + b"\n", MODE)
