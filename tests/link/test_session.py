@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from tests.link.test_session_resets import running
 from tests.support.link_cases import KIT
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, pack, unpack
@@ -32,6 +33,7 @@ from tiniscript.link.session import IDLE_HEARTBEAT_MS, Session
 from tiniscript.link.transmission import CONFIRM_MS, STOP_MS
 
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
+ROBOT = robots.load("tinibot")
 LOW, SAVING = STATUSES["LOW_SUPPLY"], STATUSES["SAVING"]
 
 DESCRIPTION: dict[str, int | bytes] = {
@@ -142,6 +144,56 @@ def test_what_came_before_a_stop_was_sent_confirms_nothing() -> None:
     session.receive(event("STOPPED", 1, {"cause": 1}, epoch=12), 30)
     assert [each.name for each in session.events()] == ["STOPPED"]
     assert sending(session, 500) == []
+
+
+@pytest.mark.parametrize("cause", [2, 3, 4, 5])
+def test_another_stop_confirms_none(cause: int) -> None:
+    """Its STOPPED was under way; the robot may have been started again since."""
+    session = greeted()
+    session.stop(0)
+    assert session.poll(0) == bytes(8)
+    session.receive(event("STOPPED", 0, {"cause": cause}), 30)
+    assert session.events() == [] and session.is_latched
+    assert sending(session, 150) == [(100, bytes(8))]  # it goes on
+    session.receive(event("STOPPED", 1, {"cause": 1}, epoch=12), 160)
+    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert sending(session, 500) == []
+
+
+@pytest.mark.parametrize("cause", [3, 5])
+def test_a_robot_that_another_has_stopped_confirms_in_its_epoch(cause: int) -> None:
+    """It tells the first cause each time; the session may know of that stop, or not yet."""
+    for is_known in (True, False):
+        session = greeted() if is_known else Session(1, kit=KIT)
+        if is_known:
+            session.receive(event("STOPPED", 0, {"cause": cause}), 0)
+            session.events()
+        session.stop(10)
+        for number, at in ((1, 10), (2, 110)):
+            assert session.poll(at) == bytes(8)
+            assert session.events() == []
+            session.receive(event("STOPPED", number, {"cause": cause}), at + 20)
+            if is_known:
+                break
+        assert [each.name for each in session.events()] == ["STOPPED"]
+        assert sending(session, 500) == []
+
+
+def test_a_move_behind_another_stop_does_not_go_unseen() -> None:
+    """The button stops, then starts; the stop that was sent meanwhile is lost once."""
+    session, robot = running()
+    told = robot.step(flags=1) + robot.wait(60)  # stopped, and STOPPED is under way
+    robot.step(flags=2)
+    other = Session(2, 9600, KIT)
+    assert robot.until(other, other.clear()) == 0
+    assert robot.until(other, other.live(compile_text("F(200, 80)", ROBOT.kit).code)) == 0
+    session.stop(robot.now_ms)
+    assert session.poll(robot.now_ms)  # nobody hears it
+    session.receive(told, robot.now_ms)
+    assert session.events() == []
+    robot.talk(session, 500)
+    assert [each.name for each in session.events()][-1:] == ["STOPPED"]
+    assert robot.is_latched
 
 
 def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> None:

@@ -80,7 +80,7 @@ IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise
 DEAF_MS = 3000  # a heartbeat without an answer for this time means that the link is lost
 MOST_SHOWN = 5  # times that a key is shown again for one request
 _STALE, _BUSY = STATUSES["STALE"], STATUSES["BUSY"]
-_BY_MESSAGE = 2  # the cause of a robot that STOP has stopped
+_BY_SEQUENCE, _BY_MESSAGE = 1, 2  # causes of a stopped robot: the stop sequence, STOP
 _STARTING = ("PROGRAM", "COMMIT", "LIVE", "START")  # a run may begin with each
 _END_RUNS = ("upload", "live", "start", "undo")  # a robot ends what runs when it hears of them
 T = TypeVar("T")
@@ -601,7 +601,11 @@ class Session(Requester):
             if not frame.is_sealed and self._handshake.is_doubted:
                 self._ask_for_proof(event)
                 return
-            if self._stop.is_sent:
+            if self._stop.due_ms is not None:
+                if not self._confirms(event, frame):
+                    self._doubt(frame)
+                    self._state.take(event)
+                    return
                 self._stop.end()
             elif self._handshake.is_open and self.is_latched and frame.epoch == self._epoch:
                 return  # a repeated answer to the same stop
@@ -609,6 +613,15 @@ class Session(Requester):
             self._take_end(event, frame)
         self._state.take(event)
         self._events.append(event)
+
+    def _confirms(self, event: StoppedEvent, frame: Frame) -> bool:
+        """Whether the stop that is under way has stopped the robot, or has found it stopped.
+
+        Another stop's STOPPED may have been under way, and the robot may have started again since:
+        then the next one tells, as the stop is sent again.
+        """
+        is_known = self.is_latched and frame.epoch == self._epoch
+        return self._stop.is_sent and (event.cause == _BY_SEQUENCE or is_known)
 
     def _take_end(self, event: StoppedEvent | FaultEvent, frame: Frame) -> None:
         """Take the event that announces another epoch."""
