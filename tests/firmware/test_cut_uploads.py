@@ -14,6 +14,7 @@ from tests.firmware.test_host_firmware import KIT, computer, happened, held, hol
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tiniscript.bytecode.image import Image, pack, unpack
+from tiniscript.link.messages import SAVED, SAVED_NOTHING
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -21,6 +22,7 @@ OLD = "SB|F(0.1, 50)"
 ROOM = 389
 STRIDE = 29  # of the bytes in the tests
 STOP = bytes(8)
+SAVED_MEMORY = [name for name, _ in SAVED].index("MEMORY")
 CUT, STOPPED, STOPPED_TWICE = KINDS = ("cut", "stopped", "stopped twice")
 
 
@@ -96,6 +98,22 @@ def break_off(kind: str, first: int, stride: int) -> int:
 @pytest.mark.parametrize("kind", KINDS)
 def test_an_upload_that_is_broken_off(kind: str) -> None:
     assert break_off(kind, 3, STRIDE) > 450 // STRIDE
+
+
+def test_a_program_that_an_upload_has_cost_is_told_no_more() -> None:
+    """The robot still says its checksum and its length."""
+    robot, session = HostFirmware(KIT), computer()
+    robot.wait(200)
+    assert robot.until(session, session.upload(image_of(OLD), saves=False)) == OK
+    before = robot.done(session, session.status())
+    assert (before.program, before.saved) == (image_of(OLD).checksum, SAVED_MEMORY)
+    assert before.length == len(image_of(OLD).code)
+    assert sent_until(robot, session, 300)
+    again = computer(2)
+    for request in (again.hello(), again.status()):
+        found = robot.done(again, request)
+        assert (found.saved, found.program, found.length) == (SAVED_NOTHING, 0, 0)
+    assert again.robot and again.robot.values.program == 0
 
 
 if __name__ == "__main__":

@@ -22,6 +22,8 @@ from tiniscript.link.messages import (
     PAYLOAD_BYTES,
     RUN,
     SAVE,
+    SAVED_NOTHING,
+    SAVED_OTHER_VERSION,
     SEALS,
     SMALL_FRAME,
     STATUSES,
@@ -50,6 +52,7 @@ BUSY_TRIES = 200  # while the robot saves another program
 KEPT_TRIES = 12  # while it has not written its data to EEPROM,
 LOW_TRIES = 4  # and while its voltage is too low for that: it checks every half second
 KEPT_PAUSE_MS = 200
+NOT_HELD = (SAVED_NOTHING, SAVED_OTHER_VERSION)  # the robot holds no program
 # The robot has the data, but would lose it at the next power-on.
 TAKEN = (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"], STATUSES["NOT_KEPT"])
 
@@ -131,6 +134,8 @@ def reply_of(name: str, payload: bytes) -> Reply[SentReply] | None:
         values: Mapping[str, Any] = read(BY_NAME[name].reply, payload[1:])
     except Malformed:
         return None
+    if values.get("saved") in NOT_HELD and "length" in values:  # of one that is gone
+        values = {**values, "program": 0, "length": 0}
     return Reply(OK, 0, REPLIES[name](**values))
 
 

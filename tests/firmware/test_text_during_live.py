@@ -1,0 +1,65 @@
+"""What somebody types while `tsc live` runs a line on the same robot.
+
+A robot with room for two programs drives what was typed. An Uno and a Nano have none for it: they
+read only stops, and the live line goes on to its end.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.firmware.test_button_states import SmallRobot
+from tests.firmware.test_host_firmware import KIT, computer
+from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+LIVE = "SI|F(1, 80)"
+TYPED = ("SI|F(0.5, 30)", "F(0.5, 30)", "SI|W(0.1);F(0.5, 30)")
+
+
+def running(kind: type[HostFirmware], after_ms: int) -> tuple[HostFirmware, Session]:
+    """Return a robot that has run a live line for a while, and its session."""
+    robot, session = kind(KIT), computer()
+    robot.wait(100)
+    assert robot.until(session, session.live(image_of(LIVE).code)) == OK
+    robot.talk(session, after_ms)
+    assert "MOTORS 80 80" in robot.did[-1]
+    robot.did.clear()
+    return robot, session
+
+
+def types(robot: HostFirmware, session: Session, text: str, milliseconds: int) -> list[str]:
+    """Type a line, let time pass, and return what the robot has done."""
+    session.receive(robot.wait(20, text.encode() + b"\n"), robot.now_ms)
+    robot.talk(session, milliseconds)
+    return [line.split(" ", 1)[1] for line in robot.did]
+
+
+@pytest.mark.parametrize("after_ms", [1, 130, 500])
+@pytest.mark.parametrize("text", TYPED)
+def test_what_is_typed_drives_a_robot_with_room_for_it(text: str, after_ms: int) -> None:
+    robot, session = running(HostFirmware, after_ms)
+    did = types(robot, session, text, 1500)
+    assert did == ["MOTORS 0 0", "MOTORS 30 30", "MOTORS 0 0", "FINISHED"]
+    assert [event.name for event in session.events()] == ["STARTED", "DONE"]
+
+
+@pytest.mark.parametrize("after_ms", [1, 130, 500])
+@pytest.mark.parametrize("text", TYPED)
+def test_a_robot_without_that_room_goes_on_with_its_live_line(text: str, after_ms: int) -> None:
+    robot, session = running(SmallRobot, after_ms)
+    assert types(robot, session, text, 1500) == ["MOTORS 0 0", "FINISHED"]
+    assert [event.name for event in session.events()] == ["DONE"]
+    robot.did.clear()  # then it reads text again
+    did = types(robot, session, text, 1500)
+    assert did == ["MOTORS 30 30", "MOTORS 0 0", "FINISHED"]
+
+
+@pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
+@pytest.mark.parametrize("text", ["S", "STOP", "s"])
+def test_a_stop_that_is_typed_stops_either(kind: type[HostFirmware], text: str) -> None:
+    robot, session = running(kind, 130)
+    assert types(robot, session, text, 300)[0] == "MOTORS 0 0"
+    assert robot.is_latched
