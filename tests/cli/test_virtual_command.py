@@ -163,6 +163,23 @@ def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
         assert json.loads(inside("info", "--virtual", "--json").out)["name"] == "INTI"
 
 
+@pytest.mark.parametrize(
+    ("name", "size"), [("tinibot", 1024), ("tinibot2", 1024), ("tinibot32", 16_640)]
+)
+def test_each_robot_reads_what_it_has_written(name: str, size: int, tmp_path: Path) -> None:
+    """And says of what another one has written that it is not its own."""
+    memory = tmp_path / "kept.bin"
+    options = ("--robot", name, "--memory", memory, "--for", "3", "--hurry", "max")
+    inside("robot", *options, "--name", "INTI").gives(0)
+    assert len(memory.read_bytes()) == size
+    inside("robot", *options).gives(0)
+    assert b"INTI" in memory.read_bytes()
+    for other in (size + 1, size - 1, 0):
+        memory.write_bytes(bytes(other))
+        inside("robot", *options).gives(2, f"that has {size} bytes")
+        assert len(memory.read_bytes()) == other
+
+
 def test_a_pseudo_terminal_is_a_port_too() -> None:
     with robot("--pty") as found:
         port = found.line()

@@ -35,7 +35,7 @@ from tiniscript.virtual.transports import Transports, can_have_terminal
 if TYPE_CHECKING:
     from tiniscript.virtual.announcement import Announcement
 
-MEMORY_BYTES = 1024  # of an Uno's EEPROM
+MOST_BYTES = 1_000_000  # of a file that may be a robot's memory: that of an ESP32 has 16,640
 SAVE_S = 1.0  # between two looks at what the robot keeps
 QUIT = "qQ\x04"
 
@@ -52,7 +52,11 @@ def run(options: Namespace, language: str) -> int:
     end_ms = simulator_options.end_ms(options, language)
     hurry = simulator_options.hurry_of(options, language)
     faults = simulator_options.faults_of(options, language)
-    robot = simulator_options.made(options, profile, language, _memory(options.memory), baud)
+    memory = _memory(options.memory)
+    robot = simulator_options.made(options, profile, language, memory, baud)
+    if memory is not None and len(memory) != len(robot.memory):
+        size = str(len(robot.memory))
+        raise CommandError(2, "bad_memory", file=shown(options.memory), bytes=size)
     if options.name is not None:
         _name(robot, options.name)
     transports = _transports(port, options.pty)
@@ -268,19 +272,16 @@ def _pushes_ms(option: str, found: str | None) -> list[int]:
 
 
 def _memory(name: str | None) -> bytes | None:
-    """Return a robot's EEPROM from its file; a missing file is that of a new robot."""
+    """Return what a file has for a robot's memory; a missing file is that of a new robot."""
     if name is None:
         return None
     try:
         with Path(name).open("rb") as file:
-            data = file.read(MEMORY_BYTES + 1)
+            return file.read(MOST_BYTES)
     except FileNotFoundError:
         return None
     except (OSError, ValueError) as why:
         raise CommandError(2, "unreadable_memory", file=shown(name), why=why) from None
-    if len(data) != MEMORY_BYTES:
-        raise CommandError(2, "bad_memory", file=shown(name), bytes=str(MEMORY_BYTES))
-    return data
 
 
 def _name(robot: VirtualRobot, name: str) -> None:
