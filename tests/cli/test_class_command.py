@@ -34,7 +34,7 @@ from tiniscript.link.messages import STATUSES
 from tiniscript.link.payloads import ShowEvent
 from tiniscript.link.port_connection import now_ms
 from tiniscript.link.requests import Reply
-from tiniscript.link.transports.broker import ROOT, Present
+from tiniscript.link.transports.broker import ROOT, Access, Broker, Present
 
 SECRET = b"the password of all robots"
 SEEDS = (0x12345678, 0x0BADCAFE)
@@ -279,3 +279,33 @@ def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
     with pytest.raises(CommandError) as found:
         robot_broker.use(cast(Connection, told), None, Namespace())
     assert "older than this tsc" in found.value.sentence("en")
+
+
+def keep(client: Broker, topic: str, payload: bytes) -> None:
+    """Have a broker retain a message."""
+    client._client.publish(topic, payload, qos=1, retain=True).wait_for_publish(HANGS_S)
+    client.close()
+
+
+def test_a_large_message_that_a_broker_keeps_is_named_and_a_stop_is_told_as_sent(
+    broker: Mosquitto,
+) -> None:
+    place = ["--broker", f"127.0.0.1:{broker.port}", "--class", "3b"]
+    keep(broker.connected(), f"{ROOT}/3b/big", bytes(5000))
+    named = ("bytes under tiniscript/3b/big", "no robot of the class 3b")
+    done = process("class", "list", *place).gives(3, *named)
+    assert "no answer of a broker" not in done.err
+    process("class", "stop", *place).gives(3, "the stop has gone to the broker", *named)
+    keep(broker.connected(), f"{ROOT}/3b/0badcafe", b"-ANA")
+    process("class", "stop", *place, "--lang", "es").gives(3, "llegó al broker", "3b/big")
+
+
+def test_robots_are_listed_and_stopped_beside_a_large_message(room: Class) -> None:
+    access = Access("robots", SECRET.decode())
+    topic = f"{ROOT}/3b/{SEEDS[0] ^ 1:08x}"
+    keep(Broker("127.0.0.1", room.broker.port, access), topic, bytes(5000))
+    tsc(room).gives(0, topic, out=("12345678", "0badcafe"))
+    command = driving(room)
+    done = tsc(room, "stop").gives(0, topic)
+    assert not any(robot.moves for robot in room) and done.out.count("has confirmed") == 2
+    assert command.ended().code != 0

@@ -21,7 +21,7 @@ from tiniscript.link.messages import STOP_BYTES
 paho = pytest.importorskip("paho.mqtt.publish")
 from tiniscript.link.errors import PortError  # noqa: E402
 from tiniscript.link.transports import broker  # noqa: E402
-from tiniscript.link.transports.broker import MESSAGE_BYTES, Access, Broker  # noqa: E402
+from tiniscript.link.transports.broker import MESSAGE_BYTES, SKIPPED_BYTES, Access, Broker  # noqa: E402
 
 ROBOTS = 30
 LAST = "tests/last"
@@ -146,7 +146,23 @@ def message(bytes_of_it: int) -> bytes:
         bytes_of_it = rest
 
 
-@pytest.mark.parametrize("size", [MESSAGE_BYTES + 1, (256 << 20) - 1])
+@pytest.mark.parametrize("size", [MESSAGE_BYTES, MESSAGE_BYTES + 1, 10_000, SKIPPED_BYTES - 1000])
+def test_a_retained_message_that_is_too_large_is_left_out(school: Mosquitto, size: int) -> None:
+    """It stands before a robot, between robots and behind one, and is named."""
+    topics = [f"{broker.ROOT}/3b/{name}" for name in ("0000000f", "fff", "x" * 300)]
+    more = [{"topic": topic, "payload": bytes(size), "qos": 1, "retain": True} for topic in topics]
+    more.append({"topic": f"{broker.ROOT}/3b/ffffffff", "payload": "+Z", "qos": 1, "retain": True})
+    access = {"username": "robots", "password": "word"}
+    paho.multiple(more, "127.0.0.1", school.port, auth=access)
+    with closing(Broker("127.0.0.1", school.port, Access("robots", "word"))) as found:
+        for _ in range(2):
+            assert len(found.present("3b")) == ROBOTS  # one of them was written over
+        assert sorted(found.skipped) == sorted(topic[:80] for topic in topics)
+        assert all(size < bytes_of_it < size + 320 for bytes_of_it in found.skipped.values())
+        assert found.stop("3b") and not found.gone
+
+
+@pytest.mark.parametrize("size", [SKIPPED_BYTES + 1, (256 << 20) - 1])
 def test_a_large_message_ends_the_connection_before_it_is_in_memory(size: int) -> None:
     taken = 0
 

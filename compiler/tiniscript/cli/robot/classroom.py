@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from contextlib import suppress
 from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING
@@ -22,7 +23,7 @@ from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.recorder import Rows
 from tiniscript.cli.spreadsheet import no_formula
-from tiniscript.cli.texts import say, text
+from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.link.errors import NOT_INSTALLED, PortError
 from tiniscript.link.port_connection import now_ms
 
@@ -70,7 +71,11 @@ class Classroom:
     def present(self) -> list[Present]:
         """Return the robots that the broker knows, those that have gone, too."""
         with opening_port(f"mqtt://{self.place}"):
-            found = self.broker.present(self.group)
+            try:
+                found = self.broker.present(self.group)
+            finally:
+                for topic, size in self.broker.skipped.items():
+                    say_aside("class_skipped", self.language, topic=shown(topic), bytes=size)
         if not any(each.is_here for each in found):
             raise CommandError(3, "class_empty", group=self.group, host=str(self.place))
         return found
@@ -106,9 +111,17 @@ def upload(room: Classroom) -> int:
 
 def stop(room: Classroom) -> int:
     """Stop all at once, with one message; then ask each of them whether it stands."""
+    is_published = False
     for _ in range(STOPS):
-        room.broker.stop(room.group)
-    return stop_verb.run(room.targets(room.present(), "stop"), room.language)
+        with suppress(OSError):
+            is_published = room.broker.stop(room.group) or is_published
+    try:
+        found = room.present()
+    except CommandError:
+        if is_published:
+            say_aside("class_stop_sent", room.language, group=shown(room.group))
+        raise
+    return stop_verb.run(room.targets(found, "stop"), room.language)
 
 
 def show(room: Classroom) -> int:

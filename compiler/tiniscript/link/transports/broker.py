@@ -38,6 +38,9 @@ PATIENCE_S = 4.0  # a robot frees its place when a client that was killed has be
 QUIET_S = 0.3  # of silence, and that was all
 ROBOTS = 250  # that a list keeps
 MESSAGE_BYTES = 4096  # of one that is taken; a robot sends less
+SKIPPED_BYTES = 1 << 20  # of one that is left out; a larger one ends the connection
+MOST_SKIPPED, TOPIC_CHARACTERS = 20, 80  # topics that are named, and of one
+_PUBLISH, _PINGRESP = 0x30, 0xD0  # kinds of packets
 PIECE_BYTES = 400  # of a message; a robot takes 512
 DRIVER_S = 0.5  # of silence of the driver, after which nothing keeps a run alive
 _PORT = re.compile(rf"{MQTT}(.+):(\d{{1,5}})/([a-z0-9-]{{1,16}})/([0-9a-f]{{8}})", re.IGNORECASE)
@@ -115,15 +118,41 @@ def _trusting(file: str | None) -> ssl.SSLContext:
 
 
 class _Client(mqtt.Client):
-    """Ends the connection where a message is too large, before any of it is in memory."""
+    """Leaves out a message that is too large, and ends the connection where it is far too large:
+    none of it is in memory.
 
-    too_large = ""
+    `skipped` maps the topics of what was left out to the bytes of it.
+    """
+
+    def __init__(self, *given: Any, **more: Any) -> None:
+        super().__init__(*given, **more)
+        self.too_large = ""
+        self.skipped: dict[str, int] = {}
 
     def _sock_recv(self, bufsize: int) -> bytes:
-        if bufsize > MESSAGE_BYTES:
-            self.too_large = f"the broker sends a message of {bufsize} bytes"
+        """Return at most so many bytes: those that a packet still lacks, or one of its head."""
+        packet = self._in_packet
+        if bufsize > MESSAGE_BYTES and packet["command"] & 0xF0 not in (_PUBLISH, _PINGRESP):
+            bufsize = SKIPPED_BYTES + bufsize
+        if bufsize > SKIPPED_BYTES:
+            self.too_large = f"the broker sends a message of {packet['remaining_length']} bytes"
             raise ConnectionError(self.too_large)
+        while bufsize > MESSAGE_BYTES:
+            data = super()._sock_recv(MESSAGE_BYTES)
+            if not data:
+                return data
+            if packet["command"] != _PINGRESP:
+                self._skip(data, packet["remaining_length"])
+                # its end is no message: paho does nothing about this one
+                packet["command"], packet["remaining_length"] = _PINGRESP, 0
+            bufsize -= len(data)
+            packet["to_process"] = bufsize
         return super()._sock_recv(bufsize)
+
+    def _skip(self, head: bytes, size: int) -> None:
+        topic = head[2 : 2 + int.from_bytes(head[:2], "big")].decode("utf-8", "replace")
+        if len(self.skipped) < MOST_SKIPPED:
+            self.skipped[topic[:TOPIC_CHARACTERS]] = size
 
 
 class Broker:
@@ -184,9 +213,21 @@ class Broker:
         self._client.unsubscribe(topics)
         return sorted(found, key=lambda each: (each.name.casefold(), each.id))
 
-    def stop(self, group: str) -> None:
-        """Stop every robot of a class: one message for all. Nothing confirms it."""
-        self.publish(f"{ROOT}/{group}/stop", bytes(STOP_BYTES))
+    @property
+    def skipped(self) -> dict[str, int]:
+        """Return the topics of messages that were too large, and their bytes."""
+        return dict(self._client.skipped)
+
+    def stop(self, group: str) -> bool:
+        """Stop every robot of a class: one message for all. Nothing confirms it.
+
+        Return whether it has gone to the broker. Raises OSError.
+        """
+        said = self.publish(f"{ROOT}/{group}/stop", bytes(STOP_BYTES))
+        with suppress(RuntimeError, ValueError):
+            said.wait_for_publish(LEAVE_S)
+            return said.is_published()
+        return False
 
     def publish(self, topic: str, data: bytes) -> mqtt.MQTTMessageInfo:
         """Raises OSError."""
