@@ -12,13 +12,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.test_virtual_command import robot, visitor
+from tests.cli.test_virtual_command import Robot, robot, visitor
 from tests.sharing.test_strangers import driven, registration_of
-from tests.support.command import process
+from tests.support.command import Command, inside, process
 from tests.support.waiting import HANGS_S
 from tiniscript.base import files
 from tiniscript.link.sharing import peers, registry
 from tiniscript.link.sharing.registry import Registration
+from tiniscript.virtual import directory
 from tiniscript.virtual.transports import Transports
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells the user")
@@ -133,6 +134,72 @@ def test_another_user_moves_nothing(how: str) -> None:
             while not heard.endswith(b"// DONE\r\n"):
                 heard += own.recv(1000)
         assert found.until("DONE")[1:] == ["0 MOTORS 50 50", "100 MOTORS 0 0", "100 DONE"]
+
+
+# -- who listens where a robot was ----------------------------------------------------------------
+
+# Listens at a port as another user, and says what it gets.
+LISTENER = """
+import os, socket, sys
+os.setgid(65534); os.setuid(65534)
+listening = socket.create_server(("127.0.0.1", int(sys.argv[1])))
+print("listens", flush=True)
+while True:
+    peer, _ = listening.accept()
+    print(peer.recv(1000), flush=True)
+"""
+
+
+@linux
+def test_whoever_listens_at_a_port_has_its_user(monkeypatch: pytest.MonkeyPatch) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        number = server.getsockname()[1]
+        assert not peers.is_of_another(number)
+        monkeypatch.setattr(os, "geteuid", lambda: NOBODY)
+        assert peers.is_of_another(number) == (os.getuid() != 0)  # root has every right
+    assert not peers.is_of_another(number)  # nobody listens
+
+
+def test_a_robot_at_whose_port_another_user_listens_is_none(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As behind a crash: its file is still there."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        number = server.getsockname()[1]
+        address = f"socket://127.0.0.1:{number}"
+        note = directory.announce(directory.Running(address, "tinibot", "room", "", ""))
+        assert [each.address for each in directory.running()] == [address]
+        monkeypatch.setattr(peers, "is_of_another", lambda port: port == number)
+        for _ in range(2):
+            assert directory.running() == []
+            for words in (["info"], ["upload", "-e", "SI|S"], ["stop"], ["live", "S"]):
+                for port in (address, address.replace("127.0.0.1", "localhost")):
+                    done = inside(*words, "--port", port)
+                    done.gives(3, "another user of this computer listens")
+        server.settimeout(HANGS_S)
+        peer, _ = server.accept()
+        with peer:
+            peer.settimeout(HANGS_S)
+            assert peer.recv(1000) == b""  # nothing was sent
+        inside("info", "--port", address, "--lang", "es").gives(3, "escucha otro usuario")
+        monkeypatch.setattr(peers, "is_of_another", lambda port: False)
+        assert directory.is_virtual(address)
+    assert directory.running() == []
+    assert note is not None and not note.exists()
+
+
+@linux
+@pytest.mark.root
+def test_the_port_of_a_robot_that_was_killed_is_asked_whose_it_is() -> None:
+    found = Robot("--listen", "0")
+    found.kill()
+    listener = Command(found.port.rpartition(":")[2], code=LISTENER)
+    listener.until("listens")
+    process("upload", "-e", "SI|S", "--port", found.port).gives(3, "another user")
+    process("info", "--virtual").gives(3)
+    listener.process.kill()
+    assert listener.process.stdout
+    assert set(listener.process.stdout.read().split()) <= {b"b''"}
 
 
 @pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo-terminals here")

@@ -139,6 +139,9 @@ def _opened_line(
         if isinstance(failure, PortError):
             raise port_error(port, failure, language) from None
         raise
+    if directory.is_of_another(address):  # asked of who has let us in, before anything is sent
+        device.close()
+        raise RobotError("port_of_another", language, {"port": shown(port)})
     # who claims a robot has it before them: one of many, perhaps, at the same cable
     keys = KeyFile(is_for_virtual=_is_virtual(address), accepts_all=verb == "claim")
     place = port_names.same_for_all(port)  # an address may be another robot's tomorrow

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from tiniscript.base import files
 from tiniscript.base.files import contents
 from tiniscript.link.port_names import same_for_all
+from tiniscript.link.sharing import peers
 from tiniscript.link.sharing.registry import is_taken
 
 FILE_BYTES = 10_000
@@ -37,8 +38,7 @@ class Running(NamedTuple):
 
 def announce(running: Running) -> Path | None:
     """Let others find a robot. Return the file, or None where it cannot be written."""
-    port = running.address.removeprefix(PREFIX)
-    path = _folder() / f"{port}.json"
+    path = _path(running.address)
     with contextlib.suppress(OSError):  # there may be no folder yet
         files.remove_abandoned(path.parent, [each.name for each in path.parent.iterdir()])
     return path if files.keep(path, json.dumps(running._asdict()).encode()) else None
@@ -59,10 +59,21 @@ def running() -> list[Running]:
     for path in paths:
         robot = _read(path)
         if robot is not None and _is_listening(robot.address):
-            found.append(robot)
+            if not peers.is_of_another(_number_of(robot.address)):
+                found.append(robot)
         else:
             withdraw(path)
     return found
+
+
+def is_of_another(port: str) -> bool:
+    """Return whether a virtual robot of this user had a port, where another user listens now: the
+    robot has crashed.
+    """
+    address = same_for_all(port)
+    if not address.startswith(PREFIX) or not _is_listening(address):
+        return False
+    return _read(_path(address)) is not None and peers.is_of_another(_number_of(address))
 
 
 def for_all() -> list[Running]:
@@ -95,11 +106,19 @@ def _read(path: Path) -> Running | None:
 
 def _is_listening(address: str) -> bool:
     """Return whether the port is taken: binding it fails then."""
+    number = _number_of(address)
+    return number != 0 and is_taken(number)
+
+
+def _number_of(address: str) -> int:
+    """Return the number of a port of this computer, or 0 if it is none."""
     digits = address.removeprefix(PREFIX)
     is_number = digits.isascii() and digits.isdigit() and len(digits) <= 5
-    if not (is_number and 0 < int(digits) < 65536):
-        return False
-    return is_taken(int(digits))
+    return int(digits) if is_number and int(digits) < 65536 else 0
+
+
+def _path(address: str) -> Path:
+    return _folder() / f"{address.removeprefix(PREFIX)}.json"
 
 
 def _folder() -> Path:

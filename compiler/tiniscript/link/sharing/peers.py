@@ -21,6 +21,7 @@ _ASK = struct.Struct("=BBBBI")  # family, protocol, extensions, padding, states
 _ENDS = struct.Struct(">HH16s16sI8s")  # ports, addresses, interface, cookie
 _ANSWER = struct.Struct("=BBBB48sIIIII")  # family, state, .., expires, queues, user, inode
 ROOT = 0
+HOST = "127.0.0.1"
 # Nobody has the other end any more; or this process has too many files open to ask.
 _NOBODY = (errno.ENOENT, errno.EMFILE, errno.ENFILE)
 
@@ -56,6 +57,18 @@ def is_of_this_user(peer: socket.socket) -> bool:
     except OSError as why:  # a system that has no answer to that lets everybody in
         return why.errno not in _NOBODY
     return found.is_open and found.user in (os.geteuid(), ROOT)
+
+
+def is_of_another(number: int) -> bool:
+    """Whether another user than this one and root listens at a port of 127.0.0.1.
+
+    False where nobody listens there, and where nobody tells.
+    """
+    try:
+        found = _other_end((HOST, number), ("0.0.0.0", 0))
+    except OSError:
+        return False
+    return found.user not in (os.geteuid(), ROOT)
 
 
 def tells_users() -> bool:
