@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
+import signal
 import subprocess
+import sys
+import termios
 from argparse import Namespace
+from array import array
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.support.command import PROGRAM, TSC, inside
+from tests.support.command import PROGRAM, TSC, Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.robot_fleet import RobotFleet
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANGS_S, until
 from tiniscript import robots
 from tiniscript.cli import CLOSED
 from tiniscript.cli.robot import connect, fleet
@@ -185,3 +190,56 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
         for words in (["upload", "-e", PROGRAM], ["start"]):
             done = inside(*words, "--port", pty_robot.port, "--lang", language).gives(3)
             assert said in done.err and "lost" not in done.err and "perdió" not in done.err
+
+
+# -- an output that nobody reads ------------------------------------------------------------------
+
+TALKS = "SI|LOOP(FOREVER);M(40, 40);SHOW(12345);W(0.01);END_LOOP"
+PIPE_BYTES = 4096
+
+
+def unread(*words: str) -> Command:
+    """Return a command that stands in front of a full pipe."""
+    command = Command(*words)
+    pipe = command.process.stdout
+    assert pipe
+    fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
+
+    def waiting() -> int:
+        count = array("i", [0])
+        fcntl.ioctl(pipe, termios.FIONREAD, count)
+        return count[0]
+
+    until(lambda: waiting() > PIPE_BYTES - 100, "the pipe is full")
+    return command
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how large a pipe is")
+@pytest.mark.parametrize("extra", [[], ["--json"]])
+def test_a_fleet_whose_output_nobody_reads_ends_with_ctrl_c(extra: list[str]) -> None:
+    with RobotFleet([robots.load("tinibot").kit] * 3) as room:
+        ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
+        command = unread("upload", "-e", TALKS, *ports, *extra)
+        assert any(pupil.moves for pupil in room.pupils)
+        command.signal(signal.SIGINT)
+        assert command.process.wait(HANGS_S) == 2
+        room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
+        assert all(bytes(STOP_RUN) in pupil.heard for pupil in room.pupils)
+        done = command.ended()
+        assert done.out and "Traceback" not in done.err
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how large a pipe is")
+@pytest.mark.parametrize("verb", ["upload", "monitor"])
+def test_a_command_whose_output_nobody_reads_ends_with_ctrl_c(
+    pty_robot: PtyRobot, verb: str
+) -> None:
+    port = ("--port", pty_robot.port)
+    if verb == "monitor":
+        assert on(pty_robot, "upload", "-e", TALKS, "--detach").code == 0
+    command = unread(verb, *port, *(("-e", TALKS) if verb == "upload" else ()))
+    command.signal(signal.SIGINT)
+    assert command.process.wait(HANGS_S) in (0, 2)
+    if verb == "upload":
+        pty_robot.until(lambda: not pty_robot.moves, "it stands")
+    assert "Traceback" not in command.ended().err

@@ -6,6 +6,7 @@ import json
 import re
 import signal
 from typing import cast
+from unittest import mock
 
 import pytest
 
@@ -150,15 +151,16 @@ time.sleep(1000)
 """
 
 
-@pytest.mark.parametrize("is_suspended", [True, False])
-def test_a_stop_gets_past_the_lock_of_another_program(
-    pty_robot: PtyRobot, is_suspended: bool
-) -> None:
+def test_a_stop_gets_past_the_lock_of_another_suspended_program(pty_robot: PtyRobot) -> None:
+    """One that goes on may be writing firmware: it is named."""
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     holder = Command(pty_robot.port, code=LOCKS)
     holder.until("locked")
-    if is_suspended:
-        suspended(holder)
+    heard = pty_robot.heard
+    with mock.patch.object(opening, "STOP_BUSY_S", 0.2):
+        on(pty_robot, "stop").gives(3, f"(process {holder.process.pid})", "lift it")
+    assert pty_robot.heard == heard and pty_robot.moves
+    suspended(holder)
     on(pty_robot, "info").gives(3, "another program is using")
     on(pty_robot, "stop").gives(0, "", out="has confirmed it")
     assert not pty_robot.moves

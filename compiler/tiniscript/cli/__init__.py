@@ -50,6 +50,7 @@ def _main(arguments: list[str]) -> int:
         sys.stdout.flush()
         return code
     except KeyboardInterrupt:
+        streams.drop_unread()
         print("\n" + text("stopped", language), file=sys.stderr)
         return 2
     except BrokenPipeError:

@@ -14,11 +14,15 @@ from __future__ import annotations
 import codecs
 import os
 import re
+import stat
 import sys
+from select import select
+from time import monotonic
 from typing import Any, TextIO
 
 from tiniscript.cli.texts import Said
 
+UNREAD_S = 1.0  # timeout for a reader when a command is interrupted
 NAME = "tiniscript_plain"  # of the handler of errors
 # for drawings: as wide as what they stand for
 _SAME_WIDTH = ("│─├┤█▌▐♪↑↖←↙↓↘→↗", "|-||#==~^\\</v\\>/")
@@ -77,6 +81,47 @@ def are_read(stream: TextIO) -> bool:
 def has_colors(stream: TextIO) -> bool:
     """Return whether a stream shows colors, and the person has not declined them."""
     return not os.environ.get("NO_COLOR") and are_read(stream)
+
+
+def drop_unread() -> None:
+    """Have the outputs of which nobody reads what was written go nowhere: a command that is
+    interrupted writes no more there, and waits for nobody.
+
+    A pipe whose reader is only slow takes what is written within UNREAD_S.
+    """
+    if sys.platform == "win32":
+        return
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            number = stream.fileno()
+            is_pipe = stat.S_ISFIFO(os.fstat(number).st_mode)
+        except (OSError, ValueError, AttributeError):  # no file of the system, or closed
+            continue
+        if is_pipe and not _is_written(stream, number):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, number)
+            os.close(nowhere)
+
+
+def _is_written(stream: TextIO, pipe: int) -> bool:
+    """Write what waits for a pipe; return whether all was taken in time."""
+    end_s = monotonic() + UNREAD_S
+    os.set_blocking(pipe, False)
+    try:
+        while True:
+            try:
+                stream.flush()
+            except BlockingIOError:
+                left_s = end_s - monotonic()
+                if left_s <= 0 or not select([], [pipe], [], left_s)[1]:
+                    return False
+            else:
+                # less than this may be taken at once: then the next row would wait
+                return bool(select([], [pipe], [], max(0, end_s - monotonic()))[1])
+    except OSError:  # the reader has gone: that has an exit code of its own
+        return True
+    finally:
+        os.set_blocking(pipe, True)
 
 
 class Wrapping:

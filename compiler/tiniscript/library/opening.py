@@ -2,8 +2,8 @@
 
 If two programs open the same port at once, the lock of the serial port decides; an address has no
 lock, so a locked file decides. The second program then looks for the server of the first one for
-some seconds before it reports a busy port. A stop does not wait for who is suspended, nor long for
-others: it goes past the lock of a serial port, or wakes the holder. Failures are `RobotError`s: the
+some seconds before it reports a busy port. A stop does not wait for who is suspended: it goes past
+the lock of a serial port, or wakes the holder. Failures are `RobotError`s: the
 command puts their reason and values into sentences of its own.
 """
 
@@ -92,21 +92,21 @@ def _is_suspended(address: str) -> bool:
 def _past_holder(
     address: str, baud: int, kit: int, limit_s: float, language: str, port: str, waited_s: float
 ) -> PortConnection | None:
-    """Return a connection past the holder of a busy port; None while it may still let others in.
+    """Return a connection past the suspended holder of a busy port; None while others may get in.
 
-    A holder that cannot be passed is woken, if it is suspended. Raises RobotError in the end.
+    A holder that cannot be passed is woken. One that goes on may be writing firmware: it is left
+    alone. Raises RobotError in the end.
     """
     found = registry.found(address)
     path = str(registry.lock_of(address)) if is_address(address) else address
     holder = holders.holder(path, None if found is None else found.pid)
-    is_suspended = holder is not None and holder.is_suspended
-    if not is_suspended and waited_s <= BUSY_S:
-        return None
-    if sys.platform == "linux" and not is_address(address):
-        speed = baud if found is None else found.baud
-        with suppress(RobotError):
-            return _opened_line(address, speed, kit, limit_s, None, language, port, "stop", True)
-    if holder is not None:
+    if holder is not None and holder.is_suspended:
+        if sys.platform == "linux" and not is_address(address):
+            speed = baud if found is None else found.baud
+            with suppress(RobotError):
+                return _opened_line(
+                    address, speed, kit, limit_s, None, language, port, "stop", True
+                )
         holder.wake()
     if waited_s <= STOP_BUSY_S:
         return None

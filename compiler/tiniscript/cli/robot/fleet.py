@@ -15,6 +15,7 @@ from threading import Event, Thread
 from time import monotonic
 from typing import TYPE_CHECKING
 
+from tiniscript.cli import streams
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
@@ -37,7 +38,7 @@ NOBODY = (
 NO_ROBOT = (
     "link_silent", "link_other", "link_echo", "not_confirmed", "port_slow", "port_no_port",
     "port_broken", "port_busy", "port_forbidden", "port_forbidden_linux", "port_gone",
-    "port_no_robot", "radio_gone",
+    "port_no_robot", "radio_gone", "stop_held", "stop_held_unknown",
 )  # fmt: skip
 
 
@@ -66,6 +67,8 @@ def together(options: Namespace, robot: Robot, language: str, work: Work) -> int
         else:
             fleet.watch(None)
     except KeyboardInterrupt:  # while something is printed, too
+        fleet.interrupt()
+        streams.drop_unread()
         fleet.stop()
     except OSError:  # nobody reads, or can read, the output
         if options.verb == "upload" and not options.detach:
@@ -114,6 +117,7 @@ class Fleet:
                 if self.is_interrupted:
                     return
                 self.interrupt()
+                streams.drop_unread()
                 end_s = monotonic() + opening.CONFIRM_S + 1
         if table is not None:
             there = [member for member in self.in_order() if not member.is_absent]
