@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import suppress
@@ -98,6 +97,8 @@ def _command(pid: int) -> str | None:
 def _said_by_ps(pid: int, column: str) -> str:
     if sys.platform == "win32":
         return ""
+    import subprocess  # a stop on Linux does without
+
     with suppress(OSError, subprocess.SubprocessError):
         done = subprocess.run(
             ["ps", "-o", f"{column}=", "-p", str(pid)],
