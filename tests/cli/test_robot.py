@@ -44,7 +44,7 @@ def test_a_port_that_another_program_uses_is_said(
 
     monkeypatch.setattr(opening, "STOP_BUSY_S", 0.5)
     with serial.Serial(pty_robot.port, exclusive=True):
-        on(pty_robot, "stop").gives(3, "another program is using the port")
+        on(pty_robot, "stop").gives(3, "another program holds", "did not get through")
     assert pty_robot.heard == b""
 
 

@@ -59,7 +59,7 @@ class Reader {
   // most 255 bytes, and lies elsewhere.
   void move(uint8_t* buffer, uint16_t room);
 
-  // Whether its first instruction has been read, or the buffer may be too small for it.
+  // Whether the buffer may be too small for what comes next.
   bool wants_room() const;
 
   // Whether the program begins with a SETUP word.

@@ -25,7 +25,7 @@ tini_noinline bool Reader::is_stop_behind(uint8_t before) const {
 }
 
 bool Reader::wants_room() const {
-  return problem_ == Problem::kNone && stack_ - (buffer_ + length_) < kTight + letters_;
+  return stack_ - (buffer_ + length_) < kTight + letters_;
 }
 
 tini_noinline void Reader::move(uint8_t* buffer, uint16_t room) {
