@@ -1,5 +1,6 @@
+// robot: grabber
 // Blinks while it drives: the TASK has its own time.
-// tsc upload examples/blink.ts --robot grabber --virtual
+// tsc upload examples/blink.ts --virtual
 SI|LOOP(FOREVER);
   F(2, 60);
   R(0.6, 60);

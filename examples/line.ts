@@ -1,5 +1,6 @@
-// Follows a black line until the button is pressed. For the robot liner:
-// tsc run examples/line.ts --robot liner
+// robot: liner
+// Follows a black line until the button is pressed.
+// tsc upload examples/line.ts --virtual --world line
 SI|WHILE(NOT BUTTON);
   IF(LINE_L AND NOT LINE_R);
     M(10, 60);

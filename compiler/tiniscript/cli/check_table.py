@@ -19,6 +19,7 @@ from tiniscript.cli.spreadsheet import as_csv
 from tiniscript.cli.texts import text
 from tiniscript.diagnostics.rendering import Message, as_json, message
 from tiniscript.library.compiling import Compiled
+from tiniscript.library.robot_choice import robot_of
 from tiniscript.robots.profile import Robot
 
 NAME_COLUMNS = 40  # of a file's name in the table; of a longer one the end is shown
@@ -63,12 +64,16 @@ def _row(found: Found, options: Namespace, robot: Robot, language: str) -> Row:
     if found.problem is not None:
         return Row(found.name, [], 0, found.problem.plain(language))
     repaired = 0
+    given = inputs.Input(found.name, found.data, Path(found.name), options.robot is not None)
+    if given.has_robot:
+        inputs.tell_other(given, robot, language)
+    else:
+        robot = robot_of(given.data, robot)
     if options.fix or options.diff:
-        compiled, repaired, problem = _repaired(found, options, robot, language)
+        compiled, repaired, problem = _repaired(given, options, robot, language)
         if problem:
             return Row(found.name, [], 0, problem)
     else:
-        given = inputs.Input(found.name, found.data, Path(found.name))
         compiled = compiling.compiled(given, robot, is_strict=False)
     compiled = compiling.for_level(compiled, robot, options.text_level)
     said = [message(each, compiled.source, language) for each in compiled.diagnostics]
@@ -77,18 +82,17 @@ def _row(found: Found, options: Namespace, robot: Robot, language: str) -> Row:
 
 
 def _repaired(
-    found: Found, options: Namespace, robot: Robot, language: str
+    given: inputs.Input, options: Namespace, robot: Robot, language: str
 ) -> tuple[Compiled, int, str]:
     """Make or show the sure repairs of a program; return what is left, how many, and a problem."""
-    its = repaired(found.data, robot, found.name)
+    its = repaired(given, robot)
     if its.repairs and not options.json:
-        print_difference(found.data, its.data, found.name)
+        print_difference(given.data, its.data, given.name)
     if options.diff:
-        given = inputs.Input(found.name, found.data, Path(found.name))
         return compiling.compiled(given, robot, is_strict=False), its.repairs, ""
     if its.repairs:
         try:
-            outputs.write(Path(found.name), its.data, "unwritable_source")
+            outputs.write(Path(given.name), its.data, "unwritable_source")
         except CommandError as problem:
             return its.compiled, 0, problem.plain(language)
     return its.compiled, its.repairs, ""

@@ -21,7 +21,8 @@ def compiled(
     `is_strict`: a program that is too large for the robot is a mistake, else a warning.
     `names_robots`: the command has `--robot`.
     """
-    return library.compiled(given.data, robot, given.name, is_strict, names_robots=names_robots)
+    return library.compiled(given.data, robot, given.name, is_strict, names_robots=names_robots,
+                            is_chosen=given.has_robot)  # fmt: skip
 
 
 def for_level(found: Compiled, robot: Robot, name: str | None) -> Compiled:

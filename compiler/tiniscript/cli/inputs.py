@@ -13,17 +13,22 @@ from tiniscript.base.source import LARGEST_SOURCE, printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
 from tiniscript.cli.texts import Said, say_aside
+from tiniscript.library import robot_choice
 from tiniscript.robots.profile import ProfileRefused, Robot
 
 SHOWN = 200  # characters of a file's name
 
 
 class Input(NamedTuple):
-    """The bytes of a program. `path` is None where they come from no file."""
+    """The bytes of a program. `path` is None where they come from no file.
+
+    `has_robot`: `--robot` has chosen the robot, so what the program names does not count.
+    """
 
     name: str
     data: bytes
     path: Path | None
+    has_robot: bool = False
 
     @property
     def is_image(self) -> bool:
@@ -35,6 +40,11 @@ class Input(NamedTuple):
 
 def program(options: Namespace) -> Input:
     """Return the program that the options name. Raises CommandError where there is none."""
+    has_robot = getattr(options, "robot", None) is not None  # tsc lesson has no such option
+    return _program(options)._replace(has_robot=has_robot)
+
+
+def _program(options: Namespace) -> Input:
     texts: list[str] = options.texts
     if options.program is None and not texts:
         raise CommandError(2, "no_program")
@@ -92,6 +102,28 @@ def robot(options: Namespace, language: str) -> Robot:
         return robots.load(robots.DEFAULT if options.robot is None else options.robot)
     except ProfileRefused as why:
         raise refused(why, language, "profile_refused", file=shown(options.robot)) from None
+
+
+def robot_for(given: Input, options: Namespace, language: str) -> Robot:
+    """Return the robot that `--robot` names, else the one that the program names, else the default.
+
+    What the program names counts from now on as if `--robot` had named it.
+    """
+    named = robot_choice.name_in(given.data)
+    if options.robot is None:
+        options.robot = named
+    found = robot(options, language)
+    if given.has_robot:
+        tell_other(given, found, language)
+    return found
+
+
+def tell_other(given: Input, chosen: Robot, language: str) -> None:
+    """Say on standard error that `--robot` wins, where the program names another robot."""
+    named = robot_choice.named(given.data)
+    if named is not None and named.lower() != chosen.name.lower():
+        values = {"file": shown(given.name), "robot": shown(chosen.name), "named": shown(named)}
+        say_aside("robot_chosen", language, **values)
 
 
 def refused(

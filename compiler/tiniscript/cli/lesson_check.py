@@ -37,6 +37,7 @@ from tiniscript.lessons.marking import Marking
 from tiniscript.lessons.running import Run
 from tiniscript.lessons.sentences import sentence
 from tiniscript.library.compiling import Compiled, for_robot, maker
+from tiniscript.library.robot_choice import name_in, robot_of
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.world import WorldRefused
@@ -128,14 +129,16 @@ class _Marker:
     def compiled(self, given: inputs.Input) -> Compiled:
         if given.is_image:
             raise CommandError(2, "needs_text", file=inputs.shown(given.name), verb="lesson check")
-        found = compiling.compiled(given, self.robot, is_strict=True, names_robots=False)
-        return for_robot(found, self.robot)
+        robot = robot_of(given.data, self.robot)
+        found = compiling.compiled(given, robot, is_strict=True, names_robots=False)
+        return for_robot(found, robot)
 
     def mark(self, given: inputs.Input, compiled: Compiled) -> Mark:
         if not compiled.is_right:
             return Mark(given.name, MISTAKES, 0, tuple(self._mistakes(compiled)))
-        made = maker(self.robot)
-        marking = Marking(compiled.source.text, made, self.robot, self.lesson, self.seeds)
+        robot = robot_of(given.data, self.robot)
+        lesson = self.lesson._replace(robot=name_in(given.data) or self.lesson.robot)
+        marking = Marking(compiled.source.text, maker(robot), robot, lesson, self.seeds)
         try:
             found = marking.whole()
         except WorldRefused as refused:

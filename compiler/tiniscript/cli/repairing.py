@@ -11,9 +11,11 @@ from difflib import unified_diff
 from typing import NamedTuple
 
 from tiniscript.base.source import printable
+from tiniscript.cli import compiling
+from tiniscript.cli.inputs import Input
 from tiniscript.cli.streams import has_colors
 from tiniscript.diagnostics.fixing import fixed
-from tiniscript.library.compiling import Compiled, compiled, text_of
+from tiniscript.library.compiling import Compiled, text_of
 from tiniscript.robots.profile import Robot
 
 _BOM = b"\xef\xbb\xbf"
@@ -29,16 +31,20 @@ class Repaired(NamedTuple):
     compiled: Compiled
 
 
-def repaired(data: bytes, robot: Robot, name: str) -> Repaired:
+def repaired(given: Input, robot: Robot) -> Repaired:
     """Return a program with its sure repairs; bytes that are no program stay as they are."""
-    text = text_of(data, name)
+    text = text_of(given.data, given.name)
     if not isinstance(text, str):
-        return Repaired(data, 0, text)
-    found = fixed(text, lambda changed: compiled(changed.encode(), robot, name, False).diagnostics)
+        return Repaired(given.data, 0, text)
+
+    def compiled(data: bytes) -> Compiled:
+        return compiling.compiled(given._replace(data=data), robot, is_strict=False)
+
+    found = fixed(text, lambda changed: compiled(changed.encode()).diagnostics)
     new = found.text.encode()
-    if data.startswith(_BOM):
+    if given.data.startswith(_BOM):
         new = _BOM + new
-    return Repaired(new, found.repairs, compiled(new, robot, name, False))
+    return Repaired(new, found.repairs, compiled(new))
 
 
 def print_difference(old: bytes, new: bytes, name: str) -> None:

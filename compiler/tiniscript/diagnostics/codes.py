@@ -161,6 +161,7 @@ AND_SO_ON = _mistake("TS131")
 IN_WORDS = _mistake("TS135")
 BY_CHANCE = _mistake("TS136")
 SET_TOGETHER = _mistake("TS137")
+NO_SUCH_ROBOT = _mistake("TS138")
 # values
 WANTS_NUMBER = _mistake("TS201")
 WANTS_CONDITION = _mistake("TS202")

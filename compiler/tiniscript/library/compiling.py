@@ -18,6 +18,7 @@ from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_of, pack
 from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.codegen.lower import SourceLocation, lower
 from tiniscript.diagnostics import codes
+from tiniscript.library.robot_choice import unknown_robot
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
@@ -178,26 +179,31 @@ def compiled(
     is_strict: bool,
     optimize: bool = True,
     names_robots: bool = True,
+    is_chosen: bool = False,
 ) -> Compiled:
     """Return the result of compiling a program's text.
 
     `is_strict`: a program that is too large for the robot is a mistake, else a warning.
     `names_robots`: a word of another robot is said to be that; not where no other can be chosen.
+    `is_chosen`: the robot is what somebody has chosen, else what `robot_choice` says of the text.
     """
     text = text_of(data, name)
     if not isinstance(text, str):
         return text
+    unknown = None if is_chosen else unknown_robot(text)
+    if unknown is not None:  # which words there are nobody knows
+        return Compiled(Source(text, name), [unknown])
     found = compile_text(text, robot.kit, name, optimize)
     if not found.is_right:
-        return naming(found, robot) if names_robots else found
+        return naming(found, robot, is_chosen) if names_robots else found
     return fitting(found, robot, is_strict)
 
 
-def naming(compiled: Compiled, robot: Robot) -> Compiled:
+def naming(compiled: Compiled, robot: Robot, is_chosen: bool = False) -> Compiled:
     """Return `compiled` with hints to the robots that have a word that this robot lacks."""
     from tiniscript.library.other_robots import naming_robots
 
-    named = naming_robots(compiled.diagnostics, compiled.source.text, robot)
+    named = naming_robots(compiled.diagnostics, compiled.source.text, robot, is_chosen)
     return compiled._replace(diagnostics=named)
 
 

@@ -7,23 +7,48 @@ from collections.abc import Mapping, Sequence
 
 from tiniscript import robots
 from tiniscript.base.kit import Kit
+from tiniscript.base.source import Edit, Span
 from tiniscript.base.words import said_of
-from tiniscript.diagnostics.codes import OTHER_ROBOT, UNKNOWN_NAME, UNKNOWN_WORD, Diagnostic
+from tiniscript.diagnostics.codes import (
+    OTHER_ROBOT,
+    UNKNOWN_NAME,
+    UNKNOWN_WORD,
+    Diagnostic,
+    Repair,
+)
 from tiniscript.recovery.concepts import concept_of
 from tiniscript.robots import given
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.lexer import WORD, scan
+from tiniscript.syntax.named_robot import named_robot
 
 SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copied
 _UNKNOWN = (UNKNOWN_NAME, UNKNOWN_WORD)
 _NUMBERS = ("first", "second", "third")
 
 
-def naming_robots(diagnostics: list[Diagnostic], text: str, robot: Robot) -> list[Diagnostic]:
-    """Return diagnostics with hints to the robots that have a word that `robot` lacks."""
+def naming_robots(
+    diagnostics: list[Diagnostic], text: str, robot: Robot, is_chosen: bool
+) -> list[Diagnostic]:
+    """Return diagnostics with hints to the robots that have a word that `robot` lacks.
+
+    `is_chosen`: somebody has chosen it, and what the program names does not count.
+    """
     if not any(each.code in (*_UNKNOWN, OTHER_ROBOT) for each in diagnostics):
         return diagnostics
-    return named_among(_others(), diagnostics, text, robot.name, robot.kit)
+    found = named_among(_others(), diagnostics, text, robot.name, robot.kit)
+    return found if is_chosen else [_told(each, text) for each in found]
+
+
+def _told(diagnostic: Diagnostic, text: str) -> Diagnostic:
+    """Return a hint to a robot that comes with tsc with what the program needs to name it."""
+    first = diagnostic.values.get("first")
+    if diagnostic.code is not OTHER_ROBOT or first not in robots.names():
+        return diagnostic
+    own = named_robot(text)
+    edit = Edit(own.span, first) if own else Edit(Span(0, 0), f"// robot: {first}\n")
+    values = {**diagnostic.values, "named": first}
+    return diagnostic._replace(values=values, repair=Repair((edit,), False))
 
 
 def named_among(

@@ -19,6 +19,7 @@ from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compiled, image_of
 from tiniscript.library.errors import ProgramError, UsageError, sentence
 from tiniscript.library.known_kits import fitting
+from tiniscript.library.robot_choice import robot_of
 from tiniscript.library.source_map import Map
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.refusals import describe
@@ -80,10 +81,11 @@ class Program:
 
 
 def compile(
-    text: str, robot: str | os.PathLike[str] = "tinibot", *, name: str = "",
+    text: str, robot: str | os.PathLike[str] | None = None, *, name: str = "",
     optimize: bool = True, language: Language = "en",
 ) -> Program:  # fmt: skip
-    """Compile a text for a robot: the name of a shipped one, or the path of a profile.
+    """Compile a text for a robot: the name of a shipped one, or the path of a profile; without it
+    for the one that the text names, `// robot: liner`, else for tinibot.
 
     Raises ProgramError with all diagnostics if the text has mistakes. `name` is the program's name
     in messages and disassemblies; `language` (en, es) is that of diagnostics.
@@ -91,19 +93,18 @@ def compile(
     if not isinstance(text, str):
         raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
     _refuse_file_name(text, language)
-    profile = profile_of(robot, language)
-    return _program(text, profile, name, optimize, language)
+    return _program(text, robot, name, optimize, language)
 
 
 def check(
-    text: str, robot: str | os.PathLike[str] = "tinibot", *, language: Language = "en"
+    text: str, robot: str | os.PathLike[str] | None = None, *, language: Language = "en"
 ) -> list[Message]:
-    """Return all mistakes and warnings of a text by place; the list may be empty. Never raises
-    ProgramError. A program that is too large for the robot's board gives a warning."""
+    """Return all mistakes and warnings of a text by place; the list may be empty. `robot` as for
+    `compile`. Never raises ProgramError. A program that is too large for the robot's board gives a warning."""
     if not isinstance(text, str):
         raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
-    profile = profile_of(robot, language)
-    return diagnostics_of(compiled(_data(text), profile, "", is_strict=False), language)
+    found = _compiled(text, robot, "", language, is_strict=False)[0]
+    return diagnostics_of(found, language)
 
 
 def show(
@@ -147,13 +148,13 @@ def program_of(
         return program
     if isinstance(program, os.PathLike):
         program = _contents(program, language)
+    if isinstance(program, str):
+        _refuse_file_name(program, language)
+        return _program(program, robot, "", True, language)
     if robot is None or isinstance(robot, str | os.PathLike):
         profile = profile_of(robots.DEFAULT if robot is None else robot, language)
     else:
         profile = robot
-    if isinstance(program, str):
-        _refuse_file_name(program, language)
-        return _program(program, profile, "", True, language)
     if isinstance(program, Program):
         parsed = _read(program.image, profile, language)
         return Program(program.text, program.image, parsed, profile, program._map,
@@ -199,8 +200,26 @@ def remarks(places: Map | None, language: Language) -> dict[int, str]:
     return found
 
 
-def _program(text: str, profile: Robot, name: str, optimize: bool, language: Language) -> Program:
-    found = compiled(_data(text), profile, name, is_strict=True, optimize=optimize)
+def _compiled(
+    text: str, robot: str | os.PathLike[str] | Robot | None, name: str, language: Language,
+    is_strict: bool = True, optimize: bool = True,
+) -> tuple[Compiled, Robot]:  # fmt: skip
+    """Return what becomes of a text for a robot; for None, for the one that it names, or the
+    default one."""
+    data = _data(text)
+    if robot is None:
+        profile = robot_of(data, profile_of(robots.DEFAULT, language))
+    else:
+        profile = robot if isinstance(robot, Robot) else profile_of(robot, language)
+    is_chosen = robot is not None
+    return compiled(data, profile, name, is_strict, optimize, is_chosen=is_chosen), profile
+
+
+def _program(
+    text: str, robot: str | os.PathLike[str] | Robot | None, name: str, optimize: bool,
+    language: Language,
+) -> Program:  # fmt: skip
+    found, profile = _compiled(text, robot, name, language, optimize=optimize)
     diagnostics = tuple(diagnostics_of(found, language))
     if not found.is_right:
         said = [as_text(message(each, found.source, language), found.source, language)

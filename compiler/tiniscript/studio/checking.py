@@ -12,10 +12,12 @@ from typing import NamedTuple
 from tiniscript import robots
 from tiniscript.base.source import Edit, Source
 from tiniscript.codegen.text.line import line_of
+from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import offers
 from tiniscript.diagnostics.rendering import Message, message
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compiled, for_robot, text_of
+from tiniscript.library.robot_choice import name_in, robot_of
 from tiniscript.library.text_fitting import misfits
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.text_levels import level_of
@@ -47,7 +49,8 @@ class Variable(NamedTuple):
 class Checked(NamedTuple):
     """`image` is empty where the program has mistakes. `places` say for each instruction from
     which offset on which range of the text it comes from; `variables` are in the order of their
-    numbers; `start` is SI, SB or PING, or nothing where there are mistakes."""
+    numbers; `start` is SI, SB or PING, or nothing where there are mistakes; `robot` is the one that
+    it was compiled for, which the text names where `names_robot`."""
 
     image: bytes
     code_bytes: int
@@ -55,19 +58,24 @@ class Checked(NamedTuple):
     places: tuple[source_map.MapLocation, ...]
     variables: tuple[Variable, ...] = ()
     start: str = ""
+    robot: str = ""
+    names_robot: bool = False
 
 
 def check(data: bytes, robot: str, language: str) -> Checked:
-    """Compile a program's text for a shipped robot, as `tsc upload` does."""
-    profile = profile_of(robot)
+    """Compile a program's text for a shipped robot, or for the one that it names, as `tsc upload`
+    does."""
+    profile = profile_for(data, robot)
     found = for_robot(compiled(data, profile, "", is_strict=True), profile)
-    findings = _findings(data, found, profile, language)
+    findings = _findings(found, profile_of(robot), language)
+    names_robot = name_in(data) is not None
     if not found.is_right or found.program is None:
-        return Checked(b"", 0, findings, ())
+        return Checked(b"", 0, findings, (), (), "", profile.name, names_robot)
     kinds = ir.are_yes_no(found.program, profile.kit)
     variables = tuple(map(Variable, found.program.variables, kinds))
     places = source_map.made(found.source, found.places).places
-    return Checked(found.image, len(found.code), findings, places, variables, found.program.start)
+    return Checked(found.image, len(found.code), findings, places, variables,
+                   found.program.start, profile.name, names_robot)  # fmt: skip
 
 
 def opened(data: bytes, robot: str, language: str) -> str | Message:
@@ -83,7 +91,7 @@ def line(data: bytes, robot: str, language: str) -> str | Message:
 
     Or what is wrong, where such a robot cannot read it.
     """
-    profile = profile_of(robot)
+    profile = profile_for(data, robot)
     found = compiled(data, profile, "", is_strict=True)
     if not found.is_right or found.program is None:
         mistake = next(each for each in found.diagnostics if each.is_mistake)
@@ -99,13 +107,19 @@ def profile_of(robot: str) -> Robot:
     return robots.load(robot)
 
 
-def _findings(data: bytes, found: Compiled, profile: Robot, language: str) -> tuple[Finding, ...]:
+def profile_for(data: bytes, robot: str) -> Robot:
+    """Return the robot that a program's text names, else the one of the page."""
+    return robot_of(data, profile_of(robot))
+
+
+def _findings(found: Compiled, usual: Robot, language: str) -> tuple[Finding, ...]:
     source = found.source
-    repairs = offers(
-        source.text,
-        found.diagnostics,
-        lambda text: compiled(text.encode(), profile, "", is_strict=True).diagnostics,
-    )
+
+    def check(text: str) -> list[Diagnostic]:
+        data = text.encode()
+        return compiled(data, robot_of(data, usual), "", is_strict=True).diagnostics
+
+    repairs = offers(source.text, found.diagnostics, check)
     return tuple(
         Finding(
             message(diagnostic, source, language),

@@ -22,6 +22,7 @@ from tiniscript.lessons.running import ASKS, STEP_MS, Trial
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.variation import is_mirrored, point_of, varied
 from tiniscript.library.compiling import compiled, for_robot, maker
+from tiniscript.library.robot_choice import name_in
 from tiniscript.link.session import Session
 from tiniscript.studio.block_form import kinds_in
 from tiniscript.studio.block_kinds import KIND_OF
@@ -133,6 +134,7 @@ class Check:
 
     def __init__(self, number: int, data: bytes, language: str) -> None:
         lesson = _lesson(number)
+        lesson = lesson._replace(robot=name_in(data) or lesson.robot)
         self._language = language
         self._worlds = lesson.worlds
         self._marking: Marking | None = None
@@ -170,9 +172,11 @@ class Check:
 class JudgedRun(Simulation):
     """The run that was judged, once more: the same as before, up to when it missed something."""
 
-    def __init__(self, number: int, seed: int, until_ms: int, image: bytes, marks: Marks) -> None:
+    def __init__(
+        self, robot: str, number: int, seed: int, until_ms: int, image: bytes, marks: Marks
+    ) -> None:
         lesson = _lesson(number)
-        profile = profile_of(lesson.robot)
+        profile = profile_of(robot)
         self.robot = Trial(unpack(image), profile, lesson, seed).robot
         self.session = Session(NONCE, profile.board.baud, profile.kit.fingerprint)
         self.fault_at = None

@@ -129,7 +129,8 @@ def replay(recording: Recording, text: bytes, robot: str, world: World) -> Parti
     Raises WorldRefused.
     """
     profile = profile_of(robot)
-    found = for_robot(compiled(text, profile, "", is_strict=True), profile)
+    found = compiled(text, profile, "", is_strict=True, is_chosen=True)
+    found = for_robot(found, profile)
     if found.program is None or not found.image or checksum(found.image) != recording.program:
         return Parting("other_program")
     if not recording.events or recording.events[0].event == "LOST":

@@ -52,7 +52,7 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
         marks = Marks(tuple(fields.get("parts", ())), tuple(fields.get("breakpoints", ())),
                       fields.get("variables", 0), fields.get("is_held", False))  # fmt: skip
         if "until_ms" in where:
-            judged = (where["lesson"], where["seed"], where["until_ms"])
+            judged = (fields["robot"], where["lesson"], where["seed"], where["until_ms"])
             _simulation = _lessons().JudgedRun(*judged, data, marks)
         else:
             _simulation = Simulation(fields["robot"], _world(where), data, marks)

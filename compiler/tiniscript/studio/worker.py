@@ -17,6 +17,7 @@ from tiniscript.studio import checking
 from tiniscript.studio.block_form import beginning, data_of, from_data, in_order, size_of
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import LOOSE, read
+from tiniscript.syntax.named_robot import renamed
 
 Answer = dict[str, Any]
 MOST_BLOCKS = 1500  # that a page can move about
@@ -41,13 +42,15 @@ def _check(fields: Answer, data: bytes) -> Answer:
         "places": found.places,
         "variables": [each._asdict() for each in found.variables],
         "start": found.start,
+        "robot": found.robot,
+        "names_robot": found.names_robot,
         "loose": _loose(fields, data) if LOOSE.encode() in data else 0,
     }
 
 
 def _loose(fields: Answer, data: bytes) -> int:
     """Return how many instructions and values of a program hang on nothing."""
-    stacks = read(data.decode(), checking.profile_of(fields["robot"]).kit).loose
+    stacks = read(data.decode(), checking.profile_for(data, fields["robot"]).kit).loose
     return sum(len(in_order(stack.body)) or 1 for stack in stacks)
 
 
@@ -66,8 +69,8 @@ def _told(found: str | Message) -> Answer:
 
 
 def _blocks(fields: Answer, data: bytes) -> Answer:
-    """Return the blocks of a text, or the `first` of them; of too many only their number."""
-    form = read(data.decode(), checking.profile_of(fields["robot"]).kit)
+    """Return the blocks of the editor's text, or the `first` of them; of too many only their number."""
+    form = read(data.decode(), checking.profile_for(data, fields["robot"]).kit)
     if "first" in fields:
         form = beginning(form, fields["first"])
     size = size_of(form)
@@ -76,6 +79,11 @@ def _blocks(fields: Answer, data: bytes) -> Answer:
 
 def _text(fields: Answer, data: bytes) -> Answer:
     return print_blocks(from_data(fields["form"]))._asdict()
+
+
+def _rename(fields: Answer, data: bytes) -> Answer:
+    """Return a program that names its robot with the robot that somebody has chosen in the page."""
+    return {"text": renamed(data.decode(), fields["robot"])}
 
 
 def _learn(fields: Answer, data: bytes) -> Answer:
@@ -92,7 +100,7 @@ def _learn(fields: Answer, data: bytes) -> Answer:
 
 _ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "learn": _learn, "check": _check, "open": _open, "line": _line, "blocks": _blocks,
-    "text": _text,
+    "text": _text, "rename": _rename,
 }  # fmt: skip
 
 

@@ -187,7 +187,15 @@ function remember() {
   if (!keep(work)) so.note.say(text(work.text.length > LONGEST ? 'kept_too_long' : 'not_kept'));
 }
 
-robots.addEventListener('change', () => so.robot.say(robots.value));
+robots.addEventListener('change', async () => {
+  const robot = robots.value;
+  if (so.isRobotNamed.value) { // then the text changes its mind, too
+    const now = so.text.value;
+    const answer = await python.ask({ do: 'rename', robot }, new TextEncoder().encode(now));
+    if (so.text.value === now) editor.replace(answer.text);
+  }
+  so.robot.say(robot);
+});
 
 /** @param {{text: string, robot: string, name: string}} program */
 function putProgram(program) {

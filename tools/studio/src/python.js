@@ -31,6 +31,8 @@
  * @property {[number, number, number, number, number][]} places offset, line, column and the end
  * @property {{name: string, is_yes_no: boolean}[]} variables
  * @property {string} start SI, SB or PING; empty where there are mistakes
+ * @property {string} robot that it was compiled for
+ * @property {boolean} names_robot whether the text names it
  * @property {number} loose instructions and values that are joined to nothing
  */
 

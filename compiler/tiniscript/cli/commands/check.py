@@ -27,6 +27,7 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(2, "two_programs")
     options.program = names[0] if names else None
     given = inputs.program(options)
+    inputs.robot_for(given, options, language)
     robot = _robot(options, language)
     if options.fix or options.diff:
         compiled, is_right = _repaired(options, given, robot, language)
@@ -52,7 +53,7 @@ def _repaired(
     """Make or show the sure repairs; return what is left, and whether the program is right now."""
     from tiniscript.cli.repairing import print_difference, repaired
 
-    found = repaired(given.data, robot, given.name)
+    found = repaired(given, robot)
     name = inputs.shown(given.name)
     says = not options.json
     if options.diff:

@@ -57,7 +57,7 @@ def _may_be_done(line: str, known: Known, robot: Robot, options: Namespace) -> b
     """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
     language: str = options.language
     if options.robot is None:
-        compiled = naming(known.line(line, 0).compiled, robot)
+        compiled = naming(known.line(line, 0).compiled, robot, is_chosen=True)
         if is_other_robots(compiled.diagnostics):
             found = own_kit.of_answering(options, robot, language)
             if found is not None:
@@ -75,7 +75,7 @@ def _compiled(
     if header(line) == "SB":
         raise CommandError(1, "live_button")
     found = known.line(line, 0 if is_last else room)
-    outputs.print_diagnostics(naming(found.compiled, robot), language)
+    outputs.print_diagnostics(naming(found.compiled, robot, is_chosen=True), language)
     if not found.compiled.is_right:
         return None
     assert found.compiled.verdict is not None

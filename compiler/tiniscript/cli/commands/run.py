@@ -30,7 +30,7 @@ def run(options: Namespace, language: str) -> int:
     max_steps = whole_number("--max-steps", options.max_steps, MAX_STEPS, 0, 10**15, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     given = inputs.program(options)
-    robot = inputs.robot(options, language)
+    robot = inputs.robot_for(given, options, language)
     if options.world is not None:
         raise CommandError(2, "world_without_replay")
     lists = sensor_lists(options.sensor, robot, language)

@@ -18,7 +18,7 @@ from tiniscript.semantics.ways import is_open_way
 
 def run(options: Namespace, language: str) -> int:
     given = inputs.program(options)
-    robot = inputs.robot(options, language)
+    robot = inputs.robot_for(given, options, language)
     if options.arduino:
         return _sketch(options, given, robot, language)
     if options.output is not None:

@@ -32,7 +32,7 @@ from tiniscript.robots.profile import Robot
 
 def run(options: Namespace, language: str) -> int:
     given = inputs.program(options)
-    robot = inputs.robot(options, language)
+    robot = inputs.robot_for(given, options, language)
     is_many = are_many(options)
     # the robot that answers may not be the default one
     is_open = options.robot is None and not is_many and not given.is_image

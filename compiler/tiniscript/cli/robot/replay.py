@@ -9,6 +9,7 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.simulator_options import refusing, world_of
 from tiniscript.cli.texts import text
+from tiniscript.library.robot_choice import name_in
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import BadRecording, Parting, Recorded, Recording, read
 
@@ -26,7 +27,7 @@ def replay(options: Namespace, language: str) -> int:
     if given.is_image:
         raise CommandError(2, "replay_text")
     recording = _read(options.replay)
-    robot = _robot(options, recording)
+    robot = _robot(options, recording, given.data)
     world = world_of(options, language)
     with refusing(world.name, language):
         found = recordings.replay(recording, given.data, robot, world)
@@ -34,11 +35,13 @@ def replay(options: Namespace, language: str) -> int:
     return int(found.what not in SAME)
 
 
-def _robot(options: Namespace, recording: Recording) -> str:
-    """Return the robot's name: that of the recording, or where it has none, of `--robot`."""
+def _robot(options: Namespace, recording: Recording, program: bytes) -> str:
+    """Return the robot's name: that of the recording, or where it has none, of `--robot`, or what
+    the program names."""
     known = robots.names()
     recorded = recording.robot
-    name: str = next(name for name in (options.robot, recorded, robots.DEFAULT) if name is not None)
+    named = (options.robot, recorded, name_in(program), robots.DEFAULT)
+    name: str = next(name for name in named if name is not None)
     if name not in known:
         raise CommandError(2, "replay_robot", known=", ".join(known))
     if recorded not in (None, name):

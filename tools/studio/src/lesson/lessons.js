@@ -211,7 +211,7 @@ export class Lessons {
   async #seeWorld(seed) {
     const { worlds, robot } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
     const values = { number: this.#number, seed };
-    if (robot !== so.robot.value) so.robot.say(robot);
+    if (robot !== so.robot.value && !so.isRobotNamed.value) so.robot.say(robot);
     await this.#page.driving.showLesson(values.number, seed,
       () => text(worlds > 1 ? 'world_of_lessons' : 'world_of_lesson', values));
   }

@@ -37,6 +37,7 @@ export const so = {
   areWordsShown: new Fact(false), // of the text, on blocks and at readings
   robot: new Fact(''), // its name
   taught: new Fact(/** @type {string[]} */ ([])), // kinds of blocks that the open lesson speaks of
+  isRobotNamed: new Fact(false), // by the text: `// robot: liner`
   text: new Fact(''), // of the program
   /** What the compiler says of the newest text; null while it is at work. */
   checked: new Fact(/** @type {import('../python.js').Checked | null} */ (null)),

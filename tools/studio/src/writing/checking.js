@@ -78,6 +78,8 @@ export class Checking {
         const request = { do: 'check', robot: now.robot, language: now.language };
         const answer = /** @type {Checked} */ (await this.#python.ask(request, new TextEncoder().encode(now.text)));
         this.#newest = { key: JSON.stringify(now), answer };
+        so.isRobotNamed.say(answer.names_robot);
+        if (answer.robot !== now.robot && so.robot.value === now.robot) so.robot.say(answer.robot); // and once more
       }
       const { answer } = this.#newest;
       if (answer && so.checked.value !== answer) so.checked.say(answer); // also where a text has come back
