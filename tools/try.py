@@ -1,7 +1,8 @@
 """README's first command, on each system: `py tools\\try.py`, `python3 tools/try.py`.
 
-Sets TiniScript up in `.venv`; then the paper's obstacle program is compiled, uploaded to the
-virtual robot, and drives around the obstacles. Ends by itself. Needs no rights but those of its user.
+Sets TiniScript up in `.venv`; then a program is compiled, uploaded to the virtual robot, and drives
+around the obstacles. Ends by itself, or, for somebody at a terminal who wants it, with the studio.
+Needs no rights but those of its user.
 """
 
 from __future__ import annotations
@@ -17,29 +18,22 @@ sys.path.insert(0, str(ROOT))
 
 from tools import environment
 
-PROGRAM = Path("examples") / "obstacle.ts"
+PROGRAM = Path("examples") / "obstacle_until.ts"
+YES = ("1", "y", "yes", "s", "si", "sí", "sim")
+MEGABYTES = "from tiniscript.cli.page_build import megabytes; print(megabytes())"
 SAID = {
     "program": (
-        "The program {program}: forward until something is within 10 cm, then stop,\n"
+        "The program {program}: forward until something is within 10 cm, then beep,\n"
         "turn right and go on.",
         "El programa {program}: avanzar hasta que haya algo a menos de 10 cm; entonces\n"
-        "parar, girar a la derecha y seguir.",
+        "pitar, girar a la derecha y seguir.",
         "O programa {program}: andar para a frente até haver algo a menos de 10 cm; então\n"
-        "parar, virar à direita e seguir.",
+        "apitar, virar à direita e seguir.",
     ),
     "watch": (
         "For 30 seconds a virtual robot does it here. Ctrl-C stops it earlier.",
         "Un robot virtual lo hace aquí durante 30 segundos. Ctrl-C lo detiene antes.",
         "Um robô virtual faz isso aqui por 30 segundos. Ctrl-C o para antes.",
-    ),
-    "warning": (
-        "The warning above: this robot drives for a second at a time without looking.\n"
-        "In its virtual room that is enough; examples/obstacle_until.ts looks 50 times\n"
-        "a second.",
-        "El aviso de arriba: este robot avanza un segundo entero sin mirar. En su mundo\n"
-        "virtual eso basta; examples/obstacle_until.ts mira 50 veces por segundo.",
-        "O aviso acima: este robô anda um segundo inteiro sem olhar. No mundo virtual dele\n"
-        "isso basta; examples/obstacle_until.ts olha 50 vezes por segundo.",
     ),
     "drawn": (
         "way.png, in this folder, shows its path.",
@@ -50,6 +44,11 @@ SAID = {
         'Now yours:  {activate}   and   tsc upload -e "SI|F(2, 80)" --virtual',
         'Ahora el tuyo:  {activate}   y   tsc upload -e "SI|F(2, 80)" --virtual',
         'Agora o seu:  {activate}   e   tsc upload -e "SI|F(2, 80)" --virtual',
+    ),
+    "studio": (
+        "Open the studio, with blocks, in your browser?{size} [y/N] ",
+        "¿Abrir el estudio, con bloques, en tu navegador?{size} [s/N] ",
+        "Abrir o estúdio, com blocos, no seu navegador?{size} [s/N] ",
     ),
     "blocked": (
         "(Where PowerShell runs no scripts:  Set-ExecutionPolicy -Scope Process RemoteSigned"
@@ -86,12 +85,30 @@ def main() -> int:
     print(flush=True)
     if code:
         return code
-    _say("warning")
     _say("drawn")
     _say("now", activate=activation())
     if os.name == "nt":
         _say("blocked", tsc=r".venv\Scripts\tsc")
-    return 0
+    if not (sys.stdin.isatty() and sys.stdout.isatty()) or not _wants_studio(python):
+        return 0
+    environment.say("$ tsc studio")
+    try:
+        words = [str(python), "-m", "tiniscript", "studio", "--yes"]
+        return subprocess.run(words, cwd=ROOT).returncode
+    except KeyboardInterrupt:  # the studio ends so
+        return 0
+
+
+def _wants_studio(python: Path) -> bool:
+    """Ask whether the studio shall open, and say how much is downloaded for it."""
+    try:
+        asked = subprocess.run([str(python), "-c", MEGABYTES], capture_output=True, text=True)
+        size = asked.stdout.strip()
+        said = f" ({size} MB)" if size not in ("", "0") else ""
+        return input(environment.in_language(SAID["studio"], size=said)).strip().lower() in YES
+    except (EOFError, KeyboardInterrupt):
+        print()
+        return False
 
 
 def _say(key: str, **gaps: str) -> None:

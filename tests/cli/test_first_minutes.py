@@ -31,7 +31,9 @@ from tiniscript.virtual.simulator import Simulator
 from tiniscript.virtual.transports import Transports
 
 FOREVER = "SI|LOOP(FOREVER);L(1, 30);END_LOOP"
-LINE = ROOT / "examples" / "line.ts"
+# a program of the robot liner that does not say so
+LINE = ("-e", (ROOT / "examples" / "line.ts").read_text().replace("// robot: liner\n", ""))
+PROGRAM = Path("examples/obstacle_until.ts")
 
 
 # -- a program that a button starts ---------------------------------------------------------------
@@ -180,25 +182,27 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
 
 
 def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
-    done = tsc("check", LINE)
+    done = tsc("check", *LINE)
     assert done.code == 1
-    assert "tinibot has no LINE_L; the robot liner has it.\nTry:  Choose liner" in done.err
+    said = "tinibot has no LINE_L; the robot liner has it.   Try:  "
+    assert f"{said}Write above the program: // robot: liner" in done.err
     assert "LINE_L = 0" not in done.err
     for verb in (["run"], ["compile", "-o", "-"], ["upload", "--virtual"], ["upload"]):
-        assert "the robot liner has it" in tsc(*verb, LINE).err, verb
-    done = tsc("check", LINE, "--lang", "es")
+        assert "the robot liner has it" in tsc(*verb, *LINE).err, verb
+    done = tsc("check", *LINE, "--lang", "es")
     assert "tinibot no tiene LINE_L; lo tiene el robot liner." in done.err
-    assert "Elige liner arriba en el estudio, o agrega --robot liner al comando" in done.err
+    assert "Prueba:  Escribe encima del programa: // robot: liner" in done.err
     done = tsc("check", "-e", "LED(BUTTON)", "--json")
     (found,) = [each for each in json.loads(done.out) if each["column"] == 1]
     assert found["code"] == "TS119"
-    assert found["fix"].startswith("Choose grabber or liner at the top of the studio, or add")
+    assert found["message"] == "tinibot has no LED; the robots grabber and liner have it."
+    assert found["fix"] == "Write above the program: // robot: grabber"
     # where one robot has all words, the others are not named
-    assert "--robot liner to the command" in tsc("check", "-e", "LED(LINE_L)").err
-    assert "--robot grabber to" in tsc("check", "-e", "LED(DISTANCE > 5)").err
+    assert "// robot: liner " in tsc("check", "-e", "LED(LINE_L)").err
+    assert "// robot: grabber " in tsc("check", "-e", "LED(DISTANCE > 5)").err
     # a word that says it in another language
     assert "tinibot has no GRIPPER; the robot grabber" in tsc("check", "-e", "PINZA(90)").err
-    assert "--robot liner to" in tsc("check", "-e", "SHOW(BATERIA)").err
+    assert "// robot: liner " in tsc("check", "-e", "SHOW(BATERIA)").err
     # a name that no kit has
     assert "write LINE_X = and its number before it" in tsc("check", "-e", "F(LINE_X, 80)").err
     assert "write LINE_X = and its number before it" in tsc("check", "-e", "SHOW(LINE_X)").err
@@ -219,9 +223,9 @@ def test_up_to_three_robots_are_named() -> None:
 def test_the_robot_that_answers_says_which_kit_it_has() -> None:
     with robot("--robot", "liner", "--world", "line") as found:
         here = "The robot here: liner. tsc compiles for it.\n"
-        done = inside("check", LINE, "--virtual")
+        done = inside("check", *LINE, "--virtual")
         assert (done.code, done.err) == (0, here)
-        done = inside("upload", LINE, "--port", found.port, "--no-run")
+        done = inside("upload", *LINE, "--port", found.port, "--no-run")
         assert (done.code, done.err) == (0, here)
         done = inside("live", "SHOW(LINE_L)", "--lang", "es").gives(0)
         assert done.err == "El robot de aquí: liner. tsc compila para él.\n"
@@ -231,7 +235,7 @@ def test_the_robot_that_answers_says_which_kit_it_has() -> None:
         assert inside("upload", "-e", "SI|S").err == ""
         assert "TS103" in inside("upload", "-e", "SHOW(LIN)").err
         # who names a robot gets that one
-        inside("upload", LINE, "--robot", "grabber").gives(1, "grabber has no LINE_L")
+        inside("upload", *LINE, "--robot", "grabber").gives(1, "grabber has no LINE_L")
 
 
 def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
@@ -374,13 +378,20 @@ def test_board_says_where_the_build_looks(
     assert tsc("board", "liner", "-o", "own.h").out.endswith(f"Now:  pio run -d {up} -e nano\n")
 
 
-def test_the_first_run_explains_its_warning(tsc: Tsc) -> None:
-    done = tsc("check", ROOT / "examples" / "obstacle.ts").gives(0, out="no mistakes")
-    assert done.err.count("Warning") == 1 and "F(1, 80) UNTIL(DISTANCE < 10)" in done.err
-    assert tsc("check", ROOT / "examples" / "obstacle_until.ts").err == ""
-    for path in ("README.md", "tools/try.py", "examples/obstacle.ts"):
-        said = (ROOT / path).read_text(encoding="utf-8")
-        assert "warn" in said and "obstacle_until.ts" in said, path
+def test_the_first_program_is_one_without_a_warning(tsc: Tsc) -> None:
+    """What README's first command runs, and what README itself begins with."""
+    assert tsc("check", ROOT / PROGRAM).gives(0, out="no mistakes").err == ""
+    for path in sorted(ROOT.glob("README*.md")):
+        said = path.read_text(encoding="utf-8")
+        first = said.partition("```tiniscript\n")[2].partition("```")[0]
+        assert tsc("check", "-e", first).gives(0, out="no mistakes").err == "", path
+        assert f"`{PROGRAM.as_posix()}`" in said, path
+
+
+def test_the_programs_that_warn_say_so(tsc: Tsc) -> None:
+    for path in sorted((ROOT / "examples").glob("*.ts")):
+        err = tsc("check", path).gives(0, out="no mistakes").err
+        assert err.count("Warning") == ("tsc warns" in path.read_text(encoding="utf-8")), path
 
 
 if sys.platform == "win32":  # nobody sends Ctrl-C to one process there

@@ -208,9 +208,9 @@ def test_a_word_of_another_robot_gets_no_option_that_lesson_lacks(tsc: Tsc) -> N
     for language in ("en", "es"):
         done = tsc("lesson", "check", "1", "-e", "SI|F(1,60) UNTIL(LINE_L)", "--lang", language)
         assert done.code == 1
-        assert "--robot" not in done.err + done.out
+        assert "robot:" not in done.err + done.out and "--robot" not in done.err + done.out
         assert "LINE_L" in done.err + done.out
-    assert "--robot liner" in tsc("check", "-e", "SI|F(1,60) UNTIL(LINE_L)").err
+    assert "// robot: liner" in tsc("check", "-e", "SI|F(1,60) UNTIL(LINE_L)").err
 
 
 def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None:

@@ -43,6 +43,7 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
     "TS003": {},
     "TS119": {**dict.fromkeys(("first", "second", "third"), "LINER"), "own": "A", "found": "B"},
     "TS120": {},
+    "TS138": {"found": "X2", "known": "tinibot, liner"},
     "TS306": {"limit": "32767", "over": "100"},
     "TS307": BOARD,
     "TS308": {"level": "uno", "word": "RANDOM"},

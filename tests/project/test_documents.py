@@ -14,7 +14,7 @@ from typing import NamedTuple
 import pytest
 
 import tiniscript
-from tests.support.casefile import ROOT, Example, example_robot, examples
+from tests.support.casefile import ROOT, Example, examples
 from tests.support.rows import each_row
 from tiniscript.cli import main
 from tools.site.documents import FRONT, links, sources
@@ -194,8 +194,7 @@ def test_examples_have_no_mistakes(capsys: pytest.CaptureFixture[str]) -> None:
     examples = sorted((ROOT / "examples").glob("*.ts"))
     assert len(examples) >= 5
     for example in examples:
-        robot = example_robot(example)
-        assert main(["check", str(example), "--robot", robot]) == 0
+        assert main(["check", str(example)]) == 0
         assert main(["fmt", "--check", str(example)]) == 0
-        assert main(["run", str(example), "--robot", robot, "--max-time", "5"]) == 0
+        assert main(["run", str(example), "--max-time", "5"]) == 0
         capsys.readouterr()

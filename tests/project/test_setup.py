@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 import shutil
@@ -14,6 +15,7 @@ from types import ModuleType
 import pytest
 
 from tests.support.casefile import ROOT
+from tests.support.rows import each_row
 
 pytestmark = pytest.mark.skipif(not shutil.which("sh"), reason="no sh: Windows has no such scripts")
 
@@ -285,9 +287,89 @@ def test_the_first_command_drives_the_virtual_robot(
     assert (ROOT / "way.png").is_file()
     if not before:
         (ROOT / "way.png").unlink()
-    assert said.out.startswith("SI|START;\nLOOP(FOREVER);\n")  # without its notes, in English
+    first = "SI|LOOP(FOREVER);\n  F(FOREVER, 80) UNTIL(DISTANCE < 10);\n"
+    assert said.out.startswith(first)  # without its notes, in English
     assert "way.png" in said.err
     assert "Ahora el tuyo" in said.err
+    assert "Aviso" not in said.err
+    assert "estudio" not in said.out + said.err  # nobody is there to answer
+
+
+class Calls:
+    """Stands in for `subprocess.run`: what the first command starts, and what that answers."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, megabytes: int) -> None:
+        self.words: list[list[str]] = []
+        self.megabytes = megabytes
+        monkeypatch.setattr(subprocess, "run", self.run)
+
+    def run(self, words: list[str], **options: object) -> subprocess.CompletedProcess[str]:
+        self.words.append(words[1:])
+        return subprocess.CompletedProcess(words, 0, f"{self.megabytes}\n", "")
+
+
+def is_terminal(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
+    for name in ("stdin", "stdout", "stderr"):
+        monkeypatch.setattr(getattr(sys, name), "isatty", lambda name=name: name in names)
+
+
+@each_row(
+    "typed, language, megabytes, question, opens",
+    [
+        ("y\n", "en_GB", 40, "Open the studio, with blocks, in your browser? (40 MB) [y/N] ", True),
+        ("s\n", "es_MX", 101, "en tu navegador? (101 MB) [s/N] ", True),
+        (" SIM \n", "pt_BR", 0, "no seu navegador? [s/N] ", True),
+        ("\n", "en_GB", 40, "(40 MB)", False),
+        ("n\n", "en_GB", 40, "(40 MB)", False),
+        ("", "en_GB", 40, "(40 MB)", False),  # Ctrl-D
+    ],
+)
+def test_the_first_command_ends_with_the_studio(
+    typed: str, language: str, megabytes: int, question: str, opens: bool,
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    from tools import environment
+
+    monkeypatch.setenv("LC_ALL", f"{language}.UTF-8")
+    monkeypatch.setattr(environment, "make", lambda extras: Path(sys.executable))
+    monkeypatch.setattr(sys, "stdin", io.StringIO(typed))
+    is_terminal(monkeypatch, "stdin", "stdout")
+    calls = Calls(monkeypatch, megabytes)
+    assert loaded().main() == 0
+    assert question in capsys.readouterr().out
+    assert (["-m", "tiniscript", "studio", "--yes"] in calls.words) == opens
+
+
+@each_row("there", [(), ("stdin",), ("stdout",), ("stdout", "stderr")])
+def test_the_first_command_asks_nobody_who_is_not_there(
+    there: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from tools import environment
+
+    monkeypatch.setattr(environment, "make", lambda extras: Path(sys.executable))
+    monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
+    is_terminal(monkeypatch, *there)
+    calls = Calls(monkeypatch, 40)
+    assert loaded().main() == 0
+    assert [words[2] for words in calls.words] == ["upload"]
+
+
+def test_the_question_names_what_the_studio_downloads(monkeypatch: pytest.MonkeyPatch) -> None:
+    from tiniscript.cli import page_build
+    from tiniscript.studio import building, serving
+
+    monkeypatch.setattr(serving, "is_built", lambda: False)
+    monkeypatch.setattr(building, "found_tools", lambda: None)
+    monkeypatch.setattr(building, "are_fetched", lambda: False)
+    assert page_build.megabytes() == building.NODE_MB + building.NPM_MB
+    monkeypatch.setattr(building, "found_tools", lambda: building.Tools([], [], ""))
+    assert page_build.megabytes() == building.NPM_MB == 40  # as the READMEs say
+    monkeypatch.setattr(serving, "is_built", lambda: True)
+    assert page_build.megabytes() == 0
+    done = subprocess.run(
+        [sys.executable, "-c", loaded().MEGABYTES], capture_output=True, text=True
+    )
+    assert done.stdout.strip().isdigit(), done.stderr
 
 
 def test_every_sentence_of_the_first_command_has_all_languages() -> None:

@@ -145,6 +145,41 @@ def test_answers_are_json() -> None:
     assert opened["message"]
 
 
+LINER = "// robot: liner\nSI|SHOW(LINE_L)\n"
+ASKED = {"do": "check", "robot": "tinibot", "language": "en"}
+
+
+def test_a_program_names_its_robot_in_the_page_too() -> None:
+    found = json.loads(worker.answer(json.dumps(ASKED), LINER.encode()))
+    assert (found["robot"], found["names_robot"], found["findings"]) == ("liner", True, [])
+    assert bytes.fromhex(found["image"]) == compile(LINER).image
+    found = json.loads(worker.answer(json.dumps(ASKED), b"// robot: linar\nS"))
+    assert (found["robot"], found["names_robot"], found["image"]) == ("tinibot", False, "")
+    found = json.loads(worker.answer(json.dumps({**ASKED, "robot": "grabber"}), b"S"))
+    assert (found["robot"], found["names_robot"]) == ("grabber", False)
+    answer = worker.answer(
+        json.dumps({**ASKED, "do": "rename", "robot": "grabber"}), LINER.encode()
+    )
+    assert json.loads(answer)["text"] == LINER.replace("liner", "grabber")
+    line = json.loads(worker.answer(json.dumps({**ASKED, "do": "line"}), LINER.encode()))
+    assert line["text"].startswith("SI|SHOW(LINE_L)")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["SI|SHOW(LINE_L)\n", LINER.replace("liner", "tinibot"), LINER.replace("liner", "linar")],
+)
+def test_a_robot_that_is_offered_has_a_button(text: str) -> None:
+    (finding,) = checking.check(text.encode(), "tinibot", "en").findings
+    assert changed_by(text, finding.repair) == LINER
+
+
+def test_blocks_keep_the_robot() -> None:
+    form = worker.answer(json.dumps({**ASKED, "do": "blocks"}), LINER.encode())
+    request = {"do": "text", "form": json.loads(form)}
+    assert json.loads(worker.answer(json.dumps(request)))["text"] == LINER
+
+
 def test_the_page_knows_every_robot_and_its_words() -> None:
     found = description()
     assert [each["name"] for each in found["robots"]] == robots.names()

@@ -25,7 +25,7 @@ def judged(number: int, program: str) -> tuple[dict[str, object], page_lessons.J
     robot = catalogue.load(catalogue.folder_of(str(number))).robot
     image = check(program.encode(), robot, "en").image
     run = answer["run"]
-    seen = page_lessons.JudgedRun(number, run["seed"], run["until_ms"], image, Marks(()))
+    seen = page_lessons.JudgedRun("tinibot", number, run["seed"], run["until_ms"], image, Marks(()))
     for _ in range(10_000):
         if not seen.robot.is_running:
             break
@@ -83,7 +83,7 @@ def test_the_goals_of_a_task_are_where_its_judge_looks() -> None:
 
 def test_a_judged_run_can_be_stopped_before_its_end() -> None:
     image = check(b"SI|F(2.5, 80)", "tinibot", "en").image
-    seen = page_lessons.JudgedRun(1, 1, 2500, image, Marks(()))
+    seen = page_lessons.JudgedRun("tinibot", 1, 1, 2500, image, Marks(()))
     seen.go(1000)
     seen.stop()
     before = seen.state()["pose"]

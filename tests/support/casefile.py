@@ -18,6 +18,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
 
+from tiniscript.library.named_robot import name_in
+
 ROOT = Path(__file__).resolve().parent.parent.parent
 PARTS = ("tiniscript", "senses", "robot", "bytecode", "plain", "line", "mistake", "warning",
          "formatted")  # fmt: skip
@@ -160,8 +162,7 @@ def all_cases() -> list[Case]:
 
 def example_robot(path: Path) -> str:
     """Return the robot that a program of `examples/` is for."""
-    named = re.search(r"--robot (\w+)", path.read_text(encoding="utf-8"))
-    return named[1] if named else "tinibot"
+    return name_in(path.read_bytes()) or "tinibot"
 
 
 def has_tasks(text: str) -> bool:

@@ -117,16 +117,12 @@ def programs(place: Place) -> str:
             text = example.read_text(encoding="utf-8").replace("\n", end)
             (place.desk / example.name).write_bytes(text.encode())
             verb = ["compile", example.name, "-o", "there.bin"]
-            if example.stem == "line":
-                verb += ["--robot", "liner"]
             there = place.tsc(*verb)
-            here = _here(place.desk, *verb[:3], "here.bin", *verb[4:])
+            here = _here(place.desk, *verb[:3], "here.bin")
             _need(there.code == here.code == 0, f"{verb}: {there.said}")
             same = (place.desk / "there.bin").read_bytes() == (place.desk / "here.bin").read_bytes()
             _need(same, f"{example.name}: another image")
-            there, here = (
-                of("check", *verb[1:2], *verb[4:]) for of in (place.tsc, place_here(place))
-            )
+            there, here = (of("check", verb[1]) for of in (place.tsc, place_here(place)))
             _need(there == here, f"check {example.name}:\n{there.said}\n{here.said}")
     done = place.tsc("check", "obst*.ts")
     _need("obstacle_until.ts" in done.said, f"a pattern: {done.said}")

@@ -19,7 +19,7 @@ from tiniscript.cli.spreadsheet import as_csv
 from tiniscript.cli.texts import text
 from tiniscript.diagnostics.rendering import Message, as_json, message
 from tiniscript.library.compiling import Compiled
-from tiniscript.library.robot_choice import robot_of
+from tiniscript.library.named_robot import robot_of
 from tiniscript.robots.profile import Robot
 
 NAME_COLUMNS = 40  # of a file's name in the table; of a longer one the end is shown

@@ -13,7 +13,7 @@ from tiniscript.base.source import LARGEST_SOURCE, printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
 from tiniscript.cli.texts import Said, say_aside
-from tiniscript.library import robot_choice
+from tiniscript.library import named_robot
 from tiniscript.robots.profile import ProfileRefused, Robot
 
 SHOWN = 200  # characters of a file's name
@@ -109,7 +109,7 @@ def robot_for(given: Input, options: Namespace, language: str) -> Robot:
 
     What the program names counts from now on as if `--robot` had named it.
     """
-    named = robot_choice.name_in(given.data)
+    named = named_robot.name_in(given.data)
     if options.robot is None:
         options.robot = named
     found = robot(options, language)
@@ -120,7 +120,7 @@ def robot_for(given: Input, options: Namespace, language: str) -> Robot:
 
 def tell_other(given: Input, chosen: Robot, language: str) -> None:
     """Say on standard error that `--robot` wins, where the program names another robot."""
-    named = robot_choice.named(given.data)
+    named = named_robot.named(given.data)
     if named is not None and named.lower() != chosen.name.lower():
         values = {"file": shown(given.name), "robot": shown(chosen.name), "named": shown(named)}
         say_aside("robot_chosen", language, **values)

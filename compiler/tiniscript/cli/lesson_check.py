@@ -37,7 +37,7 @@ from tiniscript.lessons.marking import Marking
 from tiniscript.lessons.running import Run
 from tiniscript.lessons.sentences import sentence
 from tiniscript.library.compiling import Compiled, for_robot, maker
-from tiniscript.library.robot_choice import name_in, robot_of
+from tiniscript.library.named_robot import name_in, robot_of
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.world import WorldRefused

@@ -33,13 +33,11 @@ def build(options: Namespace, language: str) -> None:
     """Build the page. Raises CommandError."""
     if not building.is_possible():
         raise CommandError(2, "studio_not_built")
-    has_node = building.found_tools() is not None
+    parts = missing_parts()
+    has_node = NODE not in parts
     if not has_node and install_advice.installing(install_advice.STUDIO) is None:
         how = install_advice.command(install_advice.STUDIO)
         raise CommandError(2, "studio_no_node", oldest=str(building.OLDEST_NODE), how=how)
-    parts = [] if has_node else [NODE]
-    if not building.are_fetched():
-        parts.append(NPM)
     missing = text("studio_missing", language)
     fetching.agree(missing, parts, building.MINUTES, options, language)
     if not has_node:
@@ -52,6 +50,17 @@ def build(options: Namespace, language: str) -> None:
         return Step(STEPS[step], growing.percent() if is_fetching else PERCENT[step])
 
     fetching.run([sys.executable, "-m", building.MODULE], building.CLONE, seen, language)
+
+
+def missing_parts() -> list[Part]:
+    """Return what is fetched before the page can be built."""
+    node = [] if building.found_tools() is not None else [NODE]
+    return node if building.are_fetched() else [*node, NPM]
+
+
+def megabytes() -> int:
+    """Return how much `tsc studio` fetches before it opens the page."""
+    return 0 if serving.is_built() else sum(part.mb for part in missing_parts())
 
 
 def main() -> int:

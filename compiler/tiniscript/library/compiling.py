@@ -18,7 +18,7 @@ from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_of, pack
 from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.codegen.lower import SourceLocation, lower
 from tiniscript.diagnostics import codes
-from tiniscript.library.robot_choice import unknown_robot
+from tiniscript.library.named_robot import unknown_robot
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
@@ -185,7 +185,7 @@ def compiled(
 
     `is_strict`: a program that is too large for the robot is a mistake, else a warning.
     `names_robots`: a word of another robot is said to be that; not where no other can be chosen.
-    `is_chosen`: the robot is what somebody has chosen, else what `robot_choice` says of the text.
+    `is_chosen`: the robot is what somebody has chosen, else what `named_robot` says of the text.
     """
     text = text_of(data, name)
     if not isinstance(text, str):

@@ -16,11 +16,11 @@ from tiniscript.diagnostics.codes import (
     Diagnostic,
     Repair,
 )
+from tiniscript.library.named_robot import named_robot
 from tiniscript.recovery.concepts import concept_of
 from tiniscript.robots import given
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.lexer import WORD, scan
-from tiniscript.syntax.named_robot import named_robot
 
 SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copied
 _UNKNOWN = (UNKNOWN_NAME, UNKNOWN_WORD)

@@ -19,7 +19,7 @@ from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compiled, image_of
 from tiniscript.library.errors import ProgramError, UsageError, sentence
 from tiniscript.library.known_kits import fitting
-from tiniscript.library.robot_choice import robot_of
+from tiniscript.library.named_robot import robot_of
 from tiniscript.library.source_map import Map
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.refusals import describe
@@ -100,7 +100,8 @@ def check(
     text: str, robot: str | os.PathLike[str] | None = None, *, language: Language = "en"
 ) -> list[Message]:
     """Return all mistakes and warnings of a text by place; the list may be empty. `robot` as for
-    `compile`. Never raises ProgramError. A program that is too large for the robot's board gives a warning."""
+    `compile`. Never raises ProgramError. A program that is too large for the robot's board gives a
+    warning."""
     if not isinstance(text, str):
         raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
     found = _compiled(text, robot, "", language, is_strict=False)[0]

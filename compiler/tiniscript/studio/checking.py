@@ -17,7 +17,7 @@ from tiniscript.diagnostics.fixing import offers
 from tiniscript.diagnostics.rendering import Message, message
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compiled, for_robot, text_of
-from tiniscript.library.robot_choice import name_in, robot_of
+from tiniscript.library.named_robot import name_in, robot_of
 from tiniscript.library.text_fitting import misfits
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.text_levels import level_of

@@ -22,7 +22,7 @@ from tiniscript.lessons.running import ASKS, STEP_MS, Trial
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.variation import is_mirrored, point_of, varied
 from tiniscript.library.compiling import compiled, for_robot, maker
-from tiniscript.library.robot_choice import name_in
+from tiniscript.library.named_robot import name_in
 from tiniscript.link.session import Session
 from tiniscript.studio.block_form import kinds_in
 from tiniscript.studio.block_kinds import KIND_OF

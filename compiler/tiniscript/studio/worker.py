@@ -13,11 +13,11 @@ from tiniscript.base import catalogue_compiler as compiling
 from tiniscript.base import languages
 from tiniscript.bytecode.image import checksum
 from tiniscript.diagnostics.rendering import Message
+from tiniscript.library.named_robot import renamed
 from tiniscript.studio import checking
 from tiniscript.studio.block_form import beginning, data_of, from_data, in_order, size_of
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import LOOSE, read
-from tiniscript.syntax.named_robot import renamed
 
 Answer = dict[str, Any]
 MOST_BLOCKS = 1500  # that a page can move about
@@ -69,7 +69,7 @@ def _told(found: str | Message) -> Answer:
 
 
 def _blocks(fields: Answer, data: bytes) -> Answer:
-    """Return the blocks of the editor's text, or the `first` of them; of too many only their number."""
+    """Return the blocks of a text, or the `first` of them; of too many only their number."""
     form = read(data.decode(), checking.profile_for(data, fields["robot"]).kit)
     if "first" in fields:
         form = beginning(form, fields["first"])

@@ -9,7 +9,7 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.simulator_options import refusing, world_of
 from tiniscript.cli.texts import text
-from tiniscript.library.robot_choice import name_in
+from tiniscript.library.named_robot import name_in
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import BadRecording, Parting, Recorded, Recording, read
 

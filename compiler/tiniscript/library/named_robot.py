@@ -1,13 +1,49 @@
-"""Which robot a program is for: the one that somebody has chosen, else the one that it names."""
+"""Which robot a program is for: the one that somebody has chosen, else the one that it names.
+
+It names one in a comment before its first instruction: `// robot: liner`.
+"""
 
 from __future__ import annotations
 
+import re
+from typing import NamedTuple
+
 from tiniscript import robots
-from tiniscript.base.source import Edit, Unreadable, decode
+from tiniscript.base.source import SPACES, Edit, Span, Unreadable, applied, decode
 from tiniscript.base.words import nearest
 from tiniscript.diagnostics.codes import NO_SUCH_ROBOT, Diagnostic, Repair
 from tiniscript.robots.profile import Robot
-from tiniscript.syntax.named_robot import named_robot
+
+# A line of comment, or an empty one. In Portuguese it is a robô; a comment with more words than a
+# name tells people something.
+_LINE = re.compile(
+    rf"[{SPACES}]*(?://+[{SPACES}]*rob(?:ot|o\u0302?|\u00f4)[{SPACES}]*:"
+    rf"[{SPACES}]*(?P<name>[^{SPACES}\r\n]+)[{SPACES}]*|//[^\r\n]*)?(?:\r\n|\n|\r|\Z)",
+    re.IGNORECASE,
+)
+
+
+class Named(NamedTuple):
+    """The name as it is written, and its place."""
+
+    name: str
+    span: Span
+
+
+def named_robot(text: str) -> Named | None:
+    """Return the robot that a program names first, or None."""
+    at = 0
+    while at < len(text) and (line := _LINE.match(text, at)):
+        if line["name"]:
+            return Named(line["name"], Span(*line.span("name")))
+        at = line.end()
+    return None
+
+
+def renamed(text: str, name: str) -> str:
+    """Return a program that names a robot with another name; any other stays as it is."""
+    found = named_robot(text)
+    return text if found is None else applied(text, [Edit(found.span, name)])
 
 
 def robot_of(data: bytes, usual: Robot) -> Robot:

@@ -1,0 +1,128 @@
+"""A program that names its robot is one for that robot, in every verb; `--robot` wins."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import tiniscript
+from tests.cli.test_virtual_command import robot
+from tests.support.casefile import ROOT
+from tests.support.command import Tsc, inside
+from tests.support.rows import each_row
+from tiniscript import ProgramError
+from tiniscript.cli.texts.options import OPTIONS
+from tiniscript.cli.texts.verbs import VERBS
+
+LINER = "// robot: liner\nSI|SHOW(LINE_L)\n"
+UNKNOWN = "// robot: linar\nSI|SHOW(LINE_L)\n"
+WINS = "--robot {} wins: {} names the robot {}.\n"
+# Each verb that takes a program, and how it is called with one.
+CALLS = {
+    "check": [], "run": [], "compile": [], "show": [], "fmt": ["--check"],
+    "upload": ["--virtual"], "lesson": ["check", "1"], "class": None,  # it sends as upload does
+}  # fmt: skip
+
+
+@pytest.fixture
+def liner(tmp_path: Path) -> Path:
+    path = tmp_path / "line.ts"
+    path.write_text(LINER, encoding="utf-8")
+    return path
+
+
+def test_all_verbs_are_here() -> None:
+    takes = {verb for verb in VERBS for option in OPTIONS if option.taken_by(verb)
+             and option.kind is not None and option.kind.name == "program"}  # fmt: skip
+    assert takes == set(CALLS)
+
+
+@each_row("verb", [verb for verb, words in CALLS.items() if words is not None])
+def test_every_verb_takes_the_robot_that_a_program_names(verb: str, tsc: Tsc, liner: Path) -> None:
+    words = CALLS[verb] or []
+    done = tsc(verb, *words, liner)
+    assert "TS" not in done.err and "LINE_L" not in done.err
+    assert done.code == (1 if verb == "lesson" else 0)  # it does not drive as lesson 1 wants
+
+
+@each_row("verb", ["check", "run", "compile", "show", "upload"])
+def test_an_option_wins_and_says_so_once(verb: str, tsc: Tsc, liner: Path) -> None:
+    words = CALLS[verb] or []
+    done = tsc(verb, *words, liner, "--robot", "tinibot").gives(1)
+    assert done.err.startswith(WINS.format("tinibot", liner, "liner"))
+    assert done.err.count(" wins: ") == 1
+    assert "Try:  Add --robot liner to the command" in done.err  # the comment is there already
+    same = tsc(verb, *words, liner, "--robot", "LINER").gives(0)
+    assert " wins: " not in same.err
+
+
+def test_a_robot_of_ones_own_may_be_named(tsc: Tsc, tmp_path: Path) -> None:
+    shipped = ROOT / "compiler" / "tiniscript" / "robots" / "liner.toml"
+    own = tmp_path / "mine.toml"
+    own.write_text(shipped.read_text(encoding="utf-8"), encoding="utf-8")
+    path = tmp_path / "line.ts"
+    path.write_text(LINER.replace("liner", "mine"), encoding="utf-8")
+    assert "No robot is called mine" in tsc("check", path).gives(1).err
+    assert tsc("check", path, "--robot", own).gives(0).err == ""
+
+
+@each_row("verb", ["check", "run", "compile", "show", "upload", "lesson"])
+def test_a_name_that_no_robot_has_is_a_mistake(verb: str, tsc: Tsc, tmp_path: Path) -> None:
+    path = tmp_path / "x.ts"
+    path.write_text(UNKNOWN, encoding="utf-8")
+    done = tsc(verb, *(CALLS[verb] or []), path).gives(1)
+    assert done.err.count("[TS") == 1  # which words there are nobody knows
+    assert "line 1:  // robot: linar\n                   ^^^^^\n" in done.err
+    assert "No robot is called linar; these come with TiniScript: tinibot, grabber" in done.err
+    assert "Try:  // robot: liner   [TS138]" in done.err
+
+
+@each_row("language, said", [("es", "Ningún robot se llama x2"), ("pt", "Nenhum robô se chama x2")])
+def test_it_is_said_in_all_languages(language: str, said: str, tsc: Tsc) -> None:
+    done = tsc("check", "-e", "// robot: x2\nS", "--lang", language).gives(1)
+    assert said in done.err and "--robot" in done.err
+
+
+def test_an_editor_is_told_where(tsc: Tsc) -> None:
+    (found,) = json.loads(tsc("check", "-e", UNKNOWN, "--json").gives(1).out)
+    assert (found["code"], found["line"], found["column"], found["end_column"]) == (
+        "TS138", 1, 11, 16,
+    )  # fmt: skip
+
+
+def test_each_program_of_a_folder_has_its_own(tsc: Tsc, tmp_path: Path) -> None:
+    (tmp_path / "a.ts").write_text(LINER, encoding="utf-8")
+    (tmp_path / "b.ts").write_text("SI|SHOW(DISTANCE)\n", encoding="utf-8")
+    (tmp_path / "c.ts").write_text("// robot: grabber\nSI|F(2 60);LED(TRUE)\n", encoding="utf-8")
+    rows = json.loads(tsc("check", tmp_path, "--json").gives(1).out)
+    assert [row["mistakes"] for row in rows] == [0, 0, 1]
+    done = tsc("check", tmp_path, "--robot", "liner").gives(1)
+    assert done.err == WINS.format("liner", tmp_path / "c.ts", "grabber")
+    tsc("check", tmp_path, "--fix").gives(0)
+    assert "F(2, 60)" in (tmp_path / "c.ts").read_text(encoding="utf-8")
+
+
+def test_the_examples_are_right_as_they_are(tsc: Tsc) -> None:
+    assert "without mistakes: 9" in tsc("check", ROOT / "examples").gives(0).out
+
+
+def test_the_one_that_answers_does_not_take_the_place_of_a_named_one(liner: Path) -> None:
+    with robot("--robot", "liner", "--world", "line") as found:
+        assert inside("upload", liner, "--port", found.port, "--no-run").gives(0).err == ""
+        assert inside("check", liner, "--virtual").gives(0).err == ""
+    with robot() as found:
+        inside("upload", liner, "--port", found.port).gives(3, "another kit")
+        assert inside("check", liner, "--virtual").gives(0).err == ""
+
+
+def test_python_takes_it_too() -> None:
+    assert tiniscript.compile(LINER).robot == "liner"
+    assert tiniscript.check(LINER) == []
+    assert [event.name for event in tiniscript.run(LINER).events] == ["READ", "SHOW", "DONE"]
+    assert [each.code for each in tiniscript.check(LINER, "tinibot")] == ["TS119"]
+    assert [each.code for each in tiniscript.check(UNKNOWN)] == ["TS138"]
+    assert tiniscript.check(UNKNOWN, "liner") == []
+    with pytest.raises(ProgramError, match="No robot is called linar"):
+        tiniscript.compile(UNKNOWN)

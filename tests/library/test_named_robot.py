@@ -1,0 +1,68 @@
+"""`// robot: liner`: how a program names its robot."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.support.rows import each_row
+from tiniscript.base.source import Source
+from tiniscript.library.named_robot import named_robot, renamed
+from tiniscript.syntax.formatter import formatted
+
+NAMING = [
+    "// robot: liner\nSI|F(1, 80)",
+    "//robot:liner",
+    "// Robot : LINER  \r\nF(1, 80)",
+    "\ufeff\n\n  // a title\n\t//\n//// rob\u00f4: liner\r// robot: tinibot\nS",
+    "// ROBO\u0302: Liner\nS",
+    "// robo: liner\u200b\nS",
+]
+NAMELESS = [
+    "", "S", "// robot:", "// robot: liner, with a hat\nS", "// my robot: liner\nS",
+    "// robots: liner\nS", "SI|S // robot: liner", "SI|S\n// robot: liner", ";// robot: liner\nS",
+    "/ / robot: liner\nS", "robot: liner", "// // robot: liner\nS",
+]  # fmt: skip
+
+
+@each_row("text", NAMING)
+def test_a_comment_before_the_first_instruction_names_it(text: str) -> None:
+    found = named_robot(text)
+    assert found is not None
+    assert found.name.lower() == "liner" and text[slice(*found.span)] == found.name
+
+
+@each_row("text", NAMELESS)
+def test_any_other_comment_tells_people_something(text: str) -> None:
+    assert named_robot(text) is None
+    assert renamed(text, "grabber") == text
+
+
+@each_row("text", [each for each in NAMING if "\nS" in each or "\nF" in each])
+def test_the_formatter_keeps_it(text: str) -> None:
+    laid_out = formatted(Source(text.removeprefix("\ufeff")))
+    found = named_robot(laid_out)
+    assert found is not None and found.name.lower() == "liner"
+    assert laid_out == formatted(Source(laid_out))
+
+
+@pytest.mark.parametrize("text", NAMING)
+def test_another_one_takes_its_place(text: str) -> None:
+    changed = renamed(text, "grabber")
+    found = named_robot(changed)
+    assert found is not None and found.name == "grabber"
+    assert changed[: found.span.start] + changed[found.span.end :] == text.replace(
+        text[slice(*_span(text))], "", 1
+    )
+
+
+def _span(text: str) -> tuple[int, int]:
+    found = named_robot(text)
+    assert found is not None
+    return found.span
+
+
+def test_a_long_row_of_anything_is_looked_at_once() -> None:
+    """No search of this file goes back and forth in a comment."""
+    assert named_robot("//" * 100_000 + "robot: x y") is None
+    assert named_robot("// robot:" + " " * 200_000 + "a b") is None
+    assert named_robot("\n" * 200_000) is None
