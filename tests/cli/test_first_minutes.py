@@ -45,7 +45,11 @@ def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None
     receipt, *rest = done.out.splitlines()
     assert done.code == 0
     assert receipt.endswith("SB: its button is pushed right away, since there are no keys here")
-    assert sorted(rest[:3]) == ["Done.", "SHOW 1.5", "Saved in slot 0."]  # it is saved meanwhile
+    assert sorted(rest[:3]) == [
+        "Done.",
+        "SHOW 1.5",
+        "Saved. It starts with the button.",
+    ]  # it is saved meanwhile
     assert rest[3].startswith("The virtual robot drove 36 cm in 1.0 s and touched nothing.")
     assert picture.read_bytes().startswith(b"\x89PNG")
     inside("upload", "--virtual", "-e", "SB|X = 0;SHOW(1 / X)", "--lang", "es").gives(
@@ -77,7 +81,7 @@ def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
     done = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "2.5", "--hurry", hurry).gives(0)
     # 2.5 s at 80 % of 45 cm a second, to the millisecond
     assert done.out.splitlines()[1:] == [
-        "The time of --for is over.", "Saved in slot 0.",
+        "The time of --for is over.", "Saved. It starts with the button.",
         "The virtual robot drove 90 cm in 2.5 s and touched nothing.",
     ]  # fmt: skip
 
@@ -176,6 +180,50 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
     known_ports.remember(found.port, "KAT")  # by a tsc that did
     assert "socket" not in inside("ports").out
     inside("ping").gives(3, "is not there")
+
+
+# -- a run without a robot ------------------------------------------------------------------------
+
+
+@each_row(
+    "words, said",
+    [
+        (["-e", "SI|SHOW(DISTANCE);SHOW(DISTANCE)"], "DISTANCE read 0: --sensor DISTANCE=50,9\n"),
+        (["-e", "SI|SHOW(DISTANCE)", "--machine", "cpp"],
+         "DISTANCE read 0: --sensor DISTANCE=50,9\n"),
+        (["-e", "SI|SHOW(DISTANCE)", "--show", "--lang", "es"],
+         "DISTANCE midió 0: --sensor DISTANCE=50,9\n"),
+        (["-e", "SI|SHOW(DISTANCE)", "--sensor", "DISTANCE=0"], ""),
+        (["-e", "SI|SHOW(DISTANCE + LIGHT_R)", "--sensor", "DISTANCE=5"],
+         "LIGHT_R read 0: --sensor LIGHT_R=127,23\n"),
+        (["-e", "SI|IF(FALSE);SHOW(DISTANCE);ENDIF"], ""),
+        (["-e", "// robot: liner\nSI|SHOW(BUTTON);SHOW(BATTERY)"],
+         "BUTTON read FALSE: --sensor BUTTON=FALSE,TRUE\nBATTERY read 0: --sensor BATTERY=1,0.2\n"),
+    ],
+)  # fmt: skip
+def test_a_sensor_without_readings_is_told_once(words: list[str], said: str, tsc: Tsc) -> None:
+    assert tsc("run", *words).gives(0).err == said
+    for each in re.findall(r"(--sensor) (\S+)", said):  # what it shows is right
+        assert (
+            tsc("run", *words, *each).gives(0).err.count("--sensor") == said.count("--sensor") - 1
+        )
+
+
+def test_a_fault_by_a_zero_is_told_with_its_cause(tsc: Tsc) -> None:
+    done = tsc("run", "-e", "SI|SHOW(1 / DISTANCE)").gives(1)
+    assert done.err.startswith("DISTANCE read 0: --sensor DISTANCE=50,9\nfault DIVIDE_BY_ZERO")
+
+
+@each_row("language, try_it", [("en", "Try"), ("es", "Prueba"), ("pt", "Tente")])
+def test_what_the_other_verb_takes_leads_there(language: str, try_it: str, tsc: Tsc) -> None:
+    for verb, option, other in (
+        ("run", "--virtual", "upload"), ("run", "--hurry", "upload"), ("run", "--detach", "upload"),
+        ("upload", "--max-steps", "run"), ("upload", "--show", "run"),
+    ):  # fmt: skip
+        done = tsc(verb, "prog.ts", option, "--lang", language).gives(2)
+        assert f"{try_it}:  tsc {other} prog.ts {option}" in done.err
+    done = tsc("run", "prog.ts", "--virtul", "--lang", language).gives(2)
+    assert "tsc run --help" in done.err
 
 
 # -- a program for another robot ------------------------------------------------------------------

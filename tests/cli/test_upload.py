@@ -24,12 +24,26 @@ def test_upload_runs_the_program_and_stays_until_it_ends(
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
     done = on(pty_robot, "upload", program).gives(0, "")
     receipt, *rest = done.out.splitlines()
-    image = compile_text(program.read_text(encoding="utf-8"), KIT).image
-    assert receipt.startswith(f"{program} -> tinibot ({pty_robot.port})   {len(image)} bytes")
-    assert f"checksum {int.from_bytes(image[10:14], 'little'):08x}" in receipt
-    assert receipt.endswith("saving   SI: running")
-    assert rest == ["SHOW 43.5", "SHOW TRUE", "Done.", "Saved in slot 0."]
+    assert receipt == f"{program} -> tinibot ({pty_robot.port})   SI: running"
+    assert rest == ["SHOW 43.5", "SHOW TRUE", "Done.", "Saved. It starts with the button."]
     assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+def test_slots_and_checksums_are_for_those_who_ask(pty_robot: PtyRobot) -> None:
+    image = compile_text("SI|S", KIT).image
+    checksum = f"{int.from_bytes(image[10:14], 'little'):08x}"
+    done = on(pty_robot, "upload", "-e", "SI|S", "--verbose").gives(0, "")
+    receipt, _, last = done.out.splitlines()
+    assert receipt.startswith(f"-e -> tinibot ({pty_robot.port})   {len(image)} bytes")
+    assert receipt.endswith(f"checksum {checksum}   saving   SI: running")
+    assert last == "Saved in slot 0."
+    done = on(pty_robot, "upload", "-e", "SI|S", "--json").gives(0, "")
+    told = [json.loads(line) for line in done.out.splitlines()]
+    assert (told[0]["checksum"], told[0]["code_bytes"]) == (checksum, 1)
+    assert {row["slot"] for row in told if row.get("slot") is not None} == {0}
+    # what is lost without power is told to all
+    done = on(pty_robot, "upload", "-e", "SI|S;S", "--no-save")
+    assert done.out.splitlines()[0].endswith("   in RAM only   SI: running")
 
 
 def test_a_program_goes_on_without_tsc(pty_robot: PtyRobot) -> None:
@@ -42,7 +56,7 @@ def test_a_program_goes_on_without_tsc(pty_robot: PtyRobot) -> None:
 def test_a_program_that_waits_ends_with_its_receipt(pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "upload", "-e", "SB|F(0.1, 80)")
     assert (done.code, pty_robot.did) == (0, [])
-    assert "SB: waits for the button or tsc start\nSaved in slot" in done.out
+    assert "SB: waits for the button or tsc start\nSaved." in done.out
     pty_robot.push()
     pty_robot.until(lambda: "FINISHED" in pty_robot.did, "the button starts it")
     done = on(pty_robot, "start").gives(0)
@@ -142,14 +156,16 @@ def interrupted(command: Command) -> Done:
 
 def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyRobot) -> None:
     command = Command("upload", "-e", WAITS, "--port", pty_robot.port)
-    command.until("Saved in slot 0.")
+    command.until("Saved. It starts with the button.")
     pty_robot.switch_off_and_on()
     command.kill()
     assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
 
 
 def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
-    interrupted(uploading(pty_robot)).gives(2, "the robot has confirmed it", out="Saved in slot 0.")
+    interrupted(uploading(pty_robot)).gives(
+        2, "the robot has confirmed it", out="Saved. It starts with the button."
+    )
     pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
 
@@ -216,13 +232,13 @@ def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRob
     """As data it is a receipt."""
     first, second = with_two(pty_robot)
     for language, checksum, said, saved in (
-        ("en", first, "it holds the previous program again, checksum", "Saved in slot 0."),
-        ("es", second, "vuelve a tener el programa anterior, suma", "Guardado en el lugar 1."),
+        ("en", first, "it holds the previous program again, checksum", "Saved. It starts"),
+        ("es", second, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
     ):
         done = on(pty_robot, "undo", "--lang", language).gives(0, "")
         lines = done.out.splitlines()
         assert f"{said} {checksum}" in lines[0] and "tsc undo" in lines[0]
-        assert lines[1:] == [saved]
+        assert len(lines) == 2 and lines[1].startswith(saved)
         pty_robot.switch_off_and_on()
         assert json.loads(on(pty_robot, "info", "--json").out)["program"] == checksum
     receipt, kept = map(json.loads, on(pty_robot, "undo", "--json").out.splitlines())
@@ -255,7 +271,7 @@ def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> 
     with_two(pty_robot)
     command = uploading(pty_robot)
     done = on(pty_robot, "undo").gives(0)
-    assert done.out.splitlines()[-1].startswith("Saved in slot")
+    assert done.out.splitlines()[-1].startswith("Saved.")
     assert not pty_robot.moves
     assert command.ended().code in (0, 3)
 

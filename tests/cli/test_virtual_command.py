@@ -83,7 +83,7 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
         assert (done.code, done.err) == (0, "")
         receipt, *rest = done.out.splitlines()
         assert receipt.startswith(f"-e -> KAT ({found.port})")
-        assert rest == ["SHOW 1.5", "Done.", "Saved in slot 0."]
+        assert rest == ["SHOW 1.5", "Done.", "Saved. It starts with the button."]
         # a value is shown when there is room for it on the line
         lines = [re.sub(r"^\d+ (SHOW|BEEP|DONE)", r"\1", line) for line in found.until("DONE")]
         assert lines == ["0 START", "0 MOTORS 50 50", "200 MOTORS 0 0", "SHOW 1.5", "BEEP 440 100",
@@ -249,7 +249,7 @@ def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None
     done = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
                    "--plot", way)  # fmt: skip
     assert done.code == 0
-    assert "The time of --for is over.\nSaved in slot 0.\n" in done.out
+    assert "The time of --for is over.\nSaved. It starts with the button.\n" in done.out
     assert f"and touched nothing. Picture: {way}\n" in done.out
     before, after = colours(still.read_bytes()), colours(way.read_bytes())
     assert before["way"] < 20 < 4000 < after["way"]
@@ -262,7 +262,10 @@ def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
     text = "SI|LOOP(20);F(1, 50);B(1, 50);END_LOOP;SHOW(TIME)"
     done = inside("upload", "--virtual", "-e", text, "--hurry", "max", "--faults", "3")
     assert done.code == 0  # what a radio has written into the line is said, too
-    assert done.out.splitlines()[1:3] in (["SHOW 40", "Done."], ["Done.", "Saved in slot 0."])
+    assert done.out.splitlines()[1:3] in (
+        ["SHOW 40", "Done."],
+        ["Done.", "Saved. It starts with the button."],
+    )
 
 
 def test_upload_and_live_say_what_they_say_of_any_robot() -> None:

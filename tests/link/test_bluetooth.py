@@ -50,7 +50,7 @@ def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot
     for count, port in enumerate((NAME, PLACE, "BLE://tini 1", PLACE.lower()), 1):
         done = inside("upload", "-e", DRIVE, "--port", port)
         assert (done.code, done.err) == (0, ""), port
-        assert done.out.splitlines()[-2:] == ["Done.", "Saved in slot 0."]
+        assert done.out.splitlines()[-2:] == ["Done.", "Saved. It starts with the button."]
         assert (ble.robot.did, ble.connections) == (DROVE * count, 2 * count - 1)
         assert inside("info").code == 0  # the port is remembered
     assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write

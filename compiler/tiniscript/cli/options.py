@@ -30,6 +30,9 @@ _MESSAGES = {
 }
 
 
+OTHER_RUN = {"run": "upload", "upload": "run"}  # a program without a robot, and with one
+
+
 class Options(ArgumentParser):
     """The options of a verb, as the table of options has them."""
 
@@ -82,7 +85,11 @@ class Options(ArgumentParser):
             raise bad_choice(label, known, found, self.language)
 
     def error(self, message: str) -> NoReturn:
-        near = self._near(message.partition("unrecognized arguments: ")[2].partition(" ")[0])
+        unknown = message.partition("unrecognized arguments: ")[2].partition(" ")[0]
+        other = OTHER_RUN.get(self.verb)
+        if other and any(unknown in each.flags.split() for each in of_verb(other)):
+            raise CommandError(2, "option_of_other", option=unknown, verb=self.verb, other=other)
+        near = self._near(unknown)
         for key, pattern in _MESSAGES.items():
             if found := re.fullmatch(pattern, message):
                 message = said(f"wrong/{key}", self.language).format(*found.groups())

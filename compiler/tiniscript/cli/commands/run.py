@@ -5,14 +5,15 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from collections.abc import Iterator
-from typing import cast
 
+from tiniscript.base.kit import Device
 from tiniscript.base.trace import Ending, Event
 from tiniscript.bytecode.image import Image
 from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError, not_installed
 from tiniscript.cli.faults import fault_text
 from tiniscript.cli.options import sensor_lists, thousandths, whole_number
+from tiniscript.cli.texts import say_aside
 from tiniscript.library.runs import begun, cpp_machine
 from tiniscript.robots.profile import Robot
 from tiniscript.vm.runner import MAX_STEPS, MachineOf
@@ -38,16 +39,22 @@ def run(options: Namespace, language: str) -> int:
     if ready is None:
         return 1
     machine_of = _cpp_machine(ready.image, robot) if options.machine == "cpp" else None
-    events = begun(ready.image, robot, lists, max_ms, max_steps, seed, machine_of)
+    begins = begun(ready.image, robot, lists, max_ms, max_steps, seed, machine_of)
+    read: set[int] = set()
+    events = _noting(begins, read)
     if options.show and sys.stderr.isatty():
         from tiniscript.cli.terminal.run_drawing import watch
 
         ending = watch(events, robot, pace / 1000, language)
     else:
         ending = _print(events)
+    sys.stdout.flush()
+    for sensor in sorted(read.difference(lists)):
+        device = robot.kit.sensors[sensor]
+        values = {"sensor": device.name, "zero": device.text(0), "readings": _readings(device)}
+        say_aside("read_nothing", language, **values)
     if ending.what != "FAULT":
         return 0
-    sys.stdout.flush()
     said = fault_text(ending.fault, ending.offset, ready.places, given.is_image, language)
     print(said, file=sys.stderr)
     return 1
@@ -61,9 +68,25 @@ def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
         raise not_installed("no_wasmtime", why) from None
 
 
-def _print(events: object) -> Ending:
+def _noting(events: Iterator[Event | Ending], read: set[int]) -> Iterator[Event | Ending]:
+    """Yield the events of a run, and note the numbers of the sensors that it reads."""
+    for event in events:
+        if isinstance(event, Event) and event.what == "READ":
+            read.add(event.values[0])
+        yield event
+
+
+def _readings(device: Device) -> str:
+    """Return two readings of a sensor, for an example."""
+    if device.is_yes_no:
+        return "FALSE,TRUE"
+    values = (max(device.low, device.high // part) for part in (8, 44))
+    return ",".join(device.text(value // 1000 * 1000 or value // 100 * 100) for value in values)
+
+
+def _print(events: Iterator[Event | Ending]) -> Ending:
     write = sys.stdout.write
-    for event in cast("Iterator[Event | Ending]", events):
+    for event in events:
         if isinstance(event, Ending):
             return event
         write(f"{event}\n")

@@ -51,9 +51,11 @@ def _upload(
     if not runs or options.detach:
         key = "how_waits" if not runs else "how_detached"
         printer.end = text(key, language).format(start=ready.image.start)
-    said = text("crew_uploaded", language).format(
-        checksum=receipt["checksum"], code=receipt["code_bytes"], how=printer.end
-    )
+    said = printer.end
+    if options.verbose:
+        said = text("crew_uploaded", language).format(
+            checksum=receipt["checksum"], code=receipt["code_bytes"], how=said
+        )
     return Result(code == 0, said, {"checksum": receipt["checksum"]})
 
 

@@ -160,7 +160,9 @@ class Saving:
             return
         if self._robots.saved == SAVED_STORED:
             slot = reply.values.slot
-            said = text("now_saved", language).format(slot=slot)
+            is_verbose = getattr(self.connection.options, "verbose", False)
+            key = "now_saved_slot" if is_verbose else "now_saved"
+            said = text(key, language).format(slot=slot)
             self.printer.say(0, "SAVED", str(slot), said, slot=slot)
         elif self._robots.saved == SAVED_LOW_SUPPLY and not was_low and is_running:
             self.printer.say(0, "LOW_SUPPLY", "", text("low_supply", language), is_bad=True)

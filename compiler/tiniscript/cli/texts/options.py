@@ -190,6 +190,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--no-save", "upload class"),
     Option("--detach", "upload start class"),
     Option("--record", "upload", RECORDING, A_FILE),
+    Option("--verbose", "upload class"),
     Option("--ask", "ports"),
     Option("--count", "ping", NUMBER, N),
     Option("--plot", "monitor"),
