@@ -206,6 +206,30 @@ def test_a_device_describes_itself_without_them(sign: str, monkeypatch: pytest.M
     assert is_harmless(found.description) and found.description.startswith("Arduino")
 
 
+@each_row(
+    "device, description, said",
+    [
+        ("/dev/ttyS0", "n/a", "a port of this computer itself"),
+        ("/dev/ttyAMA10", "n/a", "a port of this computer itself"),
+        ("/dev/ttyS0", "PCI card", "PCI card"),
+        ("/dev/ttyUSB0", "n/a", ""),
+        ("/dev/ttySAC0", "n/a", ""),
+    ],
+)
+def test_a_port_without_a_robot_says_what_it_is(
+    device: str, description: str, said: str, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Port:
+        pass
+
+    Port.device, Port.description = device, description  # type: ignore[attr-defined]
+    monkeypatch.setattr("serial.tools.list_ports.comports", lambda: [Port()])
+    (row,) = [each for each in tsc("ports").out.splitlines() if device in each]
+    assert (said in row) if said else row == device
+    (found,) = json.loads(tsc("ports", "--json").out)
+    assert found["description"].startswith(said)
+
+
 def told(text: str, is_json: bool) -> tuple[str, str]:
     """Return what is printed of a robot's text, and its row."""
     said: list[str] = []

@@ -22,6 +22,11 @@ def is_address(port: str) -> bool:
     return "://" in port
 
 
+def is_built_in(port: str) -> bool:
+    """Return whether a port is one that a computer with Linux has without any cable."""
+    return re.fullmatch(r"/dev/tty(S|AMA)\d+", port) is not None
+
+
 def is_bluetooth(port: str) -> bool:
     """Return whether a port is reached by Bluetooth LE."""
     return port[: len(BLE)].lower() == BLE

@@ -11,7 +11,7 @@ from contextlib import closing
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import about_virtual, baud_of, opened_client
+from tiniscript.cli.robot.connect import about_port, about_virtual, baud_of, opened_client
 from tiniscript.cli.robot.in_reach import AT_ONCE, InReach, alive, found
 from tiniscript.cli.texts import say, text
 from tiniscript.library import opening
@@ -60,7 +60,7 @@ def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str
     """Return the ports that the system lists, those in reach, and others that had a robot."""
     known = known_ports.known()
     virtual = {each.address: each for each in directory.running()}
-    about = {each.port: each.description for each in ports.listed()}
+    about = {each.port: about_port(each, language) for each in ports.listed()}
     about |= in_reach.about
     held = {registration.port: registration.verb for registration in alive()}
     names = [options.port] if options.port is not None else list(about)

@@ -31,7 +31,7 @@ from tiniscript.link.connection import PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
 from tiniscript.link.outcomes import ConnectionLost, Event
-from tiniscript.link.port_names import is_address
+from tiniscript.link.port_names import is_address, is_built_in
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.statuses import sentence
 from tiniscript.robots import given
@@ -41,6 +41,7 @@ from tiniscript.virtual.directory import is_gone
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.simulator import CommandSimulator
+    from tiniscript.link.ports import Found
 
 T = TypeVar("T")
 
@@ -315,6 +316,12 @@ def _chosen(options: Namespace, language: str) -> str:
     return _asked(language, can_bring, virtual)
 
 
+def about_port(found: Found, language: str) -> str:
+    """Return the description of a port; of a built-in one the system has none."""
+    is_told = bool(found.description) or not is_built_in(found.port)
+    return found.description if is_told else text("port_built_in", language)
+
+
 def about_virtual(running: directory.Running, language: str) -> str:
     """Return the description of a virtual robot; a shipped world has a name in each language."""
     from tiniscript.virtual import worlds
@@ -343,7 +350,7 @@ def _asked(language: str, can_bring: bool, virtual: list[directory.Running]) -> 
             if offered(language):
                 return VIRTUAL
         raise CommandError(3, "no_ports")
-    about = {each.port: each.description for each in found}
+    about = {each.port: about_port(each, language) for each in found}
     about |= {each.address: about_virtual(each, language) for each in virtual}
     say_aside("choose_port", language)
     for number, port in enumerate(choices, 1):
