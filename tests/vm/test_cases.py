@@ -15,6 +15,7 @@ from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli.options import decimal
 from tiniscript.codegen.text.line import line_of, plain_code
 from tiniscript.diagnostics.rendering import as_text, message
+from tiniscript.library.named_robot import name_in
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.formatter import formatted
 
@@ -24,7 +25,8 @@ CASES = all_cases()
 def robot_and_senses(case: Case) -> tuple[Robot, Senses]:
     """Return what the fence `senses` says: `robot`, `max-time`, `seed`, and a list a sensor."""
     readings: dict[str, list[int]] = {}
-    options = {"robot": robots.DEFAULT, "max-time": "60", "seed": "1"}
+    named = name_in(case.parts.get("tiniscript", "").encode())
+    options = {"robot": named or robots.DEFAULT, "max-time": "60", "seed": "1"}
     for row in case.parts.get("senses", "").splitlines():
         name, _, values = (part.strip() for part in row.partition("="))
         if name in options:

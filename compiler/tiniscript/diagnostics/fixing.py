@@ -6,10 +6,10 @@ guess a name, and with it the program has fewer mistakes. All others are left to
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence, Set
 from typing import NamedTuple
 
-from tiniscript.base.source import Edit, Source, applied, overlap
+from tiniscript.base.source import Edit, Source, Span, applied, overlap
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 
@@ -116,6 +116,115 @@ def _lacks(after: Sequence[Diagnostic], code: Code, found: Sequence[Diagnostic])
     """Whether there is one warning fewer of this kind, and no mistake more."""
     before, left = (sum(each.code is code for each in every) for every in (found, after))
     return left < before and _mistakes(after) <= _mistakes(found)
+
+
+def without_wrong(found: Sequence[Diagnostic], text: str, check: Check) -> list[Diagnostic]:
+    """Return diagnostics without what they offer where that is itself wrong.
+
+    It may be right only together with what others offer, as the header of a block and its end, and
+    another mistake in it may be told as well. In a long text what is told last is not looked at.
+    """
+    left = min(CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
+    told = list(found)
+    for _ in _WRITTEN:
+        offers = [edits_of(each) or [] if each.is_mistake else [] for each in told]
+        joined: list[Edit] = []
+        for edits in offers:
+            joined += edits if not overlap(edits, joined) else []
+        in_all = _InPlace(text, joined, check)
+        suspects = [
+            k for k, edits in enumerate(offers)
+            if told[k].is_mistake and (edits or told[k].values.get("fix"))
+            and not (edits and set(edits) <= set(joined) and in_all.is_right(told[k], edits))
+        ]  # fmt: skip
+        lines: dict[tuple[Code, str], bool] = {}  # of those that name no changes: each once
+        for k in suspects[:left]:
+            others = _told_as_well(told, offers, k, text)
+            line = told[k].code, told[k].values.get("fix", "")
+            if offers[k] or line not in lines:
+                lines[line] = any(
+                    _InPlace(text, edits, check).is_right(told[k], edits, others)
+                    for edits in ([offers[k]] if offers[k] else _shown(told[k], text))
+                )
+            if not lines[line]:
+                told[k] = _without_offer(told[k])
+        left -= len(suspects)
+        if not suspects:
+            break
+    return told
+
+
+def _told_as_well(
+    told: Sequence[Diagnostic], offers: Sequence[list[Edit]], k: int, text: str
+) -> set[str]:
+    """Return codes and words of mistakes that may be in what the diagnostic `k` offers."""
+    others = set() if offers[k] else {codes.NEVER_ENDS.number}  # a header is shown without its end
+    for it, edits in zip(told, offers, strict=True):
+        if it is not told[k]:
+            others |= {text[slice(*it.span)].upper()} - {""}
+            if overlap(edits, offers[k]):
+                others |= {it.code.number, codes.WRONG_END.number}  # their ends are in one place
+            elif it.is_mistake and not edits and it.span.start < told[k].span.start:
+                others.add(codes.NOT_OPEN.number)  # its header may be what nobody can read
+    return others
+
+
+def _shown(diagnostic: Diagnostic, text: str) -> Iterator[list[Edit]]:
+    """Yield how a message may mean what it shows, where it names no changes.
+
+    In its place, in place of its line, or of all.
+    """
+    fix, span = diagnostic.values["fix"], diagnostic.place or diagnostic.span
+    yield [Edit(span, fix)]
+    begin = text.rfind("\n", 0, span.start) + 1
+    end = text.find("\n", span.end)
+    yield [Edit(Span(begin, end if end >= 0 else len(text)), fix)]
+    yield [Edit(Span(0, len(text)), fix)]
+
+
+class _InPlace:
+    """A text with changes, and the mistakes that it has then."""
+
+    def __init__(self, text: str, edits: Sequence[Edit], check: Check) -> None:
+        self.edits = sorted(edits)
+        self.text = applied(text, edits)
+        self.mistakes = [each for each in check(self.text) if each.is_mistake]
+
+    def is_right(
+        self, diagnostic: Diagnostic, its: Sequence[Edit], others: Set[str] = frozenset()
+    ) -> bool:
+        """Whether no mistake begins in what is offered, but of a code or a word of `others`."""
+        shift, shown = 0, []
+        for edit in self.edits:
+            start = edit.span.start + shift
+            shown += [Span(start, start + len(edit.text))] if edit in its else []
+            shift += len(edit.text) - (edit.span.end - edit.span.start)
+        said = next(filter(None, map(diagnostic.values.get, _WRITTEN)), "")
+        begin = self.text.find(said, max(0, shown[0].start - len(said)))
+        if begin in range(shown[-1].end):
+            shown.append(Span(begin, begin + len(said)))
+        return all(
+            each.code.number in others or self._begins_in(others, each.span.start)
+            for each in self.mistakes
+            if any(start <= each.span.start < end for start, end in shown)
+        )
+
+    def _begins_in(self, words: Set[str], place: int) -> bool:
+        """Whether a place of the changed text is in one of these words of the text before."""
+        text = self.text.upper()
+        return any(0 <= text.find(word, max(0, place - len(word) + 1)) <= place for word in words)
+
+
+def _without_offer(diagnostic: Diagnostic) -> Diagnostic:
+    """Return a diagnostic without the changes that it asks for, and without the words for them."""
+    gaps = ("fix", "right") if diagnostic.repair else _GAPS.get(diagnostic.code, ("fix",))
+    said = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
+    gone = [said, "whole", "line", "lines", "times"]
+    gone += ["right"] if diagnostic.code is codes.BRACES else []
+    values = {gap: value for gap, value in diagnostic.values.items() if gap not in gone}
+    if said == "near":
+        values["meant"] = diagnostic.values["near"]  # what is asked may lead further
+    return diagnostic._replace(values=values, repair=None)
 
 
 def is_better(

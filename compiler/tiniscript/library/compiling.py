@@ -61,6 +61,7 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
 
 def _with_findings(found: Compiled, kit: Kit) -> Compiled:
     """Return a wrong program with what is told of it."""
+    from tiniscript.diagnostics.fixing import without_wrong
     from tiniscript.recovery.dedupe import dedupe
     from tiniscript.recovery.findings import findings, moved_back
     from tiniscript.recovery.usage import with_usage
@@ -80,7 +81,9 @@ def _with_findings(found: Compiled, kit: Kit) -> Compiled:
             told = [*told, *(moved_back(each, edits, it.source) for each in left)]
         return it._replace(diagnostics=dedupe(told, it.source))
 
-    return told_of(found, ROUNDS)
+    told = told_of(found, ROUNDS)
+    honest = without_wrong(told.diagnostics, told.source.text, lambda to: read(to).diagnostics)
+    return told._replace(diagnostics=honest)
 
 
 def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:

@@ -1,0 +1,115 @@
+"""What a message offers is right: every edit, and every line that it shows, compiles.
+
+The law is stated here once more, without the code that keeps it: what is put into a program has no
+mistake, but one of which another message tells.
+"""
+
+from __future__ import annotations
+
+from itertools import accumulate
+from random import Random
+
+import pytest
+
+from tests.pupils.corpus import check, entries
+from tests.support.rows import each_row
+from tiniscript.base.source import Edit, Span, applied, overlap
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.fixing import edits_of
+
+SAID = ("fix", "right", "near")  # what a message shows of the changed program
+PIECES = ["SI|", "WAIT", "UNTIL", "BUTTON", "F", "(2, 80)", "IF", "DISTANCE < 10", "ENDIF", "x = 5",
+          "espera", "hasta", "LOOP", "4", "END_LOOP", "(", ")", ";", "\n"]  # fmt: skip
+OF_BLOCKS = {code.number for code in (codes.NEVER_ENDS, codes.NOT_OPEN, codes.WRONG_END)}
+
+
+def put_in(edits: list[Edit]) -> list[Span]:
+    """Return where the texts of changes are in the changed program."""
+    ordered = sorted(edits)
+    grown = [len(edit.text) - (edit.span.end - edit.span.start) for edit in ordered]
+    starts = [each.span.start + shift for each, shift in
+              zip(ordered, accumulate(grown, initial=0), strict=False)]  # fmt: skip
+    return [Span(at, at + len(edit.text)) for at, edit in zip(starts, ordered, strict=True)]
+
+
+def ways(diagnostic: Diagnostic, text: str) -> list[list[Edit]]:
+    """Return the changes that a message offers, or what the line may stand for that it shows."""
+    if edits := edits_of(diagnostic):
+        return [edits]
+    fix = diagnostic.values.get("fix", "")
+    start, end = diagnostic.place or diagnostic.span
+    row = Span(text.rfind("\n", 0, start) + 1, (text + "\n").find("\n", end))
+    spans = (Span(start, end), row, Span(0, len(text)))
+    return [[Edit(span, fix)] for span in spans] if fix else []
+
+
+def wrong_in(diagnostic: Diagnostic, text: str, edits: list[Edit], told: set[str]) -> list[str]:
+    """Return the codes of mistakes in what a message shows of the changed program."""
+    changed = applied(text, edits)
+    own = sorted(edits_of(diagnostic) or edits)
+    seen = [span for edit, span in zip(sorted(edits), put_in(edits), strict=True) if edit in own]
+    said = next((diagnostic.values[gap] for gap in SAID if diagnostic.values.get(gap)), "")
+    at = changed.find(said, max(0, seen[0].start - len(said))) if said else -1
+    if 0 <= at < seen[-1].end:
+        seen.append(Span(at, at + len(said)))
+    return [
+        each.code.number for each in check(changed)
+        if each.is_mistake and any(start <= each.span.start < end for start, end in seen)
+        and each.code.number not in told and not is_told(changed.upper(), each.span.start, told)
+    ]  # fmt: skip
+
+
+def is_told(changed: str, place: int, told: set[str]) -> bool:
+    """Whether a place is in words of which another message tells."""
+    return any(0 <= changed.find(word, max(0, place - len(word) + 1)) <= place for word in told)
+
+
+def offered_wrongly(text: str) -> list[str]:
+    """Return the codes of a program's messages that offer what is wrong."""
+    found = [each for each in check(text) if each.is_mistake]
+    together: list[Edit] = []
+    for each in found:
+        its = edits_of(each) or []
+        together += its if not overlap(its, together) else []
+    bad = []
+    for each in found:
+        others = [other for other in found if other is not each]
+        told = {text[slice(*other.span)].upper() for other in others} - {""}
+        told |= {other.code.number for other in others}
+        told |= OF_BLOCKS if others or not edits_of(each) else set()
+        tried = ways(each, text)
+        if set(edits_of(each) or ()) <= set(together) and edits_of(each):
+            tried.append(together)
+        if tried and all(wrong_in(each, text, edits, told) for edits in tried):
+            bad.append(each.code.number)
+    return bad
+
+
+def test_what_the_corpus_of_wrong_programs_is_offered_compiles() -> None:
+    texts = [entry.program for entry in entries()]
+    offers = sum(bool(ways(each, text)) for text in texts[::20] for each in check(text))
+    assert offers > 50
+    bad = {text: codes for text in texts if (codes := offered_wrongly(text))}
+    assert not bad, f"{len(bad)} of {len(texts)}, the first: {next(iter(bad.items()))}"
+
+
+@pytest.mark.sampled("seed")
+@pytest.mark.parametrize("seed", range(4))
+def test_what_is_put_together_at_random_is_offered_nothing_wrong(seed: int) -> None:
+    chance = Random(seed)
+    for _ in range(150):
+        text = " ".join(chance.choices(PIECES, k=chance.randint(2, 7)))
+        assert not offered_wrongly(text), text
+
+
+@each_row("text", ["SI|WAIT UNTIL BUTTON", "SI|W UNTIL BUTTON", "BREIK", "EXIT", "F(FOREVR, 60)"])
+def test_what_would_be_wrong_is_not_offered(text: str) -> None:
+    for each in check(text):
+        assert edits_of(each) is None
+        assert not each.values.get("fix")
+
+
+def test_a_word_that_is_near_is_still_named() -> None:
+    (found,) = check("BREIK")
+    assert found.values["meant"] == "BREAK" and "near" not in found.values
