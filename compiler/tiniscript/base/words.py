@@ -134,6 +134,10 @@ BLOCK_ENDS = {
 }
 # Names and signs, in the order of their numbers in instructions.
 COMPARATORS = ("EQ", "="), ("NE", "<>"), ("LT", "<"), ("LE", "<="), ("GT", ">"), ("GE", ">=")
+# Words that are younger than 0.2: a program of then may use one as a name.
+SINCE = dict.fromkeys(
+    ("CM", "DEG", "TASK", "WHEN", "END_TASK", "END_WHEN", "ENDTASK", "ENDWHEN"), "0.3"
+)
 TASKS = ("TASK", "WHEN")  # blocks that run beside the rest of the program
 
 OTHER_WAY = {"F": "B", "B": "F", "L": "R", "R": "L"}  # the moves, and those that undo them

@@ -221,7 +221,7 @@ def _without_offer(diagnostic: Diagnostic) -> Diagnostic:
     said = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
     gone = [said, "whole", "line", "lines", "times"]
     gone += ["right"] if diagnostic.code is codes.BRACES else []
-    values = {gap: value for gap, value in diagnostic.values.items() if gap not in gone}
+    values = {gap: "" if gap in gone else value for gap, value in diagnostic.values.items()}
     if said == "near":
         values["meant"] = diagnostic.values["near"]  # what is asked may lead further
     return diagnostic._replace(values=values, repair=None)

@@ -12,7 +12,7 @@ from itertools import pairwise, takewhile
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import ALIASES, BLOCK_ENDS, QUESTION, WORDS, nearest, said_instead
+from tiniscript.base.words import ALIASES, BLOCK_ENDS, QUESTION, SINCE, WORDS, nearest, said_instead
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
@@ -22,7 +22,7 @@ from tiniscript.recovery.orders import block, made_up, orders, written
 from tiniscript.recovery.trailing_tokens import ASKING
 from tiniscript.recovery.writing import laid_out, shortened, tokens_of, without_note
 from tiniscript.syntax.free_names import in_place_of
-from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
+from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD, scan
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
@@ -67,10 +67,13 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     if parts and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
         part = {"part": parts[0].values["part"]}
         told = [it._replace(values={**it.values, **part}) for it in told if it not in parts]
+    renamed = {edit.span for it in told if it.code is codes.RESERVED and it.repair
+               for edit in it.repair.edits[1:]}  # fmt: skip
     return [
         each
         for each in (*told, *found[_MANY:])
-        if (each.code is not codes.NO_VALUE or each.values.get("word") not in reserved)
+        if each.span not in renamed
+        and (each.code is not codes.NO_VALUE or each.values.get("word") not in reserved)
         and (each.code is not codes.UNIT_PLACE or text.piece(each.span) not in unknown)
         and not (has_no_ends and each.code in _OF_ENDS)
     ]
@@ -424,6 +427,8 @@ class _Usage:
         is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
         is_taught = re.search(r"(?i)\bDEF\s+$", text[max(0, start - 9) : start])
         right = in_place_of(text, word) if is_set or is_taught else ""
+        if right and word in SINCE:
+            return self.renamed(word, right)
         if is_set is None or word != "TIME":
             near = nearest(word, self.names.variables - {word}) if is_set else None
             return self.adds(right=near or right)  # `ROUND = ROUNDS + 1`
@@ -431,6 +436,23 @@ class _Usage:
         used = [str(self.source.position(place)[0]) for place in places]
         values = {"line" if len(used) == 1 else "lines": ", ".join(used)}
         return self.adds(**{"right" if is_set[1] else "clock": right}, **values)
+
+    def renamed(self, word: str, right: str) -> Diagnostic:
+        """A name that has become a word: the other one in each place where it was no unit."""
+        tokens = scan(self.source.text).tokens
+        spans = [
+            token.span for k, token in enumerate(tokens)
+            if token.text == word and (k == 0 or tokens[k - 1].kind not in (NUMBER, ")"))
+        ]  # fmt: skip
+        rows = [str(self.source.position(each.start)[0]) for each in spans]
+        others = list(dict.fromkeys(rows))[1:]
+        repair = Repair(tuple(Edit(span, right) for span in spans), False)
+        values = {
+            "word": word, "since": SINCE[word], "right": right, "line": "".join(others[:1]),
+            "lines": ", ".join(others) if len(others) > 1 else "",
+            "times": str(len(rows)) if len(rows) > 1 and not others else "",
+        }  # fmt: skip
+        return Diagnostic(codes.RESERVED, self.found.span, values, None, repair)
 
     def no_order(self) -> Diagnostic | None:
         is_note = self.source.text.startswith("/*", self.found.span.start)
