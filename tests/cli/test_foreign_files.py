@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import os
+import stat
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from tests.support.command import Tsc, inside
+from tests.support.command import TSC, Tsc, inside
 from tests.support.pty_robot import PtyRobot, on
+from tests.support.rows import each_row
+from tests.support.waiting import HANGS_S
 from tiniscript.cli.paths import is_foreign
 
 PROGRAM = "SI|F(0.1, 50)"
@@ -73,6 +78,50 @@ def test_the_image_that_nobody_names_spares_a_foreign_file(tsc: Tsc, tmp_path: P
     assert beside.read_bytes() == b"a firmware of something else"
     beside.unlink()
     assert tsc("compile", program).code == tsc("compile", program).code == 0
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such pipes")
+@each_row(
+    "words",
+    [
+        ["check", "{pipe}.ts"], ["run", "{pipe}.ts"], ["compile", "{pipe}.ts", "-o", "-"],
+        ["fmt", "--check", "{pipe}.ts"], ["show", "{pipe}.ts"],
+        ["upload", "{pipe}.ts", "--virtual"], ["check", "-e", "S", "--robot", "{pipe}.toml"],
+        ["upload", "-e", "S", "--virtual", "--world", "{pipe}.toml"],
+        ["robot", "--memory", "{pipe}"], ["lesson", "check", "1", "{pipe}.ts"],
+        ["lesson", "show", "{lesson}"], ["run", "-e", "S", "--replay", "{pipe}"],
+    ],
+)  # fmt: skip
+def test_a_pipe_in_a_folder_is_no_file(words: list[str], tmp_path: Path) -> None:
+    """Nobody writes into it: whoever opens it waits for ever."""
+    for name in ("pipe", "pipe.ts", "pipe.toml", "lesson.toml"):
+        (tmp_path / name).unlink(missing_ok=True)
+        os.mkfifo(tmp_path / name)
+    given = [each.format(pipe=tmp_path / "pipe", lesson=tmp_path) for each in words]
+    done = subprocess.run([*TSC, *given], capture_output=True, text=True, timeout=HANGS_S)
+    assert (done.returncode == 2 and done.stderr.startswith("tsc: ")) or "cannot" in done.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/fd").is_dir(), reason="this system has no /dev/fd")
+def test_a_pipe_of_the_shell_is_read() -> None:
+    line = f"{sys.executable} -m tiniscript check <(echo 'SI|S')"
+    done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, timeout=HANGS_S)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has other permissions")
+def test_nobody_else_reads_the_programs_in_the_cache(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    maps = tmp_path / "tiniscript" / "maps"
+    maps.mkdir(parents=True)
+    maps.chmod(0o755)  # of an older tsc
+    (tmp_path / "p.ts").write_text("SI|S // mine")
+    assert inside("compile", tmp_path / "p.ts").code == 0
+    (kept,) = maps.iterdir()
+    assert "mine" in kept.read_text()
+    assert [stat.S_IMODE(each.stat().st_mode) for each in (maps, kept)] == [0o700, 0o600]
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such pipes")

@@ -28,6 +28,7 @@ NAME_CHARACTERS = 100  # of a file's name in that of its new one
 LOCK = ".lock"  # the end of the name of a file that commands lock while they change another one
 LOCK_S = 5.0  # for which a command waits for another one
 OPEN_S = 1.0  # for which a file may be open elsewhere until it cannot be replaced on Windows
+OWN = 0o700  # a folder that only its user may look into
 ABANDONED_S = 3600.0  # a new file that is older has lost its command
 
 
@@ -103,10 +104,15 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
 
 
 def keep(path: Path, data: bytes) -> bool:
-    """Put data into a file of ours, in a folder of ours; return whether that was possible."""
+    """Put data into a file of ours, in a folder of ours; return whether that was possible.
+
+    They may have a person's programs: nobody else may read them, nor what an older tsc has kept.
+    """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        replace(path, data)
+        path.parent.mkdir(mode=OWN, parents=True, exist_ok=True)
+        if stat.S_IMODE(path.parent.stat().st_mode) & ~OWN and sys.platform != "win32":
+            path.parent.chmod(OWN)
+        replace(path, data, 0o600)
     except (OSError, ValueError):
         return False
     return True
@@ -207,6 +213,17 @@ def remove_abandoned(folder: Path, names: list[str], kept: tuple[str, ...] = (".
             with suppress(OSError):
                 if (folder / name).lstat().st_mtime < time() - ABANDONED_S:
                     (folder / name).unlink()
+
+
+def is_pipe(name: str) -> bool:
+    """Whether a name is that of a pipe in a folder, whose reader may wait for ever.
+
+    What a shell has opened, `<(tsc fetch)` and `/dev/stdin`, is in /dev, and has a writer.
+    """
+    try:
+        return not name.startswith("/dev/") and stat.S_ISFIFO(os.stat(name).st_mode)  # noqa: PTH116
+    except (OSError, ValueError):  # reading it says why
+        return False
 
 
 def contents(path: Path, limit_bytes: int) -> bytes:

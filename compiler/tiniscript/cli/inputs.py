@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript import robots
+from tiniscript.base.files import is_pipe
 from tiniscript.base.source import LARGEST_SOURCE, printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
@@ -70,6 +71,8 @@ def file(name: str, typed: str | None = None) -> Input:
 
         if is_device(name):
             raise CommandError(2, "file_missing", file=said)
+    if is_pipe(name):
+        raise CommandError(2, "file_no_file", file=said)
     try:
         with path.open("rb") as opened:
             return Input(name, opened.read(LARGEST_SOURCE + 1), path)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os.path
 from pathlib import Path
 
+from tiniscript.base.files import is_pipe
 from tiniscript.base.words import nearest
 from tiniscript.robots.profile import ProfileRefused, Robot
 
@@ -66,6 +67,8 @@ def text_of(path: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
     from tiniscript.robots.refusals import shown
 
     values = {"file": shown(path)}
+    if is_pipe(path):
+        raise refused(("file_unreadable", values))
     try:
         with Path(path).open("rb") as file:
             found = file.read(FILE_BYTES + 1)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import signal
 import sys
 from argparse import Namespace
@@ -11,6 +13,7 @@ from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
+from tiniscript.base.files import is_pipe
 from tiniscript.base.trace import Event
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.commands.name import name_bytes
@@ -275,6 +278,8 @@ def _memory(name: str | None) -> bytes | None:
     """Return what a file has for a robot's memory; a missing file is that of a new robot."""
     if name is None:
         return None
+    if is_pipe(name):
+        raise CommandError(2, "unreadable_memory", file=shown(name), why=os.strerror(errno.ESPIPE))
     try:
         with Path(name).open("rb") as file:
             return file.read(MOST_BYTES)
