@@ -27,7 +27,8 @@ from tests.support.casefile import ROOT
 
 LIMIT_S = 60  # processor time
 TROUBLE = 2  # exit code of a child whose test was not run
-PASSES, FAILS = "passes", "fails"
+SKIPPED = 3  # that of one whose test lacks something on this computer
+PASSES, FAILS, SKIPS = "passes", "fails", "skips"
 Pair = tuple[CodeType, CodeType]
 
 
@@ -44,7 +45,7 @@ class Elsewhere(Exception):
 
 
 def answers(tries: Sequence[Try], folder: Path) -> list[str]:
-    """Say of each that its test FAILS or PASSES, or why that cannot be said here.
+    """Say of each that its test FAILS, PASSES or SKIPS, or why that cannot be said here.
 
     `folder` is a copy of the repository. There the tests of Python, which are quick, must pass
     without a mistake.
@@ -73,7 +74,7 @@ class Plugin:
         ]
         quick = [item for each, row in zip(self.tries, found, strict=True) for item in row
                  if each.file.endswith(".py")]  # fmt: skip
-        assert _in_child(quick, lambda: None) == PASSES, "they fail without a mutant, too"
+        assert _in_child(quick, lambda: None) != FAILS, "they fail without a mutant, too"
         self.answers += map(_tried, self.tries, found)
         return True
 
@@ -102,8 +103,11 @@ def _in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> str:
             os.setsid()
             resource.setrlimit(resource.RLIMIT_CPU, (LIMIT_S, LIMIT_S))
             begin()
-            reports = (runtestprotocol(item, log=False, nextitem=None) for item in items)
-            code = int(any(each.failed for row in reports for each in row if each.when == "call"))
+            rows = [runtestprotocol(item, log=False, nextitem=None) for item in items]
+            reports = [each for row in rows for each in row]
+            code = int(any(each.failed for each in reports if each.when == "call"))
+            if not code and any(each.skipped for each in reports):
+                code = SKIPPED
         finally:
             os._exit(code)
     _, status = os.waitpid(child, 0)
@@ -111,7 +115,7 @@ def _in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> str:
         os.killpg(child, signal.SIGKILL)  # what its tests have started
     code = os.waitstatus_to_exitcode(status)
     assert code != TROUBLE
-    return FAILS if code else PASSES
+    return {0: PASSES, SKIPPED: SKIPS}.get(code, FAILS)
 
 
 def _exchange(each: Try) -> Callable[[], None]:

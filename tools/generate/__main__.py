@@ -48,7 +48,12 @@ def main(arguments: list[str] | None = None) -> int:
     stale = 0
     for path, make in OUTPUTS:
         name = path.relative_to(ROOT).as_posix()
-        text = make()
+        try:
+            text = make()
+        except FileNotFoundError as lacking:
+            file = Path(str(lacking.filename)).resolve()
+            lacks = file.relative_to(ROOT) if file.is_relative_to(ROOT) else file
+            sys.exit(f"{name} cannot be made: {lacks.as_posix()} is missing")
         if path.exists() and path.read_bytes() == text.encode():
             continue
         stale += 1
