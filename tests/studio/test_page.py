@@ -292,3 +292,21 @@ def test_numbers_of_json_stay_whole(page: Page) -> None:
     """Places of instructions come as lists of whole numbers."""
     (answer,) = checks(page, [{"text": "SI|F(2, 80)", "robot": "tinibot", "language": "en"}])
     assert json.dumps(answer["places"]) == "[[0, 1, 4, 1, 12]]"
+
+
+def test_a_program_that_names_its_robot_chooses_it(page: Page) -> None:
+    """And who chooses another one changes the name."""
+    page.select_option("#robot", "tinibot")
+    write(page, "// robot: liner\nSI|SHOW(LINE_L)\n")
+    checked(page)
+    assert page.input_value("#robot") == "liner"
+    assert image(page) == compile("// robot: liner\nSI|SHOW(LINE_L)\n").image
+    page.select_option("#robot", "grabber")
+    page.wait_for_selector("#editor :text('robot: grabber')")
+    checked(page)
+    assert page.input_value("#robot") == "grabber"
+    page.select_option("#robot", "tinibot")
+    page.wait_for_selector("#editor :text('robot: tinibot')")
+    write(page, "SI|S")
+    checked(page)
+    assert page.input_value("#robot") == "tinibot"
