@@ -106,6 +106,14 @@ class Esp32Robot(HostFirmware):
         found: tuple[int, int] = unpack("<HH", self.ask(b"K", pack("<I", len(changes)) + rows))
         return found
 
+    def hold_line(self, is_low: bool = True) -> None:
+        """Let the line of the cable go low for longer than a byte, or high again."""
+        self.ask(b"C", pack("<B", is_low))
+
+    def spoil_byte(self) -> None:
+        """Let the next byte of the cable have a framing error."""
+        self.ask(b"C", b"\2")
+
     def sonar(self, trigger: int, echo: int, distance_cm: float) -> None:
         """Let a sensor hear something at a distance, or nothing at 0."""
         self.ask(b"U", pack("<BBI", trigger, echo, round(distance_cm * US_PER_CM)))

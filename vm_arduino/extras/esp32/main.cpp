@@ -263,6 +263,13 @@ void answer_moved(RequestReader*, Writer* answer) {
   answer->u32(chip.rests);
 }
 
+// C: the line of the cable goes high (0) or low (1), or spoils the next byte (2).
+void answer_line(RequestReader* request, Writer*) {
+  const uint8_t what = request->u8();
+  if (what == 2) return spoil_byte();
+  hold_line(what == 1);
+}
+
 // X: a panic. What a stack that is not to be relied on would make is not simulated.
 void answer_panic(RequestReader*, Writer*) {
   simulated_panic();
@@ -285,6 +292,7 @@ const Answers answers = {
     {'U', answer_echo},
     {'O', answer_output},
     {'R', answer_radio},
+    {'C', answer_line},
     {'X', answer_panic},
     {'G', answer_sniffed},
     {'M', answer_moved},

@@ -13,6 +13,7 @@
 #ifdef CONFIG_IDF_TARGET_ESP32
 #include <driver/pcnt.h>
 #endif
+#include <driver/uart.h>
 #include <esp_rom_gpio.h>
 #include <esp_system.h>
 #include <esp_task_wdt.h>
@@ -27,6 +28,7 @@
 #include <soc/gpio_reg.h>
 #include <soc/gpio_sig_map.h>
 #include <soc/soc.h>
+#include <soc/uart_reg.h>
 
 #include <type_traits>
 #include <utility>
@@ -82,6 +84,8 @@ is_a(Serial.write(uint8_t{}), size_t);
 // ESP-IDF 4.4 and 5.1: driver/gpio.h, esp_rom_gpio.h, esp_system.h, esp_timer.h, nvs.h
 is_a(GPIO_OUT_W1TS_REG + GPIO_OUT_W1TC_REG + GPIO_FUNC0_OUT_SEL_CFG_REG > 0, bool);
 is_a(&gpio_get_level, int (*)(gpio_num_t));
+is_a(&uart_enable_intr_mask, esp_err_t (*)(uart_port_t, uint32_t));
+static_assert(UART_NUM_0 == 0 && UART_FRM_ERR_INT_ENA == 1 << 3, "an interrupt of a UART");
 #ifdef CONFIG_IDF_TARGET_ESP32
 // driver/pcnt.h, in 5.1 below deprecated
 is_a(&pcnt_unit_config, esp_err_t (*)(const pcnt_config_t*));

@@ -1,5 +1,6 @@
 #include "simulated_chip.h"
 
+#include <driver/uart.h>
 #include <esp_random.h>
 #include <esp_rom_gpio.h>
 #include <esp_task_wdt.h>
@@ -8,6 +9,7 @@
 #include <soc/gpio_reg.h>
 #include <soc/gpio_sig_map.h>
 #include <soc/soc.h>
+#include <soc/uart_reg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,6 +49,7 @@ constexpr uint64_t kSecondAdc = 0x00000e00f015;  // 0, 2, 4, 12 to 15, 25 to 27
 constexpr uint8_t kChannels = 16;
 constexpr uint8_t kMostBits = 20;
 constexpr uint64_t kClocks[] = {80000000, 1000000};
+constexpr uint8_t kReceivePin = 3;
 #else
 constexpr uint64_t kPins = 0x3c07ff;
 constexpr uint64_t kOutputs = kPins;
@@ -55,6 +58,7 @@ constexpr uint64_t kSecondAdc = 0x20;
 constexpr uint8_t kChannels = 6;
 constexpr uint8_t kMostBits = 14;
 constexpr uint64_t kClocks[] = {40000000};
+constexpr uint8_t kReceivePin = 20;
 #endif
 
 bool is_in(uint64_t pins, uint32_t pin) { return pin < 64 && (pins >> pin & 1) != 0; }
@@ -505,6 +509,28 @@ esp_err_t nvs_commit(nvs_handle_t) { return ESP_OK; }
 
 void HardwareSerial::begin(unsigned long, uint32_t, int8_t, int8_t, bool, unsigned long, uint8_t) {
   chip.has_uart = true;
+  chip.pins[kReceivePin].has_pull_up = true;
+  if (!chip.is_line_held) chip.pins[kReceivePin].input = true;
+}
+
+// Of errors the driver tells breaks alone, until it is asked for others.
+esp_err_t uart_enable_intr_mask(uart_port_t, uint32_t enable_mask) {
+  expect(chip.has_uart, "an interrupt of a driver that is not installed");
+  if ((enable_mask & UART_FRM_ERR_INT_ENA) != 0) chip.tells_framing = true;
+  return ESP_OK;
+}
+
+void hold_line(bool is_low) {
+  chip.is_line_held = is_low;
+  chip.pins[kReceivePin].input = !is_low;
+  if (!is_low || !chip.has_uart) return;
+  chip.received += '\0';
+  if (on_error && chip.tells_framing) on_error(UART_FRAME_ERROR);
+  if (on_error) on_error(UART_BREAK_ERROR);
+}
+
+void spoil_byte() {
+  if (on_error && chip.tells_framing) on_error(UART_FRAME_ERROR);
 }
 
 void HardwareSerial::onReceiveError(OnReceiveErrorCb function) { on_error = function; }

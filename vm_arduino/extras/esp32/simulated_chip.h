@@ -51,6 +51,8 @@ struct SimulatedChip {
   size_t send_room = 0;  // behind the UART's own 128 bytes
   size_t sending = 0;    // bytes that the UART has still to send
   bool has_uart = false;
+  bool tells_framing = false;
+  bool is_line_held = false;  // low
 
   std::map<std::string, std::string> entries;  // of NVS
   uint32_t nvs_writes = 0;
@@ -94,6 +96,14 @@ void pass_us(uint64_t us);
 uint8_t output_of(uint8_t pin);
 
 void set_input(uint8_t pin, bool level);
+
+// The line of the cable goes low for longer than a byte, or high again: of a break, however long, the
+// UART makes one byte 0, and its driver tells it once.
+void hold_line(bool is_low);
+
+// The next byte that arrives has a framing error: the driver tells it before it hands the byte over,
+// and not which it is.
+void spoil_byte();
 
 // What the sketch does in a panic, before anything is printed.
 extern "C" void simulated_panic();

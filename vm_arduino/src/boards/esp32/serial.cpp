@@ -1,17 +1,22 @@
 // The link over USB: UART 0, behind the USB chip of the board.
 //
 // The driver of the core takes bytes in its interrupt, and the main loop hands them to the firmware
-// in each turn, with those of the radios. A break comes as a byte 0. Where a board has no USB chip,
-// `Serial` may be the USB of an ESP32-C3 itself.
+// in each turn, with those of the radios. A break, however long, comes as one byte 0, and is told
+// once: what the line does then only its pin says. Where a board has no USB chip, `Serial` may be the
+// USB of an ESP32-C3 itself.
 
 #ifdef ARDUINO_ARCH_ESP32
 
 #include <Arduino.h>
+#include <driver/uart.h>
+#include <soc/uart_reg.h>
 
 #include "../../firmware/firmware.h"
+#include "../kit.h"
 #include "../uart.h"
 #include "attention.h"
 #include "clock.h"
+#include "pins.h"
 #include "radio.h"
 
 namespace tiniscript {
@@ -20,14 +25,38 @@ namespace {
 
 constexpr size_t kRoomBytes = 1280;  // what a computer may have under way, and more
 
+#ifdef CONFIG_IDF_TARGET_ESP32C3
+constexpr Pin kReceive = {20};
+#else
+constexpr Pin kReceive = {3};
+#endif
+
+// A byte under way is over after so many milliseconds. A line that is low in all of them, with no byte
+// received, is held low.
+constexpr uint8_t kHeldMs = static_cast<uint8_t>(10000 / kBaud + 3);
+
+// The driver hands a byte over before so many, and tells of its framing error at once.
+constexpr uint8_t kFifoMs = static_cast<uint8_t>(128 * 10000 / kBaud + 1);
+
 // The core's task counts, the main loop reads.
-volatile uint8_t framing;
+volatile uint8_t framing;  // errors, and breaks
+volatile uint8_t spoiled;  // bytes with an error
 volatile uint8_t overrun;
+
+// The main loop's.
+uint8_t zeroed;      // of the spoiled bytes, those that have counted as a zero
+uint8_t waited_ms;   // for the first of the others
+uint8_t watched;     // errors before the line was last seen high
+uint8_t low_ms;      // since then, behind an error and without a byte
+bool was_high;       // since the reset or since the line was last held low; else it has no sender
 
 void on_error(hardwareSerial_error_t error) {
   switch (error) {
-    case UART_BREAK_ERROR:
     case UART_FRAME_ERROR:
+      spoiled = static_cast<uint8_t>(spoiled + 1);
+      framing = static_cast<uint8_t>(framing + 1);
+      return;
+    case UART_BREAK_ERROR:
       framing = static_cast<uint8_t>(framing + 1);
       return;
     case UART_BUFFER_FULL_ERROR:
@@ -41,29 +70,70 @@ void on_error(hardwareSerial_error_t error) {
 
 // What is sent waits in its FIFO alone. Behind a ring the core would always say that there is room,
 // and a byte without room would make the main loop wait.
-inline void begin_port(HardwareSerial& port) { port.onReceiveError(on_error); }
+// The driver tells no framing errors but breaks, until it is asked.
+inline void begin_port(HardwareSerial& port, uint32_t baud) {
+  port.onReceiveError(on_error);
+  port.begin(baud);
+  uart_enable_intr_mask(UART_NUM_0, UART_FRM_ERR_INT_ENA);
+}
 
 // The chip's own USB: it knows no errors of a line, and must not wait where nobody reads.
 template <class Port>
-void begin_port(Port& port) {
+void begin_port(Port& port, uint32_t baud) {
   port.setTxBufferSize(kRoomBytes);
   port.setTxTimeoutMs(0);
+  port.begin(baud);
+}
+
+void take(uint8_t byte) {
+  firmware_on_rx_byte(Transport::kCable, byte, static_cast<uint16_t>(millis()));
+}
+
+// Each spoiled byte counts as a zero. Which byte it is the driver does not say: the zero comes behind
+// the first one that follows, so that nothing of a line or frame with an error in it is done.
+void take_zeros() {
+  waited_ms = 0;
+  for (; zeroed != spoiled; zeroed = static_cast<uint8_t>(zeroed + 1)) take(0);
+}
+
+// Every turn: a line with bytes on it is high in some of them.
+void note_high() {
+  if (!is_high(kReceive)) return;
+  was_high = true;
+  watched = framing;
+  low_ms = 0;
+}
+
+// Every millisecond. A line that is held low counts as zeros until these are a stop.
+void look_at_line() {
+  if (!was_high || framing == watched || is_high(kReceive)) return;
+  low_ms = static_cast<uint8_t>(low_ms + 1);
+  if (low_ms <= kHeldMs) return;
+  take(0);
+  if (low_ms == kHeldMs + kStopRun) was_high = false;
 }
 
 }  // namespace
 
 void uart_begin(uint32_t baud) {
   Serial.setRxBufferSize(kRoomBytes);
-  begin_port(Serial);
-  Serial.begin(baud);
+  begin_port(Serial, baud);
 }
 
-void uart_tick() { radio_tick(); }
+void uart_tick() {
+  if (zeroed != spoiled && waited_ms++ == kFifoMs) take_zeros();
+  look_at_line();
+  radio_tick();
+}
 
 void pay_attention() {
+  note_high();
   for (int left = Serial.available(); left > 0; left--) {
-    firmware_on_rx_byte(Transport::kCable, static_cast<uint8_t>(Serial.read()),
-                        static_cast<uint16_t>(millis()));
+    const uint8_t byte = static_cast<uint8_t>(Serial.read());
+    low_ms = 0;
+    take(byte);
+    if (byte == 0 && zeroed != spoiled) zeroed = static_cast<uint8_t>(zeroed + 1);  // it is one
+    take_zeros();
   }
   radio_attend();
 }

@@ -1,0 +1,123 @@
+"""A bad line to a robot with an ESP32: a line that stays low stops it, as on an Uno.
+
+Of a break, however long, the UART of this chip makes one byte 0, and its driver tells it once.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.firmware.test_esp32_transports import Ends, booted, ended
+from tests.firmware.test_host_firmware import happened
+from tests.machines.esp32 import Esp32Robot
+from tests.support.esp32_radio import session, talk
+from tests.support.images import image_of
+
+NAMES = ["tinibot32", "tinibotc3"]
+FORWARD, OFF = "MOTORS 80 80", "MOTORS 0 0"
+FIFO_MS = 12  # until the driver has handed over what the chip has received
+
+
+def typed(robot: Esp32Robot, line: bytes = b"F(60, 80)\r\n") -> Esp32Robot:
+    """Let a robot do what needs no computer."""
+    robot.step(line)
+    robot.wait(200)
+    return robot
+
+
+def framing(robot: Esp32Robot) -> int:
+    client = session(9, robot)
+    status = client.status()
+    assert ended(robot, [(None, client)], status) == "OK" and status.outcome
+    return status.outcome.values.framing
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(name: str) -> None:
+    robot = typed(booted(name))
+    assert happened(robot) == [FORWARD]
+    robot.hold_line()
+    robot.wait(10)
+    assert happened(robot) == [FORWARD, OFF]
+    robot.wait(3000)
+    for _ in range(3):
+        robot.hold_line(False)
+        robot.wait(1200)
+        typed(robot, b"SI|F(60, 80)\r\n")
+        assert happened(robot)[-1] == FORWARD, "a line that is high again has a sender"
+        robot.hold_line()
+        robot.wait(10)
+        assert happened(robot)[-1] == OFF
+    robot.hold_line(False)
+    robot.wait(1200)
+    assert framing(robot) >= 4
+
+
+def test_a_line_that_stays_low_has_no_sender() -> None:
+    """A cable that was pulled out stays as it is, and the robot has its button."""
+    robot = booted()
+    client = session(1, robot)
+    ends: Ends = [(None, client)]
+    upload = client.upload(image_of("SB|F(60, 80)"))
+    assert ended(robot, ends, upload) == "OK"
+    talk(robot, ends, 2000)
+    robot.hold_line()
+    robot.wait(1500)
+    robot.push()
+    robot.wait(3000)
+    assert happened(robot)[-1] == FORWARD
+    robot.push()
+    dead = Esp32Robot(kept=robot.kept())
+    dead.hold_line()
+    dead.wait(500)
+    dead.push()
+    dead.wait(3000)
+    assert happened(dead)[-1] == FORWARD, "nor has one that was never high"
+
+
+def test_a_short_disturbance_stops_no_robot() -> None:
+    robot = typed(booted())
+    for _ in range(3):
+        robot.hold_line()
+        robot.wait(2)  # much longer than a byte
+        robot.hold_line(False)
+        robot.wait(50)
+        robot.step(b"// \r\n")  # what came before does not count any more
+    robot.wait(1000)
+    assert happened(robot) == [FORWARD]
+
+
+def test_each_byte_with_a_framing_error_is_a_zero() -> None:
+    robot = typed(booted())
+    for spoiled in (3, 4):
+        robot.step(b"//\r\n")
+        robot.wait(50)
+        for _ in range(spoiled):
+            robot.spoil_byte()
+        robot.wait(FIFO_MS + 2, b"\xff")
+        assert happened(robot)[-1] == (FORWARD if spoiled == 3 else OFF)
+    assert framing(robot) == 7
+
+
+@pytest.mark.parametrize("before", [b"", b"F(60, ", b"F(60, 80"])
+def test_a_line_with_a_framing_error_in_it_does_nothing(before: bytes) -> None:
+    """Wherever it is in it, and however late the driver hands the byte over."""
+    for late_ms in (0, 1, 5, FIFO_MS - 2):
+        robot = booted()
+        robot.step(before)
+        robot.spoil_byte()
+        robot.wait(late_ms)
+        robot.step(b"F(60, 80)\r\n"[len(before):])
+        robot.wait(200)
+        assert happened(robot) == [], (before, late_ms)
+        robot.wait(1200)
+        assert happened(typed(robot)) == [FORWARD], "the next line is another one"
+
+
+def test_bytes_after_a_framing_error_are_no_line_that_is_held() -> None:
+    robot = typed(booted())
+    robot.spoil_byte()
+    for _ in range(100):
+        robot.step(b"\x01\x02\x04\x08")
+    robot.wait(1000)
+    assert happened(robot) == [FORWARD]
