@@ -370,3 +370,52 @@ def test_a_teachers_stop_holds_on_every_transport() -> None:
     assert ended(robot, ends[1:], pupil.clear()) == "HELD_BACK"
     assert uploaded(robot, ends[1:], pupil) == "HELD_BACK"
     assert ended(robot, ends, teacher.clear()) == "OK"
+
+
+def overrun(robot: Esp32Robot) -> int:
+    client = session(99, robot)
+    status = client.status()
+    assert ended(robot, [(None, client)], status) == "OK" and status.outcome
+    found: int = status.outcome.values.overrun
+    return found
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_what_finds_no_room_is_counted_and_no_stop_is_lost(make: Make) -> None:
+    """A packet of a serial port has up to 990 bytes: the core keeps 512 of them, unless asked."""
+    for stop in (bytes(STOP_BYTES), b"\r\nS\r\n"):
+        robot = booted()
+        end = make(robot)
+        talk(robot, [(end, Bytes(b"F(60, 80)\r\n"))], 50)
+        assert happened(robot) == ["MOTORS 80 80"]
+        end.send(b"// " + b"x" * 600 + stop)
+        robot.wait(3)
+        assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+        robot.wait(2000)
+        assert robot.is_latched and overrun(robot) == 0
+        end.send(b"// " + b"x" * 2000)
+        assert overrun(robot) == (2003 - 1022) % 256
+
+
+def test_a_serial_port_whose_client_takes_nothing_hears_a_stop() -> None:
+    """The core's `write` waits for a second meanwhile."""
+    robot = booted()
+    end = SerialPort(robot)
+    talk(robot, [(end, Bytes(b"F(60, 80)\r\n"))], 50)
+    robot.radio("Z", b"\1")
+    end.send(b"?\r\n")  # it has something to say
+    robot.wait(100)
+    end.send(b"S\r\n")
+    robot.wait(3)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+
+
+def test_an_upload_in_long_packets_of_a_serial_port_loses_nothing() -> None:
+    robot = booted()
+    client = session(3, robot)
+    ends: Ends = [(SerialPort(robot), client)]
+    text = "SI|" + ";".join(f"SHOW({1000 + k})" for k in range(900))
+    assert ended(robot, ends, client.upload(image_of(text), saves=False), 60_000) == "OK"
+    status = client.status()
+    assert ended(robot, ends, status) == "OK" and status.outcome
+    assert (status.outcome.values.damaged, status.outcome.values.overrun) == (0, 0)

@@ -217,6 +217,8 @@ void answer_radio(RequestReader* request, Writer* answer) {
       return serial_port_write(request->text());
     case 'S':
       return answer->text(serial_port_said());
+    case 'Z':
+      return serial_port_stick(request->u8() != 0);
     case 'R': {
       const std::string name = request->text();
       return network_in_reach(name, request->text());

@@ -137,12 +137,12 @@ is_a(esp_ble_gatts_cb_param_t().mtu.mtu, uint16_t);
 #ifdef CONFIG_BT_SPP_ENABLED
 // libraries/BluetoothSerial/src
 is_a(std::declval<BluetoothSerial&>().begin(""), bool);
-is_a(&BluetoothSerial::available, int (BluetoothSerial::*)());
 is_a(&BluetoothSerial::hasClient, bool (BluetoothSerial::*)());
 is_a(std::declval<BluetoothSerial&>().register_callback(
          std::declval<void (&)(esp_spp_cb_event_t, esp_spp_cb_param_t*)>()),
      esp_err_t);
-is_a(&BluetoothSerial::read, int (BluetoothSerial::*)());
+is_a(std::declval<BluetoothSerial&>().onData(std::declval<void (&)(const uint8_t*, size_t)>()),
+     void);
 is_a(std::declval<BluetoothSerial&>().write(std::declval<const uint8_t*>(), size_t{}), size_t);
 #endif
 

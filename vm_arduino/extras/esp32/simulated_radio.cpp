@@ -13,7 +13,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <deque>
 #include <map>
 #include <mutex>
 
@@ -51,9 +50,12 @@ bool has_subscribed;
 std::vector<std::string> notified;
 
 // the serial port
-bool has_port_client;
+constexpr size_t kPortPacket = 990;  // bytes that RFCOMM hands over at once
+constexpr uint16_t kPortWaitMs = 1000;
+std::atomic<bool> has_port_client{false};
+std::atomic<bool> is_port_stuck{false};
 esp_spp_cb_t on_port;
-std::deque<uint8_t> port_in;
+BluetoothSerialDataCb on_port_data;
 std::string port_out;
 
 // Both kinds of Bluetooth, which begin the same controller.
@@ -168,9 +170,13 @@ void serial_port_connect(bool is_there) {
 }
 
 void serial_port_write(const std::string& bytes) {
-  const Lock lock(guard);
-  port_in.insert(port_in.end(), bytes.begin(), bytes.end());
+  for (size_t at = 0; at < bytes.size(); at += kPortPacket) {
+    const std::string packet = bytes.substr(at, kPortPacket);
+    if (on_port_data) on_port_data(reinterpret_cast<const uint8_t*>(packet.data()), packet.size());
+  }
 }
+
+void serial_port_stick(bool is_so) { is_port_stuck = is_so; }
 
 std::string serial_port_said() {
   const Lock lock(guard);
@@ -222,31 +228,24 @@ bool BluetoothSerial::begin(String localName, bool) {
   return true;
 }
 
-int BluetoothSerial::available() {
-  const Lock lock(guard);
-  return static_cast<int>(port_in.size());
-}
-
 esp_err_t BluetoothSerial::register_callback(esp_spp_cb_t callback) {
   const Lock lock(guard);
   on_port = callback;
   return ESP_OK;
 }
 
-bool BluetoothSerial::hasClient() {
-  const Lock lock(guard);
-  return has_port_client;
-}
+bool BluetoothSerial::hasClient() { return has_port_client; }
 
-int BluetoothSerial::read() {
-  const Lock lock(guard);
-  if (port_in.empty()) return -1;
-  const uint8_t byte = port_in.front();
-  port_in.pop_front();
-  return byte;
+void BluetoothSerial::onData(BluetoothSerialDataCb cb) {
+  expect(!has_bluetooth, "a callback of a serial port that may have clients");
+  on_port_data = cb;
 }
 
 size_t BluetoothSerial::write(const uint8_t* buffer, size_t size) {
+  if (is_port_stuck) {
+    vTaskDelay(kPortWaitMs);
+    return 0;
+  }
   const Lock lock(guard);
   port_out.append(reinterpret_cast<const char*>(buffer), size);
   return size;

@@ -24,6 +24,7 @@ std::vector<std::string> low_energy_notified();  // since the last call
 // Bluetooth with a serial port. One that is stuck takes nothing: `write` of the core waits then.
 void serial_port_connect(bool is_there);
 void serial_port_write(const std::string& bytes);
+void serial_port_stick(bool is_so);
 std::string serial_port_said();  // since the last call
 
 // WiFi: a network in reach with its password; none if `name` is empty.

@@ -15,6 +15,12 @@ typedef union {
 } esp_spp_cb_param_t;
 typedef void (*esp_spp_cb_t)(esp_spp_cb_event_t event, esp_spp_cb_param_t* param);
 
+#if __STDC_HOSTED__
+typedef std::function<void(const uint8_t* buffer, size_t size)> BluetoothSerialDataCb;
+#else
+typedef void (*BluetoothSerialDataCb)(const uint8_t* buffer, size_t size);
+#endif
+
 class BluetoothSerial {
  public:
 #if ESP_ARDUINO_VERSION_MAJOR >= 3
@@ -22,10 +28,9 @@ class BluetoothSerial {
 #else
   bool begin(String localName = String(), bool isMaster = false);
 #endif
-  int available();
   bool hasClient();
+  void onData(BluetoothSerialDataCb cb);
   esp_err_t register_callback(esp_spp_cb_t callback);
-  int read();
   size_t write(const uint8_t* buffer, size_t size);
 };
 
