@@ -99,7 +99,7 @@ CORE = {
     "lwip_accept", "lwip_bind", "lwip_close", "lwip_connect", "lwip_fcntl", "lwip_htonl",
     "lwip_htons", "lwip_listen", "lwip_recv", "lwip_send", "lwip_setsockopt", "lwip_socket",
     "vTaskDelay", "xTaskCreatePinnedToCore", "WiFi", "MDNS", "__errno",
-    "esp_random", "lwip_gethostbyname", "mbedtls_ssl_conf_authmode", "mbedtls_ssl_conf_ca_chain",
+    "esp_ble_gatts_send_indicate", "esp_random", "lwip_gethostbyname", "uart_enable_intr_mask", "mbedtls_ssl_conf_authmode", "mbedtls_ssl_conf_ca_chain",
     "mbedtls_ssl_conf_rng", "mbedtls_ssl_conf_verify", "mbedtls_ssl_config_defaults",
     "mbedtls_ssl_config_free", "mbedtls_ssl_config_init", "mbedtls_ssl_free",
     "mbedtls_ssl_handshake_step", "mbedtls_ssl_init", "mbedtls_ssl_read", "mbedtls_ssl_set_bio",

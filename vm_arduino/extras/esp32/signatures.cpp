@@ -118,20 +118,23 @@ static_assert(SIG_GPIO_OUT_IDX == 256 || SIG_GPIO_OUT_IDX == 128, "an ESP32, or 
 // libraries/BLE/src of 2.0.17 and 3.0.4, as called
 is_a(&BLECharacteristic::getData, uint8_t* (BLECharacteristic::*)());
 is_a(&BLECharacteristic::getLength, size_t (BLECharacteristic::*)());
-is_a(&BLECharacteristic::notify, void (BLECharacteristic::*)(bool));
-is_a(std::declval<BLECharacteristic&>().setValue(std::declval<uint8_t*>(), size_t{}), void);
+is_a(&BLECharacteristic::getHandle, uint16_t (BLECharacteristic::*)());
+is_a(&BLEDescriptor::getHandle, uint16_t (BLEDescriptor::*)());
 is_a(std::declval<BLEServer&>().createService(""), BLEService*);
 is_a(std::declval<BLEService&>().createCharacteristic("", uint32_t{}), BLECharacteristic*);
-is_a(&BLECharacteristicCallbacks::onStatus,
-     void (BLECharacteristicCallbacks::*)(BLECharacteristic*, BLECharacteristicCallbacks::Status,
-                                          uint32_t));
 is_a(&BLEDevice::createServer, BLEServer* (*)());
 is_a(&BLEDevice::getAdvertising, BLEAdvertising* (*)());
 is_a(&BLEDevice::setMTU, esp_err_t (*)(uint16_t));
 is_a(BLEDevice::init(""), void);
 is_a(&BLEDevice::startAdvertising, void (*)());
-is_a(&BLEServerCallbacks::onMtuChanged,
-     void (BLEServerCallbacks::*)(BLEServer*, esp_ble_gatts_cb_param_t*));
+is_a(&BLEDevice::setCustomGattsHandler, void (*)(gatts_event_handler));
+is_a(static_cast<gatts_event_handler>(nullptr),
+     void (*)(esp_gatts_cb_event_t, esp_gatt_if_t, esp_ble_gatts_cb_param_t*));
+is_a(&esp_ble_gatts_send_indicate,
+     esp_err_t (*)(esp_gatt_if_t, uint16_t, uint16_t, uint16_t, uint8_t*, bool));
+is_a(esp_ble_gatts_cb_param_t().connect.conn_id, uint16_t);
+is_a(esp_ble_gatts_cb_param_t().write.handle, uint16_t);
+is_a(esp_ble_gatts_cb_param_t().write.value, uint8_t*);
 is_a(esp_ble_gatts_cb_param_t().mtu.mtu, uint16_t);
 
 #ifdef CONFIG_BT_SPP_ENABLED

@@ -37,13 +37,15 @@ size_t made;
 bool has_le;
 bool has_server;
 bool has_started;  // its service
+constexpr esp_gatt_if_t kInterface = 3;
+constexpr uint16_t kFirstHandle = 42;  // of the characteristics, each with a descriptor behind it
+constexpr uint16_t kConnections = 4;   // that the stack has numbers for
 uint16_t agreed_mtu = 23;
-BLEServerCallbacks* on_client;
+uint16_t connection;  // the number of the last one
+gatts_event_handler on_stack;
 BLECharacteristicCallbacks* on_write;
-BLECharacteristicCallbacks* on_taken;  // of notifications
 bool is_congested;
 std::string written;
-std::string value;
 bool is_advertising;
 bool is_connected;
 bool has_subscribed;
@@ -97,8 +99,18 @@ void look_at_sleep() {
 
 // -- who is on the other side -------------------------------------------------------------------
 
+// The stack's task tells; it has a handler as soon as anybody may be connected.
+static void tell(esp_gatts_cb_event_t event, esp_ble_gatts_cb_param_t* its) {
+  gatts_event_handler told;
+  {
+    const Lock lock(guard);
+    told = on_stack;
+  }
+  if (told != nullptr) told(event, kInterface, its);
+}
+
 void low_energy_connect() {
-  BLEServerCallbacks* told;
+  esp_ble_gatts_cb_param_t its = {};
   {
     const Lock lock(guard);
     if (!is_advertising) return;
@@ -106,20 +118,20 @@ void low_energy_connect() {
     is_connected = true;
     has_subscribed = false;
     agreed_mtu = 23;
-    told = on_client;
+    connection = static_cast<uint16_t>((connection + 1) % kConnections);
+    its.connect.conn_id = connection;
   }
-  told->onConnect(&server);
+  tell(ESP_GATTS_CONNECT_EVT, &its);
 }
 
 void low_energy_disconnect() {
-  BLEServerCallbacks* told;
+  esp_ble_gatts_cb_param_t its = {};
   {
     const Lock lock(guard);
     if (!is_connected) return;
     is_connected = false;
-    told = on_client;
   }
-  told->onDisconnect(&server);
+  tell(ESP_GATTS_DISCONNECT_EVT, &its);
 }
 
 void low_energy_agree(uint16_t mtu) {
@@ -130,12 +142,19 @@ void low_energy_agree(uint16_t mtu) {
   }
   esp_ble_gatts_cb_param_t its = {};
   its.mtu.mtu = mtu;
-  on_client->onMtuChanged(&server, &its);
+  tell(ESP_GATTS_MTU_EVT, &its);
 }
 
 void low_energy_subscribe(bool has) {
-  const Lock lock(guard);
-  has_subscribed = has;
+  {
+    const Lock lock(guard);
+    if (!is_connected) return;
+    has_subscribed = has;
+  }
+  uint8_t value[] = {has, 0};
+  esp_ble_gatts_cb_param_t its = {};
+  its.write = {connection, BLEDescriptor().getHandle(), sizeof value, value};
+  tell(ESP_GATTS_WRITE_EVT, &its);
 }
 
 void low_energy_congest(bool is_so) {
@@ -170,9 +189,15 @@ void serial_port_connect(bool is_there) {
 }
 
 void serial_port_write(const std::string& bytes) {
+  BluetoothSerialDataCb told;
+  {
+    const Lock lock(guard);
+    if (!has_port_client) return;
+    told = on_port_data;
+  }
   for (size_t at = 0; at < bytes.size(); at += kPortPacket) {
     const std::string packet = bytes.substr(at, kPortPacket);
-    if (on_port_data) on_port_data(reinterpret_cast<const uint8_t*>(packet.data()), packet.size());
+    if (told) told(reinterpret_cast<const uint8_t*>(packet.data()), packet.size());
   }
 }
 
@@ -238,6 +263,7 @@ bool BluetoothSerial::hasClient() { return has_port_client; }
 
 void BluetoothSerial::onData(BluetoothSerialDataCb cb) {
   expect(!has_bluetooth, "a callback of a serial port that may have clients");
+  const Lock lock(guard);
   on_port_data = cb;
 }
 
@@ -252,10 +278,6 @@ size_t BluetoothSerial::write(const uint8_t* buffer, size_t size) {
 }
 
 void BLECharacteristicCallbacks::onWrite(BLECharacteristic*) {}
-void BLECharacteristicCallbacks::onStatus(BLECharacteristic*, Status, uint32_t) {}
-void BLEServerCallbacks::onConnect(BLEServer*) {}
-void BLEServerCallbacks::onDisconnect(BLEServer*) {}
-void BLEServerCallbacks::onMtuChanged(BLEServer*, esp_ble_gatts_cb_param_t*) {}
 
 void BLECharacteristic::addDescriptor(BLEDescriptor*) {
   expect(!has_started, "a part of a service that has started");
@@ -264,27 +286,25 @@ uint8_t* BLECharacteristic::getData() { return reinterpret_cast<uint8_t*>(&writt
 size_t BLECharacteristic::getLength() { return written.size(); }
 void BLECharacteristic::setCallbacks(BLECharacteristicCallbacks* pCallbacks) {
   const Lock lock(guard);
-  (this == characteristics ? on_taken : on_write) = pCallbacks;
+  on_write = pCallbacks;
 }
-void BLECharacteristic::setValue(uint8_t* data, size_t size) {
-  value.assign(reinterpret_cast<const char*>(data), size);  // of the radio's task alone
+uint16_t BLECharacteristic::getHandle() {
+  expect(has_started, "the handle of a service that has not started");
+  return static_cast<uint16_t>(kFirstHandle + 2 * (this - characteristics));
 }
-void BLECharacteristic::notify(bool) {
-  typedef BLECharacteristicCallbacks Callbacks;
-  Callbacks::Status status = Callbacks::SUCCESS_NOTIFY;
-  {
-    const Lock lock(guard);
-    if (!is_connected) {
-      status = Callbacks::ERROR_NO_CLIENT;
-    } else if (!has_subscribed) {
-      status = Callbacks::ERROR_NOTIFY_DISABLED;
-    } else if (is_congested) {
-      status = Callbacks::ERROR_GATT;
-    } else {
-      notified.push_back(value.substr(0, agreed_mtu - 3U));  // the stack cuts the rest off
-    }
-  }
-  if (on_taken != nullptr) on_taken->onStatus(this, status, 0);
+uint16_t BLEDescriptor::getHandle() { return kFirstHandle + 1; }  // there is one
+
+extern "C" esp_err_t esp_ble_gatts_send_indicate(esp_gatt_if_t gatts_if, uint16_t conn_id,
+                                                 uint16_t attr_handle, uint16_t value_len,
+                                                 uint8_t* value, bool) {
+  const Lock lock(guard);
+  expect(gatts_if == kInterface && attr_handle == kFirstHandle, "a notification of nothing");
+  if (!is_connected || conn_id != connection) return ESP_ERR_INVALID_STATE;
+  if (is_congested) return ESP_FAIL;
+  if (!has_subscribed) return ESP_OK;  // it is sent, and the client throws it away
+  const size_t most = agreed_mtu - 3U;  // the stack cuts the rest off
+  notified.emplace_back(reinterpret_cast<char*>(value), value_len < most ? value_len : most);
+  return ESP_OK;
 }
 
 BLECharacteristic* BLEService::createCharacteristic(const char*, uint32_t) {
@@ -294,10 +314,6 @@ BLECharacteristic* BLEService::createCharacteristic(const char*, uint32_t) {
 void BLEService::start() { has_started = true; }
 
 BLEService* BLEServer::createService(const char*) { return &service; }
-void BLEServer::setCallbacks(BLEServerCallbacks* pCallbacks) {
-  const Lock lock(guard);
-  on_client = pCallbacks;
-}
 
 void BLEAdvertising::addServiceUUID(const char*) {}
 void BLEAdvertising::setScanResponse(bool) {}
@@ -314,6 +330,11 @@ void BLEDevice::init(BleText deviceName) {
   look_at_sleep();
   has_le = true;
   settings.advertised = deviceName.c_str();
+}
+void BLEDevice::setCustomGattsHandler(gatts_event_handler handler) {
+  expect(!has_started, "a handler that misses events of a service that has started");
+  const Lock lock(guard);
+  on_stack = handler;
 }
 esp_err_t BLEDevice::setMTU(uint16_t mtu) {
   expect(has_le, "Bluetooth LE before BLEDevice::init");

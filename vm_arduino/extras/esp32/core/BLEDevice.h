@@ -14,39 +14,57 @@ typedef String BleText;
 typedef std::string BleText;
 #endif
 
-// components/bt/host/bluedroid/api/include/api/esp_gatts_api.h
+// components/bt/host/bluedroid/api/include/api/esp_gatts_api.h, and esp_gatt_defs.h
+typedef enum {
+  ESP_GATTS_WRITE_EVT = 2,
+  ESP_GATTS_MTU_EVT = 4,
+  ESP_GATTS_CONNECT_EVT = 14,
+  ESP_GATTS_DISCONNECT_EVT = 15,
+} esp_gatts_cb_event_t;
+typedef uint8_t esp_gatt_if_t;
 typedef union {
+  struct gatts_write_evt_param {
+    uint16_t conn_id;
+    uint16_t handle;
+    uint16_t len;
+    uint8_t* value;
+  } write;
   struct gatts_mtu_evt_param {
     uint16_t conn_id;
     uint16_t mtu;
   } mtu;
+  struct gatts_connect_evt_param {
+    uint16_t conn_id;
+  } connect;
 } esp_ble_gatts_cb_param_t;
+
+extern "C" {
+esp_err_t esp_ble_gatts_send_indicate(esp_gatt_if_t gatts_if, uint16_t conn_id,
+                                      uint16_t attr_handle, uint16_t value_len, uint8_t* value,
+                                      bool need_confirm);
+}
+
+typedef void (*gatts_event_handler)(esp_gatts_cb_event_t event, esp_gatt_if_t gattc_if,
+                                    esp_ble_gatts_cb_param_t* param);
 
 class BLECharacteristic;
 class BLEServer;
 
-class BLEDescriptor {};
+class BLEDescriptor {
+ public:
+  uint16_t getHandle();
+};
 
 class BLE2902 : public BLEDescriptor {};
 
 class BLECharacteristicCallbacks {
  public:
   virtual ~BLECharacteristicCallbacks() {}
-  typedef enum {
-    SUCCESS_INDICATE,
-    SUCCESS_NOTIFY,
-    ERROR_INDICATE_DISABLED,
-    ERROR_NOTIFY_DISABLED,
-    ERROR_GATT,
-    ERROR_NO_CLIENT,
-    ERROR_INDICATE_TIMEOUT,
-    ERROR_INDICATE_FAILURE
-  } Status;
-
   virtual void onWrite(BLECharacteristic* pCharacteristic);
-  virtual void onStatus(BLECharacteristic* pCharacteristic, Status s, uint32_t code);
 };
 
+// Without `notify`: it copies the server's map of clients, which the stack's task changes, and no
+// lock is around either before version 3.3.
 class BLECharacteristic {
  public:
   static const uint32_t PROPERTY_WRITE = 1 << 1;
@@ -54,10 +72,9 @@ class BLECharacteristic {
   static const uint32_t PROPERTY_WRITE_NR = 1 << 5;
   void addDescriptor(BLEDescriptor* pDescriptor);
   uint8_t* getData();
+  uint16_t getHandle();
   size_t getLength();
-  void notify(bool is_notification = true);
   void setCallbacks(BLECharacteristicCallbacks* pCallbacks);
-  void setValue(uint8_t* data, size_t size);
 };
 
 class BLEService {
@@ -66,18 +83,9 @@ class BLEService {
   void start();
 };
 
-class BLEServerCallbacks {
- public:
-  virtual ~BLEServerCallbacks() {}
-  virtual void onConnect(BLEServer* pServer);
-  virtual void onDisconnect(BLEServer* pServer);
-  virtual void onMtuChanged(BLEServer* pServer, esp_ble_gatts_cb_param_t* param);
-};
-
 class BLEServer {
  public:
   BLEService* createService(const char* uuid);
-  void setCallbacks(BLEServerCallbacks* pCallbacks);
 };
 
 class BLEAdvertising {
@@ -91,6 +99,7 @@ class BLEDevice {
   static BLEServer* createServer();
   static BLEAdvertising* getAdvertising();
   static void init(BleText deviceName);
+  static void setCustomGattsHandler(gatts_event_handler handler);
   static esp_err_t setMTU(uint16_t mtu);
   static void startAdvertising();
 };

@@ -1,7 +1,8 @@
 // Bluetooth LE: the Nordic UART service, with the robot's name in the advertisement.
 //
-// The core's own task calls what is written to the robot, and who connects and leaves; the task of
-// this radio sends notifications.
+// The stack's task calls what is written to the robot, and who connects and leaves; the task of this
+// radio sends notifications. It asks nothing of the core's objects: these change in the stack's task,
+// and no lock is around them.
 
 #ifdef ARDUINO_ARCH_ESP32
 
@@ -29,16 +30,31 @@ constexpr uint16_t kMostMtu = 247;
 constexpr uint16_t kMtuHead = 3;    // bytes of it that are no payload
 constexpr uint8_t kPauseTurns = 4;  // between two notifications: the stack takes no more at once
 
+// The stack's task writes these, the radio's reads them.
 uint16_t mtu = kLeastMtu;
-uint8_t clients;  // so far; the core's task counts
-BLECharacteristic* to_computer;
+uint16_t connection;  // its number in the stack
+uint8_t interface;
+bool has_subscribed;
+uint8_t clients;  // so far
 
 // The radio's task: a notification that waits, and for which client.
+uint16_t to_computer;  // the handle of the characteristic
 uint8_t waiting[kMostMtu - kMtuHead];
 size_t length;
 uint8_t its_client;
-bool is_sent;
 uint8_t pause_turns;
+
+BLE2902* subscription;
+
+template <class Value>
+void publish(Value* at, Value value) {
+  __atomic_store_n(at, value, __ATOMIC_RELAXED);
+}
+
+template <class Value>
+Value published(const Value& at) {
+  return __atomic_load_n(&at, __ATOMIC_RELAXED);
+}
 
 Pipe& pipe() { return radio_pipe(Transport::kLowEnergy); }
 
@@ -52,74 +68,84 @@ class Heard : public BLECharacteristicCallbacks {
   }
 };
 
-// Of a notification. The stack takes none while it is congested, nor before somebody has asked for
-// them.
-class Taken : public BLECharacteristicCallbacks {
- public:
-  void onStatus(BLECharacteristic*, Status its, uint32_t) override {
-    is_sent = its == Status::SUCCESS_NOTIFY;
-  }
-};
+void on_connect(uint8_t its_interface, uint16_t number) {
+  publish(&mtu, kLeastMtu);
+  publish(&has_subscribed, false);
+  publish(&interface, its_interface);
+  publish(&connection, number);
+  publish(&clients, static_cast<uint8_t>(clients + 1));
+  pipe().begin();
+}
 
-class Client : public BLEServerCallbacks {
- public:
-  void onConnect(BLEServer*) override {
-    __atomic_store_n(&mtu, kLeastMtu, __ATOMIC_RELAXED);
-    __atomic_store_n(&clients, static_cast<uint8_t>(clients + 1), __ATOMIC_RELAXED);
-    pipe().begin();
+void on_disconnect() {
+  pipe().part();
+  BLEDevice::startAdvertising();
+}
+
+void on_mtu(uint16_t found) {
+  publish(&mtu, found < kLeastMtu ? kLeastMtu : found > kMostMtu ? kMostMtu : found);
+}
+
+// The core has done its part by then.
+void on_event(esp_gatts_cb_event_t event, esp_gatt_if_t its_interface,
+              esp_ble_gatts_cb_param_t* its) {
+  switch (event) {
+    case ESP_GATTS_CONNECT_EVT:
+      return on_connect(its_interface, its->connect.conn_id);
+    case ESP_GATTS_DISCONNECT_EVT:
+      return on_disconnect();
+    case ESP_GATTS_MTU_EVT:
+      return on_mtu(its->mtu.mtu);
+    case ESP_GATTS_WRITE_EVT:
+      if (its->write.handle != subscription->getHandle() || its->write.len == 0) return;
+      return publish(&has_subscribed, (its->write.value[0] & 1) != 0);
+    default:
+      return;
   }
-  void onDisconnect(BLEServer*) override {
-    pipe().part();
-    BLEDevice::startAdvertising();
-  }
-  void onMtuChanged(BLEServer*, esp_ble_gatts_cb_param_t* its) override {
-    const uint16_t found = its->mtu.mtu;
-    const uint16_t agreed = found < kLeastMtu ? kLeastMtu : found > kMostMtu ? kMostMtu : found;
-    __atomic_store_n(&mtu, agreed, __ATOMIC_RELAXED);
-  }
-};
+}
 
 }  // namespace
 
 void low_energy_begin() {
   static Heard heard;
-  static Taken taken;
-  static Client client;
   static BLE2902 notifications;
+  subscription = &notifications;
   BLEDevice::init(radio_name().name);
   BLEDevice::setMTU(kMostMtu);
+  BLEDevice::setCustomGattsHandler(on_event);
   BLEServer* const server = BLEDevice::createServer();
-  server->setCallbacks(&client);
   BLEService* const service = server->createService(kService);
-  to_computer = service->createCharacteristic(kToComputer, BLECharacteristic::PROPERTY_NOTIFY);
-  to_computer->addDescriptor(&notifications);
-  to_computer->setCallbacks(&taken);
+  BLECharacteristic* const notifier =
+      service->createCharacteristic(kToComputer, BLECharacteristic::PROPERTY_NOTIFY);
+  notifier->addDescriptor(&notifications);
   BLECharacteristic* const to_robot = service->createCharacteristic(
       kToRobot, BLECharacteristic::PROPERTY_WRITE | BLECharacteristic::PROPERTY_WRITE_NR);
   to_robot->setCallbacks(&heard);
   service->start();
+  to_computer = notifier->getHandle();
   BLEAdvertising* const advertising = BLEDevice::getAdvertising();
   advertising->addServiceUUID(kService);
   advertising->setScanResponse(true);  // the name is in it
   BLEDevice::startAdvertising();
 }
 
+// The stack takes no notification while it is congested.
 void low_energy_turn() {
   if (pause_turns != 0) {
     pause_turns--;
     return;
   }
-  const uint8_t client = __atomic_load_n(&clients, __ATOMIC_RELAXED);
+  const uint8_t client = published(clients);
   if (client != its_client) length = 0;  // what waits is for one before
   its_client = client;
   if (!pipe().is_connected()) return;
-  const size_t most = static_cast<size_t>(__atomic_load_n(&mtu, __ATOMIC_RELAXED) - kMtuHead);
+  const size_t most = static_cast<size_t>(published(mtu) - kMtuHead);
   while (length < most && pipe().take(waiting + length)) length++;
-  if (length == 0) return;
-  is_sent = false;
-  to_computer->setValue(waiting, length);
-  to_computer->notify();
-  if (is_sent) length = 0;
+  if (length == 0 || !published(has_subscribed)) return;
+  if (esp_ble_gatts_send_indicate(published(interface), published(connection), to_computer,
+                                  static_cast<uint16_t>(length), waiting, false) == ESP_OK) {
+    length = 0;
+  }
   pause_turns = kPauseTurns;
 }
 
