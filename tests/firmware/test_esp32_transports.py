@@ -419,3 +419,63 @@ def test_an_upload_in_long_packets_of_a_serial_port_loses_nothing() -> None:
     status = client.status()
     assert ended(robot, ends, status) == "OK" and status.outcome
     assert (status.outcome.values.damaged, status.outcome.values.overrun) == (0, 0)
+
+
+def paste(size: int, burst: int, gap_ms: int) -> Callable[[Esp32Robot, End, bytes, Bytes], None]:
+    """Return what sends a text at the pace of a radio: writes of a size, so many at once."""
+
+    def send(robot: Esp32Robot, end: End, text: bytes, who: Bytes) -> None:
+        for at in range(0, len(text), size * burst):
+            for k in range(at, min(at + size * burst, len(text)), size):
+                end.send(text[k : k + size])
+            talk(robot, [(end, who)], gap_ms)
+
+    return send
+
+
+PACES: dict[str, tuple[Make, Callable[..., None]]] = {
+    "BLE, MTU 23": (LowEnergy, paste(20, 4, 30)),
+    "BLE, MTU 247": (lambda robot: LowEnergy(robot, 247), paste(244, 4, 30)),
+    "SPP, packets of 330": (SerialPort, paste(330, 1, 5)),
+    "SPP, packets of 990": (SerialPort, paste(990, 1, 15)),
+}
+
+
+@pytest.mark.parametrize("comment", [b"", b" // one of forty"])
+@pytest.mark.parametrize("pace", PACES)
+def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: bytes) -> None:
+    """At the pace of real radios; what the robot does is what it does by its cable."""
+    lines = b"".join(b"F(0.01, %d)%b\r\n" % (20 + k, comment) for k in range(40))
+    text = b"LOOP(1)\r\n" + lines + b"END_LOOP\r\n"
+    by_cable = booted()
+    for at in range(0, len(text), 11):
+        by_cable.step(text[at : at + 11])
+    by_cable.wait(2500)
+    robot = booted()
+    make, send = PACES[pace]
+    end, who = make(robot), Bytes()
+    send(robot, end, text, who)
+    talk(robot, [(end, who)], 2500)
+    assert who.heard == b"// OK\r\n// DONE\r\n"
+    assert happened(robot) == happened(by_cable) and len(happened(robot)) > 30
+    assert overrun(robot) == 0
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_lines_wait_while_what_they_are_answered_is_not_taken(make: Make) -> None:
+    """Each has an answer, which a client takes late; the lines before it are lost neither."""
+    robot = booted()
+    end, who = make(robot), Bytes()
+    if isinstance(end, LowEnergy):
+        robot.radio("k", b"\1")
+    else:
+        robot.radio("Z", b"\1")
+    end.send(b"".join(b"SHOW(%d)\r\n" % (100 + k) for k in range(90)))
+    robot.wait(3000)
+    if isinstance(end, LowEnergy):
+        robot.radio("k", b"\0")
+    else:
+        robot.radio("Z", b"\0")
+    talk(robot, [(end, who)], 9000)
+    assert b"lost" not in who.heard and who.heard.rstrip().endswith(b"// DONE")
+    assert overrun(robot) == 0

@@ -14,6 +14,7 @@ from tests.firmware.test_host_firmware import happened
 from tests.firmware.test_typed_stops import ALL, HELD_MS, SILENCE_MS, spellings_behind
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Bytes, End, Network, session, talk
+from tests.support.images import image_of
 from tests.support.owners import Keys
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME
@@ -163,10 +164,65 @@ def test_what_is_lost_stops_nobody(make: Make) -> None:
     code = b"Z\n\nS\n\xcc\x03"
     for before in (b"F(1,80)\n" * 400, WHOLE * 400, b"FT\nS T\n\0\0FT" * 400):
         end.send(before)
-        talk(robot, ends, 60)
+        talk(robot, [*ends, (end, Bytes())], 2500)  # until the lines that wait are answered
         frame = encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1" + code))
         assert b"\nS\n" in frame
         end.send(b"\0" + frame)
         talk(robot, ends, HELD_MS + 20)
         assert not stands(robot)
     assert ended(robot, [*ends, (end, client)], client.status()) == "OK"
+
+
+def moves(robot: Esp32Robot) -> list[str]:
+    return [each for each in happened(robot) if each.startswith("MOTORS")]
+
+
+LINES = b"".join(b"F(1,%d)\n" % (20 + k % 70) for k in range(100))
+
+
+@pytest.mark.parametrize("make", RADIOS)
+@pytest.mark.parametrize("stop", [b"S\n", b"PARA\n", b"SSS", b"STOP STOP ", bytes(4), b"\x03\n"])
+def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
+    """Nothing that came before it starts afterwards, and what comes behind it counts again."""
+    robot = booted()
+    driver, end = session(1, robot), make(robot)
+    ends = drives(robot, driver)
+    few, many = LINES[: 8 * 40], LINES[: 8 * 100]
+    for before in (few, many, many + b"LOOP(2)\n", b"\0" + many):
+        who = Bytes()
+        end.send(before + stop)
+        robot.wait(1)
+        assert stands(robot), (before[-20:], stop)
+        talk(robot, [*ends, (end, who)], 500)
+        talk(robot, [(end, who)], 3000)  # the driver has gone
+        assert stands(robot), (before[-20:], stop)
+        who.said = b"\r\nSI|F(0.1,33)\n"
+        talk(robot, [(end, who)], 1500)
+        assert moves(robot)[-2:] == ["MOTORS 33 33", "MOTORS 0 0"], (before[-20:], who.heard)
+        talk(robot, ends, 1500)
+        ends = drives(robot, driver)
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_a_stop_in_an_open_block_that_waits_is_a_line_of_it(make: Make) -> None:
+    """As over a cable: it ends what runs, at once, and is read."""
+    robot = booted()
+    end, who = make(robot), Bytes()
+    talk(robot, [(end, Bytes(b"SI|F(60, 80)\n"))], 100)
+    lines = b"".join(b"F(0.01,%d) // one of twenty\n" % (20 + k) for k in range(20))
+    end.send(b"LOOP(1)\n" + lines + b"S\nF(0.01,80)\nEND_LOOP\n")
+    robot.wait(1)
+    assert moves(robot)[-1] == "MOTORS 0 0"
+    talk(robot, [(end, who)], 2000)
+    assert moves(robot)[-3:] == ["MOTORS 39 39", "MOTORS 80 80", "MOTORS 0 0"]
+    assert who.heard.endswith(b"// OK\r\n// DONE\r\n")
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_a_frame_before_a_stop_that_waits_does_nothing(make: Make) -> None:
+    robot = booted()
+    end = make(robot)
+    live = b"\0" + encoded(Frame(BY_NAME["LIVE"].number, 9, 0, image_of("F(60, 80)").code))
+    end.send(LINES[:0] + b"// " + b"x" * 500 + b"\n" + live * 6 + b"\nS\n")
+    robot.wait(300)
+    assert moves(robot) == []

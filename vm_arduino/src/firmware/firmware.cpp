@@ -61,6 +61,19 @@ bool firmware_next_tx_byte(Transport transport, uint8_t* byte) {
   return link.next_tx_byte(transport, byte);
 }
 
+bool firmware_has_room(Transport transport) { return link.receiver(transport).has_room(); }
+
+// It counts as a mark until its bytes are there.
+void firmware_await_stop(Transport transport, bool is_there) {
+  static bool is_awaited[kTransports];
+  bool* const its = &is_awaited[static_cast<uint8_t>(transport)];
+  Receiver& receiver = link.receiver(transport);
+  if (is_there) port_end();
+  if (is_there && !*its) receiver.put_mark();
+  if (!is_there && *its) receiver.take_mark();
+  *its = is_there;
+}
+
 Answer port_may_drive(uint8_t type) { return link.may_drive(type); }
 
 #else

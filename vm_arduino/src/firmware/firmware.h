@@ -50,6 +50,13 @@ bool firmware_runs(Place* place);
 void firmware_on_rx_byte(Transport transport, uint8_t byte, uint16_t now_ms);
 bool firmware_next_tx_byte(Transport transport, uint8_t* byte);
 
+// Whether the next byte finds room, if it is text; so it may wait elsewhere.
+bool firmware_has_room(Transport transport);
+
+// Whether a stop waits behind text that waits elsewhere: what runs ends, and nothing of this transport
+// starts before that. Call it after bytes have been taken.
+void firmware_await_stop(Transport transport, bool is_there);
+
 // How the robot is called over a radio: by the name that it was given, or else, and as a host in a
 // network, by the end of its id; at a broker by all of its id, in hexadecimal. All end with a 0.
 struct RadioName {

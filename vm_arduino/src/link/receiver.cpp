@@ -203,7 +203,7 @@ void Receiver::begin_line() {
 // for it belongs to no block.
 bool Receiver::stop_at_mark(bool is_there) {
   if (is_there && text_.put(kLineStop)) {
-    marks_ = static_cast<uint8_t>(marks_ + 1);
+    put_mark();
   } else {
     stop();
   }

@@ -110,6 +110,7 @@ class Receiver : private PacketPlaces<kWindow> {
   // Whether a typed stop waits among the text: whether it belongs to an open block is decided where
   // text is read, and nothing starts before.
   bool has_mark() const { return marks_ != marks_taken_; }
+  void put_mark() { marks_ = static_cast<uint8_t>(marks_ + 1); }
   void take_mark() { marks_taken_ = static_cast<uint8_t>(marks_taken_ + 1); }
 
   // Goes on to the next frame: as if it began now, though it may be whole already.
@@ -123,6 +124,9 @@ class Receiver : private PacketPlaces<kWindow> {
 
   // Whether text may wait.
   bool has_text() const { return packet_[looked_at()] == Packet::kText || !text_.is_empty(); }
+
+  // Whether the next byte finds room, if it is text.
+  bool has_room() const { return text_.has_room(); }
 
   // Takes the next byte of text, or one of those above. False: none waits.
   bool take_text(uint8_t* byte);

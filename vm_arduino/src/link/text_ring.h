@@ -14,6 +14,9 @@ class TextRing {
  public:
   bool is_empty() const { return first_ == behind_; }
 
+  // Whether whatever a byte makes of a line finds room: it, a mark behind it, and the last place.
+  bool has_room() const { return static_cast<uint8_t>(first_ - behind_ - 1) % kTextBytes > 2; }
+
   // Puts a byte. False: there is no room. The last place is for `put_last`.
   bool put(uint8_t byte) { return put(byte, 2); }
 

@@ -4,7 +4,7 @@
 // has written with its index, so neither waits and no lock is needed. That a client has left comes
 // in the row of its bytes, so that none of the next one's is taken for its own. The rings of a
 // transport come from the heap with its first client, and stay. What finds no room is lost and
-// counted, but no stop is: it reaches the main loop beside the ring.
+// counted, but no stop is: it reaches the main loop beside the ring. So does one that waits in it.
 
 #ifndef TINISCRIPT_ESP32_PIPE_H_
 #define TINISCRIPT_ESP32_PIPE_H_
@@ -107,9 +107,12 @@ class Pipe {
     const bool has_room =
         its != nullptr && its->in.room() > 1 && its->in.put(byte);  // one for `part`
     if (!has_room) lost_.add();
+    if (has_room) put_++;
     const Found found = all_.put(byte, now_ms);
     const Found passed = has_room ? passed_.put(byte, now_ms) : Found::kNothing;
-    if (found > passed) stop(found == Found::kOfRun);
+    if (found > passed) return stop(found == Found::kOfRun);
+    if (found == Found::kStop) __atomic_store_n(&stop_at_, put_, __ATOMIC_RELEASE);
+    if (found == Found::kOfRun) __atomic_store_n(&run_stop_at_, put_, __ATOMIC_RELEASE);
   }
 
   // The client has left.
@@ -117,7 +120,10 @@ class Pipe {
     __atomic_store_n(&is_connected_, false, __ATOMIC_RELEASE);
     if (!has_parted_ && rings() != nullptr) {
       all_.begin();
-      if (rings()->in.put(kParted)) passed_.begin();
+      if (rings()->in.put(kParted)) {
+        put_++;
+        passed_.begin();
+      }
     }
     has_parted_ = true;  // further ones change nothing until a byte comes
   }
@@ -146,8 +152,15 @@ class Pipe {
   // What has come: a byte, or kParted.
   bool take_rx(uint16_t* item) {
     Rings* const its = rings();
-    return its != nullptr && its->in.take(item);
+    if (its == nullptr || !its->in.take(item)) return false;
+    taken_++;
+    return true;
   }
+
+  // Whether a stop waits in what is still to come, or one for what runs.
+  bool has_stop() const { return waits(stop_at_); }
+  bool has_run_stop() const { return waits(run_stop_at_); }
+
   bool has_room() const { return rings()->out.room() != 0; }  // of somebody who is connected
   void put_tx(uint8_t byte) { rings()->out.put(byte); }
 
@@ -170,6 +183,11 @@ class Pipe {
     Ring<uint8_t, kOutPlaces> out;
   };
 
+  bool waits(const uint32_t& place) const {
+    const uint32_t left = __atomic_load_n(&place, __ATOMIC_ACQUIRE) - taken_;
+    return left != 0 && left <= kInPlaces;
+  }
+
   Rings* rings() const { return __atomic_load_n(&rings_, __ATOMIC_ACQUIRE); }
 
   Rings* rings_;
@@ -178,6 +196,10 @@ class Pipe {
   bool is_connected_;
   bool has_key_;
   bool has_parted_;  // the radio's: nothing has come since
+  uint32_t put_;          // the radio's: what has found room in all, of bytes and partings
+  uint32_t stop_at_;      // how much of that ends with the last stop
+  uint32_t run_stop_at_;  // or with the last one for what runs
+  uint32_t taken_;        // the main loop's: how much it has taken
   StopFinder all_;     // in all bytes of the client
   StopFinder passed_;  // in those that found room
   Tally stops_;

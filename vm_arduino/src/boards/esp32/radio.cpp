@@ -108,24 +108,40 @@ void radio_tick() {
   begin(kNetworkRadio);
 }
 
-// A stop that is not in the bytes comes as zeros, before what still waits from before it.
+namespace {
+
+// Bytes wait in the pipe while there is no room for text: a person pastes faster than it is read.
+void take(Transport transport, Pipe* pipe) {
+  uint16_t item;
+  for (uint8_t left = kBytesATurn; left > 0 && firmware_has_room(transport); left--) {
+    if (!pipe->take_rx(&item)) return;
+    if (item == Pipe::kParted) {
+      firmware_on_part(transport);
+    } else {
+      on_rx_byte(transport, static_cast<uint8_t>(item));
+    }
+  }
+}
+
+// A stop that the bytes do not have.
+void stop(Transport transport) {
+  for (uint8_t zeros = 0; zeros < kStopRun; zeros++) on_rx_byte(transport, 0);
+}
+
+}  // namespace
+
+// A stop that is not in the bytes comes before what still waits from before it. So does one that
+// waits: of what it belongs to, the receiver decides when it comes.
 void radio_attend() {
   for (uint8_t place = kFirst; place < kTransports; place++) {
     const Transport transport = static_cast<Transport>(place);
     Pipe& pipe = radio_pipe(transport);
     Place running;
     const bool stops_run = pipe.take_silent_stop() && firmware_runs(&running);
-    if (pipe.take_stop() || stops_run) {
-      for (uint8_t zeros = 0; zeros < kStopRun; zeros++) on_rx_byte(transport, 0);
-    }
-    uint16_t item;
-    for (uint8_t left = kBytesATurn; left > 0 && pipe.take_rx(&item); left--) {
-      if (item == Pipe::kParted) {
-        firmware_on_part(transport);
-      } else {
-        on_rx_byte(transport, static_cast<uint8_t>(item));
-      }
-    }
+    if (pipe.take_stop() || stops_run) stop(transport);
+    take(transport, &pipe);
+    if (pipe.has_run_stop() && firmware_runs(&running)) stop(transport);
+    firmware_await_stop(transport, pipe.has_stop());
   }
 }
 
