@@ -14,6 +14,8 @@ import pytest
 from tests.machines.esp32 import HAS_TLS, STAND_INS, flags_of
 from tests.machines.host import SOURCES, missing
 from tests.project.test_cpp_sources import code_of
+from tiniscript import robots
+from tiniscript.robots import firmware
 from tiniscript.robots.ports import ESP32S
 from tools.builds.chips import CHIPS, Chip, compile_one
 from tools.builds.chips import missing as no_compiler
@@ -68,6 +70,22 @@ def test_a_chip_whose_own_usb_is_the_port(major: int) -> None:
 
 
 @needs_host
+@pytest.mark.parametrize("pin", [18, 19])
+@pytest.mark.parametrize("part", ["Pwm kBuzzer = {{7", "Pin kStartButton = {8"])
+def test_a_header_that_takes_the_port_away_is_refused(part: str, pin: int, tmp_path: Path) -> None:
+    """One that was made before `tsc board` refused these pins."""
+    header = firmware.header([robots.load("tinibotc3")], "a test.")
+    assert part in header
+    own = tmp_path / "own.h"
+    own.write_text(header.replace(part, f"{part[:-1]}{pin}"), encoding="utf-8")
+    flags = (*flags_of("esp32c3", 2), "-DARDUINO_USB_MODE=1", f'-Dtiniscript_own="{own}"')
+    file = BOARD / "esp32" / "serial.cpp"
+    said = complaints(file, *flags, "-DARDUINO_USB_CDC_ON_BOOT=1")
+    assert "error" in said and "Pins 18 and 19 are the USB of an ESP32-C3" in said
+    assert complaints(file, *flags) == "", "a board with a USB chip has them free"
+
+
+@needs_host
 def test_a_core_with_another_bluetooth_is_told() -> None:
     """Arduino's core 3.3 has NimBLE on an ESP32-C3, which hands on what was written late."""
     flags = (*flags_of("esp32c3", 3), "-DCONFIG_NIMBLE_ENABLED")
@@ -99,7 +117,8 @@ CORE = {
     "lwip_accept", "lwip_bind", "lwip_close", "lwip_connect", "lwip_fcntl", "lwip_htonl",
     "lwip_htons", "lwip_listen", "lwip_recv", "lwip_send", "lwip_setsockopt", "lwip_socket",
     "vTaskDelay", "xTaskCreatePinnedToCore", "WiFi", "MDNS", "__errno",
-    "esp_ble_gatts_send_indicate", "esp_random", "lwip_gethostbyname", "uart_enable_intr_mask", "mbedtls_ssl_conf_authmode", "mbedtls_ssl_conf_ca_chain",
+    "esp_ble_gatts_send_indicate", "uart_enable_intr_mask",
+    "esp_random", "lwip_gethostbyname", "mbedtls_ssl_conf_authmode", "mbedtls_ssl_conf_ca_chain",
     "mbedtls_ssl_conf_rng", "mbedtls_ssl_conf_verify", "mbedtls_ssl_config_defaults",
     "mbedtls_ssl_config_free", "mbedtls_ssl_config_init", "mbedtls_ssl_free",
     "mbedtls_ssl_handshake_step", "mbedtls_ssl_init", "mbedtls_ssl_read", "mbedtls_ssl_set_bio",

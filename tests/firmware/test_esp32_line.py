@@ -107,7 +107,7 @@ def test_a_line_with_a_framing_error_in_it_does_nothing(before: bytes) -> None:
         robot.step(before)
         robot.spoil_byte()
         robot.wait(late_ms)
-        robot.step(b"F(60, 80)\r\n"[len(before):])
+        robot.step(b"F(60, 80)\r\n"[len(before) :])
         robot.wait(200)
         assert happened(robot) == [], (before, late_ms)
         robot.wait(1200)

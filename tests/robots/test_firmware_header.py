@@ -213,9 +213,9 @@ def test_the_header_of_an_esp32(tsc: Tsc) -> None:
         "#if defined(CONFIG_IDF_TARGET_ESP32C3)  // esp32c3",
         "#define tiniscript_motors_two_wire",
         "#define tiniscript_ultrasonics",
-        "constexpr Pwm kBuzzer = {{18}, 0};",
+        "constexpr Pwm kBuzzer = {{7}, 0};",
         "constexpr TwoWire kLeftMotor = {{{3}, 2}, {{4}, 3}};",  # a channel each, from an even one
-        "  return {{7}, {{6}}};",
+        "  return {{2}, {{6}}};",
     ):
         assert line in said.splitlines()
     assert "kPort" not in said and "ultrasonic_vectors" not in said

@@ -187,21 +187,22 @@ def test_timers_of_an_uno(motors: str, pin: int, timer: int | None, first: str) 
     *(("tinibot32", "right_backward = 21", pin, "pin_cannot") for pin in (34, 35, 36, 39)),
     *(("tinibot32", "pin = 34", pin, "pin_cannot") for pin in (0, 2, 12, 13, 14, 15)),
     *(("tinibot32", "trigger = 18", pin, "") for pin in (0, 5, 12, 14, 15)),  # what is no motor
-    *(("tinibotc3", "right_backward = 10", pin, "pin_at_boot") for pin in (2, 6, 9, 19)),
+    *(("tinibotc3", "right_backward = 10", pin, "pin_at_boot") for pin in (2, 6, 9)),
     *(("tinibotc3", "right_backward = 10", pin, "no_such_pin") for pin in range(11, 18)),
-    *(("tinibotc3", "right_backward = 10", pin, "pin_of_link") for pin in (20, 21)),
+    *(("tinibotc3", "right_backward = 10", pin, "pin_of_link") for pin in (18, 19, 20, 21)),
+    *(("tinibotc3", "buzzer = 7", pin, "pin_of_link") for pin in (18, 19)),
     ("tinibotc3", "pin = 0", 2, ""),
-    *(("tinibotc3", "pin = 0", pin, "pin_cannot") for pin in (9, 19)),
+    ("tinibotc3", "pin = 0", 9, "pin_cannot"),
     ("tinibotc3", "start_button = 8", 9, "pin_of_reset"),
     ("tinibotc3", "start_button = 8", 2, ""),
 ])  # fmt: skip
 def test_pins_of_esp32s(name: str, old: str, pin: int, code: str) -> None:
     """What one does at a reset starts no motor; flash, link, inputs, ADC2 are what they are."""
-    key = old.partition(" = ")[0]
+    key, _, left = old.partition(" = ")
     text, count = re.subn(rf"(?m)^{old}\b", f"{key} = {pin}", TEXTS[name])
     assert count == 1
-    if (name, pin) == ("tinibotc3", 6):
-        text = text.replace("echo = 6", "echo = 19")
+    if (name, pin) == ("tinibotc3", 2):
+        text = text.replace("trigger = 2", f"trigger = {left}")
     if not code:
         assert read(text, "test").board.chip.startswith("esp32")
         return
@@ -215,11 +216,11 @@ def test_pins_of_esp32s(name: str, old: str, pin: int, code: str) -> None:
 def test_pwm_of_an_esp32_c3() -> None:
     """Three timers, for two pins of one frequency each: a fan beside four motor pins has none."""
     before, mark, after = TEXTS["tinibotc3"].partition("[board.sensors.LIGHT_R]")
-    text = before + FAN.format(pin=19) + mark + after
+    text = before + FAN.format(pin=9) + mark + after
     refused = refusal(text)
     assert codes(refused) == ["timers_used_up"]
-    assert describe(refused, "en")[0].startswith("board.actuators.FAN.pin is pin 19: its PWM needs")
-    for old, new in (("two_wire", "l298n"), ("left_forward = 3", "left_pwm = 3\nleft_forward = 19"),
+    assert describe(refused, "en")[0].startswith("board.actuators.FAN.pin is pin 9: its PWM needs")
+    for old, new in (("two_wire", "l298n"), ("left_forward = 3", "left_pwm = 3\nleft_forward = 6"),
                      ("right_forward = 5", "right_pwm = 5\nright_forward = 2")):  # fmt: skip
         text = text.replace(old, new)
     assert "pin_at_boot" in codes(refusal(text)), "direction pins need no timer"

@@ -90,9 +90,10 @@ def _pins(*parts: int | range) -> frozenset[int]:
 # pulled down.
 # An ESP32-C3 has its flash on 12 to 17 (11 feeds it), its link on 20 and 21; its analog pins are
 # those of ADC1, as the chip's errata sheet tells not to use ADC2 (5). It reads 2, 8 and 9 at a
-# reset; 18 and 19 are its own USB, and 19 is pulled up until the firmware runs. So is 6, for JTAG.
+# reset; 6 is pulled up then, for JTAG. 18 and 19 are its own USB: they carry the link of a board
+# without a USB chip, whose port is gone as soon as they are something else.
 _ESP32 = _pins(0, 2, 4, 5, range(12, 20), 21, 22, 23, 25, 26, 27, 32, 33)
-_ESP32C3 = _pins(range(11), 18, 19)
+_ESP32C3 = _pins(range(11))
 # Bits of `needs`. A Nano's bootloader leaves no room for tasks.
 _TASKS, _WAYS = 1, 2
 
@@ -146,8 +147,8 @@ CHIPS = {
             analog=_pins(range(5)),
             echo=_ESP32C3,
             pwm=dict.fromkeys(sorted(_ESP32C3), 0),
-            link_pins=_pins(20, 21),
-            boot_pins=_pins(2, 6, 8, 9, 18, 19),
+            link_pins=_pins(18, 19, 20, 21),
+            boot_pins=_pins(2, 6, 8, 9),
             reset_pin=9,
             pwm_timers=3,
             pin_volts=3_300,

@@ -27,6 +27,14 @@ constexpr size_t kRoomBytes = 1280;  // what a computer may have under way, and 
 
 #ifdef CONFIG_IDF_TARGET_ESP32C3
 constexpr Pin kReceive = {20};
+
+#if defined(ARDUINO_USB_CDC_ON_BOOT) && ARDUINO_USB_CDC_ON_BOOT
+constexpr bool is_usb(Pin pin) { return pin.number == 18 || pin.number == 19; }
+
+static_assert(!is_usb(kBuzzer.pin) && !is_usb(kLight) && !is_usb(kStartButton),
+              "Pins 18 and 19 are the USB of an ESP32-C3, and that is the port of this board: it would "
+              "be gone. Take other pins, and make the header again with tsc board.");
+#endif
 #else
 constexpr Pin kReceive = {3};
 #endif

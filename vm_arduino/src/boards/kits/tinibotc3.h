@@ -25,7 +25,7 @@ constexpr uint16_t kProgramBytes = 8192;
 constexpr uint32_t kBaud = 115200;
 
 constexpr Pin kStartButton = {8};
-constexpr Pwm kBuzzer = {{18}, 0};
+constexpr Pwm kBuzzer = {{7}, 0};
 constexpr Pin kLight = kNoPin;
 constexpr Pin kBluetoothState = kNoPin;
 constexpr TwoWire kLeftMotor = {{{3}, 2}, {{4}, 3}};
@@ -33,11 +33,11 @@ constexpr TwoWire kRightMotor = {{{5}, 4}, {{10}, 5}};
 constexpr uint8_t kUltrasonics = 1;
 
 tini_always_inline Ultrasonic ultrasonic_at(uint8_t) {
-  return {{7}, {{6}}};
+  return {{2}, {{6}}};
 }
 
 inline void begin_devices() {
-  begin_output({7}, false);
+  begin_output({2}, false);
 }
 
 inline bool read_sensor(uint8_t number, int32_t* value) {
