@@ -98,6 +98,17 @@ def test_a_network_is_set_told_and_forgotten(joined: Esp32PtyRobot, tmp_path: Pa
     assert asked(joined, "network") == ""
 
 
+def test_a_network_of_its_own_is_said_to_be_unstable_beside_bluetooth(robot: Esp32PtyRobot) -> None:
+    """By the table of Espressif's page on coexistence; Bluetooth is always on."""
+    assert claimed(robot).code == 0
+    done = on(robot, "wifi", "Tini", "--access-point", data=PASSWORD + b"\n")
+    assert done.code == 0 and "192.168.4.1" in done.out and "unstable" in done.out
+    assert "inestable" in on(robot, "wifi", "--lang", "es").out
+    assert "instável" in on(robot, "wifi", "--lang", "pt").out
+    assert on(robot, "wifi", "--forget").code == 0
+    assert "unstable" not in on(robot, "wifi").out
+
+
 def test_what_is_no_password_changes_nothing(joined: Esp32PtyRobot) -> None:
     for data in (b"", b"\n", b"short\n", b"x" * 64 + b"\n", b"12345678\0\n",
                  b"1234567\x1b[2J\n", b"x" * 5000):  # fmt: skip

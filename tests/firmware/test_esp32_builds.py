@@ -205,3 +205,18 @@ def test_the_settings_need_no_registry_of_libraries() -> None:
                 "board_build.partitions = partitions.csv"):  # fmt: skip
         assert row in text
     assert "lib_deps" not in text
+
+
+def test_the_menu_of_the_arduino_ide_that_has_room_is_named() -> None:
+    """The IDE takes our partitions, but compares with the size of its menu's: 1,310,720 at first."""
+    rows = [
+        [field.strip() for field in line.split(",")]
+        for line in (SOURCES / "partitions.csv").read_text(encoding="utf-8").splitlines()
+        if line and not line.startswith("#")
+    ]
+    sizes = {int(size, 0) for _, kind, _, _, size in rows if kind == "app"}
+    assert sizes == {1_966_080}
+    page = (SOURCES.parent / "docs" / "esp32.md").read_text(encoding="utf-8")
+    assert "*Minimal SPIFFS*" in page and "1,966,080" in page and "1,310,720" in page
+    settings = (SOURCES / "platformio.ini").read_text(encoding="utf-8")
+    assert "whatever its menu says" not in settings and "Minimal SPIFFS" in settings
