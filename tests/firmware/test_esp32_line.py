@@ -75,8 +75,9 @@ def test_a_line_that_stays_low_has_no_sender() -> None:
     assert happened(dead)[-1] == FORWARD, "nor has one that was never high"
 
 
-def test_a_short_disturbance_stops_no_robot() -> None:
-    robot = typed(booted())
+@pytest.mark.parametrize("name", NAMES)
+def test_a_short_disturbance_stops_no_robot(name: str) -> None:
+    robot = typed(booted(name))
     for _ in range(3):
         robot.hold_line()
         robot.wait(2)  # much longer than a byte

@@ -50,6 +50,7 @@ constexpr uint8_t kChannels = 16;
 constexpr uint8_t kMostBits = 20;
 constexpr uint64_t kClocks[] = {80000000, 1000000};
 constexpr uint8_t kReceivePin = 3;
+constexpr bool kBreakIsError = true;  // nobody knows of which chip a break is a framing error, too
 #else
 constexpr uint64_t kPins = 0x3c07ff;
 constexpr uint64_t kOutputs = kPins;
@@ -59,6 +60,7 @@ constexpr uint8_t kChannels = 6;
 constexpr uint8_t kMostBits = 14;
 constexpr uint64_t kClocks[] = {40000000};
 constexpr uint8_t kReceivePin = 20;
+constexpr bool kBreakIsError = false;
 #endif
 
 bool is_in(uint64_t pins, uint32_t pin) { return pin < 64 && (pins >> pin & 1) != 0; }
@@ -520,17 +522,17 @@ esp_err_t uart_enable_intr_mask(uart_port_t, uint32_t enable_mask) {
   return ESP_OK;
 }
 
+void spoil_byte() {
+  if (on_error && chip.tells_framing) on_error(UART_FRAME_ERROR);
+}
+
 void hold_line(bool is_low) {
   chip.is_line_held = is_low;
   chip.pins[kReceivePin].input = !is_low;
   if (!is_low || !chip.has_uart) return;
   chip.received += '\0';
-  if (on_error && chip.tells_framing) on_error(UART_FRAME_ERROR);
+  if (kBreakIsError) spoil_byte();
   if (on_error) on_error(UART_BREAK_ERROR);
-}
-
-void spoil_byte() {
-  if (on_error && chip.tells_framing) on_error(UART_FRAME_ERROR);
 }
 
 void HardwareSerial::onReceiveError(OnReceiveErrorCb function) { on_error = function; }

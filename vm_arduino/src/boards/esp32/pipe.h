@@ -111,8 +111,8 @@ class Pipe {
     const Found found = all_.put(byte, now_ms);
     const Found passed = has_room ? passed_.put(byte, now_ms) : Found::kNothing;
     if (found > passed) return stop(found == Found::kOfRun);
-    if (found == Found::kStop) __atomic_store_n(&stop_at_, put_, __ATOMIC_RELEASE);
-    if (found == Found::kOfRun) __atomic_store_n(&run_stop_at_, put_, __ATOMIC_RELEASE);
+    if (passed == Found::kStop) __atomic_store_n(&stop_at_, put_, __ATOMIC_RELEASE);
+    if (passed == Found::kOfRun) __atomic_store_n(&run_stop_at_, put_, __ATOMIC_RELEASE);
   }
 
   // The client has left.
