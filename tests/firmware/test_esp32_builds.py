@@ -208,7 +208,7 @@ def test_the_settings_need_no_registry_of_libraries() -> None:
 
 
 def test_the_menu_of_the_arduino_ide_that_has_room_is_named() -> None:
-    """The IDE takes our partitions, and compares with the size of its menu's: 1,310,720 at first."""
+    """The IDE takes our partitions, and compares with the size of its menu's."""
     rows = [
         [field.strip() for field in line.split(",")]
         for line in (SOURCES / "partitions.csv").read_text(encoding="utf-8").splitlines()
