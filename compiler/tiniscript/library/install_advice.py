@@ -20,6 +20,8 @@ PACKAGE = Path(__file__).resolve().parent.parent
 CLONE = PACKAGE.parent.parent
 # The extras of pyproject.toml.
 VIRTUAL, FIRMWARE, RADIO, BROKER, STUDIO = "virtual", "firmware", "radio", "broker", "studio"
+# Of an extra that only a clone needs: each file that pip may fetch, by its digest.
+LOCKS = {STUDIO: CLONE / "tools" / "studio" / "requirements.txt"}
 
 
 def command(extra: str) -> str:
@@ -41,7 +43,9 @@ def installing(extra: str) -> list[str] | None:
     wanted = requirements(extra)
     if not wanted or is_pipx() or is_managed() or find_spec("pip") is None:
         return None
-    return [sys.executable, "-m", "pip", "install", "--no-input", *wanted]
+    lock = LOCKS.get(extra)
+    named = ["--require-hashes", "-r", str(lock)] if lock is not None and lock.is_file() else wanted
+    return [sys.executable, "-m", "pip", "install", "--no-input", *named]
 
 
 def is_clone(folder: Path) -> bool:
