@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.machines import host
 from tests.support.command import Done
 from tests.support.needs import need
 from tests.support.platformio import OFFLINE, SKETCH, copied, pio, prepared
@@ -26,6 +27,13 @@ FLASH_BYTES, RAM_BYTES = 32_256, 2048  # of an Uno
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the sketch to build and to break. Without PlatformIO: skipped, in CI a failure."""
     return copied(tmp_path_factory.mktemp("platformio"))
+
+
+@pytest.fixture
+def native(project: Path) -> Path:
+    """The same, where this computer's compiler can build the tests in C++."""
+    need(host.missing())
+    return project
 
 
 @contextmanager
@@ -52,32 +60,32 @@ def says_what_it_is(log: str) -> bool:
 # -- the tests in C++ ---------------------------------------------------------------------------
 
 
-def test_tests_pass(project: Path) -> None:
-    log = pio(project, "test", "-e", "native").gives(0).out
+def test_tests_pass(native: Path) -> None:
+    log = pio(native, "test", "-e", "native").gives(0).out
     count = re.search(r"(\d+) test cases: (\d+) succeeded", log)
-    files = "".join(path.read_text(encoding="utf-8") for path in project.glob("test/test_*.cpp"))
+    files = "".join(path.read_text(encoding="utf-8") for path in native.glob("test/test_*.cpp"))
     assert count and int(count[1]) == int(count[2]) == files.count("\nTEST_CASE("), log
     assert says_what_it_is(log)
 
 
-def test_no_test_case_fails(project: Path) -> None:
-    done = pio(project, "test", "-e", "native", "-a", "--test-case=no such case")
+def test_no_test_case_fails(native: Path) -> None:
+    done = pio(native, "test", "-e", "native", "-a", "--test-case=no such case")
     done.gives(1, out="no test case has run")
 
 
-def test_early_end_fails(project: Path) -> None:
+def test_early_end_fails(native: Path) -> None:
     """A run that stops in the middle is no success, whatever its exit code."""
-    broken = project / "test" / "test_cases.cpp"
+    broken = native / "test" / "test_cases.cpp"
     with changed(
         broken,
         ('TEST_CASE("a robot does', 'TEST_CASE("ends") { exit(0); }\nTEST_CASE("a robot does'),
         ("#include <doctest.h>", "#include <doctest.h>\n#include <stdlib.h>"),
     ):
-        pio(project, "test", "-e", "native").gives(1, out="have ended before their end")
+        pio(native, "test", "-e", "native").gives(1, out="have ended before their end")
 
 
-def test_tests_are_for_a_computer(project: Path) -> None:
-    pio(project, "test", "-e", "uno").gives(1, out="pio test -e native")
+def test_tests_are_for_a_computer(native: Path) -> None:
+    pio(native, "test", "-e", "uno").gives(1, out="pio test -e native")
 
 
 # -- the sketch ---------------------------------------------------------------------------------

@@ -64,6 +64,8 @@ def is_of_another(number: int) -> bool:
 
     False where nobody listens there, and where nobody tells.
     """
+    if sys.platform == "win32":
+        return False
     try:
         found = _other_end((HOST, number), ("0.0.0.0", 0))
     except OSError:
