@@ -183,7 +183,7 @@ def test_a_broken_file_and_one_that_others_may_read_are_told(tsc: Tsc) -> None:
 
 
 def test_claims_that_were_left_leave_few_keys() -> None:
-    """A robot listens to few wrong keys: of pending ones the last two are kept, of each kind."""
+    """Each key that is shown takes time: of pending ones the last two are kept, of each kind."""
     own = KeyFile()
     for _ in range(6):
         own.made(ONE.id, ONE.which, "TINI")

@@ -132,30 +132,20 @@ def test_a_recorded_tag_opens_nothing_in_its_own_epoch() -> None:
     assert answers(thief, shown.payload[1:]) == STATUSES["WRONG_KEY"]
 
 
-def test_wrong_keys_are_tried_five_times_and_a_right_one_begins_the_count_anew() -> None:
+def test_wrong_keys_cost_the_owner_nothing() -> None:
+    """On a line of which the robot does not know who is at its other end."""
     table, keys = Owned(), Keys()
     table.claimed(keys)
     wrong = Keys()
-    wrong.found = [keys.found[0]._replace(key=bytes([200] * 16))]
-    for count in range(3):
+    for count in range(20):
+        wrong.found = [keys.found[0]._replace(key=bytes([200 + count] * 16))]
         thief = table.session(wrong, nonce=10 + count)
-        for _ in range(3):
-            assert table.outcome(thief, thief.start()) in ("WRONG_KEY", "NOT_OWNER")
-        owner = table.session(keys, nonce=20 + count)
-        assert table.outcome(owner, owner.trim()) == "OK"
-    wrong.found = [keys.found[0]._replace(key=bytes([201] * 16))]
-    thief = table.session(wrong, nonce=8)
-    assert owner_of(table, thief) == OF_ANOTHER
-    for _ in range(4):
+        assert owner_of(table, thief) == OF_ANOTHER
         assert table.outcome(thief, thief.start()) == "WRONG_KEY"
-    request = thief.start()
-    assert table.outcome(thief, request) == "TOO_MANY_TRIES"
-    assert request.outcome
-    assert 25 <= request.outcome.detail <= 30
     owner = table.session(keys, nonce=9)
-    assert table.outcome(owner, owner.start()) == "TOO_MANY_TRIES"
-    table.pass_time(None, 30_000)
+    began_ms = table.robot.now_ms
     assert table.tries(owner) == "OK"
+    assert table.robot.now_ms - began_ms < 500
 
 
 def test_no_challenge_is_a_tag() -> None:
@@ -246,7 +236,7 @@ def forged(frames: int, seed: int) -> int:
         table.robot.did.clear()
     if table.robot.memory() != memory:
         accepted += 1
-    assert table.tries(table.session(keys, nonce=5)) in ("OK", "TOO_MANY_TRIES")
+    assert table.tries(table.session(keys, nonce=5)) == "OK"
     return accepted
 
 

@@ -151,7 +151,7 @@ def refused_by_a_stranger(table: Owned, session: Session, is_cut: bool) -> Reply
         data = session.poll(table.robot.now_ms)
         frame = decoded(data.strip(b"\0")) if data else None
         if frame and frame.number == BY_NAME["AUTHENTICATE"].number and len(frame.payload) > 1:
-            for name in ("WRONG_KEY", "TOO_MANY_TRIES", "STALE", "NOT_OWNER"):
+            for name in ("WRONG_KEY", "STALE", "NOT_OWNER"):
                 said = frame._replace(payload=bytes([STATUSES[name], 4, 0]), is_reply=True)
                 session.receive(b"\0" + encoded(said), table.robot.now_ms)
             data = b"" if is_cut else data

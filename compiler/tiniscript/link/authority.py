@@ -20,7 +20,7 @@ from tiniscript.link.seal import Seal, session_key, siphash
 NOT_OWNER, WRONG_KEY, HOLD_BUTTON, STALE = (
     STATUSES[name] for name in ("NOT_OWNER", "WRONG_KEY", "HOLD_BUTTON", "STALE")
 )
-MOST_PENDING = 1  # keys before a new one: a robot listens to few wrong keys
+MOST_PENDING = 1  # keys before a new one: each that is shown takes time
 HOLD_TRIES = 150  # while the button is not held down: 30 s
 HOLD_PAUSE_MS = 200
 FREE, YOUR_OWN, OF_ANOTHER = "free", "yours", "other"
@@ -147,7 +147,7 @@ def show_keys(
     """Show a robot its keys, the teacher's first, until one is right; `which` alone if it is given.
 
     Then it is known of a pending key whether the robot has taken it. A stale key is shown only if
-    it `is_needed`, since a robot listens to few wrong keys.
+    it `is_needed`, since showing it takes time.
     """
     found: Reply[AuthenticateReply] = Reply(NOT_OWNER)
     keys = [] if ring is None else ring.of_robot(robot.id)

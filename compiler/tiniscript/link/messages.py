@@ -109,8 +109,6 @@ DEAD_MAN_MS = 1000  # dead-man timer: without a valid frame, an attached program
 LISTEN_MS = 3000  # without a valid frame, a robot sends no more events
 AGAIN_MS = 50  # between two STOPPED events of a stopped robot
 AUTHORITY_MS = 2000  # without a valid frame, a key has to be shown again
-KEY_TRIES = 5  # wrong keys before a pause
-KEY_PAUSE_MS = 30_000  # in which a robot listens to no key
 LONG_MS = 1000  # a press of the button of this length starts nothing
 CLAIM_MS = 2000  # a press of this length lets a client claim the robot, or lets text drive it
 FORGET_MS = 10_000  # a press of this length from power-on makes the robot forget its keys
@@ -304,7 +302,6 @@ STATUSES = {
     "NOT_KEPT": 80,
     "NOT_OWNER": 84,
     "WRONG_KEY": 85,
-    "TOO_MANY_TRIES": 86,
     "HOLD_BUTTON": 87,
     "HELD_BACK": 88,
     "NO_PREVIOUS": 90,
@@ -318,8 +315,6 @@ DETAILS = {
     "WRONG_KIT": "the fingerprint of the robot's kit",
     "TOO_LARGE": "bytes of code for which the robot has room",
     "INCOMPLETE": "the offset of the first byte that is missing",
-    "WRONG_KEY": "tries that are left before a pause",
-    "TOO_MANY_TRIES": "seconds until the robot listens to keys again",
 }
 
 STATES = (

@@ -156,12 +156,12 @@ class Link {
   static constexpr uint8_t kDueText = 16;
 
   // Times that run down to 0: until a client without frames no longer counts as listening, until
-  // STOPPED is sent again, until a second of silence has passed, until a key may be shown again,
-  // until text may follow the last frame; and, as `kListen`, since a sealed frame.
+  // STOPPED is sent again, until a second of silence has passed, until text may follow the last
+  // frame; and, as `kListen`, since a sealed frame.
 #ifdef tiniscript_seals
-  enum Time : uint8_t { kListen, kAgain, kSilence, kKeyPause, kFrameSent, kSealHeard, kTimes };
+  enum Time : uint8_t { kListen, kAgain, kSilence, kFrameSent, kSealHeard, kTimes };
 #else
-  enum Time : uint8_t { kListen, kAgain, kSilence, kKeyPause, kFrameSent, kTimes };
+  enum Time : uint8_t { kListen, kAgain, kSilence, kFrameSent, kTimes };
 #endif
 
   // Rights of the session, one bit each: it has a challenge, it has asked for a claim, the button
@@ -343,7 +343,6 @@ class Link {
 #ifdef tiniscript_transports
   bool has_halted_;
 #endif
-  uint8_t tries_;   // wrong keys since the last right one or the last pause
   uint32_t nonce_;  // of the session
   uint8_t challenge_[kChallengeBytes];
   uint8_t out_[kWireBytes];

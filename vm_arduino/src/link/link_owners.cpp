@@ -93,17 +93,10 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
   const uint8_t which = payload[kAuthenticateWhichAt];
   const uint8_t* const tag = payload + kAuthenticateTagAt;
   if (which > static_cast<uint8_t>(Key::kTeacher)) return number_of(Answer::kBadValue);
-  if (left_ms_[kKeyPause] != 0) {
-    uint16_t seconds = 1;  // a division of 16 bits takes more flash: an AVR has no other
-    for (uint16_t ms = left_ms_[kKeyPause]; ms >= 1000; ms = static_cast<uint16_t>(ms - 1000)) {
-      seconds++;
-    }
-    return refuse(Answer::kTooManyTries, seconds);
-  }
   uint8_t key[kKeyBytes];
   const Answer found = port_key(which, key);
   if (found != Answer::kOk) return number_of(found);
-  if (!is_key(key)) return refuse(Answer::kWrongKey, kKeyTries);
+  if (!is_key(key)) return number_of(Answer::kWrongKey);
   uint8_t text[kChallengeText];
   copy_bytes(challenge_, text, kChallengeBytes);
   if (length == kAuthenticateTagAt) {
@@ -122,15 +115,8 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
   text[kTagText - 2] = epoch_;
   text[kTagText - 1] = which;
   siphash(key, text, kTagText, text);
-  if (!are_equal(text, tag, kTagBytes)) {
-    const uint8_t tries = ++tries_;
-    if (tries == kKeyTries) {
-      tries_ = 0;
-      left_ms_[kKeyPause] = kKeyPauseMs;
-    }
-    return refuse(Answer::kWrongKey, static_cast<uint16_t>(kKeyTries - tries));
-  }
-  tries_ = 0;
+  // Nobody guesses 64 bits, and a pause for strangers would be one for the owner.
+  if (!are_equal(text, tag, kTagBytes)) return number_of(Answer::kWrongKey);
   port_identity().features |= kYours;
   if (which == static_cast<uint8_t>(Key::kTeacher)) {
     port_identity().more_features |= kMoreByTeacher;

@@ -1,0 +1,96 @@
+"""What one client did, or did not do, costs the next client of its place nothing."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+
+import pytest
+
+from tests.firmware.test_esp32_transports import AWAY, Ends, Make, ended, uploaded
+from tests.firmware.test_esp32_wifi import far_owner, owned, remote
+from tests.machines.esp32 import Esp32Robot
+from tests.support.esp32_radio import Bytes, End, LowEnergy, Network, SerialPort, session, talk
+from tests.support.images import image_of
+from tests.support.owners import Keys
+from tiniscript.link.messages import AUTHORITY_MS, STOP_BYTES
+from tiniscript.link.session import Session
+
+PLACES: list[Make] = [LowEnergy, SerialPort, Network]
+
+
+def with_wrong_key(robot: Esp32Robot, keys: Keys, nonce: int) -> Session:
+    wrong = Keys()
+    wrong.found = [each._replace(key=bytes([nonce + 99] * 16)) for each in keys.found]
+    return remote(robot, wrong, nonce)
+
+
+def shows_wrong_keys(robot: Esp32Robot, end: End, keys: Keys) -> None:
+    thief = with_wrong_key(robot, keys, 1)
+    for _ in range(10):
+        assert ended(robot, [(end, thief)], thief.start()) != "OK"
+
+
+def begins_an_upload(robot: Esp32Robot, end: End, keys: Keys) -> None:
+    stranger = session(3, robot)
+    stranger.upload(image_of("SB|" + ";".join("F(1, 80)" for _ in range(800))))
+    talk(robot, [(end, stranger)], 300)
+
+
+def claims(robot: Esp32Robot, end: End, keys: Keys) -> None:
+    stranger = remote(robot, Keys(50), 4)
+    stranger.claim(0)
+    talk(robot, [(end, stranger)], 300)
+
+
+def says(data: bytes) -> Callable[[Esp32Robot, End, Keys], None]:
+    def it(robot: Esp32Robot, end: End, keys: Keys) -> None:
+        talk(robot, [(end, Bytes(data))], 30)
+
+    return it
+
+
+WRONGS = {
+    "wrong keys": shows_wrong_keys,
+    "an upload": begins_an_upload,
+    "a claim": claims,
+    "half a frame": says(b"\0\0\5\7\7"),
+    "noise": says(b"\0\0" + random.Random(5).randbytes(3000)),
+    "half a line": says(b"SI|F(60, 80"),
+    "half a block": says(b"SI|LOOP(2)\n"),
+    "stops": says(b"\0\0" + bytes(STOP_BYTES) * 9),
+}
+
+
+def owners_time(robot: Esp32Robot, make: Make, keys: Keys) -> int:
+    """Return how long the owner takes from a new connection until a program runs."""
+    owner = remote(robot, keys, 8)
+    began_ms = robot.now_ms
+    ends: Ends = [(make(robot), owner)]
+    assert uploaded(robot, ends, owner, AWAY) == "OK"
+    return robot.now_ms - began_ms
+
+
+@pytest.mark.parametrize("make", PLACES)
+@pytest.mark.parametrize("wrong", WRONGS)
+def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -> None:
+    def place() -> tuple[Esp32Robot, Keys]:
+        keys = Keys()
+        robot, end, _ = far_owner(keys)
+        end.leave()
+        talk(robot, [], AUTHORITY_MS + 100)
+        return robot, keys
+
+    robot, keys = place()
+    talk(robot, [(end := make(robot), Bytes())], 300)
+    end.leave()
+    talk(robot, [], 5)
+    usual_ms = owners_time(robot, make, keys)
+
+    robot, keys = place()
+    for _ in range(3):
+        end = make(robot)
+        WRONGS[wrong](robot, end, keys)
+        end.leave()
+        talk(robot, [], 5)
+    assert owners_time(robot, make, keys) <= usual_ms + 30  # a stop is released first
