@@ -182,6 +182,12 @@ bool Links::is_driven() const {
   return driver_ != kNobody && (drives_ms_ != 0 || links_[driver_].is_heard());
 }
 
+// Whether who has driven last keeps the others away: who runs nothing and changes nothing gives way,
+// however long an open page is heard.
+bool Links::keeps_wheel() const {
+  return driver_ != kNobody && (drives_ms_ != 0 || port_status().state == State::kRunning);
+}
+
 // The current session drives from now on: what others have begun is over.
 void Links::drive() {
   drives_ms_ = kAuthorityMs;
@@ -207,7 +213,7 @@ Answer Links::may_drive(uint8_t type) {
     return Answer::kOk;
   }
   if (type == number_of(Message::kClear) && is_held_back_ && is_teacher()) return Answer::kOk;
-  if (driver_ != current_ && is_driven()) return Answer::kOtherDriver;
+  if (driver_ != current_ && keeps_wheel()) return Answer::kOtherDriver;
   is_asking_ = true;
   is_asking_by_text_ = is_text;
   return Answer::kOk;

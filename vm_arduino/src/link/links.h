@@ -2,9 +2,10 @@
 // that drives.
 //
 // Each transport has a receiver, a session and a seal of its own, so nobody's HELLO ends the
-// session of another. A session drives from its first request that acts on; while it is heard,
-// those of others are refused. What is for all (HELLO, PING, STATUS, STOP, IDENTIFY) is answered on
-// each, and a stop on one is a stop. Knows no bytes of a transport. All calls are the main loop's.
+// session of another. A session drives from its first request that acts on; for 2 s after each, and
+// while it is heard and its program runs, those of others are refused. What is for all (HELLO, PING,
+// STATUS, STOP, IDENTIFY) is answered on each, and a stop on one is a stop. Knows no bytes of a
+// transport. All calls are the main loop's.
 
 #ifndef TINISCRIPT_LINK_LINKS_H_
 #define TINISCRIPT_LINK_LINKS_H_
@@ -71,6 +72,7 @@ class Links {
 
   static uint8_t place_of(Transport transport) { return static_cast<uint8_t>(transport); }
   bool is_driven() const;
+  bool keeps_wheel() const;
   void drive();
   void enter(uint8_t place);
   void leave();
