@@ -9,6 +9,7 @@ import pytest
 
 from tests.firmware.test_esp32_transports import AWAY, Ends, Make, ended, uploaded
 from tests.firmware.test_esp32_wifi import far_owner, owned, remote
+from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Bytes, End, LowEnergy, Network, SerialPort, session, talk
 from tests.support.images import image_of
@@ -94,3 +95,70 @@ def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -
         end.leave()
         talk(robot, [], 5)
     assert owners_time(robot, make, keys) <= usual_ms + 30  # a stop is released first
+
+
+# -- who is silent ------------------------------------------------------------------------------
+
+
+PLACE_MS = 10_000  # kPlaceMs of radio.h
+
+
+def test_a_silent_phone_keeps_nobody_off_bluetooth() -> None:
+    """Not for longer than ten seconds, and where nobody comes, not at all."""
+    robot, _ = owned(keys := Keys())
+    talk(robot, [], AUTHORITY_MS)
+    phone, first = LowEnergy(robot), remote(robot, keys, 2)
+    assert uploaded(robot, [(phone, first)], first, "SI|F(0.1, 30)") == "OK"
+    talk(robot, [(phone, Bytes())], PLACE_MS - 50)
+    early = LowEnergy(robot)
+    assert early.has_ended and not phone.has_ended, "never before"
+    assert ended(robot, [(phone, first)], first.ping()) == "OK"
+    talk(robot, [(phone, Bytes())], 3 * PLACE_MS)
+    assert not phone.has_ended, "while nobody else comes"
+    owner = remote(robot, keys, 3)
+    ends: Ends = [(end := LowEnergy(robot), owner)]
+    assert phone.has_ended and not end.has_ended
+    assert uploaded(robot, ends, owner) == "OK"
+    phone.send(bytes(STOP_BYTES))
+    talk(robot, ends, 3 * PLACE_MS)
+    assert happened(robot)[-1] == "MOTORS 80 80", "its session lives, and nothing of the phone does"
+    owner.stop(robot.now_ms)
+    talk(robot, ends, 20)
+    assert happened(robot)[-1] == "MOTORS 0 0"
+
+
+def test_whoever_comes_too_early_costs_nobody_anything() -> None:
+    robot, _ = owned(keys := Keys())
+    talk(robot, [], AUTHORITY_MS)
+    owner = remote(robot, keys, 2)
+    ends: Ends = [(end := LowEnergy(robot, 247), owner)]
+    assert uploaded(robot, ends, owner) == "OK"
+    for _ in range(300):
+        other = LowEnergy(robot, 100)
+        assert other.has_ended and other.taken() == b""
+        other.send(b"S\n" + bytes(STOP_BYTES))
+        talk(robot, ends, 100)
+    assert not end.has_ended and happened(robot)[-1] == "MOTORS 80 80"
+    end.leave()
+    talk(robot, [], 5)
+    again = remote(robot, keys, 3)
+    assert uploaded(robot, [(LowEnergy(robot), again)], again) == "OK", "and the robot is still found"
+
+
+def test_who_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:
+    robot, _ = owned(keys := Keys())
+    talk(robot, [], AUTHORITY_MS)
+    for _ in range(5):
+        phone, first = LowEnergy(robot), remote(robot, keys, 2)
+        assert ended(robot, [(phone, first)], first.ping()) == "OK"
+        talk(robot, [(phone, Bytes())], PLACE_MS)
+        end, owner = LowEnergy(robot), remote(robot, keys, 3)
+        phone.leave()  # again, and the number of its connection is free
+        refused = LowEnergy(robot)
+        refused.leave()
+        assert uploaded(robot, [(end, owner)], owner) == "OK"
+        talk(robot, [(end, owner)], 1500)
+        assert happened(robot)[-1] == "MOTORS 80 80"
+        end.leave()
+        talk(robot, [], 5)
+        assert happened(robot)[-1] == "MOTORS 0 0"

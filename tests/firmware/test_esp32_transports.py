@@ -253,7 +253,7 @@ def test_a_client_that_takes_nothing_stops_nobody() -> None:
     end = LowEnergy(robot)
     ends: Ends = [(None, driver), (end, deaf)]
     assert uploaded(robot, ends, driver) == "OK"
-    robot.radio("s", b"\0")
+    end.subscribe(False)
     talk(robot, [(None, driver), (end, Bytes(b"\0" + encoded(Frame(3, 1, 0, b"")) * 40))], 3000)
     assert happened(robot) == ["MOTORS 80 80"]
     end.send(bytes(STOP_BYTES))

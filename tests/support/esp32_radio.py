@@ -55,18 +55,25 @@ class LowEnergy:
         self.lengths: list[int] = []
         self._waiting: list[bytes] = []
         self._looks = 0
-        robot.radio("c")
+        self._number = robot.radio("c")
         if mtu != LEAST_MTU:
-            robot.radio("m", pack("<H", mtu))
-        robot.radio("s", b"\1")
+            robot.radio("m", self._number + pack("<H", mtu))
+        self.subscribe()
+
+    @property
+    def has_ended(self) -> bool:
+        return self.robot.radio("e", self._number) == b"\0"
+
+    def subscribe(self, has_subscribed: bool = True) -> None:
+        self.robot.radio("s", self._number + bytes([has_subscribed]))
 
     def send(self, data: bytes) -> None:
         most = self.mtu - 3
         for k in range(0, len(data), most):
-            self.robot.radio("w", _text(data[k : k + most]))
+            self.robot.radio("w", self._number + _text(data[k : k + most]))
 
     def taken(self) -> bytes:
-        answer = self.robot.radio("n")
+        answer = self.robot.radio("n", self._number)
         count, answer = int.from_bytes(answer[:4], "little"), answer[4:]
         for _ in range(count):
             data, answer = _next(answer)
@@ -78,7 +85,7 @@ class LowEnergy:
         return self._waiting.pop(0)
 
     def leave(self) -> None:
-        self.robot.radio("d")
+        self.robot.radio("d", self._number)
 
 
 class SerialPort:

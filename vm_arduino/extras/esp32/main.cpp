@@ -194,19 +194,27 @@ void answer_echo(RequestReader* request, Writer*) {
 void answer_radio(RequestReader* request, Writer* answer) {
   switch (request->u8()) {
     case 'c':
-      return low_energy_connect();
+      return answer->u16(low_energy_connect());
     case 'd':
-      return low_energy_disconnect();
-    case 'm':
-      return low_energy_agree(request->u16());
-    case 's':
-      return low_energy_subscribe(request->u8() != 0);
-    case 'w':
-      return low_energy_write(request->text());
+      return low_energy_disconnect(request->u16());
+    case 'e':
+      return answer->u8(low_energy_is_there(request->u16()));
+    case 'm': {
+      const uint16_t client = request->u16();
+      return low_energy_agree(client, request->u16());
+    }
+    case 's': {
+      const uint16_t client = request->u16();
+      return low_energy_subscribe(client, request->u8() != 0);
+    }
+    case 'w': {
+      const uint16_t client = request->u16();
+      return low_energy_write(client, request->text());
+    }
     case 'k':
       return low_energy_congest(request->u8() != 0);
     case 'n': {
-      const std::vector<std::string> found = low_energy_notified();
+      const std::vector<std::string> found = low_energy_notified(request->u16());
       answer->u32(static_cast<uint32_t>(found.size()));
       for (const std::string& each : found) answer->text(each);
       return;

@@ -132,10 +132,20 @@ is_a(static_cast<gatts_event_handler>(nullptr),
      void (*)(esp_gatts_cb_event_t, esp_gatt_if_t, esp_ble_gatts_cb_param_t*));
 is_a(&esp_ble_gatts_send_indicate,
      esp_err_t (*)(esp_gatt_if_t, uint16_t, uint16_t, uint16_t, uint8_t*, bool));
-is_a(esp_ble_gatts_cb_param_t().connect.conn_id, uint16_t);
+is_a(std::declval<BLECharacteristicCallbacks&>().onWrite(
+         nullptr, static_cast<esp_ble_gatts_cb_param_t*>(nullptr)),
+     void);
+is_a(&BLEServer::disconnect, void (BLEServer::*)(uint16_t));
+is_a(esp_ble_gatts_cb_param_t().write.conn_id, uint16_t);
 is_a(esp_ble_gatts_cb_param_t().write.handle, uint16_t);
+is_a(esp_ble_gatts_cb_param_t().write.len, uint16_t);
 is_a(esp_ble_gatts_cb_param_t().write.value, uint8_t*);
+is_a(esp_ble_gatts_cb_param_t().mtu.conn_id, uint16_t);
 is_a(esp_ble_gatts_cb_param_t().mtu.mtu, uint16_t);
+is_a(esp_ble_gatts_cb_param_t().connect.conn_id, uint16_t);
+is_a(esp_ble_gatts_cb_param_t().disconnect.conn_id, uint16_t);
+static_assert(ESP_GATTS_WRITE_EVT == 2 && ESP_GATTS_MTU_EVT == 4, "numbers");
+static_assert(ESP_GATTS_CONNECT_EVT == 14 && ESP_GATTS_DISCONNECT_EVT == 15, "numbers");
 
 #ifdef CONFIG_BT_SPP_ENABLED
 // libraries/BluetoothSerial/src

@@ -39,17 +39,19 @@ bool has_server;
 bool has_started;  // its service
 constexpr esp_gatt_if_t kInterface = 3;
 constexpr uint16_t kFirstHandle = 42;  // of the characteristics, each with a descriptor behind it
-constexpr uint16_t kConnections = 4;   // that the stack has numbers for
-uint16_t agreed_mtu = 23;
-uint16_t connection;  // the number of the last one
+struct LowEnergyClient {
+  uint16_t mtu = 23;
+  bool has_subscribed = false;
+  std::vector<std::string> notified;
+};
+constexpr size_t kMostClients = 3;  // CONFIG_BTDM_CTRL_BLE_MAX_CONN of the core
+std::map<uint16_t, LowEnergyClient> clients;
+std::vector<uint16_t> sent_away;  // and still there
 gatts_event_handler on_stack;
 BLECharacteristicCallbacks* on_write;
 bool is_congested;
 std::string written;
 bool is_advertising;
-bool is_connected;
-bool has_subscribed;
-std::vector<std::string> notified;
 
 // the serial port
 constexpr size_t kPortPacket = 990;  // bytes that RFCOMM hands over at once
@@ -95,66 +97,87 @@ void look_at_sleep() {
          "WiFi without modem sleep beside Bluetooth");
 }
 
-}  // namespace
-
-// -- who is on the other side -------------------------------------------------------------------
+// Who was sent away leaves.
+void let_go() {
+  for (;;) {
+    uint16_t client;
+    {
+      const Lock lock(guard);
+      if (sent_away.empty()) return;
+      client = sent_away.back();
+      sent_away.pop_back();
+    }
+    low_energy_disconnect(client);
+  }
+}
 
 // The stack's task tells; it has a handler as soon as anybody may be connected.
-static void tell(esp_gatts_cb_event_t event, esp_ble_gatts_cb_param_t* its) {
+void tell(esp_gatts_cb_event_t event, esp_ble_gatts_cb_param_t its) {
   gatts_event_handler told;
   {
     const Lock lock(guard);
     told = on_stack;
   }
-  if (told != nullptr) told(event, kInterface, its);
+  if (told != nullptr) told(event, kInterface, &its);
+  let_go();
 }
 
-void low_energy_connect() {
-  esp_ble_gatts_cb_param_t its = {};
+}  // namespace
+
+// -- who is on the other side -------------------------------------------------------------------
+
+uint16_t low_energy_connect() {
+  uint16_t client = 0;
   {
     const Lock lock(guard);
-    if (!is_advertising) return;
+    if (!is_advertising || clients.size() == kMostClients) return kNoClient;
+    while (clients.count(client) != 0) client++;
     is_advertising = false;
-    is_connected = true;
-    has_subscribed = false;
-    agreed_mtu = 23;
-    connection = static_cast<uint16_t>((connection + 1) % kConnections);
-    its.connect.conn_id = connection;
-  }
-  tell(ESP_GATTS_CONNECT_EVT, &its);
-}
-
-void low_energy_disconnect() {
-  esp_ble_gatts_cb_param_t its = {};
-  {
-    const Lock lock(guard);
-    if (!is_connected) return;
-    is_connected = false;
-  }
-  tell(ESP_GATTS_DISCONNECT_EVT, &its);
-}
-
-void low_energy_agree(uint16_t mtu) {
-  {
-    const Lock lock(guard);
-    if (!is_connected) return;
-    agreed_mtu = mtu < 23 ? 23 : mtu > 247 ? 247 : mtu;
+    clients[client] = LowEnergyClient();
   }
   esp_ble_gatts_cb_param_t its = {};
+  its.connect.conn_id = client;
+  tell(ESP_GATTS_CONNECT_EVT, its);
+  return client;
+}
+
+void low_energy_disconnect(uint16_t client) {
+  {
+    const Lock lock(guard);
+    if (clients.erase(client) == 0) return;
+  }
+  esp_ble_gatts_cb_param_t its = {};
+  its.disconnect.conn_id = client;
+  tell(ESP_GATTS_DISCONNECT_EVT, its);
+}
+
+bool low_energy_is_there(uint16_t client) {
+  const Lock lock(guard);
+  return clients.count(client) != 0;
+}
+
+void low_energy_agree(uint16_t client, uint16_t mtu) {
+  {
+    const Lock lock(guard);
+    if (clients.count(client) == 0) return;
+    clients[client].mtu = mtu < 23 ? 23 : mtu > 247 ? 247 : mtu;
+  }
+  esp_ble_gatts_cb_param_t its = {};
+  its.mtu.conn_id = client;
   its.mtu.mtu = mtu;
-  tell(ESP_GATTS_MTU_EVT, &its);
+  tell(ESP_GATTS_MTU_EVT, its);
 }
 
-void low_energy_subscribe(bool has) {
+void low_energy_subscribe(uint16_t client, bool has) {
   {
     const Lock lock(guard);
-    if (!is_connected) return;
-    has_subscribed = has;
+    if (clients.count(client) == 0) return;
+    clients[client].has_subscribed = has;
   }
   uint8_t value[] = {has, 0};
   esp_ble_gatts_cb_param_t its = {};
-  its.write = {connection, BLEDescriptor().getHandle(), sizeof value, value};
-  tell(ESP_GATTS_WRITE_EVT, &its);
+  its.write = {client, BLEDescriptor().getHandle(), sizeof value, value};
+  tell(ESP_GATTS_WRITE_EVT, its);
 }
 
 void low_energy_congest(bool is_so) {
@@ -162,19 +185,23 @@ void low_energy_congest(bool is_so) {
   is_congested = is_so;
 }
 
-void low_energy_write(const std::string& bytes) {
+void low_energy_write(uint16_t client, const std::string& bytes) {
   {
     const Lock lock(guard);
-    if (!is_connected) return;
+    if (clients.count(client) == 0) return;
   }
-  written = bytes;  // of the core's task alone
-  on_write->onWrite(&characteristics[1]);
+  written = bytes;  // of the stack's task alone
+  esp_ble_gatts_cb_param_t its = {};
+  its.write = {client, characteristics[1].getHandle(), static_cast<uint16_t>(written.size()),
+               characteristics[1].getData()};
+  on_write->onWrite(&characteristics[1], &its);
+  tell(ESP_GATTS_WRITE_EVT, its);
 }
 
-std::vector<std::string> low_energy_notified() {
+std::vector<std::string> low_energy_notified(uint16_t client) {
   const Lock lock(guard);
   std::vector<std::string> found;
-  found.swap(notified);
+  if (clients.count(client) != 0) found.swap(clients[client].notified);
   return found;
 }
 
@@ -277,7 +304,7 @@ size_t BluetoothSerial::write(const uint8_t* buffer, size_t size) {
   return size;
 }
 
-void BLECharacteristicCallbacks::onWrite(BLECharacteristic*) {}
+void BLECharacteristicCallbacks::onWrite(BLECharacteristic*, esp_ble_gatts_cb_param_t*) {}
 
 void BLECharacteristic::addDescriptor(BLEDescriptor*) {
   expect(!has_started, "a part of a service that has started");
@@ -299,11 +326,13 @@ extern "C" esp_err_t esp_ble_gatts_send_indicate(esp_gatt_if_t gatts_if, uint16_
                                                  uint8_t* value, bool) {
   const Lock lock(guard);
   expect(gatts_if == kInterface && attr_handle == kFirstHandle, "a notification of nothing");
-  if (!is_connected || conn_id != connection) return ESP_ERR_INVALID_STATE;
+  const auto found = clients.find(conn_id);
+  if (found == clients.end()) return ESP_ERR_INVALID_STATE;
   if (is_congested) return ESP_FAIL;
-  if (!has_subscribed) return ESP_OK;  // it is sent, and the client throws it away
-  const size_t most = agreed_mtu - 3U;  // the stack cuts the rest off
-  notified.emplace_back(reinterpret_cast<char*>(value), value_len < most ? value_len : most);
+  LowEnergyClient& its = found->second;
+  if (!its.has_subscribed) return ESP_OK;  // it is sent, and the client throws it away
+  const size_t most = its.mtu - 3U;        // the stack cuts the rest off
+  its.notified.emplace_back(reinterpret_cast<char*>(value), value_len < most ? value_len : most);
   return ESP_OK;
 }
 
@@ -314,6 +343,11 @@ BLECharacteristic* BLEService::createCharacteristic(const char*, uint32_t) {
 void BLEService::start() { has_started = true; }
 
 BLEService* BLEServer::createService(const char*) { return &service; }
+void BLEServer::disconnect(uint16_t connId) {
+  const Lock lock(guard);
+  expect(clients.count(connId) != 0, "a client that is sent away and not there");
+  sent_away.push_back(connId);
+}
 
 void BLEAdvertising::addServiceUUID(const char*) {}
 void BLEAdvertising::setScanResponse(bool) {}

@@ -12,14 +12,17 @@
 #include <string>
 #include <vector>
 
-// Bluetooth LE.
-void low_energy_connect();
-void low_energy_disconnect();
-void low_energy_agree(uint16_t mtu);
-void low_energy_subscribe(bool has_subscribed);
+// Bluetooth LE. A client has a number, which is another one's when it has gone; 0xffff: no robot was
+// found. Who is sent away has gone behind the call in which that was asked.
+constexpr uint16_t kNoClient = 0xffff;
+uint16_t low_energy_connect();
+void low_energy_disconnect(uint16_t client);
+bool low_energy_is_there(uint16_t client);
+void low_energy_agree(uint16_t client, uint16_t mtu);
+void low_energy_subscribe(uint16_t client, bool has_subscribed);
 void low_energy_congest(bool is_so);  // its stack takes no notification meanwhile
-void low_energy_write(const std::string& bytes);
-std::vector<std::string> low_energy_notified();  // since the last call
+void low_energy_write(uint16_t client, const std::string& bytes);
+std::vector<std::string> low_energy_notified(uint16_t client);  // since the last call
 
 // Bluetooth with a serial port. One that is stuck takes nothing: `write` of the core waits then.
 void serial_port_connect(bool is_there);

@@ -47,16 +47,17 @@ void pause(int us) { std::this_thread::sleep_for(std::chrono::microseconds(us));
 void be_low_energy() {
   std::minstd_rand chance(1);
   while (!is_over) {
-    low_energy_connect();
-    low_energy_agree(static_cast<uint16_t>(20 + chance() % 300));
-    low_energy_subscribe(chance() % 8 != 0);
+    const uint16_t client = low_energy_connect();
+    low_energy_agree(client, static_cast<uint16_t>(20 + chance() % 300));
+    low_energy_subscribe(client, chance() % 8 != 0);
     for (unsigned left = chance() % 60; left > 0 && !is_over; left--) {
       const std::string* const said[] = {&kFrame, &kDamaged, &kLine, &kStop};
-      low_energy_write(*said[chance() % 4]);
-      notified += low_energy_notified().size();
+      low_energy_write(client, *said[chance() % 4]);
+      notified += low_energy_notified(client).size();
       pause(300);
     }
-    low_energy_disconnect();
+    if (chance() % 4 == 0) low_energy_disconnect(low_energy_connect());  // it is sent away
+    low_energy_disconnect(client);
     pause(500);
   }
 }

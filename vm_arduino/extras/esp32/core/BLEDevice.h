@@ -36,6 +36,9 @@ typedef union {
   struct gatts_connect_evt_param {
     uint16_t conn_id;
   } connect;
+  struct gatts_disconnect_evt_param {
+    uint16_t conn_id;
+  } disconnect;
 } esp_ble_gatts_cb_param_t;
 
 extern "C" {
@@ -60,7 +63,7 @@ class BLE2902 : public BLEDescriptor {};
 class BLECharacteristicCallbacks {
  public:
   virtual ~BLECharacteristicCallbacks() {}
-  virtual void onWrite(BLECharacteristic* pCharacteristic);
+  virtual void onWrite(BLECharacteristic* pCharacteristic, esp_ble_gatts_cb_param_t* param);
 };
 
 // Without `notify`: it copies the server's map of clients, which the stack's task changes, and no
@@ -86,6 +89,7 @@ class BLEService {
 class BLEServer {
  public:
   BLEService* createService(const char* uuid);
+  void disconnect(uint16_t connId);
 };
 
 class BLEAdvertising {

@@ -1,8 +1,8 @@
 // Bluetooth LE: the Nordic UART service, with the robot's name in the advertisement.
 //
-// The stack's task calls what is written to the robot, and who connects and leaves; the task of this
-// radio sends notifications. It asks nothing of the core's objects: these change in the stack's task,
-// and no lock is around them.
+// The stack's task tells what is written to the robot, and who connects and leaves, with the number
+// of its connection; the task of this radio sends notifications. That one asks nothing of the core's
+// objects: these change in the stack's task, and no lock is around them.
 
 #ifdef ARDUINO_ARCH_ESP32
 
@@ -30,12 +30,18 @@ constexpr uint16_t kMostMtu = 247;
 constexpr uint16_t kMtuHead = 3;    // bytes of it that are no payload
 constexpr uint8_t kPauseTurns = 4;  // between two notifications: the stack takes no more at once
 
+constexpr uint16_t kNobody = 0xffff;
+
 // The stack's task writes these, the radio's reads them.
 uint16_t mtu = kLeastMtu;
-uint16_t connection;  // its number in the stack
+uint16_t client = kNobody;  // who has the place: the number of its connection
 uint8_t interface;
 bool has_subscribed;
 uint8_t clients;  // so far
+
+// The stack's task alone.
+BLEServer* server;
+uint32_t heard_ms;  // when something was heard of that client, or it came
 
 // The radio's task: a notification that waits, and for which client.
 uint16_t to_computer;  // the handle of the characteristic
@@ -60,44 +66,56 @@ Pipe& pipe() { return radio_pipe(Transport::kLowEnergy); }
 
 class Heard : public BLECharacteristicCallbacks {
  public:
-  void onWrite(BLECharacteristic* its) override {
+  void onWrite(BLECharacteristic* its, esp_ble_gatts_cb_param_t* event) override {
+    if (event->write.conn_id != client) return;
     const uint8_t* const bytes = its->getData();
     const size_t length = its->getLength();
-    const uint16_t now_ms = static_cast<uint16_t>(millis());
-    for (size_t k = 0; k < length; k++) pipe().put(bytes[k], now_ms);
+    heard_ms = static_cast<uint32_t>(millis());
+    for (size_t k = 0; k < length; k++) pipe().put(bytes[k], static_cast<uint16_t>(heard_ms));
   }
 };
 
-void on_connect(uint8_t its_interface, uint16_t number) {
+void part() {
+  if (client != kNobody) pipe().part();
+  publish(&client, kNobody);
+}
+
+// Who comes has the place if it is free, or if nothing was heard for long of who has it.
+void on_connect(uint8_t its_interface, uint16_t found) {
+  const uint32_t now_ms = static_cast<uint32_t>(millis());
+  if (client != kNobody && now_ms - heard_ms < kPlaceMs) return server->disconnect(found);
+  if (client != kNobody) server->disconnect(client);
+  part();
+  heard_ms = now_ms;
   publish(&mtu, kLeastMtu);
   publish(&has_subscribed, false);
   publish(&interface, its_interface);
-  publish(&connection, number);
+  publish(&client, found);
   publish(&clients, static_cast<uint8_t>(clients + 1));
   pipe().begin();
-}
-
-void on_disconnect() {
-  pipe().part();
-  BLEDevice::startAdvertising();
 }
 
 void on_mtu(uint16_t found) {
   publish(&mtu, found < kLeastMtu ? kLeastMtu : found > kMostMtu ? kMostMtu : found);
 }
 
-// The core has done its part by then.
+// The core has done its part by then. The stack advertises no more once somebody has come: then
+// nobody else could.
 void on_event(esp_gatts_cb_event_t event, esp_gatt_if_t its_interface,
               esp_ble_gatts_cb_param_t* its) {
   switch (event) {
     case ESP_GATTS_CONNECT_EVT:
-      return on_connect(its_interface, its->connect.conn_id);
+      on_connect(its_interface, its->connect.conn_id);
+      return BLEDevice::startAdvertising();
     case ESP_GATTS_DISCONNECT_EVT:
-      return on_disconnect();
+      if (its->disconnect.conn_id == client) part();
+      return BLEDevice::startAdvertising();
     case ESP_GATTS_MTU_EVT:
-      return on_mtu(its->mtu.mtu);
+      if (its->mtu.conn_id == client) on_mtu(its->mtu.mtu);
+      return;
     case ESP_GATTS_WRITE_EVT:
-      if (its->write.handle != subscription->getHandle() || its->write.len == 0) return;
+      if (its->write.conn_id != client || its->write.len == 0) return;
+      if (its->write.handle != subscription->getHandle()) return;
       return publish(&has_subscribed, (its->write.value[0] & 1) != 0);
     default:
       return;
@@ -113,7 +131,7 @@ void low_energy_begin() {
   BLEDevice::init(radio_name().name);
   BLEDevice::setMTU(kMostMtu);
   BLEDevice::setCustomGattsHandler(on_event);
-  BLEServer* const server = BLEDevice::createServer();
+  server = BLEDevice::createServer();
   BLEService* const service = server->createService(kService);
   BLECharacteristic* const notifier =
       service->createCharacteristic(kToComputer, BLECharacteristic::PROPERTY_NOTIFY);
@@ -135,14 +153,14 @@ void low_energy_turn() {
     pause_turns--;
     return;
   }
-  const uint8_t client = published(clients);
-  if (client != its_client) length = 0;  // what waits is for one before
-  its_client = client;
+  const uint8_t found = published(clients);
+  if (found != its_client) length = 0;  // what waits is for one before
+  its_client = found;
   if (!pipe().is_connected()) return;
   const size_t most = static_cast<size_t>(published(mtu) - kMtuHead);
   while (length < most && pipe().take(waiting + length)) length++;
   if (length == 0 || !published(has_subscribed)) return;
-  if (esp_ble_gatts_send_indicate(published(interface), published(connection), to_computer,
+  if (esp_ble_gatts_send_indicate(published(interface), published(client), to_computer,
                                   static_cast<uint16_t>(length), waiting, false) == ESP_OK) {
     length = 0;
   }

@@ -15,6 +15,9 @@
 
 namespace tiniscript {
 
+// Silence behind which a client's place goes to another one that comes; never before.
+constexpr uint32_t kPlaceMs = 10000;
+
 // What the main loop calls: begins the radios when the robot knows its name; takes what they have
 // received; gives them what is to be sent.
 void radio_tick();

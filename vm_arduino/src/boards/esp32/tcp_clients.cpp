@@ -20,7 +20,6 @@ namespace {
 
 constexpr uint8_t kClients = 2;
 constexpr uint32_t kBeginMs = 10000;   // since it was accepted, until its first bytes are clear
-constexpr uint32_t kSilentMs = 10000;  // silence after which the place of an owner is given away
 constexpr size_t kChunk = 256;
 
 struct Client {
@@ -85,8 +84,8 @@ Client* free_place() {
   for (Client& client : clients) {
     if (client.socket == kNoSocket) return &client;
     uint32_t silent_ms = now_ms() - client.heard_ms;
-    if (client.has_key() && silent_ms < kSilentMs) continue;
-    if (silent_ms > kSilentMs) silent_ms = kSilentMs;
+    if (client.has_key() && silent_ms < kPlaceMs) continue;
+    if (silent_ms > kPlaceMs) silent_ms = kPlaceMs;
     const uint32_t worth = client.has_key() ? 1 : client.is_admitted ? 2 + silent_ms : UINT32_MAX;
     if (worth > most) {
       most = worth;
