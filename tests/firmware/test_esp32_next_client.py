@@ -162,3 +162,35 @@ def test_who_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:
         end.leave()
         talk(robot, [], 5)
         assert happened(robot)[-1] == "MOTORS 0 0"
+
+
+def has_client(robot: Esp32Robot) -> bool:
+    return robot.radio("E") == b"\1"
+
+
+def test_a_silent_phone_keeps_nobody_off_the_serial_port() -> None:
+    """The core sends each further one away: the next try of who was sent away gets the place."""
+    robot, _ = owned(keys := Keys())
+    talk(robot, [], AUTHORITY_MS)
+    phone, first = SerialPort(robot), remote(robot, keys, 2)
+    assert uploaded(robot, [(phone, first)], first) == "OK"
+    for _ in range(5):
+        talk(robot, [(phone, first)], 5000)
+        SerialPort(robot)
+        assert has_client(robot), "who speaks stays"
+    assert happened(robot)[-1] == "MOTORS 80 80"
+    first.stop(robot.now_ms)
+    talk(robot, [(phone, first)], 20)
+    talk(robot, [(phone, Bytes())], PLACE_MS - 1000)
+    SerialPort(robot)
+    assert has_client(robot), "never before"
+    talk(robot, [(phone, Bytes())], 3 * PLACE_MS)
+    assert has_client(robot), "while nobody else comes"
+    owner = remote(robot, keys, 3)
+    SerialPort(robot)
+    talk(robot, [], 5)
+    assert not has_client(robot)
+    ends: Ends = [(SerialPort(robot), owner)]
+    assert uploaded(robot, ends, owner) == "OK"
+    talk(robot, ends, 2 * PLACE_MS)
+    assert happened(robot)[-1] == "MOTORS 80 80"

@@ -221,6 +221,8 @@ void answer_radio(RequestReader* request, Writer* answer) {
     }
     case 'C':
       return serial_port_connect(request->u8() != 0);
+    case 'E':
+      return answer->u8(serial_port_has_client());
     case 'W':
       return serial_port_write(request->text());
     case 'S':

@@ -156,6 +156,9 @@ is_a(std::declval<BluetoothSerial&>().register_callback(
      esp_err_t);
 is_a(std::declval<BluetoothSerial&>().onData(std::declval<void (&)(const uint8_t*, size_t)>()),
      void);
+is_a(esp_spp_cb_param_t().srv_open.status, esp_spp_status_t);
+is_a(esp_spp_cb_param_t().srv_open.handle, uint32_t);
+is_a(&esp_spp_disconnect, esp_err_t (*)(uint32_t));
 is_a(std::declval<BluetoothSerial&>().write(std::declval<const uint8_t*>(), size_t{}), size_t);
 #endif
 

@@ -56,7 +56,10 @@ bool is_advertising;
 // the serial port
 constexpr size_t kPortPacket = 990;  // bytes that RFCOMM hands over at once
 constexpr uint16_t kPortWaitMs = 1000;
-std::atomic<bool> has_port_client{false};
+uint32_t port_handles;  // so far
+uint32_t port_client;   // its handle; 0: nobody
+bool is_second_attempt;
+std::vector<uint32_t> port_closing;
 std::atomic<bool> is_port_stuck{false};
 esp_spp_cb_t on_port;
 BluetoothSerialDataCb on_port_data;
@@ -108,6 +111,30 @@ void let_go() {
       sent_away.pop_back();
     }
     low_energy_disconnect(client);
+  }
+}
+
+void tell_port(esp_spp_cb_event_t event, esp_spp_cb_param_t its) {
+  esp_spp_cb_t told;
+  {
+    const Lock lock(guard);
+    told = on_port;
+  }
+  if (told != nullptr) told(event, &its);
+}
+
+void close_ports() {
+  for (;;) {
+    esp_spp_cb_param_t its = {};
+    {
+      const Lock lock(guard);
+      if (port_closing.empty()) return;
+      its.close.handle = port_closing.front();
+      port_closing.erase(port_closing.begin());
+      if (!is_second_attempt) port_client = 0;
+      is_second_attempt = false;
+    }
+    tell_port(ESP_SPP_CLOSE_EVT, its);
   }
 }
 
@@ -205,21 +232,38 @@ std::vector<std::string> low_energy_notified(uint16_t client) {
   return found;
 }
 
+// As `esp_spp_cb` of BluetoothSerial.cpp has it: after a second attempt the first one that closes is
+// taken for that.
 void serial_port_connect(bool is_there) {
-  esp_spp_cb_t tell;
+  esp_spp_cb_param_t its = {};
   {
     const Lock lock(guard);
-    has_port_client = is_there;
-    tell = on_port;
+    if (is_there) {
+      its.srv_open.handle = ++port_handles;
+      if (port_client == 0) {
+        port_client = port_handles;
+      } else {
+        is_second_attempt = true;
+        port_closing.push_back(port_handles);
+      }
+    } else if (port_client != 0) {
+      port_closing.push_back(port_client);
+    }
   }
-  if (tell != nullptr) tell(is_there ? ESP_SPP_SRV_OPEN_EVT : ESP_SPP_CLOSE_EVT, nullptr);
+  if (is_there) tell_port(ESP_SPP_SRV_OPEN_EVT, its);
+  close_ports();
+}
+
+bool serial_port_has_client() {
+  const Lock lock(guard);
+  return port_client != 0;
 }
 
 void serial_port_write(const std::string& bytes) {
   BluetoothSerialDataCb told;
   {
     const Lock lock(guard);
-    if (!has_port_client) return;
+    if (port_client == 0) return;
     told = on_port_data;
   }
   for (size_t at = 0; at < bytes.size(); at += kPortPacket) {
@@ -286,7 +330,17 @@ esp_err_t BluetoothSerial::register_callback(esp_spp_cb_t callback) {
   return ESP_OK;
 }
 
-bool BluetoothSerial::hasClient() { return has_port_client; }
+bool BluetoothSerial::hasClient() {
+  const Lock lock(guard);
+  return port_client != 0;
+}
+
+extern "C" esp_err_t esp_spp_disconnect(uint32_t handle) {
+  const Lock lock(guard);
+  expect(handle != 0, "a serial port of nobody");
+  port_closing.push_back(handle);
+  return ESP_OK;
+}
 
 void BluetoothSerial::onData(BluetoothSerialDataCb cb) {
   expect(!has_bluetooth, "a callback of a serial port that may have clients");

@@ -24,8 +24,10 @@ void low_energy_congest(bool is_so);  // its stack takes no notification meanwhi
 void low_energy_write(uint16_t client, const std::string& bytes);
 std::vector<std::string> low_energy_notified(uint16_t client);  // since the last call
 
-// Bluetooth with a serial port. One that is stuck takes nothing: `write` of the core waits then.
+// Bluetooth with a serial port. Whoever comes while there is a client is sent away by the core.
+// One that is stuck takes nothing: `write` of the core waits then.
 void serial_port_connect(bool is_there);
+bool serial_port_has_client();
 void serial_port_write(const std::string& bytes);
 void serial_port_stick(bool is_so);
 std::string serial_port_said();  // since the last call

@@ -10,10 +10,20 @@ typedef enum {
   ESP_SPP_CLOSE_EVT = 27,
   ESP_SPP_SRV_OPEN_EVT = 34,
 } esp_spp_cb_event_t;
+typedef enum { ESP_SPP_SUCCESS = 0, ESP_SPP_FAILURE } esp_spp_status_t;
 typedef union {
-  int unused;
+  struct spp_close_evt_param {
+    esp_spp_status_t status;
+    uint32_t handle;
+  } close;
+  struct spp_srv_open_evt_param {
+    esp_spp_status_t status;
+    uint32_t handle;
+  } srv_open;
 } esp_spp_cb_param_t;
 typedef void (*esp_spp_cb_t)(esp_spp_cb_event_t event, esp_spp_cb_param_t* param);
+
+extern "C" esp_err_t esp_spp_disconnect(uint32_t handle);
 
 #if __STDC_HOSTED__
 typedef std::function<void(const uint8_t* buffer, size_t size)> BluetoothSerialDataCb;

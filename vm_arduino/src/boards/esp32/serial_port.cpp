@@ -17,26 +17,38 @@ namespace tiniscript {
 namespace {
 
 BluetoothSerial port;
-bool has_client;  // the core's task
+// The core's task alone.
+uint32_t handle;    // of the client; 0: nobody is there
+uint32_t heard_ms;  // when something was heard of the client, or it came
 
 Pipe& pipe() { return radio_pipe(Transport::kSerialPort); }
 
-// Of a second client, which the core sends away, the first one stays.
-void on_event(esp_spp_cb_event_t, esp_spp_cb_param_t*) {
-  const bool is_there = port.hasClient();
-  if (is_there == has_client) return;
-  has_client = is_there;
-  if (is_there) {
+// The core sends a second client away, and the first one stays. The next try of the second one finds
+// the place free, if nothing was heard for long of the first one.
+void on_client(uint32_t found) {
+  const uint32_t now_ms = static_cast<uint32_t>(millis());
+  if (handle == 0) {
+    handle = found;
+    heard_ms = now_ms;
     pipe().begin();
-  } else {
+  } else if (now_ms - heard_ms >= kPlaceMs) {
+    esp_spp_disconnect(handle);
+  }
+}
+
+void on_event(esp_spp_cb_event_t event, esp_spp_cb_param_t* its) {
+  if (event == ESP_SPP_SRV_OPEN_EVT && its->srv_open.status == ESP_SPP_SUCCESS) {
+    on_client(its->srv_open.handle);
+  } else if (event == ESP_SPP_CLOSE_EVT && handle != 0 && !port.hasClient()) {
+    handle = 0;
     pipe().part();
   }
 }
 
 // In the place of the core's queue, which has 512 places and drops what finds none.
 void on_data(const uint8_t* bytes, size_t length) {
-  const uint16_t now_ms = static_cast<uint16_t>(millis());
-  for (size_t k = 0; k < length; k++) pipe().put(bytes[k], now_ms);
+  heard_ms = static_cast<uint32_t>(millis());
+  for (size_t k = 0; k < length; k++) pipe().put(bytes[k], static_cast<uint16_t>(heard_ms));
 }
 
 }  // namespace
