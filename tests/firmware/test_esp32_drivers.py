@@ -1,4 +1,4 @@
-"""Who drives a robot that is reached over several transports, and when the wheel goes to another one."""
+"""Who drives a robot that is reached over several transports, and when another one does."""
 
 from __future__ import annotations
 

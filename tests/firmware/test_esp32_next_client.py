@@ -142,7 +142,9 @@ def test_whoever_comes_too_early_costs_nobody_anything() -> None:
     end.leave()
     talk(robot, [], 5)
     again = remote(robot, keys, 3)
-    assert uploaded(robot, [(LowEnergy(robot), again)], again) == "OK", "and the robot is still found"
+    assert uploaded(robot, [(LowEnergy(robot), again)], again) == "OK", (
+        "and the robot is still found"
+    )
 
 
 def test_who_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:

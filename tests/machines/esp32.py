@@ -45,6 +45,7 @@ SIMULATED = (
 HAS_TLS = Path("/usr/include/mbedtls/ssl.h").exists()
 TLS = ("-lmbedtls", "-lmbedx509", "-lmbedcrypto") if HAS_TLS else ()
 POWER_ON, EXTERNAL, TASK_WATCHDOG, BROWN_OUT = 1, 2, 6, 9  # esp_reset_reason_t
+CLOSED, NUMBERS, BLOBS = 1, 2, 3  # what NVS refuses: NvsFault of `simulated_chip.h`
 US_PER_CM = 58.309  # of an echo
 
 
@@ -64,7 +65,7 @@ class Esp32Robot(HostFirmware):
 
     def __init__(
         self, robot: Robot | None = None, kept: Kept = EMPTY, reset: int = POWER_ON,
-        seed: int = 0x12345678, major: int = 2,
+        seed: int = 0x12345678, major: int = 2, nvs_fault: int = 0,
     ) -> None:  # fmt: skip
         self.robot = robot or robots.load("tinibot32")
         program = built(firmware.header([self.robot], "a test."), self.robot.board.chip, major)
@@ -74,7 +75,7 @@ class Esp32Robot(HostFirmware):
         self.is_lit, self.is_latched = False, True
         entries = texts(*(each for item in kept.entries.items() for each in item))
         head = pack("<BI", reset, seed) + texts(kept.noinit)
-        self.ask(b"B", head + pack("<I", len(kept.entries)) + entries)
+        self.ask(b"B", head + pack("<I", len(kept.entries)) + entries + bytes([nvs_fault]))
 
     def kept(self) -> Kept:
         noinit, answer = first_text(self.ask(b"E", b""))

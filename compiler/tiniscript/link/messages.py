@@ -307,6 +307,7 @@ STATUSES = {
     "NO_PREVIOUS": 90,
     "OTHER_DRIVER": 91,
     "UNOWNED": 92,
+    "UNREADABLE": 93,
 }
 # The meaning of the number after a status other than OK. Statuses not listed here have 0.
 DETAILS = {
@@ -330,6 +331,7 @@ SAVED = (
     ("STORED",     "It is saved."),
     ("LOW_SUPPLY", "It is in RAM only: the voltage is too low to save it. It is saved when the voltage recovers."),
     ("OTHER_VERSION", "The stored program is for another version of the robot's machine: it holds none."),
+    ("UNREADABLE", "The robot cannot read its memory: it holds no program, and nobody drives it."),
 )
 CAUSES = (
     ("NONE",     "Not stopped."),
@@ -372,9 +374,14 @@ STATE_IDLE, STATE_RUNNING, STATE_STOPPED, STATE_FAULTED = _rows(
     STATES, "IDLE RUNNING STOPPED FAULTED"
 )
 KEY_OWNER, KEY_TEACHER = _rows(KEYS, "OWNER TEACHER")
-SAVED_NOTHING, SAVED_SAVING, SAVED_STORED, SAVED_LOW_SUPPLY, SAVED_OTHER_VERSION = _rows(
-    SAVED, "NOTHING SAVING STORED LOW_SUPPLY OTHER_VERSION"
-)
+(
+    SAVED_NOTHING,
+    SAVED_SAVING,
+    SAVED_STORED,
+    SAVED_LOW_SUPPLY,
+    SAVED_OTHER_VERSION,
+    SAVED_UNREADABLE,
+) = _rows(SAVED, "NOTHING SAVING STORED LOW_SUPPLY OTHER_VERSION UNREADABLE")
 FIRST_LINK_FAULT = LINK_FAULTS[0][0]  # faults from this number on are not caused by the program
 
 BY_NUMBER = {message.number: message for message in MESSAGES}

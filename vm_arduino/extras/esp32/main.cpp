@@ -68,6 +68,7 @@ void answer_begin(RequestReader* request, Writer*) {
     const std::string key = request->text();
     chip.entries[key] = request->text();
   }
+  chip.nvs_fault = static_cast<NvsFault>(request->u8());
   for (SimulatedPin& pin : chip.pins) pin.signal = SIG_GPIO_OUT_IDX;
   initVariant();
   look();

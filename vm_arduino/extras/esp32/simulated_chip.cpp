@@ -474,6 +474,7 @@ esp_err_t esp_task_wdt_reset(void) {
 
 esp_err_t nvs_open(const char* name, nvs_open_mode_t, nvs_handle_t* out_handle) {
   expect(strlen(name) < 16, "a key of NVS that is too long");
+  if (chip.nvs_fault == NvsFault::kClosed) return ESP_ERR_NVS_NOT_INITIALIZED;
   expect(++chip.nvs_handles <= kMostHandles, "handles of NVS that are left open");
   *out_handle = 1;
   return ESP_OK;
@@ -482,6 +483,7 @@ esp_err_t nvs_open(const char* name, nvs_open_mode_t, nvs_handle_t* out_handle) 
 void nvs_close(nvs_handle_t) { chip.nvs_handles--; }
 
 esp_err_t nvs_get_u32(nvs_handle_t, const char* key, uint32_t* out_value) {
+  if (chip.nvs_fault == NvsFault::kNumbers) return ESP_FAIL;
   const auto found = chip.entries.find(key);
   if (found == chip.entries.end()) return ESP_ERR_NVS_NOT_FOUND;
   memcpy(out_value, found->second.data(), sizeof *out_value);
@@ -493,6 +495,7 @@ esp_err_t nvs_set_u32(nvs_handle_t, const char* key, uint32_t value) {
 }
 
 esp_err_t nvs_get_blob(nvs_handle_t, const char* key, void* out_value, size_t* length) {
+  if (chip.nvs_fault == NvsFault::kBlobs) return ESP_FAIL;
   const auto found = chip.entries.find(key);
   if (found == chip.entries.end()) return ESP_ERR_NVS_NOT_FOUND;
   if (found->second.size() > *length) return ESP_ERR_NVS_INVALID_LENGTH;

@@ -37,6 +37,9 @@ enum class TornEntry : uint8_t { kOld, kNew, kLost };
 constexpr size_t kEntryBytes = 32;
 constexpr size_t kPageEntries = 126;
 
+// What NVS refuses: to be opened, numbers, or blobs.
+enum class NvsFault : uint8_t { kNone, kClosed, kNumbers, kBlobs };
+
 struct SimulatedChip {
   std::atomic<uint64_t> now_us{0};
   SimulatedPin pins[40] = {};
@@ -59,6 +62,7 @@ struct SimulatedChip {
   int nvs_handles = 0;  // that are open
   uint32_t erase_ms = 0;  // how long a write stops the chip
   bool is_nvs_full = false;
+  NvsFault nvs_fault = NvsFault::kNone;
   size_t nvs_room = 15 * kPageEntries;  // of 16 pages: one stays free
   uint32_t cut_at = 0;  // the power fails at this write; 0: it does not
   TornEntry torn = TornEntry::kOld;

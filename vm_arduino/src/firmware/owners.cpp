@@ -4,6 +4,7 @@
 #include "../link/has_seals.h"
 #include "../link/port.h"
 #include "../store/layout.h"
+#include "../store/nvm.h"
 #include "persistence.h"
 #include "state.h"
 
@@ -11,12 +12,14 @@ namespace tiniscript {
 
 static_assert(kKeyRoom == kKeyBytes, "a key fills its place");
 
-// Reads the keys byte by byte, so that they are nowhere in RAM.
+// Reads the keys byte by byte, so that they are nowhere in RAM. A robot that cannot read them may have
+// an owner: nobody drives it.
 void read_owner() {
   if (!kHasOwners) return;
   uint8_t key[kKeyBytes];
   uint8_t features = port_identity().features & static_cast<uint8_t>(~(kOwned | kTextAllowed));
-  if (fetch_key(static_cast<uint8_t>(Key::kOwner), key) && is_key(key)) {
+  const bool has_key = fetch_key(static_cast<uint8_t>(Key::kOwner), key) && is_key(key);
+  if (has_key || !nvm_is_readable()) {
     features |= kOwned;
   } else {
     features |= kTextAllowed;
@@ -26,6 +29,7 @@ void read_owner() {
 }
 
 Answer port_key(uint8_t which, uint8_t* key) {
+  if (!nvm_is_readable()) return Answer::kUnreadable;
   const Answer found = owner_kept();
   if (found != Answer::kOk) return found;
   return fetch_key(which, key) ? Answer::kOk : not_now();

@@ -1,6 +1,7 @@
 #include "program.h"
 
 #include "../link/frames.h"
+#include "../store/nvm.h"
 #include "../vm/flags.h"
 #include "../vm/image.h"
 #include "state.h"
@@ -39,6 +40,11 @@ uint16_t held_bytes() {
 
 void hold_stored() {
   is_whole = false;
+  if (!nvm_is_readable()) {
+    robot_status.saved = Saved::kUnreadable;
+    robot_status.slot = kNoSlot;
+    return;
+  }
   uint8_t header[kHeaderBytes];
   for (;;) {
     robot_status.saved = has_other ? Saved::kOtherVersion : Saved::kNothing;

@@ -7,6 +7,7 @@
 
 #include "../link/link.h"
 #include "../link/links.h"
+#include "../store/nvm.h"
 #include "../store/store.h"
 #include "board.h"
 
@@ -27,7 +28,8 @@ inline bool is_running() { return robot_status.state == State::kRunning; }
 
 // Whether there is a program that the button may start.
 inline bool holds_program() {
-  return robot_status.saved != Saved::kNothing && robot_status.saved != Saved::kOtherVersion;
+  return robot_status.saved != Saved::kNothing && robot_status.saved != Saved::kOtherVersion &&
+         (!kWritesStopTheChip || robot_status.saved != Saved::kUnreadable);
 }
 
 }  // namespace tiniscript

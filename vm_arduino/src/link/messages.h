@@ -170,6 +170,7 @@ enum class Answer : uint8_t {
   kNoPrevious = 90,  // The robot has no program from before that it can run.
   kOtherDriver = 91,  // Somebody else drives the robot, over another connection.
   kUnowned = 92,  // The robot has no owner, and over WiFi only one with an owner drives.
+  kUnreadable = 93,  // The robot cannot read its memory, so it does not know whose it is: nobody drives it.
 };
 
 enum class State : uint8_t {
@@ -186,6 +187,7 @@ enum class Saved : uint8_t {
   kStored = 3,  // It is saved.
   kLowSupply = 4,  // It is in RAM only: the voltage is too low to save it. It is saved when the voltage recovers.
   kOtherVersion = 5,  // The stored program is for another version of the robot's machine: it holds none.
+  kUnreadable = 6,  // The robot cannot read its memory: it holds no program, and nobody drives it.
 };
 
 enum class Cause : uint8_t {

@@ -27,6 +27,13 @@ bool nvm_is_ready();
 
 uint8_t nvm_read(uint16_t place);
 
+// Whether the memory has refused no read: only then is what was not found not there.
+#ifdef ARDUINO_ARCH_ESP32
+bool nvm_is_readable();
+#else
+inline bool nvm_is_readable() { return true; }
+#endif
+
 // Begins to write a byte, even an equal one: the byte is erased first.
 void nvm_write(uint16_t place, uint8_t value);
 

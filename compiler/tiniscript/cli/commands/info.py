@@ -23,6 +23,7 @@ from tiniscript.link.messages import (
     SAVED_NOTHING,
     SAVED_OTHER_VERSION,
     SAVED_STORED,
+    SAVED_UNREADABLE,
     STATES,
     TEXT_LEVEL,
     TEXT_LEVELS,
@@ -125,7 +126,10 @@ class Description:
 
     def _why_no_program(self) -> str:
         """Return the reason why the robot holds no program, or an empty text."""
-        texts = {SAVED_NOTHING: "info_no_program", SAVED_OTHER_VERSION: "info_other_version"}
+        texts = {
+            SAVED_NOTHING: "info_no_program", SAVED_OTHER_VERSION: "info_other_version",
+            SAVED_UNREADABLE: "info_unreadable",
+        }  # fmt: skip
         return texts.get(self.status.saved, "")
 
     def text(self) -> str:

@@ -28,6 +28,7 @@ constexpr uint16_t kBlobBytes = 1024;
 uint8_t heads[kSlots][kBodyAt];
 bool is_loaded;
 bool is_open;
+bool has_refused;  // a read, for another reason than that there is no such entry
 nvs_handle_t handle;
 
 // The blob that was used last.
@@ -65,9 +66,14 @@ uint8_t slot_of(uint16_t place) {
   return kSlots;
 }
 
+bool is_there(esp_err_t found) {
+  if (found != ESP_OK && found != ESP_ERR_NVS_NOT_FOUND) has_refused = true;
+  return found == ESP_OK;
+}
+
 void load_head(uint8_t slot) {
   uint32_t head = 0xffffffff;
-  if (!is_open || nvs_get_u32(handle, head_key(slot).text, &head) != ESP_OK) head = 0xffffffff;
+  if (!is_open || !is_there(nvs_get_u32(handle, head_key(slot).text, &head))) head = 0xffffffff;
   __builtin_memcpy(heads[slot], &head, kBodyAt);
 }
 
@@ -82,7 +88,7 @@ void write_head(uint8_t slot) {
 void load_blob() {
   size_t length = kBlobBytes;
   __builtin_memset(blob, kEmpty, kBlobBytes);
-  if (!is_open || nvs_get_blob(handle, blob_key().text, blob, &length) != ESP_OK) {
+  if (!is_open || !is_there(nvs_get_blob(handle, blob_key().text, blob, &length))) {
     __builtin_memset(blob, kEmpty, kBlobBytes);
     length = 0;
   }
@@ -113,7 +119,7 @@ uint16_t go_to(uint8_t slot, uint16_t at) {
 
 void load() {
   is_loaded = true;
-  is_open = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK;
+  is_open = is_there(nvs_open(kNamespace, NVS_READWRITE, &handle));
   for (uint8_t slot = 0; slot < kSlots; slot++) load_head(slot);
 }
 
@@ -123,6 +129,8 @@ bool nvm_is_ready() {
   if (!is_loaded) load();
   return true;
 }
+
+bool nvm_is_readable() { return !has_refused; }
 
 uint8_t nvm_read(uint16_t place) {
   if (!is_loaded) load();

@@ -1,0 +1,85 @@
+"""An ESP32 whose NVS cannot be read: it does not know whose it is, so nobody drives it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.firmware.test_esp32_transports import AWAY, Ends, ended, uploaded
+from tests.firmware.test_esp32_wifi import owned, remote
+from tests.firmware.test_host_firmware import happened
+from tests.machines.esp32 import BLOBS, CLOSED, EMPTY, NUMBERS, Esp32Robot, Kept
+from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
+from tests.support.images import image_of
+from tests.support.owners import Keys
+from tiniscript.link.messages import SAVED, STOP_BYTES
+from tiniscript.link.session import Session
+
+FAULTS = pytest.mark.parametrize("fault", [CLOSED, NUMBERS, BLOBS])
+
+
+def claimed_with_program(keys: Keys) -> Kept:
+    robot, owner = owned(keys)
+    ends: Ends = [(None, owner)]
+    assert ended(robot, ends, owner.upload(image_of("SB|F(60, 80)"))) == "OK"
+    talk(robot, ends, 3000)
+    return robot.kept()
+
+
+def started(kept: Kept, fault: int) -> Esp32Robot:
+    robot = Esp32Robot(kept=kept, nvs_fault=fault)
+    robot.wait(500)
+    return robot
+
+
+def saved(robot: Esp32Robot, who: Session) -> str:
+    request = who.status()
+    assert ended(robot, [(None, who)], request) == "OK"
+    assert request.outcome
+    return SAVED[request.outcome.values.saved][0]
+
+
+@FAULTS
+def test_strangers_do_not_drive_a_claimed_robot(fault: int) -> None:
+    robot = started(claimed_with_program(Keys()), fault)
+    stranger, typed = session(2, robot), Bytes(b"SI|F(60, 80)\n")
+    ends: Ends = [(None, stranger)]
+    assert saved(robot, stranger) == "UNREADABLE"
+    for request in (
+        stranger.upload(image_of(AWAY)), stranger.live(image_of("F(1, 10)").code), stranger.start(),
+        stranger.name(b"mine"), stranger.fetch(), stranger.undo(),
+    ):  # fmt: skip
+        assert ended(robot, ends, request) == "NOT_OWNER"
+    thief = remote(robot, Keys(80), 4)
+    assert ended(robot, [(None, thief)], thief.claim(0)) == "UNREADABLE"
+    talk(robot, [(LowEnergy(robot), typed)], 1500)
+    assert b"//" in typed.heard
+    robot.step(flags=1)
+    robot.wait(100)
+    robot.step(flags=2)
+    robot.wait(500)
+    assert not [line for line in happened(robot) if "MOTORS 80" in line]
+
+
+@FAULTS
+def test_its_owner_is_told_why_and_keeps_the_key(fault: int) -> None:
+    kept = claimed_with_program(keys := Keys())
+    robot = started(kept, fault)
+    owner = remote(robot, keys, 4)
+    assert uploaded(robot, [(None, owner)], owner) == "UNREADABLE"
+    assert [(key.is_stale, key.is_pending) for key in keys.found] == [(False, False)]
+    robot.step(bytes(STOP_BYTES))
+    robot.wait(20)
+    assert robot.is_latched
+    again = started(kept, 0)
+    owner = remote(again, keys, 5)
+    assert uploaded(again, [(None, owner)], owner) == "OK"
+
+
+@pytest.mark.parametrize("fault", [CLOSED, NUMBERS])  # of a new one there are no blobs to read
+def test_a_new_robot_is_nobodys_until_its_memory_can_be_read(fault: int) -> None:
+    robot = started(EMPTY, fault)
+    anybody = session(2, robot)
+    assert uploaded(robot, [(None, anybody)], anybody) == "NOT_OWNER"
+    robot = started(EMPTY, 0)
+    anybody = session(2, robot)
+    assert uploaded(robot, [(None, anybody)], anybody) == "OK"
