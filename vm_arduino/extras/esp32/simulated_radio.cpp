@@ -477,6 +477,7 @@ int WiFiClass::onEvent(WiFiEventSysCb cbEvent, arduino_event_id_t) {
 bool WiFiClass::softAP(const char* ssid, const char* passphrase, int, int, int, bool) {
   const Lock lock(guard);
   if (ssid[0] == 0 || strlen(passphrase) < 8) return false;
+  if (chip.is_heap_full) return false;  // as where esp_wifi_init has no memory beside Bluetooth
   settings.network = ssid;
   settings.password = passphrase;
   settings.is_access_point = true;

@@ -124,7 +124,7 @@ void serve(int end) {
   if (id == std::string::npos || id + 13 > greeting.size()) return;
   std::string topic = "tiniscript/aula/" + greeting.substr(id + 5, 8) + "/in/0badcafe";
   topic = std::string({0, static_cast<char>(topic.size())}) + topic;
-  const std::string accepted = mqtt(0x20, std::string(2, 0));
+  const std::string accepted = mqtt(0x20, std::string(2, 0)) + mqtt(0x90, std::string("\0\1\0\0", 4));
   send(end, accepted.data(), accepted.size(), MSG_NOSIGNAL);
   const std::string* const said[] = {&kFrame, &kDamaged, &kLine, &kStop};
   for (unsigned turn = 0; turn < 200 && is_there && !is_over; turn++) {

@@ -71,7 +71,7 @@ bool next_packet(const std::string& data, size_t* at, Found* found) {
   }
   const bool is_message = type >> 4 == 3;
   const bool is_known = is_message ? (type & 6) == 0 && length >= 2
-                                   : (type == 0x20 && length == 2) || type == 0x90 ||
+                                   : (type == 0x20 && length == 2) || (type == 0x90 && length == 4) ||
                                          (type == 0xd0 && length == 0);
   if (!is_known) {
     *at = place;
@@ -96,6 +96,14 @@ bool next_packet(const std::string& data, size_t* at, Found* found) {
   if (body.size() < length) return false;
   *at = place + length;
   if (type == 0x20) found->event = body[1] == 0 ? MqttEvent::kAccepted : MqttEvent::kRefused;
+  if (type == 0x90) {
+    const std::string grants = body.substr(2);
+    const bool is_known = grants.find_first_not_of(std::string("\0\x80", 2)) == std::string::npos;
+    const bool are_all = grants == std::string(2, 0);
+    found->event = !is_known ? MqttEvent::kBroken
+                   : are_all ? MqttEvent::kSubscribed
+                             : MqttEvent::kRefused;
+  }
   return true;
 }
 

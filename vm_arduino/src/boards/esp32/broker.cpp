@@ -36,7 +36,7 @@ constexpr size_t kLeastStop = 4;
 constexpr char kHere = '+';
 constexpr char kGone = '-';
 
-enum class Phase : uint8_t { kOff, kConnecting, kGreeting, kReady };
+enum class Phase : uint8_t { kOff, kConnecting, kGreeting, kSubscribing, kReady };
 
 using Peer = char[kPeerDigits + 1];
 
@@ -177,13 +177,21 @@ void connect() {
   set_phase(Phase::kGreeting);
 }
 
-void greet() {
+void subscribe() {
+  set_phase(Phase::kSubscribing);
+  MqttWriter writer(out, sizeof out);
+  writer.subscribe(1, Topic().of_robot().add("/in/+").text(), Topic().add("stop").text());
+  out_length = writer.length();
+  out_sent = 0;
+}
+
+// It says that it is there when it hears those who are told.
+void announce() {
   set_phase(Phase::kReady);
   broker_note(WifiState::kReady);
   char here[kNameBytes + 2] = {kHere};
   __builtin_memcpy(here + 1, radio_name().name, kNameBytes + 1);
   MqttWriter writer(out, sizeof out);
-  writer.subscribe(1, Topic().of_robot().add("/in/+").text(), Topic().add("stop").text());
   writer.publish(Topic().of_robot().text(), reinterpret_cast<const uint8_t*>(here), length_of(here),
                  true);
   out_length = writer.length();
@@ -234,10 +242,14 @@ bool on_rx_byte(uint8_t byte) {
       return true;
     case MqttEvent::kAccepted:
       if (phase != Phase::kGreeting) break;
-      greet();
+      subscribe();
       return true;
-    case MqttEvent::kMessage:
-      if (phase != Phase::kReady) break;
+    case MqttEvent::kSubscribed:
+      if (phase != Phase::kSubscribing) break;
+      announce();
+      return true;
+    case MqttEvent::kMessage:  // which may come before the subscription is confirmed
+      if (phase < Phase::kSubscribing) break;
       on_message();
       return true;
     case MqttEvent::kRefused:

@@ -23,6 +23,8 @@ constexpr uint8_t kWill = 0x04;
 constexpr uint8_t kWillRetain = 0x20;
 constexpr uint8_t kHasPassword = 0x40;
 constexpr uint8_t kHasUser = 0x80;
+constexpr uint8_t kNotGranted = 0x80;
+constexpr size_t kGrants = 2;  // behind the number of the request, for each topic
 constexpr uint8_t kLastShift = 21;  // a length has four bytes at most
 
 }  // namespace
@@ -121,7 +123,8 @@ MqttEvent MqttReader::begin_packet() {
     part_ = Part::kTopicLength;
     return MqttEvent::kNone;
   }
-  const bool is_known = (type_ == kAnswered && left_ == 2) || type_ == kSubscribed ||
+  const bool is_known = (type_ == kAnswered && left_ == 2) ||
+                        (type_ == kSubscribed && left_ == 2 + kGrants) ||
                         (type_ == kPinged && left_ == 0);
   if (!is_known) return MqttEvent::kBroken;
   part_ = Part::kPayload;
@@ -161,8 +164,19 @@ MqttEvent MqttReader::end_packet() {
   const bool is_whole = part_ == Part::kPayload;
   part_ = Part::kType;
   if ((type_ & 0xf0) == kPublish) return is_whole ? MqttEvent::kMessage : MqttEvent::kNone;
+  if (type_ == kSubscribed) return end_subscription();
   if (type_ != kAnswered) return MqttEvent::kNone;
   return payload_[1] == 0 ? MqttEvent::kAccepted : MqttEvent::kRefused;
+}
+
+// What was asked for has QoS 0: a broker grants that or nothing.
+MqttEvent MqttReader::end_subscription() const {
+  const uint8_t* const grants = payload_ + 2;
+  for (size_t k = 0; k < kGrants; k++) {
+    if (grants[k] != 0 && grants[k] != kNotGranted) return MqttEvent::kBroken;
+  }
+  const bool are_granted = grants[0] == 0 && grants[1] == 0;
+  return are_granted ? MqttEvent::kSubscribed : MqttEvent::kRefused;
 }
 
 }  // namespace tiniscript

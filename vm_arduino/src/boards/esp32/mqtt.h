@@ -40,7 +40,9 @@ class MqttWriter {
   bool is_full_ = false;
 };
 
-enum class MqttEvent : uint8_t { kNone, kAccepted, kRefused, kMessage, kBroken };
+// kAccepted: the broker has let the client in; kSubscribed: it grants both topics; kRefused: it does
+// not.
+enum class MqttEvent : uint8_t { kNone, kAccepted, kSubscribed, kRefused, kMessage, kBroken };
 
 // Reads a row of bytes.
 class MqttReader {
@@ -62,6 +64,7 @@ class MqttReader {
   MqttEvent begin_packet();
   MqttEvent take_body(uint8_t byte);
   MqttEvent end_packet();
+  MqttEvent end_subscription() const;
 
   Part part_;
   uint8_t type_;

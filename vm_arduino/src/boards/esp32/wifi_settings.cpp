@@ -82,6 +82,7 @@ uint32_t tried_ms;
 uint32_t began_ms;
 bool is_young;
 bool is_announced;
+bool is_host;  // its access point is there
 Settings used;
 
 void set_state(WifiState found) {
@@ -137,6 +138,20 @@ void leave() {
   set_young(false, kRestarts);
 }
 
+// There may be no memory for it beside Bluetooth.
+void host() {
+  is_host = WiFi.mode(WIFI_AP) && WiFi.softAP(used.network, used.password);
+  if (!is_host) set_state(WifiState::kRefused);
+}
+
+// Whether the time has come for the next try.
+bool is_due() {
+  const uint32_t now_ms = static_cast<uint32_t>(millis());
+  if (now_ms - tried_ms < kJoinAgainMs) return false;
+  tried_ms = now_ms;
+  return true;
+}
+
 void begin() {
   leave();
   if (used.mode() == WifiMode::kOff || used.rests()) return;
@@ -146,8 +161,7 @@ void begin() {
   tried_ms = began_ms = static_cast<uint32_t>(millis());
   set_young(true, kRestarts);
   if (used.mode() == WifiMode::kAccessPoint) {
-    WiFi.mode(WIFI_AP);
-    WiFi.softAP(used.network, used.password);
+    host();
   } else {
     WiFi.mode(WIFI_STA);
     // Modem sleep stays on: where Bluetooth is on, too, turning it off ends the chip.
@@ -191,6 +205,8 @@ bool wifi_turn() {
   if (used.mode() == WifiMode::kOff || used.rests()) return false;
   if (is_young && static_cast<uint32_t>(millis()) - began_ms >= kYoungMs) set_young(false, 0);
   if (used.mode() == WifiMode::kAccessPoint) {
+    if (!is_host && is_due()) host();
+    if (!is_host) return false;
     announce();
     note_address(WiFi.softAPIP());
     return true;
@@ -204,11 +220,7 @@ bool wifi_turn() {
   __atomic_store_n(&address, 0U, __ATOMIC_RELAXED);
   const bool is_sent_away = status == WL_CONNECT_FAILED || is_refused();
   set_state(is_sent_away ? WifiState::kRefused : WifiState::kSearching);
-  const uint32_t now_ms = static_cast<uint32_t>(millis());
-  if (now_ms - tried_ms >= kJoinAgainMs) {
-    tried_ms = now_ms;
-    WiFi.begin(used.network, used.password);
-  }
+  if (is_due()) WiFi.begin(used.network, used.password);
   return false;
 }
 

@@ -1,0 +1,144 @@
+"""An ESP32 is READY for what is there: no broker that refuses it, no access point that did not begin."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+from tests.firmware.test_esp32_broker import told, until
+from tests.firmware.test_esp32_transports import Ends, ended
+from tests.firmware.test_esp32_wifi import HOTSPOT, joined, owned, state
+from tests.machines.esp32 import Esp32Robot
+from tests.support.esp32_radio import radios, talk
+from tests.support.mosquitto import LOCAL
+from tests.support.owners import Keys
+from tiniscript.link import wifi
+from tiniscript.link.messages import STATE_STOPPED, STOP_BYTES
+from tiniscript.link.session import Session
+
+CONNECT, SUBSCRIBE, PING, PUBLISH = 0x10, 0x80, 0xC0, 0x30
+
+
+class StrictBroker:
+    """A broker that lets everybody in, and answers what they subscribe to with these bytes.
+
+    Before that it sends what `early` has.
+    """
+
+    def __init__(self, granted: bytes = b"\0\0", early: bytes = b"") -> None:
+        self.granted, self.early = granted, early
+        self.said: list[bytes] = []  # what was published
+        self.asked = 0  # how often somebody has subscribed
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        threading.Thread(target=self._serve, daemon=True).start()
+
+    def settings(self) -> wifi.BrokerSettings:
+        return wifi.BrokerSettings(LOCAL, self.listener.getsockname()[1], "aula", b"", b"")
+
+    def close(self) -> None:
+        self.listener.close()
+
+    def _serve(self) -> None:
+        while True:
+            try:
+                end = self.listener.accept()[0]
+            except OSError:
+                return
+            with end:
+                self._talk(end)
+
+    def _talk(self, end: socket.socket) -> None:
+        data = b""
+        try:
+            while more := end.recv(4096):
+                data += more
+                while len(data) >= 2 and len(data) >= 2 + data[1]:  # no packet of ours is longer
+                    self._answer(end, data[0] & 0xF0, data[2 : 2 + data[1]])
+                    data = data[2 + data[1] :]
+        except OSError:
+            pass
+
+    def _answer(self, end: socket.socket, kind: int, body: bytes) -> None:
+        if kind == CONNECT:
+            end.sendall(b"\x20\2\0\0")
+        elif kind == SUBSCRIBE:
+            self.asked += 1
+            codes = body[:2] + self.granted
+            end.sendall(self.early + b"\x90" + bytes([len(codes)]) + codes)
+        elif kind == PING:
+            end.sendall(b"\xd0\0")
+        elif kind == PUBLISH:
+            self.said.append(body)
+
+
+@pytest.fixture
+def brokers() -> Iterator[list[StrictBroker]]:
+    found: list[StrictBroker] = []
+    yield found
+    for each in found:
+        each.close()
+
+
+def using(broker: StrictBroker, found: list[StrictBroker]) -> tuple[Esp32Robot, Session]:
+    found.append(broker)
+    robot, owner = joined(Keys())
+    assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
+    return robot, owner
+
+
+@pytest.mark.parametrize("granted", [b"\x80\x80", b"\0\x80", b"\x80\0"])
+def test_a_broker_that_refuses_what_the_robot_wants_to_hear_is_not_ready(
+    granted: bytes, brokers: list[StrictBroker]
+) -> None:
+    """As where a class was left out of its list of who may read what."""
+    robot, owner = using(broker := StrictBroker(granted), brokers)
+    until(robot, lambda: broker.asked >= 3)
+    assert told(robot, owner)[1] == "REFUSED", "and it is tried again"
+    assert broker.said == [], "nobody is told that the robot is there"
+    broker.granted = b"\0\0"
+    until(robot, lambda: told(robot, owner)[1] == "READY")
+    until(robot, lambda: len(broker.said) == 1)
+
+
+@pytest.mark.parametrize("granted", [b"\0", b"\0\0\0", b"\0\3"])
+def test_an_answer_to_something_else_is_none(granted: bytes, brokers: list[StrictBroker]) -> None:
+    robot, owner = using(broker := StrictBroker(granted), brokers)
+    until(robot, lambda: broker.asked >= 2)
+    assert told(robot, owner)[1] == "SEARCHING"
+    assert broker.said == []
+
+
+def test_a_stop_before_the_answer_is_a_stop(brokers: list[StrictBroker]) -> None:
+    """A broker may send messages before it has confirmed what was subscribed to."""
+    topic = b"tiniscript/aula/stop"
+    stop = bytes([PUBLISH, 2 + len(topic) + STOP_BYTES, 0, len(topic)]) + topic + bytes(STOP_BYTES)
+    robot, owner = using(broker := StrictBroker(early=stop), brokers)
+
+    def is_stopped() -> bool:  # and what was said before the stop is stale
+        status = owner.status()
+        assert ended(robot, [(None, owner)], status) == "OK" and status.outcome
+        return bool(status.outcome.values.state == STATE_STOPPED)
+
+    until(robot, is_stopped)
+    assert ended(robot, [(None, owner)], owner.hello()) == "OK"
+    until(robot, lambda: told(robot, owner)[1] == "READY")
+    assert broker.asked == 1, "it was the first answer"
+
+
+def test_an_access_point_that_did_not_begin_is_not_ready_and_tried_again() -> None:
+    robot, owner = owned(Keys())
+    ends: Ends = [(None, owner)]
+    robot.radio("H", b"\1")
+    assert ended(robot, ends, owner.join(HOTSPOT)) == "OK"
+    talk(robot, ends, 1000)
+    assert state(robot, owner) == ("ACCESS_POINT", "REFUSED")
+    assert not radios(robot).is_access_point
+    talk(robot, ends, 30_000)
+    assert state(robot, owner) == ("ACCESS_POINT", "REFUSED")
+    robot.radio("H", b"\0")
+    talk(robot, ends, 16_000)
+    assert state(robot, owner) == ("ACCESS_POINT", "READY")
+    assert radios(robot).is_access_point and radios(robot).network.encode() == HOTSPOT.name
