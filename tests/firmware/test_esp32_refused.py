@@ -1,4 +1,4 @@
-"""An ESP32 is READY only for what is there: a broker that lets it hear, a network that has begun."""
+"""An ESP32 is READY for what is there: a broker that lets it hear, a network that has begun."""
 
 from __future__ import annotations
 

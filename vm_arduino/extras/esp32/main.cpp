@@ -239,6 +239,10 @@ void answer_radio(RequestReader* request, Writer* answer) {
       const std::string address = request->text();
       return network_name(name, address, request->u16());
     }
+    case 'l':
+      return network_leases_after(request->u32());
+    case 'L':
+      return radio_logs();
     case 'x':
       return network_refuses(request->u8());
     case 'H':

@@ -14,6 +14,7 @@
 #include <driver/pcnt.h>
 #endif
 #include <driver/uart.h>
+#include <esp_log.h>
 #include <esp_rom_gpio.h>
 #include <esp_system.h>
 #include <esp_task_wdt.h>
@@ -101,6 +102,8 @@ static_assert(PCNT_PIN_NOT_USED == -1 && PCNT_UNIT_1 == 1 && PCNT_CHANNEL_0 == 0
 is_a(&gpio_intr_enable, esp_err_t (*)(gpio_num_t));
 is_a(&gpio_intr_disable, esp_err_t (*)(gpio_num_t));
 is_a(&esp_rom_gpio_connect_out_signal, void (*)(uint32_t, uint32_t, bool, bool));
+is_a(&esp_log_level_set, void (*)(const char*, esp_log_level_t));
+static_assert(ESP_LOG_NONE == 0, "numbers");
 is_a(&esp_reset_reason, esp_reset_reason_t (*)());
 is_a(&esp_task_wdt_reset, esp_err_t (*)());
 is_a(&esp_timer_create, esp_err_t (*)(const esp_timer_create_args_t*, esp_timer_handle_t*));
@@ -167,6 +170,7 @@ is_a(WiFi.begin("", ""), wl_status_t);
 is_a(arduino_event_t().event_info.wifi_sta_disconnected.reason, uint8_t);
 is_a(WiFi.localIP(), IPAddress);
 is_a(WiFi.mode(WIFI_STA), bool);
+is_a(WiFi.setAutoReconnect(false), bool);
 is_a(WiFi.setHostname(""), bool);
 is_a(WiFi.softAP("", ""), bool);
 is_a(WiFi.softAPIP(), IPAddress);

@@ -5,6 +5,7 @@
 #include <BluetoothSerial.h>
 #include <ESPmDNS.h>
 #include <WiFi.h>
+#include <esp_log.h>
 #include <arpa/inet.h>
 #include <freertos/task.h>
 #include <lwip/netdb.h>
@@ -72,7 +73,14 @@ std::atomic<bool> has_bluetooth{false};
 
 // WiFi
 constexpr uint8_t kNoNetwork = 201;
+constexpr uint32_t kScanMs = 2500;  // all channels
 uint8_t refusal = 15;
+bool reconnects = true;  // STAClass::_autoReconnect
+esp_log_level_t log_level = ESP_LOG_ERROR;  // CONFIG_LOG_DEFAULT_LEVEL of the core
+uint32_t lease_ms;
+bool is_associated;
+uint32_t associated_ms;
+uint32_t scanned_ms;
 WiFiEventSysCb on_disconnected;
 wifi_mode_t wifi_mode = WIFI_OFF;
 bool has_modem_sleep = true;
@@ -295,6 +303,17 @@ void network_name(const std::string& name, const std::string& address, uint16_t 
 
 void network_refuses(uint8_t reason) { refusal = reason; }
 
+void network_leases_after(uint32_t found_ms) {
+  const Lock lock(guard);
+  lease_ms = found_ms;
+}
+
+void radio_logs() {
+  if (log_level >= ESP_LOG_ERROR) {
+    chip.sent += "E (15234) wifi:sta is connecting, cannot set config\r\n";
+  }
+}
+
 uint16_t network_port() {
   const Lock lock(guard);
   return bound_port;
@@ -447,6 +466,8 @@ wl_status_t WiFiClass::begin(const char* ssid, const char* passphrase, int32_t, 
   settings.password = passphrase;
   settings.is_access_point = false;
   settings.joins++;
+  is_associated = false;  // it joins anew
+  scanned_ms = static_cast<uint32_t>(millis());
   return WL_DISCONNECTED;
 }
 
@@ -458,11 +479,23 @@ wl_status_t WiFiClass::status() {
   {
     const Lock lock(guard);
     if (wifi_mode != WIFI_STA) return WL_NO_SHIELD;
-    if (near_name.empty() || near_name != settings.network) {
+    const uint32_t now_ms = static_cast<uint32_t>(millis());
+    const bool is_near = !near_name.empty() && near_name == settings.network;
+    if (is_near && near_password == settings.password) {
+      // once out of reach, it is joined again by whoever tries
+      if (!is_associated && now_ms - scanned_ms >= kScanMs && !reconnects) return WL_DISCONNECTED;
+      if (!is_associated) associated_ms = now_ms;
+      is_associated = true;
+      return now_ms - associated_ms < lease_ms ? WL_IDLE_STATUS : WL_CONNECTED;
+    }
+    is_associated = false;
+    if (reconnects && now_ms - scanned_ms >= kScanMs) {
+      scanned_ms = now_ms;
+      settings.joins++;
+    }
+    if (!is_near) {
       found = WL_NO_SSID_AVAIL;
       event.event_info.wifi_sta_disconnected.reason = kNoNetwork;
-    } else if (near_password == settings.password) {
-      return WL_CONNECTED;
     }
   }
   if (on_disconnected != nullptr) on_disconnected(&event);
@@ -491,6 +524,11 @@ bool WiFiClass::mode(wifi_mode_t m) {
   if (chip.has_wifi) has_network_stack = true;
   look_at_sleep();
   if (m == WIFI_OFF) settings.network = settings.password = "";
+  return true;
+}
+
+bool WiFiClass::setAutoReconnect(bool autoReconnect) {
+  reconnects = autoReconnect;
   return true;
 }
 
@@ -550,6 +588,11 @@ void MDNSResponder::end() {
 }
 
 extern "C" {
+
+void esp_log_level_set(const char* tag, esp_log_level_t level) {
+  expect(strcmp(tag, "*") == 0, "the log of one library alone");
+  log_level = level;
+}
 
 int lwip_accept(int s, struct sockaddr* addr, socklen_t* addrlen) {
   const int found = accept(s, addr, addrlen);

@@ -35,6 +35,8 @@ std::string serial_port_said();  // since the last call
 // WiFi: a network in reach with its password; none if `name` is empty.
 void network_in_reach(const std::string& name, const std::string& password);
 void network_refuses(uint8_t reason);  // a wrong password
+void network_leases_after(uint32_t lease_ms);  // until whoever has joined has an address
+void radio_logs();  // a library of ESP-IDF tells an error, on UART 0
 // Lets the network know a name of a computer; none but "localhost" is known before.
 // Looking it up takes `wait_ms`.
 void network_name(const std::string& name, const std::string& address, uint16_t wait_ms);
@@ -50,7 +52,7 @@ struct RadioSettings {
   std::string network;  // that it joins or is
   std::string password;
   bool is_access_point;
-  uint32_t joins;  // how often it has tried
+  uint32_t joins;  // how often it, or the core for it, has tried
 };
 RadioSettings radio_settings();
 

@@ -98,11 +98,11 @@ bool next_packet(const std::string& data, size_t* at, Found* found) {
   if (type == 0x20) found->event = body[1] == 0 ? MqttEvent::kAccepted : MqttEvent::kRefused;
   if (type == 0x90) {
     const std::string grants = body.substr(2);
-    const bool is_known = grants.find_first_not_of(std::string("\0\x80", 2)) == std::string::npos;
+    const bool are_codes = grants.find_first_not_of(std::string("\0\x80", 2)) == std::string::npos;
     const bool are_all = grants == std::string(2, 0);
-    found->event = !is_known ? MqttEvent::kBroken
-                   : are_all ? MqttEvent::kSubscribed
-                             : MqttEvent::kRefused;
+    found->event = !are_codes ? MqttEvent::kBroken
+                   : are_all  ? MqttEvent::kSubscribed
+                              : MqttEvent::kRefused;
   }
   return true;
 }

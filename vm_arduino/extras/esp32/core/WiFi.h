@@ -57,6 +57,7 @@ class WiFiClass {
   int onEvent(WiFiEventSysCb cbEvent, arduino_event_id_t event = ARDUINO_EVENT_MAX);
   static bool mode(wifi_mode_t m);
   static void persistent(bool persistent);
+  bool setAutoReconnect(bool autoReconnect);
   static bool setHostname(const char* hostname);
   bool setSleep(bool enabled);
   bool softAP(const char* ssid, const char* passphrase = nullptr, int channel = 1,

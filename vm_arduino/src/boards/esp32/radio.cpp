@@ -3,6 +3,7 @@
 #include "radio.h"
 
 #include <Arduino.h>
+#include <esp_log.h>
 #include <freertos/task.h>
 
 #include "broker_settings.h"
@@ -102,6 +103,7 @@ void radio_tick() {
   begin_broker();
   if (has_begun || !firmware_radio_name(&name)) return;
   has_begun = true;
+  esp_log_level_set("*", ESP_LOG_NONE);  // libraries would tell their errors in the link's bytes
   wifi_load();
   broker_load();
   begin(kLowEnergyRadio);

@@ -189,6 +189,7 @@ void note_address(const IPAddress& found) {
 void wifi_load() {
   WiFi.onEvent(on_disconnected, ARDUINO_EVENT_WIFI_STA_DISCONNECTED);
   WiFi.persistent(false);  // the core would keep the password a second time
+  WiFi.setAutoReconnect(false);  // it would scan without a pause, beside Bluetooth: we try again
   kept.load();
   Settings its = kept.now();
   if (has_restarted_too_often() && its.mode() != WifiMode::kOff) {
@@ -220,7 +221,8 @@ bool wifi_turn() {
   __atomic_store_n(&address, 0U, __ATOMIC_RELAXED);
   const bool is_sent_away = status == WL_CONNECT_FAILED || is_refused();
   set_state(is_sent_away ? WifiState::kRefused : WifiState::kSearching);
-  if (is_due()) WiFi.begin(used.network, used.password);
+  const bool is_associated = status == WL_IDLE_STATUS;  // and waits for an address
+  if (!is_associated && is_due()) WiFi.begin(used.network, used.password);
   return false;
 }
 

@@ -1,0 +1,54 @@
+"""How an ESP32 joins its network: one owner of tries, who waits between them and for a lease."""
+
+from __future__ import annotations
+
+from struct import pack
+
+from tests.firmware.test_esp32_transports import Ends, booted, ended
+from tests.firmware.test_esp32_wifi import SCHOOL, joined, owned, school_in_reach, state
+from tests.support.esp32_radio import in_reach, radios, talk
+from tests.support.owners import Keys
+
+TRY_MS = 15_000  # kJoinAgainMs
+
+
+def test_an_address_that_comes_late_is_waited_for() -> None:
+    robot, owner = owned(Keys())
+    ends: Ends = [(None, owner)]
+    school_in_reach(robot)
+    robot.radio("l", pack("<I", 40_000))
+    assert ended(robot, ends, owner.join(SCHOOL)) == "OK"
+    talk(robot, ends, 39_000)
+    assert state(robot, owner) == ("STATION", "SEARCHING")
+    talk(robot, ends, 2000)
+    assert state(robot, owner) == ("STATION", "READY")
+    assert radios(robot).joins == 1, "each try would begin anew"
+
+
+def test_a_robot_away_from_school_leaves_the_antenna_to_bluetooth() -> None:
+    robot, owner = owned(Keys())
+    ends: Ends = [(None, owner)]
+    assert ended(robot, ends, owner.join(SCHOOL)) == "OK"
+    robot.wait(20 * TRY_MS)
+    assert 20 <= radios(robot).joins <= 21
+    school_in_reach(robot)
+    robot.wait(TRY_MS + 100)
+    assert state(robot, owner) == ("STATION", "READY")
+
+
+def test_a_network_that_comes_back_is_joined() -> None:
+    robot, owner = joined(Keys())
+    robot.wait(TRY_MS)
+    for away_ms in (50, 1000, 100_000):
+        in_reach(robot, "", "")
+        robot.wait(away_ms)
+        school_in_reach(robot)
+        robot.wait(TRY_MS + 100)
+        assert state(robot, owner) == ("STATION", "READY")
+
+
+def test_nothing_but_the_link_is_on_the_cable() -> None:
+    """Espressif's libraries tell their errors there, in the middle of a frame."""
+    robot = booted()
+    robot.radio("L")
+    assert robot.wait(50) == b""
