@@ -47,6 +47,18 @@ def test_a_network_that_comes_back_is_joined() -> None:
         assert state(robot, owner) == ("STATION", "READY")
 
 
+def test_a_network_that_sends_the_robot_away_is_joined_again() -> None:
+    """Where an authentication is over, the status stays "connected", and `begin` does nothing."""
+    robot, owner = joined(Keys())
+    robot.wait(2 * TRY_MS)
+    joins = radios(robot).joins
+    for turn in range(3):
+        robot.radio("X")
+        robot.wait(TRY_MS + 100)
+        assert state(robot, owner) == ("STATION", "READY")
+        assert radios(robot).joins == joins + turn + 1
+
+
 def test_nothing_but_the_link_is_on_the_cable() -> None:
     """Espressif's libraries tell their errors there, in the middle of a frame."""
     robot = booted()

@@ -239,6 +239,8 @@ void answer_radio(RequestReader* request, Writer* answer) {
       const std::string address = request->text();
       return network_name(name, address, request->u16());
     }
+    case 'X':
+      return network_expires();
     case 'l':
       return network_leases_after(request->u32());
     case 'L':

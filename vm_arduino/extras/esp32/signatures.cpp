@@ -170,6 +170,7 @@ is_a(WiFi.begin("", ""), wl_status_t);
 is_a(arduino_event_t().event_info.wifi_sta_disconnected.reason, uint8_t);
 is_a(WiFi.localIP(), IPAddress);
 is_a(WiFi.mode(WIFI_STA), bool);
+is_a(WiFi.reconnect(), bool);
 is_a(WiFi.setAutoReconnect(false), bool);
 is_a(WiFi.setHostname(""), bool);
 is_a(WiFi.softAP("", ""), bool);

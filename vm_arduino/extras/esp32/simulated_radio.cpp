@@ -79,9 +79,12 @@ bool reconnects = true;  // STAClass::_autoReconnect
 esp_log_level_t log_level = ESP_LOG_ERROR;  // CONFIG_LOG_DEFAULT_LEVEL of the core
 uint32_t lease_ms;
 bool is_associated;
+bool is_expired;  // of which the core does not notice: its status stays WL_CONNECTED
 uint32_t associated_ms;
 uint32_t scanned_ms;
 WiFiEventSysCb on_disconnected;
+WiFiEventSysCb on_connected;
+constexpr uint8_t kAuthExpire = 2;
 wifi_mode_t wifi_mode = WIFI_OFF;
 bool has_modem_sleep = true;
 std::atomic<bool> has_network_stack{false};
@@ -303,6 +306,17 @@ void network_name(const std::string& name, const std::string& address, uint16_t 
 
 void network_refuses(uint8_t reason) { refusal = reason; }
 
+void network_expires() {
+  arduino_event_t event = {ARDUINO_EVENT_WIFI_STA_DISCONNECTED, {{kAuthExpire}}};
+  {
+    const Lock lock(guard);
+    if (!is_associated) return;
+    is_associated = false;
+    is_expired = !reconnects;
+  }
+  if (on_disconnected != nullptr) on_disconnected(&event);
+}
+
 void network_leases_after(uint32_t found_ms) {
   const Lock lock(guard);
   lease_ms = found_ms;
@@ -462,10 +476,13 @@ wl_status_t WiFiClass::begin(const char* ssid, const char* passphrase, int32_t, 
                              bool) {
   const Lock lock(guard);
   if (ssid[0] == 0 || strlen(ssid) > 32 || strlen(passphrase) > 64) return WL_CONNECT_FAILED;
+  const bool is_same = settings.network == ssid && settings.password == passphrase;
+  if (is_expired && is_same) return WL_CONNECTED;  // and does nothing
   settings.network = ssid;
   settings.password = passphrase;
   settings.is_access_point = false;
   settings.joins++;
+  is_expired = false;
   is_associated = false;  // it joins anew
   scanned_ms = static_cast<uint32_t>(millis());
   return WL_DISCONNECTED;
@@ -479,13 +496,18 @@ wl_status_t WiFiClass::status() {
   {
     const Lock lock(guard);
     if (wifi_mode != WIFI_STA) return WL_NO_SHIELD;
+    if (is_expired) return WL_CONNECTED;
     const uint32_t now_ms = static_cast<uint32_t>(millis());
     const bool is_near = !near_name.empty() && near_name == settings.network;
     if (is_near && near_password == settings.password) {
       // once out of reach, it is joined again by whoever tries
       if (!is_associated && now_ms - scanned_ms >= kScanMs && !reconnects) return WL_DISCONNECTED;
-      if (!is_associated) associated_ms = now_ms;
-      is_associated = true;
+      if (!is_associated) {
+        associated_ms = now_ms;
+        is_associated = true;
+        arduino_event_t joined = {ARDUINO_EVENT_WIFI_STA_CONNECTED, {{0}}};
+        if (on_connected != nullptr) on_connected(&joined);
+      }
       return now_ms - associated_ms < lease_ms ? WL_IDLE_STATUS : WL_CONNECTED;
     }
     is_associated = false;
@@ -502,8 +524,8 @@ wl_status_t WiFiClass::status() {
   return found;
 }
 
-int WiFiClass::onEvent(WiFiEventSysCb cbEvent, arduino_event_id_t) {
-  on_disconnected = cbEvent;
+int WiFiClass::onEvent(WiFiEventSysCb cbEvent, arduino_event_id_t event) {
+  (event == ARDUINO_EVENT_WIFI_STA_CONNECTED ? on_connected : on_disconnected) = cbEvent;
   return 0;
 }
 
@@ -520,10 +542,19 @@ bool WiFiClass::softAP(const char* ssid, const char* passphrase, int, int, int, 
 bool WiFiClass::mode(wifi_mode_t m) {
   const Lock lock(guard);
   wifi_mode = m;
+  is_associated = is_expired = false;
   chip.has_wifi = m != WIFI_OFF;
   if (chip.has_wifi) has_network_stack = true;
   look_at_sleep();
   if (m == WIFI_OFF) settings.network = settings.password = "";
+  return true;
+}
+
+bool WiFiClass::reconnect() {
+  const Lock lock(guard);
+  settings.joins++;
+  is_associated = is_expired = false;
+  scanned_ms = static_cast<uint32_t>(millis());
   return true;
 }
 

@@ -24,7 +24,11 @@ typedef enum { WIFI_MODE_NULL = 0, WIFI_MODE_STA, WIFI_MODE_AP, WIFI_MODE_APSTA 
 #define WIFI_AP WIFI_MODE_AP
 
 // libraries/WiFi/src/WiFiGeneric.h of version 2, libraries/Network/src/NetworkEvents.h of version 3
-typedef enum { ARDUINO_EVENT_WIFI_STA_DISCONNECTED = 5, ARDUINO_EVENT_MAX = 40 } arduino_event_id_t;
+typedef enum {
+  ARDUINO_EVENT_WIFI_STA_CONNECTED = 4,
+  ARDUINO_EVENT_WIFI_STA_DISCONNECTED = 5,
+  ARDUINO_EVENT_MAX = 40
+} arduino_event_id_t;
 typedef struct {
   uint8_t reason;
 } wifi_event_sta_disconnected_t;
@@ -57,6 +61,7 @@ class WiFiClass {
   int onEvent(WiFiEventSysCb cbEvent, arduino_event_id_t event = ARDUINO_EVENT_MAX);
   static bool mode(wifi_mode_t m);
   static void persistent(bool persistent);
+  bool reconnect();
   bool setAutoReconnect(bool autoReconnect);
   static bool setHostname(const char* hostname);
   bool setSleep(bool enabled);

@@ -49,9 +49,13 @@ struct Settings {
 // core tells them as "disconnected".
 constexpr uint8_t kRefusals[] = {15, 202, 203, 204};  // 4-way handshake, authentication, association
 
-uint8_t reason;  // the last one; 0 since the last try. The core's task writes it
+uint8_t reason;       // the last one; 0 since the last try. The core's task writes these two
+bool is_associated;  // with the network; an address may still have to come
+
+void on_connected(arduino_event_t*) { __atomic_store_n(&is_associated, true, __ATOMIC_RELAXED); }
 
 void on_disconnected(arduino_event_t* event) {
+  __atomic_store_n(&is_associated, false, __ATOMIC_RELAXED);
   __atomic_store_n(&reason, static_cast<uint8_t>(event->event_info.wifi_sta_disconnected.reason),
                    __ATOMIC_RELAXED);
 }
@@ -132,6 +136,7 @@ Answer set(WifiMode mode) {
 void leave() {
   if (is_announced) MDNS.end();
   is_announced = false;
+  __atomic_store_n(&is_associated, false, __ATOMIC_RELAXED);
   WiFi.mode(WIFI_OFF);  // and nothing else: softAPdisconnect would start an access point first
   set_state(used.rests() ? WifiState::kRests : WifiState::kOff);
   __atomic_store_n(&address, 0U, __ATOMIC_RELAXED);
@@ -142,6 +147,16 @@ void leave() {
 void host() {
   is_host = WiFi.mode(WIFI_AP) && WiFi.softAP(used.network, used.password);
   if (!is_host) set_state(WifiState::kRefused);
+}
+
+// Of an authentication that is over the core does not notice: its status stays, and `begin` does
+// nothing then.
+void join_again(wl_status_t status) {
+  if (status == WL_CONNECTED) {
+    WiFi.reconnect();
+  } else {
+    WiFi.begin(used.network, used.password);
+  }
 }
 
 // Whether the time has come for the next try.
@@ -187,6 +202,7 @@ void note_address(const IPAddress& found) {
 }  // namespace
 
 void wifi_load() {
+  WiFi.onEvent(on_connected, ARDUINO_EVENT_WIFI_STA_CONNECTED);
   WiFi.onEvent(on_disconnected, ARDUINO_EVENT_WIFI_STA_DISCONNECTED);
   WiFi.persistent(false);  // the core would keep the password a second time
   WiFi.setAutoReconnect(false);  // it would scan without a pause, beside Bluetooth: we try again
@@ -213,7 +229,8 @@ bool wifi_turn() {
     return true;
   }
   const wl_status_t status = WiFi.status();
-  if (status == WL_CONNECTED) {
+  const bool is_joined = __atomic_load_n(&is_associated, __ATOMIC_RELAXED);
+  if (status == WL_CONNECTED && is_joined) {
     announce();
     note_address(WiFi.localIP());
     return true;
@@ -221,8 +238,7 @@ bool wifi_turn() {
   __atomic_store_n(&address, 0U, __ATOMIC_RELAXED);
   const bool is_sent_away = status == WL_CONNECT_FAILED || is_refused();
   set_state(is_sent_away ? WifiState::kRefused : WifiState::kSearching);
-  const bool is_associated = status == WL_IDLE_STATUS;  // and waits for an address
-  if (!is_associated && is_due()) WiFi.begin(used.network, used.password);
+  if (!is_joined && is_due()) join_again(status);
   return false;
 }
 
