@@ -66,6 +66,7 @@ class Esp32Robot(HostFirmware):
     def __init__(
         self, robot: Robot | None = None, kept: Kept = EMPTY, reset: int = POWER_ON,
         seed: int = 0x12345678, major: int = 2, nvs_fault: int = 0,
+        mac: bytes = bytes(6),
     ) -> None:  # fmt: skip
         self.robot = robot or robots.load("tinibot32")
         program = built(firmware.header([self.robot], "a test."), self.robot.board.chip, major)
@@ -75,7 +76,8 @@ class Esp32Robot(HostFirmware):
         self.is_lit, self.is_latched = False, True
         entries = texts(*(each for item in kept.entries.items() for each in item))
         head = pack("<BI", reset, seed) + texts(kept.noinit)
-        self.ask(b"B", head + pack("<I", len(kept.entries)) + entries + bytes([nvs_fault]))
+        rest = bytes([nvs_fault]) + mac
+        self.ask(b"B", head + pack("<I", len(kept.entries)) + entries + rest)
 
     def kept(self) -> Kept:
         noinit, answer = first_text(self.ask(b"E", b""))

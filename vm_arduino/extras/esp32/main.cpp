@@ -69,6 +69,7 @@ void answer_begin(RequestReader* request, Writer*) {
     chip.entries[key] = request->text();
   }
   chip.nvs_fault = static_cast<NvsFault>(request->u8());
+  for (uint8_t k = 0; k < 6; k++) chip.mac |= uint64_t{request->u8()} << (8 * k);
   for (SimulatedPin& pin : chip.pins) pin.signal = SIG_GPIO_OUT_IDX;
   initVariant();
   look();

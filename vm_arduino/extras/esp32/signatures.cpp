@@ -73,6 +73,8 @@ is_a(&analogReadResolution, void (*)(uint8_t));
 // cores/esp32/esp32-hal.h
 is_a(&millis, unsigned long (*)());
 is_a(&micros, unsigned long (*)());
+// cores/esp32/Esp.h
+is_a(ESP.getEfuseMac(), uint64_t);
 // cores/esp32/HardwareSerial.h
 is_a(&HardwareSerial::onReceiveError, void (HardwareSerial::*)(OnReceiveErrorCb));
 is_a(&HardwareSerial::setRxBufferSize, size_t (HardwareSerial::*)(size_t));

@@ -512,6 +512,9 @@ esp_err_t nvs_commit(nvs_handle_t) { return ESP_OK; }
 
 }  // extern "C"
 
+EspClass ESP;
+uint64_t EspClass::getEfuseMac() { return chip.mac; }
+
 void HardwareSerial::begin(unsigned long, uint32_t, int8_t, int8_t, bool, unsigned long, uint8_t) {
   chip.has_uart = true;
   chip.pins[kReceivePin].has_pull_up = true;

@@ -47,6 +47,7 @@ struct SimulatedChip {
   uint16_t analog[40] = {};  // 12 bits
   esp_reset_reason_t reset = ESP_RST_POWERON;
   uint32_t random = 0x12345678;
+  uint64_t mac = 0;  // its first byte is the lowest
 
   std::string received;  // waits for the firmware
   std::string sent;

@@ -136,6 +136,14 @@ class HardwareSerial {
   size_t write(uint8_t byte);
 };
 
+// cores/esp32/Esp.h
+class EspClass {
+ public:
+  uint64_t getEfuseMac();
+};
+
+extern EspClass ESP;
+
 #ifdef ARDUINO_USB_CDC_ON_BOOT
 // cores/esp32/HWCDC.h: the USB of an ESP32-C3 itself
 class HWCDC {

@@ -2,6 +2,7 @@
 
 #include "watchdog.h"
 
+#include <Arduino.h>
 #include <esp_attr.h>
 #include <esp_system.h>
 #include <esp_task_wdt.h>
@@ -12,6 +13,7 @@
 #endif
 
 #include "../../firmware/firmware.h"
+#include "../../link/port.h"
 #include "../kit.h"
 
 namespace tiniscript {
@@ -29,6 +31,10 @@ struct Record {
 };
 
 RTC_NOINIT_ATTR Record last;
+
+constexpr uint32_t kRuns = 0x5ad1c07f;
+
+RTC_NOINIT_ATTR uint32_t runs;  // kRuns while a program runs
 
 // The main loop writes these, and the timer's task on the other core reads them, or the other way
 // round.
@@ -71,6 +77,15 @@ Reset cause_of(esp_reset_reason_t reason) {
   }
 }
 
+// A supply that sags deeply comes back as power-on. The bytes of a chip that has been without power
+// are lost; that they are there says that it was gone for a moment.
+Reset cause_now() {
+  const Reset found = cause_of(esp_reset_reason());
+  const bool has_sagged = found == Reset::kPower && runs == kRuns;
+  runs = 0;
+  return has_sagged ? Reset::kBrownOut : found;
+}
+
 // The timer's task. It counts its looks, not the time: while a page of flash is erased, up to 400 ms
 // by data sheets, it stands still like the main loop.
 void look(void*) {
@@ -106,7 +121,7 @@ void begin_restart() {
 
 void watchdog_begin() {
   panic_begin();
-  cause = cause_of(esp_reset_reason());
+  cause = cause_now();
   has_hung = cause == Reset::kWatchdog && last.mark == hung_mark();
   last.mark = 0;
   write_to(&is_fed, true);
@@ -121,6 +136,7 @@ void watchdog_begin() {
 
 void watchdog_feed() {
   write_to(&is_fed, true);
+  runs = port_status().state == State::kRunning ? kRuns : 0;
   if (read(is_hanging)) {
     last.mark = 0;
     write_to(&is_hanging, false);
@@ -143,7 +159,12 @@ bool watchdog_has_hung(Place* place) {
 
 Reset watchdog_reset_cause() { return cause; }
 
-uint32_t watchdog_seed() { return esp_random(); }
+// Before a radio is on, what `esp_random` says may be the same in two chips. The last bytes of their
+// addresses are not, and the last digits of an id are in a robot's name.
+uint32_t watchdog_seed() {
+  const uint32_t address = static_cast<uint32_t>(ESP.getEfuseMac() >> 16);
+  return esp_random() ^ __builtin_bswap32(address);
+}
 
 }  // namespace tiniscript
 

@@ -29,7 +29,7 @@ bool watchdog_has_hung(Place* place);
 
 Reset watchdog_reset_cause();
 
-// A seed from the chip's source of random numbers.
+// A seed from the chip's source of random numbers and its address.
 uint32_t watchdog_seed();
 
 }  // namespace tiniscript
