@@ -150,7 +150,7 @@ class World:
         """Another session with the same robot."""
         self.session = Session(self.draw.getrandbits(32), 9600, KIT)
 
-    def run(self, request: PendingRequest[Any] | None, most_ms: int = 30_000) -> None:
+    def run(self, request: PendingRequest[Any] | None, most_ms: int = 600_000) -> None:
         """Let time pass until the request is over."""
         end_ms = self.now_ms + most_ms
         while self.now_ms < end_ms and (request is None or request.outcome is None):

@@ -29,8 +29,9 @@ from tiniscript.link.messages import (
 from tiniscript.link.outcomes import CANCELLED, LOST, PlaceEvent, TextEvent
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.requests import SHORT_BYTES
+from tiniscript.link.round_trips import DOUBLED_MS, LIVELY_MS
 from tiniscript.link.session import IDLE_HEARTBEAT_MS, Session
-from tiniscript.link.transmission import CONFIRM_MS, STOP_MS
+from tiniscript.link.transmission import CONFIRM_MS, STOP_MS, TRIES
 
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
 ROBOT = robots.load("tinibot")
@@ -89,7 +90,9 @@ def sending(session: Session, until_ms: int) -> list[tuple[int, bytes]]:
 
 
 @pytest.mark.parametrize(("baud", "first"), [(9600, 200), (57600, 134), (115200, 127)])
-def test_times_of_retries_come_from_the_baud_rate(baud: int, first: int) -> None:
+def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
+    baud: int, first: int
+) -> None:
     session = greeted(baud)
     session.is_attached = False
     request = session.live(FORWARD)
@@ -99,14 +102,59 @@ def test_times_of_retries_come_from_the_baud_rate(baud: int, first: int) -> None
     # a byte more, the 0x00 before, from the second one on is no matter
     assert abs(times[0] - first) <= 2
     gaps = [later - earlier for earlier, later in pairwise(times)]
-    for k, gap in enumerate(gaps[:5]):
-        assert abs(gap - times[0] - 80 * (k + 1)) <= 2
-    assert set(gaps[5:]) == {gaps[5]}
+    doubled = [min(times[0] << k, DOUBLED_MS) for k in range(1, len(gaps) + 1)]
+    assert all(abs(gap - wanted) <= 2 for gap, wanted in zip(gaps, doubled, strict=True))
     assert len({data for _, data in sent}) == 1 and sent[0][1][:1] == b"\0"
-    assert len(sent) + 1 <= 30
+    assert 20 <= len(sent) + 1 <= TRIES
     sending(session, 2 * DEADLINE_MS)
     assert request.outcome and request.outcome.status == LOST
     assert session.wakes_at() is None
+
+
+def test_a_retry_learns_how_long_an_answer_takes() -> None:
+    """Four variations above the mean, as RFC 6298 has it; an answer to a repetition tells nothing
+    of its own time, and the doubled timer stays."""
+    session = greeted(115_200)
+    session.is_attached = False
+    now_ms = 0
+
+    def asked(took_ms: int) -> list[int]:
+        """Ask, and be answered; return how long after each sending the next one came."""
+        nonlocal now_ms
+        session.ping()
+        begun_ms = now_ms
+        data = session.poll(now_ms)
+        times = [at - begun_ms for at, _ in sending(session, begun_ms + took_ms)]
+        now_ms = begun_ms + took_ms
+        session.receive(answer(data, {"state": 0, "run": 0, "place": b""}), now_ms)
+        return [later - earlier for earlier, later in pairwise([0, *times])]
+
+    assert asked(600) == [127, 254]  # and 508, which is not over
+    assert asked(500) == []  # it stays, and this one is certain: 500 and 4 * 250
+    silent = session.ping()
+    session.poll(now_ms)
+    first = sending(session, now_ms + 2000)[0][0] - now_ms
+    assert silent.outcome is None
+    # HELLO's round trip took no time: a mean of 500 / 8, a variation of 500 / 4
+    assert first == pytest.approx(500 / 8 + 4 * 500 / 4, abs=80)
+
+
+def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_ends_it() -> None:
+    """However long its answers have taken."""
+    session = greeted(115_200)
+    live = session.live(FORWARD)
+    session.receive(answer(session.poll(0), receipt(1)), 0)
+    assert live.outcome and session.is_running
+    for _ in range(3):
+        begun_ms = session.wakes_at()
+        assert begun_ms is not None
+        data = session.poll(begun_ms)
+        late_ms = begun_ms + 900
+        gaps = [
+            b - a for a, b in pairwise([begun_ms, *(at for at, _ in sending(session, late_ms))])
+        ]
+        assert gaps and max(gaps) <= LIVELY_MS < messages.DEAD_MAN_MS / 2
+        session.receive(answer(data, {"state": 1, "run": 1, "place": b""}), late_ms)
 
 
 def test_a_stop_cuts_everything_short() -> None:

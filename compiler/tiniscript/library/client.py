@@ -16,7 +16,7 @@ from tiniscript.library import opening
 from tiniscript.library.errors import ProgramError, RobotError
 from tiniscript.library.refusing import refusal
 from tiniscript.link import errors
-from tiniscript.link.connection import PendingRequest, Requester, reason_of
+from tiniscript.link.connection import DEADLINE_MS, PendingRequest, Requester, reason_of
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 from tiniscript.link.outcomes import CANCELLED, LOOK_S, ConnectionLost, Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     T = TypeVar("T")
 
-PATIENCE_MS = 6000  # timeout for a known robot that is silent, or busy with saving
+PATIENCE_MS = DEADLINE_MS  # of a robot that does not answer, or is busy, from its last progress
 SAVE_S = 10.0  # timeout for saving a program while the motors stand
 LOW_S = 2.0  # timeout while the voltage is too low for saving: the robot checks every 0.5 s
 

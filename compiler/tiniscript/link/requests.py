@@ -257,13 +257,9 @@ def _in_pieces(image: Image, mode: int, robot: DeviceInfo) -> Exchange[ReceiptRe
     }
     reply = yield from patient(Request("BEGIN", header), NextReply)
     rest = bytes([image.needs]) + image.later + image.code  # the bytes after the checksum
-    if reply.status == OK and robot.values.window > 1:
+    if reply.status == OK:
         pieces = Pieces(rest, most, robot.values.window)
         reply = yield from single(Request("DATA", pieces=pieces), NextReply)
-    while reply.status == OK and reply.values.next < len(rest):
-        at = reply.values.next
-        piece = rest[at : at + most]
-        reply = yield from single(Request("DATA", {"offset": at, "bytes": piece}), NextReply)
     if reply.status != OK:
         return refused(reply)
     return (yield from single(Request("COMMIT", {"checksum": image.checksum}), ReceiptReply))

@@ -71,6 +71,7 @@ from tiniscript.link.requests import (
     single,
 )
 from tiniscript.link.robot_state import RobotState
+from tiniscript.link.round_trips import RoundTrips
 from tiniscript.link.sealing import SEALED_ALONE, UNSEALED, Sealing
 from tiniscript.link.sender import Sender
 from tiniscript.link.transmission import TRIES, StopSequence, Transmission, Window
@@ -154,7 +155,8 @@ class Session(Requester):
         self._events: list[Event] = []
         self._waiting: deque[PendingExchange[Any]] = deque()
         self._pending: PendingExchange[Any] | None = None
-        self._transmission = Transmission(baud)
+        self._trips = RoundTrips(baud)
+        self._transmission = Transmission(self._trips)
         self._orphan: int | None = None  # the run of a client that has gone
 
     @property
@@ -240,14 +242,19 @@ class Session(Requester):
             return self._send_stop(now_ms)
         if not self._transmission.is_under_way:
             self._next_pending(now_ms)
-        if not self._transmission.is_due(now_ms):
+        if not self._transmission.is_under_way:
             return b""
         assert self._pending
+        if now_ms >= self._pending.deadline_ms:
+            self._lose()
+            return b""
+        if not self._transmission.is_due(now_ms):
+            return b""
         seal = self._transmission.seal
         if seal is not None and seal.is_spent:
             self._authenticate_again(now_ms)
             return b""
-        if self._transmission.tries >= TRIES or now_ms >= self._pending.deadline_ms:
+        if self._transmission.tries >= TRIES:
             self._lose()
             return b""
         self._sent_ms = now_ms
@@ -260,7 +267,8 @@ class Session(Requester):
         if self._stop.due_ms is not None:
             return self._stop.due_ms
         if self._transmission.is_under_way:
-            return self._transmission.due_ms
+            assert self._pending
+            return min(self._transmission.due_ms, self._pending.deadline_ms)
         if self._waiting:
             return 0
         heartbeat_ms = self._heartbeat_ms()
@@ -329,13 +337,15 @@ class Session(Requester):
         seal = self._sealing.of_request(request)
         number = partial(self._number, seal is not None)
         if request.pieces is not None:
-            self._transmission = Window(self._baud, request.pieces, self._epoch, number)
+            self._transmission = Window(
+                self._baud, self._trips, request.pieces, self._epoch, number
+            )
             self._transmission.begin_again(now_ms, seal)
             return
         payload = written(message.request, request.values)
         frame = Frame(message.number, number(), self._epoch, payload)
         largest = self.robot.values.largest if self.robot else 0
-        self._transmission = Transmission(self._baud, largest)
+        self._transmission = Transmission(self._trips, largest, self.is_running)
         self._transmission.begin(frame, now_ms + request.pause_ms, seal)
         if seal is None and request.name in SEALED_ALONE:
             self._authenticate_again(now_ms)  # before a byte of it is sent
@@ -356,7 +366,7 @@ class Session(Requester):
         assert pending
         pending.shown += 1
         self._sealing.seal = None
-        self._transmission = Transmission(self._baud)
+        self._transmission = Transmission(self._trips)
         if pending.shown > MOST_SHOWN:  # told to its exchange, that might do it again
             pending.exchange.close()
             pending.outcome = Reply(NOT_OWNER)
@@ -453,12 +463,14 @@ class Session(Requester):
         if reply is None:
             self.damaged += 1
             return
+        self._transmission.learn(frame, now_ms)
         if (
             reply.status == OK
             and not frame.is_sealed
             and not self._handshake.may_have_done(message.name)
         ):
             reply = Reply(UNPROVEN)
+        self._note_progress(reply, now_ms)
         if isinstance(self._transmission, Window) and self._goes_on(reply, frame, now_ms):
             return
         values = reply.values if reply.status == OK else None
@@ -483,8 +495,6 @@ class Session(Requester):
             elif has_ended or (is_other and self._handshake.is_open):
                 again = self._look_again(has_ended, is_other)
                 self._waiting.appendleft(PendingExchange(again, DEAF_MS, is_own=True))
-            if self._pending and isinstance(values, NextReply):
-                self._pending.done_bytes = values.next
         self._advance(reply, now_ms)
         if self._state.is_cut:
             self._state.is_cut = False
@@ -546,15 +556,29 @@ class Session(Requester):
             self._state.take(event)
             self._events.append(event)
 
+    def _note_progress(self, reply: Reply[SentReply], now_ms: int) -> None:
+        """Give an exchange its time again where it goes on: it is not given up before it stands
+        still for so long. An answer to DATA that brings nothing new is no progress.
+        """
+        pending = self._pending
+        if pending is None or reply.status != OK:
+            return
+        if isinstance(reply.values, NextReply):
+            is_data = isinstance(self._transmission, Window)
+            if is_data and reply.values.next <= pending.done_bytes:
+                return
+            pending.done_bytes = reply.values.next
+        pending.deadline_ms = now_ms + pending.limit_ms
+
     def _goes_on(self, reply: Reply[SentReply], frame: Frame, now_ms: int) -> bool:
         """Take a reply to one of many DATA; return whether that was not the last one."""
         assert isinstance(self._transmission, Window)
-        if frame.epoch != self._epoch or reply.status not in (OK, _STALE):
+        if frame.epoch != self._transmission.epoch or reply.status not in (OK, _STALE):
             return False
         next_offset = None  # STALE in this epoch: a frame of a later number has come before
         if reply.status == OK:
             assert isinstance(reply.values, NextReply) and self._pending
-            next_offset = self._pending.done_bytes = reply.values.next
+            next_offset = reply.values.next
         return not self._transmission.take(frame, next_offset, now_ms)
 
     def _look_again(self, has_ended: bool, is_other: bool) -> Exchange[StatusReply]:

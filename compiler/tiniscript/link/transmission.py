@@ -1,6 +1,6 @@
 """What is sent until it is answered: one frame, the pieces of a program, or a stop.
 
-Derives the timeouts from the baud rate. Does not know what an answer means.
+Does not know what an answer means; `round_trips` knows how long one may take.
 """
 
 from __future__ import annotations
@@ -12,6 +12,8 @@ from typing import NamedTuple
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import (
     BY_NAME,
+    CRC_BYTES,
+    HEAD_BYTES,
     LARGE_FRAME,
     LARGE_WINDOW,
     SMALL_FRAME,
@@ -20,19 +22,22 @@ from tiniscript.link.messages import (
     written,
 )
 from tiniscript.link.requests import OFFSET_BYTES, Pieces
+from tiniscript.link.round_trips import RoundTrips
 from tiniscript.link.seal import Seal
 from tiniscript.link.sender import Sender
 
-ROUND_MS = 120  # round trip through two radios and a robot, without the bytes
-RETRY_MS = 80  # added for each try,
-RETRY_STEPS = 6  # for this many tries at most
-TRIES = 30
+TRIES = 30  # without progress
 
 
 class Transmission:
-    def __init__(self, baud: int, largest: int = SMALL_FRAME) -> None:
-        """`largest` is how many bytes the frame of an answer has at most, before COBS."""
-        self._baud = baud
+    def __init__(
+        self, trips: RoundTrips, largest: int = SMALL_FRAME, is_lively: bool = False
+    ) -> None:
+        """`largest` is how many bytes the frame of an answer has at most, before COBS;
+        `is_lively`: the robot runs a program that ends when it hears nothing.
+        """
+        self._trips = trips
+        self._is_lively = is_lively
         self._largest = min(max(largest, SMALL_FRAME), LARGE_FRAME)
         self.frame: Frame | None = None
         self.seal: Seal | None = None
@@ -40,6 +45,8 @@ class Transmission:
         self.tries = 0
         self.is_sent = False  # a byte of it
         self.due_ms = 0  # when the frame is sent or repeated
+        self._began_ms = 0  # when it was sent first
+        self._wire_bytes = 0
 
     def begin(self, frame: Frame, due_ms: int, seal: Seal | None = None) -> None:
         """Send a frame from then on: sealed anew, with a counter of its own, at each try."""
@@ -82,45 +89,69 @@ class Transmission:
         ours = self.frame
         return ours is not None and (frame.number, frame.seq) == (ours.number, ours.seq)
 
+    def learn(self, reply: Frame, now_ms: int) -> None:
+        """Learn from an answer how long one takes."""
+        if self.tries == 0:
+            return  # nothing of it was sent: it answers something else
+        count = self._wire_bytes + HEAD_BYTES + len(reply.payload) + CRC_BYTES
+        self._trips.learn(now_ms - self._began_ms, count, self.tries == 1)
+
     def sent(self, now_ms: int, sender: Sender) -> bytes:
         """Return the bytes to send now."""
         assert self.frame is not None
         wire = encoded(self.frame if self.seal is None else self.seal.closed(self.frame))
-        wait_ms = ROUND_MS + RETRY_MS * min(self.tries, RETRY_STEPS)
-        wait_ms += -(-(len(wire) + self._largest + 2) * 10_000 // self._baud)
-        is_repeated = self.tries > 0 or self.frame.number == BY_NAME["HELLO"].number
+        is_hello = self.is_of("HELLO")  # which looks for a robot that is not there yet
+        if self.tries > 0:
+            self._trips.double()
+        else:
+            self._began_ms, self._wire_bytes = now_ms, len(wire)
         self.tries += 1
         self.is_sent = True
-        self.due_ms = now_ms + wait_ms
-        return sender.frames(wire, now_ms, is_repeated)
+        count = len(wire) + self._largest + 2
+        self.due_ms = now_ms + self._trips.wait_ms(count, self._is_lively or is_hello)
+        return sender.frames(wire, now_ms, self.tries > 1 or is_hello)
 
 
-AHEAD_MS = 200  # a stop waits behind so much of the line's time at most
+AHEAD_MS = 200  # a stop waits behind so much of the port's time at most
+SLOW_MS = 1000  # and behind so much of a line that is slower than its port, about
 REPLY_BYTES = 32  # of DATA on the wire, and more
 FRAME_BYTES = 24  # of DATA on the wire beside its piece, and more
+LEAST_BYTES = 8  # of a piece, where a line loses so much that no longer one arrives
+MORE_BYTES = 8  # of the next piece, behind one that has arrived
+REMEMBERED = 64  # pieces that were sent last: their answers may be late
 _DATA = BY_NAME["DATA"]
 
 
 class SentPiece(NamedTuple):
     seq: int
     end: int  # offset of the byte behind it
+    sent_ms: int
+    wire_bytes: int  # with those of its answer
 
 
 class Window(Transmission):
-    def __init__(self, baud: int, pieces: Pieces, epoch: int, number: Callable[[], int]) -> None:
+    """The pieces of a program. An answer that comes late tells as much as one in time: where the
+    line is slower than was known, what is sent twice is one piece, not all that is under way.
+    """
+
+    def __init__(
+        self, baud: int, trips: RoundTrips, pieces: Pieces, epoch: int, number: Callable[[], int]
+    ) -> None:
         """`number` returns the number of each frame: another one each time."""
-        super().__init__(baud)
+        super().__init__(trips)
         self._data = pieces.data
         ahead = baud * AHEAD_MS // 10_000  # bytes
         small = payload_bytes(SMALL_FRAME) - OFFSET_BYTES
-        self._most = min(pieces.most, max(small, ahead // 2 - FRAME_BYTES))
+        self._longest = self._most = min(pieces.most, max(small, ahead // 2 - FRAME_BYTES))
         fitting = ahead // (self._most + FRAME_BYTES)
-        self._window = max(1, min(pieces.window, LARGE_WINDOW, fitting))
+        self._window = self._allowed = max(1, min(pieces.window, LARGE_WINDOW, fitting))
         self.epoch = epoch
         self._number = number
+        self._room = trips.bytes_in(SLOW_MS)  # for what is under way, with its answers
         self._next = 0  # what the robot wants next
         self._sent = 0  # offset of the byte behind the last one that was sent
         self._under_way: deque[SentPiece] = deque()
+        self._before: deque[SentPiece] = deque(maxlen=REMEMBERED)  # taken for lost
         self._lost_ms = 0  # when what is under way is taken for lost
         self._is_again = False
         self._is_over = False
@@ -129,6 +160,7 @@ class Window(Transmission):
         """Send what the robot has not taken, from then on."""
         super().begin_again(due_ms, seal)
         self._under_way.clear()
+        self._before.clear()
         self._sent = self._next
 
     @property
@@ -140,21 +172,37 @@ class Window(Transmission):
 
     def is_answered_by(self, frame: Frame) -> bool:
         is_data = frame.number == _DATA.number and not self._is_over
-        return is_data and any(piece.seq == frame.seq for piece in self._under_way)
+        return is_data and any(
+            piece.seq == frame.seq for piece in (*self._under_way, *self._before)
+        )
+
+    def learn(self, reply: Frame, now_ms: int) -> None:
+        """Learn from an answer how long one takes: each sending has a number of its own."""
+        for piece in (*self._before, *self._under_way):
+            if piece.seq == reply.seq:
+                took_ms = now_ms - piece.sent_ms
+                self._trips.learn(took_ms, piece.wire_bytes, is_certain=True)
+                is_quick = took_ms <= (self._trips.least_ms or 0) + SLOW_MS
+                self._room = max(
+                    0, self._room + (piece.wire_bytes if is_quick else -piece.wire_bytes)
+                )
 
     def sent(self, now_ms: int, sender: Sender) -> bytes:
         """Return the frames that may be sent now."""
         self.is_sent = True
         if self._under_way and now_ms >= self._lost_ms:
             self._go_back()
+            self._allowed = 1
+            self._trips.double()
         wire = b""
-        while self._sent < len(self._data) and len(self._under_way) < self._window:
+        while (length := self._next_bytes()) > 0:
             if self.seal is not None and self.seal.is_spent:
                 break
-            frame = self._frame(self._sent)
+            frame = self._frame(self._sent, length)
             wire += encoded(frame if self.seal is None else self.seal.closed(frame))
-            self._sent = min(self._sent + self._most, len(self._data))
-            self._under_way.append(SentPiece(frame.seq, self._sent))
+            self._sent += length
+            wire_bytes = len(frame.payload) + FRAME_BYTES + REPLY_BYTES
+            self._under_way.append(SentPiece(frame.seq, self._sent, now_ms, wire_bytes))
         self._wait(now_ms)
         if not wire:
             return b""
@@ -162,36 +210,55 @@ class Window(Transmission):
         return sender.frames(wire, now_ms, is_again)
 
     def take(self, frame: Frame, next_offset: int | None, now_ms: int) -> bool:
-        """Take the reply to a frame that is under way; return whether all has arrived.
+        """Take the reply to a frame that was sent; return whether all has arrived.
 
         `next_offset` of None: the robot has not looked at the frame, as a later one came before it.
         """
-        if next_offset is not None and next_offset != self._next:
+        has_come = next_offset is not None and next_offset > self._next
+        if next_offset is not None and has_come:
             self._next = next_offset
+            self._sent = max(self._sent, next_offset)
             self.tries = 0
+            self._most = min(self._most + MORE_BYTES, self._longest)
+            self._allowed = min(self._allowed + 1, self._window)
         while self._under_way and self._under_way[0].end <= self._next:
             self._under_way.popleft()
         if any(piece.seq == frame.seq for piece in self._under_way):
             self._go_back()  # this one, or one before it, was not taken
+        elif not has_come:
+            return False  # late, and known
         self._wait(now_ms)
-        if self._sent < len(self._data) and len(self._under_way) < self._window:
+        if self._next_bytes() > 0:
             self.due_ms = now_ms
         return self._next >= len(self._data)
 
     def _go_back(self) -> None:
+        self._before += self._under_way
         self._under_way.clear()
         self._sent = self._next
         self._is_again = True
         self.tries += 1
+        if self.tries > 1:
+            self._most = max(min(LEAST_BYTES, self._longest), self._most // 2)
 
-    def _frame(self, at: int) -> Frame:
-        values: dict[str, int | bytes] = {"offset": at, "bytes": self._data[at : at + self._most]}
+    def _next_bytes(self) -> int:
+        """Return how many bytes the next piece has, or 0 while none may be sent."""
+        length = min(self._most, len(self._data) - self._sent)
+        room = self._room - self._count() - FRAME_BYTES - REPLY_BYTES - OFFSET_BYTES
+        if not self._under_way:
+            return min(length, max(room, LEAST_BYTES))
+        return length if len(self._under_way) < self._allowed and room >= length else 0
+
+    def _frame(self, at: int, length: int) -> Frame:
+        values: dict[str, int | bytes] = {"offset": at, "bytes": self._data[at : at + length]}
         return Frame(_DATA.number, self._number(), self.epoch, written(_DATA.request, values))
 
+    def _count(self) -> int:
+        """Return how many bytes are under way, with their answers."""
+        return sum(piece.wire_bytes for piece in self._under_way)
+
     def _wait(self, now_ms: int) -> None:
-        count = len(self._under_way)
-        wire_ms = count * (self._most + FRAME_BYTES + REPLY_BYTES) * 10_000 // self._baud
-        wait_ms = ROUND_MS + RETRY_MS * min(self.tries, RETRY_STEPS) + wire_ms
+        wait_ms = self._trips.wait_ms(self._count())
         self._lost_ms = self.due_ms = now_ms + wait_ms
 
 

@@ -20,7 +20,14 @@ from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.library.refusing import refusal
 from tiniscript.link.authority import whose
-from tiniscript.link.connection import STATUS, LinkConnection, PendingRequest, Requester, reason_of
+from tiniscript.link.connection import (
+    DEADLINE_MS,
+    STATUS,
+    LinkConnection,
+    PendingRequest,
+    Requester,
+    reason_of,
+)
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST, NAME_BYTES, STATE_RUNNING
 from tiniscript.link.names import cause_name, fault_name, saved_name
 from tiniscript.link.outcomes import Event
@@ -32,7 +39,7 @@ from tiniscript.link.trim import Trim, told
 Json = dict[str, Any]
 T = TypeVar("T")
 
-LIMIT_MS = 6000  # for a robot that is known: it is silent, or busy with saving
+LIMIT_MS = DEADLINE_MS  # for a robot that is known: it is silent, or busy with saving
 LONGEST_MS = 20_000
 MOST_WAITING = 8  # requests at a time
 TEXT_CHARACTERS = 200

@@ -1,0 +1,64 @@
+"""How long an answer may take on this line: learnt from the answers that came, as TCP does it.
+
+The smoothed round trip, its variation, and the timer that doubles until an answer belongs to one
+sending for certain are those of RFC 6298, https://www.rfc-editor.org/rfc/rfc6298. Times are
+milliseconds. Knows no frame and no clock.
+"""
+
+from __future__ import annotations
+
+ROUND_MS = 120  # round trip through two radios and a robot, without the bytes
+LEARNT_MS = 3000  # a timer that was learnt is no longer: somebody may have been suspended
+DOUBLED_MS = 1000  # doubling alone makes none longer
+LIVELY_MS = 400  # the longest timer where the robot has to hear us now and then
+_MEAN, _VARIATION, _VARIATIONS = 1 / 8, 1 / 4, 4  # alpha, beta and K of the RFC
+
+
+class RoundTrips:
+    def __init__(self, baud: int) -> None:
+        self._baud = baud
+        self.least_ms: int | None = None  # of all round trips: the rest of a longer one is a queue
+        self._mean_ms: float | None = None
+        self._variation_ms = 0.0
+        self._byte_ms: float | None = None  # a byte takes no longer, as far as answers tell
+        self._doublings = 0
+
+    def learn(self, took_ms: int, count: int, is_certain: bool) -> None:
+        """Take how long an answer took that has, with its request, `count` bytes.
+
+        `is_certain` where it was one of several sendings that was answered: where it was not, that
+        may have been a later one than the first, from which `took_ms` counts.
+        """
+        self.least_ms = took_ms if self.least_ms is None else min(self.least_ms, took_ms)
+        byte_ms = took_ms / count
+        self._byte_ms = byte_ms if self._byte_ms is None else min(self._byte_ms, byte_ms)
+        if not is_certain:
+            return
+        self._doublings = 0
+        if self._mean_ms is None:
+            self._mean_ms, self._variation_ms = took_ms, took_ms / 2
+            return
+        self._variation_ms += (abs(self._mean_ms - took_ms) - self._variation_ms) * _VARIATION
+        self._mean_ms += (took_ms - self._mean_ms) * _MEAN
+
+    def double(self) -> None:
+        """No answer has come in time."""
+        self._doublings += 1
+
+    def bytes_in(self, time_ms: int) -> int:
+        """Return how many bytes this line carries in a time at least, as far as answers tell."""
+        return int(time_ms / max(10_000 / self._baud, self._byte_ms or 0))
+
+    def wait_ms(self, count: int, is_lively: bool = False) -> int:
+        """Return how long to wait for an answer that has, with its request, `count` bytes.
+
+        `is_lively`: a robot that is silent is asked again soon, however long answers take.
+        """
+        line_ms = ROUND_MS + -(-count * 10_000 // self._baud)
+        learnt_ms = ROUND_MS + count * (self._byte_ms or 0)
+        if self._mean_ms is not None:
+            learnt_ms = max(learnt_ms, self._mean_ms + _VARIATIONS * self._variation_ms)
+        needed_ms = max(line_ms, min(int(learnt_ms), LEARNT_MS))
+        doubled_ms = needed_ms << min(self._doublings, 10)
+        wait_ms = min(doubled_ms, max(DOUBLED_MS, needed_ms))
+        return max(line_ms, min(wait_ms, LIVELY_MS)) if is_lively else wait_ms

@@ -1,0 +1,163 @@
+"""Uploads over lines that are slow, late or lose bytes: what makes progress is not given up.
+
+The robot is the firmware's link, on a clock of the test.
+"""
+
+from __future__ import annotations
+
+import random
+from typing import Any, NamedTuple
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.machines.link import CppLink, cpp_link
+from tests.support.link_cases import KIT
+from tiniscript.bytecode.image import Image, pack, unpack
+from tiniscript.library.client import PATIENCE_MS
+from tiniscript.link.connection import DEADLINE_MS, PendingRequest
+from tiniscript.link.messages import STATUSES
+from tiniscript.link.outcomes import LOST
+from tiniscript.link.session import Session
+from tools.bench.large_upload import MOVE, Wire
+
+OK, STALE = STATUSES["OK"], STATUSES["STALE"]
+STEP_MS = 5
+LOOK_MS = 50  # between two looks of a robot that hears nothing
+
+
+def program(code_bytes: int) -> Image:
+    """Return a program of about so many bytes, without an S: a frame that is cut could say stop."""
+    moves = b"".join(bytes((MOVE, k % 80, k // 80)) for k in range(code_bytes // 3))
+    return unpack(pack("SI", 0, moves))
+
+
+class Line(NamedTuple):
+    """`rate` in bytes per second, `late_ms` each way; `lost` is the share of bytes that are."""
+
+    rate: int
+    late_ms: float = 0.0
+    lost: float = 0.0
+
+
+class Talk:
+    """A computer and a robot with a line between them. The port says `baud`, whatever the line."""
+
+    def __init__(self, line: Line, baud: int = 9600, is_large: bool = False, seed: int = 1) -> None:
+        self.line, self.is_large = line, is_large
+        self.draw = random.Random(seed)
+        self.robot: CppLink = cpp_link(is_large)
+        self.robot.begin(room=8192 if is_large else 389, kit=KIT, epoch=9)
+        self.session = Session(3, baud, KIT)
+        self.there, self.back = (Wire(line.rate * 10, line.late_ms) for _ in range(2))
+        self.now_ms = 0
+        self.sent_bytes = 0
+        self.is_cut = False
+
+    def kept(self, data: bytes) -> bytes:
+        if self.is_cut:
+            return b""
+        if not self.line.lost:
+            return data
+        return bytes(byte for byte in data if self.draw.random() >= self.line.lost)
+
+    def step(self) -> None:
+        data = self.session.poll(self.now_ms)
+        self.sent_bytes += len(data)
+        self.there.send(self.kept(data), self.now_ms)
+        came = self.there.arrived(self.now_ms)
+        if came or self.now_ms % LOOK_MS == 0:
+            self.back.send(self.kept(self.robot.step(self.now_ms, came).sent), self.now_ms)
+        self.session.receive(self.back.arrived(self.now_ms), self.now_ms)
+        self.now_ms += STEP_MS
+
+    def wait(self, request: PendingRequest[Any], most_ms: int = 600_000) -> int:
+        end_ms = self.now_ms + most_ms
+        while request.outcome is None and self.now_ms < end_ms:
+            self.step()
+        assert request.outcome, "it has no end"
+        return request.outcome.status
+
+    def upload(self, code_bytes: int) -> int:
+        """Upload a program as a command does; return the status."""
+        hello = self.session.hello()
+        self.wait(hello)
+        assert hello.outcome and hello.outcome.status == OK
+        self.sent_bytes = 0
+        request = self.session.upload(program(code_bytes), runs=False)
+        request.limit_ms = PATIENCE_MS
+        status = self.wait(request)
+        if status == OK:
+            assert self.robot.held() == pack("SI", 0, program(code_bytes).code)
+        return status
+
+
+@pytest.mark.parametrize(
+    ("code_bytes", "line"),
+    [
+        (377, Line(100)),
+        (387, Line(300, 80)),
+        (387, Line(960, 300)),
+        (387, Line(960, 20, 0.01)),
+        (387, Line(100, 300, 0.005)),
+    ],
+)
+def test_an_upload_that_goes_on_is_not_given_up(code_bytes: int, line: Line) -> None:
+    for seed in range(5):
+        assert Talk(line, seed=seed).upload(code_bytes) == OK, seed
+
+
+@pytest.mark.parametrize("line", [Line(1000), Line(1000, 40), Line(500, 100), Line(11_520, 300)])
+def test_a_line_that_is_slower_than_its_port_gets_little_twice(line: Line) -> None:
+    """An ESP32 at 115200 baud behind something slow, as a radio or a broker is."""
+    talk = Talk(line, 115_200, is_large=True)
+    assert talk.upload(1800) == OK
+    assert talk.sent_bytes < 1800 * 1.35
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    is_large=st.booleans(),
+    rate=st.integers(100, 11_520),
+    late_ms=st.integers(0, 500),
+    lost=st.floats(0, 0.01),
+    code_bytes=st.integers(250, 380),
+    seed=st.integers(0, 1000),
+)
+def test_a_line_that_lets_some_bytes_through_ends_an_upload(
+    is_large: bool, rate: int, late_ms: int, lost: float, code_bytes: int, seed: int
+) -> None:
+    """Or the robot was stopped: a frame of which bytes are lost may be a line that says so."""
+    talk = Talk(Line(rate, late_ms, lost), 115_200 if is_large else 9600, is_large, seed)
+    status = talk.upload(code_bytes)
+    was_stopped = any(event.name == "STOPPED" for event in talk.session.events())
+    assert status == OK or (status == STALE and was_stopped)
+
+
+@pytest.mark.parametrize("is_large", [False, True])
+def test_a_line_that_is_cut_for_long_goes_on_and_for_longer_ends(is_large: bool) -> None:
+    for cut_ms, status in ((DEADLINE_MS - 3000, OK), (DEADLINE_MS + 3000, LOST)):
+        talk = Talk(Line(960, 20), is_large=is_large)
+        request = talk.session.upload(program(380), runs=False)
+        while request.done_bytes == 0:
+            talk.step()
+        begun_ms = talk.now_ms
+        talk.is_cut = True
+        while talk.now_ms < begun_ms + cut_ms and request.outcome is None:
+            talk.step()
+        assert talk.now_ms <= begun_ms + DEADLINE_MS + 1000
+        talk.is_cut = False
+        assert talk.wait(request) == status
+
+
+def test_an_answer_that_comes_after_its_piece_was_sent_again_counts() -> None:
+    """A line that becomes slow in the middle: little is sent again, and not for ever."""
+    talk = Talk(Line(11_520), 115_200, is_large=True)
+    request = talk.session.upload(program(8000), runs=False)
+    while request.done_bytes < 3000:
+        talk.step()
+    talk.there, talk.back = Wire(10_000, 400), Wire(10_000, 400)
+    before, talk.sent_bytes = request.done_bytes, 0
+    assert talk.wait(request) == OK
+    assert talk.sent_bytes < (8000 - before) * 1.5
