@@ -244,6 +244,51 @@ def test_a_move_behind_another_stop_does_not_go_unseen() -> None:
     assert robot.is_latched
 
 
+def test_one_stop_is_told_once_however_late_its_answers_come() -> None:
+    """51 of them were stalled; the stop was given up meanwhile. A later stop has another epoch."""
+    session = greeted()
+    session.stop(100)
+    sending(session, 8000)
+    assert [each.name for each in session.events()] == ["LOST"] and not session.is_open
+    for seq in range(51):
+        session.receive(event("STOPPED", seq, {"cause": 1}), 8000 + seq)
+    assert [each.name for each in session.events()] == ["STOPPED"]
+    session.receive(event("STOPPED", 51, {"cause": 3}, epoch=12), 9000)
+    session.receive(event("STOPPED", 52, {"cause": 3}, epoch=12), 9050)
+    assert [each.name for each in session.events()] == ["STOPPED"]
+
+
+def test_a_late_answer_to_a_stop_ends_no_run_that_has_begun_since() -> None:
+    session = greeted()
+    session.stop(0)
+    session.poll(0)
+    session.receive(event("STOPPED", 0, {"cause": 1}), 20)
+    live = session.live(FORWARD)
+    now_ms = 20
+    while live.outcome is None:
+        now_ms += 5
+        data = session.poll(now_ms)
+        frame = decoded(data.strip(b"\0")) if data else None
+        if frame is not None:
+            values = receipt(1) if frame.number == BY_NAME["LIVE"].number else {}
+            session.receive(answer(data, values, epoch=11), now_ms)
+    session.events()
+    session.receive(event("STOPPED", 1, {"cause": 1}), now_ms)
+    assert session.events() == [] and session.is_running
+    session.receive(event("STOPPED", 2, {"cause": 3}, epoch=12), now_ms)
+    assert [each.name for each in session.events()] == ["STOPPED"] and not session.is_running
+
+
+def test_a_robot_that_was_reset_may_be_stopped_in_the_epoch_of_before() -> None:
+    session = greeted()
+    session.receive(event("STOPPED", 0, {"cause": 3}), 20)
+    session.events()
+    session.hello()
+    session.receive(answer(session.poll(30), {**DESCRIPTION, "nonce": 9}, epoch=11), 30)
+    session.receive(event("STOPPED", 0, {"cause": 3}), 40)
+    assert [each.name for each in session.events()] == ["STOPPED"]
+
+
 def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> None:
     """The radio was slow: two stop sequences were sent before the first was confirmed."""
     session = greeted()

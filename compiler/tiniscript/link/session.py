@@ -158,6 +158,7 @@ class Session(Requester):
         self._trips = RoundTrips(baud)
         self._transmission = Transmission(self._trips)
         self._orphan: int | None = None  # the run of a client that has gone
+        self._told_epoch: int | None = None  # that has begun with the stop that was told last
 
     @property
     def robot(self) -> DeviceInfo | None:
@@ -533,6 +534,8 @@ class Session(Requester):
         """Find out from HELLO what has ended the epoch that is in doubt."""
         self._epoch = frame.epoch
         is_same = self.robot is not None and self.robot.values.nonce == robot.nonce
+        if not is_same:
+            self._told_epoch = None  # its epochs begin anew
         if is_same and self._pending and self._pending.wanted.may_be_done:
             self._pending.wanted.is_void = True
         if self._handshake.is_in_doubt:
@@ -631,8 +634,11 @@ class Session(Requester):
                     self._state.take(event)
                     return
                 self._stop.end()
-            elif self._handshake.is_open and self.is_latched and frame.epoch == self._epoch:
+            elif frame.epoch == self._told_epoch or (
+                self._handshake.is_open and self.is_latched and frame.epoch == self._epoch
+            ):
                 return  # a repeated answer to the same stop
+            self._told_epoch = frame.epoch
         if isinstance(event, (StoppedEvent, FaultEvent)):
             self._take_end(event, frame)
         self._state.take(event)
