@@ -234,15 +234,41 @@ def test_a_program_ends_with_its_command_unless_it_needs_nobody(
     assert not pty_robot.moves
 
 
-def test_a_second_program_ends_the_first_and_both_know(pty_robot: PtyRobot) -> None:
+def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
+    pty_robot: PtyRobot,
+) -> None:
+    """Through the first command, which has nothing more to do of its own."""
     first = uploading(pty_robot)
     second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
+    second.ended().gives(0, out="Done.")
+    done = first.ended().gives(3, "another program", "holds the port until that has ended")
+    assert done.err.index("holds the port") < done.err.index("another program")
+    assert hellos(pty_robot) == 1
+    assert registry.found(pty_robot.port) is None
+
+
+def test_a_replaced_command_that_is_interrupted_stops_the_robot(pty_robot: PtyRobot) -> None:
+    first = uploading(pty_robot)
+    second = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
     second.until("running")
-    done = first.ended()  # it held the port
-    assert done.code == 3
-    assert "another program" in done.err
-    second.ended().gives(3, "has ended (tsc upload)")
-    pty_robot.until(lambda: not pty_robot.moves, "nobody is left who attends")
+    first.until("holds the port", is_aside=True)
+    first.signal(signal.SIGINT)
+    assert first.ended().code == 2
+    pty_robot.until(lambda: not pty_robot.moves, "it stands")
+    second.ended().gives(3, out="The robot was stopped from a computer.")
+
+
+def test_a_stop_ends_a_program_that_a_replaced_command_holds_the_port_for(
+    pty_robot: PtyRobot,
+) -> None:
+    first = uploading(pty_robot)
+    second = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
+    second.until("running")
+    first.until("holds the port", is_aside=True)
+    assert on(pty_robot, "stop").code == 0
+    assert not pty_robot.moves
+    second.ended().gives(3, out="The robot was stopped from a computer.")
+    first.ended().gives(3, "another program")
 
 
 # -- endings of a server --------------------------------------------------------------------------

@@ -94,10 +94,11 @@ class Command:
             self.process.stdin.write(data)
             self.process.stdin.flush()
 
-    def until(self, said: str) -> None:
-        """Wait until it has printed a line with these words."""
-        assert self.process.stdout
-        for line in self.process.stdout:
+    def until(self, said: str, is_aside: bool = False) -> None:
+        """Wait until it has printed a line with these words, on standard error if `is_aside`."""
+        stream = self.process.stderr if is_aside else self.process.stdout
+        assert stream
+        for line in stream:
             if said in line.decode():
                 return
         raise AssertionError(f"never printed: {said}. {self.ended().err}")

@@ -108,15 +108,42 @@ class Connection(Client):
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        if kind is not None and issubclass(kind, OSError) and self.drives:
-            self.stop_unseen()
-        self.close(STOP_S)
-        self._end_simulator()
+        try:
+            if kind is not None and issubclass(kind, OSError) and self.drives:
+                self.stop_unseen()
+            if kind is None or issubclass(kind, (CommandError, OSError)):
+                self._hold_for_others()
+        finally:
+            self.close(STOP_S)
+            self._end_simulator()
+
+    def _hold_for_others(self) -> None:
+        """Go on holding the port while another command drives the robot through it: the end of this
+        one is no stop of that one's program."""
+        server = self.server
+        if server is None or self.line.has_ended or not server.is_needed:
+            return
+        with suppress(OSError):
+            if not self.is_one_of_many:
+                say_aside("holds_for_others", self.language, port=shown(self.port))
+        try:
+            with suppress(CommandError):  # the port is gone
+                while server.is_needed:
+                    self.event()
+        except KeyboardInterrupt:
+            if not self.stop():
+                say_aside("not_confirmed", self.language, port=shown(self.port))
+            raise
+
+    @property
+    def drives_another(self) -> bool:
+        """Whether the robot does what another command has started through this one."""
+        return self.server is not None and self.server.has_run
 
     def stop_unseen(self) -> bool:
         """Stop the robot, because nobody reads, or can read, the output. Return True if this is the
         first such call and the robot has confirmed the stop."""
-        if self._is_stopped_unseen or not self.drives:
+        if self._is_stopped_unseen or not self.drives or self.drives_another:
             return False
         self._is_stopped_unseen = True
         is_confirmed = self.stop(STOP_S)

@@ -44,6 +44,7 @@ REST_S = 1.0  # between two checks while none has
 _ENDS = ("DONE", "FAULT", "STOPPED", "RESTARTED", "LOST")
 _MAY_MISS = ("SHOW", "TEXT")
 _STARTING = ("upload", "live", "start")
+_DRIVING = ("upload", "start", "trim", "selftest")  # commands that end with what they start
 
 
 class ConnectedClient:
@@ -115,13 +116,19 @@ class Server:
         return owner is not None and self._line.runs(owner[1])
 
     @property
+    def is_needed(self) -> bool:
+        """Whether a client drives the robot, or is about to: one whose command ends with that."""
+        return self.may_have_run or any(client.verb in _DRIVING for client in list(self._clients))
+
+    @property
     def may_have_run(self) -> bool:
         """Whether `has_run`, or the request for such a run may still be on its way to the robot.
-        Ask after `close`."""
-        requests = [request for client in self._clients for request in client.requests.values()]
+        After `close` nothing changes that any more."""
+        clients = list(self._clients)
+        requests = [request for client in clients for request in list(client.requests.values())]
         return self.has_run or any(
             request.pending.outcome is None and request.pending.starts and not request.is_detached
-            for request in (*requests, *self._left_requests)
+            for request in (*requests, *list(self._left_requests))
         )
 
     def close(self) -> None:
