@@ -91,6 +91,7 @@ def _upload(
 ) -> int:  # fmt: skip
     language = connection.language
     progress = Progress(language, 1 + len(ready.image.later) + len(ready.image.code))
+    connection.quiet.before = progress.end
     try:
         values = send_program(connection, ready, options, progress.draw)
         began_s = monotonic()  # before anything else is loaded or told

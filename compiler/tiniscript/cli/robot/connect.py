@@ -19,7 +19,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal import asking
-from tiniscript.cli.terminal.progress import waiting
+from tiniscript.cli.terminal.progress import Quiet, waiting
 from tiniscript.cli.texts import say_aside, text
 from tiniscript.cli.texts.options import virtual_names
 from tiniscript.library import opening
@@ -30,7 +30,7 @@ from tiniscript.link import known_ports
 from tiniscript.link.connection import PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
-from tiniscript.link.outcomes import ConnectionLost, Event
+from tiniscript.link.outcomes import LOOK_S, ConnectionLost, Event
 from tiniscript.link.port_names import is_address, is_built_in
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.statuses import sentence
@@ -84,6 +84,7 @@ class Connection(Client):
             options.verb in ("upload", "start", "live", "trim", "selftest") and not is_detached
         )
         baud = baud_of(options, robot, language)
+        self._is_meeting = False
         self.simulator: CommandSimulator | None = None  # a virtual robot for this command alone
         found = _chosen(options, language)
         if found == VIRTUAL:
@@ -92,6 +93,8 @@ class Connection(Client):
             self.simulator = CommandSimulator(options, robot, language)
             found = self.simulator.port
         self.port, self.language = found, language
+        said = text("waits_for_robot", language).format(port=shown(found))
+        self.quiet = Quiet(said, is_seen=not is_one_of_many)
         asked_baud = None if options.baud is None else baud
         try:
             verb = options.verb
@@ -165,19 +168,48 @@ class Connection(Client):
         self, board: str = "", is_patient: Callable[[], bool] | None = None
     ) -> DeviceInfo:  # fmt: skip
         """Send HELLO until the robot answers, and remember it. Raises CommandError if none does."""
+        self._is_meeting = True
         with self._waiting():
             device_info = super().meet(board, is_patient or (lambda: self.starts_nothing))
+        self._is_meeting = False
+        self.quiet.note_news()
         _remember_profile(self.options, self.profile, device_info.kit)
         if not self.is_one_of_many:
             self.remember(device_info.name)
             self._tell_stale_key(device_info)
         return device_info
 
-    def _waiting(self) -> AbstractContextManager[object]:
+    def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
+        """Wait for the outcome of a request, and say so where that takes long."""
+        arrived = request.done_bytes
+
+        def watch() -> None:
+            nonlocal arrived
+            if request.done_bytes != arrived:
+                arrived = request.done_bytes
+                self.quiet.note_news()
+            if look is not None:
+                look()
+            self.quiet.look()
+
+        self.quiet.begin()
+        return super().wait(request, look if self._is_meeting else watch)
+
+    def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
+        found = super().event(limit_s)
+        if found is not None:
+            self.quiet.note_news()
+        return found
+
+    def stop(self, limit_s: float | None = None) -> bool:
+        with self._waiting("waits_for_stop"):
+            return super().stop(limit_s)
+
+    def _waiting(self, key: str = "waits_for_robot") -> AbstractContextManager[object]:
         """Say what takes so long; a fleet has a table that does."""
         if self.is_one_of_many:
             return nullcontext()
-        return waiting("waits_for_robot", self.language, self.port)
+        return waiting(key, self.language, self.port)
 
     def _tell_stale_key(self, device_info: DeviceInfo) -> None:
         """Say what to do where the robot has refused a key of this computer."""

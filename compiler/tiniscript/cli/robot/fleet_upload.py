@@ -15,6 +15,7 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.run_monitor import Saving
+from tiniscript.cli.terminal.progress import MOST_PERCENT
 from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 
@@ -36,7 +37,7 @@ def _upload(
     member.meet(connection)
 
     def draw(done: int) -> None:
-        member.tell("crew_sending", percent=100 * done // whole)
+        member.tell("crew_sending", percent=min(100 * done // whole, MOST_PERCENT))
 
     draw(0)
     values = program_upload.send_program(connection, ready, options, draw)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from time import monotonic
@@ -18,10 +18,14 @@ if TYPE_CHECKING:
 
 BLINK_S = 0.3
 COLUMNS = 30
+MOST_PERCENT = 99  # of what is not done
 
 
 class Progress:
-    """Draws nothing during the first moment, and nothing without a terminal."""
+    """Draws nothing during the first moment, and nothing without a terminal.
+
+    The last percent is there when the line is cleared: what has arrived is not done yet.
+    """
 
     def __init__(self, language: str, whole: int) -> None:
         """`whole` is the total, in any unit."""
@@ -34,8 +38,8 @@ class Progress:
     def draw(self, done: int) -> None:
         if not self._is_seen or not self.whole or monotonic() - self._begin_s < BLINK_S:
             return
-        full = COLUMNS * done // self.whole
-        percent = 100 * done // self.whole
+        percent = min(100 * done // self.whole, MOST_PERCENT)
+        full = COLUMNS * percent // 100
         line = f"{self.label} [{'#' * full}{'.' * (COLUMNS - full)}] {percent:3} %"
         if line != self._drawn:
             self._drawn = line
@@ -63,6 +67,7 @@ class Doing:
 
 
 MOMENT_S = 2.0
+PAUSE_S = 0.5  # between two waits: the person has typed or read something, so a new one begins
 
 
 class Silence:
@@ -81,6 +86,35 @@ class Silence:
     def cancel(self) -> None:
         if self._timer is not None:
             self._timer.cancel()
+
+
+class Quiet:
+    """The same for waits that follow each other: said once, until something else came between."""
+
+    def __init__(self, said: str, is_seen: bool) -> None:
+        self.before: Callable[[], None] = lambda: None  # clears the line of a bar
+        self._said = said
+        self._is_seen = is_seen and sys.stderr.isatty()
+        self._since_s = self._until_s = monotonic()
+        self._is_told = False
+
+    def begin(self) -> None:
+        """A wait begins."""
+        if monotonic() - self._until_s > PAUSE_S:
+            self._is_told = False
+            self.note_news()
+
+    def note_news(self) -> None:
+        self._since_s = self._until_s = monotonic()
+
+    def look(self) -> None:
+        """The wait goes on."""
+        self._until_s = monotonic()
+        if self._is_told or not self._is_seen or self._until_s - self._since_s < MOMENT_S:
+            return
+        self._is_told = True
+        self.before()
+        print(self._said, file=sys.stderr, flush=True)
 
 
 @contextmanager
