@@ -14,7 +14,7 @@ from tiniscript.bytecode.image import Image, pack, unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages
-from tiniscript.link.connection import DEADLINE_MS, PendingRequest
+from tiniscript.link.connection import DEADLINE_MS, LinkConnection, PendingRequest, reason_of
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
@@ -26,7 +26,7 @@ from tiniscript.link.messages import (
     STATE_STOPPED,
     STATUSES,
 )
-from tiniscript.link.outcomes import CANCELLED, LOST, PlaceEvent, TextEvent
+from tiniscript.link.outcomes import CANCELLED, LOST, MIDWAY, PlaceEvent, TextEvent
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.requests import SHORT_BYTES
 from tiniscript.link.round_trips import DOUBLED_MS, LIVELY_MS
@@ -35,6 +35,7 @@ from tiniscript.link.transmission import CONFIRM_MS, STOP_MS, TRIES
 
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
 ROBOT = robots.load("tinibot")
+NOWHERE = LinkConnection()
 LOW, SAVING = STATUSES["LOW_SUPPLY"], STATUSES["SAVING"]
 
 DESCRIPTION: dict[str, int | bytes] = {
@@ -242,6 +243,36 @@ def test_a_move_behind_another_stop_does_not_go_unseen() -> None:
     robot.talk(session, 500)
     assert [each.name for each in session.events()][-1:] == ["STOPPED"]
     assert robot.is_latched
+
+
+def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> None:
+    """The frame that does it is under way. What was not sent, or was refused, is not done."""
+    session = greeted()
+    live, waits = session.live(FORWARD), session.start()
+    session.poll(0)
+    session.stop(5)
+    assert [reason_of(NOWHERE, each.outcome) for each in (live, waits) if each.outcome] == [
+        "stopped_midway", "stopped_elsewhere",
+    ]  # fmt: skip
+    for is_cleared in (False, True):  # the latch has to be released before the program
+        session = greeted()
+        session.receive(event("STOPPED", 0, {"cause": 3}), 0)
+        session.hello()
+        session.receive(
+            answer(session.poll(0), {**DESCRIPTION, "state": STATE_STOPPED}, epoch=11), 0
+        )
+        live = session.live(FORWARD)
+        clear = session.poll(10)
+        if is_cleared:
+            session.receive(answer(clear, {}, epoch=11), 20)
+        session.poll(20)
+        session.stop(25)
+        assert live.outcome and live.outcome.detail == (MIDWAY if is_cleared else 0)
+    session = greeted()
+    live = session.live(FORWARD)
+    session.receive(answer(session.poll(0), {}, status=STATUSES["BUSY"]), 5)
+    session.stop(10)
+    assert live.outcome and live.outcome.detail == 0
 
 
 def test_one_stop_is_told_once_however_late_its_answers_come() -> None:

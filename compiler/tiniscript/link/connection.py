@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from tiniscript.bytecode.image import Image
-from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, OTHER_ROBOT, UNPROVEN, Event
+from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, MIDWAY, OTHER_ROBOT, UNPROVEN, Event
 from tiniscript.link.payloads import (
     EmptyReply,
     HelloReply,
@@ -195,7 +195,7 @@ class LinkConnection:
 def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
     """Return why a reply is not OK."""
     if reply.status == CANCELLED:
-        return "stopped_elsewhere"
+        return "stopped_midway" if reply.detail == MIDWAY else "stopped_elsewhere"
     if reply.status == UNPROVEN:
         return "unproven"
     if reply.status == OTHER_ROBOT:

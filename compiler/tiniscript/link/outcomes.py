@@ -16,6 +16,7 @@ from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent, StoppedEv
 # our key says that the robot does; OTHER_ROBOT: another one answers than the one of our key, whose
 # id is the detail.
 LOST, CANCELLED, UNKEPT, UNPROVEN, OTHER_ROBOT = -1, -2, -3, -4, -5
+MIDWAY = 1  # detail of CANCELLED: it was under way, and the robot may have done it before
 LOOK_S = 0.1  # between two checks for events: Windows handles Ctrl-C only then
 
 

@@ -24,6 +24,7 @@ from tiniscript.link.messages import (
     BY_NUMBER,
     FIRST_ACTING,
     FIRST_EVENT,
+    MESSAGES,
     PLACES,
     STATE_FAULTED,
     STATE_IDLE,
@@ -38,6 +39,7 @@ from tiniscript.link.outcomes import (
     CANCELLED,
     EVENTS,
     LOST,
+    MIDWAY,
     UNPROVEN,
     EchoEvent,
     Event,
@@ -62,6 +64,7 @@ from tiniscript.link.payloads import (
 from tiniscript.link.receiver import Receiver
 from tiniscript.link.requests import (
     OK,
+    TAKEN,
     DeviceInfo,
     Exchange,
     Reply,
@@ -82,6 +85,9 @@ DEAF_MS = 3000  # a heartbeat without an answer for this time means that the lin
 MOST_SHOWN = 5  # times that a key is shown again for one request
 _STALE, _BUSY = STATUSES["STALE"], STATUSES["BUSY"]
 _BY_SEQUENCE, _BY_MESSAGE = 1, 2  # causes of a stopped robot: the stop sequence, STOP
+_PREPARING = ("STOP", "CLEAR", "AUTHENTICATE", "BEGIN", "DATA", "ABORT")
+_DOING = [each.name for each in MESSAGES
+          if FIRST_ACTING <= each.number < FIRST_EVENT and each.name not in _PREPARING]  # fmt: skip
 _STARTING = ("PROGRAM", "COMMIT", "LIVE", "START")  # a run may begin with each
 _END_RUNS = ("upload", "live", "start", "undo")  # a robot ends what runs when it hears of them
 T = TypeVar("T")
@@ -107,6 +113,7 @@ class PendingExchange(PendingRequest[T]):
         self.is_void = False  # it was asked for before a stop: nothing more of it is done
         self.is_busy = False  # the robot's last answer was BUSY
         self.may_be_done = False  # the robot has not said whether it is
+        self.is_midway = False  # a frame of it is under way that does what is asked, or has come
         self.shown = 0  # how often a key was shown again for it
         self.resumes: Interrupted | None = None
 
@@ -259,6 +266,8 @@ class Session(Requester):
             self._lose()
             return b""
         self._sent_ms = now_ms
+        if any(map(self._transmission.is_of, _DOING)):
+            self._pending.is_midway = True
         if seal is not None:
             self._sealing.sealed_ms = now_ms
         return self._transmission.sent(now_ms, self._sender)
@@ -464,6 +473,8 @@ class Session(Requester):
         if reply is None:
             self.damaged += 1
             return
+        if self._pending and reply.status not in (OK, *TAKEN):
+            self._pending.is_midway = False  # it was refused
         self._transmission.learn(frame, now_ms)
         if (
             reply.status == OK
@@ -741,7 +752,9 @@ class Session(Requester):
 
     def _cancel(self, status: int) -> None:
         if self._pending:
-            self._pending.wanted.outcome = Reply(status)
+            wanted = self._pending.wanted
+            is_midway = status == CANCELLED and wanted.is_midway
+            wanted.outcome = Reply(status, MIDWAY if is_midway else 0)
         self._pending = self._orphan = self._handshake.doubted = None
         self._transmission.end()
         self._cancel_waiting(status)

@@ -28,7 +28,8 @@ DEGREES = ("°", "º")
 LEAST_STEP = 5  # percent
 FIRST_STEP = 16  # percent of balance; halved each time that the drift changes side
 YES, AGAIN = 1, 4
-STOPPED = ("stopped_elsewhere", "plain")  # failures after a stop by another command
+# failures after a stop by another command
+STOPPED = ("stopped_elsewhere", "stopped_midway", "plain")
 TRIES = 4
 
 
