@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.command import PROGRAM, TSC, Command, inside
+from tests.support.command import FOREVER, PROGRAM, TSC, Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.robot_fleet import RobotFleet
 from tests.support.waiting import HANGS_S, until
@@ -51,6 +51,37 @@ def test_upload_into_a_pipe_that_closes_stops_the_robot(
     assert code == CLOSED
     assert said.count("\n") == 1 and "stopped the robot" in said
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
+
+
+def test_a_program_that_prints_nothing_is_stopped_too(pty_robot: PtyRobot) -> None:
+    """It has no end, and tsc has nothing to write that could fail."""
+    port = ("--port", pty_robot.port)
+    for words in (("upload", "-e", FOREVER), ("start",)):
+        code, said = after_lines(1, *words, *port)
+        assert code == CLOSED
+        assert said.count("\n") == 1 and "stopped the robot" in said
+        assert not pty_robot.moves
+    code, said = after_lines(0, "live", FOREVER.removeprefix("SI|"), *port)
+    assert code == CLOSED and "stopped the robot" in said
+
+
+def test_many_robots_that_show_nothing_are_stopped() -> None:
+    with RobotFleet([robots.load("tinibot").kit] * 2) as room:
+        ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
+        code, _ = after_lines(0, "upload", "-e", FOREVER, *ports)
+        assert code == CLOSED
+        room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
+
+
+def test_a_slow_reader_and_a_file_are_none_that_has_gone(
+    pty_robot: PtyRobot, tmp_path: Path
+) -> None:
+    words = ["upload", "-e", "SI|F(1, 80)", "--port", pty_robot.port]
+    with (tmp_path / "said").open("wb") as file:
+        assert subprocess.run([*TSC, *words], stdout=file, timeout=HANGS_S).returncode == 0
+    with subprocess.Popen([*TSC, *words], stdout=subprocess.PIPE) as running:
+        assert running.wait(HANGS_S) == 0
+        assert running.stdout and b"Done." in running.stdout.read()
 
 
 def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:

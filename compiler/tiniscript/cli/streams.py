@@ -14,9 +14,9 @@ from __future__ import annotations
 import codecs
 import os
 import re
+import select
 import stat
 import sys
-from select import select
 from time import monotonic
 from typing import Any, TextIO
 
@@ -103,6 +103,24 @@ def drop_unread() -> None:
             os.close(nowhere)
 
 
+def refuse_unread() -> None:
+    """Raise BrokenPipeError where the reader of the output has gone: who writes nothing does not
+    notice. Windows does not tell."""
+    if sys.platform == "win32":
+        return
+    try:
+        number = sys.stdout.fileno()
+        mode = os.fstat(number).st_mode
+    except (OSError, ValueError, AttributeError):  # no file of the system, or closed
+        return
+    if not (stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode)):
+        return
+    end = select.poll()
+    end.register(number, 0)
+    if end.poll(0):
+        raise BrokenPipeError
+
+
 def _is_written(stream: TextIO, pipe: int) -> bool:
     """Write what waits for a pipe; return whether all was taken in time."""
     if sys.platform == "win32":
@@ -115,11 +133,11 @@ def _is_written(stream: TextIO, pipe: int) -> bool:
                 stream.flush()
             except BlockingIOError:
                 left_s = end_s - monotonic()
-                if left_s <= 0 or not select([], [pipe], [], left_s)[1]:
+                if left_s <= 0 or not select.select([], [pipe], [], left_s)[1]:
                     return False
             else:
                 # less than this may be taken at once: then the next row would wait
-                return bool(select([], [pipe], [], max(0, end_s - monotonic()))[1])
+                return bool(select.select([], [pipe], [], max(0, end_s - monotonic()))[1])
     except OSError:  # the reader has gone: that has an exit code of its own
         return True
     finally:

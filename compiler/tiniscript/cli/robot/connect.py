@@ -13,7 +13,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
 from tiniscript import robots
-from tiniscript.cli import inputs
+from tiniscript.cli import inputs, streams
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
@@ -126,6 +126,7 @@ class Connection(Client):
         server = self.server
         if server is None or self.line.has_ended or not server.is_needed:
             return
+        self.drives = False  # nothing of its own
         with suppress(OSError):
             if not self.is_one_of_many:
                 say_aside("holds_for_others", self.language, port=shown(self.port))
@@ -199,7 +200,15 @@ class Connection(Client):
         found = super().event(limit_s)
         if found is not None:
             self.quiet.note_news()
+        elif self._needs_a_reader:
+            streams.refuse_unread()
         return found
+
+    @property
+    def _needs_a_reader(self) -> bool:
+        """Whether the robot is stopped when nobody reads the output; a fleet looks for itself."""
+        is_own = self.drives and not self.is_one_of_many and not self.drives_another
+        return is_own and not self._is_stopped_unseen
 
     def stop(self, limit_s: float | None = None) -> bool:
         with self._waiting("waits_for_stop"):

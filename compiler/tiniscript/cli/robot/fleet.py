@@ -112,6 +112,7 @@ class Fleet:
                 else:
                     self._news.wait(LOOK_S)
                     self._news.clear()
+                self._refuse_unread()
                 self._tell(untold, table)
             except KeyboardInterrupt:
                 if self.is_interrupted:
@@ -124,6 +125,12 @@ class Fleet:
             there.sort(key=lambda member: member.mark == "bad")  # failures are printed last
             table.end(member.row for member in there)
         self._print_sum()
+
+    def _refuse_unread(self) -> None:
+        """Raise BrokenPipeError where robots drive and nobody reads the output."""
+        is_driving = self.options.verb == "upload" and not self.options.detach
+        if is_driving and not self.is_interrupted:
+            streams.refuse_unread()
 
     def _tell(self, untold: list[Member], table: FleetTable | None) -> None:
         """Print the results that are new, and take those robots out of `untold`."""
