@@ -111,6 +111,7 @@ class Part:
         self.pins = pins
         self.servos: list[int] = []
         self.ultrasonics: list[str] = []
+        self.analogs = 0  # channels up to the last one that is read
         self.off: list[str] = []  # lines that a stop runs for actuators
         self.begin: list[str] = []
 
@@ -121,6 +122,7 @@ class Part:
     def analog_read(self, wiring: Wiring) -> str:
         """Return the line that puts what the converter counts into `*value`."""
         channel = wiring.pins["pin"] - (CHIPS[self.robot.board.chip].first_analog or 0)
+        self.analogs = max(self.analogs, channel + 1)
         return f"      if (!analog_read({channel}, value)) return false;"
 
     @staticmethod

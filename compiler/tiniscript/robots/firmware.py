@@ -136,6 +136,8 @@ class Header(Part):
             names.append("servos")
         if self.ultrasonics:
             names.append("ultrasonics")
+        if self.analogs and not self.is_esp32:
+            names.append(f"analogs {self.analogs}")
         if self.robot.board.discs:
             names.append("discs")
         names += [

@@ -43,9 +43,9 @@ struct Wheel {
   uint16_t before_ms;  // and the one before
   uint16_t two_ms;     // how long the last two took; 0: not known
   uint8_t first;       // how far the first one was, in parts of the way between two
-  bool is_backward;    // the move
-  bool is_returning;   // its motor last drove it against the move
-  bool stands;         // its motor is off, and it cannot turn
+  bool is_backward : 1;   // the move
+  bool is_returning : 1;  // its motor last drove it against the move
+  bool stands : 1;        // its motor is off, and it cannot turn
   uint8_t more;        // edges until it is further than before; after something has taken its motor:
                        // that it may roll
   uint8_t noise;       // edges while it could not turn, modulo 256

@@ -6,6 +6,7 @@
 
 #include "../../vm/has_tasks.h"
 #include "../../vm/small.h"
+#include "../kit.h"
 
 namespace tiniscript {
 
@@ -38,6 +39,10 @@ typedef uint16_t Channels;
 typedef uint8_t Channels;
 #endif
 
+#ifndef tiniscript_analogs
+#define tiniscript_analogs 8 * sizeof(Channels)
+#endif
+
 struct Converter {
   uint8_t measured;       // the channel of the last conversion, or kNoChannel
   uint8_t tries;          // conversions of the reference still to come
@@ -46,7 +51,7 @@ struct Converter {
   Channels bit;           // of `measured`; 0: it is old
   Channels fresh;         // have been measured
   Channels old;           // had been at the last tick: they are forgotten at the next
-  uint16_t counts[8 * sizeof(Channels)];
+  uint16_t counts[tiniscript_analogs];
 };
 
 Converter converter;

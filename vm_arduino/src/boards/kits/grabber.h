@@ -7,6 +7,7 @@
 #define tiniscript_motors_bridge
 #define tiniscript_servos
 #define tiniscript_ultrasonics
+#define tiniscript_analogs 1
 #define tiniscript_ultrasonic_vectors(each) each(INT4_vect)
 
 namespace tiniscript {

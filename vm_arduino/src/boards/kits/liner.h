@@ -5,6 +5,7 @@
 #if defined(__AVR_ATmega328P__) && !defined(ARDUINO_AVR_UNO)  // nano
 
 #define tiniscript_motors_bridge
+#define tiniscript_analogs 8
 
 namespace tiniscript {
 
@@ -62,6 +63,7 @@ inline void actuators_off(bool) {
 #elif defined(__AVR_ATmega2560__)  // mega
 
 #define tiniscript_motors_bridge
+#define tiniscript_analogs 8
 
 namespace tiniscript {
 

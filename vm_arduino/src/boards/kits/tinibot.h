@@ -6,6 +6,7 @@
 
 #define tiniscript_motors_bridge
 #define tiniscript_ultrasonics
+#define tiniscript_analogs 2
 #define tiniscript_ultrasonic_vectors(each) each(PCINT2_vect)
 
 namespace tiniscript {
@@ -38,6 +39,7 @@ inline void begin_devices() {
 
 #define tiniscript_motors_bridge
 #define tiniscript_ultrasonics
+#define tiniscript_analogs 2
 #define tiniscript_ultrasonic_vectors(each) each(INT5_vect)
 
 namespace tiniscript {

@@ -6,6 +6,7 @@
 
 #define tiniscript_motors_bridge
 #define tiniscript_ultrasonics
+#define tiniscript_analogs 2
 #define tiniscript_discs
 #define tiniscript_disc_left INT0_vect
 #define tiniscript_disc_right INT1_vect
@@ -44,6 +45,7 @@ inline void begin_devices() {
 
 #define tiniscript_motors_bridge
 #define tiniscript_ultrasonics
+#define tiniscript_analogs 2
 #define tiniscript_discs
 #define tiniscript_disc_left INT4_vect
 #define tiniscript_disc_right INT5_vect
