@@ -35,6 +35,7 @@ class FakeRobot:
     stopped: int = 0
     was_left: bool = False
     silent_s: float = 0.0
+    is_half_made: bool = False
 
     def leave(self, why: str) -> None:
         self.left = why
@@ -139,6 +140,22 @@ def test_a_page_that_does_not_take_its_turn_loses_it() -> None:
         room.here(ana)  # is there, and does not connect
     assert room.here(luz)["place"] == 0
     assert room.here(ana)["place"] == -1
+
+
+def test_a_page_that_did_not_hear_of_its_robot_keeps_the_turn_for_another_connect() -> None:
+    room = Room()
+    ana, luz = room.joins("Ana"), room.joins("Luz")
+    room.here(ana, True)
+    room.here(luz, True)
+    robot = room.connects(ana)
+    robot.is_half_made = robot.has_ended = robot.was_left = True
+    assert room.here(luz)["place"] == 1 and room.here(ana)["place"] == 0
+    robot = room.connects(ana)
+    robot.is_half_made = robot.has_ended = robot.was_left = True
+    for _ in range(10):  # no longer than one that does not connect
+        room.now_s += 1.01
+        room.here(ana)
+    assert room.here(luz)["place"] == 0
 
 
 def test_who_leaves_in_whatever_way_is_followed_within_three_seconds() -> None:

@@ -14,6 +14,7 @@ from tests.support.rows import each_row
 from tests.support.shared_pty_robot import Shared
 from tests.support.waiting import HANGS_S, until
 from tiniscript import compile, robots
+from tiniscript.library import opening
 from tiniscript.link.messages import STOP_BYTES
 from tiniscript.studio import attending, hosted_robot
 from tiniscript.studio.hosting import Hosting
@@ -235,7 +236,7 @@ def test_a_port_has_one_page(
     assert all(set(each) == {"port", "name", "description", "virtual"} for each in found)
     other = Page(hosting, "other")
     assert other.connect(robot.port) == {"failure": "other_tab"}
-    assert page.connect(robot.port) == {"failure": "connected"}
+    assert page.connect(robot.port) == {}  # which it has
     drives(page, robot)
     # STOP of a page without a robot
     told = {"name": robot.port, "stop": "asked"}
@@ -263,6 +264,26 @@ def test_a_page_hears_why_it_is_over_when_another_one_has_its_robot(
     other = Page(hosting, "other")
     until(lambda: other.connect(robot.port) == {}, "the port is free")
     assert page.until(lambda each: "over" in each)["over"] == "turn_over"
+
+
+@pytest.mark.parametrize("is_silent", [False, True])
+def test_a_stop_at_the_end_of_a_turn_is_confirmed_or_not_before_it_is_over(
+    hosting: Hosting, page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, is_silent: bool
+) -> None:
+    """And whoever ends the server hears of a robot that is silent."""
+    drives(page, robot)
+    page.beat()
+    if is_silent:
+        robot.switch_off()
+        monkeypatch.setattr(opening, "CONFIRM_S", 0.3)
+    hosted = hosting.robot_of(page.name)
+    assert hosted
+    page.news.clear()
+    hosted.leave("turn_over")
+    page.until(lambda each: each.get("over") == "turn_over")
+    events = [each["event"] for each in page.news if each.get("event") in ("STOPPING", "STOPPED")]
+    assert events == (["STOPPING"] if is_silent else ["STOPPING", "STOPPED"])
+    assert hosting.close() == ([robot.port] if is_silent else [])
 
 
 def test_it_shares_a_port_that_a_command_holds(hosting: Hosting) -> None:
@@ -374,6 +395,6 @@ def test_what_a_page_does_not_fetch_is_bounded() -> None:
     robot = hosted_robot.HostedRobot("socket://127.0.0.1:1", "tinibot", "en")
     robot.attending.tell([{"event": "SHOW", "value": str(k)} for k in range(3000)])
     robot.attending.tell([{"event": "DONE"}])
-    news = robot.attending.on_requests([], 0)
+    news = robot.attending.on_beat([], 0)
     assert len(news) == attending.KEPT and news[-1]["event"] == "DONE"
     robot.join(HANGS_S)

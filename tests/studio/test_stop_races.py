@@ -37,7 +37,6 @@ class Meeting:
         self.news: list[dict[str, Any]] = []
         self._sent = b""
         self._number = 0
-        self._stops = 0  # as the page knows
         self._beat_ms = 0
         self._look_ms = 0
         self._under_way: list[tuple[int, dict[str, Any]]] = []  # with when they arrive
@@ -52,19 +51,21 @@ class Meeting:
             self._under_way = [each for each in self._under_way if each[0] > now_ms]
             if arrived or now_ms >= self._beat_ms:
                 self._beat_ms = now_ms + BEAT_MS
-                seen = max((each["number"] for each in self.news), default=0)
-                new = self.attending.on_requests(arrived, seen)
-                self._stops = max([self._stops, *(each.get("stops", 0) for each in new)])
-                self.news += new
+                self.news += self.attending.on_beat(arrived, self.seen)
             if now_ms >= self._look_ms:
                 self._look_ms = now_ms + self.chance.randrange(1, LOOK_MS)
                 self.attending.attend(self.link, 0)
+
+    @property
+    def seen(self) -> int:
+        """The newest of the news that the page knows."""
+        return max((each["number"] for each in self.news), default=0)
 
     def upload(self, delay_ms: int) -> int:
         """The page sends a program; return the number of the request."""
         self._number += 1
         request = {"do": "upload", "id": self._number, "image": self.chance.choice(PROGRAMS),
-                   "robot": "tinibot", "runs": True, "stops": self._stops}  # fmt: skip
+                   "robot": "tinibot", "runs": True, "seen": self.seen}  # fmt: skip
         self._under_way.append((self.robot.now_ms + delay_ms, request))
         return self._number
 
@@ -92,7 +93,7 @@ class Meeting:
 def race(count: int, seed: int) -> None:
     meeting = Meeting(seed)
     meeting.go(2000)
-    meeting.attending.on_requests([], 0)
+    meeting.attending.on_beat([], 0)
     for _ in range(count):
         meeting.races()
         meeting.go(round(1000 * LATCH_S), 10)

@@ -1,5 +1,10 @@
 """What a page has asked of its robot and is told of it, and what is still done for it.
 
+A page counts the times that its user presses STOP, and the count rides in every beat: a request
+that is lost, late or repeated loses no stop, and each number stops the robot once. It stops nothing
+only where a run that the page has asked for after it is accepted already. A stop without a number,
+as anybody else's is, always stops.
+
 A stop makes what was asked before it void. A teacher's STOP latches: whatever reaches the robot
 within LATCH_S after it is refused, and so is what a page had made before it heard of the stop, when
 that arrives later. Knows no port and no thread; any thread may call it.
@@ -24,10 +29,12 @@ _VOID = {"failure": "stopped_elsewhere"}
 
 
 class Attending:
-    """`last_stop`: what is known of the newest latching stop."""
+    """`last_stop`: what is known of the newest latching stop. `stops`: the page's newest one that
+    has nothing to stop any more."""
 
-    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
+    def __init__(self, clock: Callable[[], float] = monotonic, stops: int = 0) -> None:
         self.last_stop = ""
+        self.stops = stops
         self._clock = clock
         self._heard_s = clock()
         self._latched_until_s = float("-inf")
@@ -37,14 +44,22 @@ class Attending:
         self._count = 0  # of news
         self._wants_stop = self._is_silent = False
         self._last = 0  # number of the last request: one that comes again was lost on its way back
-        self._stops = 0  # what was asked before one of them is void
+        self._latched = 0  # number of the news that tells of the newest latching stop
+        self._runs: dict[int, int] = {}  # that are asked for, with the stops before them
+        self._was_heard = False
 
     # -- the page ---------------------------------------------------------------------------------
 
-    def on_requests(self, requests: list[Json], seen: int) -> list[Json]:
-        """The page is there: take its requests; return the news after number `seen`."""
+    def on_beat(self, requests: list[Json], seen: int, stops: int = 0) -> list[Json]:
+        """The page is there: take its stops and its requests; return the news after number `seen`.
+
+        `stops` is 0 where nobody has pressed STOP yet.
+        """
         with self._lock:
             self._heard_s = self._clock()
+            self._was_heard = True
+            if stops > self.stops:
+                self._stop(stops)
             for each in requests:
                 number = each.get("id")
                 if type(number) is int and number > self._last:
@@ -55,22 +70,27 @@ class Attending:
             self._news = [each for each in self._news if each["number"] > seen]
             return list(self._news)
 
+    def connect_again(self) -> None:
+        """The page asks for it anew: it has not got the answer."""
+        if not self._was_heard:
+            self._heard_s = self._clock()
+
     def stop(self, stops: int = 0) -> None:
-        """Stop the robot, whatever waits. Requests with fewer `stops` were made before this one:
-        they may arrive after it."""
+        """Stop the robot, whatever waits, except where that was done for this number; one without a
+        number always stops."""
         with self._lock:
-            self._stops = max(self._stops, stops)
-            self._wants_stop = True
+            if not stops or stops > self.stops:
+                self._stop(stops)
 
     def latch(self, until_s: float | None = None, stops: bool = True) -> None:
         """Refuse what is asked for a while, and stop the robot."""
         with self._lock:
             self._latched_until_s = self._clock() + LATCH_S if until_s is None else until_s
             if stops:
-                self._stops += 1
                 self._wants_stop = True
                 self.last_stop = ASKED
-                self._add({"stops": self._stops})
+                self._add({"stopped": True})
+                self._latched = self._count
             self._void()
 
     @property
@@ -85,6 +105,11 @@ class Attending:
     def silent_s(self) -> float:
         """For how long the page has not been heard."""
         return self._clock() - self._heard_s
+
+    @property
+    def is_half_made(self) -> bool:
+        """Whether its page does not know of it: that was told it, and the answer was lost."""
+        return not self._was_heard and not self.is_attended
 
     @property
     def has_left(self) -> bool:
@@ -105,13 +130,16 @@ class Attending:
         with self._lock:
             asked, self._asked = self._asked, []
         for request in asked:
-            stops = request.get("stops", 0)
-            if type(stops) is int and stops < self._stops:
+            stops = _count(request, "stops")
+            if stops < self.stops or _count(request, "seen") < self._latched:
                 self.tell([{"id": request["id"], **_VOID}])
                 continue
+            if _runs(request):
+                self._runs[request["id"]] = stops
             try:
                 link.ask(request)
             except BadRequest:
+                self._runs.pop(request["id"], None)
                 self.tell([{"id": request["id"], "failure": "bad_request"}])
         self._take(link.news(limit_s))
         if self.is_attended:
@@ -130,7 +158,16 @@ class Attending:
         if self.last_stop == ASKED:
             self.last_stop = SILENT
 
+    def _stop(self, stops: int) -> None:
+        self.stops = max(self.stops, stops)
+        self._wants_stop = True
+
     def _take(self, news: list[Json]) -> None:
+        with self._lock:
+            for each in news:
+                stops = self._runs.pop(each["id"], 0) if "id" in each else 0
+                if each.get("ok"):
+                    self.stops = max(self.stops, stops)
         if self.last_stop == ASKED and not self._wants_stop:
             events = [each.get("event") for each in news]
             if "STOPPED" in events:
@@ -151,3 +188,13 @@ class Attending:
         while len(self._news) > KEPT:
             missed = next((each for each in self._news if each.get("event") in _MAY_MISS), None)
             self._news.remove(missed or self._news[0])
+
+
+def _count(request: Json, name: str) -> int:
+    found = request.get(name)
+    return found if type(found) is int else 0
+
+
+def _runs(request: Json) -> bool:
+    do = request.get("do")
+    return do in ("live", "start") or (do == "upload" and request.get("runs") is True)

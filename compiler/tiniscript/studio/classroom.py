@@ -366,8 +366,7 @@ class Classroom:
         if robot is None:
             return {"failure": "turn_none"}
         # One that this page has left a moment ago is not the robot of this turn.
-        own = {**request, "page": pupil.page, "port": robot.port}
-        answer = self._hosting.answer(own)
+        answer = self._hosting.answer({**_own(pupil, request), "port": robot.port})
         if not answer:
             robot.hosted = self._hosting.robot_of(pupil.page)
         return answer
@@ -376,11 +375,11 @@ class Classroom:
         asked = request.get("asked", [])
         if not isinstance(asked, list) or not all(_may(each) for each in asked):
             raise BadRequest
-        return self._hosting.answer({**request, "page": pupil.page})
+        return self._hosting.answer(_own(pupil, request))
 
     def _stop(self, pupil: Pupil, request: Json) -> Json:
         """Stop the own robot, and no other, whatever was asked."""
-        return self._hosting.answer({**request, "do": "stop", "page": pupil.page, "asked": []})
+        return self._hosting.answer({**_own(pupil, request), "do": "stop", "asked": []})
 
     # -- turns ------------------------------------------------------------------------------------
 
@@ -411,6 +410,8 @@ class Classroom:
                 robot.end()
             elif now_s - robot.began_s > CONNECT_S:
                 robot.end()
+        elif hosted.has_ended and hosted.attending.is_half_made:
+            robot.hosted = None  # the page does not know of it: it may connect again
         elif hosted.has_ended:
             robot.name = hosted.name or robot.name
             if not hosted.name and not hosted.was_left:  # another robot is better
@@ -675,6 +676,11 @@ class Classroom:
 
     def _number(self, token: str) -> int:
         return self._pupils[token].number if token in self._pupils else 0
+
+
+def _own(pupil: Pupil, request: Json) -> Json:
+    """Return a request about the pupil's own robot: what it calls its page tells tabs apart."""
+    return {**request, "page": pupil.page, "tab": request.get("page")}
 
 
 def _may(asked: object) -> bool:

@@ -9,7 +9,9 @@ Knows no HTTP.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from threading import Thread
+from time import monotonic
 
 from tiniscript import robots
 from tiniscript.library import opening
@@ -18,21 +20,36 @@ from tiniscript.library.errors import RobotError, TiniScriptError
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import ConnectionLost
 from tiniscript.link.port_connection import PortConnection
-from tiniscript.studio.attending import Attending
+from tiniscript.studio.attending import LOOK_S, Attending
 from tiniscript.studio.robot_link import RobotLink, about
 
+PARTS_S = 8.0  # for a stop to be confirmed, and a port to be closed
 VERB = "studio"  # the name that other commands show for the process that holds the port
 
 
 class HostedRobot:
-    """Call from any thread. It ends by itself when the page has left, or the port is gone."""
+    """Call from any thread. It ends by itself when the page has left, or the port is gone.
 
-    def __init__(self, port: str, robot: str, language: str) -> None:
-        """`robot` is the profile of the page's programs."""
+    `is_unconfirmed`: the robot has not confirmed the stop at the end of what the page has started.
+    """
+
+    def __init__(
+        self, port: str, robot: str, language: str, tab: str = "", connection: int = 0,
+        stops: int = 0, before: Sequence[HostedRobot] = (),
+    ) -> None:  # fmt: skip
+        """`robot` is the profile of the page's programs.
+
+        `tab` and `connection` are the page's name of itself and its count of connections; `stops`:
+        how often that one has pressed STOP before, as far as it is done. The port is free when
+        those `before` have closed it.
+        """
         self.port = port
-        self.has_ended = False
+        self.tab = tab
+        self.connection = connection
+        self.has_ended = self.is_unconfirmed = False
         self.name = ""  # of the robot, once it has answered
-        self.attending = Attending()
+        self.attending = Attending(stops=stops)
+        self._before = before
         self._profile = robots.load(robot)
         self._language = language
         self._leaves = False
@@ -49,7 +66,7 @@ class HostedRobot:
     @property
     def is_parting(self) -> bool:
         """Whether a stop is still to be confirmed, or the port to be closed."""
-        return self.has_ended and self._thread.is_alive()
+        return (self.has_ended or self._leaves) and self._thread.is_alive()
 
     @property
     def was_left(self) -> bool:
@@ -66,6 +83,10 @@ class HostedRobot:
     # -- the thread -------------------------------------------------------------------------------
 
     def _run(self) -> None:
+        self._wait_for_port()
+        if self.was_left:
+            self._end(self._why)
+            return
         try:
             client = Client(
                 self.port, VERB, self._profile, language=self._language,
@@ -81,6 +102,7 @@ class HostedRobot:
             if self._meet(client):
                 while not self.was_left:
                     self.attending.attend(link)
+                self._part(link)
                 self._end(self._why)
         except ConnectionLost as gone:
             lost = client.lost(gone)
@@ -93,6 +115,14 @@ class HostedRobot:
         finally:
             self.has_ended = True
             client.close(has_run=self._link is not None and self._link.has_run)
+
+    def _wait_for_port(self) -> None:
+        """Wait for those before, as long as their stops may take."""
+        end_s = monotonic() + PARTS_S
+        for each in self._before:
+            while each.is_parting and monotonic() < end_s and not self.was_left:
+                each.join(LOOK_S)
+        self._before = ()
 
     def _ping_while_attended(self, client: Client, link: RobotLink) -> None:
         """What another command has started is for that command to attend to."""
@@ -119,6 +149,23 @@ class HostedRobot:
         self.name = robot.name
         self.attending.tell([{"connected": about(robot), "held_by": line.held_by}])
         return True
+
+    def _part(self, link: RobotLink) -> None:
+        """Stop what the page has started, and tell it of that before it hears that it is over."""
+        if not link.has_run:
+            return
+        self.attending.tell([*link.news(), {"event": "STOPPING"}])  # no earlier stop confirms this
+        link.stop()
+        self.is_unconfirmed = True
+        end_s = monotonic() + opening.CONFIRM_S
+        events: list[str | None] = []
+        while monotonic() < end_s and "LOST" not in events:
+            news = link.news(LOOK_S)
+            self.attending.tell(news)
+            events = [each.get("event") for each in news]
+            if "STOPPED" in events:
+                self.is_unconfirmed = False
+                return
 
     def _end(self, reason: str, said: str = "") -> None:
         self.has_ended = True

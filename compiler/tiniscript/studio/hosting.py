@@ -1,6 +1,9 @@
 """What a page may ask of the robots of this computer: which ports there are, and one robot a page.
 
-A page is a random name that it has given itself; it drives one robot, and a port has one page.
+A page is a random name that it has given itself; it drives one robot, and a port has one page. It
+counts its connections: whatever comes late from one before reaches nothing of the next one, and the
+same connect is done once. Of a pupil, whose name here is the class's own, `tab` is the name of the
+page.
 Knows no HTTP: `serving` lets only the page of this computer come here.
 """
 
@@ -15,7 +18,7 @@ from tiniscript.base.source import printable
 from tiniscript.link import known_ports, ports
 from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.studio.attending import LATCH_S
-from tiniscript.studio.hosted_robot import HostedRobot
+from tiniscript.studio.hosted_robot import PARTS_S, HostedRobot
 from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, robot_of, whole
 from tiniscript.virtual import directory
 
@@ -23,8 +26,8 @@ NAME_CHARACTERS = 64  # of a page
 PORT_CHARACTERS = 300
 MOST_ROBOTS = 40
 MOST_ASKED = 8  # requests at a time
-END_S = 8.0  # for stops to be confirmed when the server ends
 PORT_SHOWN = 200
+_OVER: Json = {"news": [{"over": "left", "said": "", "number": 0}]}
 
 
 class Hosting:
@@ -54,17 +57,21 @@ class Hosting:
         if do not in ("beat", "stop", "leave"):
             raise BadRequest
         if robot is None:
-            return {"news": [{"over": "left", "said": "", "number": 0}]}
+            return _OVER
         if do == "stop":
             stops = 0
             try:
-                stops = whole(request, "stops", 0, MOST_COUNT, 0)
+                if request.get("tab", page) == robot.tab:
+                    stops = whole(request, "stops", 0, MOST_COUNT, 0)
             finally:  # whatever it counts
                 robot.attending.stop(stops)
-        elif do == "leave":
+        if _connection(page, request) != (robot.tab, robot.connection):
+            return _OVER
+        if do == "leave":
             robot.leave()
         seen = whole(request, "seen", 0, MOST_COUNT, 0)
-        return {"news": robot.attending.on_requests(_requests(request), seen)}
+        stops = whole(request, "stops", 0, MOST_COUNT, 0)
+        return {"news": robot.attending.on_beat(_requests(request), seen, stops)}
 
     def robot_of(self, page: str) -> HostedRobot | None:
         """Return what a page drives, or has driven last."""
@@ -74,42 +81,57 @@ class Hosting:
     def is_free(self, port: str) -> bool:
         """Return whether no page has a robot there, nor is one being left."""
         with self._lock:
-            all_of_them = [*self._by_page.values(), *self._parting]
-        held = [each for each in all_of_them if each.is_parting or not each.has_ended]
-        return same_for_all(port) not in {same_for_all(each.port) for each in held}
+            return not self._at(port)
 
-    def close(self) -> None:
-        """Stop what pages have started, and close all ports."""
+    def close(self) -> list[str]:
+        """Stop what pages have started, and close all ports; return those where no robot has
+        confirmed that."""
         with self._lock:
             found = [*self._by_page.values(), *self._parting]
         for each in found:
             each.leave()
         for each in found:
-            each.join(END_S)
+            each.join(PARTS_S)
+        return [each.port for each in found if each.is_unconfirmed]
 
     def _connect(self, page: str, request: Json) -> Json:
         port, robot, language = port_of(request), robot_of(request), request.get("language")
         if language not in languages():
             raise BadRequest
+        tab, connection = _connection(page, request)
         with self._lock:
             self._forget_ended()
             own = self._by_page.get(page)
-            if own is not None and not own.has_ended:
-                return {"failure": "connected"}
-            taken = [same_for_all(each.port) for each in self._by_page.values()
-                     if not each.has_ended]  # fmt: skip
-            if same_for_all(port) in taken:
+            is_same = own is not None and own.tab == tab
+            if own is not None and is_same and connection <= own.connection:
+                own.attending.connect_again()  # the answer was lost, or it comes late
+                return {}
+            before = self._at(port)
+            rivals = [each for each in {*before, *([own] if own else ())} if _drives(each)]
+            if not all(each.tab == tab or each.attending.is_half_made for each in rivals):
                 return {"failure": "other_tab"}
-            if len(taken) >= MOST_ROBOTS:
+            for each in rivals:  # nobody knows of it any more
+                each.leave()
+            if sum(map(_drives, self._by_page.values())) >= MOST_ROBOTS:
                 return {"failure": "too_many"}
-            made = HostedRobot(port, robot, str(language))
+            if own is not None:
+                self._parting.append(own)
+            stops = own.attending.stops if own is not None and is_same else 0
+            made = HostedRobot(port, robot, str(language), tab, connection, stops, before)
             made.attending.latch(self._latched_until_s, stops=False)
             self._by_page[page] = made
         return {}
 
+    def _at(self, port: str) -> list[HostedRobot]:
+        """Return who has a port, or is closing it."""
+        same = same_for_all(port)
+        all_of_them = [*self._by_page.values(), *self._parting]
+        held = [each for each in all_of_them if each.is_parting or not each.has_ended]
+        return [each for each in held if same_for_all(each.port) == same]
+
     def _forget_ended(self) -> None:
         """Forget what has ended, once its page knows why or is not there any more."""
-        all_of_them = [*self._by_page.values(), *self._parting]
+        all_of_them = dict.fromkeys([*self._by_page.values(), *self._parting])
         self._parting = [each for each in all_of_them if each.is_parting]
         self._by_page = {name: each for name, each in self._by_page.items()
                          if not (each.has_ended and each.attending.has_left)}  # fmt: skip
@@ -117,7 +139,7 @@ class Hosting:
     def _stop_all(self) -> Json:
         """Stop all robots, and refuse for a while what is on its way to them."""
         with self._lock:
-            self._stopping = [each for each in self._by_page.values() if not each.has_ended]
+            self._stopping = [each for each in self._by_page.values() if _drives(each)]
             self._latched_until_s = monotonic() + LATCH_S
         for each in self._stopping:
             each.attending.latch()
@@ -152,6 +174,16 @@ def listed() -> list[Json]:
         }
         for port in names
     ]
+
+
+def _drives(robot: HostedRobot) -> bool:
+    return not robot.has_ended and not robot.is_parting
+
+
+def _connection(page: str, request: Json) -> tuple[str, int]:
+    """Return whose connection it is, and which of these. Raises BadRequest."""
+    tab = _text(request, "tab", NAME_CHARACTERS) if "tab" in request else page
+    return tab, whole(request, "connection", 0, MOST_COUNT, 0)
 
 
 def port_of(request: Json) -> str:

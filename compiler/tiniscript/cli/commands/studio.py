@@ -86,7 +86,8 @@ def _serve(
         pass
     finally:
         server.shutdown()
-        hosting.close()
+        for silent in hosting.close():
+            say_aside("not_confirmed", language, port=shown(silent))
         server.server_close()
     return 0
 

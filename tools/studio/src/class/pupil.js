@@ -34,6 +34,8 @@ export class Pupil {
   #said = made('p');
   #ask = button('class_ask', () => this.#want(true));
   #quit = button('class_quit', () => this.#want(false));
+  /** In the own turn, where the page has not come to its robot by itself. */
+  #connect = button('link_connect', () => this.#panel.byHost());
   /** What is told at the next look. @type {boolean | null} */
   #wants = null;
   #hands = button('', () => {
@@ -75,7 +77,7 @@ export class Pupil {
       event.preventDefault();
       this.#enter();
     });
-    this.#box.append(this.#join, this.#said, made('p', '', this.#ask, this.#quit));
+    this.#box.append(this.#join, this.#said, made('p', '', this.#ask, this.#quit, this.#connect));
     this.#box.hidden = false;
     const token = kept(PLACE, 'sessionStorage');
     if (token) this.#begin(token);
@@ -112,7 +114,7 @@ export class Pupil {
     askAs('');
     keepAt(PLACE, '', 'sessionStorage');
     this.#join.hidden = false;
-    this.#ask.hidden = this.#quit.hidden = this.#hands.hidden = true;
+    this.#ask.hidden = this.#quit.hidden = this.#connect.hidden = this.#hands.hidden = true;
     this.#say(why);
   }
 
@@ -203,6 +205,7 @@ export class Pupil {
       element('side_real', HTMLButtonElement).click();
       this.#panel.byHost();
     }
+    this.#connect.hidden = place !== 0 || !this.#panel.isFree;
   }
 
   /** The class is over. @param {boolean} isErased */

@@ -23,9 +23,13 @@ const LOOK_MS = 100; // between two looks at the latest
 const STOP = new Uint8Array(LINK.stop_bytes); // zeros stop a robot, whatever it hears
 const LOCK = 'tiniscript-robot';
 
+/** The connection before, until its port is closed. @type {Promise<unknown>} */
+let parting = Promise.resolve();
+
 export class DirectRobot extends Asking {
   #python;
   #port;
+  #isOpen = false;
   #isGoing = false;
   #isAgain = false;
   #bytes = 0;
@@ -55,6 +59,7 @@ export class DirectRobot extends Asking {
    * @returns {Promise<About>}
    */
   async connect(robot, language, keys) {
+    await parting;
     await this.#lock();
     try {
       await this.#python.ask({ do: 'connect', robot, language }, new TextEncoder().encode(keys));
@@ -66,6 +71,8 @@ export class DirectRobot extends Asking {
         },
         () => this.end(new Failed(this.#port.goneBy)),
       );
+      if (this.isOver) await this.#port.close(); // it was left meanwhile
+      this.#isOpen = true;
       return await this.#meet(robot);
     } catch (why) {
       const failed = why instanceof Failed ? why : new Failed('bug', String(why));
@@ -124,7 +131,7 @@ export class DirectRobot extends Asking {
   }
 
   async go() {
-    if (this.isOver) return;
+    if (this.isOver || !this.#isOpen) return;
     if (this.#isGoing) {
       this.#isAgain = true;
       return;
@@ -159,7 +166,7 @@ export class DirectRobot extends Asking {
   /** @param {Failed} why @param {Promise<unknown>} [before] */
   end(why, before = Promise.resolve()) {
     if (this.isOver) return;
-    before
+    parting = before
       .then(() => this.#port.close())
       .catch(() => {})
       .finally(() => this.#unlock());

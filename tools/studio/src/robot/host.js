@@ -3,11 +3,11 @@
 // a class the token is the teacher's, and pupils get tokens of their own.
 //
 // The main thread asks many times a second; when it hangs or the page sleeps, `tsc studio` hears
-// nothing, and stops the robot.
+// nothing, and stops the robot. How often STOP was pressed is in every request, so a lost one is made up for.
 
 /** @import { Answer, About } from './transport.js' */
 
-import { Asking, Failed } from './transport.js';
+import { Asking, Failed, pause } from './transport.js';
 import { keepAt, kept } from '../page/kept.js';
 import { leaveForeignWorkers } from '../page/offline.js';
 
@@ -18,6 +18,9 @@ const LOADED_PLACE = 'tiniscript.loaded'; // the code for which the page was loa
 const BEAT_MS = 100;
 const SILENT_MS = 3000; // without an answer
 const ASK_MS = 2000;
+const CONNECT_TRIES = 3;
+/** What this page calls itself. */
+const TAB = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, '0')).join('');
 
 let token = kept(PLACE, 'sessionStorage');
 /** Why the code of the address has given no token, or nothing. */
@@ -73,7 +76,8 @@ export async function post(request, options = {}, where = './robots') {
     ...options,
   });
   if (answer.status === 403) throw new Failed('host_other');
-  if (!answer.ok) throw new Failed('bad_request');
+  if (answer.status === 400) throw new Failed('bad_request');
+  if (!answer.ok) throw new Error(`${answer.status}`); // that says no `tsc studio`: it is as good as lost
   return answer.json();
 }
 
@@ -86,9 +90,12 @@ export async function hostPorts() {
   }
 }
 
+let connections = 0; // of this page
+let presses = 0; // of STOP
 
 export class HostRobot extends Asking {
-  #page = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, '0')).join('');
+  #connection = ++connections;
+  #isThere = false;
   #seen = 0;
   #isAsking = false;
   #heardAt = 0;
@@ -96,7 +103,7 @@ export class HostRobot extends Asking {
   #met = () => {};
   /** @type {(why: Error) => void} */
   #fails = () => {};
-  #stops = 0; // what was asked before one, and arrives after it, is void
+  #stops = 0; // the newest press of this connection
 
   /**
    * Connects; rejects with a Failed.
@@ -105,50 +112,66 @@ export class HostRobot extends Asking {
    * @param {string} language
    * @returns {Promise<About>}
    */
-  async connect(port, robot, language) {
-    let answer;
-    try {
-      answer = await post({ do: 'connect', page: this.#page, port, robot, language });
-    } catch (why) {
-      throw why instanceof Failed ? why : new Failed('host_gone');
-    }
-    if (answer.failure) throw new Failed(answer.failure);
+  connect(port, robot, language) {
     /** @type {Promise<About>} */
     const met = new Promise((resolve, reject) => {
       this.#met = resolve;
       this.#fails = reject;
     });
-    this.#heardAt = performance.now();
-    this.go();
+    this.#open({ port, robot, language });
     return met;
   }
 
-  /** @param {Record<string, unknown>} request @returns {Promise<Answer>} */
+  /** The same connect is done once, however often it comes. @param {Record<string, string>} request */
+  async #open(request) {
+    for (let tries = 1; !this.isOver && !this.#isThere; tries += 1) {
+      try {
+        const answer = await this.#post('connect', request);
+        if (answer.failure) this.end(new Failed(answer.failure));
+        this.#isThere = true;
+      } catch (why) {
+        if (why instanceof Failed) this.end(why);
+        else if (tries === CONNECT_TRIES) this.end(new Failed('host_gone'));
+        else await pause(BEAT_MS);
+      }
+    }
+    if (this.isOver) return;
+    this.#heardAt = performance.now();
+    this.go();
+  }
+
+  /** @param {string} what @param {Record<string, unknown>} [more] @param {RequestInit} [options] */
+  #post(what, more = {}, options = {}) {
+    return post({ do: what, page: TAB, connection: this.#connection, seen: this.#seen, stops: this.#stops, ...more }, options);
+  }
+
+  /** One that was made before a stop, or before this page knew of it, is void. @param {Record<string, unknown>} request @returns {Promise<Answer>} */
   ask(request) {
-    return super.ask({ ...request, stops: this.#stops });
+    return super.ask({ ...request, stops: presses, seen: this.#seen });
   }
 
   /** Stops the robot; that waits for nothing. */
   stop() {
     if (this.isOver) return;
-    this.#stops += 1;
-    post({ do: 'stop', page: this.#page, seen: this.#seen, stops: this.#stops }, { keepalive: true }).catch(() => {});
+    this.#stops = ++presses;
+    this.#post('stop', {}, { keepalive: true }).catch(() => {}); // each beat says so, too
   }
 
   /** Stops what this page has started, and leaves the robot. */
   leave() {
     if (this.isOver) return;
-    post({ do: 'leave', page: this.#page, seen: this.#seen }, { keepalive: true }).catch(() => {});
+    this.#post('leave', {}, { keepalive: true }).catch(() => {});
     this.end(new Failed('left'));
   }
 
   async go() {
-    if (this.isOver || this.#isAsking) return;
+    if (this.isOver || this.#isAsking || !this.#isThere) return;
     this.#isAsking = true;
     clearTimeout(this.timer);
     const asked = this.asked.splice(0, 8);
+    let isLost = false;
     try {
-      const answer = await post({ do: 'beat', page: this.#page, seen: this.#seen, asked });
+      const answer = await this.#post('beat', { asked });
       this.#heardAt = performance.now();
       for (const each of answer.news) {
         this.take(each);
@@ -157,20 +180,20 @@ export class HostRobot extends Asking {
     } catch (why) {
       if (why instanceof Failed) this.end(why);
       else {
+        isLost = true;
         this.asked.unshift(...asked); // it has not arrived, or has: an id is answered once
         if (performance.now() - this.#heardAt > SILENT_MS) this.end(new Failed('host_gone'));
       }
     } finally {
       this.#isAsking = false;
     }
-    if (!this.isOver) this.timer = window.setTimeout(() => this.go(), this.asked.length ? 0 : BEAT_MS);
+    if (!this.isOver) this.timer = window.setTimeout(() => this.go(), this.asked.length && !isLost ? 0 : BEAT_MS);
   }
 
   /** @param {any} news */
   take(news) {
     if (this.isOver || (news.number && news.number <= this.#seen)) return;
     this.#seen = Math.max(this.#seen, news.number ?? 0);
-    if (news.stops) this.#stops = Math.max(this.#stops, news.stops);
     if (news.over) this.end(new Failed(news.over, news.said));
     else if (news.connected) this.#met(news.connected);
     else super.take(news);

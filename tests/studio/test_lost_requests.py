@@ -1,0 +1,325 @@
+"""What a page asks through `tsc studio` is lost, late or comes again, on a clock of the test.
+
+A press of STOP stops the robot once, by the first request that arrives after it; a run that the
+page asks for later is not undone. Robots are counted stops, their threads the test's own steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from random import Random
+from typing import Any, ClassVar, cast
+
+import pytest
+
+from tests.support.command import FOREVER
+from tests.support.pty_robot import PtyRobot
+from tests.support.waiting import until
+from tiniscript import compile, robots
+from tiniscript.studio import hosting as hosting_of
+from tiniscript.studio.attending import Attending
+from tiniscript.studio.classroom import Classroom
+from tiniscript.studio.hosting import Hosting
+from tiniscript.studio.robot_link import RobotLink
+
+Json = dict[str, Any]
+BEAT_MS = 100
+LOOK_MS = 20
+RUN = {"do": "upload", "runs": True}
+
+
+class CountedLink:
+    """A robot that does what it is told at once."""
+
+    has_run = False
+
+    def __init__(self, does: Callable[[str, int], None]) -> None:
+        self._does = does
+        self._news: list[Json] = []
+
+    def stop(self) -> None:
+        self._does("stop", 0)
+
+    def ask(self, request: Json) -> None:
+        self._does("run", request["stops"])
+        self._news.append({"id": request["id"], "ok": True})
+
+    def news(self, limit_s: float = 0) -> list[Json]:
+        found, self._news = self._news, []
+        return found
+
+
+class SteppedRobot:
+    """A connection without a thread and a port."""
+
+    def __init__(
+        self, port: str, robot: str, language: str, tab: str, connection: int, stops: int,
+        before: list[SteppedRobot],
+    ) -> None:  # fmt: skip
+        self.port, self.tab, self.connection, self.before = port, tab, connection, before
+        self.attending = Attending(lambda: World.now_ms / 1000, stops)
+        self.link = CountedLink(self._note)
+        self.has_ended = self.is_parting = False
+
+    def _note(self, what: str, stops: int) -> None:
+        World.done.append((what, self.attending.stops if what == "stop" else stops, World.now_ms))
+
+    def leave(self) -> None:
+        self.is_parting = True
+
+    def step(self) -> None:
+        if self.is_parting or self.attending.has_left:
+            self.has_ended, self.is_parting = True, False
+        else:
+            self.attending.attend(cast(RobotLink, self.link), 0)
+
+
+class World:
+    """What all share: the clock, and what robots have done."""
+
+    now_ms = 0
+    done: ClassVar[list[tuple[str, int, int]]] = []
+
+
+@pytest.fixture
+def stepped(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hosting]:
+    monkeypatch.setattr(World, "now_ms", 0)
+    monkeypatch.setattr(World, "done", [])
+    monkeypatch.setattr(hosting_of, "HostedRobot", SteppedRobot)
+    yield Hosting()
+
+
+class TornPage:
+    """A page as `host.js` is one, whose requests and answers are torn."""
+
+    def __init__(self, hosting: Hosting, chance: Random, ask: Callable[[Json], Json]) -> None:
+        self.hosting, self.chance, self.ask = hosting, chance, ask
+        self.presses: list[int] = []  # when
+        self.heard: list[int] = []  # presses that a beat has told, and the robot has heard of
+        self._connection = self._seen = self._stops = self._number = 0
+        self._asked: list[Json] = []
+        self._under_way: list[tuple[int, Json]] = []
+        self.is_there = False
+
+    def connect(self) -> None:
+        self._connection += 1
+        self._seen = self._stops = self._number = 0
+        self._asked, self.is_there = [], False
+
+    def press_stop(self) -> None:
+        self.presses.append(World.now_ms)
+        if self.is_there:
+            self._stops = len(self.presses)
+            self._send("stop")
+
+    def press_run(self) -> None:
+        if self.is_there:
+            self._number += 1
+            made = {**RUN, "id": self._number, "stops": len(self.presses), "seen": self._seen}
+            self._asked.append(made)
+
+    def _send(self, do: str, **more: object) -> None:
+        request = {"do": do, "page": "me", "connection": self._connection, "port": "p",
+                   "robot": "tinibot", "language": "en", "seen": self._seen,
+                   "stops": self._stops, **more}  # fmt: skip
+        times = self.chance.choice((0, 1, 1, 1, 2))
+        self._under_way += [(World.now_ms + self.chance.choice((1, 10, 700, 2500)), request)
+                            for _ in range(times)]  # fmt: skip
+
+    def beat(self) -> None:
+        if self.is_there:
+            self._send("beat", asked=list(self._asked[:8]))
+        else:
+            self._send("connect")
+
+    def arrive(self) -> None:
+        due = [each for at_ms, each in self._under_way if at_ms <= World.now_ms]
+        self._under_way = [each for each in self._under_way if each[0] > World.now_ms]
+        for request in due:
+            answer = self.ask(request)
+            is_own = request["connection"] == self._connection
+            robot = cast(SteppedRobot, self.hosting.robot_of("me"))
+            if is_own and robot and request["do"] == "beat" and request["stops"]:
+                self.heard.append(request["stops"])
+            if not is_own or self.chance.random() < 0.4:
+                continue  # the answer is lost
+            if request["do"] == "connect":
+                self.is_there = answer == {}
+            for each in answer.get("news", ()):
+                if "over" in each:
+                    self.is_there = False
+                elif each["number"] > self._seen:
+                    self._seen = each["number"]
+                    self._asked = [one for one in self._asked if one["id"] != each.get("id")]
+
+
+def is_kept(page: TornPage) -> None:
+    """Whatever has arrived until now."""
+    newest = 0
+    accepted = 0
+    for what, stops, _ in World.done:
+        if what == "stop":
+            assert stops > newest, "once for each press"
+            assert stops > accepted, "what was started later goes on"
+            newest = stops
+        else:
+            assert stops >= newest, "it was asked for before"
+            accepted = max(accepted, stops)
+    for number in page.heard:
+        after = [at_ms for what, _, at_ms in World.done
+                 if what == "stop" and at_ms >= page.presses[number - 1]]  # fmt: skip
+        assert after or accepted >= number, f"press {number} was told, and stopped nothing"
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_each_press_of_stop_stops_once_whatever_is_lost(stepped: Hosting, seed: int) -> None:
+    chance = Random(seed)
+    page = TornPage(stepped, chance, stepped.answer)
+    page.connect()
+    for _ in range(1500):
+        World.now_ms += LOOK_MS
+        page.arrive()
+        robot = cast(SteppedRobot | None, stepped.robot_of("me"))
+        if robot is not None:
+            robot.step()
+            if robot.has_ended:
+                page.is_there = False
+        is_kept(page)
+        if World.now_ms % BEAT_MS == 0:
+            page.beat()
+        does = chance.random()
+        if does < 0.01:
+            page.press_stop()
+        elif does < 0.03:
+            page.press_run()
+        elif does < 0.032 or (not page.is_there and does < 0.05):
+            page.connect()
+    kinds = {what for what, _, _ in World.done}
+    assert kinds == {"stop", "run"}  # so that it was about something
+
+
+@pytest.mark.parametrize("runs", [True, False])
+def test_a_stop_of_the_connection_before_stops_unless_a_run_came_after_it(
+    stepped: Hosting, runs: bool
+) -> None:
+    def asks(do: str, connection: int, *asked: Json, **more: object) -> None:
+        stepped.answer({"do": do, "page": "me", "connection": connection, "port": "p", "seen": 0,
+                        "robot": "tinibot", "language": "en", "asked": [*asked],
+                        **more})  # fmt: skip
+        cast(SteppedRobot, stepped.robot_of("me")).step()
+
+    asks("connect", 1)
+    asks("beat", 1)
+    asks("connect", 2)  # a press before it is still on its way
+    if runs:
+        asks("beat", 2, {**RUN, "id": 1, "stops": 1, "seen": 0})
+        asks("beat", 2)
+    asks("stop", 1, stops=1)
+    asks("stop", 1, stops=1)
+    assert [what for what, _, _ in World.done] == ["run" if runs else "stop"]
+
+
+class Asker:
+    """A page of `tsc studio`, or a pupil's, with a robot behind a pty."""
+
+    def __init__(self, answer: Callable[[Json], Json], port: str) -> None:
+        self.answer = answer
+        self.port = port
+        self.news: list[Json] = []
+        self._number = 0
+
+    def asks(self, do: str, *asked: Json, connection: int = 1, **more: object) -> Json:
+        seen = max((each["number"] for each in self.news), default=0)
+        request = {"do": do, "page": "me", "connection": connection, "port": self.port,
+                   "robot": "tinibot", "language": "en", "seen": seen, "asked": list(asked),
+                   **more}  # fmt: skip
+        answer = self.answer(request)
+        self.news += [each for each in answer.get("news", ()) if each["number"] > seen]
+        return answer
+
+    def beats_until(self, is_so: Callable[[Json], object], what: str, **more: Any) -> None:
+        def looks() -> bool:
+            self.asks("beat", **more)
+            return any(is_so(each) for each in self.news)
+
+        until(looks, what)
+
+    def run(self, stops: int) -> Json:
+        self._number += 1
+        seen = max(each["number"] for each in self.news)
+        return {"do": "upload", "id": self._number, "image": compile(FOREVER).image.hex(),
+                "robot": "tinibot", "runs": True, "stops": stops, "seen": seen}  # fmt: skip
+
+
+@pytest.fixture
+def robot() -> Iterator[PtyRobot]:
+    with PtyRobot(robots.load("tinibot").kit) as made:
+        yield made
+
+
+@pytest.fixture(params=["page", "pupil"])
+def asker(request: pytest.FixtureRequest, robot: PtyRobot) -> Iterator[Asker]:
+    """One that has met its robot."""
+    hosting = Hosting()
+    if request.param == "page":
+        made = Asker(hosting.answer, robot.port)
+    else:
+        room = Classroom(hosting, [robot.port])
+        join = {"do": "join", "code": room.code, "name": "Ana"}
+        token = room.answer("", "192.0.2.9", join)["token"]
+        room.answer(token, "192.0.2.9", {"do": "here", "wants": True})
+        made = Asker(lambda asked: room.answer(token, "192.0.2.9", asked), "turn")
+    assert made.asks("connect") == {}
+    made.beats_until(lambda each: "connected" in each, "it is met")
+    yield made
+    hosting.close()
+
+
+def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
+    asker: Asker, robot: PtyRobot
+) -> None:
+    def heard(stops: int) -> bool:
+        return "news" in asker.asks("beat", stops=stops)
+
+    def drives(stops: int) -> None:
+        asker.asks("beat", asker.run(stops), stops=stops)
+        until(lambda: heard(stops) and robot.moves, "it drives")
+
+    drives(0)
+    asker.asks("beat", stops=1)
+    until(lambda: heard(1) and not robot.moves, "it stands")
+    drives(1)
+    began = len(robot.heard)
+    asker.asks("stop", stops=1)  # late, and a beat that comes again
+    for _ in range(10):
+        asker.asks("beat", stops=1)
+    assert robot.moves and b"\0" * 4 not in robot.heard[began:]
+    # Another tab, and whoever counts nothing, always stop.
+    other_tab = {"page": "other"} if asker.port == "turn" else {"tab": "other"}
+    others: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]
+    for each in others:
+        asker.asks("stop", **each)
+        until(lambda: heard(1) and not robot.moves, "it stands")
+        drives(1)
+
+
+def test_a_connect_whose_answer_is_lost_is_offered_again(asker: Asker, robot: PtyRobot) -> None:
+    """It is the same one, or the page's next one takes its port over; one that is late does
+    nothing."""
+
+    def meets(connection: int) -> None:
+        asker.news.clear()
+        assert asker.asks("connect", connection=connection) == {}
+        assert asker.asks("connect", connection=connection) == {}
+        asker.beats_until(lambda each: "connected" in each, "it is met", connection=connection)
+        [met] = [each for each in asker.news if "connected" in each]
+        assert met["held_by"] == ""  # and not by the one before
+
+    meets(2)
+    meets(3)
+    assert asker.asks("connect", connection=2) == {}
+    asker.news.clear()
+    for _ in range(5):
+        asker.asks("beat", connection=3)
+    assert not any("over" in each for each in asker.news)
+    assert asker.asks("beat", connection=2)["news"][0]["over"] == "left"
