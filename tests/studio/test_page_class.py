@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
+from tests.studio.test_page_lost import lose_answer, refuse, tears
 from tests.support import studio
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
@@ -192,7 +193,7 @@ def test_three_pupils_share_a_robot(
     big.locator("[data-text=class_next]").click()
     robot.until(lambda: not robot.moves, "the turn is over")
     big.locator("[data-text=close]").click()
-    linked(ana, "Your turn is over, and the robot was stopped.")
+    linked(ana, "Your turn is over.")
     linked(luz, "Connected: ")
     luz.click("#link_leave")
     linked(teo, "Connected: ")
@@ -200,6 +201,21 @@ def test_three_pupils_share_a_robot(
     teo.close()
     robot.until(lambda: not robot.moves, "a page that is closed stops it")
     luz.close()
+
+
+def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(ana: Page, shared: Pages) -> None:
+    for tear, times in ((lose_answer, 2), (refuse, 3)):
+        tears(ana, "connect", tear, times)
+        asks(ana)
+        if times == 3:  # as often as the page tries it by itself
+            ana.click("#class_pupil [data-text=link_connect]")
+        linked(ana, "Connected: ")
+        ana.locator("#class_pupil [data-text=link_connect]").wait_for(state="hidden")
+        ana.unroute_all(behavior="wait")
+        ana.click("#link_leave")
+        ana.locator("[data-text=class_ask]").wait_for()
+    wrong, shared.wrong[:] = shared.wrong[:], []
+    assert all("ERR_FAILED" in each or "500" in each for each in wrong)
 
 
 def test_what_plain_http_has_not_is_not_offered(ana: Page) -> None:
@@ -411,7 +427,7 @@ def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -
     linked(ana, "Connected: ")
     teacher.click("#class_settings")
     teacher.click("[data-text=class_take]")
-    linked(ana, "Your turn is over, and the robot was stopped.")
+    linked(ana, "Your turn is over.")
     said(ana, "Robots: 0.")
     teacher.click("#class_window [data-text=link_look]")
     teacher.locator(f"#class_window select option[value='{robot.port}']").wait_for(state="attached")

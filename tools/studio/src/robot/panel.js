@@ -12,12 +12,13 @@ import { readTrim, showTrim } from './trim.js';
 import { chosenPort, hasSerial, knownPorts, SerialPort } from './serial.js';
 import { refusal, shown } from './plain_text.js';
 import { stopAll } from './stops.js';
+import { Stopping } from './stopping.js';
 import { Speech } from './speech.js';
 import { Failed } from './transport.js';
 import { keepAt, kept } from '../page/kept.js';
 import { drawnPicture, offer, pictured } from '../page/pictures.js';
 import { so } from '../page/so.js';
-import { called, currentLanguage, known, text } from '../page/texts.js';
+import { called, currentLanguage, text } from '../page/texts.js';
 import { LINK, robotOf } from '../page/words.js';
 import { whole } from '../writing/messages.js';
 
@@ -49,8 +50,7 @@ export class RobotPanel {
   /** @type {{program: string, places: Checked['places'], of: Checked} | null} */
   #sent = null;
   #speech = new Speech();
-  #confirming = 0;
-  #isBroken = false; // a program with mistakes was to run, and what runs stops
+  #stopping = new Stopping(this.#speech);
   #list = element('link_port', HTMLSelectElement);
   #line = element('link_line', HTMLInputElement);
 
@@ -118,18 +118,20 @@ export class RobotPanel {
   /** Stops the robot; a page without one, or a teacher's, stops all that its `tsc studio` has. */
   stop() {
     if (hasHost && (isTeacher || !this.#way)) stopAll();
-    if (this.#way) {
-      this.#way.stop();
-      this.#speech.say('say_stopping');
-      clearTimeout(this.#confirming);
-      this.#confirming = window.setTimeout(() => this.#speech.say('say_not_confirmed'), LINK.confirm_ms);
-    }
+    this.#stop();
+  }
+
+  /** @param {string} [confirmed] a text, once it is */
+  #stop(confirmed = '') {
+    if (!this.#way) return;
+    this.#way.stop();
+    this.#stopping.begin(confirmed);
   }
 
   #hide() {
     if (!this.#way) return;
     this.stop();
-    this.#speech.say('say_hidden');
+    this.#stopping.begin('say_hidden');
   }
 
   // -- connecting ---------------------------------------------------------------------------------
@@ -214,7 +216,7 @@ export class RobotPanel {
       this.#about = about;
       this.#begin(about);
     } catch (why) {
-      this.#end(why instanceof Failed ? why : new Failed('bug', String(why)));
+      if (this.#way === way) this.#end(why instanceof Failed ? why : new Failed('bug', String(why))); // else it was told
     } finally {
       this.#isBusy = false;
       this.#show();
@@ -240,9 +242,8 @@ export class RobotPanel {
     this.#sent = null;
     this.#page.recorder.end('LOST');
     this.#page.place.end();
-    clearTimeout(this.#confirming);
-    if (why.reason === 'left') this.#speech.say('say_left');
-    else this.#speech.fail(why);
+    const unconfirmed = this.#stopping.end();
+    this.#speech.fail(why, unconfirmed);
     this.#show();
   }
 
@@ -268,8 +269,7 @@ export class RobotPanel {
     const program = so.checked.value;
     if (!program?.image) {
       this.#speech.say(program ? 'first_repair' : 'press_again'); // a robot does not start late by itself
-      this.#isBroken = runs && program !== null;
-      if (this.#isBroken) this.#way?.stop(); // what runs is not what is seen
+      if (runs && program) this.#stop('say_broken'); // what runs is not what is seen
       return;
     }
     this.#speech.begin('say_sending');
@@ -343,13 +343,20 @@ export class RobotPanel {
     else if (event.event === 'MISSED') this.#speech.add(text('say_missed', { count: Number(event.count) }));
     else if (event.event === 'DONE') this.#speech.say('say_done');
     else if (event.event === 'FAULT') this.#fault(event);
-    else if (event.event === 'LOST') this.#speech.say('why_link_lost');
+    else if (event.event === 'LOST') this.#lose();
+    else if (event.event === 'STARTED') this.#stopping.forget();
+    else if (event.event === 'STOPPING') this.#stopping.begin();
     else if (event.event === 'RESTARTED') this.#speech.say('why_restarted');
     else if (event.event === 'STOPPED') {
-      clearTimeout(this.#confirming);
-      if (document.visibilityState !== 'hidden') this.#speech.say(this.#isBroken ? 'say_broken' : known(`stopped_${event.cause}`));
-      this.#isBroken = false;
+      // A page that is hidden keeps the words why it stopped the robot.
+      if (this.#stopping.isOpen || document.visibilityState !== 'hidden') this.#stopping.confirm(String(event.cause));
     }
+  }
+
+  /** The robot is silent. */
+  #lose() {
+    if (this.#stopping.isOpen) this.#stopping.giveUp();
+    else this.#speech.say('why_link_lost');
   }
 
   /** @param {RobotEvent} event */

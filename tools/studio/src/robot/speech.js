@@ -13,6 +13,7 @@ const SAID_CHARACTERS = 1000;
 export class Speech {
   /** What is said, so that it can be said in another language. @type {() => string} */
   #said = () => '';
+  isHeld = false; // by a stop, which alone says what becomes of it
   /** @type {string[]} */
   #shown = [];
   #line = element('link_said', HTMLElement);
@@ -26,12 +27,12 @@ export class Speech {
     this.#line.textContent = this.#said();
   }
 
-  /** @param {Failed} why */
-  fail(why) {
+  /** @param {Failed} why @param {() => string} [more] that is said with it */
+  fail(why, more = () => '') {
     const key = `why_${why.reason}`;
     const said = shown(why.said, SAID_CHARACTERS);
     const isOurs = hasText(key) && (!said || why.reason.startsWith('link_'));
-    this.#put(() => (isOurs ? text(key) : said || text('why_bug')), why.reason);
+    this.#put(() => `${isOurs ? text(key) : said || text('why_bug')} ${more()}`.trim(), why.reason);
   }
 
   /**
@@ -45,12 +46,14 @@ export class Speech {
 
   /** @param {string} said */
   tell(said) {
+    if (this.isHeld) return;
     this.#said = () => said;
     this.#say();
   }
 
   /** @param {() => string} said @param {string} name for tests */
   #put(said, name) {
+    if (this.isHeld) return;
     this.#said = said;
     this.#say();
     document.documentElement.dataset['link'] = name;

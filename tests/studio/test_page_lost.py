@@ -1,0 +1,249 @@
+"""The page, where what it asks of `tsc studio` is lost, refused on the way, or comes late."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.studio.test_page_link import KIT, connect, said
+from tests.support import studio
+from tests.support.pty_robot import PtyRobot
+from tests.support.studio import Pages, drives, hears
+from tiniscript.link import known_ports
+from tiniscript.studio import serving
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page, Route
+
+CONFIRMED = "Stopped: the robot has confirmed it."
+HIDDEN = "The robot was stopped: this page was hidden. Come back here to drive it."
+SILENT = (
+    "The robot has not confirmed the stop."
+    " If it moves, lift it, and take its batteries or its plug out."
+)
+LATE = "The robot has confirmed the stop now: it stands still."
+# What is said beneath the buttons from now on.
+LISTEN = """() => {
+  const line = document.querySelector('#link_said');
+  window.told = [];
+  window.listens?.disconnect();
+  window.listens = new MutationObserver(() => window.told.push(line.textContent));
+  window.listens.observe(line, { childList: true, characterData: true, subtree: true });
+}"""
+HIDE = """(state) => {
+  Object.defineProperty(document, 'visibilityState', { value: state, configurable: true });
+  document.dispatchEvent(new Event('visibilitychange'));
+}"""
+
+
+@pytest.fixture(scope="module")
+def server(browser: Browser) -> Iterator[serving.Server]:
+    with studio.hosted() as made:
+        yield made
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, server: serving.Server) -> Iterator[tuple[Pages, Page]]:
+    found = Pages(browser, server.address, entrance=server.entrance)
+    yield found, found.open()
+    found.close()
+
+
+@pytest.fixture
+def robot() -> Iterator[PtyRobot]:
+    with PtyRobot(KIT) as made:
+        known_ports.remember(made.port, "TINI")
+        yield made
+
+
+@pytest.fixture
+def page(opened: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
+    """A page of many tests, which has not connected yet."""
+    pages, found = opened
+    yield found
+    found.unroute_all(behavior="wait")
+    found.evaluate("delete document.visibilityState")
+    if found.locator("#link_leave").is_visible():
+        found.click("#link_leave")
+    pages.wrong.clear()  # a browser complains of each lost request
+
+
+def tears(page: Page, what: str, tear: Callable[[Route], None], times: int = 1) -> list[str]:
+    """Tear so many requests in which `what` is; return the list of those."""
+    torn: list[str] = []
+
+    def handle(route: Route) -> None:
+        data = route.request.post_data or ""
+        if f'"do":"{what}"' not in data or len(torn) >= times:
+            route.continue_()
+            return
+        torn.append(data)
+        tear(route)
+
+    page.route("**/robots", handle)
+    return torn
+
+
+def lose_answer(route: Route) -> None:
+    route.fetch()
+    route.abort()
+
+
+def refuse(route: Route) -> None:
+    route.fulfill(status=500, body="<html>Internal Server Error</html>")
+
+
+def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobot) -> None:
+    connect(page, robot)
+    for _ in range(2):
+        drives(page, robot)
+        torn = tears(page, "stop", lambda route: route.abort(), times=9)
+        page.click("#stop")
+        robot.until(lambda: not robot.moves, "it stands")
+        said(page, CONFIRMED)
+        assert torn
+    page.click("#link_upload")  # which no old beat undoes
+    robot.until(lambda: robot.moves, "it drives")
+    page.wait_for_timeout(500)
+    assert robot.moves
+
+
+def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> None:
+    connect(page, robot)
+    drives(page, robot)
+    torn = tears(page, "beat", refuse, times=2)
+    hears(page, lambda: len(torn) == 2, "they are refused")
+    page.wait_for_timeout(300)
+    assert page.locator("html[data-robot=connected]").count() and robot.moves
+    torn = tears(page, "beat", refuse, times=1000)  # but one that goes on is told
+    said(page, "tsc studio does not answer any more")
+    assert torn
+
+
+@pytest.mark.parametrize("tear", [lose_answer, refuse, lambda route: route.abort()])
+def test_a_connect_that_is_lost_comes_again(
+    page: Page, robot: PtyRobot, tear: Callable[[Route], None]
+) -> None:
+    torn = tears(page, "connect", tear)
+    connect(page, robot)
+    assert len(torn) == 1
+    drives(page, robot)
+
+
+def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
+    page: Page, robot: PtyRobot
+) -> None:
+    tears(page, "connect", lose_answer, times=3)
+    page.click("#side_real")
+    page.click("#link_look")
+    page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
+    page.click("#link_connect")
+    said(page, "tsc studio does not answer any more")
+    page.evaluate(LISTEN)
+    page.click("#link_connect")
+    said(page, "Connected: ")
+    told = page.evaluate("window.told")
+    assert [each.split("…")[0].split(":")[0] for each in told] == ["Connecting", "Connected"]
+
+
+# -- what is said of a stop
+
+
+class Mute:
+    """What keeps the word of a stop from a page, until it is told."""
+
+    def __init__(self, page: Page, *kinds: str) -> None:
+        self.kept: list[dict[str, Any]] = []
+        self.is_open = False
+        self._kinds = kinds
+        page.route("**/robots", self._handle)
+
+    def has_kept(self, count: int) -> bool:
+        return len(self.kept) == count
+
+    def _handle(self, route: Route) -> None:
+        response = route.fetch()
+        answer = response.json()
+        news = answer.get("news", [])
+        stops = [each for each in news if each.get("event") in self._kinds]
+        answer["news"] = [each for each in news if each not in stops]
+        self.kept += [{k: each[k] for k in each if k != "number"} for each in stops]
+        if self.is_open:
+            answer["news"] += self.kept
+            self.kept = []
+        route.fulfill(response=response, json=answer)
+
+
+@pytest.mark.parametrize("way", ["button", "hidden"])
+def test_a_stop_is_said_once_and_only_what_has_become_of_it(
+    page: Page, robot: PtyRobot, way: str
+) -> None:
+    connect(page, robot)
+    drives(page, robot)
+    page.evaluate(LISTEN)
+    mute = Mute(page, "STOPPED")
+
+    def stop() -> None:
+        if way == "button":
+            page.click("#stop")
+        else:
+            page.evaluate(HIDE, "hidden")
+
+    stop()
+    hears(page, lambda: mute.kept, "it has stopped")
+    assert page.evaluate("window.told") == ["Stopping…"]
+    mute.is_open = True
+    said(page, HIDDEN if way == "hidden" else CONFIRMED)
+    mute.is_open = False
+    page.evaluate(HIDE, "visible")
+    drives(page, robot)
+    page.evaluate(LISTEN)
+    stop()
+    page.keyboard.press("Escape")  # it is the same stop
+    said(page, SILENT)
+    mute.is_open = True
+    said(page, LATE)
+    assert page.evaluate("window.told") == ["Stopping…", SILENT, LATE]
+
+
+def test_who_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
+    connect(page, robot)
+    for _ in range(2):  # and the next stop is another one
+        drives(page, robot)
+        mute = Mute(page, "STOPPED")
+        page.evaluate(LISTEN)
+        page.dblclick("#stop")
+        hears(page, partial(mute.has_kept, 2), "it has stopped twice")
+        mute.is_open = True
+        said(page, CONFIRMED)
+        hears(page, partial(mute.has_kept, 0), "all is told")
+        page.wait_for_timeout(300)
+        page.unroute_all(behavior="wait")
+        assert page.evaluate("window.told") == ["Stopping…", CONFIRMED]
+
+
+def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
+    connect(page, robot)
+    drives(page, robot)
+    robot.switch_off()
+    page.evaluate(LISTEN)
+    page.click("#stop")
+    said(page, SILENT)
+    page.wait_for_timeout(2500)  # the link gives it up, too
+    assert page.evaluate("window.told") == ["Stopping…", SILENT]
+
+
+def test_an_end_before_the_word_of_a_stop_says_that_there_is_none(
+    page: Page, robot: PtyRobot
+) -> None:
+    connect(page, robot)
+    drives(page, robot)
+    Mute(page, "STOPPED", "LOST")
+    page.evaluate(LISTEN)
+    page.click("#stop")
+    page.click("#link_leave")
+    said(page, f"Disconnected. {SILENT}")
+    assert page.evaluate("window.told") == ["Stopping…", f"Disconnected. {SILENT}"]
