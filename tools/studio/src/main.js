@@ -150,6 +150,10 @@ so.checked.watch((answer) => {
 if (whyOutside) so.note.say(text(known(`why_${whyOutside}`)));
 editor.replace(work.text);
 status.textContent = text('starting');
+python.waits = () => {
+  if (isReady) so.note.say(text('starting_waits'));
+  else status.textContent = text('starting_waits');
+};
 python.ready.then(
   () => {
     isReady = true;

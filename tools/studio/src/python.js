@@ -67,6 +67,8 @@ export class Python {
   #asked = 0;
   /** @type {(why: Error) => void} */
   #fails = () => {};
+  /** Nothing has come of what Python needs for a while. */
+  waits = () => {};
   /** Resolves when it answers; rejects when it cannot be had. @type {Promise<void>} */
   ready;
 
@@ -75,6 +77,10 @@ export class Python {
     this.#worker = new Worker('./worker.js', { type: 'module', name: language });
     this.ready = new Promise((resolve, reject) => {
       this.#worker.addEventListener('message', ({ data }) => {
+        if (data.waits) {
+          this.waits();
+          return;
+        }
         if (data.id === 0) {
           if (data.error) reject(new Error(data.error));
           else resolve();

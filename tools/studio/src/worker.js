@@ -1,9 +1,15 @@
 // The worker: Python, and in it the compiler of this project itself.
 
 import { loadPyodide } from 'pyodide';
+import { watchedFetch } from './page/progress.js';
 // Nothing is installed: all modules are in the archives.
 import languages from '../made/languages.json';
 import lock from '../made/lock.json';
+
+const waits = () => postMessage({ id: 0, waits: true });
+const plainFetch = self.fetch.bind(self);
+// Also what Pyodide fetches: what is held on its way ends, and the page is told before.
+self.fetch = (what, options) => watchedFetch(what, { ...options, waits }, plainFetch);
 
 const SOURCE = languages[0]?.[0] ?? ''; // the language that is always there
 

@@ -4,7 +4,7 @@
 // The main thread owns the port and asks the session for every byte: when it hangs or the page
 // sleeps, nothing is sent, and the robot stops by itself.
 
-import { Asking, Failed, pause } from './transport.js';
+import { Asking, Failed, pause, within } from './transport.js';
 import { LINK, robotOf } from '../page/words.js';
 
 /** @import { Heard, About } from './transport.js' */
@@ -19,6 +19,7 @@ import { LINK, robotOf } from '../page/words.js';
  * @property {() => Promise<void>} close
  */
 
+const OPEN_MS = 20_000; // a radio that looks for its robot
 const LOOK_MS = 100; // between two looks at the latest
 const STOP = new Uint8Array(LINK.stop_bytes); // zeros stop a robot, whatever it hears
 const LOCK = 'tiniscript-robot';
@@ -36,6 +37,8 @@ export class DirectRobot extends Asking {
   /** @type {number[]} */
   #came = [];
   #unlock = () => {};
+  /** @type {(why: Error) => void} */
+  #fails = () => {};
   #keepKeys;
 
   /**
@@ -59,11 +62,20 @@ export class DirectRobot extends Asking {
    * @returns {Promise<About>}
    */
   async connect(robot, language, keys) {
-    await parting;
-    await this.#lock();
+    /** @type {Promise<never>} */
+    const left = new Promise((_, reject) => {
+      this.#fails = reject;
+    });
+    return Promise.race([this.#open(robot, language, keys), left]);
+  }
+
+  /** @param {string} robot @param {string} language @param {string} keys */
+  async #open(robot, language, keys) {
     try {
+      await parting;
+      await this.#lock();
       await this.#python.ask({ do: 'connect', robot, language }, new TextEncoder().encode(keys));
-      await this.#port.open(
+      const opening = this.#port.open(
         (data) => {
           this.#bytes += data.length;
           for (const byte of data) this.#came.push(byte);
@@ -71,7 +83,10 @@ export class DirectRobot extends Asking {
         },
         () => this.end(new Failed(this.#port.goneBy)),
       );
-      if (this.isOver) await this.#port.close(); // it was left meanwhile
+      opening.then(async () => {
+        if (this.isOver) await this.#port.close(); // it was left meanwhile
+      }).catch(() => {});
+      await within(OPEN_MS, opening, 'link_silent');
       this.#isOpen = true;
       return await this.#meet(robot);
     } catch (why) {
@@ -170,6 +185,7 @@ export class DirectRobot extends Asking {
       .then(() => this.#port.close())
       .catch(() => {})
       .finally(() => this.#unlock());
+    this.#fails(why);
     super.end(why);
   }
 }

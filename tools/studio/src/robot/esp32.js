@@ -5,7 +5,7 @@ import { ESPLoader } from 'esptool-js/lib/esploader.js';
 import { Transport } from 'esptool-js/lib/webserial.js';
 
 import { md5 } from './md5.js';
-import { Failed, pause } from './transport.js';
+import { Failed, pause, within } from './transport.js';
 
 /** What `esptool` calls its chip, the chip in the head of an image, and where that is in a whole firmware. */
 /** @type {Record<string, {name: string, number: number, head: number}>} */
@@ -21,6 +21,7 @@ const NUMBER_AT = 12; // in the head of an image
 const FLASH_BYTES = 0x40_0000;
 const RESET_MS = 100;
 const TRIES = 3;
+const STUCK_MS = 3000; // for a write, or the end of the port
 const QUIET = { clean() {}, writeLine() {}, write() {} };
 
 /** Whether a file is a whole firmware of a board: from address 0, as `esptool merge_bin` writes it. @param {Uint8Array} firmware @param {string} board */
@@ -41,6 +42,8 @@ export function isWhole(firmware, board) {
 export async function flashEsp32(port, board, firmware, progress, cancelled) {
   if (!isWhole(firmware, board)) throw new Failed('flash_bad_image');
   const transport = new Transport(port);
+  const write = transport.write.bind(transport);
+  transport.write = (data) => within(STUCK_MS, write(data), 'port_stuck');
   const loader = new ESPLoader({ transport, baudrate: BAUD, romBaudrate: BAUD, terminal: QUIET });
   let isWriting = false;
   try {
@@ -66,7 +69,7 @@ export async function flashEsp32(port, board, firmware, progress, cancelled) {
     if (/MD5/.test(String(why))) throw new Failed('flash_differs');
     throw new Failed(isWriting ? 'flash_broken_off' : 'flash_nobody_esp');
   } finally {
-    await transport.disconnect().catch(() => {});
+    await within(STUCK_MS, transport.disconnect(), 'port_stuck').catch(() => {});
   }
 }
 

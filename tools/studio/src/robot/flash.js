@@ -2,6 +2,7 @@
 //
 // The files are beside the page, as `tsc studio` gives them, or a person opens one.
 
+import { watchedFetch } from '../page/progress.js';
 import { BadHex, readHex } from './intel_hex.js';
 import { SerialPort } from './serial.js';
 import { Failed } from './transport.js';
@@ -12,17 +13,28 @@ import { BOARDS, flash } from './stk500.js';
 const FLASH_BYTES = 0x8000; // of an Uno or a Nano
 const MOST_BYTES = 0x50_0000; // of a file; a full flash of an ESP32 has 4 MB
 
+/** @typedef {import('../page/progress.js').Watching} Watching */
+
 /**
- * Writes the firmware of a robot, or that of a file; rejects with a Failed.
+ * Returns the firmware of a robot, or that of a file; rejects with a Failed.
+ * @param {{robot: string, language: string} | File} which
+ * @param {string} board
+ * @param {Watching} watching
+ */
+export async function firmwareOf(which, board, watching) {
+  const found = which instanceof File ? await which.slice(0, MOST_BYTES).arrayBuffer() : await fetched(which, board, watching);
+  return new Uint8Array(found);
+}
+
+/**
+ * Writes a firmware; rejects with a Failed.
  * @param {any} port of the browser
  * @param {string} board
- * @param {{robot: string, language: string} | File} which
+ * @param {Uint8Array} data
  * @param {(part: number) => void} progress
  * @param {AbortSignal} cancelled
  */
-export async function flashBoard(port, board, which, progress, cancelled) {
-  const found = which instanceof File ? await which.slice(0, MOST_BYTES).arrayBuffer() : await fetched(which, board);
-  const data = new Uint8Array(found);
+export async function flashBoard(port, board, data, progress, cancelled) {
   if (!BOARDS[board]) {
     const { flashEsp32 } = await import('./esp32.js');
     await flashEsp32(port, board, data, progress, cancelled);
@@ -38,26 +50,28 @@ export async function flashBoard(port, board, which, progress, cancelled) {
   await flash((baud) => new SerialPort(port, baud), BOARDS[board] ?? [], firmware, progress, cancelled);
 }
 
-/** What there is beside this page. @returns {Promise<Firmware[]>} */
-export async function firmwares() {
-  return JSON.parse(new TextDecoder().decode(await fetchedBytes('firmware.json')));
+/** What there is beside this page. @param {Watching} [watching] @returns {Promise<Firmware[]>} */
+export async function firmwares(watching) {
+  return JSON.parse(new TextDecoder().decode(await fetchedBytes('firmware.json', watching)));
 }
 
-/** @param {{robot: string, language: string}} which @param {string} board */
-async function fetched({ robot, language }, board) {
-  const list = await firmwares();
+/** @param {{robot: string, language: string}} which @param {string} board @param {Watching} watching */
+async function fetched({ robot, language }, board, watching) {
+  const list = await firmwares(watching);
   const titles = [`${robot}_${language}`, robot];
   const found = titles.map((title) => list.find((each) => each.title === title && each.board === board)).find(Boolean);
   if (!found) throw new Failed('flash_none');
-  return fetchedBytes(found.file);
+  return fetchedBytes(found.file, watching);
 }
 
-/** @param {string} name */
-async function fetchedBytes(name) {
+/** @param {string} name @param {Watching} [watching] */
+async function fetchedBytes(name, watching) {
   try {
-    const answer = await fetch(`./${encodeURIComponent(name)}`);
+    const answer = await watchedFetch(`./${encodeURIComponent(name)}`, watching);
     if (answer.ok) return await answer.arrayBuffer();
-  } catch {
+  } catch (why) {
+    if (watching?.cancelled?.aborted) throw new Failed('flash_not_begun');
+    if (/** @type {Error} */ (why).name === 'TimeoutError') throw new Failed('flash_held');
     // no network, or a service worker without it
   }
   throw new Failed('flash_none');

@@ -4,6 +4,7 @@ import { element } from '../page/elements.js';
 import { chosenPort, hasSerial } from './serial.js';
 import { shown } from './plain_text.js';
 import { Failed } from './transport.js';
+import { watched } from '../page/progress.js';
 import { so } from '../page/so.js';
 import { currentLanguage } from '../page/texts.js';
 
@@ -61,19 +62,25 @@ export class Flashing {
     const which = this.#file ?? { robot: so.robot.value, language: currentLanguage() };
     const chosen = known() ? Promise.resolve(known()) : chosenPort();
     this.#cancelling = new AbortController();
-    speech.say('say_flashing');
+    const board = element('flash_board', HTMLSelectElement).value;
+    const { signal } = this.#cancelling;
     setBusy(true);
     try {
-      const { flashBoard } = await import('./flash.js');
       const port = await chosen;
+      speech.say('say_fetching');
+      this.#bar.value = 0;
       this.#bar.hidden = this.#cancel.hidden = false;
-      const board = element('flash_board', HTMLSelectElement).value;
-      await flashBoard(port, board, which, (part) => { this.#bar.value = part; }, this.#cancelling.signal);
+      const watching = { waits: () => speech.say('say_fetching_waits'), cancelled: signal };
+      const { firmwareOf, flashBoard } = await watched(import('./flash.js'), watching);
+      const data = await firmwareOf(which, board, watching);
+      speech.say('say_flashing');
+      await flashBoard(port, board, data, (part) => { this.#bar.value = part; }, signal);
       setBusy(false);
       this.#cancel.hidden = true;
       await meet(port);
     } catch (why) {
-      speech.fail(why instanceof Failed ? why : new Failed('bug', String(why)));
+      const reason = signal.aborted ? 'flash_not_begun' : /** @type {Error} */ (why).name === 'TimeoutError' ? 'flash_held' : 'bug';
+      speech.fail(why instanceof Failed ? why : new Failed(reason, reason === 'bug' ? String(why) : ''));
     } finally {
       this.#bar.hidden = this.#cancel.hidden = true;
       this.#file = null;

@@ -1,10 +1,12 @@
 // A serial port that the browser opens: a cable, or Bluetooth with a serial port.
 
-import { Failed, pause } from './transport.js';
+import { Failed, pause, within } from './transport.js';
 
 const SERIAL = /** @type {any} */ (navigator).serial;
 const LOW_MS = 250; // so long a board's reset is held
 const AFTER_MS = 50;
+const WRITE_MS = 3000; // the longest write takes a tenth of it
+const CLOSE_MS = 2000;
 const SPP = '00001101-0000-1000-8000-00805f9b34fb';
 
 export const hasSerial = SERIAL !== undefined;
@@ -36,6 +38,7 @@ export class SerialPort {
   /** @type {any} */
   #writer = null;
   #isClosing = false;
+  #isStuck = false; // it takes no bytes any more
   /** @type {Promise<void>} */
   #reading = Promise.resolve();
 
@@ -100,22 +103,26 @@ export class SerialPort {
 
   /** @param {Uint8Array} data */
   async write(data) {
-    await this.#writer.write(data);
+    try {
+      await within(WRITE_MS, this.#writer.write(data), 'port_stuck');
+    } catch (why) {
+      this.#isStuck ||= why instanceof Failed;
+      throw why;
+    }
   }
 
   async close() {
     this.#isClosing = true;
     try {
-      await this.#reader?.cancel();
-      await this.#reading;
+      await within(CLOSE_MS, Promise.all([this.#reader?.cancel(), this.#reading]), 'port_stuck');
     } catch {
       // it has gone
     }
     try {
-      await this.#writer?.close();
+      await within(CLOSE_MS, this.#isStuck ? this.#writer?.abort() : this.#writer?.close(), 'port_stuck');
     } catch {
       this.#writer?.releaseLock();
     }
-    await this.#port.close();
+    await within(CLOSE_MS, this.#port.close(), 'port_stuck');
   }
 }

@@ -154,10 +154,12 @@ class Board {
    * @returns {Promise<Uint8Array | null>}
    */
   async #ask(command, bytes, limit_ms) {
-    if (this.#cancelled?.aborted) throw new Failed(this.#isWriting ? 'flash_cancelled' : 'flash_not_begun');
+    this.#heed();
     try {
       await this.#cable.write(Uint8Array.of(...command, END));
-    } catch {
+    } catch (why) {
+      this.#heed();
+      if (why instanceof Failed && !this.#isWriting) throw why;
       this.#isGone = true;
     }
     if (!(await this.#hears(bytes + 2, limit_ms))) {
@@ -166,6 +168,10 @@ class Board {
     }
     const found = this.#came.splice(0, bytes + 2);
     return found[0] === IN_SYNC && found.at(-1) === OK ? Uint8Array.from(found.slice(1, -1)) : null;
+  }
+
+  #heed() {
+    if (this.#cancelled?.aborted) throw new Failed(this.#isWriting ? 'flash_cancelled' : 'flash_not_begun');
   }
 
   /** Waits until so many bytes are there. @param {number} count @param {number} limit_ms */

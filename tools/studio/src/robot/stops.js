@@ -12,7 +12,7 @@ import { LINK } from '../page/words.js';
 
 const LOOK_MS = 200;
 const LATE_MS = 1000; // after which a robot that has not confirmed is red
-const TRIES = 5;
+const WORD_MS = 3000; // after which it is said that nobody has heard it
 
 let newest = 0;
 
@@ -22,14 +22,12 @@ export async function stopAll() {
   const began = performance.now();
   /** @type {Stop[] | null} */
   let robots = null;
-  for (let k = 0; own === newest && !robots; k += 1) {
+  const word = setTimeout(() => own === newest && show(null, false), WORD_MS);
+  while (own === newest && !robots && performance.now() - began < LINK.confirm_ms) {
     robots = await asked('stop_all');
-    if (!robots && k >= TRIES) {
-      show(null, false);
-      return;
-    }
     if (!robots) await pause(LOOK_MS);
   }
+  clearTimeout(word);
   while (own === newest && robots) {
     const passed = performance.now() - began;
     const isOver = passed > 2 * LINK.confirm_ms || robots.every(({ stop }) => stop !== 'asked');

@@ -1,0 +1,193 @@
+"""What the page waits for does not come, and nothing says so: the page tells, and ends it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_link import said
+from tests.support import studio
+from tests.support.needs import need
+from tests.support.studio import Pages, checked, enter, hears
+from tiniscript.studio import serving
+from tiniscript.studio.building import SOURCES
+from tools import CannotMake
+from tools.builds.studio import found_tools
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page, Route
+
+SCRIPT = Path(__file__).with_name("progress_in_node.mjs")
+FILE = "tinibot-uno-digest.hex"
+STUCK = "The port takes nothing any more."
+# A serial port that takes no bytes: what is written never ends, until it is aborted.
+SERIAL = """
+const port = window.port = {
+  opened: 0,
+  isOpen: false,
+  getInfo: () => ({}),
+  setSignals: async () => {},
+  async open() {
+    if (this.isOpen) throw new DOMException('open', 'InvalidStateError');
+    this.opened += 1;
+    this.isOpen = true;
+    this.readable = new ReadableStream();
+    let free;
+    this.writable = new WritableStream({
+      start(controller) { controller.signal.addEventListener('abort', () => free?.()); },
+      write: () => new Promise((resolve) => { free = resolve; }),
+    });
+  },
+  async close() {
+    this.isOpen = false;
+  },
+};
+Object.defineProperty(navigator, 'serial', {
+  value: { getPorts: async () => [port], requestPort: async () => port },
+});
+"""
+
+
+@pytest.fixture(scope="module")
+def server(browser: Browser) -> Iterator[serving.Server]:
+    rows = [{"title": "tinibot", "board": "uno", "file": FILE}]
+    page = {
+        **serving.files(),
+        serving.FIRMWARE: serving.File(json.dumps(rows).encode(), "application/json"),
+        FILE: serving.File(b":01000000FF00\n:00000001FF\n", "text/plain"),
+    }
+    with studio.served(page) as made:
+        yield made
+
+
+@pytest.fixture
+def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
+    found = Pages(browser, server.address, 15)
+    yield found
+    found.close()
+
+
+class Held:
+    """Requests that nobody answers until they are let go."""
+
+    def __init__(self, page: Page, what: str) -> None:
+        self.routes: list[Route] = []
+        page.context.route(what, self._hold)
+
+    def _hold(self, route: Route) -> None:
+        self.routes.append(route)
+
+    def has(self, count: int) -> bool:
+        return len(self.routes) == count
+
+    def let_go(self) -> None:
+        for each in self.routes:
+            each.continue_()
+
+
+def with_serial(pages: Pages, server: serving.Server, has_clock: bool = False) -> Page:
+    """A page beside a port that takes no bytes; it may be on a clock of the test."""
+    page = pages.blank(is_alone=True)
+    page.add_init_script(SERIAL)
+    if has_clock:
+        page.clock.install()
+    enter(page, server.address)
+    page.click("#side_real")
+    page.click("#link_teacher summary")
+    page.locator("#flash_board option").wait_for(state="attached")
+    return page
+
+
+def test_what_is_fetched_goes_on_while_something_comes_and_ends_when_nothing_does() -> None:
+    try:
+        node = found_tools().node
+    except CannotMake as why:
+        need(str(why))
+    words = [*node, str(SCRIPT), str(SOURCES / "src")]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout) == [
+        "slow 1", "quick 0", "TimeoutError 1", "AbortError 0",
+        "TimeoutError 1", "AbortError", "there",
+    ]  # fmt: skip
+
+
+def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
+    pages: Pages, server: serving.Server
+) -> None:
+    page = with_serial(pages, server, has_clock=True)
+    held = Held(page, f"**/{FILE}")
+    for count, ends in enumerate(("cancel", "nothing"), 1):
+        page.click("#flash_write")
+        hears(page, partial(held.has, count), "it is fetched")
+        said(page, "Fetching the firmware. Nothing is written yet.")
+        page.clock.fast_forward(4000)
+        said(page, "The firmware does not come.")
+        if ends == "cancel":
+            page.click("#flash_cancel")
+            said(page, "Cancelled. Nothing was written: the board is as it was.")
+        else:
+            page.clock.fast_forward(25_000)
+            said(page, "The firmware did not come, and nothing was written")
+        assert page.locator("#flash_cancel, #flash_progress").filter(visible=True).count() == 0
+    assert page.evaluate("window.port.opened") == 0
+
+
+def test_a_port_that_takes_no_bytes_is_closed_and_may_be_tried_again(
+    pages: Pages, server: serving.Server
+) -> None:
+    page = with_serial(pages, server)
+    for count in (1, 2):
+        page.click("#link_serial")
+        hears(page, lambda: page.evaluate("window.port.isOpen"), "it is open")
+        said(page, "Connecting")
+        hears(page, lambda: page.locator("#link_ways").is_visible(), "it is given up")
+        said(page, STUCK)
+        hears(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
+        assert page.evaluate("window.port.opened") == count
+    page.click("#flash_write")
+    said(page, "Writing the firmware")
+    page.click("#flash_cancel")
+    said(page, "Cancelled. Nothing was written")
+    hears(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
+
+
+def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: serving.Server) -> None:
+    page = with_serial(pages, server)
+    page.evaluate("() => { window.port.open = () => new Promise(() => {}); }")
+    page.click("#link_serial")
+    page.click("#link_leave")
+    said(page, "Disconnected.")
+    assert page.locator("#link_serial:enabled").is_visible()
+
+
+def test_a_compiler_that_does_not_come_is_told_and_goes_on_when_it_does(
+    pages: Pages, server: serving.Server
+) -> None:
+    page = pages.blank(is_alone=True)
+    held = Held(page, "**/tiniscript.zip")
+    page.goto(server.address)
+    page.locator("#status").filter(has_text="The compiler does not come").wait_for(state="attached")
+    held.let_go()
+    checked(page)
+
+
+def test_a_stop_that_nobody_hears_says_so_at_once_and_is_tried_on(pages: Pages) -> None:
+    with studio.hosted() as server:
+        page = pages.blank(is_alone=True)
+        page.clock.install()
+        enter(page, server.entrance())
+        held = Held(page, "**/robots")
+        page.keyboard.press("Escape")
+        hears(page, lambda: held.routes, "it is asked")
+        page.clock.fast_forward(3100)
+        told = page.locator("#stops")
+        told.filter(has_text="STOP has not reached tsc studio.").wait_for(state="attached")
+        page.context.unroute_all()
+        hears(page, lambda: page.locator("#stops").is_hidden(), "it is heard: there is no robot")
