@@ -559,8 +559,9 @@ class Session(Requester):
         self._handshake.doubted = None
 
     def _void(self) -> None:
-        """The robot was stopped: do nothing of what was asked for before."""
-        self._cancel_waiting(_STALE)
+        """The robot was stopped: do nothing that was asked for before. Questions are answered."""
+        for waiting in self._waiting:
+            waiting.wanted.is_void = True
         if self._pending is not None:
             self._pending.wanted.is_void = True
 
