@@ -212,7 +212,7 @@ def test_an_upload_whose_command_is_killed_starts_nothing_and_refuses_nobody(
     for options in ((), ("--detach",)):
         pty_robot.heard = b""
         command = Command("upload", "-e", LONG, *options, "--port", pty_robot.port)
-        pty_robot.until(lambda: len(pty_robot.heard) > 150, "a part has come")
+        pty_robot.until(lambda: len(pty_robot.heard) > 60, "a part has come")
         command.signal(number)
         command.process.wait()
         on(pty_robot, "live", "SHOW(7)").gives(0, "", out="SHOW 7")
