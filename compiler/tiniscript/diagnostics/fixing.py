@@ -45,6 +45,7 @@ MANY = 100  # diagnostics after which a program is not read on
 CHECKS = 400  # of one program, fewer of a long one
 CHECKED_CHARACTERS = 600_000
 OFFERS = 20  # repairs of one text that are tried
+WARNED_CHARACTERS = 3_000  # that are checked again for warnings: after each letter in the page
 
 
 class Fixed(NamedTuple):
@@ -93,15 +94,20 @@ def offers(text: str, found: list[Diagnostic], check: Check) -> list[list[Edit]]
     """Return for each diagnostic the changes that a reader may choose to make, or none.
 
     With them the program has fewer mistakes, or for a warning no more of them and the warning is
-    gone. They may be a guess, and change what the program does: somebody looks at them.
+    gone; of a long text the first warnings only. They may be a guess, and change what the program
+    does: somebody looks at them.
     """
-    source, tried = Source(text), 0
+    source, tried, warned = Source(text), 0, 0
     offered: list[list[Edit]] = []
     for diagnostic in found:
-        edits = edits_of(diagnostic) or [] if tried < OFFERS else []
+        may_try = tried < OFFERS and (
+            diagnostic.is_mistake or warned * len(text) < WARNED_CHARACTERS
+        )
+        edits = edits_of(diagnostic) or [] if may_try else []
         lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
         is_tried = bool(edits) and not any("~" in line for line in lines)  # else it is copied again
         tried += is_tried
+        warned += is_tried and not diagnostic.is_mistake
         after = check(applied(text, edits)) if is_tried else []
         is_chosen = is_tried and (
             is_better(after, found, edits)
