@@ -45,7 +45,7 @@ MANY = 100  # diagnostics after which a program is not read on
 CHECKS = 400  # of one program, fewer of a long one
 CHECKED_CHARACTERS = 600_000
 OFFERS = 20  # repairs of one text that are tried
-WARNED_CHARACTERS = 3_000  # that are checked again for warnings: after each letter in the page
+WARNED_CHARACTERS = 1_500  # that are checked again for warnings: after each letter in the page
 
 
 class Fixed(NamedTuple):
