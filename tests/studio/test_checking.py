@@ -10,7 +10,8 @@ from tests.pupils import corpus
 from tests.studio.programs import LACKING, said
 from tests.support.texts import LANGUAGES
 from tiniscript import check, compile, compile_text, robots
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.fixing import fixed, offers
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.studio import checking, worker
 from tiniscript.studio.description import description
@@ -229,3 +230,19 @@ def test_a_variable_is_a_yes_no_however_its_value_gets_there(
 ) -> None:
     variables = checking.check(program.encode(), "tinibot", "en").variables
     assert {each.name for each in variables if each.is_yes_no} == set(yes_no)
+
+
+@pytest.mark.parametrize(("lines", "most"), [(3, 20), (30, 3), (100, 1)])
+def test_a_page_checks_few_times_more_for_warnings(lines: int, most: int) -> None:
+    """After each letter: so of a long program the first warnings alone have a button."""
+    text = "SI|" + ";\n".join(f"IF(DISTANCE < {k});R(90, 60);END_IF" for k in range(1, lines + 1))
+    kit, checked = robots.load("tinibot").kit, []
+
+    def diagnostics(changed: str) -> list[Diagnostic]:
+        checked.append(changed)
+        return compile_text(changed, kit).diagnostics
+
+    found = compile_text(text, kit).diagnostics
+    assert len(found) >= lines and not any(each.is_mistake for each in found)
+    offered = offers(text, found, diagnostics)
+    assert 0 < len(checked) <= most and offered[0]

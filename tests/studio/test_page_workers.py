@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -80,18 +79,6 @@ class _Handler(BaseHTTPRequestHandler):
 
 
 @contextmanager
-def runs(made: Stranger) -> Iterator[Stranger]:
-    thread = Thread(target=made.serve_forever, args=(0.02,), daemon=True)
-    thread.start()
-    try:
-        yield made
-    finally:
-        made.shutdown()
-        made.server_close()
-        thread.join()
-
-
-@contextmanager
 def hosted(port: int = 0) -> Iterator[serving.Server]:
     hosting = Hosting()
     try:
@@ -112,7 +99,7 @@ def context(browser: Browser) -> Iterator[BrowserContext]:
 
 @pytest.fixture
 def loot() -> Iterator[Stranger]:
-    with runs(Stranger(0, {})) as made:
+    with page_server.serves(Stranger(0, {})) as made:
         yield made
 
 
@@ -125,7 +112,7 @@ def left(context: BrowserContext, loot: Stranger, name: str, options: dict[str, 
     """Let a stranger's server leave its worker; return the port, which is free then."""
     evil = EVIL.replace("VERSION", version())
     evil = evil.replace("LOOT", f"http://{serving.HOST}:{loot.server_port}/")
-    with runs(Stranger(0, {f"/{name}": evil.encode()})) as stranger:
+    with page_server.serves(Stranger(0, {f"/{name}": evil.encode()})) as stranger:
         page = context.new_page()
         page.goto(f"http://{serving.HOST}:{stranger.server_port}/")
         page.evaluate(LEAVES, [f"./{name}", options])

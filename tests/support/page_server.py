@@ -1,18 +1,22 @@
-"""A server of the studio's page in a thread of the test, and who asks it."""
+"""A server, as that of the studio's page, in a thread of the test, and who asks it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from http.client import HTTPConnection, HTTPResponse
+from socketserver import BaseServer
 from threading import Thread
+from typing import TypeVar
 
 from tests.support.waiting import HANGS_S
 from tiniscript.studio import serving
 
+Served = TypeVar("Served", bound=BaseServer)
+
 
 @contextmanager
-def serves(made: serving.Server) -> Iterator[serving.Server]:
+def serves(made: Served) -> Iterator[Served]:
     thread = Thread(target=made.serve_forever, args=(0.02,), daemon=True)
     thread.start()
     try:
