@@ -206,8 +206,11 @@ def test_a_robot_stops_without_the_command_that_has_started_it(
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGHUP, signal.SIGTERM])
 def test_an_upload_whose_command_is_killed_starts_nothing_and_refuses_nobody(
-    pty_robot: PtyRobot, link: Command, number: int
+    pty_robot: PtyRobot, link: Command, number: int, request: pytest.FixtureRequest
 ) -> None:
+    if number != signal.SIGKILL:  # a command that nohup has begun is to outlive SIGHUP
+        before = signal.signal(number, signal.SIG_DFL)
+        request.addfinalizer(lambda: signal.signal(number, before))
     pty_robot.bytes_per_ms = 1  # a long program takes a while
     for options in ((), ("--detach",)):
         pty_robot.heard = b""

@@ -481,10 +481,11 @@ LOWEST = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].map(
   const words = document.elementFromPoint(x + width / 2, y + height / 2);
   const press = () => ['pointerdown', 'pointerup'].forEach((type) =>
     words.dispatchEvent(new PointerEvent(type, { bubbles: true, cancelable: true })));
+  const open = () => [...document.querySelectorAll('.blocklyFlyout .blocklyDraggable')]
+    .filter((block) => block.checkVisibility());
   press();
-  const blocks = [...document.querySelectorAll('.blocklyFlyout .blocklyDraggable')];
-  const boxes = blocks.filter((block) => block.checkVisibility())
-    .map((block) => block.getBoundingClientRect());
+  if (open().length === 0) press(); // the group was open before
+  const boxes = open().map((block) => block.getBoundingClientRect());
   press();
   const { bottom, right } = document.querySelector('#blocks').getBoundingClientRect();
   const below = Math.max(...boxes.map((box) => box.bottom)) - bottom;
