@@ -8,6 +8,7 @@ from typing import NamedTuple
 from tests.support.casefile import ROOT, all_cases, example_robot
 from tiniscript import ProgramError, compile, robots
 from tiniscript.diagnostics.rendering import Message
+from tiniscript.library.named_robot import name_in
 
 _ROBOT = re.compile(r"^\s*robot\s*=\s*(\w+)", re.MULTILINE)
 
@@ -23,7 +24,8 @@ def programs() -> list[Program]:
     for case in all_cases():
         if "tiniscript" in case.parts:
             named = _ROBOT.search(case.parts.get("senses", ""))
-            robot = named[1] if named and named[1] in robots.names() else "tinibot"
+            own = name_in(case.parts["tiniscript"].encode()) or "tinibot"
+            robot = named[1] if named and named[1] in robots.names() else own
             found.append(Program(case.id, case.parts["tiniscript"], robot))
     for path in sorted((ROOT / "examples").glob("*.ts")):
         found.append(Program(path.name, path.read_text(encoding="utf-8"), example_robot(path)))
