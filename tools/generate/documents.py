@@ -15,7 +15,7 @@ from tiniscript.base.languages import SOURCE, languages, text
 from tiniscript.base.words import WORDS
 from tiniscript.lessons.lesson import AREA, KINDS, WHATS, Kind
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
-from tools import ROOT
+from tools import ROOT, measures
 from tools.site.documents import LIST, documents, sources
 
 FOLDER = ROOT / "docs"
@@ -23,13 +23,23 @@ PACKAGE = ROOT / "compiler" / "tiniscript"
 
 
 def architecture_document() -> str:
-    """Return `docs/architecture.md` with what each folder of the package says of itself."""
+    """Return `docs/architecture.md` with the picture of the modules, and what each folder says."""
     rows = []
     for path in sorted(PACKAGE.glob("*/**/__init__.py")):
         said = ast.get_docstring(ast.parse(path.read_bytes())) or ""
         about = " ".join(said.split("\n\n")[0].split())
         rows.append((f"`{path.parent.relative_to(PACKAGE).as_posix()}/`", about))
-    return spliced(_text("architecture.md"), "packages", table(("folder", "content"), rows))
+    made = spliced(_text("architecture.md"), "packages", table(("folder", "content"), rows))
+    return spliced(made, "modules", _modules())
+
+
+def _modules() -> str:
+    """Return the picture of the package's modules, in the language of Mermaid."""
+    graph = measures.arrows(measures.imports_of(sorted(PACKAGE.rglob("*.py"))))
+    lines = [f"  {name} --> {' & '.join(sorted(targets))}"
+             for name, targets in sorted(measures.direct(graph).items())
+             if targets and (PACKAGE / name / "__init__.py").is_file() and name]  # fmt: skip
+    return "\n".join(["```mermaid", "flowchart TD", *lines, "```", ""])
 
 
 def link_document(document: str) -> str:

@@ -50,7 +50,7 @@ html_sidebars = {
 }
 # Fences that show what a robot says or does: nothing in them is coloured.
 PLAIN = ("output", "robot", "senses", "terminal", "link", "bytecode", "plain", "mistake", "warning",
-         "line")  # fmt: skip
+         "line", "mermaid")  # fmt: skip
 
 
 HALF = json.loads((Path(__file__).parent / "half.json").read_text(encoding="utf-8"))
