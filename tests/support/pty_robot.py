@@ -60,8 +60,9 @@ class PtyRobot(PtyPort):
 
     @property
     def timed(self) -> list[str]:
-        assert self._robot
-        return list(self._robot.did)
+        with self._lock:  # an ESP32 answers over its network before its step is over
+            assert self._robot
+            return list(self._robot.did)
 
     @property
     def moves(self) -> bool:
