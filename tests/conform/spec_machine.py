@@ -1,7 +1,7 @@
 """A machine of others for `tsc conform --machine`: what `tests/oracle` has of `bytecode_spec.md`.
 
 `python -m tests.conform.spec_machine` takes runs on standard input and prints their traces, as
-`docs/conformance.md` says. It knows no tasks: it lacks all that an image says to need.
+`docs/conformance.md` says. It runs no tasks: it lacks all that an image says to need.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ class Spec:
     image: Any = image
     machine: Any = machine
     verifier: str = ""
+    refuses_only = False  # what lacks nothing of an image verifies it, if it cannot run it
 
     def answer(self, rows: Iterable[str]) -> list[str]:
         """Return the lines of a run."""
@@ -32,10 +33,11 @@ class Spec:
         kit = Kit(tuple(map(_device, sensors)), tuple(map(_device, actuators)))
         (data,) = (bytes.fromhex("".join(rest)) for rest in told["image"])
         refused = self.image.refusal(data)
-        if not refused and data[14]:
+        needs = data[14] if not refused else 0
+        if needs and not self.refuses_only:
             refused = "UNKNOWN_NEEDS"
         code = data[data[5] :] if not refused else b""
-        rule, at = verifier.verdict(code, len(sensors), len(actuators), 0, self.verifier)
+        rule, at = verifier.verdict(code, len(sensors), len(actuators), needs, self.verifier)
         if rule:
             names = {number: name for name, number in rule_numbers().items()}
             refused = f"{names[rule]} {at}"
@@ -52,9 +54,14 @@ class Spec:
         def late(waited: int, reached: int) -> int:
             return -reached % every[min(waited, len(every)) - 1]
 
-        said: str = self.machine.trace(
-            code, kit, lists, numbers["until"], numbers["seed"], 10**6, late, numbers["begin"]
-        )
+        slow = {int(k): tuple(map(int, times)) for k, *times in told.get("slow", [])}
+
+        def is_slow(sensor: int, passed: int) -> bool:
+            period_ms, from_ms, to_ms = slow.get(sensor, (1, 0, 0))
+            return from_ms <= passed % period_ms < to_ms
+
+        limits = numbers["until"], numbers["seed"], 10**6
+        said: str = self.machine.trace(code, kit, lists, *limits, late, numbers["begin"], is_slow)
         return said.splitlines()
 
 

@@ -10,8 +10,8 @@ import pytest
 
 from tests.firmware.test_uno_robot import MOTORS, computer, send, switched_on
 from tests.machines import MACHINES
+from tests.support.case_runs import compiled, robot_and_senses
 from tests.support.casefile import ROOT, Case, read
-from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Sequence
 from struct import pack
 from typing import TYPE_CHECKING, NamedTuple
@@ -43,6 +44,16 @@ class Pace(NamedTuple):
 
 
 AT_ONCE = Pace()
+ECHO = ("DISTANCE",)
+
+
+def a_pace(rng: random.Random) -> Pace:
+    """An echo that takes a part of each period, of a robot that is called often or seldom."""
+    period_ms = rng.choice((31, 50, 90, 130, 170))
+    from_ms = rng.randrange(period_ms // 3)
+    to_ms = rng.randint(2 * from_ms, period_ms)
+    slow = rng.choice((ECHO, ("LIGHT_L",), ("DISTANCE", "LIGHT_L")))
+    return Pace(rng.choice((1, 1, 1, 3, 7, 25)), slow, period_ms, from_ms, to_ms)
 
 
 class PacedRobot(TracedRobot):

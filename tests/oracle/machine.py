@@ -33,6 +33,10 @@ TOO_MANY = "TOO MANY STEPS"  # the last line of a run that this machine gives up
 WAYS = {"F": (1, 1), "B": (-1, -1), "L": (-1, 1), "R": (1, -1)}
 
 
+def always_ready(sensor: int, passed: int) -> bool:
+    return False
+
+
 class Over(Exception):
     """The time of the run is over."""
 
@@ -59,6 +63,7 @@ class Run:
     max_steps: int
     late: Callable[[int, int], int]  # how much later the call comes: see `trace`
     begin_ms: int = 0
+    is_slow: Callable[[int, int], bool] = always_ready
     waited: int = 0  # how often
     lines: list[str] = field(default_factory=list)
     taken: dict[int, int] = field(default_factory=dict)
@@ -104,15 +109,18 @@ class Run:
         passes = (self.clock - self.now) % WRAP
         if passes >= WRAP // 2:  # the clock was reached before
             passes = 0
+        self.wait_to(self.passed + passes)
+        if self.waits == "MOVE":
+            self.motors((0, 0))
+        self.waits = ""
+
+    def wait_to(self, reached: int) -> None:
+        """Let the time pass to the next call that is not before `reached`."""
         self.waited += 1
-        reached = self.passed + passes
         reached += self.late(self.waited, reached)
         if reached > self.max_ms:
             raise Over
         self.passed = reached
-        if self.waits == "MOVE":
-            self.motors((0, 0))
-        self.waits = ""
 
     def step(self) -> None:
         row, operands, after, to = decoded(self.code, self.pc)
@@ -242,6 +250,8 @@ class Run:
         self.note(f"MOTORS {powers[0]} {powers[1]}")
 
     def read(self, number: int) -> int:
+        while self.is_slow(number, self.passed):  # nothing of the instruction has happened
+            self.wait_to(self.passed + 1)
         sensor = self.kit.sensors[number]
         values = self.readings.get(sensor.name) or (0,)
         count = self.taken.get(number, 0)
@@ -332,12 +342,14 @@ def trace(
     max_steps: int = 10_000,
     late: Callable[[int, int], int] = lambda waited, reached: 0,
     begin_ms: int = 0,
+    is_slow: Callable[[int, int], bool] = always_ready,
 ) -> str:
     """Return what a run of verified code prints; `max_steps` instructions run at most.
 
     On a robot that is `late`, the call after each wait comes some milliseconds after the clock: it
-    is given which wait it is, from 1, and when the clock is reached.
+    is given which wait it is, from 1, and when the clock is reached. `is_slow` says whether a
+    sensor is not ready so long after the start.
     """
-    run = Run(code, kit, readings, max_ms, seed, max_steps, late, begin_ms, clock=begin_ms)
+    run = Run(code, kit, readings, max_ms, seed, max_steps, late, begin_ms, is_slow, clock=begin_ms)
     run.run()
     return "".join(run.lines)

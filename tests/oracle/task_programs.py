@@ -144,3 +144,28 @@ def task_program(rng: random.Random, ways: bool = False) -> tuple[str, dict[str,
     distances = [1000 * rng.choice((5, 9, 50)) for _ in range(rng.randint(0, 6))]
     lights = [1000 * rng.choice((0, 600)) for _ in range(rng.randint(0, 4))]
     return text, {"DISTANCE": distances, "LIGHT_L": lights}
+
+
+class RivalAuthor(TaskAuthor):
+    """Writes programs in which WHENs and TASKs take the motors from each other's moves, and these
+    have an UNTIL that reads."""
+
+    def task(self) -> None:
+        if self.rng.random() < 0.3:
+            super().task()
+            return
+        time = self.rng.choice(("0", "0.01", "0.03", "0.05"))
+        self.lines.append(f"WHEN({self.condition()});B({time}, 50)")
+        self.body(self.rng.randint(0, 1), 0)
+        self.lines.append("END_WHEN")
+
+    def until(self, chance: float) -> str:
+        found = self.rng.choice(("DISTANCE < 15", "LIGHT_L > 500", "DISTANCE < 8 AND LIGHT_L < 5"))
+        return f" UNTIL({found})" if self.rng.random() < 2 * chance else ""
+
+
+def rival_program(rng: random.Random) -> tuple[str, dict[str, list[int]]]:
+    text = RivalAuthor(rng).program()
+    distances = [1000 * rng.choice((5, 9, 50, 50, 50)) for _ in range(40)]
+    lights = [1000 * rng.choice((0, 0, 600)) for _ in range(40)]
+    return text, {"DISTANCE": distances, "LIGHT_L": lights}

@@ -19,8 +19,9 @@ from tests.oracle.interpreter import PAPER_KIT, Kit, Mistake, run
 from tests.oracle.test_tasks import check_program as check_tasks
 from tests.support.campaign import each_seed, wanted
 from tests.support.kits import KITS
+from tests.support.random_programs import MAX_MS, MAX_STEPS
 from tests.support.rows import each_row
-from tests.vm.test_agreement import MAX_MS, MAX_STEPS, same
+from tests.vm.test_agreement import same
 from tiniscript import Compiled, compile_text
 from tiniscript.base.source import Source
 from tiniscript.bytecode.image import GO, unpack

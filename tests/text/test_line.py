@@ -8,8 +8,9 @@ import re
 import pytest
 
 from tests.oracle import programs
+from tests.support.case_runs import compiled, robot_and_senses
 from tests.support.kits import KITS
-from tests.vm.test_cases import CASES, compiled, robot_and_senses
+from tests.vm.test_cases import CASES
 from tiniscript import compile_text
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source

@@ -10,12 +10,14 @@ import pytest
 from tests.machines import Senses
 from tests.machines.python import run_python
 from tests.oracle import programs
+from tests.support.case_runs import compiled, robot_and_senses
 from tests.support.casefile import ROOT
 from tests.support.images import image_for
 from tests.support.kits import KITS
+from tests.support.random_programs import MAX_MS, MAX_STEPS
 from tests.support.rows import each_row
-from tests.vm.test_agreement import MAX_MS, MAX_STEPS, same
-from tests.vm.test_cases import CASES, compiled, having, robot_and_senses
+from tests.vm.test_agreement import same
+from tests.vm.test_cases import CASES, having
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import disassemble

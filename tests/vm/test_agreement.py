@@ -7,16 +7,15 @@ line with the compiler. `python -m tests.vm.test_agreement 100000` runs a campai
 from __future__ import annotations
 
 import random
-from typing import NamedTuple
 
 import pytest
 
-from tests.machines import MACHINES, ONE_IN, Machine, Senses
+from tests.machines import MACHINES, ONE_IN, Machine
 from tests.oracle import interpreter, programs
 from tests.support.campaign import each_seed, wanted
 from tests.support.kits import KITS
-from tiniscript import Compiled, compile_text
-from tiniscript.base.kit import Kit
+from tests.support.random_programs import MAX_MS, MAX_STEPS, RandomProgram, random_program
+from tiniscript import compile_text
 from tiniscript.base.source import Source
 from tiniscript.bytecode.disassembly import assemble, disassemble
 from tiniscript.bytecode.opcodes import BY_NAME
@@ -24,7 +23,6 @@ from tiniscript.bytecode.verify import verify
 from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.syntax.formatter import formatted
 
-MAX_MS, MAX_STEPS = 20_000, 20_000
 BATCH = 125
 PUSH32_BYTES = BY_NAME["PUSH32"].size
 BATCHES = 160  # in the tests, of which a commit runs one; a campaign runs more
@@ -43,30 +41,6 @@ def same(want: str, got: str) -> bool:
 
 def _is_cut(line: str) -> bool:
     return line.endswith(" LIMIT") and line != f"{MAX_MS} LIMIT"
-
-
-class RandomProgram(NamedTuple):
-    """A text, with the trace that the oracle wants."""
-
-    seed: int
-    text: str
-    kit: Kit
-    senses: Senses
-    want: str
-    short: Compiled
-    plain: Compiled  # not optimised
-
-
-def random_program(seed: int) -> RandomProgram:
-    rng = random.Random(seed)
-    oracle_kit, kit = KITS[seed % len(KITS)]
-    text = programs.program(rng, oracle_kit)
-    readings = programs.senses(rng, oracle_kit)
-    want = interpreter.run(text, oracle_kit, readings, MAX_MS, MAX_STEPS, seed + 1)
-    senses = Senses(readings, MAX_MS, MAX_STEPS, seed + 1)
-    short = compile_text(text, kit)
-    plain = compile_text(text, kit, optimize=False)
-    return RandomProgram(seed, text, kit, senses, want, short, plain)
 
 
 def check_machine(program: RandomProgram, name: str, machine: Machine) -> None:

@@ -4,51 +4,24 @@ from __future__ import annotations
 
 import pytest
 
-from tests.machines import MACHINES, Machine, Senses
+from tests.machines import MACHINES, Machine
+from tests.support.case_runs import compiled, robot_and_senses
 from tests.support.casefile import Case, accept, all_cases
 from tests.support.images import image_for
 from tests.support.rows import each_row
-from tiniscript import Compiled, compile_text, robots
 from tiniscript.base.languages import SOURCE, languages
 from tiniscript.bytecode.disassembly import assemble, disassemble
 from tiniscript.bytecode.verify import Refused, verify
-from tiniscript.cli.options import decimal
 from tiniscript.codegen.text.line import line_of, plain_code
 from tiniscript.diagnostics.rendering import as_text, message
-from tiniscript.library.named_robot import name_in
-from tiniscript.robots.profile import Robot
 from tiniscript.syntax.formatter import formatted
 
 CASES = all_cases()
 
 
-def robot_and_senses(case: Case) -> tuple[Robot, Senses]:
-    """Return what the fence `senses` says: `robot`, `max-time`, `seed`, and a list a sensor."""
-    readings: dict[str, list[int]] = {}
-    named = name_in(case.parts.get("tiniscript", "").encode())
-    options = {"robot": named or robots.DEFAULT, "max-time": "60", "seed": "1"}
-    for row in case.parts.get("senses", "").splitlines():
-        name, _, values = (part.strip() for part in row.partition("="))
-        if name in options:
-            options[name] = values
-        else:
-            words = {"TRUE": 1, "FALSE": 0}
-            read = [words.get(text.strip(), decimal(text.strip())) for text in values.split(",")]
-            readings[name] = [value for value in read if value is not None]
-            assert len(readings[name]) == len(read), f"{case.id}: {row}"
-    max_ms = decimal(options["max-time"])
-    assert max_ms is not None
-    return robots.load(options["robot"]), Senses(readings, max_ms, seed=int(options["seed"]))
-
-
 def language_of(case: Case) -> str:
     code = case.path.suffixes[0][1:]  # `values.md` is English
     return code if code in languages() else SOURCE
-
-
-def compiled(case: Case) -> Compiled:
-    robot, _ = robot_and_senses(case)
-    return compile_text(case.parts["tiniscript"].removesuffix("\n"), robot.kit)
 
 
 def trace_of(case: Case, machine: Machine) -> str:

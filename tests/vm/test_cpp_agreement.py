@@ -21,6 +21,7 @@ from tests.machines import Senses
 from tests.machines.host import host
 from tests.support import cpp_checks
 from tests.support.campaign import wanted
+from tests.support.case_runs import robot_and_senses
 from tests.support.casefile import Case
 from tests.support.cpp_checks import (
     KIT,
@@ -40,7 +41,7 @@ from tests.support.cpp_checks import (
 )
 from tests.support.random_codes import random_codes, simple, some_programs
 from tests.support.rows import each_row
-from tests.vm.test_cases import disassemblies_alone, robot_and_senses
+from tests.vm.test_cases import disassemblies_alone
 from tiniscript import compile_text
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.disassembly import assemble

@@ -27,11 +27,12 @@ from tests.machines.qemu import emulated
 from tests.machines.qemu import missing as emulator_missing
 from tests.oracle import programs
 from tests.support import avr_tasks, cpp_checks
+from tests.support.case_runs import compiled, robot_and_senses
 from tests.support.casefile import Case
 from tests.support.images import image_for, needs_of
 from tests.support.kits import KITS
 from tests.support.random_codes import jump, random_codes, simple
-from tests.vm.test_cases import compiled, disassemblies_alone, having, robot_and_senses
+from tests.vm.test_cases import disassemblies_alone, having
 from tests.vm.test_cpp_edges import changed_code, kit_of
 from tiniscript import compile_text
 from tiniscript.base.kit import Kit

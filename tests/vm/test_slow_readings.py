@@ -16,9 +16,9 @@ import pytest
 
 from tests.machines import Senses, avr, host
 from tests.machines.host import host as host_machine
-from tests.machines.pace import Pace, trace_at
+from tests.machines.pace import ECHO, Pace, a_pace, trace_at
 from tests.oracle.interpreter import PAPER_KIT, run
-from tests.oracle.task_programs import TaskAuthor, task_program
+from tests.oracle.task_programs import rival_program, task_program
 from tests.support.campaign import each_seed, wanted
 from tests.support.kits import KITS
 from tiniscript import compile_text
@@ -26,7 +26,6 @@ from tiniscript.vm.tasks import machine_of
 
 KIT = KITS[0][1]
 MAX_MS = 600
-ECHO = ("DISTANCE",)
 
 Run = Callable[[Pace, bytes, Senses], str]
 
@@ -141,40 +140,6 @@ F(0.01, 20);X = DISTANCE;SHOW(2);W(1)""",
 100 LIMIT
 """
     assert got == want
-
-
-class RivalAuthor(TaskAuthor):
-    """Writes programs in which WHENs and TASKs take the motors from each other's moves, and these
-    have an UNTIL that reads."""
-
-    def task(self) -> None:
-        if self.rng.random() < 0.3:
-            super().task()
-            return
-        time = self.rng.choice(("0", "0.01", "0.03", "0.05"))
-        self.lines.append(f"WHEN({self.condition()});B({time}, 50)")
-        self.body(self.rng.randint(0, 1), 0)
-        self.lines.append("END_WHEN")
-
-    def until(self, chance: float) -> str:
-        found = self.rng.choice(("DISTANCE < 15", "LIGHT_L > 500", "DISTANCE < 8 AND LIGHT_L < 5"))
-        return f" UNTIL({found})" if self.rng.random() < 2 * chance else ""
-
-
-def rival_program(rng: random.Random) -> tuple[str, dict[str, list[int]]]:
-    text = RivalAuthor(rng).program()
-    distances = [1000 * rng.choice((5, 9, 50, 50, 50)) for _ in range(40)]
-    lights = [1000 * rng.choice((0, 0, 600)) for _ in range(40)]
-    return text, {"DISTANCE": distances, "LIGHT_L": lights}
-
-
-def a_pace(rng: random.Random) -> Pace:
-    """An echo that takes a part of each period, of a robot that is called often or seldom."""
-    period_ms = rng.choice((31, 50, 90, 130, 170))
-    from_ms = rng.randrange(period_ms // 3)
-    to_ms = rng.randint(2 * from_ms, period_ms)
-    slow = rng.choice((ECHO, ("LIGHT_L",), ("DISTANCE", "LIGHT_L")))
-    return Pace(rng.choice((1, 1, 1, 3, 7, 25)), slow, period_ms, from_ms, to_ms)
 
 
 def check_program(seed: int, machines: Sequence[Run]) -> None:

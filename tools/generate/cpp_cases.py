@@ -8,8 +8,8 @@ from __future__ import annotations
 import json
 
 from tests.machines.host import run_request
+from tests.support.case_runs import robot_and_senses
 from tests.support.casefile import Case, read
-from tests.vm.test_cases import robot_and_senses
 from tools import ROOT
 from tools.generate.machine_kit import image_of
 

@@ -2,41 +2,45 @@
 
 Knows the form of the file, which `docs/conformance.md` describes, and where its cases come from:
 the case files, images that are damaged on purpose, the edges of numbers, and random programs. What
-is expected is what the machine in Python answers; the tests compare it with the others.
+is expected is what the machine in Python answers; the tests compare it with the others and with the
+oracles. Needs nothing but the package and the sources of the tests: not what they are run with.
 """
 
 from __future__ import annotations
 
 import json
 import random
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import chain, product, repeat
 from typing import NamedTuple
 
 from tests.machines import Senses
+from tests.machines.pace import ECHO, Pace, a_pace
 from tests.machines.python import lists_of
 from tests.oracle import programs
-from tests.oracle.task_programs import task_program
+from tests.oracle.task_programs import rival_program, task_program
+from tests.support.case_runs import compiled, robot_and_senses
 from tests.support.casefile import ROOT, Case, read
 from tests.support.images import image_for
 from tests.support.kits import KITS
-from tests.vm.test_agreement import random_program
-from tests.vm.test_cases import compiled, robot_and_senses
+from tests.support.random_programs import random_program
 from tiniscript import compile_text, robots
 from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.disassembly import assemble
-from tiniscript.bytecode.image import GO, TASKS, ImageRefused, pack, sealed, unpack
+from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused, pack, sealed, unpack
 from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ISA_MAJOR, ISA_MINOR, SHORTS, Op
 from tiniscript.bytecode.verify import Refused, loaded
 from tiniscript.conformance.kit import FORM, VERSION
-from tiniscript.vm.state import DONE, FAULT, WAITING
+from tiniscript.vm.runner import MachineOf
+from tiniscript.vm.state import DONE, FAULT, RUNNING
 from tiniscript.vm.tasks import machine_of
 
 TINIBOT = robots.load("tinibot").kit
-STEPS = 100_000  # a case that runs more without a wait says nothing about its end: it is left out
+STEPS = 100_000  # a case that runs more without a wait says nothing about its end: it is left out,
+CALLS = 1000  # and so is one of more calls at one time
 RANDOM_PROGRAMS = range(1000, 1030)
-TASK_PROGRAMS = range(1000, 1010)
+TASK_PROGRAMS = range(1000, 1020)
 TASK_MS = 600
 WAY_PROGRAMS = range(1000, 1012)
 When = tuple[int, tuple[int, ...]]
@@ -46,7 +50,8 @@ When = tuple[int, tuple[int, ...]]
 USUAL: When = (0, (1,))
 WRAPS: When = (2**32 - 7, (1,))
 SELDOM: When = (2**31 - 30, (7,))
-LATE: When = (0, (45,))
+LATE_MS = 45  # between two calls
+OFTEN = (3, 7, 20)  # ms between two calls, for tasks: each has a clock of its own
 ROUND_MS = 2**31 - 8  # a multiple of the 20 ms of UNTIL; twice this is 16 ms before 2^32
 FAR = Senses({"DISTANCE": [50_000]})
 MAX_LONG = 2**31 - 1
@@ -57,13 +62,27 @@ NOTHING = bytes([BY_NAME["SET_VAR8"].code, 0, 0])
 
 
 class Run(NamedTuple):
-    """What a machine is given. `readings` are thousandths by the sensor's name."""
+    """What a machine is given. `readings` are thousandths by the sensor's name. A sensor that is in
+    `slow` is not ready from one time to another in each period. `text` is what was compiled, if
+    anything was."""
 
     name: str
     kit: Kit
     image: bytes
     senses: Senses = Senses()
     when: When = USUAL
+    slow: Mapping[str, tuple[int, int, int]] = {}
+    text: str = ""
+
+    def called_every(self, every_ms: int) -> Run:
+        name = f"{self.name} (called every {every_ms} ms)"
+        return self._replace(name=name, when=(0, (every_ms,)))
+
+    def at(self, pace: Pace) -> Run:
+        """Return this run of a robot at a pace, some of whose readings come late."""
+        slow = dict.fromkeys(pace.slow, (pace.period_ms, pace.from_ms, pace.to_ms))
+        name = f"{self.name} ({' and '.join(slow)} late, called every {pace.every_ms} ms)"
+        return self._replace(name=name, when=(0, (pace.every_ms,)), slow=slow)
 
     @property
     def needs(self) -> int:
@@ -78,10 +97,7 @@ def machine_kit(command: str) -> str:
     """Return the text of the file: a line for each case."""
     kits: list[Kit] = []
     rows = []
-    for run in [
-        *documented(), *times(), *devices(), *images(), *arithmetic(), *random_programs(),
-        *task_programs(), *ways(),
-    ]:  # fmt: skip
+    for run in runs():
         answer = answer_of(run)
         if answer is None:
             continue
@@ -99,6 +115,13 @@ def machine_kit(command: str) -> str:
     return f'{start},\n "cases": [\n' + ",\n".join(rows) + "\n ]\n}\n"
 
 
+def runs() -> Iterator[Run]:
+    """Return all that a machine is asked for, and some that never end."""
+    kinds = documented, times, late, devices, images, needs, arithmetic
+    for kind in (*kinds, random_programs, task_programs, ways):
+        yield from kind()
+
+
 def lines_of(kit: Kit) -> list[str]:
     """Return the devices of a kit, and how fast it is where that is known."""
     speeds = ("speed", kit.speed), ("turn", kit.turn)
@@ -113,7 +136,8 @@ def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
         "name": run.name,
         "kit": kit,
         "image": run.image.hex(),
-        "readings": {str(names.index(name)): list(v) for name, v in run.senses.readings.items()},
+        "readings": _by_number(names, run.senses.readings),
+        **({"slow": _by_number(names, run.slow)} if run.slow else {}),
         "seed": run.senses.seed,
         "begin": begin,
         "every": list(every_ms),
@@ -123,7 +147,31 @@ def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
     }
 
 
-def answer_of(run: Run) -> list[str] | None:
+def _by_number(names: list[str], rows: Mapping[str, Sequence[int]]) -> dict[str, list[int]]:
+    return {str(names.index(name)): list(values) for name, values in rows.items()}
+
+
+class SlowRobot(TracedRobot):
+    """A robot whose slow sensors are not always ready."""
+
+    def __init__(self, run: Run) -> None:
+        super().__init__(run.kit, lists_of(run.kit, run.senses))
+        self.slow = run.slow
+        self.was_slow = False  # in this call
+
+    def read(self, sensor: int) -> int | None:
+        period_ms, from_ms, to_ms = self.slow.get(self.kit.sensors[sensor].name, (1, 0, 0))
+        if from_ms <= self.now_ms % period_ms < to_ms:
+            self.was_slow = True
+            return None
+        return super().read(sensor)
+
+
+def answer_of(
+    run: Run,
+    loaded: Callable[[bytes, Kit], Image] = loaded,
+    machine_of: MachineOf = machine_of,
+) -> list[str] | None:
     """Return what the machine in Python answers; None where no step of it takes time."""
     try:
         code = loaded(run.image, run.kit).code
@@ -133,26 +181,30 @@ def answer_of(run: Run) -> list[str] | None:
         return [f"REFUSED {refused.name}"]
     begin, every_ms = run.when
     every = chain(every_ms, repeat(every_ms[-1]))
-    robot = TracedRobot(run.kit, lists_of(run.kit, run.senses))
+    robot = SlowRobot(run)
     machine = machine_of(code, robot, len(run.kit.sensors), run.senses.seed, begin)
-    while True:
+    calls = 0  # at the same time
+    while calls < CALLS:
+        robot.was_slow = False
         status = machine.tick(begin + robot.now_ms, STEPS)
         if status == DONE:
             robot.say("DONE", (), "DONE")
         elif status == FAULT:
             robot.say("FAULT", (), f"FAULT {machine.fault}")
-        elif status == WAITING:
-            wake_ms = max(machine.wake_ms - begin, robot.now_ms)
+        elif status == RUNNING and not robot.was_slow:
+            return None
+        else:
+            wake_ms = max(machine.wake_ms - begin, robot.now_ms + robot.was_slow)
             each_ms = next(every)
             wake_ms = -(-wake_ms // each_ms) * each_ms
             if wake_ms <= run.senses.max_ms:
+                calls = calls + 1 if wake_ms == robot.now_ms else 0
                 robot.now_ms = wake_ms
                 continue
             robot.now_ms = run.senses.max_ms
             robot.say("LIMIT", (), "LIMIT")
-        else:
-            return None
         return [str(event) for event in robot.events]
+    return None
 
 
 # -- where cases come from ----------------------------------------------------------------------
@@ -165,13 +217,18 @@ def documented() -> Iterator[Run]:
         if not case.parts.keys() & {"robot", "refused"} and not stands_alone(case):
             continue
         robot, senses = robot_and_senses(case)
-        run = Run(case.id, robot.kit, image_of(case, robot.kit), senses)
+        text = case.parts.get("tiniscript", "")
+        run = Run(case.id, robot.kit, image_of(case, robot.kit), senses, text=text)
         yield run
         if "robot" not in case.parts or not takes_time(run):
             continue
         yield run._replace(name=f"{case.id} (time wraps around)", when=WRAPS)
-        yield run._replace(name=f"{case.id} (called every 7 ms)", when=SELDOM)
-        yield run._replace(name=f"{case.id} (called every 45 ms)", when=LATE)
+        yield run._replace(name=f"{case.id} (called every 7 ms, time wraps around)", when=SELDOM)
+        yield run.called_every(LATE_MS)
+        if run.needs & TASKS:
+            yield from (run.called_every(every_ms) for every_ms in OFTEN)
+        if senses.readings:
+            yield run.at(Pace(7, tuple(senses.readings), 50, 0, 30))
 
 
 def stands_alone(case: Case) -> bool:
@@ -206,7 +263,39 @@ def times() -> Iterator[Run]:
         ("TIME is over for good", "W(FOREVER) UNTIL(DISTANCE < 10); SHOW(TIME)",
          (0, (ROUND_MS, ROUND_MS, 1)), beyond),
     ):  # fmt: skip
-        yield Run(f"time: {name}", TINIBOT, compile_image(text), senses, when)
+        yield Run(f"time: {name}", TINIBOT, compile_image(text), senses, when, text=text)
+
+
+def late() -> Iterator[Run]:
+    """Return runs whose readings come late, and what each task does meanwhile."""
+    first, echo = Pace(1, ECHO, 1000, 0, 12), Pace(1, ECHO, 1000, 0, 30)
+    rivals = "WHEN(LIGHT_R > 5);B(0.1, 50);END_WHEN;TASK;{};SHOW(TIME);END_TASK"
+    looks = rivals.format("F(FOREVER, 40) UNTIL(DISTANCE < 10)")
+    begins = rivals.format("W(0.13);M(20, 30);F(0.05, 40) UNTIL(LIGHT_L > 5 AND DISTANCE < 10)")
+    for name, text, pace in (
+        ("the first turn of the main task waits", "N = DISTANCE;TASK;SHOW(N);END_TASK;SHOW(TIME)",
+         first),
+        ("the others begin behind that turn", "DISTANCE;TASK;W(0.015);SHOW(TIME);END_TASK", first),
+        ("the others do not wait",
+         "WHEN(DISTANCE < 10);SHOW(1);END_WHEN;TASK;SHOW(2);W(0.005);SHOW(3);END_TASK", echo),
+        ("a look is over when the motors are taken", looks, Pace(1, ECHO, 1000, 100, 150)),
+        ("a first look is, too", begins, Pace(1, ECHO, 1000, 125, 150)),
+        ("the UNTIL of a wait is looked at whoever has the motors",
+         "TASK;W(0.01);B(0.1, 50);END_TASK;TASK;W(FOREVER) UNTIL(DISTANCE < 10);SHOW(TIME);"
+         "END_TASK", echo),
+        ("a clock stays where it was",
+         "TASK;LOOP(3);W(0.01);SHOW(DISTANCE);SHOW(TIME);END_LOOP;END_TASK",
+         Pace(1, ECHO, 1000, 8, 25)),
+        ("to wait for a reading is no wait",
+         "TASK;LOOP(4);SHOW(DISTANCE);SHOW(TIME);END_LOOP;END_TASK", echo),
+        ("a move that is over does not wait for its look",
+         "F(0.05, 60) UNTIL(DISTANCE < 3);SHOW(TIME);F(0.05, 60)", Pace(1, ECHO, 1000, 15, 47)),
+        ("values stay on the stack", "SHOW(1 + MAX(DISTANCE, LIGHT_R) * 2);W(0.01);SHOW(TIME)",
+         Pace(1, ("LIGHT_R",), 1000, 0, 7)),
+    ):  # fmt: skip
+        senses = Senses({"LIGHT_R": [9000, 0, 9000, 0], "DISTANCE": [5000]}, 300)
+        run = Run(f"late: {name}", TINIBOT, compile_image(text), senses, text=text)
+        yield from (run.at(pace._replace(every_ms=every_ms)) for every_ms in (1, *OFTEN))
 
 
 def devices() -> Iterator[Run]:
@@ -283,6 +372,20 @@ def images() -> Iterator[Run]:
         yield Run(f"images: on a {name}", robots.load(name).kit, good)
 
 
+def needs() -> Iterator[Run]:
+    """Return instructions that an image has, and does not say that it needs them."""
+    for name in ("TASK", "WHEN", "LOOK", "END_TASK", "END_WHEN", "GO_F", "WATCH_GO_F"):
+        op = BY_NAME[name]
+        values = bytes([BY_NAME["PUSH_NUM_1"].code]) * op.pops
+        code = values + op.opcode + bytes(op.size - len(op.opcode))
+        yield Run(f"needs: {name} without its bit", TINIBOT, pack("SI", 0, code))
+        yield Run(
+            f"needs: {name} without its bit, cut", TINIBOT, pack("SI", 0, code[: len(values) + 1])
+        )
+        yield Run(f"needs: {name} with the other bit", TINIBOT,
+                  pack("SI", 0, code, needs=GO if op.needs == TASKS else TASKS))  # fmt: skip
+
+
 def compile_image(text: str) -> bytes:
     return compile_text(text, TINIBOT).image
 
@@ -321,19 +424,35 @@ def random_programs() -> Iterator[Run]:
     """Return programs at random, at the usual times and at others."""
     for seed in RANDOM_PROGRAMS:
         program = random_program(seed)
-        run = Run(f"programs: {seed}", program.kit, program.short.image, program.senses)
+        image = program.short.image
+        run = Run(f"programs: {seed}", program.kit, image, program.senses, text=program.text)
         yield run
         if takes_time(run):
-            yield run._replace(name=f"{run.name} (called every 7 ms)", when=SELDOM)
+            yield run._replace(
+                name=f"{run.name} (called every 7 ms, time wraps around)", when=SELDOM
+            )
+            sensors = tuple(each.name for each in program.kit.sensors)
+            yield run.at(Pace(OFTEN[seed % len(OFTEN)], sensors, 130, 20, 90))
 
 
 def task_programs() -> Iterator[Run]:
-    """Return programs with tasks at random, at the usual times and at others."""
+    """Return programs with tasks at random, at the usual times and at others; with readings that
+    come late, too, and tasks that take the motors from each other meanwhile."""
     for seed in TASK_PROGRAMS:
-        text, readings = task_program(random.Random(seed))
-        run = Run(f"tasks: {seed}", TINIBOT, compile_image(text), Senses(readings, TASK_MS))
+        rng = random.Random(seed)
+        text, readings = task_program(rng)
+        run = task_run(f"tasks: {seed}", text, readings)
         yield run
-        yield run._replace(name=f"{run.name} (called every 7 ms)", when=SELDOM)
+        yield from (run.called_every(every_ms) for every_ms in OFTEN)
+        yield run._replace(name=f"{run.name} (called every 7 ms, time wraps around)", when=SELDOM)
+        yield run.at(a_pace(rng))
+        run = task_run(f"tasks: rivals {seed}", *rival_program(rng))
+        yield run
+        yield from (run.at(a_pace(rng)._replace(every_ms=every_ms)) for every_ms in OFTEN)
+
+
+def task_run(name: str, text: str, readings: Mapping[str, Sequence[int]]) -> Run:
+    return Run(name, TINIBOT, compile_image(text), Senses(readings, TASK_MS), text=text)
 
 
 def ways() -> Iterator[Run]:
@@ -353,9 +472,10 @@ def ways() -> Iterator[Run]:
         "F(45 CM, 50) UNTIL(TIME > 0.5); WHEN(TIME > 0.1 AND TIME < 0.2); S; END_WHEN",
         "F(FOREVER, 60); WHEN(TIME > 0.1); B(1 CM, 0); END_WHEN",
     ):
-        run = Run(f"ways: {text}", TINIBOT, compile_image(text), FAR._replace(max_ms=5000))
+        senses = FAR._replace(max_ms=5000)
+        run = Run(f"ways: {text}", TINIBOT, compile_image(text), senses, text=text)
         yield run
-        yield run._replace(name=f"{run.name} (called every 45 ms)", when=LATE)
+        yield run.called_every(LATE_MS)
     go, watch = BY_NAME["GO_F"].opcode, BY_NAME["WATCH_GO_R"].opcode
     two = bytes([BY_NAME["PUSH_NUM_2"].code, BY_NAME["PUSH_NUM_20"].code])
     for name, code, needs in (
@@ -372,6 +492,5 @@ def ways() -> Iterator[Run]:
         text = programs.program(rng, oracle_kit, ways=True)
         senses = Senses(programs.senses(rng, oracle_kit), 20_000)
         image = compile_text(text, kit).image
-        yield Run(f"ways: program {seed}", kit, image, senses)
-        text, readings = task_program(random.Random(seed), ways=True)
-        yield Run(f"ways: tasks {seed}", TINIBOT, compile_image(text), Senses(readings, TASK_MS))
+        yield Run(f"ways: program {seed}", kit, image, senses, text=text)
+        yield task_run(f"ways: tasks {seed}", *task_program(random.Random(seed), ways=True))

@@ -1,24 +1,25 @@
 """What a machine or a robot on a port must do: what `machine.json` and `link.json` say, as values.
 
-`python -m tools.generate` makes the files. Knows their form, and how a case is told to a machine:
-`docs/conformance.md` has both. The conversations of `link.json` are for tests of others.
+`python -m tools.builds.conformance` makes the files, which a package of a release has. Knows their
+form, and how a case is told to a machine: `docs/conformance.md` has both. The conversations of
+`link.json` are for tests of others.
 """
 
 from __future__ import annotations
 
 import json
 from importlib import resources
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 FORM = "tiniscript-machine-kit"
-VERSION = 4  # of the form; grows when a reader of the file, or a machine, must know more
+VERSION = 5  # of the form; grows when a reader of the file, or a machine, must know more
 
 
 class MachineCase(NamedTuple):
     """One run. `devices` are the kit's lines, as the specification hashes them, and how fast it is;
-    `readings` are thousandths by the number of the sensor; times are milliseconds. `every_ms` has
-    one for each wait, the last for all that follow. A machine may lack what a case `needs`, as
-    images say it."""
+    `readings` are thousandths by the number of the sensor; times are milliseconds. A `slow` sensor
+    has a period, and from when to when in each it is not ready. `every_ms` has one for each wait,
+    the last for all that follow. A machine may lack what a case `needs`, as images say it."""
 
     name: str
     devices: tuple[str, ...]
@@ -30,6 +31,7 @@ class MachineCase(NamedTuple):
     until_ms: int
     needs: int
     answer: tuple[str, ...]
+    slow: dict[int, tuple[int, int, int]]
 
     def request(self) -> str:
         """Return the lines that ask a machine for this run."""
@@ -37,9 +39,11 @@ class MachineCase(NamedTuple):
             " ".join(("readings", str(number), *map(str, values)))
             for number, values in sorted(self.readings.items())
         ]
+        slow = [f"slow {number} {' '.join(map(str, self.slow[number]))}" for number in self.slow]
         rows = (
             *self.devices,
             *lists,
+            *slow,
             f"seed {self.seed}",
             f"begin {self.begin_ms}",
             f"every {' '.join(map(str, self.every_ms))}",
@@ -50,15 +54,26 @@ class MachineCase(NamedTuple):
         return "".join(f"{row}\n" for row in rows)
 
 
+class NotMade(Exception):
+    """This installation has no file of cases."""
+
+
+def _read(name: str) -> Any:
+    """Return what a file of cases says. Raises NotMade."""
+    path = resources.files("tiniscript") / "conformance" / name
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise NotMade from None
+
+
 def machine_cases() -> list[MachineCase]:
-    """Return all cases, in the order of the file."""
-    path = resources.files("tiniscript") / "conformance" / "machine.json"
-    return cases_of(path.read_text(encoding="utf-8"))
+    """Return all cases, in the order of the file. Raises NotMade."""
+    return cases_in(_read("machine.json"))
 
 
-def cases_of(text: str) -> list[MachineCase]:
-    """Return the cases of a file of this version."""
-    found = json.loads(text)
+def cases_in(found: Any) -> list[MachineCase]:
+    """Return the cases of a file of this version, as JSON has it."""
     assert (found["form"], found["version"]) == (FORM, VERSION)
     kits = [tuple(lines) for lines in found["kits"]]
     return [
@@ -73,6 +88,7 @@ def cases_of(text: str) -> list[MachineCase]:
             row["until"],
             row.get("needs", 0),
             tuple(row["answer"]),
+            {int(number): tuple(times) for number, times in row.get("slow", {}).items()},
         )
         for row in found["cases"]
     ]
@@ -113,8 +129,8 @@ class LinkKit(NamedTuple):
 
 
 def link_kit() -> LinkKit:
-    path = resources.files("tiniscript") / "conformance" / "link.json"
-    found = json.loads(path.read_text(encoding="utf-8"))
+    """Return what a robot on a port must do. Raises NotMade."""
+    found = _read("link.json")
     assert (found["form"], found["version"]) == (LINK_FORM, LINK_VERSION)
     return LinkKit(
         tuple(

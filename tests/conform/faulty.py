@@ -1,0 +1,51 @@
+"""Machines with one fault each: modules of the machine in Python with something changed.
+
+Each fault of `faults.txt` breaks a sentence of `bytecode_spec.md`, as somebody may who has read it
+quickly. There a row `#` says what is done wrong, `=` which case must notice it, and `@` in which
+file of the package; then come changes as `diff` writes them, with an `@` between two.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from types import ModuleType
+from typing import NamedTuple
+
+from tests.support.casefile import ROOT
+from tiniscript.bytecode import verify
+
+TABLE = Path(__file__).with_name("faults.txt")
+PACKAGE = ROOT / "compiler" / "tiniscript"
+FAULT = re.compile(r"# (.*)\n= (.*)\n@ (.*)\n((?:[ +@-].*\n|\n(?=[ +@-]))+)")
+
+
+class Fault(NamedTuple):
+    says: str
+    noticed_by: str  # the name of a case
+    file: str
+    changes: str
+
+
+def faults() -> list[Fault]:
+    text = TABLE.read_text(encoding="utf-8")
+    found = [Fault(*match.groups()) for match in FAULT.finditer(text)]
+    assert len(found) == text.count("\n# ") + 1, "a fault of another form"
+    return found
+
+
+def module_with(fault: Fault) -> ModuleType:
+    """Return the module with its fault. Each change fits in one place."""
+    source = (PACKAGE / fault.file).read_text(encoding="utf-8")
+    for change in fault.changes.split("@\n"):
+        rows = change.splitlines(keepends=True)
+        was = "".join(row[1:] for row in rows if row[0] in " -")
+        becomes = "".join(row[1:] for row in rows if row[0] in " +")
+        assert f"\n{source}".count(f"\n{was}") == 1, (fault.says, was)
+        source = f"\n{source}".replace(f"\n{was}", f"\n{becomes}")[1:]
+    name = fault.file.removesuffix(".py").replace("/", ".")
+    module = ModuleType(f"tiniscript.{name}")
+    exec(compile(source, fault.says, "exec"), vars(module))
+    if hasattr(module, "Refused"):
+        vars(module)["Refused"] = verify.Refused  # or nobody would catch its own
+    return module

@@ -1,0 +1,37 @@
+"""The kit notices machines that have read the specification quickly: each by the case it names.
+
+`faults.txt` has the faults; a fault that no case notices is a hole of the kit.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import pytest
+
+from tests.conform.faulty import Fault, faults, module_with
+from tools.generate.machine_kit import Run, answer_of, runs
+
+
+@lru_cache(maxsize=1)
+def by_name() -> dict[str, Run]:
+    return {run.name: run for run in runs()}
+
+
+@pytest.mark.parametrize("fault", [pytest.param(each, id=each.says) for each in faults()])
+def test_the_case_notices_the_fault(fault: Fault) -> None:
+    run = by_name()[fault.noticed_by]
+    right = answer_of(run)
+    assert right is not None
+    module = vars(module_with(fault))
+    parts = {name: module[name] for name in ("loaded", "machine_of") if name in module}
+    try:
+        found = answer_of(run, **parts)
+    except (LookupError, AssertionError):  # it has crashed
+        return
+    assert found != right
+
+
+def test_each_fault_is_another_one() -> None:
+    assert len({each.says for each in faults()}) == len({each.changes for each in faults()})
+    assert len(faults()) == len({each.says for each in faults()})

@@ -1,0 +1,34 @@
+"""What a case of a document runs: a robot, readings and limits, and what its program becomes."""
+
+from __future__ import annotations
+
+from tests.machines import Senses
+from tests.support.casefile import Case
+from tiniscript import Compiled, compile_text, robots
+from tiniscript.cli.options import decimal
+from tiniscript.library.named_robot import name_in
+from tiniscript.robots.profile import Robot
+
+
+def robot_and_senses(case: Case) -> tuple[Robot, Senses]:
+    """Return what the fence `senses` says: `robot`, `max-time`, `seed`, and a list a sensor."""
+    readings: dict[str, list[int]] = {}
+    named = name_in(case.parts.get("tiniscript", "").encode())
+    options = {"robot": named or robots.DEFAULT, "max-time": "60", "seed": "1"}
+    for row in case.parts.get("senses", "").splitlines():
+        name, _, values = (part.strip() for part in row.partition("="))
+        if name in options:
+            options[name] = values
+        else:
+            words = {"TRUE": 1, "FALSE": 0}
+            read = [words.get(text.strip(), decimal(text.strip())) for text in values.split(",")]
+            readings[name] = [value for value in read if value is not None]
+            assert len(readings[name]) == len(read), f"{case.id}: {row}"
+    max_ms = decimal(options["max-time"])
+    assert max_ms is not None
+    return robots.load(options["robot"]), Senses(readings, max_ms, seed=int(options["seed"]))
+
+
+def compiled(case: Case) -> Compiled:
+    robot, _ = robot_and_senses(case)
+    return compile_text(case.parts["tiniscript"].removesuffix("\n"), robot.kit)
