@@ -12,6 +12,7 @@ import pytest
 from tests.machines import board as boards
 from tests.machines import sketch_board
 from tests.support.command import process
+from tests.support.conformance_kit import have_kit
 from tests.support.needs import need
 from tests.support.platformio import shared
 from tools.builds import chips, library
@@ -140,6 +141,7 @@ def test_an_image_in_flash_drives(made: Path, tmp_path_factory: pytest.TempPathF
 def test_the_link_of_an_example_conforms(
     made: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
+    have_kit()
     program = elf(made, "Link", "uno", shared(tmp_path_factory))
     with Uno(program, baud=115_200, tells_sleep=False) as uno:
         uno.go()

@@ -17,7 +17,6 @@ from types import ModuleType, SimpleNamespace
 import pytest
 
 from tests.conform.spec_machine import Spec, runs
-from tests.machines import MACHINES, Senses
 from tests.oracle import verifier
 from tests.support.casefile import ROOT
 from tests.support.command import Done, Tsc
@@ -26,9 +25,9 @@ from tiniscript import compile_text, robots
 from tiniscript.base.kit import Device, Kit
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.base.trace import TracedRobot
-from tiniscript.bytecode.image import GO
 from tiniscript.bytecode.opcodes import OPS
 from tiniscript.bytecode.verify import loaded
+from tiniscript.conformance import kit as kit_files
 from tiniscript.conformance import machine_process
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, verdicts
 from tiniscript.conformance.kit import MachineCase, link_kit, machine_cases
@@ -36,6 +35,7 @@ from tiniscript.conformance.machine_process import MachineProcess, Problem
 from tiniscript.conformance.port_checks import all_checks
 from tiniscript.vm.state import DONE, FAULT
 from tiniscript.vm.tasks import machine_of
+from tools.builds import conformance
 
 TINIBOT = tuple(line.removesuffix("\n") for line in robots.load("tinibot").kit.lines())
 PAGE = ROOT / "docs" / "conformance.md"
@@ -81,10 +81,10 @@ def test_the_machine_from_the_specification_passes_all(
     done = conform(tsc, FROM_SPEC).gives(0)
     needing = sum(bool(case.needs) for case in machine_cases())
     count = len(machine_cases()) - needing
-    assert count > 500 and needing > 100
+    assert count > 600 and needing > 600
     assert done.out == (
         f"{needing} cases with TASK, WHEN, CM or DEG were left out: this machine lacks them.\n"
-        f"{count} of {count} cases agree. Kit 4, bytecode 2.1.\n"
+        f"{count} of {count} cases agree. Kit 5, bytecode 2.1.\n"
     )
     tasks = "--only", "tasks: "
     assert json.loads(conform(tsc, FROM_SPEC, "--json", *tasks).out)["left_out"]
@@ -140,6 +140,10 @@ BREAKS = [
      "devices: "),
     ("machine", "return fits(self.passed)", "return self.passed % WRAP",
      "time: TIME is over for good"),
+    ("machine", "            self.wait_to(self.passed + 1)",
+     "            self.wait_to(self.passed + 1)\n            self.clock = self.now", "late: "),
+    ("machine", "        while self.is_slow(number, self.passed)",
+     "        while self.is_slow(number, self.passed) and number", "programs: "),
     ("verifier", "m.depth <= 16", "m.depth <= 17", "refused: "),
     ("verifier", "<= 32, TOO_DEEP", "<= 33, TOO_DEEP", "refused: "),
     ("verifier", "and inner.kind == IF), BAD_TARGET", "), BAD_TARGET", "refused: "),
@@ -212,24 +216,6 @@ def kit_of(case: MachineCase) -> Kit:
         kind, unit, low, high = rest
         devices[what].append(Device(name, kind, unit, int(low), int(high)))
     return Kit(tuple(devices["sensor"]), tuple(devices["actuator"]), **speeds)
-
-
-USUAL = [case for case in machine_cases() if (case.begin_ms, case.every_ms) == (0, (1,))]
-
-
-@pytest.mark.parametrize("name", [each for each in MACHINES if each != "python"])
-def test_the_machine_in_cpp_agrees(name: str) -> None:
-    """At the usual times; what it does late is compared elsewhere. Images that are refused are the
-    verifiers' own tests'."""
-    run = [case for case in USUAL if not case.needs & GO]  # which C++ lacks
-    run = [case for case in run if not case.answer[-1].startswith("REFUSED")]
-    assert len(run) > 200
-    for case in run:
-        kit = kit_of(case)
-        names = [device.name for device in kit.sensors]
-        readings = {names[number]: values for number, values in case.readings.items()}
-        trace = MACHINES[name](case.image, kit, Senses(readings, case.until_ms, seed=case.seed))
-        assert trace.splitlines() == list(case.answer), case.name
 
 
 def test_names_are_unique_and_each_refusal_is_there() -> None:
@@ -355,6 +341,20 @@ def test_a_command_that_does_not_start(command: str, tsc: Tsc) -> None:
     done = conform(tsc, command).gives(2)
     assert "does not start" in done.err and "Errno" not in done.err
     assert "no arranca" in conform(tsc, command, "--lang", "es").err
+
+
+def test_without_its_file_the_command_that_makes_it_is_named(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(kit_files, "FOLDER", tmp_path)
+    for words in (("--machine", "x"), ("--port", "P")):
+        said = tsc("conform", *words).gives(2).err
+        assert f"{sys.executable} -m tools.builds.conformance" in said
+        for language in ("es", "pt"):
+            assert "tools.builds.conformance" in tsc("conform", *words, "--lang", language).err
+    conformance.main([str(tmp_path)])
+    conform(tsc, FROM_SPEC, "--only", "images: no code").gives(0)
+    assert conformance.main([str(tmp_path / "nowhere")]) == 1
 
 
 def test_wrong_use(tsc: Tsc) -> None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
 import zipfile
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from threading import Thread
@@ -24,10 +27,12 @@ from tools.release import facts
 
 SKIPPED = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__", "*.pyc", ".pio",
            "page", "node_modules", "made",
+           "machine.json", "link.json",
            ".*_cache", ".coverage", "own.h", "*.bin", "*.mo", "way.png")  # fmt: skip
 ADDED = {"PKG-INFO", "setup.cfg"}  # by setuptools
 SOURCES = "tiniscript/flash/vm_arduino/"
 BUILT = "tiniscript/studio/page/index.html"  # by tools.builds.studio, before a wheel is made
+CASES = "tiniscript/conformance/machine.json"  # by tools.builds.conformance
 URL = "https://example.org/tiniscript"
 EPOCH = "1700000000"
 BUILD = "import sys; from setuptools import build_meta; print(build_meta.{0}(sys.argv[1]))"
@@ -92,10 +97,13 @@ def wheel(repo: Path, kept: set[str], tmp_path_factory: pytest.TempPathFactory) 
     page = repo / "compiler" / BUILT
     page.parent.mkdir()
     page.touch()
+    cases = repo / "compiler" / CASES
+    cases.touch()
     folder = tmp_path_factory.mktemp("wheel")
     with zipfile.ZipFile(built(repo, "build_wheel", folder)) as packed:
         packed.extractall(folder / "unpacked")
     own.unlink()
+    cases.unlink()
     shutil.rmtree(page.parent)
     return folder / "unpacked"
 
@@ -137,7 +145,7 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
         if name.startswith("vm_arduino/src/")
         or name in ("vm_arduino/platformio.ini", "vm_arduino/partitions.csv")
     }
-    assert found == package | sources | {BUILT}
+    assert found == package | sources | {BUILT, CASES}
     assert len(sources) > 50
 
 
@@ -177,6 +185,7 @@ def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
 
 PAGE_MISSING = "tools.builds.studio"
 FIRMWARE_MISSING = "tools.builds.firmware_files"
+CASES_MISSING = "tools.builds.conformance"
 
 
 BUILDS_PAGE = """#!/bin/sh
@@ -217,7 +226,7 @@ def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, pa
     os.close(ours)
     told = done.stderr or b"".join(said).decode()
     assert done.returncode == 0, told
-    assert "made without" in told and FIRMWARE_MISSING in told
+    assert "made without" in told and FIRMWARE_MISSING in told and CASES_MISSING in told
     assert (PAGE_MISSING in told) == (page == "none")
     with zipfile.ZipFile(tmp_path / done.stdout.split()[-1]) as packed:
         assert (BUILT in packed.namelist()) == (page != "none")
@@ -226,6 +235,27 @@ def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, pa
                      PYTHONPATH=str(tmp_path / "made"))  # fmt: skip
     assert "without ready firmware" in version.stdout
     assert ("without the page" in version.stdout) == (page == "none")
+
+
+def test_an_installation_without_cases_names_the_command_that_makes_them(
+    unpacked: Path, tmp_path: Path
+) -> None:
+    """Run in the sources it names, the command makes them for that installation."""
+    package = tmp_path / "an installation" / "tiniscript"
+    shutil.copytree(unpacked / "compiler" / "tiniscript", package)
+    words = ("-m", "tiniscript", "conform", "--lang", "en", "--only", "images: no code", "--json",
+             "--machine", f"{sys.executable} -m tests.conform.spec_machine")  # fmt: skip
+    tsc = partial(python, *words, folder=unpacked, PYTHONPATH=str(package.parent))
+    lacks = tsc()
+    assert lacks.returncode == 2 and not lacks.stdout
+    _, _, command = lacks.stderr.strip().rpartition(":  ")
+    assert CASES_MISSING in command and str(package) in command
+    done = subprocess.run(shlex.split(command), cwd=unpacked, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert not (unpacked / "compiler" / CASES).exists()
+    found = tsc(PYTHONPATH=os.pathsep.join((str(package.parent), str(unpacked))))
+    assert found.returncode == 0, found.stderr
+    assert json.loads(found.stdout)["agree"] == 1
 
 
 # -- the source package

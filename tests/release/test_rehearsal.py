@@ -11,7 +11,7 @@ from tools.release.parts import PARTS, Clone, chosen
 
 def test_parts_bring_those_that_they_need_in_their_order() -> None:
     assert chosen([]) == list(PARTS)
-    assert chosen(["stick"]) == ["wheel", "stick"]
+    assert chosen(["stick"]) == ["conformance", "wheel", "stick"]
     assert chosen(["page", "library"]) == ["studio", "page", "library"]
 
 

@@ -30,8 +30,6 @@ from tools.generate.driver_lists import with_drivers
 from tools.generate.front import fronts
 from tools.generate.guide_pictures import guide_pictures
 from tools.generate.link_header import payloads
-from tools.generate.link_kit import link_kit
-from tools.generate.machine_kit import machine_kit
 from tools.generate.poster import posters
 from tools.generate.wiring_pages import wiring_pages
 from tools.site.documents import LIST, name_in
@@ -211,7 +209,6 @@ MACHINE = ROOT / "vm_arduino" / "src" / "vm"
 LINK = ROOT / "vm_arduino" / "src" / "link"
 PAYLOADS = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
 TEXT = ROOT / "vm_arduino" / "src" / "text"
-CONFORMANCE = ROOT / "compiler" / "tiniscript" / "conformance"
 WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
 WIRING = ROOT / "docs" / "wiring"
 
@@ -242,8 +239,6 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     *((ROOT / "docs" / name, make) for name, make in guide_pictures(COMMAND).items()),
     (ROOT / LIST, partial(list_of_documents, COMMAND)),  # which reads the other documents' titles
     (ROOT / "vm_arduino" / "test" / "cases.cpp", partial(cases_table, COMMAND)),
-    (CONFORMANCE / "machine.json", partial(machine_kit, COMMAND)),
-    (CONFORMANCE / "link.json", partial(link_kit, COMMAND)),
     *(
         (WIRED / f"{path.stem}.h", partial(robot_header, path))
         for path in sorted(ROBOTS.glob("*.toml"))

@@ -32,8 +32,8 @@ from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused, pack, seal
 from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ISA_MAJOR, ISA_MINOR, SHORTS, Op
 from tiniscript.bytecode.verify import Refused, loaded
 from tiniscript.conformance.kit import FORM, VERSION
-from tiniscript.vm.runner import MachineOf
-from tiniscript.vm.state import DONE, FAULT, RUNNING
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import DONE, FAULT, RUNNING, Robot
 from tiniscript.vm.tasks import machine_of
 
 TINIBOT = robots.load("tinibot").kit
@@ -170,7 +170,7 @@ class SlowRobot(TracedRobot):
 def answer_of(
     run: Run,
     loaded: Callable[[bytes, Kit], Image] = loaded,
-    machine_of: MachineOf = machine_of,
+    machine_of: Callable[[bytes, Robot, int, int, int], Machine] = machine_of,
 ) -> list[str] | None:
     """Return what the machine in Python answers; None where no step of it takes time."""
     try:

@@ -83,6 +83,11 @@ def studio(clone: Clone) -> list[Path]:
     return []
 
 
+def conformance(clone: Clone) -> list[Path]:
+    clone.python("-m", "tools.builds.conformance")
+    return []
+
+
 def wheel(clone: Clone) -> list[Path]:
     clone.python("-c", _SETUPTOOLS.format("wheel"), str(clone.parts))
     return list(clone.parts.glob("*.whl"))
@@ -142,11 +147,13 @@ class Part(NamedTuple):
     needs: tuple[str, ...] = ()  # parts that are made before
 
 
-# In the order in which they are made: a wheel brings firmware and page, a stick brings the wheel.
+# In the order in which they are made: a wheel brings firmware, page and the cases of tsc conform, a
+# stick brings the wheel.
 PARTS = {
     "firmware": Part(firmware),
     "studio": Part(studio),
-    "wheel": Part(wheel),
+    "conformance": Part(conformance),
+    "wheel": Part(wheel, ("conformance",)),
     "sdist": Part(sdist),
     "page": Part(page, ("studio",)),
     "library": Part(library),

@@ -26,8 +26,8 @@ struct Limits {
 // The time of the next call: what the program waits for, or a slow sensor, rounded up.
 uint32_t next_call_ms(uint32_t wake_ms) {
   const uint32_t now_ms = static_cast<uint32_t>(robot.now_ms);
-  // A turn of tasks may be due since before. The clock of a program without them wraps around.
-  if (robot.has_tasks && wake_ms < now_ms) wake_ms = now_ms;
+  // A turn may be due since before: one of a task, or what has waited for a reading.
+  if (static_cast<int32_t>(wake_ms - now_ms) < 0) wake_ms = now_ms;
   if (robot.was_slow && wake_ms == now_ms) wake_ms++;
   robot.was_slow = false;
   const uint32_t every_ms = robot.pace.every_ms;

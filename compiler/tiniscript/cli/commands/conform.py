@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import sys
 from argparse import Namespace
 from collections.abc import Iterable
 
@@ -18,9 +19,17 @@ from tiniscript.cli.robot.connect import baud_of, opening_port
 from tiniscript.cli.texts import say, text
 from tiniscript.conformance import port_checks
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, Verdict, verdicts
-from tiniscript.conformance.kit import LINK_VERSION, VERSION, link_kit, machine_cases
+from tiniscript.conformance.kit import (
+    FOLDER,
+    LINK_VERSION,
+    VERSION,
+    NotMade,
+    link_kit,
+    machine_cases,
+)
 from tiniscript.conformance.machine_process import CannotStart, MachineProcess
 from tiniscript.conformance.wire_robot import Silent, WireRobot
+from tiniscript.library import install_advice
 from tiniscript.link import ports
 from tiniscript.link.messages import MAJOR, MINOR, OWNED, STOP_BYTES
 from tiniscript.link.wire import Wire
@@ -29,6 +38,7 @@ PATIENCE_S = 10
 MOST_SHOWN = 20
 CABLE_MS, RADIO_MS = 300, 700  # for one try of an answer
 BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
+MAKER = "tools.builds.conformance"  # which no package brings
 ISA = f"{ISA_MAJOR}.{ISA_MINOR}"
 
 
@@ -36,11 +46,22 @@ def run(options: Namespace, language: str) -> int:
     timeout_s = whole_number("--timeout", options.timeout, PATIENCE_S, 1, 3600, language)
     if options.machine is None and options.port is None:
         raise CommandError(2, "conform_which")
-    if options.machine is None:
-        return _port(options, language)
-    if options.port is not None or options.baud is not None:
-        raise CommandError(2, "conform_both")
-    return _machine(options, timeout_s, language)
+    try:
+        if options.machine is None:
+            return _port(options, language)
+        if options.port is not None or options.baud is not None:
+            raise CommandError(2, "conform_both")
+        return _machine(options, timeout_s, language)
+    except NotMade:
+        raise CommandError(2, "conform_not_made", how=making()) from None
+
+
+def making() -> str:
+    """Return the command that makes the cases of this installation in a clone."""
+    words = [sys.executable, "-m", MAKER]
+    if not install_advice.is_clone(install_advice.CLONE):
+        words.append(str(FOLDER))
+    return " ".join(map(install_advice.quoted, words))
 
 
 def _machine(options: Namespace, timeout_s: int, language: str) -> int:

@@ -1,0 +1,144 @@
+"""The kit's answers are those of all machines: Python's are written down, the others judge them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from functools import lru_cache, partial
+
+import pytest
+
+from tests.conform.spec_machine import Spec
+from tests.machines import avr
+from tests.machines.host import host, ran, run_request
+from tests.machines.host import missing as host_missing
+from tests.machines.pace import Pace, trace_at
+from tests.oracle import interpreter
+from tiniscript.base.kit import Kit
+from tiniscript.conformance.kit import FORM, VERSION, cases_in
+from tools.generate.machine_kit import Run, answer_of, case_of, lines_of, runs
+
+AVR_BYTES = 700  # of an image
+
+
+@lru_cache(maxsize=1)
+def answered() -> list[tuple[Run, list[str]]]:
+    found = ((run, answer_of(run)) for run in runs())
+    return [(run, answer) for run, answer in found if answer is not None]
+
+
+def pace_of(run: Run) -> Pace:
+    (times,) = {*run.slow.values()} or {(1, 0, 0)}
+    return Pace(run.when[1][0], tuple(run.slow), *times)
+
+
+# -- the machine in C++ -------------------------------------------------------------------------
+
+
+def run_by_host(run: Run) -> str:
+    request = run_request(run.image, run.kit, run.senses, begin_ms=run.when[0])
+    return ran(host().ask(b"P", pace_of(run).packed(run.kit) + request).decode()).trace
+
+
+def run_by_avr(chip: str, run: Run) -> str:
+    pace = pace_of(run)
+    return avr.ran_on(
+        chip, run.image, run.kit, run.senses, pace=pace, begin_ms=run.when[0]
+    ).trace  # fmt: skip
+
+
+def run_by_wasm(run: Run) -> str:
+    from tiniscript.vm.wasm import WasmImage
+
+    machine = WasmImage(run.image, run.kit).machine
+    return trace_at(pace_of(run), machine, run.image, run.kit, run.senses)
+
+
+CPP: dict[str, tuple[Callable[[Run], str], str, int]] = {  # of so many runs it has one
+    "host": (run_by_host, host_missing(), 1),
+    "wasm": (run_by_wasm, "", 5),
+    "uno": (partial(run_by_avr, avr.UNO), avr.missing(), 25),
+    "mega": (partial(run_by_avr, avr.MEGA), avr.missing(), 25),
+}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.skipif(bool(why), reason=why or "here"))
+        for name, (_, why, _) in CPP.items()
+    ],
+)
+def test_a_machine_in_cpp_agrees(name: str) -> None:
+    """One that is called at a pace; what is late in another way is compared elsewhere. Images that
+    are refused are the verifiers' own tests'."""
+    machine, _, one_in = CPP[name]
+    cases = [(run, answer) for run, answer in answered() if is_for(name, run, answer)]
+    assert len(cases) > 900
+    assert any(run.slow and run.needs for run, _ in cases)
+    for run, answer in cases[::one_in]:
+        assert machine(run).splitlines() == answer, run.name
+
+
+def is_for(name: str, run: Run, answer: list[str]) -> bool:
+    begin_ms, every_ms = run.when
+    if answer[-1].startswith("REFUSED") or len(every_ms) > 1:
+        return False
+    if name in avr.BUILT:
+        return len(run.image) < AVR_BYTES
+    return name != "wasm" or not begin_ms  # it is told no time to begin with
+
+
+# -- the oracles --------------------------------------------------------------------------------
+
+UNREAD = "text: The dashes and spaces that phones put in are read"  # by the interpreter
+
+
+def test_the_oracles_say_the_same() -> None:
+    """The interpreter has the language reference alone. What has no text, and no task, is judged by
+    the machine that the specification alone has made, and all that is refused by its verifier."""
+    spec = Spec()
+    spec.refuses_only = True
+    judges = Counter[str]()
+    for run, answer in answered():
+        if run.text and len(run.when[1]) == 1 and not run.name.startswith(UNREAD):
+            judges["interpreter"] += 1
+            assert judged(run).splitlines() == answer, run.name
+        elif answer[0].startswith("REFUSED") or not run.needs:
+            judges["specification"] += 1
+            assert spec.answer(request_of(run, answer)) == answer, run.name
+        else:
+            judges["nobody"] += 1  # but the document that says what it does
+            assert run.name.startswith("tasks: ") and not run.text, run.name
+    assert judges["interpreter"] > 900 and judges["specification"] > 400
+    assert judges["nobody"] < 50, "disassemblies of several tasks"
+
+
+def judged(run: Run) -> str:
+    """Return what the interpreter of texts says that a run prints."""
+
+    def is_slow(sensor: str, now_ms: int) -> bool:
+        period_ms, from_ms, to_ms = run.slow.get(sensor, (1, 0, 0))
+        return from_ms <= now_ms % period_ms < to_ms
+
+    readings, max_ms, max_steps, seed = run.senses
+    (every_ms,) = run.when[1]
+    return interpreter.run(
+        run.text, oracle_kit(run.kit), readings, max_ms, max_steps, seed, is_slow, every_ms
+    )
+
+
+def oracle_kit(kit: Kit) -> interpreter.Kit:
+    sensors, actuators = (
+        tuple(interpreter.Device(each.name, each.is_yes_no, each.low, each.high) for each in found)
+        for found in (kit.sensors, kit.actuators)
+    )
+    return interpreter.Kit(sensors, actuators, kit.speed, kit.turn)
+
+
+def request_of(run: Run, answer: list[str]) -> list[str]:
+    """Return the lines that ask a process for a run, without the last one."""
+    kits = [[line.removesuffix("\n") for line in lines_of(run.kit)]]
+    file = {"form": FORM, "version": VERSION, "kits": kits, "cases": [case_of(run, 0, answer)]}
+    (case,) = cases_in(file)
+    return case.request().splitlines()[:-1]

@@ -1,0 +1,38 @@
+"""The cases of `tsc conform` in this clone: git does not keep them, so tests have them made."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import lru_cache, partial
+from pathlib import Path
+
+from tests.machines.host import BUILDS, once
+from tests.support.casefile import ROOT
+from tools.builds import conformance
+
+# What they are made from.
+SOURCES = (
+    "compiler/tiniscript/**/*.py", "compiler/tiniscript/robots/*.toml", "tests/cases/*.md",
+    "tests/machines/*.py", "tests/oracle/*.py", "tests/support/*.py", "tools/generate/*_kit.py",
+    "tools/builds/conformance.py", "bytecode_spec.md", "docs/link.md",
+)  # fmt: skip
+
+
+@lru_cache(maxsize=1)
+def have_kit() -> None:
+    """Have the files of these sources, made once by whoever needs them first."""
+    digest = hashlib.sha256()
+    for path in sorted(path for pattern in SOURCES for path in ROOT.glob(pattern)):
+        digest.update(bytes(path.relative_to(ROOT)) + path.read_bytes())
+    for name in conformance.FILES:
+        made = once(BUILDS / f"{digest.hexdigest()[:16]}-{name}", partial(_make, name))
+        _put(made.read_bytes(), conformance.FOLDER / name)
+
+
+def _make(name: str, own: Path) -> None:
+    own.write_bytes(conformance.text_of(name).encode())
+
+
+def _put(text: bytes, target: Path) -> None:
+    if not target.is_file() or target.read_bytes() != text:
+        conformance.write(target, text.decode())

@@ -1,0 +1,55 @@
+"""Makes the cases of `tsc conform` in a few seconds: git does not keep them, a release brings them.
+
+    python -m tools.builds.conformance [FOLDER]
+
+writes `machine.json` and `link.json` into the clone's package, or into the folder of another
+installation, which `tsc conform` names where it has none. Needs what `tsc` needs, and no more.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from tools import ROOT
+from tools.generate.link_kit import link_kit
+from tools.generate.machine_kit import machine_kit
+
+FOLDER = ROOT / "compiler" / "tiniscript" / "conformance"
+FILES: dict[str, Callable[[str], str]] = {"machine.json": machine_kit, "link.json": link_kit}
+COMMAND = "python -m tools.builds.conformance"
+
+
+def text_of(name: str) -> str:
+    """Return what a file of cases says."""
+    return FILES[name](COMMAND)
+
+
+def write(target: Path, text: str) -> None:
+    """Have the file there as a whole, whenever somebody reads it. Raises OSError."""
+    new = target.with_name(f"{target.name}.{os.getpid()}")
+    new.write_text(text, encoding="utf-8", newline="\n")
+    new.replace(target)
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    about, _, _ = (__doc__ or "").partition("\n\n")
+    reader = argparse.ArgumentParser(prog=COMMAND, description=about)
+    reader.add_argument("folder", type=Path, nargs="?", default=FOLDER,
+                        help="tiniscript/conformance of another installation")  # fmt: skip
+    folder: Path = reader.parse_args(words).folder
+    try:
+        for name in FILES:
+            write(folder / name, text_of(name))
+            print(folder / name)
+    except OSError as why:
+        print(f"{COMMAND}: {why.strerror or why}: {why.filename or folder}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
