@@ -57,8 +57,8 @@ def run_by_wasm(run: Run) -> str:
 CPP: dict[str, tuple[Callable[[Run], str], str, int]] = {  # of so many runs it has one
     "host": (run_by_host, host_missing(), 1),
     "wasm": (run_by_wasm, "", 5),
-    "uno": (partial(run_by_avr, avr.UNO), avr.missing(), 25),
-    "mega": (partial(run_by_avr, avr.MEGA), avr.missing(), 25),
+    "uno": (partial(run_by_avr, avr.UNO), avr.missing(), 10),
+    "mega": (partial(run_by_avr, avr.MEGA), avr.missing(), 10),
 }
 
 

@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shlex
+import subprocess
 import sys
 import time
 from collections.abc import Sequence
@@ -54,6 +55,20 @@ def test_a_sensor_without_readings_has_a_line_without_values() -> None:
     case = case._replace(devices=TINIBOT, image=shown, readings={0: ()}, every_ms=(1,), begin_ms=0)
     (rows,) = runs(case.request().splitlines(keepends=True))
     assert Spec().answer(rows) == ["0 READ LIGHT_R 0", "0 SHOW 0", "0 DONE"]
+
+
+def test_a_sensor_that_is_late_has_a_line_behind_the_readings() -> None:
+    image = compile_text("SHOW(LIGHT_R + TIME)", robots.load("tinibot").kit).image
+    case = machine_cases()[0]._replace(
+        devices=TINIBOT, image=image, readings={0: (5000,)}, slow={0: (100, 0, 32)},
+        begin_ms=2**32 - 5, every_ms=(3,), until_ms=99,
+    )  # fmt: skip
+    (rows,) = runs(case.request().splitlines(keepends=True))
+    assert rows[-7:-5] == ["readings 0 5000", "slow 0 100 0 32"]
+    assert Spec().answer(rows) == ["33 READ LIGHT_R 5", "33 SHOW 5.033", "33 DONE"]
+    late = case._replace(until_ms=31)
+    (rows,) = runs(late.request().splitlines(keepends=True))
+    assert Spec().answer(rows) == ["31 LIMIT"]
 
 
 def machine(tmp_path: Path, source: str) -> str:
@@ -355,6 +370,26 @@ def test_without_its_file_the_command_that_makes_it_is_named(
     conformance.main([str(tmp_path)])
     conform(tsc, FROM_SPEC, "--only", "images: no code").gives(0)
     assert conformance.main([str(tmp_path / "nowhere")]) == 1
+
+
+WITHOUT = """
+import sys
+sys.modules.update(dict.fromkeys(("pytest", "hypothesis", "construct", "wasmtime", "PIL"), None))
+from tools.builds import conformance
+sys.exit(conformance.main(sys.argv[1:]))
+"""
+
+
+def test_cases_are_made_without_the_tools_of_tests_and_are_the_same(
+    tmp_path: Path,
+) -> None:
+    """A release makes them in two clones, with sets in another order in each."""
+    subprocess.run(
+        [sys.executable, "-c", WITHOUT, tmp_path],
+        cwd=ROOT, check=True, capture_output=True, env={**os.environ, "PYTHONHASHSEED": "7"},
+    )  # fmt: skip
+    for name in conformance.FILES:
+        assert (tmp_path / name).read_bytes() == (conformance.FOLDER / name).read_bytes()
 
 
 def test_wrong_use(tsc: Tsc) -> None:
