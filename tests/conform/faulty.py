@@ -8,12 +8,15 @@ file of the package; then come changes as `diff` writes them, with an `@` betwee
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tests.support.casefile import ROOT
 from tiniscript.bytecode import verify
+from tiniscript.vm.handlers import HANDLERS
 
 TABLE = Path(__file__).with_name("faults.txt")
 PACKAGE = ROOT / "compiler" / "tiniscript"
@@ -34,7 +37,17 @@ def faults() -> list[Fault]:
     return found
 
 
-def module_with(fault: Fault) -> ModuleType:
+@contextmanager
+def machine_with(fault: Fault) -> Iterator[dict[str, Any]]:
+    """Yield the names of the module with its fault, whose handlers are in force meanwhile."""
+    handlers = dict(HANDLERS)
+    try:
+        yield vars(_module_with(fault))
+    finally:
+        HANDLERS.update(handlers)
+
+
+def _module_with(fault: Fault) -> ModuleType:
     """Return the module with its fault. Each change fits in one place."""
     source = (PACKAGE / fault.file).read_text(encoding="utf-8")
     for change in fault.changes.split("@\n"):

@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import pytest
 
-from tests.conform.faulty import Fault, faults, module_with
+from tests.conform.faulty import Fault, faults, machine_with
 from tools.generate.machine_kit import Run, answer_of, runs
 
 
@@ -23,13 +23,14 @@ def test_the_case_notices_the_fault(fault: Fault) -> None:
     run = by_name()[fault.noticed_by]
     right = answer_of(run)
     assert right is not None
-    module = vars(module_with(fault))
-    parts = {name: module[name] for name in ("loaded", "machine_of") if name in module}
-    try:
-        found = answer_of(run, **parts)
-    except (LookupError, AssertionError):  # it has crashed
-        return
+    with machine_with(fault) as module:
+        parts = {name: module[name] for name in ("loaded", "machine_of") if name in module}
+        try:
+            found = answer_of(run, **parts)
+        except (LookupError, AssertionError):  # it has crashed
+            found = []
     assert found != right
+    assert answer_of(run) == right, "a fault stays behind"
 
 
 def test_each_fault_is_another_one() -> None:
