@@ -35,7 +35,7 @@ NOT_COMPARED = "-fno-sanitize-coverage=trace-cmp"
 MOST_BYTES = 700  # of an input
 DONE = re.compile(r"Done (\d+) runs")
 
-VM = ("crc32.cpp", "image.cpp", "verify.cpp", "bytecode.cpp", "decode_form.cpp")
+VM = ("crc32.cpp", "find_word.cpp", "image.cpp", "verify.cpp", "bytecode.cpp", "decode_form.cpp")
 VM_PARTS = ("instructions", "robot", "moves", "tasks")
 MACHINE = ("vm.cpp", *(f"vm_{part}.cpp" for part in VM_PARTS), "number.cpp")
 PARTS = {

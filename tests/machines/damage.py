@@ -73,7 +73,7 @@ class CppDamage(Process):
 def built(sources: Path, is_large: bool) -> Path:
     code = (
         "src/link/receiver.cpp", "src/link/typed_stop.cpp", "src/link/frames.cpp",
-        "src/vm/crc32.cpp",
+        "src/vm/crc32.cpp", "src/vm/find_word.cpp",
     )  # fmt: skip
     inputs = [sources / name for name in (*code, "extras/damage/main.cpp", "extras/host/wire.h")]
     for folder in ("vm", "link", "boards/esp32"):

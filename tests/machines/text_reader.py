@@ -70,5 +70,6 @@ def built(flags: tuple[str, ...] = ()) -> Path:
     """Return the program made from the reader and `extras/text`."""
     inputs = files_in(SOURCES, "src/text", "extras/text")
     vm = SOURCES / "src" / "vm"
-    inputs += [vm / name for name in ("bytecode.h", "crc32.h", "flash.h", "small.h", "crc32.cpp")]
+    names = ("bytecode.h", "crc32.h", "find_word.h", "flash.h", "small.h")
+    inputs += [vm / name for name in (*names, "crc32.cpp", "find_word.cpp")]
     return compiled(inputs, (*FLAGS, *flags))

@@ -5,6 +5,7 @@
 #include "../text/kit_words.h"
 #include "../text/unpacked.h"
 #include "../text/words.h"
+#include "../vm/find_word.h"
 #include "../vm/has_tasks.h"
 #include "../vm/small.h"
 #include "console.h"
@@ -19,7 +20,6 @@ namespace tiniscript {
 namespace {
 
 constexpr uint8_t kLineEndBytes = 2;
-constexpr uint8_t kLastLetter = 0x80;
 constexpr uint8_t kLongestWord = 24;
 
 // From here on words are not said: END_DEF where there are no DEFs, and other spellings.

@@ -1,5 +1,6 @@
 #include "typed_stop.h"
 
+#include "../vm/find_word.h"
 #include "../vm/flash.h"
 #include "../vm/small.h"
 
@@ -7,24 +8,26 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kLast = 0x80;  // marks the last letter of a word
-
 // What a line is that stops. The second word begins at kStopAt.
 // clang-format off
-const uint8_t kWords[] tini_progmem = {
-    's' | kLast,
-    's', 't', 'o', 'p' | kLast,
-    's', 't', 'o', 'p', 'n', 'o', 'w' | kLast,
-    'a', 'l', 't', 'o' | kLast,
-    'p', 'a', 'r', 'a' | kLast,
-    'p', 'a', 'r', 'a', 'r' | kLast,
-    'p', 'a', 'r', 'e' | kLast,
-    'd', 'e', 't', 'e', 'n', 't', 'e' | kLast,
-    'h', 'a', 'l', 't' | kLast,
+constexpr uint8_t kWords[] tini_progmem = {
+    's' | kLastLetter,
+    's', 't', 'o', 'p' | kLastLetter,
+    's', 't', 'o', 'p', 'n', 'o', 'w' | kLastLetter,
+    'a', 'l', 't', 'o' | kLastLetter,
+    'p', 'a', 'r', 'a' | kLastLetter,
+    'p', 'a', 'r', 'a', 'r' | kLastLetter,
+    'p', 'a', 'r', 'e' | kLastLetter,
+    'd', 'e', 't', 'e', 'n', 't', 'e' | kLastLetter,
+    'h', 'a', 'l', 't' | kLastLetter,
     0};
 // clang-format on
 
 constexpr uint8_t kStopAt = 5;  // letters of STOP NOW, without a mark
+
+constexpr int words_from(const uint8_t* letter) {
+  return *letter == 0 ? 0 : *letter / kLastLetter + words_from(letter + 1);
+}
 
 }  // namespace
 
@@ -69,22 +72,14 @@ inline void TypedStop::add(uint8_t small) {
 
 tini_noinline TypedStop::Found TypedStop::found() const {
   const uint8_t number = word();
-  return number == kNoWord ? kNone : number <= kStop && !is_loose_ ? kStrict : kLoose;
+  return number >= kNoWord ? kNone : number <= kStop && !is_loose_ ? kStrict : kLoose;
 }
 
-// The number of the word that the line is so far.
+// The number of the word that the line is so far, or kNoWord.
 tini_noinline uint8_t TypedStop::word() const {
-  if (static_cast<uint8_t>(count_ - 1) >= kLongest) return kNoWord;
-  const uint8_t* letter = kWords;
-  for (uint8_t number = 0; flash_byte(letter) != 0; number++) {
-    const uint8_t* mine = word_;
-    uint8_t other = 0;  // bits in which they differ
-    do {
-      other |= static_cast<uint8_t>(flash_byte(letter) ^ *mine++);
-    } while ((flash_byte(letter++) & kLast) == 0);
-    if (other == kLast && mine == word_ + count_) return number;
-  }
-  return kNoWord;
+  static_assert(words_from(kWords) == kNoWord, "");
+  const uint8_t length = count_;
+  return static_cast<uint8_t>(length - 1) < kLongest ? find_word(kWords, word_, length) : kNoWord;
 }
 
 }  // namespace tiniscript

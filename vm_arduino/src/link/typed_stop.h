@@ -37,7 +37,7 @@ class TypedStop {
 
   // Words by their number.
   static constexpr uint8_t kStop = 1;  // S and STOP
-  static constexpr uint8_t kNoWord = 255;
+  static constexpr uint8_t kNoWord = 9;  // so many there are
 
   // How far the line ends like STOP STOP: letters of it, or two S. Or it ends with a slash, or has a
   // comment.

@@ -1,15 +1,10 @@
 // The reader's words: those of the language and of the kit, in flash, and the names of a program.
 
+#include "../vm/find_word.h"
 #include "kit_words.h"
 #include "reader_parts.h"
 
 namespace tiniscript {
-
-namespace {
-
-constexpr uint8_t kLastLetter = 0x80;
-
-}  // namespace
 
 // The word behind the code has ended. It stays there until code is emitted.
 void Reader::end_word() {
@@ -29,10 +24,10 @@ void Reader::end_word() {
 // Returns the number of the word behind the code in a table in flash, or that of the table's end.
 // Its last letter is marked; `unmark` takes that off again.
 tini_noinline uint8_t Reader::find(const uint8_t* table, uint8_t unmark) {
-  uint8_t* const last = buffer_ + length_ + letters_ - 1;
+  uint8_t* const word = buffer_ + length_;
+  uint8_t* const last = word + letters_ - 1;
   *last |= kLastLetter;
-  uint8_t number = 0;
-  while (flash_byte(table) != 0 && !matches(&table, true)) number++;
+  const uint8_t number = find_word(table, word, letters_);
   *last ^= unmark;
   return number;
 }

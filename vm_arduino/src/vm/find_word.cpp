@@ -1,0 +1,30 @@
+#ifndef __AVR__
+
+#include "find_word.h"
+
+#include "flash.h"
+
+namespace tiniscript {
+
+uint8_t find_word(const uint8_t* table, const uint8_t* word, uint8_t length) {
+  uint8_t number = 0;
+  while (flash_byte(table) != 0) {
+    bool is_same = true;
+    uint8_t at = 0;
+    uint8_t letter;
+    do {
+      letter = flash_byte(table++);
+      if (is_same) {
+        const uint8_t its = word[at++];
+        is_same = letter == (at == length ? its | kLastLetter : its);
+      }
+    } while ((letter & kLastLetter) == 0);
+    if (is_same) break;
+    number++;
+  }
+  return number;
+}
+
+}  // namespace tiniscript
+
+#endif  // __AVR__
