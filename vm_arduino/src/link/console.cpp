@@ -4,6 +4,7 @@
 #include "../vm/has_tasks.h"
 #include "../vm/small.h"
 #include "port.h"
+#include "run_down.h"
 
 #ifndef tiniscript_without_text
 
@@ -38,9 +39,7 @@ bool is_latched() { return port_status().state >= State::kStopped; }
 
 tini_noinline void Console::pass(uint16_t passed_ms, uint16_t silence_left_ms) {
   is_due_ = true;
-  for (uint16_t& left_ms : left_ms_) {
-    left_ms = passed_ms < left_ms ? static_cast<uint16_t>(left_ms - passed_ms) : 0;
-  }
+  run_down(left_ms_, kTimes, passed_ms);
   if (left_ms_[kWait] == 0 && silence_left_ms <= (is_brief_ ? kSilenceMs - kBriefMs : 0)) {
     is_discarding_ = false;
   }
@@ -302,7 +301,7 @@ inline Console::Act Console::end_line(bool is_heard) {
 }
 
 // Whether the line is read, and nothing but S does anything.
-bool Console::is_ignored() const {
+tini_noinline bool Console::is_ignored() const {
   return is_discarding_ || (is_ignoring_ && !reader_.has_setup());
 }
 

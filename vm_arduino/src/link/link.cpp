@@ -4,6 +4,7 @@
 #include "../vm/small.h"
 #include "has_owners.h"
 #include "port.h"
+#include "run_down.h"
 
 namespace tiniscript {
 
@@ -48,9 +49,7 @@ void Link::pass(uint16_t now_ms) {
   const bool is_line = receiver_->has_open_line();
   const bool has_heard = receiver_->has_heard();
   const uint16_t before = left_ms_[kSilence];
-  for (uint16_t& left_ms : left_ms_) {
-    left_ms = passed < left_ms ? static_cast<uint16_t>(left_ms - passed) : 0;
-  }
+  run_down(left_ms_, kTimes, passed);
   if (kHasLargeFrames && left_ != 0 && left_ms_[kFrameSent] != 0) left_ms_[kFrameSent] = kTextMs;
   if (has_heard) {
     left_ms_[kSilence] = kSilenceMs;

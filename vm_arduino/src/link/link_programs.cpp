@@ -62,7 +62,7 @@ bool Link::go_live() {
 }
 
 // Refuses, with a reason and its detail.
-uint8_t Link::refuse(Answer answer, uint16_t detail) {
+tini_noinline uint8_t Link::refuse(Answer answer, uint16_t detail) {
   said_.detail = detail;
   return number_of(answer);
 }
@@ -98,7 +98,7 @@ uint8_t Link::make_room(Use use, uint16_t length) {
 }
 
 // Makes and verifies an image from the payload of LIVE or PROGRAM.
-tini_noinline uint8_t Link::fill(Use use, const uint8_t* payload, uint8_t length) {
+uint8_t Link::fill(Use use, const uint8_t* payload, uint8_t length) {
   const uint8_t mode = payload[kProgramModeAt];
   if (use != Use::kStored && mode != kRun) return refuse(Answer::kBadValue, 0);
   const uint8_t refusal = allow(mode, isa_);

@@ -22,7 +22,7 @@ void Link::talk() {
 #else
 
 // Does what a line asks for.
-tini_noinline void Link::talk() {
+void Link::talk() {
   Console* const console = near(&console_);
   const bool may_say = left_ms_[kFrameSent] == 0;
   const Console::Act act = console->turn(receiver_, is_listened_to(), may_say);

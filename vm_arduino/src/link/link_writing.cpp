@@ -215,7 +215,7 @@ void Link::fetch() {
   }
 }
 
-void Link::begin_event(Message message) {
+tini_noinline void Link::begin_event(Message message) {
   begin_frame(byte_of(message) | kReply | event_mark(), event_seq_++);
 }
 

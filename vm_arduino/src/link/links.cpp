@@ -1,5 +1,7 @@
 #include "links.h"
 
+#include "run_down.h"
+
 #ifdef tiniscript_transports
 
 namespace tiniscript {
@@ -21,7 +23,7 @@ void Links::begin(uint8_t epoch) {
 void Links::pass_time(uint16_t now_ms) {
   const uint16_t passed = static_cast<uint16_t>(now_ms - now_ms_);
   now_ms_ = now_ms;
-  drives_ms_ = passed < drives_ms_ ? static_cast<uint16_t>(drives_ms_ - passed) : 0;
+  run_down(&drives_ms_, 1, passed);
   for (Link& link : links_) link.pass_time(now_ms);
   if (!is_driven()) driver_ = kNobody;
 }
