@@ -1,6 +1,7 @@
 #include "link.h"
 
 #include "../vm/bytecode.h"
+#include "../vm/image.h"
 #include "../vm/small.h"
 #include "has_owners.h"
 #include "port.h"
@@ -106,12 +107,14 @@ void Link::tell() {
   if (self->due_ != 0 && self->left_ == 0) self->send();
 }
 
+// Writes the checksum into an image that is complete otherwise.
 tini_noinline void Link::seal() {
   uint8_t* const image = unsealed_;
   if (image == nullptr) return;
   unsealed_ = nullptr;
-  put_checksum(image);
-  checksum_ = get32(image + kChecksumAt);
+  const uint32_t checksum = image_checksum(image, image_length(image));
+  __builtin_memcpy(image + kChecksumAt, &checksum, sizeof checksum);
+  if (!is_typed()) checksum_ = checksum;
   port_seal(image);
 }
 

@@ -201,7 +201,6 @@ class Link {
   uint8_t begin_program(const uint8_t* payload);
   uint8_t add_data(const uint8_t* payload, uint8_t length);
   uint8_t commit(const uint8_t* payload);
-  void put_checksum(uint8_t* image);
   void finish(uint8_t mode, bool is_live);
   void start(uint8_t mode, bool is_live);
   bool is_next(uint8_t seq, uint8_t epoch) const;
@@ -279,11 +278,16 @@ class Link {
   static void drop_answer() {}
   static void send_text() {}
   static void show_text(int32_t, bool) {}
+  static constexpr bool is_typed() { return false; }
+  static void note_typed(bool) {}
 #else
   void drop_answer();
   Remark start_text(const Console& console);
   void send_text();
   void show_text(int32_t value, bool is_yes_no);
+  // Whether the image that was taken last was typed: no receipt tells its checksum.
+  bool is_typed() const { return is_typed_; }
+  void note_typed(bool is_so) { is_typed_ = is_so; }
 #endif
   void reply();
   void describe();
@@ -330,6 +334,9 @@ class Link {
   uint8_t size_;           // bytes written so far
   uint8_t sent_;           // bytes already sent
   volatile uint8_t left_;  // bytes left to send
+#ifndef tiniscript_without_text
+  bool is_typed_;
+#endif
   // Large members come last: what lies near to the begin takes less code.
   Console console_;
 #ifdef tiniscript_seals

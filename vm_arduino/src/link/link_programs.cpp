@@ -195,15 +195,10 @@ uint8_t Link::commit(const uint8_t* payload) {
   return kIsFine;
 }
 
-// Writes the checksum into the otherwise complete image.
-void Link::put_checksum(uint8_t* image) {
-  const uint32_t checksum = image_checksum(image, image_length(image));
-  __builtin_memcpy(image + kChecksumAt, &checksum, sizeof checksum);
-}
-
 // The image in memory is verified and complete except for its checksum.
 void Link::finish(uint8_t mode, bool is_live) {
   image_ = nullptr;
+  note_typed(false);
   port_take(mode, is_live);
   if ((mode & (kRun | kStartBits)) == kRun) start(mode, is_live);
 }
