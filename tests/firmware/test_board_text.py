@@ -51,7 +51,7 @@ def since_the_line_end_ms(uno: Uno) -> float:
 def test_a_program_whose_line_never_ends_runs(
     sketch_name: str, sketches: Callable[[str], Path], memory: Path
 ) -> None:
-    """On a Nano, too, which has no room for other rules; a second time, and only a whole one."""
+    """On a Nano, too; a second time, and only a whole one."""
     with switched_on(sketches(sketch_name), memory) as robot:
         for _ in range(2):
             said = typed(robot, "SI|F(1, 60)", 2800)
@@ -60,6 +60,28 @@ def test_a_program_whose_line_never_ends_runs(
             assert states(robot) == FORWARD
             robot.run_ms(1500)
         assert typed(robot, "SI|F(1", 3500) == ["// End the line with Enter (\\n)"]
+        assert states(robot) == OFF
+
+
+@pytest.mark.parametrize("sketch_name", ["uno", "nano"])
+def test_a_start_begins_a_line_anew(
+    sketch_name: str, sketches: Callable[[str], Path], memory: Path
+) -> None:
+    """Behind a module's message, and behind a program that never ended; nowhere else."""
+    with switched_on(sketches(sketch_name), memory) as robot:
+        for message in ("OK+CONN", "OK+CONN", "+CONNECTED:12 ", "OK+LOST\r\nOK+CONN"):
+            assert typed(robot, message + "SI|F(0.5, 60)\r\n", 80) == ["// OK"]
+            assert states(robot) == FORWARD
+            robot.run_ms(600)
+            assert states(robot) == OFF
+        assert typed(robot, "OK+CONN", 1500) == []  # a message alone, and a pause
+        assert typed(robot, "SI|F(0.5, 60)\n", 80) == ["// OK"]
+        assert typed(robot, "SI|LOOP(2)\nSI|F(0.5, 60)\n", 120) == ["// Started again", "// OK"]
+        assert states(robot) == FORWARD
+        robot.run_ms(600)
+        assert ", kit " in typed(robot, "OK+CONNPING|CHECK_CONNECTION\n", 120)[0]
+        assert typed(robot, "HELLO SI|F(0.5, 60)\n", 80)[0].startswith("// 1: ")
+        assert typed(robot, "OK+CONN F(0.5, 60)\n", 80) == []
         assert states(robot) == OFF
 
 

@@ -107,7 +107,7 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool
     }
     const Act act = byte == kLineEnd ? end_line(is_heard) : Act::kNone;
     refused_ = Remark::kNone;
-    if (!kStrictStarts) begins_ = 1;
+    begins_ = 1;
     if (act != Act::kNone) return act;
   }
   const uint16_t left_ms = left_ms_[kPatience];
@@ -150,7 +150,7 @@ inline void Console::end_tail(bool is_heard) {
 // A line goes on behind a second of silence, or begins there.
 inline void Console::end_silence() {
   refused_ = Remark::kNone;
-  if (!kStrictStarts) begins_ = static_cast<uint8_t>(reader_.last_column() + 1);
+  begins_ = static_cast<uint8_t>(reader_.last_column() + 1);
 }
 
 void Console::tell(Remark remark, bool is_heard) {
@@ -165,10 +165,6 @@ void Console::tell(Remark remark, bool is_heard) {
 inline void Console::take(uint8_t byte, bool is_heard) {
   tail_ = Remark::kEnter;
   read(byte);
-  if (kStrictStarts) {
-    if (byte == '|') first_ = byte;  // a start: no message that needs no answer
-    return;
-  }
   const uint8_t before = before_;
   const uint8_t last = last_;
   if (byte <= ' ') return;
@@ -194,7 +190,7 @@ inline void Console::take(uint8_t byte, bool is_heard) {
 
 // Whether the line begins with what a radio module says.
 bool Console::is_chatter() {
-  return is_open_ && (first_ == '+' || (!kStrictStarts && reader_.begins_like('O', 'K')));
+  return is_open_ && (first_ == '+' || reader_.begins_like('O', 'K'));
 }
 
 void Console::read(uint8_t byte) {
@@ -285,7 +281,7 @@ inline Console::Act Console::end_line(bool is_heard) {
       is_ignoring_ = has_setup || was_waiting;
       if (!has_mark_ && first_ != '+' && !is_heard && mistakes_ <= kMostMistakes) {
         const uint8_t word = reader_.find_unknown(kSpoken);
-        if (word < kChatter && (!kStrictStarts || first_ != '|')) break;
+        if (word < kChatter) break;
         is_talking_ = true;
         say(mistakes_ == kMostMistakes ? Remark::kMute
             : word < kAsking           ? Remark::kHelp

@@ -27,13 +27,6 @@ constexpr uint8_t kTextBytes = 64;  // of text that nobody has taken yet, and on
 
 constexpr bool kHasLargeFrames = kLargestFrame > kSmallFrame;
 
-// Whether a start counts only where a line begins. A Nano with text and owners has no room for more.
-#ifdef tiniscript_strict_starts
-constexpr bool kStrictStarts = true;
-#else
-constexpr bool kStrictStarts = false;
-#endif
-
 // Of a frame that is not sealed; a large one has a 0 before it.
 constexpr uint8_t kPayloadBytes =
     kLargestFrame - kHeadBytes - kCrcBytes - (kHasLargeFrames ? 1 : 0);
