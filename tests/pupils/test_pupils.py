@@ -14,7 +14,7 @@ from tests.support.rows import each_row
 from tiniscript.base.source import Edit, Source, applied
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import edits_of, fixed, offers
+from tiniscript.diagnostics.fixing import edits_of, fixed, offer
 
 ENTRIES = entries()
 # Repairs that write a number in another way: a unit, a letter for a digit, `X++`, `50.`, and how
@@ -108,7 +108,8 @@ WRITTEN = {
 def test_what_a_message_says_to_write_is_offered(entry: Entry) -> None:
     """Also a warning's, which is gone then; `tsc check --fix` makes none of a warning."""
     found, text = check(entry.program), entry.program
-    for diagnostic, edits in zip(found, offers(text, found, check), strict=True):
+    for which, diagnostic in enumerate(found):
+        edits = offer(text, found, which, check)
         names_one = any(diagnostic.values.get(gap) for gap in WRITTEN.get(diagnostic.code, ()))
         assert edits or not names_one, diagnostic
         if edits and not diagnostic.is_mistake:

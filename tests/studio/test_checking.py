@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 import pytest
 
@@ -10,9 +11,9 @@ from tests.pupils import corpus
 from tests.studio.programs import LACKING, said
 from tests.support.texts import LANGUAGES
 from tiniscript import check, compile, compile_text, robots
-from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import fixed, offers
+from tiniscript.diagnostics.fixing import OFFERS, fixed
 from tiniscript.diagnostics.rendering import Message
+from tiniscript.library.compiling import Compiled, compiled
 from tiniscript.studio import checking, worker
 from tiniscript.studio.description import description
 
@@ -35,10 +36,10 @@ def test_messages_are_those_of_the_command_and_repairs_help(first: int, part: in
         found = checking.check(entry.program.encode(), "tinibot", language)
         told = [each.message for each in found.findings if each.message.code not in LACKING]
         assert told == said(entry.program, language)
-        for finding in found.findings:
-            if finding.repair:
+        for repair in buttons(entry.program):
+            if repair:
                 offered += 1
-                changed = changed_by(entry.program, finding.repair)
+                changed = changed_by(entry.program, repair)
                 assert mistakes(check(changed)) <= mistakes([f.message for f in found.findings])
                 assert changed != entry.program
     assert offered > 100
@@ -61,8 +62,8 @@ def test_a_program_that_is_too_large_for_the_robot_is_wrong() -> None:
 
 def test_the_first_value_of_a_variable_is_offered_in_place_of_its_declaration() -> None:
     program = "var vel\nF(2, 80)"
-    (finding,) = checking.check(program.encode(), "tinibot", "en").findings
-    assert changed_by(program, finding.repair) == "vel = 0\nF(2, 80)"
+    (repair,) = buttons(program)
+    assert changed_by(program, repair) == "vel = 0\nF(2, 80)"
 
 
 @pytest.mark.parametrize(
@@ -94,7 +95,8 @@ def test_the_first_value_of_a_variable_is_offered_in_place_of_its_declaration() 
 def test_a_button_does_what_the_message_names(program: str, wanted: str) -> None:
     """And leaves the rest; the command repairs none of it, as it is not sure."""
     finding = checking.check(program.encode(), "tinibot", "en").findings[0]
-    assert (changed_by(program, finding.repair) if finding.repair else "") == wanted
+    repair = buttons(program)[0]
+    assert (changed_by(program, repair) if repair else "") == wanted
     if wanted:
         assert finding.message not in check(wanted)
         assert not [each for each in check(wanted) if each.severity == "mistake"]
@@ -107,8 +109,7 @@ def test_each_of_many_mistakes_has_its_own_button() -> None:
     """Pressed one after the other, and none of them again."""
     program = "F(1, 800)\nN = N + 1\nM(50, 50)\nR(90, 60)\nR(90, 60)\n"
     for _ in range(9):
-        findings = checking.check(program.encode(), "tinibot", "en").findings
-        repair = next((each.repair for each in findings if each.repair), ())
+        repair = next(filter(None, buttons(program)), ())
         if not repair:
             break
         program = changed_by(program, repair)
@@ -117,10 +118,10 @@ def test_each_of_many_mistakes_has_its_own_button() -> None:
 
 def test_some_mistakes_are_not_repaired() -> None:
     """Of a line with a checksum none is, and of very many only the first."""
-    found = checking.check(b"SI|F(2, 80~1A2B", "tinibot", "en")
-    assert found.findings and not any(each.repair for each in found.findings)
-    found = checking.check(b"SI|" + b"F(2, 80\n" * 90, "tinibot", "en")
-    assert sum(bool(each.repair) for each in found.findings) <= 20 < len(found.findings)
+    found = buttons("SI|F(2, 80~1A2B")
+    assert found and not any(found)
+    found = buttons("SI|" + "F(2, 80\n" * 90)
+    assert 0 < sum(map(bool, found)) <= OFFERS < len(found)
 
 
 def test_a_file_is_read_as_the_command_reads_it_or_gets_a_sentence() -> None:
@@ -141,7 +142,10 @@ def test_answers_are_json() -> None:
     found = json.loads(worker.answer(json.dumps(request), "SI|F(-1, 80) // ñ 🤖".encode()))
     (finding,) = found["findings"]
     assert finding["severity"] == "mistake" and finding["code"] == "TS206"
-    assert finding["repair"][0]["text"] == "B(1, 80)"
+    assert finding["may_repair"]
+    asked = json.dumps({"do": "repair", "robot": "tinibot", "which": 0})
+    changes = json.loads(worker.answer(asked, "SI|F(-1, 80) // ñ 🤖".encode()))["changes"]
+    assert changes[0]["text"] == "B(1, 80)"
     opened = json.loads(worker.answer(json.dumps({**request, "do": "open"}), b"\xff"))
     assert opened["message"]
 
@@ -171,8 +175,8 @@ def test_a_program_names_its_robot_in_the_page_too() -> None:
     ["SI|SHOW(LINE_L)\n", LINER.replace("liner", "tinibot"), LINER.replace("liner", "linar")],
 )
 def test_a_robot_that_is_offered_has_a_button(text: str) -> None:
-    (finding,) = checking.check(text.encode(), "tinibot", "en").findings
-    assert changed_by(text, finding.repair) == LINER
+    (repair,) = buttons(text)
+    assert changed_by(text, repair) == LINER
 
 
 def test_blocks_keep_the_robot() -> None:
@@ -232,17 +236,33 @@ def test_a_variable_is_a_yes_no_however_its_value_gets_there(
     assert {each.name for each in variables if each.is_yes_no} == set(yes_no)
 
 
-@pytest.mark.parametrize(("lines", "most"), [(3, 20), (30, 3), (100, 1)])
-def test_a_page_checks_few_times_more_for_warnings(lines: int, most: int) -> None:
-    """After each letter: so of a long program the first warnings alone have a button."""
-    text = "SI|" + ";\n".join(f"IF(DISTANCE < {k});R(90, 60);END_IF" for k in range(1, lines + 1))
-    kit, checked = robots.load("tinibot").kit, []
+@pytest.mark.parametrize("wrong", ["", "F(1, 800)"])
+def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
+    monkeypatch: pytest.MonkeyPatch, wrong: str
+) -> None:
+    """Of a program with a hundred warnings; what the buttons do is tried when somebody pauses."""
+    texts: list[bytes] = []
 
-    def diagnostics(changed: str) -> list[Diagnostic]:
-        checked.append(changed)
-        return compile_text(changed, kit).diagnostics
+    def counted(data: bytes, *arguments: Any, **named: Any) -> Compiled:
+        texts.append(data)
+        return compiled(data, *arguments, **named)
 
-    found = compile_text(text, kit).diagnostics
-    assert len(found) >= lines and not any(each.is_mistake for each in found)
-    offered = offers(text, found, diagnostics)
-    assert 0 < len(checked) <= most and offered[0]
+    monkeypatch.setattr(checking, "compiled", counted)
+    text = ";\n".join(f"IF(DISTANCE < {k});R(90, 60);END_IF" for k in range(1, 101)) + f";\n{wrong}"
+    found = checking.check(text.encode(), "tinibot", "en").findings
+    assert len(texts) == 1 and sum(each.may_repair for each in found) == (1 if wrong else OFFERS)
+    which = next(k for k, each in enumerate(found) if each.may_repair)
+    assert checking.repair(text.encode(), "tinibot", which)
+    assert len(texts) == 2, "the text that is known is not compiled again"
+    checking.check(b"S", "tinibot", "en")
+    assert checking.repair(text.encode(), "tinibot", which)
+    assert len(texts) == 5
+
+
+def buttons(program: str) -> list[tuple[checking.Change, ...]]:
+    """Return what the button of each finding does, as the page asks for it."""
+    found = checking.check(program.encode(), "tinibot", "en").findings
+    return [
+        checking.repair(program.encode(), "tinibot", k) if each.may_repair else ()
+        for k, each in enumerate(found)
+    ]

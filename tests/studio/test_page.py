@@ -135,6 +135,7 @@ def test_a_button_does_what_its_message_names(page: Page, program: str, wanted: 
 
 def test_a_repair_can_be_chosen_in_the_text(page: Page) -> None:
     write(page, "F(-2, 80)")
+    page.locator("#messages .repair").wait_for()
     page.hover(".cm-lintRange-error")
     page.click(".cm-tooltip .cm-diagnosticAction")
     checked(page)

@@ -169,6 +169,7 @@ def test_the_keyboard_alone_is_enough(page: Page) -> None:
     """From the robot's choice to the button of a repair, and out of the editor."""
     page.set_viewport_size({"width": 1366, "height": 768})
     write(page, "F(-2, 80)")
+    page.locator("#messages .repair").wait_for()
     page.locator("#robot").focus()
     visited = []
     for _ in range(16):
@@ -195,7 +196,7 @@ def test_a_screen_reader_hears_what_is_said(page: Page) -> None:
     assert page.get_by_role("button", name=said).inner_text() == "Line 1"
     assert page.get_by_role("textbox", name="Program").count() == 1
     assert page.get_by_role("combobox", name="Robot").count() == 1
-    assert page.get_by_role("button", name="Do it: line 1, B(2, 80)").count() == 1
+    page.get_by_role("button", name="Do it: line 1, B(2, 80)").wait_for()
     write(page, "SI|IF(DISTANCE < 10)\nS")  # no full stop stands behind a word of a program
     for place in ("#messages li", "#first_message"):
         assert " has no ENDIF – Try: " in page.inner_text(place)

@@ -14,7 +14,7 @@ from tests.pupils.corpus import Entry, check
 from tiniscript import compile_text, robots
 from tiniscript.base.source import applied
 from tiniscript.diagnostics.codes import Code
-from tiniscript.diagnostics.fixing import fixed, offers
+from tiniscript.diagnostics.fixing import fixed, offer
 from tiniscript.library.compiling import analyzed
 from tiniscript.recovery.concepts import plain
 from tiniscript.recovery.search import Candidate, Recovery
@@ -100,7 +100,8 @@ def is_offered(program: str, text: str) -> bool:
     meant = image(text)
     for _ in range(OFFERS):
         found = check(program)
-        edits = next((each for each in offers(program, found, check) if each), None)
+        tried = (offer(program, found, which, check) for which in range(len(found)))
+        edits = next(filter(None, tried), None)
         if not meant or edits is None:
             return False
         program = applied(program, edits)

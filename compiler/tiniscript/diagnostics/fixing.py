@@ -45,7 +45,6 @@ MANY = 100  # diagnostics after which a program is not read on
 CHECKS = 400  # of one program, fewer of a long one
 CHECKED_CHARACTERS = 600_000
 OFFERS = 20  # repairs of one text that are tried
-WARNED_CHARACTERS = 1_500  # that are checked again for warnings: after each letter in the page
 
 
 class Fixed(NamedTuple):
@@ -90,32 +89,21 @@ def _steps(found: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
     yield from ([edits] for edits in sure)
 
 
-def offers(text: str, found: list[Diagnostic], check: Check) -> list[list[Edit]]:
-    """Return for each diagnostic the changes that a reader may choose to make, or none.
+def offer(text: str, found: Sequence[Diagnostic], which: int, check: Check) -> list[Edit]:
+    """Return the changes of one of a text's diagnostics that a reader may choose to make, or none.
 
     With them the program has fewer mistakes, or for a warning no more of them and the warning is
-    gone; of a long text the first warnings only. They may be a guess, and change what the program
-    does: somebody looks at them.
+    gone. They may be a guess, and change what the program does: somebody looks at them.
     """
-    source, tried, warned = Source(text), 0, 0
-    offered: list[list[Edit]] = []
-    for diagnostic in found:
-        may_try = tried < OFFERS and (
-            diagnostic.is_mistake or warned * len(text) < WARNED_CHARACTERS
-        )
-        edits = edits_of(diagnostic) or [] if may_try else []
-        lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
-        is_tried = bool(edits) and not any("~" in line for line in lines)  # else it is copied again
-        tried += is_tried
-        warned += is_tried and not diagnostic.is_mistake
-        after = check(applied(text, edits)) if is_tried else []
-        is_chosen = is_tried and (
-            is_better(after, found, edits)
-            if diagnostic.is_mistake
-            else _lacks(after, diagnostic.code, found)
-        )
-        offered.append(edits if is_chosen else [])
-    return offered
+    source, diagnostic = Source(text), found[which]
+    edits = edits_of(diagnostic) or []
+    lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
+    if not edits or any("~" in line for line in lines):  # else it is copied again
+        return []
+    after = check(applied(text, edits))
+    if diagnostic.is_mistake:
+        return edits if is_better(after, found, edits) else []
+    return edits if _lacks(after, diagnostic.code, found) else []
 
 
 def _lacks(after: Sequence[Diagnostic], code: Code, found: Sequence[Diagnostic]) -> bool:

@@ -1,19 +1,20 @@
 """Compiles a text for the page: its image, and what to show in the editor.
 
-Knows which repairs are offered as buttons. Lines and columns count from 1, columns in characters,
+Knows which repairs are offered as buttons: a check compiles the text once, and what a button does
+is tried when somebody pauses. Lines and columns count from 1, columns in characters,
 as in `tsc check --json`; the end is not included.
 """
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 from tiniscript import robots
 from tiniscript.base.source import Edit, Source
 from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import offers
+from tiniscript.diagnostics.fixing import OFFERS, edits_of, offer
 from tiniscript.diagnostics.rendering import Message, message
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compiled, for_robot, text_of
@@ -35,10 +36,10 @@ class Change(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """A message as `tsc compile` prints it, and the changes of its repair, if it is offered."""
+    """A message as `tsc compile` prints it; whether it may have a button, `repair` tells."""
 
     message: Message
-    repair: tuple[Change, ...]
+    may_repair: bool
 
 
 class Variable(NamedTuple):
@@ -66,8 +67,8 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     """Compile a program's text for a shipped robot, or for the one that it names, as `tsc upload`
     does."""
     profile = profile_for(data, robot)
-    found = for_robot(compiled(data, profile, "", is_strict=True), profile)
-    findings = _findings(found, profile_of(robot), language)
+    found = _found(data, robot)
+    findings = _findings(found, language)
     names_robot = name_in(data) is not None
     if not found.is_right or found.program is None:
         return Checked(b"", 0, findings, (), (), "", profile.name, names_robot)
@@ -76,6 +77,21 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     places = source_map.made(found.source, found.places).places
     return Checked(found.image, len(found.code), findings, places, variables,
                    found.program.start, profile.name, names_robot)  # fmt: skip
+
+
+def repair(data: bytes, robot: str, which: int) -> tuple[Change, ...]:
+    """Return what the button of a finding does, or nothing where it does not help.
+
+    `which` counts the findings of this text from 0.
+    """
+    found = _found(data, robot)
+
+    def check(text: str) -> list[Diagnostic]:
+        changed = text.encode()
+        return compiled(changed, profile_for(changed, robot), "", is_strict=True).diagnostics
+
+    edits = offer(found.source.text, found.diagnostics, which, check)
+    return tuple(_change(edit, found.source) for edit in edits)
 
 
 def opened(data: bytes, robot: str, language: str) -> str | Message:
@@ -112,20 +128,18 @@ def profile_for(data: bytes, robot: str) -> Robot:
     return robot_of(data, profile_of(robot))
 
 
-def _findings(found: Compiled, usual: Robot, language: str) -> tuple[Finding, ...]:
-    source = found.source
+@lru_cache(maxsize=1)  # whose buttons are asked for, one after the other
+def _found(data: bytes, robot: str) -> Compiled:
+    profile = profile_for(data, robot)
+    return for_robot(compiled(data, profile, "", is_strict=True), profile)
 
-    def check(text: str) -> list[Diagnostic]:
-        data = text.encode()
-        return compiled(data, robot_of(data, usual), "", is_strict=True).diagnostics
 
-    repairs = offers(source.text, found.diagnostics, check)
+def _findings(found: Compiled, language: str) -> tuple[Finding, ...]:
+    """Return the messages; the first of those that name changes may have a button."""
+    named = [k for k, each in enumerate(found.diagnostics) if edits_of(each)][:OFFERS]
     return tuple(
-        Finding(
-            message(diagnostic, source, language),
-            tuple(_change(edit, source) for edit in repair),
-        )
-        for diagnostic, repair in zip(found.diagnostics, repairs, strict=True)
+        Finding(message(diagnostic, found.source, language), k in named)
+        for k, diagnostic in enumerate(found.diagnostics)
     )
 
 

@@ -36,8 +36,7 @@ def _check(fields: Answer, data: bytes) -> Answer:
         "program": f"{checksum(found.image):08x}" if found.image else "",
         "bytes": found.code_bytes,
         "findings": [
-            {**each.message._asdict(), "repair": [change._asdict() for change in each.repair]}
-            for each in found.findings
+            {**each.message._asdict(), "may_repair": each.may_repair} for each in found.findings
         ],
         "places": found.places,
         "variables": [each._asdict() for each in found.variables],
@@ -46,6 +45,12 @@ def _check(fields: Answer, data: bytes) -> Answer:
         "names_robot": found.names_robot,
         "loose": _loose(fields, data) if LOOSE.encode() in data else 0,
     }
+
+
+def _repair(fields: Answer, data: bytes) -> Answer:
+    """Return what the button of the finding `which` does; nothing is no button."""
+    changes = checking.repair(data, fields["robot"], fields["which"])
+    return {"changes": [each._asdict() for each in changes]}
 
 
 def _loose(fields: Answer, data: bytes) -> int:
@@ -99,8 +104,8 @@ def _learn(fields: Answer, data: bytes) -> Answer:
 
 
 _ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
-    "learn": _learn, "check": _check, "open": _open, "line": _line, "blocks": _blocks,
-    "text": _text, "rename": _rename,
+    "learn": _learn, "check": _check, "repair": _repair, "open": _open, "line": _line,
+    "blocks": _blocks, "text": _text, "rename": _rename,
 }  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import { Editor } from './writing/editor.js';
 import { bugSaid } from './page/faults.js';
 import { bytesOf, download, whenChosen } from './page/files.js';
 import { Lessons } from './lesson/lessons.js';
-import { showMessages, summary, whole } from './writing/messages.js';
+import { showMessages, showRepair, summary, whole } from './writing/messages.js';
 import { whenOffline } from './page/offline.js';
 import { Phone } from './page/phone.js';
 import { Programs } from './programs/programs.js';
@@ -144,8 +144,12 @@ so.checked.watch((answer) => {
     return;
   }
   editor.showFindings(answer.findings, repair);
-  showMessages(list, answer.findings, (finding) => views.goTo(finding), repair);
+  showMessages(list, answer.findings, (finding) => views.goTo(finding));
   sayStatus(summary(answer), answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong');
+});
+so.offered.watch((which) => {
+  const finding = so.checked.value?.findings[which];
+  if (finding) showRepair(list, which, finding, repair);
 });
 if (whyOutside) so.note.say(text(known(`why_${whyOutside}`)));
 editor.replace(work.text);
@@ -177,7 +181,7 @@ function sayStatus(said, look) {
 
 /** @param {Finding} finding */
 function repair(finding) {
-  if (so.checked.value) editor.change(finding.repair); // else its places are those of another text
+  if (so.checked.value && finding.repair) editor.change(finding.repair); // else its places are those of another text
 }
 
 function showRobots() {

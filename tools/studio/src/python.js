@@ -19,7 +19,8 @@
  * @property {number} end_column
  * @property {string} message
  * @property {string} fix
- * @property {Change[]} repair
+ * @property {boolean} may_repair
+ * @property {Change[]} [repair] what its button does, as soon as it has been tried
  */
 
 /**

@@ -41,6 +41,7 @@ export const so = {
   text: new Fact(''), // of the program
   /** What the compiler says of the newest text; null while it is at work. */
   checked: new Fact(/** @type {import('../python.js').Checked | null} */ (null)),
+  offered: new Fact(-1), // the number of one of its findings, which has a button from now on
   note: new Fact(''), // a sentence about what has just been done
   /** Where the program is to stop; a point stays the same while its text moves. */
   breakpoints: new Fact(/** @type {Breakpoint[]} */ ([])),

@@ -5,6 +5,7 @@ import { so } from '../page/so.js';
 /** @typedef {import('../python.js').Checked} Checked */
 
 const TYPING_MS = 150; // of silence before a text is compiled
+const PAUSE_MS = 300; // after which it is tried what buttons do
 const { dataset } = document.documentElement;
 
 export class Checking {
@@ -15,6 +16,8 @@ export class Checking {
   #isReady = false;
   #isBusy = false;
   #typing = 0;
+  #pause = 0;
+  #turn = 0; // of an answer: the same one may be said again
   /** Those who wait for the newest answer. @type {((answer: Checked | null) => void)[]} */
   #waiting = [];
 
@@ -82,7 +85,12 @@ export class Checking {
         if (answer.robot !== now.robot && so.robot.value === now.robot) so.robot.say(answer.robot); // and once more
       }
       const { answer } = this.#newest;
-      if (answer && so.checked.value !== answer) so.checked.say(answer); // also where a text has come back
+      if (answer && so.checked.value !== answer) { // also where a text has come back
+        so.checked.say(answer);
+        clearTimeout(this.#pause);
+        this.#turn += 1;
+        this.#pause = window.setTimeout(() => this.#offer(answer, this.#turn), PAUSE_MS);
+      }
       dataset['state'] = 'checked';
       dataset['image'] = answer?.image ?? '';
       this.#tell(answer);
@@ -91,6 +99,26 @@ export class Checking {
       this.#tell(null);
     } finally {
       this.#isBusy = false;
+    }
+  }
+
+  /**
+   * Tries what the buttons do, one after the other: each is a whole check.
+   * @param {Checked} answer
+   * @param {number} turn
+   */
+  async #offer(answer, turn) {
+    const isNewest = () => so.checked.value === answer && this.#turn === turn;
+    try {
+      for (const [which, finding] of answer.findings.entries()) {
+        if (!isNewest()) return;
+        if (!finding.may_repair) continue;
+        const request = { do: 'repair', robot: so.robot.value, which };
+        finding.repair ??= (await this.#python.ask(request, new TextEncoder().encode(so.text.value))).changes;
+        if (isNewest() && finding.repair?.length) so.offered.say(which);
+      }
+    } catch (why) {
+      this.#fail(why);
     }
   }
 

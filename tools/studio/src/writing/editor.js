@@ -158,9 +158,9 @@ export class Editor {
       /** @type {'error' | 'warning'} */
       severity: finding.severity === 'mistake' ? 'error' : 'warning',
       message: whole(finding),
-      actions: finding.repair.length
-        ? [{ name: text('repair'), apply: () => repair(finding) }]
-        : [],
+      get actions() { // read whenever it is shown
+        return finding.repair?.length ? [{ name: text('repair'), apply: () => repair(finding) }] : [];
+      },
     }));
     this.#view.dispatch(setDiagnostics(this.#view.state, marks));
   }

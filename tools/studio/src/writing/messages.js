@@ -19,9 +19,8 @@ export function whole({ message = '', fix = '' }) {
  * @param {HTMLElement} list
  * @param {Finding[]} findings
  * @param {(finding: Finding) => void} goTo
- * @param {(finding: Finding) => void} repair
  */
-export function showMessages(list, findings, goTo, repair) {
+export function showMessages(list, findings, goTo) {
   let first = '';
   const rows = findings.slice(0, MOST).map((finding) => {
     const place = button('', () => goTo(finding), text('line', { line: finding.line }));
@@ -30,17 +29,25 @@ export function showMessages(list, findings, goTo, repair) {
     first ||= place.ariaLabel;
     const row = made('li', '', place, ' ', whole(finding));
     row.className = finding.severity;
-    if (finding.repair.length) {
-      const does = button('repair', () => repair(finding));
-      does.className = 'repair';
-      does.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: finding.fix }));
-      row.append(' ', does);
-    }
     return row;
   });
   if (findings.length > MOST) rows.push(made('li', '', text('more', { count: findings.length - MOST })));
   list.replaceChildren(...rows);
   say(element('first_message', HTMLElement), first);
+}
+
+/**
+ * Gives a message the button of its repair.
+ * @param {HTMLElement} list that shows it
+ * @param {number} which
+ * @param {Finding} finding
+ * @param {(finding: Finding) => void} repair
+ */
+export function showRepair(list, which, finding, repair) {
+  const does = button('repair', () => repair(finding));
+  does.className = 'repair';
+  does.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: finding.fix }));
+  if (which < MOST) list.children[which]?.append(' ', does);
 }
 
 /** @param {Checked} checked @returns {string} */
