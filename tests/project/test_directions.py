@@ -21,6 +21,7 @@ SHARED = {
     "base.fixed_point",
     "base.kit",
     "base.words",
+    "base.spelling",
     "base.files",
     "base.source",
     "base.languages",
@@ -40,6 +41,7 @@ UPSTREAM: dict[str, set[str]] = {
     "base.languages": {"base.files", "base.catalogue_compiler"},
     "base.fixed_point": set(),
     "base.words": {"base.fixed_point", "base.languages"},
+    "base.spelling": {"base.languages"},
     "base.kit": {"base.fixed_point", "base.words"},
     "base.limits": set(),
     "base.trace": {"base.fixed_point", "base.kit"},
@@ -163,7 +165,8 @@ LED(TRUE); GRIPPER(90); BEEP(1, 440); M(-5, 5); S
 """
 # And what only wrong ones need.
 OF_WRONG = re.compile(
-    r"tiniscript\.(diagnostics\.(fixing|placing)|recovery|semantics\.(wrong_|unknown_|joining)"
+    r"tiniscript\.(base\.spelling|diagnostics\.(fixing|placing)|recovery"
+    r"|semantics\.(wrong_|unknown_|joining)"
     r"|syntax\.(\w*recovery|\w*suggestions|phrases|outline|vocabulary|units|pasted|checksums))"
 )
 

@@ -3,13 +3,10 @@
 Knows names, argument counts, ranges and units. Does not know how they are compiled. Ranges
 are thousandths. The words of a kit (its sensors and actuators) come from `kit`, not from here.
 `lexicon` has what words of people mean, from the folder of each language.
-`Speller` finds the word that a misspelt one was meant to be, by what sounds alike in each language.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator
 from functools import cache, lru_cache
 from typing import NamedTuple
 
@@ -199,118 +196,3 @@ def said_instead(word: str) -> dict[str, str]:
 def other_name(word: str) -> str:
     """Return a name that a variable or a DEF may have in place of a word of the language."""
     return word + "_1" if len(word) == 1 else "MY_" + word
-
-
-def nearest(word: str, known: Iterable[str]) -> str | None:
-    """Return the word among `known` that a slip of the finger away is `word`, or None.
-
-    A slip is a letter that is wrong, missing, doubled or exchanged with the next: one in short
-    words, two in longer ones. A wrong suggestion is worse than none, so in a word of three
-    letters no letter is taken for another.
-    """
-    if not 2 < len(word) <= 40:
-        return None
-    allowed = 1 if len(word) <= 5 else 2
-    best, its_edits = None, allowed + 1
-    letters = set(word)
-    for other in known:
-        is_far = abs(len(other) - len(word)) > allowed or len(letters.difference(other)) > allowed
-        if len(other) > 1 and not is_far:
-            edits = _edits(word, other)
-            if edits == 1 and len(word) <= 3 and len(other) == len(word):
-                edits += sorted(word) != sorted(other)
-            if edits < its_edits:
-                best, its_edits = other, edits
-    return best
-
-
-def _edits(one: str, other: str) -> int:
-    """Return how many slips lead from one word to the other; an exchange of neighbours is one."""
-    before_last: list[int] = []
-    last = list(range(len(other) + 1))
-    for i, letter in enumerate(one, 1):
-        row = [i]
-        for k, its in enumerate(other, 1):
-            least = min(last[k] + 1, row[k - 1] + 1, last[k - 1] + (letter != its))
-            if i > 1 and k > 1 and letter == other[k - 2] and its == one[i - 2]:
-                least = min(least, before_last[k - 2] + 1)
-            row.append(least)
-        before_last, last = last, row
-    return last[-1]
-
-
-_ALIKE = 4  # letters that a word needs where only its sound is the same
-_SWAPPED = 5  # … where two neighbours are exchanged
-_SLIPPED = 6  # … where a letter is wrong, missing or too much
-_LONGEST = 24
-
-
-@cache
-def _sounds() -> tuple[tuple[tuple[re.Pattern[str], str], ...], ...]:
-    """What sounds the same in each language that says so: patterns, and the sign for them."""
-    tables = (table(language, "sounds.txt").split("\n") for language in languages())
-    parted = ([row.rpartition("|") for row in rows if "|" in row] for rows in tables)
-    return tuple(
-        tuple((re.compile(pattern.strip()), sign.strip()) for pattern, _, sign in rows)
-        for rows in parted
-        if rows
-    )
-
-
-class Speller:
-    """The words that are looked for. A lookup takes the same time however many they are."""
-
-    def __init__(self, words: Iterable[str]) -> None:
-        self._by_sound: dict[tuple[int, str], str] = {}
-        self._by_rest: dict[str, list[str]] = {}
-        for word in words:
-            for sound in _sounds_of(word) if len(word) >= _ALIKE else ():
-                self._by_sound.setdefault(sound, word)
-            if len(word) >= _SWAPPED:
-                for rest in _rests(word):
-                    self._by_rest.setdefault(rest, []).append(word)
-
-    def alike(self, word: str) -> str | None:
-        """Return the word that sounds like `word`, or None."""
-        if not _ALIKE <= len(word) <= _LONGEST:
-            return None
-        return next(filter(None, map(self._by_sound.get, _sounds_of(word))), None)
-
-    def near(self, word: str) -> str | None:
-        """Return a word that is one slip of the finger away from `word`, or None."""
-        if not _SWAPPED <= len(word) <= _LONGEST or not word.isalpha():
-            return None
-        for rest in _rests(word):
-            for other in self._by_rest.get(rest, ()):
-                if _is_slip(word, other):
-                    return other
-        return None
-
-
-def _sounds_of(word: str) -> Iterator[tuple[int, str]]:
-    """Give how a word sounds in each language, beside the language's number."""
-    for k, rows in enumerate(_sounds()):
-        sound = word
-        for pattern, sign in rows:
-            sound = pattern.sub(sign, sound)
-        yield k, sound
-
-
-def _rests(word: str) -> Iterator[str]:
-    """Give the word, and what is left of it without one of its letters."""
-    yield word
-    for k in range(len(word)):
-        yield word[:k] + word[k + 1 :]
-
-
-def _is_slip(one: str, other: str) -> bool:
-    """Whether one letter is wrong, missing or too much, or two neighbours are exchanged."""
-    k = 0
-    while k < min(len(one), len(other)) and one[k] == other[k]:
-        k += 1
-    one, other = one[k:], other[k:]
-    if len(one) == len(other) and one[:2] == other[1::-1] and one[2:] == other[2:]:
-        return True
-    if min(len(one), len(other)) + k < _SLIPPED:  # `AVNZA`: a vowel that nobody texts
-        return len(other) + k >= _SLIPPED and other[:1] in tuple("AEIOU") and one == other[1:]
-    return one[1:] in (other, other[1:]) or one == other[1:]

@@ -12,7 +12,6 @@ from typing import NoReturn
 from tiniscript import robots
 from tiniscript.base.fixed_point import as_text, read_literal
 from tiniscript.base.kit import Device
-from tiniscript.base.words import nearest
 from tiniscript.cli import paths
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
@@ -101,7 +100,13 @@ class Options(ArgumentParser):
                  for flag in option.flags.split()]  # fmt: skip
         if "--robot" in flags and found.lower() in robots.names():
             return f"--robot {found.lower()}"
-        return (nearest(found, flags) or "") if found.startswith("--") else ""
+        return _near(found, flags) if found.startswith("--") else ""
+
+
+def _near(found: str, known: Sequence[str]) -> str:
+    from tiniscript.base.spelling import nearest
+
+    return nearest(found, known) or ""
 
 
 def bad_choice(option: str, known: Sequence[str], found: str, language: str) -> CommandError:
@@ -161,7 +166,7 @@ def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, lis
         if name not in names:
             known = ", ".join(names) or text("no_sensors", language)
             raise CommandError(2, "no_sensor", robot=robot.name, found=name or each, known=known,
-                          near=nearest(name, names) or "")  # fmt: skip
+                          near=_near(name, names))  # fmt: skip
         number = names.index(name)
         device = sensors[number]
         if not equals or not values.strip():

@@ -14,7 +14,7 @@ from typing import NoReturn
 
 from tiniscript.base.languages import languages
 from tiniscript.base.source import PROGRAM_ENDS
-from tiniscript.base.words import nearest
+from tiniscript.base.spelling import nearest
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.options import of_verb

@@ -13,7 +13,8 @@ from tiniscript.base.fixed_point import ONE
 from tiniscript.base.languages import SOURCE, ByLanguage, languages
 from tiniscript.base.languages import found as text_of
 from tiniscript.base.languages import text as said_in
-from tiniscript.base.words import WORDS, nearest
+from tiniscript.base.spelling import nearest
+from tiniscript.base.words import WORDS
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.lesson import (
     AREA,

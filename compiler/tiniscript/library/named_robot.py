@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 from tiniscript import robots
 from tiniscript.base.source import SPACES, Edit, Span, Unreadable, applied, decode
-from tiniscript.base.words import nearest
 from tiniscript.diagnostics.codes import NO_SUCH_ROBOT, Diagnostic, Repair
 from tiniscript.robots.profile import Robot
 
@@ -72,6 +71,8 @@ def unknown_robot(text: str) -> Diagnostic | None:
     found = named_robot(text)
     if found is None or found.name.lower() in robots.names():
         return None
+    from tiniscript.base.spelling import nearest
+
     near = nearest(found.name.lower(), robots.names()) or ""
     values = {"found": found.name, "near": near, "known": ", ".join(robots.names())}
     repair = Repair((Edit(found.span, near),) if near else (), False)

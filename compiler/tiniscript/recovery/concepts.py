@@ -13,7 +13,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.words import BLOCK_ENDS, WAYS, WORDS, Speller, lexicon, nearest
+from tiniscript.base.spelling import Speller, nearest
+from tiniscript.base.words import BLOCK_ENDS, WAYS, WORDS, lexicon
 from tiniscript.base.words import concept_of as concept_of
 from tiniscript.base.words import said_of as said_of
 from tiniscript.syntax.blocks import ENDS

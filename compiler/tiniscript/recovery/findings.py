@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, applied, overlap
-from tiniscript.base.words import lexicon, nearest, said_of
+from tiniscript.base.spelling import nearest
+from tiniscript.base.words import lexicon, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import is_better

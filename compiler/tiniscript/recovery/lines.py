@@ -13,7 +13,8 @@ from itertools import chain, count
 from typing import NamedTuple
 from unicodedata import category
 
-from tiniscript.base.words import FUNCTIONS, MOVES, WAYS, WORDS, concept_of, nearest, said_of
+from tiniscript.base.spelling import nearest
+from tiniscript.base.words import FUNCTIONS, MOVES, WAYS, WORDS, concept_of, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import concepts, rewrites, rows

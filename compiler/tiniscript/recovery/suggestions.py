@@ -15,7 +15,8 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span, overlap
-from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, nearest
+from tiniscript.base.spelling import nearest
+from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.recovery import lines, rewrites, suggestion_rows

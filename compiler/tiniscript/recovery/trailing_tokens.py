@@ -12,7 +12,8 @@ from itertools import accumulate
 from typing import NamedTuple
 
 from tiniscript.base.source import Span
-from tiniscript.base.words import MOVES, OTHER_WAY, WAYS, WORDS, concept_of, nearest, said_of
+from tiniscript.base.spelling import nearest
+from tiniscript.base.words import MOVES, OTHER_WAY, WAYS, WORDS, concept_of, said_of
 from tiniscript.recovery import lines
 from tiniscript.recovery.concepts import ENDED, NEAR, Lexeme, Names, closed, lexemes
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD

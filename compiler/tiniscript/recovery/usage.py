@@ -12,7 +12,8 @@ from itertools import pairwise, takewhile
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import ALIASES, BLOCK_ENDS, QUESTION, SINCE, WORDS, nearest, said_instead
+from tiniscript.base.spelling import nearest
+from tiniscript.base.words import ALIASES, BLOCK_ENDS, QUESTION, SINCE, WORDS, said_instead
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines

@@ -10,7 +10,6 @@ import os.path
 from pathlib import Path
 
 from tiniscript.base.files import is_pipe
-from tiniscript.base.words import nearest
 from tiniscript.robots.profile import ProfileRefused, Robot
 
 DEFAULT = "tinibot"
@@ -44,6 +43,7 @@ def load(name_or_path: str, chip: str | None = None) -> Robot:
 
         return read(text_of(name_or_path), Path(name_or_path).stem, chip)
 
+    from tiniscript.base.spelling import nearest
     from tiniscript.robots.refusals import shown
 
     values = {"name": shown(name_or_path), "known": ", ".join(names())}

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
-from tiniscript.base.words import nearest
+from tiniscript.base.spelling import nearest
 from tiniscript.robots.profile import ProfileRefused, Reason
 from tiniscript.robots.refusals import shown
 

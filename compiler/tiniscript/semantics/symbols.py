@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import COMPARATORS, nearest
+from tiniscript.base.words import COMPARATORS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.syntax import ast
@@ -103,7 +103,11 @@ class Scope:
 
         After that `known` is not searched, so that a long program with many mistakes stays fast.
         """
-        return (nearest(word, known) or "") if len(self.diagnostics) < ENOUGH else ""
+        if len(self.diagnostics) >= ENOUGH:
+            return ""
+        from tiniscript.base.spelling import nearest
+
+        return nearest(word, known) or ""
 
 
 def _assignments(body: Sequence[ast.Instruction]) -> list[ast.Assign]:

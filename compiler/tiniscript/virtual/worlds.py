@@ -10,7 +10,7 @@ from typing import TypeVar
 from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.languages import ByLanguage, languages
-from tiniscript.base.words import nearest
+from tiniscript.base.spelling import nearest
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import ProfileRefused, Reason
 from tiniscript.robots.refusals import shown

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from tiniscript.base.words import nearest
+from tiniscript.base.spelling import nearest
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import Said
 from tiniscript.diagnostics.codes import CODES
