@@ -20,7 +20,7 @@ from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import concepts, rewrites, rows
 from tiniscript.recovery.concepts import CALLED, LONG_S, NEAR, Lexeme, Names, made, texts
 from tiniscript.recovery.slots import MILLISECONDS_FROM, filled
-from tiniscript.syntax.lexer import NUMBER, WORD
+from tiniscript.syntax.lexer import DEGREES, NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline
 
@@ -84,18 +84,20 @@ class Reading(NamedTuple):
 
 def right(tokens: Sequence[Lexeme], names: Names) -> Sequence[Item] | Failure:
     """Return the items of a line, or where it is wrong. Braces and bare ends are items, too."""
-    return _right(tuple((each.kind, _alike(each)) for each in tokens), names)
+    return _right(tuple(map(_alike, tokens)), names)
 
 
 def is_right(tokens: Sequence[Lexeme], names: Names) -> bool:
     return not isinstance(right(tokens, names), Failure)
 
 
-def _alike(token: Lexeme) -> str:
-    """Return the text of a token, and one for all numbers that any instruction reads alike."""
+def _alike(token: Lexeme) -> tuple[str, str]:
+    """Return a token as the lexer has it; all numbers that any instruction reads alike are one."""
     text = token.text
+    if text in DEGREES:
+        return (WORD, "DEG")
     is_plain = text.isdecimal() and text[0] != "0" and len(text) <= _PLAIN_DIGITS
-    return "1" if is_plain else text
+    return token.kind, "1" if is_plain else text
 
 
 @lru_cache(concepts.REMEMBERED)

@@ -199,6 +199,9 @@ class ExpressionParser:
         """A value is expected, and this token begins none."""
         known = WORDS.get(token.text) if token.kind is WORD else None
         self.no_odd(token)
+        if self.ends_above(token):
+            last = self.cursor.last
+            self.reporter.fail(codes.MISSING_VALUE, last.span, before=last.text)
         if known is not None:
             self.no_unit(token)
             by_role = {"forever": codes.FOREVER_NOT_HERE, "until": codes.UNTIL_ALONE}
@@ -207,6 +210,23 @@ class ExpressionParser:
         before = self.cursor.tokens[self.cursor.before(self.cursor.i)] if self.cursor.i else token
         shown = {} if before.kind is ODD else {"before": before.text}
         self.reporter.fail(codes.MISSING_VALUE, token.span or before.span, **shown)
+
+    def ends_above(self, token: Token) -> bool:
+        """Whether an instruction begins with this token below the line that breaks off.
+
+        Then it goes back there: what is below is read for itself.
+        """
+        cursor = self.cursor
+        k = cursor.i if cursor.token is token else cursor.tokens.index(token, cursor.i)
+        known = WORDS.get(token.text) if token.kind is WORD else None
+        begins = known is not None and (known.role.is_instruction or known.role.is_of_blocks)
+        is_set = (
+            token.kind is WORD and cursor.tokens[min(k + 1, len(cursor.tokens) - 1)].kind == "="
+        )
+        if not (begins or is_set) or k == 0 or cursor.tokens[k - 1].kind is not NEWLINE:
+            return False
+        cursor.i = cursor.before(k) + 1
+        return True
 
     def no_odd(self, token: Token) -> None:
         """A token that the language does not have."""
@@ -240,7 +260,7 @@ class ExpressionParser:
         token, before = self.cursor.inner(), self.cursor.last
         self.no_unit(token if before.text not in WAYS else before)
         self.no_odd(token)
-        if token.kind in (NUMBER, WORD, "("):
+        if token.kind in (NUMBER, WORD, "(") and not self.ends_above(token):
             word = self.cursor.tokens[bracket - 1].text
             usage = {"usage": WORDS[word].usage} if word in WORDS else {}
             self.reporter.fail(codes.MISSING_COMMA, token.span, **usage)

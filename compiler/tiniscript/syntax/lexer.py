@@ -20,6 +20,7 @@ END = "end"
 ODD = "odd"
 
 DASHES = "\u2010\u2011\u2012\u2013\u2014\u2015\u2212"
+DEGREES = "°º"  # signs for DEG
 QUOTES = "\"'`´‘’‚‛“”„‟«»"  # of all keyboards: none is a sign of the language
 
 
@@ -45,9 +46,11 @@ class Scan(NamedTuple):
 
 
 _PATTERN = re.compile(
-    rf"(?P<space>[{SPACES}]+) | (?P<dash>[{DASHES}])"
+    rf"""
+        (?P<space>[{SPACES}]+) | (?P<dash>[{DASHES}])
+      | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?![^\Wº]) | (?P<degrees>[{DEGREES}](?!\w))
+    """
     r"""
-      | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?![^\Wº]) | (?P<degrees>[°º](?!\w))
       | (?P<comment>//[^\r\n]*)
       | (?P<sign><=|>=|<>|[-+*/%=<>(),;|])
       | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?=(?:[Cc][Mm]|[Dd][Ee][Gg]|º)\b|(?![\w.])))

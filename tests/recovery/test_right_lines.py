@@ -1,0 +1,112 @@
+"""A right line is never told of because another line is wrong.
+
+python -m tests.recovery.test_right_lines 10000    so many right programs with a wrong line
+"""
+
+from __future__ import annotations
+
+import random
+import re
+import sys
+from functools import cache
+
+import pytest
+
+from tests.pupils.corpus import check, entries
+from tests.pupils.test_damage import programs
+from tests.support.rows import each_row
+from tiniscript.base.source import Source
+from tiniscript.base.words import WORDS
+
+IN_CI = 150
+# Right, and not as the documents write it.
+ODD = (
+    "L(90°, 50)",
+    "L(90º, 50)\nR( 90 ° , 50 )",
+    "M(\u221250, 50)",
+    "f(20cm,60) until(distance<9)",
+    "SI|A = .5; W(A)",
+    "DEF PASO;F(1, 80);END_DEF;PASO;PASO",
+)
+_START = re.compile(r"(?i)\b(?:S[IB]\s*\||PING)")
+
+
+@cache
+def right() -> list[str]:
+    own = [*programs(), *(each.program for each in entries() if not each.said), *ODD]
+    return sorted(each for each in own if _starts_at_once(each) and not _mistakes(each))
+
+
+@cache
+def wrong() -> list[str]:
+    """Return lines that are wrong for themselves: of pupils, none of them meant for a block."""
+    found = ["F(2;80)"]
+    for each in entries():
+        line = each.program
+        if re.search(r"[\n|{}]|//|~", line) or "(" not in line or not _mistakes(line):
+            continue
+        said = [line, *(value for each in check(line) for value in each.values.values())]
+        if not {*re.findall(r"\w+", " ".join(said).upper())} & _OF_BLOCKS:
+            found.append(line)
+    return sorted(found)
+
+
+_OF_BLOCKS = {word for word, row in WORDS.items() if row.role.is_of_blocks} | {"SI", "SB"}
+
+
+@pytest.mark.sampled("seed", keep=IN_CI // 3)
+@pytest.mark.parametrize("seed", range(IN_CI))
+def test_a_wrong_line_is_told_of_alone(seed: int) -> None:
+    """Behind, before and between right ones, which are no longer looked at for warnings."""
+    chance = random.Random(seed)
+    program, line = chance.choice(right()), chance.choice(wrong())
+    rows = program.split("\n")
+    k = chance.choice([k for k in range(1, len(rows) + 1) if _is_closed("\n".join(rows[:k]))])
+    is_told_alone(rows[:k], line, rows[k:])
+
+
+@each_row("odd", ODD)
+def test_what_is_right_in_an_odd_way_is_right_beside_a_wrong_line(odd: str) -> None:
+    for line in (
+        "F(2;80)",
+        "F(2, 8=9",
+        "F(2, 80*",
+        "R(90, 60",
+        "mueve adelante",
+        "F(2, 80) 5 veces",
+        "F(2)",
+        "X := 5",
+    ):
+        is_told_alone([odd], line, [])
+        is_told_alone([odd], line, [odd.removeprefix("SI|")] if "DEF" not in odd else [])
+
+
+def is_told_alone(before: list[str], line: str, behind: list[str]) -> None:
+    rows = "\n".join([*before, line, *behind]).split("\n")
+    wrong_row = "\n".join(before).count("\n") + 1
+    source = Source("\n".join(rows))
+    told = [each for each in check(source.text) if each.is_mistake]
+    assert told, source.text
+    for each in told:
+        row = source.position(each.span.start)[0] - 1
+        is_end = row == len(rows) or not rows[row].strip()  # of a text that breaks off
+        assert row == wrong_row or is_end, f"{source.text}\n{each}"
+
+
+def _is_closed(text: str) -> bool:
+    bare = re.sub("//[^\n]*", "", text)
+    return bare.count("(") == bare.count(")")
+
+
+def _mistakes(text: str) -> bool:
+    return any(each.is_mistake for each in check(text))
+
+
+def _starts_at_once(text: str) -> bool:
+    """Whether what is put below the first line is not before `SI|`."""
+    return "~" not in text and not _START.search(text.partition("\n")[2]) and "PING" not in text
+
+
+if __name__ == "__main__":
+    for seed in range(int(sys.argv[1])):
+        test_a_wrong_line_is_told_of_alone(seed)
