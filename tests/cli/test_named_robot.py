@@ -53,7 +53,8 @@ def test_an_option_wins_and_says_so_once(verb: str, tsc: Tsc, liner: Path) -> No
     done = tsc(verb, *words, liner, "--robot", "tinibot").gives(1)
     assert done.err.startswith(WINS.format("tinibot", liner, "liner"))
     assert done.err.count(" wins: ") == 1
-    assert "Try:  Add --robot liner to the command" in done.err  # the comment is there already
+    wanted = "Try:  Write --robot liner in the command, and not tinibot"
+    assert wanted in done.err  # the comment is there already
     same = tsc(verb, *words, liner, "--robot", "LINER").gives(0)
     assert " wins: " not in same.err
 

@@ -10,6 +10,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span
 from tiniscript.base.words import said_of
 from tiniscript.diagnostics.codes import (
+    NO_BUTTON,
     OTHER_ROBOT,
     UNKNOWN_NAME,
     UNKNOWN_WORD,
@@ -24,6 +25,7 @@ from tiniscript.syntax.lexer import WORD, scan
 
 SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copied
 _UNKNOWN = (UNKNOWN_NAME, UNKNOWN_WORD)
+BUTTON = "BUTTON"  # of some kits; each robot has one that starts it
 _NUMBERS = ("first", "second", "third")
 
 
@@ -56,7 +58,8 @@ def named_among(
 ) -> list[Diagnostic]:
     """Return diagnostics that name the robots that have an unknown word; at most three of them.
 
-    Where a robot has all kit words of the program, those that lack one are not named.
+    Where a robot has all kit words of the program, those that lack one are not named. Words that
+    lead to the same robots are one mistake, of the first of them.
     """
     own = set(kit.names)
     known = {robot: set(its.names) for robot, its in others.items() if robot != name}
@@ -64,17 +67,22 @@ def named_among(
     said = {token.text for token in scan(text).tokens if token.kind is WORD}
     used = {word if word in of_kits else concept_of(word) for word in said} & of_kits
     whole = [robot for robot, its in known.items() if used <= its]
-    named = []
+    named: list[Diagnostic] = []
+    told: list[set[str]] = []  # robots that words have led to
+    codes = {*_UNKNOWN, NO_BUTTON} if used - own - {BUTTON} else {*_UNKNOWN}
     for diagnostic in found:
         word = diagnostic.values.get("found", "").upper()
+        word = BUTTON if diagnostic.code is NO_BUTTON else word
         word = word if word in of_kits else concept_of(word) or word
         side = f"{''.join(said_of(word, 'stem')) or word}_L"  # `LINEA`, where others have LINE_L
         word = side if side in of_kits - own else word
         having = [robot for robot, its in known.items() if word in its - own]
-        if diagnostic.code in _UNKNOWN and having:
-            numbered = zip(_NUMBERS, [each for each in having if each in whole] or having,
-                           strict=False)  # fmt: skip
-            values = {"found": word, "own": name, **dict(numbered)}
+        if diagnostic.code in codes and having:
+            having = [each for each in having if each in whole] or having
+            if any(each <= {*having} for each in told):
+                continue
+            told.append({*having})
+            values = {"found": word, "own": name, **dict(zip(_NUMBERS, having, strict=False))}
             diagnostic = Diagnostic(OTHER_ROBOT, diagnostic.span, values)
         named.append(diagnostic)
     return named

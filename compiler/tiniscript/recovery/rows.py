@@ -174,7 +174,7 @@ a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val | $a $s $b AND $b $t $c |
 o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val ⟨¦, c=@num|@val⟩ ) | $o ( $a + $b ⟨¦+ $c⟩ ) / ⟨2¦3⟩ | 1 | TS010 | offered | SHOW(AVERAGE(LIGHT_L, LIGHT_R⟨¦, 5⟩)) => SHOW((LIGHT_L + LIGHT_R⟨¦ + 5⟩) / ⟨2¦3⟩)
 a=@num v=@val | @by:a:v | 1 | TS048 | offered | VEL = 30⏎F(2, 2VEL) => VEL = 30⏎F(2, 2 * VEL)
 a=@num|@val ⟨modulo¦plus⟩ b=@num|@val | $a ⟨%¦+⟩ $b | 1 | TS010 | first | X = 7⏎X = X ⟨MOD¦mas⟩ 2 => X = 7⏎X = X ⟨%¦+⟩ 2
-no l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
+no l=@val|( | NOT $l | 1 | TS010 | applied | IF(NO⟨ DISTANCE < 10¦(DISTANCE < 10)⟩)⏎F(1,50)⏎ENDIF => IF(NOT⟨ DISTANCE < 10¦(DISTANCE < 10)⟩)⏎F(1,50)⏎ENDIF
 l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
 l=MIN|MAX ( c=@noparen+ ) s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l ( $c ) $s $a &o $l ( $c ) $t $b | 1 | TS018 | offered | IF(MIN(2, DISTANCE) < 10 OR < 5);S;ENDIF => IF(MIN(2, DISTANCE) < 10 OR MIN(2, DISTANCE) < 5);S;ENDIF
 l=@val = a=@num or b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
@@ -360,7 +360,7 @@ a=@num ( c=@noparen+ ) | $a * ( $c ) | 1 | TS048 | offered | X = 2(20 + 10)⏎F(
 ^ BREAK when? (? c=@cond+ )? $ | IF ( $c ) ; BREAK ; ENDIF | .9 | TS071 | offered | LOOP(FOREVER)⏎F(0.5, 60)⏎BREAK(DISTANCE < 10)⏎END_LOOP => LOOP(FOREVER)⏎F(0.5, 60)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
 # what the devices of a kit are set to
 d=@device v=⟨lit|on¦dark|off⟩ e=;|$ | &d ( ⟨TRUE¦FALSE⟩ ) $e | 1 | TS015 | applied | LED ⟨ON¦OFF⟩ => LED(⟨TRUE¦FALSE⟩)
-d=@device ( ⟨lit¦dark¦most¦least⟩ ) | &d ( ⟨TRUE¦FALSE¦@most:d¦@least:d⟩ ) | 1 | TS102 | applied | ⟨LED(PRENDIDO)¦LED(OFF)¦PINZA(ABIERTA)¦GRIPPER(CLOSED)⟩ => ⟨LED(TRUE)¦LED(FALSE)¦GRIPPER(180)¦GRIPPER(0)⟩
+d=@device ( ⟨lit¦dark¦most¦least⟩ ) | &d ( ⟨TRUE¦FALSE¦@most:d¦@least:d⟩ ) | 1 | TS102 | applied | ⟨LED(PRENDIDO)¦LED(LOW)¦PINZA(ABIERTA)¦GRIPPER(CLOSED)⟩ => ⟨LED(TRUE)¦LED(FALSE)¦GRIPPER(180)¦GRIPPER(0)⟩
 ^ ⟨most¦least¦on|lit¦off|dark⟩ the|one? d=@device $ | &d ( ⟨@most:d¦@least:d¦TRUE¦FALSE⟩ ) | 1 | TS102 | applied | ⟨ABRIR PINZA¦cerrar la garra¦prende el LED¦apagar el foco⟩ => ⟨GRIPPER(180)¦GRIPPER(0)¦LED(TRUE)¦LED(FALSE)⟩
 # DEF and its calls
 ^ DEF n=@word ( v=@name ⟨¦, w=@name⟩ ) ':'? | $v = 0 ; ⟨¦$w = 0 ;⟩ DEF $n ; | .5 | TS039 | offered | DEF IR(T⟨¦, P⟩)⏎F(T, ⟨80¦P⟩)⏎END_DEF⏎IR(2⟨¦, 80⟩) => T = 0;⟨¦P = 0;⟩DEF IR;⏎F(T, ⟨80¦P⟩)⏎END_DEF⏎T = 2;⟨¦P = 80;⟩IR

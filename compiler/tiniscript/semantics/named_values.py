@@ -20,6 +20,11 @@ def value_of(name: str) -> str:
     return "2" if is_time(name) else ""
 
 
+def yes_no_of(word: str) -> str:
+    """Return what a word says of a lamp, a button or a pin: TRUE for ON and HIGH, FALSE for OFF."""
+    return "TRUE" if said_of(word, "lit") else "FALSE" if said_of(word, "dark") else ""
+
+
 def use_of(name: str) -> str:
     """Return how a variable of this name is used: `F(2, SPEED)`, `F(TIME_S, 80)`, `SHOW(X)`."""
     if is_power(name):

@@ -98,6 +98,9 @@ class Scope:
         is_sensor = last.op == "NAME" and last.value in self._yes_no_sensors
         return last.op in _YES_NO or is_sensor
 
+    def is_yes_no_sensor(self, name: str) -> bool:
+        return name in self._yes_no_sensors
+
     def near(self, word: str, known: Iterable[str]) -> str:
         """Return the nearest known word for a message, for the first ENOUGH mistakes.
 

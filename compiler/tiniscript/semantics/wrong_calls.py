@@ -12,10 +12,11 @@ from itertools import islice
 
 from tiniscript.base.fixed_point import HIGHEST, as_text
 from tiniscript.base.source import Source, Span
-from tiniscript.base.words import OTHER_WAY, UNIT_OF, VALUE, WORDS, Argument, Word
+from tiniscript.base.words import OTHER_WAY, POWER, TIME, UNIT_OF, VALUE, WORDS, Argument, Word
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import looks_ahead
+from tiniscript.semantics.named_values import yes_no_of
 from tiniscript.semantics.symbols import ENOUGH, Name, Scope
 from tiniscript.semantics.unknown_words import (
     report_not_callable,
@@ -72,10 +73,21 @@ class WrongCalls:
             "usage": word.usage,
             "example": "" if texts else word.example,
             **_said_of_count(texts, word, _UNTIL.search(source[span])),
+            **self._as_way(texts, word),
             "wanted": str(len(word.arguments)),
             "found": str(len(arguments)),
         }
         self.scope.report(codes.ARGUMENT_COUNT, span, None, word=word.text, **values)
+
+    def _as_way(self, texts: Sequence[str], word: Word) -> dict[str, str]:
+        """`R(90)`, `F(30)`: what the one value is, if it is no power."""
+        kit, unit = self.scope.kit, UNIT_OF.get(word.text, "")
+        has_ways = kit.turn if unit == "DEG" else kit.speed
+        is_one = len(texts) == 1 and _NUMBER.fullmatch(texts[0]) and float(texts[0]) >= _LONG_TIME_S
+        if not (unit and has_ways and is_one):
+            return {}
+        way = f"{word.text}({texts[0]} {unit}, {POWER.sample})"
+        return {"number": texts[0], "turn" if unit == "DEG" else "way": way}
 
     def unit_pair(self, node: ast.Command, unit: ast.Part) -> None:
         """`F(20 DEG, 60)`: forward goes centimetres."""
@@ -127,6 +139,8 @@ class WrongCalls:
         value = "5" if node.value is None else self.scope.source[node.value.span]
         said = {"name": node.name, "value": value}
         if device.what == "actuator":
+            is_yes_no = self.scope.kit.actuators[device.number].is_yes_no
+            said["value"] = (is_yes_no and yes_no_of(value.upper())) or value
             self.scope.report(codes.ACTUATOR_SET, node.name_span, None, **said)
             return
         if value.isdecimal() and looks_ahead(self.scope.kit.sensors[device.number]):
@@ -213,14 +227,15 @@ def _is_note(text: str) -> bool:
 
 
 def _said_of_count(texts: Sequence[str], word: Word, until: re.Match[str] | None) -> dict[str, str]:
-    """Return what is said of a wrong number of values: `power` of F(80), `spare` of F(2, 80, 5).
+    """Return what is said of a wrong number of values: `power` of F(80) is F(2, 80), `spare` of
+    F(2, 80, 5) is F(2, 80).
 
     `kept` is W(2) for W(2, 80): a wait has no power. With UNTIL the time may be FOREVER.
     """
     numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
     said = {"power": "", "spare": "", "kept": ""}
     if word.role.is_move and len(texts) == 1 and _LONG_TIME_S <= numbers[0] <= _MOST_POWER:
-        said["power"] = f"{word.text}( , {texts[0]})"
+        said["power"] = _call(word, [TIME.sample, texts[0]])
         if until is not None:
             said["endless"] = f"{word.text}(FOREVER, {texts[0]}){until[0]}"
         said["number"] = texts[0]

@@ -14,7 +14,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.recovery.amounts import is_amount, with_number
 from tiniscript.recovery.concepts import meant_by, said_of
 from tiniscript.semantics.comparisons import is_aside
-from tiniscript.semantics.named_values import value_of
+from tiniscript.semantics.named_values import value_of, yes_no_of
 from tiniscript.semantics.symbols import ENOUGH, NUMBER, Operand, Scope
 from tiniscript.semantics.unknown_words import whole_name
 from tiniscript.syntax.ast import Part
@@ -24,6 +24,7 @@ _EQUAL = frozenset(("EQ", "NE"))
 _COMPARES = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
 _COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X =` of `X = 5`
 _NEAR = 20  # characters before a name in which its word is looked for
+_COMPARED_WITH = re.compile(r"(\w+)\s*(?:=|<>)\s*$")  # `BUTTON = ` of `BUTTON = HIGH`
 _TIMES_BEFORE = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
 _TONE_BEFORE = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
 _DIGITS = "0123456789"
@@ -58,6 +59,8 @@ class WrongValues:
         near = "".join(said_of(name, "number")) or scope.near(name, known)
         near = near or ("".join(said_of(name, "power")) if before.rstrip().endswith("=") else "")
         near = near or whole_name(scope, name, scope.set_somewhere)
+        if (asked := _COMPARED_WITH.search(before)) and scope.is_yes_no_sensor(asked[1].upper()):
+            near = yes_no_of(name) or near
         base = name.rstrip(_DIGITS).rstrip("_")  # DISTANCE, of DISTANCE2
         stem = ("".join(said_of(base, "stem")) or base) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
         several = [each for each in known if each.startswith(stem)]

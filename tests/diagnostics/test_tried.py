@@ -1,0 +1,87 @@
+"""What messages say to try: itself right, and once for what is wrong once."""
+
+from __future__ import annotations
+
+import re
+
+from tests.support.rows import each_row
+from tests.support.texts import LANGUAGES
+from tiniscript import check, robots
+from tiniscript.base.source import Source
+from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.rendering import Message, message
+from tiniscript.library.compiling import compiled
+from tiniscript.library.named_robot import robot_of
+
+
+def told(program: str, language: str = "en") -> list[Message]:
+    """Return what is said of a program for the robot that it names."""
+    robot = robot_of(program.encode(), robots.load(robots.DEFAULT))
+    found = compiled(program.encode(), robot, "", is_strict=True)
+    return [message(each, found.source, language) for each in found.diagnostics]
+
+
+@each_row("language", LANGUAGES)
+@each_row("word", "FBLR")
+@each_row("number", (1, 2, 19, 20, 30, 45, 60, 90, 100, 101, 180, 360))
+def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: int) -> None:
+    """As power, centimetres or degrees: never with a gap between the brackets."""
+    (said,) = told(f"{word}({number})", language)
+    calls = re.findall(r"\b[FBLR]\([^()]*\d[^()]*\)", said.fix)
+    assert calls or number < 20, said
+    for call in calls:
+        assert str(number) in call and not [each for each in check(call) if each.code < "TS800"]
+
+
+@each_row(
+    "program, wanted",
+    [
+        ("IF(NO(DISTANCE < 10));S;END_IF", "IF(NOT(DISTANCE < 10));S;END_IF"),
+        ("W(5) UNTIL(NÃO(DISTANCE > 9))", "W(5) UNTIL(NOT(DISTANCE > 9))"),
+        ("WHILE(NAO (TIME > 9));F(1, 60);END_WHILE", "WHILE(NOT (TIME > 9));F(1, 60);END_WHILE"),
+        ("// robot: liner\nLED(HIGH)", "// robot: liner\nLED(TRUE)"),
+        ("// robot: grabber\nLED LOW", "// robot: grabber\nLED(FALSE)"),
+    ],
+)
+def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted: str) -> None:
+    robot = robot_of(program.encode(), robots.load(robots.DEFAULT))
+    made = fixed(program, lambda to: compiled(to.encode(), robot, "", True).diagnostics)
+    assert made.text == wanted and not made.left
+
+
+@each_row(
+    "program, fix",
+    [
+        ("// robot: grabber\nIF(BUTTON = HIGH);S;END_IF", "TRUE"),
+        ("// robot: grabber\nLED = LOW", "LED(FALSE)"),
+    ],
+)
+def test_what_a_pin_is_said_to_be_is_a_yes_or_no(program: str, fix: str) -> None:
+    assert [each.fix for each in told(program)] == [fix]
+
+
+@each_row(
+    "program, words",
+    [
+        ("IF(LINE_L);S;END_IF;IF(BUTTON);S;END_IF", [("LINE_L", "liner")]),
+        ("W(1) UNTIL(BUTTON);GRIPPER(90);LED(TRUE)", [("BUTTON", "grabber")]),
+        ("LED(TRUE);SHOW(LINE_L);LED(FALSE)", [("LED", "liner")]),
+        ("GRIPPER(90);SHOW(LINE_L);LED(TRUE)", [("GRIPPER", "grabber"), ("LINE_L", "liner")]),
+        ("// robot: liner\nW(1) UNTIL(BUTTON);GRIPPER(90)", [("GRIPPER", "grabber")]),
+        ("W(1) UNTIL(BUTTON)", []),
+    ],
+)
+def test_words_of_another_kit_are_one_mistake(program: str, words: list[tuple[str, str]]) -> None:
+    """And what it says to write makes all of them known."""
+    found = told(program)
+    source = Source(program)
+    named = []
+    for each in found:
+        if each.code == "TS119":
+            rows = source.text.split("\n")
+            word = rows[each.line - 1][each.column - 1 : each.end_column - 1]
+            named.append((word, each.fix.rpartition(" ")[2]))
+    assert named == words and len(found) == max(1, len(words))
+    if len(words) == 1:
+        changed = f"// robot: {words[0][1]}\n{program.rpartition(chr(10))[2]}"
+        assert not [each for each in told(changed) if each.severity == "mistake"]
