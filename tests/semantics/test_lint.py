@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tests.support.rows import each_row
 from tiniscript import check_text, robots
+from tiniscript.base.source import applied
 from tiniscript.semantics.lint import lint
 
 KIT = robots.load("tinibot").kit
@@ -66,6 +67,12 @@ ADVISED = [
     ("LOOP(2);F(2, 80);END_LOOP // R(1, 60)", "TS816"),
     ("TASK;F(4, 60);END_TASK;TASK;L(4, 60);END_TASK", "TS832"),
     ("TASK;F(4, 60);END_TASK;L(4, 60)", "TS832"),
+    ("TASK;BEEP(0.2, 440);W(1);END_TASK;F(9, 60)", "TS833"),
+    ("DEF A;BEEP(1, 440);END_DEF;TASK\n  A\n  W(0.5)\nENDTASK\nF(9, 60)", "TS833"),
+    ("LOOP(FOREVER);F(1, 60);END_LOOP;WHEN(DISTANCE < 10);S;END_WHEN", "TS834"),
+    ("WHEN (DISTANCE < 10) // a hand\nSHOW(1);S;END_WHEN;F(FOREVER, 60)", "TS834"),
+    ("DEF A;S;END_DEF;WHEN(DISTANCE < 9);A;END_WHEN;TASK;LOOP(FOREVER);F(1, 60);W(1);END_LOOP\n"
+     "END_TASK", "TS834"),
     ("IF(10 > DISTANCE AND DISTANCE >= 10);W(1);ENDIF", "TS827"),
     ("IF(DISTANCE >= 10 OR DISTANCE < 10);W(1);ENDIF", "TS827"),
     ("F(5, 60) UNTIL(TIME < 9 AND TIME > 30)", "TS827"),
@@ -91,6 +98,13 @@ def test_advice(text: str, code: str) -> None:
     "text",
     [
         "LOOP(FOREVER);W(1);IF(DISTANCE < 5);BREAK;ENDIF;END_LOOP;S",
+        "TASK;W(2);BEEP(0.2, 440);END_TASK;F(9, 60)",
+        "TASK;LOOP(3);BEEP(0.2, 440);END_LOOP;W(1);END_TASK;F(9, 60)",
+        "DEF A;LOOP(3);W(1);END_LOOP;END_DEF;TASK;A;W(1);END_TASK;F(9, 60)",
+        "TASK;W(5) UNTIL(DISTANCE < 9);END_TASK;F(9, 60)",
+        "LOOP(FOREVER);F(1, 60);END_LOOP;WHEN(DISTANCE < 10);S;W(1);END_WHEN",
+        "LOOP(FOREVER);BEEP(1, 440);END_LOOP;WHEN(DISTANCE < 10);S;END_WHEN",
+        "F(9, 60);WHEN(DISTANCE < 10);S;END_WHEN",
         "DEF A;W(1);END_DEF;LOOP(FOREVER);A;END_LOOP",
         "LOOP(3);F(0.4, 80);IF(DISTANCE < 10);S;BREAK;ENDIF;END_LOOP",
         "LOOP(3);F(0.4, 80);IF(DISTANCE < 10);S;W(2);ENDIF;END_LOOP",
@@ -182,3 +196,18 @@ def test_advice_is_for_right_programs_alone() -> None:
     assert [diagnostic.is_mistake for diagnostic in wrong.diagnostics] == [True]
     assert wrong.program is not None
     assert lint(wrong.program, KIT, wrong.source)
+
+
+@each_row(
+    "text, wanted",
+    [
+        ("TASK;W(1);END_TASK", "TASK;LOOP(FOREVER);W(1);END_LOOP;END_TASK"),
+        ("TASK // beeps\n  W(1) // so\nENDTASK",
+         "TASK\nLOOP(FOREVER) // beeps\n  W(1) // so\nEND_LOOP\nENDTASK"),
+    ],
+)  # fmt: skip
+def test_a_loop_is_put_around_a_task_that_is_done_once(text: str, wanted: str) -> None:
+    (diagnostic,) = check_text(text, KIT).diagnostics
+    assert diagnostic.repair is not None
+    assert applied(text, diagnostic.repair.edits) == wanted
+    assert not check_text(wanted, KIT).diagnostics

@@ -212,6 +212,8 @@ ROUNDED_TIMES = _warning("TS829")
 LATE_ARM = _warning("TS830")
 ZERO_BEFORE = _warning("TS831")
 NO_MOTORS = _warning("TS832")
+TASK_DONE_ONCE = _warning("TS833")
+WHEN_GOES_ON = _warning("TS834")
 UNUSED_READING = _warning("TS840")
 CUT_VALUE = _warning("TS841")
 

@@ -27,7 +27,7 @@ def kept_motors(program: ir.Program, source: Source) -> list[Diagnostic]:
         is_stopped = any(isinstance(each, ir.Stop) for body in higher for each in all_of(body))
         if not is_stopped and motors.are_kept(task.body):
             line = str(source.position(task.span.start)[0])
-            waiting = [next(filter(_drives, all_of(_endless(body))), None) for body in lower]
+            waiting = [next(filter(drives, all_of(endless(body))), None) for body in lower]
             return [Diagnostic(codes.NO_MOTORS, each.span, {"line": line})
                     for each in waiting if each is not None]  # fmt: skip
         higher.append(task.body)
@@ -36,7 +36,7 @@ def kept_motors(program: ir.Program, source: Source) -> list[Diagnostic]:
 
 def _waiting(program: ir.Program, tasks: list[ir.Body], source: Source) -> list[Diagnostic]:
     """`TASK;F(4, 60);END_TASK;TASK;R(4, 60);END_TASK`: they take turns, and make no curve."""
-    begin = [body[0] for body in (*tasks, program.body) if body and _drives(body[0])]
+    begin = [body[0] for body in (*tasks, program.body) if body and drives(body[0])]
     if len(begin) < 2 or not tasks[0] or begin[0] is not tasks[0][0]:
         return []
     values = {"first": source[begin[0].span], "both": "M(60, 30);W(4)"}
@@ -49,10 +49,8 @@ class _Motors:
 
     def are_kept(self, body: ir.Body) -> bool:
         """Whether a task surely drives for ever at its end, and never lets the motors go there."""
-        rest = _endless(body)
-        if not any(
-            isinstance(each, ir.Motors) or (_drives(each) and _lasts(each)) for each in rest
-        ):
+        rest = endless(body)
+        if not any(isinstance(each, ir.Motors) or (drives(each) and _lasts(each)) for each in rest):
             return False
         return self._repeated(rest, False) is not None or self._repeated(rest, True) is True
 
@@ -64,7 +62,7 @@ class _Motors:
                 return None
             if isinstance(each, ir.Motors):
                 found = True
-            elif isinstance(each, ir.Stop) or _drives(each):
+            elif isinstance(each, ir.Stop) or drives(each):
                 found = False
             elif isinstance(each, (ir.Move, ir.Beep)):
                 found = found or None
@@ -85,7 +83,7 @@ class _Motors:
         return wants and once if takes_time else None
 
 
-def _endless(body: ir.Body) -> ir.Body:
+def endless(body: ir.Body) -> ir.Body:
     """Return what a body does for ever at its end: a move, or what a loop repeats."""
     last = body[-1] if body else None
     if isinstance(last, ir.Loop) and last.times is None:
@@ -94,7 +92,7 @@ def _endless(body: ir.Body) -> ir.Body:
     return body[-1:] if is_move else ()
 
 
-def _drives(statement: ir.Statement) -> bool:
+def drives(statement: ir.Statement) -> bool:
     return isinstance(statement, ir.Motors) or (
         isinstance(statement, ir.Move) and statement.power is not None
     )

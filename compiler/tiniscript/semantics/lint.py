@@ -58,7 +58,11 @@ def lint(program: ir.Program, kit: Kit, source: Source) -> list[Diagnostic]:
         _look_at(task.body, look, _Around(is_repeated=task.look is not None))
     _look_at(program.body, look, _Around(is_last=True))
     found = [*look.found, *look.late.found, *look.frozen.found, *swapped_names(program)]
-    found += kept_motors(program, source)
+    if program.tasks:
+        from tiniscript.semantics.brief_tasks import brief_tasks  # few programs have any
+
+        found += kept_motors(program, source)
+        found += brief_tasks(program, source)
     found += _unused(program, kit, [*ir.every(program), *program.tasks])
     return found
 
