@@ -13,10 +13,12 @@ from tiniscript.diagnostics.rendering import Message, message
 from tiniscript.library.compiling import compiled
 from tiniscript.library.named_robot import robot_of
 
+TINIBOT = robots.load(robots.DEFAULT)
+
 
 def told(program: str, language: str = "en") -> list[Message]:
     """Return what is said of a program for the robot that it names."""
-    robot = robot_of(program.encode(), robots.load(robots.DEFAULT))
+    robot = robot_of(program.encode(), TINIBOT)
     found = compiled(program.encode(), robot, "", is_strict=True)
     return [message(each, found.source, language) for each in found.diagnostics]
 
@@ -44,7 +46,7 @@ def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: 
     ],
 )
 def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted: str) -> None:
-    robot = robot_of(program.encode(), robots.load(robots.DEFAULT))
+    robot = robot_of(program.encode(), TINIBOT)
     made = fixed(program, lambda to: compiled(to.encode(), robot, "", True).diagnostics)
     assert made.text == wanted and not made.left
 
@@ -85,3 +87,57 @@ def test_words_of_another_kit_are_one_mistake(program: str, words: list[tuple[st
     if len(words) == 1:
         changed = f"// robot: {words[0][1]}\n{program.rpartition(chr(10))[2]}"
         assert not [each for each in told(changed) if each.severity == "mistake"]
+
+
+@each_row(
+    "program, fixes",
+    [
+        ("STOP UNTIL(DISTANCE > 20)", ["STOP;W(FOREVER) UNTIL(DISTANCE > 20)"]),
+        ("S UNTIL(DISTANCE > 20)", ["S;W(FOREVER) UNTIL(DISTANCE > 20)"]),
+        ("// robot: grabber\nLED(TRUE) UNTIL(DISTANCE > 9)",
+         ["LED(TRUE);W(FOREVER) UNTIL(DISTANCE > 9)"]),
+        ("F(FOREVER, 60) WHILE(DISTANCE > 10)", ["F(FOREVER, 60) UNTIL(DISTANCE <= 10)"]),
+        ("F(FOREVER, 60);F(2, 60) WHILE(DISTANCE > 10)",
+         ["F(FOREVER, 60) UNTIL(DISTANCE < 10)", "F(2, 60) UNTIL(DISTANCE <= 10)"]),
+        ("F(RANDOM(1,3) SEC, 50)", ["F(RANDOM(1,3), 50)"]),
+        ("W(ABS(TIME - 9) seconds)", ["W(ABS(TIME - 9))"]),
+        ("F(RANDOM(1,3) ms, 50)", ["Write the result as one number, without a unit."]),
+    ],
+)  # fmt: skip
+def test_what_is_tried_does_what_was_written(program: str, fixes: list[str]) -> None:
+    """A robot that stands goes on standing, and one condition is told of once."""
+    assert [each.fix for each in told(program)] == fixes
+
+
+@each_row(
+    "program, wanted",
+    [
+        ("AL MISMO TIEMPO\nBEEP(1, 440)\nFIN\nF(2, 60)", "TASK\nBEEP(1, 440)\nEND_TASK\nF(2, 60)"),
+        ("AO MESMO TEMPO\nBEEP(1, 440)\nFIM\nF(2, 60)", "TASK\nBEEP(1, 440)\nEND_TASK\nF(2, 60)"),
+        ("MEANWHILE\nBEEP(1, 440)\nEND\nF(2, 60)", "TASK\nBEEP(1, 440)\nEND_TASK\nF(2, 60)"),
+        ("SEMPRE QUE DISTANCE < 9\nB(1, 60)\nFIM", "WHEN(DISTANCE < 9)\nB(1, 60)\nEND_WHEN"),
+        ("WHENEVER DISTANCE < 9\nB(1, 60)\nEND", "WHEN(DISTANCE < 9)\nB(1, 60)\nEND_WHEN"),
+    ],
+)
+def test_what_is_done_beside_is_a_task(program: str, wanted: str) -> None:
+    made = fixed(program, lambda to: list(compiled(to.encode(), TINIBOT, "", True).diagnostics))
+    assert (made.text, made.left) == (wanted, [])
+
+
+def test_what_spanish_pupils_say_for_when_is_shown() -> None:
+    """SIEMPRE QUE may be a WHILE as well: it is shown, and nobody makes it."""
+    (said,) = told("SIEMPRE QUE DISTANCE < 9\nB(1, 60)\nFIN", "es")
+    assert said.fix == "WHEN(DISTANCE < 9); B(1, 60); END_WHEN"
+
+
+@each_row(
+    "program, lines",
+    [
+        ("PAN(90)\nPAN(10)", [1]),
+        ("SQUARE(1)\nF(1, 60)\nSQUARE(2)", [1]),
+        ("HOP\nHOP\nHIP", [1, 3]),
+        ("DEF DANCE;F(1, 60);END_DEF\nDANSE\nDANSE", [2, 3]),  # each has its own repair
+    ],
+)
+def test_an_unknown_word_is_one_mistake(program: str, lines: list[int]) -> None:
+    assert [each.line for each in told(program)] == lines

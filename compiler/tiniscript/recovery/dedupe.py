@@ -16,6 +16,7 @@ _WITH_LINES: dict[Code, tuple[str, ...] | None] = {
     **dict.fromkeys((codes.BAD_NAME, codes.NAME_WITH_SPACE), ("found", "right")),
     **dict.fromkeys((codes.RESERVED, codes.SAME_AGAIN)),
 }
+_UNKNOWN = (codes.UNKNOWN_WORD, codes.UNTAUGHT)  # one word: of each its first place
 _ONCE = _WITH_LINES | {
     **dict.fromkeys((codes.BRACES, codes.CASES), ()),
     **dict.fromkeys((codes.DOTS, codes.UNTAUGHT, codes.CALLS_ITSELF, codes.UNKNOWN_NAME)),
@@ -26,6 +27,8 @@ def dedupe(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     """Return diagnostics without those that say the same as one before."""
     if any(each.code is codes.CASES for each in found):  # braces and breaks go with them
         found = [each for each in found if each.code not in (codes.BRACES, codes.BREAK_OUTSIDE)]
+    asked = [each.span.start for each in found if each.code is codes.QUESTION_BEHIND]
+    found = [each for each in found if not _is_asked_behind(each, asked, source)]
     meant = {
         it.values.get("found") for it in found if it.values.get("near") or it.values.get("first")
     }
@@ -36,6 +39,8 @@ def dedupe(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
         is_alone = source[each.span].upper() == values.get("word")
         if code is codes.MISSING_OPEN and is_alone and (values.get("fix") or values.get("example")):
             key = ""  # a word that has values
+        elif code in _UNKNOWN and not (each.repair or values.get("near")):
+            code, key = codes.UNKNOWN_WORD, (values.get("found") or values["name"]).upper()
         elif code in _ONCE and not (code is codes.UNKNOWN_NAME and values.get("found") in meant):
             names = _ONCE[code]
             key = tuple(
@@ -43,6 +48,14 @@ def dedupe(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
             )
         groups.setdefault((code, key), []).append(each)
     return codes.in_order([_together(same, source) for same in groups.values()])
+
+
+def _is_asked_behind(found: Diagnostic, asked: Sequence[int], source: Source) -> bool:
+    """Whether what ends `F(FOREVER, 60) WHILE(DISTANCE > 9)` is told of as a question behind it."""
+    start = found.span.start
+    return found.code is codes.FOREVER_NEEDS_UNTIL and any(
+        start < each and not {*source.text[start:each]} & {*";\r\n"} for each in asked
+    )
 
 
 def _together(same: Sequence[Diagnostic], source: Source) -> Diagnostic:

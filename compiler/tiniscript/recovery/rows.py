@@ -342,7 +342,8 @@ a=@num ( c=@noparen+ ) | $a * ( $c ) | 1 | TS048 | offered | X = 2(20 + 10)⏎F(
 ^ ⟨BREAK¦S|STOP⟩ LOOP $ | BREAK | 1 | ⟨TS044¦TS102⟩ | applied | LOOP(2)⏎F(1, 50)⏎⟨BREAK¦STOP⟩ LOOP⏎END_LOOP => LOOP(2)⏎F(1, 50)⏎BREAK⏎END_LOOP
 ^ ⟨FOREVER :¦FOREVER¦LOOP FOREVER :?⟩ $ | LOOP ( FOREVER ) ⟨;¦¦⟩ | 1 | ⟨TS032¦TS032¦TS102⟩ | applied | ⟨forever:¦forever¦repetir siempre⟩⏎  F(1,50)⟨¦⏎end¦⏎fin repetir⟩ => LOOP(FOREVER)⏎  F(1,50)⏎END_LOOP
 ^ FOREVER ( <body> ) $ | LOOP ( FOREVER ) ; $b $r | 1 | TS080 | applied | FOREVER(F(1, 80)) => LOOP(FOREVER);F(1, 80);END_LOOP
-^ FOREVER that c=@cond+ ⟨b=@start|'{'¦':'? $⟩ | WHILE ( $c ) ⟨; $b¦⟩ | 1 | TS102 | offered | siempre que DISTANCE > 10⟨ ¦⏎⟩F(1, 50)⟨¦⏎fin⟩ => WHILE(DISTANCE > 10)⟨;¦⏎⟩F(1, 50)⟨;¦⏎⟩END_WHILE
+^ FOREVER that c=@cond+ ⟨':'? b=@start|'{'¦':'? $⟩ | WHEN ( $c ) ⟨; $b¦⟩ | 1 | TS102 | offered | siempre que DISTANCE > 10⟨: ¦⏎⟩F(1, 50)⟨¦⏎fin⟩ => WHEN(DISTANCE > 10)⟨;¦⏎⟩F(1, 50)⟨;¦⏎⟩END_WHEN
+^ @word+ same|the moment :|,? $ | TASK | 1 | TS102 | applied | ⟨al mismo tiempo¦a la vez:¦at the same time¦ao mesmo tempo⟩⏎BEEP(1, 440)⏎FIN⏎F(2, 80) => TASK⏎BEEP(1, 440)⏎END_TASK⏎F(2, 80)
 ⟨^ TASK @num ':'? $¦TASK ( @num|@word? )⟩ | TASK | 1 | ⟨TS044¦TS039⟩ | offered | TASK⟨ 1¦(1)⟩⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 ^ LOOP UNTIL c=@cond+ ⟨':'|do? b=@start|'{'¦':'|'{'? $⟩ | WHILE ( @not:c ) ⟨; $b¦⟩ | 1 | TS102 | applied | repeat until DISTANCE < 10⟨ ¦⏎⟩F(1, 50)⟨¦⏎end⟩ => WHILE(DISTANCE >= 10)⟨;¦⏎⟩F(1, 50)⟨;¦⏎⟩END_WHILE
 ⟨END_LOOP UNTIL ( c=@any+ )¦^ UNTIL c=@cond+⟩ $ | IF ( $c ) ; <end> | ⟨1¦2⟩ | TS064 | ⟨offered¦applied⟩ | LOOP⟨(FOREVER)¦⟩⏎F(1, 50)⏎⟨END_LOOP UNTIL(DISTANCE < 10)¦UNTIL DISTANCE < 10⟩ => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP

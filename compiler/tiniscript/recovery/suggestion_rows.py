@@ -62,7 +62,7 @@ SUGGESTIONS = """
 ^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
 ^ @none @any* <asks> ( v=@word s=@num ) <body> $ | TS048 | before={v}; found={s}; words= | IF(DISTANCE 10)⏎S⏎ENDIF => found=10
 ^ @none g=IF|WHILE ( s=@any+ , w=@start @any* ) $ | TS080 | word={block}; head={block}({s}); right={end} | IF(distancia < poca, S) => head=IF(distancia < poca)
-^ @none s=FOREVER t=that q=@cond+ @startm $ | TS102 | found={s} {t}; right=WHILE; usage=WHILE({question}) | siempre que distancia > 20 avanza => usage=WHILE(DISTANCE > 20)
+^ @none s=FOREVER t=that q=@cond+ @startm $ | TS102 | found={s} {t}; right=WHEN; usage=WHEN({question}) | siempre que distancia > 20 avanza => usage=WHEN(DISTANCE > 20)
 ^ ⟨@none s=ELSEIF¦@none ELSE s=IF¦c=ELSE s=IF⟩ :? $ | TS015 | word=ELSEIF; words=; usage=ELSEIF; example=ELSEIF({distance} < 10); bare=ELSE | IF(DISTANCE < 10)⏎S⏎⟨ELIF¦SINO SI¦ELSE IF⟩⏎F(1, 60)⏎ENDIF => bare=ELSE
 # what asks or calculates, alone
 ^ @none IF <either> do? w=@start @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n});{then};ENDIF; another=IF({two} {r} {n});{then};ENDIF | si luz > 50 apita => another=IF(LIGHT_R > 50);BEEP(1, 440);ENDIF

@@ -266,6 +266,9 @@ class _Usage:
             return self.adds(near="LOOP")
         if self.names.meant(name) or (number and not 1 < int(number) <= _MOST_TIMES):
             return None  # a function of another language
+        given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.source.text)
+        if len({*given}) > 1:
+            return None  # its value is no count
         lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.source.text)
         times = int(number or len(lone))
         if is_call or len(lone) > 1 or self.names.defs or said_of(name, "taught"):
@@ -306,6 +309,8 @@ class _Usage:
 
     def condition(self) -> Diagnostic | None:
         """A condition in words, in the brackets of a header; or nothing in brackets."""
+        if self.found.code is codes.MISSING_COMMA and (said := self.unit()) is not None:
+            return said
         if self.signs[1:] == ["("] and self.signs[0] in WORDS:
             return self.adds(usage=self.usage(self.signs[0]))
         if (said := self.foreign() or self.amount()) is not None:
@@ -319,6 +324,19 @@ class _Usage:
             return None
         sample = WORDS[heads[-1]].arguments[0].sample
         return self.says(codes.IN_WORDS, word=heads[-1], question=sample)
+
+    def unit(self) -> Diagnostic | None:
+        """A unit behind a calculation: `F(RANDOM(1, 3) sec, 50)`."""
+        span = self.found.span
+        unit = said_of(plain(self.source[span]), "unit")
+        end = len(self.source.text[: span.start].rstrip())  # of the value
+        if not unit or self.source.text[end - 1] != ")":
+            return None
+        fix = self.source[Span(self.piece.start, end)] + self.source[Span(span.end, self.piece.end)]
+        told = self.offers(
+            codes.UNIT, fix if unit == ("s", "1000") else "", found=self.source[span]
+        )
+        return told._replace(span=span, repair=told.repair if unit == ("s", "1000") else None)
 
     def foreign(self) -> Diagnostic | None:
         """The values of a word that this robot does not have: whoever writes it wants the word."""

@@ -30,7 +30,9 @@ from tiniscript.syntax.free_names import numbered
 _PAIR = re.compile(r"(?i)\b([FBLR])[ \t]*\([ \t]*(\w+)[ \t]*(CM|DEG)\b")  # `F(20 DEG`
 # How an instruction is ended by a condition, by the role of its word.
 _ENDED = {"motors": "{call};W(FOREVER) UNTIL({c});S",
-          **dict.fromkeys(("show", "beep"), "WHILE(NOT ({c}));{call};END_WHILE")}  # fmt: skip
+          **dict.fromkeys(("stop", "actuator"), "{call};W(FOREVER) UNTIL({c})"),
+          **dict.fromkeys(("show", "beep", "def"),
+                          "WHILE(NOT ({c}));{call};END_WHILE")}  # fmt: skip
 _LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
 _LOWEST_HERTZ = 30
 _MOST_POWER = 100
@@ -55,7 +57,9 @@ class WrongCalls:
         source = self.scope.source
         start = _start_of_until(source, node, until)
         call = source[Span(node.span.start, start)].rstrip()
-        said = _ENDED.get("" if word is None else word.role.name, "F(5, 60) UNTIL({c})")
+        own = self.scope.names.get(node.word)
+        role = word.role.name if word else own.what if own else "def"
+        said = _ENDED.get(role, "F(5, 60) UNTIL({c})")
         example = said.format(call=call, c=source[until.span])
         place = Span(start, node.span.end)
         self.scope.report(codes.UNTIL_NOT_HERE, place, word=node.word, example=example)
