@@ -62,7 +62,7 @@ def told(text: str) -> list[tuple[str, str]]:
 
 def test_a_finding_does_not_reach_into_the_words_behind_it() -> None:
     text = "F(2, 80 %) de potencia"
-    assert told(text) == [("TS049", " %"), ("TS085", "de potencia")]
+    assert told(text) == [("TS049", "80 %"), ("TS085", "de potencia")]
     assert fixed(text, check).text == "F(2, 80) de potencia"
 
 

@@ -150,12 +150,24 @@ def _texts(key: str, lang: str) -> Iterator[str]:
         yield said
 
 
-def _filled(key: str, values: Mapping[str, str], lang: str) -> str:
-    """Return the first text whose gaps all have a value, else the last one, filled."""
+def names_found(diagnostic: Diagnostic) -> bool:
+    """Whether a message says what was found, as it stands in the text."""
+    key = f"{diagnostic.code.number}/message"
+    chosen = _chosen(key, diagnostic.values, languages.SOURCE)
+    return ("", "found") in _GAP.findall(chosen)
+
+
+def _chosen(key: str, values: Mapping[str, str], lang: str) -> str:
+    """Return the first text whose gaps all have a value, else the last one."""
     chosen = ""
     for chosen in _texts(key, lang):
         if all(values.get(name) for _, name in _GAP.findall(chosen)):
             break
+    return chosen
+
+
+def _filled(key: str, values: Mapping[str, str], lang: str) -> str:
+    chosen = _chosen(key, values, lang)
 
     def gap(match: re.Match[str]) -> str:
         longest = FIX_CHARACTERS if match[2] in ("fix", "right", "whole") else VALUE_CHARACTERS

@@ -64,6 +64,7 @@ def _with_findings(found: Compiled, kit: Kit) -> Compiled:
     from tiniscript.diagnostics.fixing import without_wrong
     from tiniscript.recovery.dedupe import dedupe
     from tiniscript.recovery.findings import findings, moved_back
+    from tiniscript.recovery.pointing import pointed
     from tiniscript.recovery.usage import with_usage
 
     read = cache(lambda text: analyzed(text, kit))  # a repair that was tried is read on
@@ -83,7 +84,8 @@ def _with_findings(found: Compiled, kit: Kit) -> Compiled:
 
     told = told_of(found, ROUNDS)
     honest = without_wrong(told.diagnostics, told.source.text, lambda to: read(to).diagnostics)
-    return told._replace(diagnostics=honest)
+    at = [pointed(each, found.source) for each in honest]
+    return told._replace(diagnostics=codes.in_order(at))
 
 
 def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tiniscript.base.source import Source
+from tiniscript.base.source import Edit, Source, Span, applied
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
+from tiniscript.syntax.lexer import QUOTES
 
 MANY = 6  # calls that an example has
 # What is said once for the same values, these or all of them: with the lines of the others, and
@@ -32,6 +33,10 @@ def dedupe(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     meant = {
         it.values.get("found") for it in found if it.values.get("near") or it.values.get("first")
     }
+    quoted = {k for k, each in enumerate(found) if _unquotes(each, source)}
+    found = _unquoted([found[k] for k in sorted(quoted)], source) + [
+        each for k, each in enumerate(found) if k not in quoted
+    ]
     groups: dict[object, list[Diagnostic]] = {}
     for each in found:
         code, values = each.code, each.values
@@ -56,6 +61,34 @@ def _is_asked_behind(found: Diagnostic, asked: Sequence[int], source: Source) ->
     return found.code is codes.FOREVER_NEEDS_UNTIL and any(
         start < each and not {*source.text[start:each]} & {*";\r\n"} for each in asked
     )
+
+
+def _unquotes(found: Diagnostic, source: Source) -> bool:
+    """Whether a repair takes quotation marks out, and does nothing else."""
+    edits = found.repair.edits if found.repair else ()
+    return bool(edits) and all(
+        not each.text.strip() and {*source[each.span].strip()} <= {*QUOTES} for each in edits
+    )
+
+
+def _unquoted(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
+    """Return one diagnostic for all quotation marks of a line."""
+    rows: dict[int, list[Diagnostic]] = {}
+    for each in found:
+        rows.setdefault(source.position(each.span.start)[0], []).append(each)
+    told = []
+    for row, same in rows.items():
+        repairs = [each.repair for each in same if each.repair]
+        edits = sorted(edit for each in repairs for edit in each.edits)
+        if len(same) > 1 and any(each.code is codes.QUOTE for each in same):
+            line = source.line_span(row)
+            shift = [Edit(Span(a - line.start, b - line.start), it) for (a, b), it in edits]
+            fix = applied(source[line], shift).strip("\r\n \t")
+            repair = Repair(tuple(edits), all(each.is_sure for each in repairs))
+            span = Span(edits[0].span.start, edits[-1].span.end)
+            same = [Diagnostic(codes.QUOTE, span, {"fix": fix}, span, repair)]
+        told += same
+    return told
 
 
 def _together(same: Sequence[Diagnostic], source: Source) -> Diagnostic:

@@ -411,6 +411,8 @@ def _slip(
         found = [each for each in (*old, *new) if each.text in BLOCK_ENDS][:1] or found
     is_all = code is codes.REPEATED or (code is codes.OTHER_SIGN and not right)
     is_found = bool(found) or code is codes.OTHER_ASSIGNMENT  # else a sign is missing
+    if code is codes.OTHER_ASSIGNMENT:  # `DISTÂNCIA := 5`: the sign alone
+        found = [each for each in found if each.kind is not WORD] or found
     was = _written(one if is_all or not is_found else found)
     was = was.strip("; ") if code in (codes.OTHER_LANGUAGE, codes.EXTRA_WORD) else was
     if is_note:

@@ -59,7 +59,8 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
         values = {"found": zero[1], "right": as_text(time), "fix": fix if is_sure else ""}
         if len(zero[1]) == 2:  # 3 seconds or 0.3
             values["point"] = f"0.{zero[1][1:]}"
-        return [Diagnostic(codes.ZERO_BEFORE, move.span, values), *of_power(move)]
+        at = Span(move.span.start + zero.start(1), move.span.start + zero.end(1))
+        return [Diagnostic(codes.ZERO_BEFORE, at, values, move.span), *of_power(move)]
     if _is_swapped(time, power):
         seconds, percent = as_text(time), as_text(power or 0)
         until = _UNTIL.search(text) if is_ended else None

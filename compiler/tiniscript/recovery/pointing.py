@@ -1,0 +1,59 @@
+"""Where a diagnostic points: at what its message names, if that stands in its line."""
+
+from __future__ import annotations
+
+import re
+
+from tiniscript.base.source import Source, Span
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.rendering import names_found
+from tiniscript.recovery.concepts import plain
+
+_COUNTED = (codes.ARGUMENT_COUNT, codes.OUT_OF_RANGE)  # what they found is a calculated number
+_WAYS = (codes.QUESTION_BEHIND, codes.NOT_CALLABLE)  # without a place they ask for no change
+
+
+def pointed(diagnostic: Diagnostic, source: Source) -> Diagnostic:
+    """Return a diagnostic at what it names, and with the place that it had for what to try."""
+    code, span, place = diagnostic.code, diagnostic.span, diagnostic.place
+    named = diagnostic.values.get("found", "").strip()
+    if not named or code in _COUNTED or not names_found(diagnostic):
+        return diagnostic
+    if _alike(source[span]) == _alike(named):
+        return diagnostic
+    found = _nearest(named, span, source)
+    if found is None:
+        return diagnostic
+    if place is None and code not in _WAYS:
+        place = span
+    return diagnostic._replace(span=found, place=place)
+
+
+def _alike(text: str) -> str:
+    return " ".join(plain(text).split())
+
+
+def _nearest(named: str, span: Span, source: Source) -> Span | None:
+    """Return where `named` stands in the lines of a place: in it, or else nearest to it."""
+    text = source.text
+    begin = max(text.rfind("\n", 0, span.start), text.rfind("\r", 0, span.start)) + 1
+    line_end = re.compile(r"[\r\n]|\Z").search(text, max(span.start, span.end))
+    assert line_end is not None  # each text has an end
+    part = _each_plain(text[begin : line_end.start()])
+    words = r"\s*".join(map(re.escape, _each_plain(named).split()))
+    head, tail = (r"(?<!\w)" * named[0].isalnum(), r"(?!\w)" * named[-1].isalnum())
+    found = [*re.finditer(f"{head}{words}{tail}", part)] or [*re.finditer(words, part)]
+    places = (Span(begin + match.start(), begin + match.end()) for match in found)
+    return min(places, key=lambda it: _distance(it, span), default=None)
+
+
+def _distance(one: Span, other: Span) -> tuple[int, int]:
+    """Return how far a place is from another, 0 where it is in it or around it."""
+    apart = max(0, other.start - one.end, one.start - other.end)
+    return apart, abs(one.start - other.start)
+
+
+def _each_plain(text: str) -> str:
+    """Return a text in capitals without accents, each character in its place."""
+    return "".join(short if len(short := plain(each)) == 1 else each for each in text)

@@ -1,0 +1,71 @@
+"""The caret stands at what the message names: over all programs of pupils."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.pupils.corpus import check, entries
+from tests.support.rows import each_row
+from tiniscript.base.source import Source
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.rendering import message, names_found
+from tiniscript.recovery.concepts import plain
+
+# What they found is counted, calculated, a sign for the words that say it, or what a note says.
+OTHERS = (codes.ARGUMENT_COUNT, codes.OUT_OF_RANGE, codes.MISSING_VALUE, codes.IN_A_NOTE)
+
+
+def alike(text: str) -> str:
+    return "".join(plain(text).split())
+
+
+@pytest.mark.parametrize("part", range(4))
+def test_the_text_under_the_caret_is_what_the_message_names(part: int) -> None:
+    seen = 0
+    for entry in entries()[part::4]:
+        source = Source(entry.program)
+        for each in check(entry.program):
+            named = alike(each.values.get("found", ""))
+            told = message(each, source, "en")
+            line = source.line_text(told.line)
+            if not named or each.code in OTHERS or not names_found(each):
+                continue
+            if named in alike(line):
+                seen += 1
+                end = told.end_column - 1 if told.end_line == told.line else len(line)
+                assert alike(line[told.column - 1 : end]) == named, (entry.program, each)
+    assert seen > 200
+
+
+@each_row(
+    "program, found",
+    [
+        ("DISTÂNCIA := 5", ":="),
+        ("TAMAÑO := 5", ":="),
+        ("LADO := 5", ":="),
+        ("IF(DISTANCE == 10);S;ENDIF", "=="),
+        ("F(2, 80)&B(2, 80)", "&"),
+        ("if(no DISTANCE < 10);S;ENDIF", "no"),
+        ("se NÃO(DISTANCE < 10);S;FIM", "se"),
+    ],
+)
+def test_a_message_names_the_sign_alone(program: str, found: str) -> None:
+    each = check(program)[0]
+    assert each.values["found"].lower() == program[slice(*each.span)] == found
+
+
+@each_row(
+    "program, fix",
+    [
+        ("“F(2, 80); R(90 DEG, 60)”", "F(2, 80); R(90 DEG, 60)"),
+        ("“SI|F(2, 80); S”", "SI|F(2, 80); S"),
+        ("«F(2, 80); S»", "F(2, 80); S"),
+        ("S\n  „F(2, 80); S“", "F(2, 80); S"),
+        ("‘F(2, 80); S’\nS", "F(2, 80); S"),
+    ],
+)
+def test_a_line_in_quotation_marks_is_told_once(program: str, fix: str) -> None:
+    (each,) = check(program)
+    assert each.code is codes.QUOTE and each.repair is not None and each.repair.is_sure
+    assert message(each, Source(program), "en").fix == fix
+    assert program[slice(*each.span)].startswith(tuple("“«„‘"))
