@@ -29,6 +29,8 @@ from tiniscript.cli import main
 from tiniscript.cli.streams import wrapped
 from tiniscript.cli.texts import Said, language_of, text
 from tiniscript.cli.texts.verbs import VERBS
+from tiniscript.diagnostics import rendering
+from tiniscript.diagnostics.codes import CODES
 from tiniscript.lessons import catalogue
 from tools.languages import PSEUDO, check_lexicon, check_robot, in_step, pseudo, sources
 from tools.languages import main as bring_in_step
@@ -499,3 +501,34 @@ def test_texts_that_are_longer_keep_to_80_columns(
         assert [row for row in rows[longer] if len(row) > 80] == [], words
         same = {row for row in {*rows[SOURCE]} & {*rows[longer]} if "$(" not in row}  # no code
         assert [row for row in same if re.search(r"^ *\w.*[a-z]{3} [a-z]{3}", row)] == [], words
+
+
+# What nobody who speaks the language says, whatever the message: brackets that keep, a DEF or a
+# part that is "made", a task that "moves itself", a thing to take out that has no name.
+UNSAID = {
+    "es": r"\bva desde \{|se mueve el TASK|el TASK [^.]* se mueve\b|Quita esto\b|no entra: aquí",
+    "pt": r"parênteses de \{word\} guardam|nunca é feit[oa]|a TASK [^.]* anda\b|Tire isto\b",
+    "en": r"Take this out\b",
+}
+
+
+@pytest.mark.parametrize("language", UNSAID)
+def test_a_message_says_nothing_that_nobody_says(language: str) -> None:
+    said = [
+        text
+        for key, texts in messages_of(language).items()
+        for text in texts
+        if "/more" not in key and re.search(UNSAID[language], text)
+    ]
+    assert not said
+
+
+def messages_of(language: str) -> dict[str, list[str]]:
+    """Return the texts of messages by key."""
+    found: dict[str, list[str]] = {}
+    for number in CODES:
+        for part in ("message", "try", "more"):
+            key = f"{number}/{part}"
+            found[key] = [*rendering._texts(key, language)]
+    assert sum(map(len, found.values())) > 400
+    return found

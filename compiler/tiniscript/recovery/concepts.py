@@ -50,6 +50,7 @@ _MAY_BE: dict[str, Callable[[float], bool]] = {
     "@power": lambda it: LONG_S <= it <= _MOST_POWER,
     "@angle": lambda it: it > _MOST_POWER or (it >= _EIGHTH and it % _EIGHTH == 0),
 }  # fmt: skip
+_YEAR = ("ANO", "ANOS")  # nobody writes AÑO so
 REMEMBERED = 500  # lines: each is asked for often while one program is read
 
 
@@ -83,7 +84,8 @@ def _lexemes(line: str) -> tuple[Lexeme, ...]:
         if kind is WORD:
             text = plain(text)
             if "Ñ" in match[0].upper() and not lexicon().get(text):
-                text = plain(re.sub("[ñÑ]", "ni", match[0]))
+                other = plain(re.sub("[ñÑ]", "ni", match[0]))
+                text = other if lexicon().get(other) or text in _YEAR else text
         elif text in _SIGNS or text in DASHES:
             kind = text = "-" if text in DASHES else text
         found.append(Lexeme(kind, text, match[0], line[end : match.start()]))

@@ -282,7 +282,9 @@ class _Usage:
 
     def no_button(self) -> Diagnostic:
         """A button that nobody can ask for; a program may begin with the one that starts it."""
-        return self.says(codes.NO_BUTTON, begun="SB|" if self.text.begun == "SB" else "")
+        asked = next((it.source for it in self.tokens if self.is_button(it.text)), "")
+        begun = "SB|" if self.text.begun == "SB" else ""
+        return self.says(codes.NO_BUTTON, begun=begun, asked=asked or "BUTTON")
 
     def is_button(self, word: str) -> bool:
         return "BUTTON" not in self.names.sensors and concept_of(word) == "BUTTON"
