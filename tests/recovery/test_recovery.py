@@ -1,8 +1,7 @@
-"""Recovery: its rows, right programs, and the score of a sample."""
+"""Recovery: its rows, and right programs."""
 
 from __future__ import annotations
 
-import json
 from functools import partial
 
 import pytest
@@ -19,12 +18,11 @@ from tiniscript.library.compiling import analyzed
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.concepts import Lexeme, Names, lexemes
 from tiniscript.recovery.explanation import explained
-from tiniscript.recovery.search import Recovery
+from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.syntax.outline import Failure
-from tools.shadow import marks
-from tools.shadow.__main__ import SAMPLE, SCORES, sample
 
 KITS = [robots.load(name).kit for name in ("tinibot", "grabber", "liner")]
+KIT = robots.load(robots.DEFAULT).kit
 _F = "F(time, power)"
 ROWS: list[rewrites.SignRow | rewrites.Row] = [*rewrites.of_signs(), *rewrites.of_tokens()]
 
@@ -41,6 +39,10 @@ def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.Row | rewrites.Si
     assert made == [right]
 
 
+def meant(text: str) -> Candidate | None:
+    return Recovery(text, KIT, partial(mistakes, KIT)).best()
+
+
 def mistakes(kit: Kit, text: str) -> list[Code]:
     return [each.code for each in analyzed(text, kit).diagnostics if each.is_mistake]
 
@@ -49,15 +51,14 @@ def right_programs() -> list[str]:
     folders = catalogue.folders()
     answers = [answer.program for each in folders for answer in catalogue.answers(each)[0]]
     kept = [entry.program for entry in entries() if not entry.said]
-    seen = [each for each in kept if not marks.is_aside(each)]
-    return [each for each in (*programs(), *answers, *seen) if not marks.mistakes(each)]
+    return [each for each in (*programs(), *answers, *kept) if not mistakes(KIT, each)]
 
 
 def test_a_right_program_is_read_without_a_rewrite() -> None:
     for program in right_programs():
-        assert marks.meant(program) is None, program
+        assert meant(program) is None, program
         tokens = [lexemes(line.partition("//")[0]) for line in program.split("\n")]
-        names = Names(tokens, marks.KIT)
+        names = Names(tokens, KIT)
         if all(map(is_whole, tokens)) and program.isascii():
             for line in tokens:
                 assert not isinstance(lines.right(line, names), Failure), program
@@ -67,12 +68,6 @@ def is_whole(line: list[Lexeme]) -> bool:
     """Whether no bracket of a line is closed on another one, and no `=` compares behind `=`."""
     signs = [each.text for each in line]
     return signs.count("(") == signs.count(")") and signs[3:4] != ["="]
-
-
-def test_a_sample_of_the_corpus_reaches_its_score() -> None:
-    chosen = sample(entries())
-    good = sum(marks.answer(each).mark in (marks.SAME, marks.EQUIVALENT) for each in chosen)
-    assert 100 * good / len(chosen) >= json.loads(SCORES.read_text())[SAMPLE]
 
 
 def slip(*values: str) -> dict[str, str]:
@@ -96,7 +91,7 @@ def slip(*values: str) -> dict[str, str]:
 def test_an_explanation_has_a_slip_and_its_edits(
     wrong: str, code: str, values: dict[str, str], edit: Edit
 ) -> None:
-    found = marks.meant(wrong)
+    found = meant(wrong)
     assert found is not None
     (said,) = explained(wrong, found)
     assert (said.code, said.edits) == (CODES[code], [edit])
@@ -105,14 +100,14 @@ def test_an_explanation_has_a_slip_and_its_edits(
 
 def test_a_line_is_searched_once_for_the_same_names() -> None:
     line = lexemes("F(2 80)")
-    one, same, other = (Names([lexemes(text)], marks.KIT) for text in ("", "", "X = 1"))
+    one, same, other = (Names([lexemes(text)], KIT) for text in ("", "", "X = 1"))
     found = lines.read(line, one)
     assert lines.read(line, same) is found
     assert lines.read(line, other) is not found
 
 
 def test_the_parser_says_where_it_cannot_go_on() -> None:
-    names = Names([], marks.KIT)
+    names = Names([], KIT)
     assert lines.right(lexemes("S; F(2 80)"), names) == Failure(2, 5)
     assert lines.right(lexemes("F(2, 80) B(1, 50)"), names) == Failure(0, 6)
     assert lines.right(lexemes("F(2)"), names) == Failure(0, 4)
@@ -136,7 +131,7 @@ def test_the_parser_says_where_it_cannot_go_on() -> None:
     ],
 )
 def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
-    found = marks.meant(wrong)
+    found = meant(wrong)
     assert found is None or not found.is_applied
 
 
@@ -154,7 +149,7 @@ def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
     ],
 )
 def test_what_can_mean_nothing_else_is_made(wrong: str, right: str | None) -> None:
-    found = marks.meant(wrong)
+    found = meant(wrong)
     assert (found.text if found and found.is_applied else None) == right
 
 
@@ -188,7 +183,7 @@ def test_words_of_a_kit_are_read_on_its_robots_alone(
     ],
 )
 def test_what_may_be_meant_is_a_question(wrong: str, asked: str | None) -> None:
-    found = marks.meant(wrong)
+    found = meant(wrong)
     assert (found and found.text, bool(found and found.is_applied)) == (asked, False)
 
 
@@ -198,6 +193,6 @@ def test_a_row_that_is_made_without_asking_loses_no_number(
 ) -> None:
     monkeypatch.setattr(rows, "TOKENS", f"^ S @num $ | S | 1 | TS044 | {how} | S 5 => S")
     (row,) = rewrites.of_tokens.__wrapped__()
-    line = rewrites.Encoded(lexemes("S 5"), Names([], marks.KIT))
+    line = rewrites.Encoded(lexemes("S 5"), Names([], KIT))
     (match,) = line.matches(row.pattern)
     assert (line.rewritten(row, match) is not None) is is_made

@@ -108,8 +108,6 @@ GOALS: tuple[Goal, ...] = (
          "messages", 1_000_000, 5_000, "tests.fuzz.test_python messages {count} --seed {seed}"),
     Goal("fuzz-greetings", "Any bytes from a stranger on a shared port count as a greeting, or are refused.",
          "sequences of bytes", 1_000_000, 5_000, "tests.fuzz.test_python greetings {count} --seed {seed}"),
-    Goal("shadow", "Of wrong programs of pupils no fewer are understood than before, and no more wrong repairs are made.",
-         "right programs with slips, and all pupils' programs for each piece", 10_000, 1_000, "tools.shadow {count} --seed {seed}"),
     Goal("mutation", "A test of the module notices any small mistake in its code.",
          "mutants", 1_500, 150, "tools.mutation {count} --seed {seed}"),
 )

@@ -1,0 +1,72 @@
+"""What `--fix` makes of wrong programs: `python -m tools.meant FOLDER` prints two figures.
+
+The folder has programs, `NAME.ts`, and beside those whose meaning is known what was meant,
+`NAME.meant.ts`. A program that is right after `--fix` and does something else than that is harmful.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+from tiniscript import robots
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.fixing import fixed
+from tiniscript.library.compiling import compiled
+from tiniscript.library.named_robot import robot_of
+
+MEANT = ".meant.ts"
+
+
+class Figures(NamedTuple):
+    """`known` are the programs of which it is known what they mean."""
+
+    programs: int = 0
+    right: int = 0
+    known: int = 0
+    harmful: tuple[str, ...] = ()
+
+
+def image(text: str) -> bytes:
+    """Return the code of a program for the robot that it names, nothing for a wrong one."""
+    robot = robot_of(text.encode(), robots.load(robots.DEFAULT))
+    return compiled(text.encode(), robot, "", is_strict=True).image
+
+
+def check(text: str) -> list[Diagnostic]:
+    robot = robot_of(text.encode(), robots.load(robots.DEFAULT))
+    return compiled(text.encode(), robot, "", is_strict=True).diagnostics
+
+
+def figures(folder: Path) -> Figures:
+    found = Figures()
+    for path in sorted(folder.rglob("*.ts")):
+        if path.name.endswith(MEANT):
+            continue
+        made = image(fixed(path.read_text(encoding="utf-8"), check).text)
+        meant = path.with_name(path.name.removesuffix(".ts") + MEANT)
+        is_known = meant.exists()
+        is_other = is_known and made not in (b"", image(meant.read_text(encoding="utf-8")))
+        name = path.relative_to(folder).as_posix()
+        found = Figures(found.programs + 1, found.right + bool(made), found.known + is_known,
+                        (*found.harmful, name) if is_other else found.harmful)  # fmt: skip
+    return found
+
+
+def main(arguments: Iterable[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description="Count what --fix makes of wrong programs.")
+    parser.add_argument("folder", type=Path)
+    folder = parser.parse_args(None if arguments is None else [*arguments]).folder
+    found = figures(folder)
+    if not found.programs:
+        sys.exit(f"{folder} has no programs (*.ts).")
+    print(f"right after --fix: {found.right} of {found.programs}")
+    print(f"harmful: {len(found.harmful)} of {found.known} whose meaning is known", *found.harmful)
+    return bool(found.harmful)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
