@@ -108,6 +108,26 @@ def test_an_upload_that_goes_on_is_not_given_up(code_bytes: int, line: Line) -> 
         assert Talk(line, seed=seed).upload(code_bytes) == OK, seed
 
 
+def test_who_asks_again_after_an_answer_finds_the_line_free() -> None:
+    """No heartbeat comes before that, however long the answer took."""
+    talk = Talk(Line(11_520, 1000))
+    talk.wait(talk.session.hello())
+    for _ in range(5):
+        began_ms = talk.now_ms
+        talk.wait(talk.session.ping())
+        assert talk.now_ms - began_ms < 2200
+        talk.step()
+
+
+@pytest.mark.parametrize("code_bytes", [56, 150, 237])
+def test_a_program_that_would_fit_into_one_large_frame_gets_through_a_line_with_losses(
+    code_bytes: int,
+) -> None:
+    for seed in range(20):
+        talk = Talk(Line(11_520, 20, 0.01), 115_200, is_large=True, seed=seed)
+        assert talk.upload(code_bytes) == OK, seed
+
+
 @pytest.mark.parametrize("line", [Line(1000), Line(1000, 40), Line(500, 100), Line(11_520, 300)])
 def test_a_line_that_is_slower_than_its_port_gets_little_twice(line: Line) -> None:
     """An ESP32 at 115200 baud behind something slow, as a radio or a broker is."""

@@ -220,18 +220,20 @@ def mode_of(image: Image, runs: bool, saves: bool, is_detached: bool) -> int:
 def upload(
     image: Image, mode: int, robot: DeviceInfo, isa: tuple[int, int], is_latched: bool, kit: int
 ) -> Exchange[ReceiptReply]:
-    """Upload a program to the robot: in one frame, if it fits.
+    """Upload a program to the robot: in one frame, if it fits into one that any robot takes.
 
-    `isa` is the one that HELLO has announced for our programs. A single frame does not name the
-    devices: an image that uses some, and is for another `kit` than the robot's, is sent with its
-    header. A program that the robot would refuse is not sent.
+    A longer frame hardly gets through a line that loses a byte now and then; pieces become smaller
+    there. `isa` is the one that HELLO has announced for our programs. A single frame does not name
+    the devices: an image that uses some, and is for another `kit` than the robot's, is sent with
+    its header. A program that the robot would refuse is not sent.
     """
     is_its_kit = kit == robot.kit or not image.devices
     if image.isa[0] != robot.isa[0] or image.isa[1] > robot.isa[1]:
         return _other_machine(robot)
     if len(image.later) + len(image.code) > robot.room:
         return Reply(STATUSES["TOO_LARGE"], robot.room)
-    is_short = len(image.code) <= short_bytes(robot) and image.isa == isa and not image.later
+    room = min(short_bytes(robot), SHORT_BYTES)
+    is_short = len(image.code) <= room and image.isa == isa and not image.later
     if is_short and is_its_kit:
         request = Request("PROGRAM", {"mode": mode, "code": image.code})
         reply = yield from _unlatched(is_latched, patient(request, ReceiptReply))

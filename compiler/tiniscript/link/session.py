@@ -83,7 +83,8 @@ HEARTBEAT_MS = 200  # between two frames while a program runs
 IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise
 DEAF_MS = 3000  # a heartbeat without an answer for this time means that the link is lost
 MOST_SHOWN = 5  # times that a key is shown again for one request
-_STALE, _BUSY = STATUSES["STALE"], STATUSES["BUSY"]
+_STALE = STATUSES["STALE"]
+_WAITING = (STATUSES["BUSY"], STATUSES["HOLD_BUTTON"])  # asked again: the robot is not ready
 _BY_SEQUENCE, _BY_MESSAGE = 1, 2  # causes of a stopped robot: the stop sequence, STOP
 _PREPARING = ("STOP", "CLEAR", "AUTHENTICATE", "BEGIN", "DATA", "ABORT")
 _DOING = [each.name for each in MESSAGES
@@ -111,7 +112,8 @@ class PendingExchange(PendingRequest[T]):
         self.is_own = is_own  # made by the session itself
         self.halts = halts  # the run of a client that has gone
         self.is_void = False  # it was asked for before a stop: nothing more of it is done
-        self.is_busy = False  # the robot's last answer was BUSY
+        self.answered_ms = 0  # when the robot has answered last
+        self.waits_for = 0  # the robot's last answer, where it was one of _WAITING, or 0
         self.may_be_done = False  # the robot has not said whether it is
         self.is_midway = False  # a frame of it is under way that does what is asked, or has come
         self.shown = 0  # how often a key was shown again for it
@@ -155,7 +157,7 @@ class Session(Requester):
         self._epoch = 0
         self._baud = baud
         self._stop = StopSequence()
-        self._sent_ms = 0  # time of the last transmission
+        self._talked_ms = 0  # when something was sent, or while nothing runs, answered
         self._sealing = Sealing()
         self._state = RobotState()
         self._handshake = Handshake(nonce, kit, isa, self._state, keys, lambda: self._epoch, place)
@@ -254,7 +256,7 @@ class Session(Requester):
             return b""
         assert self._pending
         if now_ms >= self._pending.deadline_ms:
-            self._lose()
+            self._lose(now_ms)
             return b""
         if not self._transmission.is_due(now_ms):
             return b""
@@ -263,9 +265,9 @@ class Session(Requester):
             self._authenticate_again(now_ms)
             return b""
         if self._transmission.tries >= TRIES:
-            self._lose()
+            self._lose(now_ms)
             return b""
-        self._sent_ms = now_ms
+        self._talked_ms = now_ms
         if any(map(self._transmission.is_of, _DOING)):
             self._pending.is_midway = True
         if seal is not None:
@@ -282,7 +284,7 @@ class Session(Requester):
         if self._waiting:
             return 0
         heartbeat_ms = self._heartbeat_ms()
-        return None if heartbeat_ms is None else self._sent_ms + heartbeat_ms
+        return None if heartbeat_ms is None else self._talked_ms + heartbeat_ms
 
     def events(self) -> list[Event]:
         """Return the events since the last call."""
@@ -296,7 +298,7 @@ class Session(Requester):
             self._pending = self._waiting.popleft()
         else:
             heartbeat_ms = self._heartbeat_ms()
-            if heartbeat_ms is None or now_ms < self._sent_ms + heartbeat_ms:
+            if heartbeat_ms is None or now_ms < self._talked_ms + heartbeat_ms:
                 return
             self._pending = PendingExchange(self._heartbeat(), DEAF_MS, is_own=True)
         self._pending.deadline_ms = now_ms + self._pending.limit_ms
@@ -313,7 +315,9 @@ class Session(Requester):
         """Continue the exchange: give it the reply, and send its next request."""
         pending = self._pending
         assert pending
-        pending.is_busy = reply is not None and reply.status == _BUSY
+        is_waiting = reply is not None and reply.status in _WAITING
+        pending.waits_for = reply.status if reply is not None and is_waiting else 0
+        pending.answered_ms = now_ms
         try:
             request = next(pending.exchange) if reply is None else pending.exchange.send(reply)
         except StopIteration as over:
@@ -445,7 +449,7 @@ class Session(Requester):
             self._stop.end()
             self._close()
             return b""
-        self._sent_ms = now_ms
+        self._talked_ms = now_ms
         return self._stop.sent(now_ms, self._sender)
 
     # -- what arrives -----------------------------------------------------------------------------
@@ -476,6 +480,8 @@ class Session(Requester):
         if self._pending and reply.status not in (OK, *TAKEN):
             self._pending.is_midway = False  # it was refused
         self._transmission.learn(frame, now_ms)
+        if not self.is_running:
+            self._talked_ms = now_ms  # who asks again after an answer finds the line free
         if (
             reply.status == OK
             and not frame.is_sealed
@@ -731,14 +737,14 @@ class Session(Requester):
             self._events.append(StartedEvent(receipt.run, receipt.program))
         self._state.begin(receipt.run)
 
-    def _lose(self) -> None:
-        """Give up: the robot does not answer, or is busy."""
+    def _lose(self, now_ms: int) -> None:
+        """Give up: the robot does not answer, or is not ready."""
         assert self._pending
         pending, self._pending = self._pending.wanted, None
-        # a robot that answers, but is busy for too long, is not lost
-        is_busy = pending.is_busy and self._transmission.tries <= 1
+        # a robot that answers, but waits for too long, is not lost
+        is_there = pending.waits_for and now_ms - pending.answered_ms <= DEAF_MS
         self._transmission.end()
-        pending.outcome = Reply(_BUSY if is_busy else LOST)
+        pending.outcome = Reply(pending.waits_for if is_there else LOST)
         if pending.is_own:
             self._close()
 
