@@ -16,6 +16,7 @@ from tests.cli.test_virtual_command import robot as virtual_robot
 from tests.support.command import FOREVER, OBSTACLE, Command, process
 from tests.support.link_events import event
 from tests.support.pty_robot import PtyRobot
+from tests.support.waiting import until
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.endings import End, Follower
@@ -401,3 +402,56 @@ def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch
         with fails(tiniscript.RobotError, "port_missing") as raised:
             tiniscript.connect("/dev/none-here")
         assert ("/dev/other" in str(raised.value)) == bool(listed)
+
+
+@pytest.mark.parametrize("watches", [True, False])
+def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
+    pty_robot: PtyRobot, watches: bool
+) -> None:
+    """A thread holds the port until that has ended."""
+    robot = tiniscript.connect(pty_robot.port)
+    robot.upload(FOREVER)
+    other = Command("upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", pty_robot.port)
+    other.until("running")
+    pty_robot.until(lambda: "MOTORS 30 30" in pty_robot.did, "it does the other's")
+    if watches:
+        with fails(tiniscript.RobotError, "replaced"):
+            robot.wait()
+    with pytest.warns(RuntimeWarning, match="holds the port until that has ended"):
+        robot.close()
+    robot.close()  # does nothing
+    began_ms = pty_robot.robot_ms
+    pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 2000, "it goes on")
+    assert pty_robot.moves and other.process.poll() is None
+    with tiniscript.connect(pty_robot.port) as again:  # through what holds the port
+        assert again.info.port == pty_robot.port
+        again.stop()
+    assert other.ended().code == 3
+    until(lambda: not any(each.name == "holder" for each in threading.enumerate()), "it lets go")
+    process("ping", "--port", pty_robot.port).gives(0)
+
+
+def test_ctrl_c_stops_what_another_command_has_started_through_it(pty_robot: PtyRobot) -> None:
+    other: Command | None = None
+    with pytest.raises(KeyboardInterrupt), tiniscript.connect(pty_robot.port):
+        other = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
+        other.until("running")
+        raise KeyboardInterrupt
+    assert other is not None and other.ended().code == 3
+    pty_robot.until(lambda: not pty_robot.moves, "it stands")
+
+
+def test_whom_another_command_has_replaced_stops_nothing_through_a_holder(
+    pty_robot: PtyRobot, link: Command
+) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        robot.upload(FOREVER)
+        other = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
+        other.until("running")
+        with fails(tiniscript.RobotError, "replaced"):
+            robot.wait()
+    began_ms = pty_robot.robot_ms
+    pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 1500, "it goes on")
+    assert pty_robot.moves and other.process.poll() is None
+    other.kill()
+    assert link.process.poll() is None

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.command import FOREVER, process
+from tests.support.command import FOREVER, Command, process
 from tests.support.pty_robot import PtyRobot
 from tests.support.rows import each_row
 from tests.support.shared_pty_robot import Shared
@@ -225,6 +225,31 @@ def test_the_end_of_a_page_and_of_the_server_stops_robots(
     else:
         hosting.close()
     assert not robot.moves
+
+
+def test_what_a_command_has_started_through_it_goes_on_when_its_page_leaves(
+    hosting: Hosting, page: Page, robot: PtyRobot
+) -> None:
+    """Whoever comes next reaches the robot through what holds the port, and only the end of the
+    studio stops it."""
+    drives(page, robot)
+    other = Command("upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", robot.port)
+    other.until("running")
+    page.beat(do="leave")
+    began_ms = robot.robot_ms
+    robot.until(lambda: robot.robot_ms > began_ms + 2000, "it goes on")
+    assert robot.moves and other.process.poll() is None
+    assert hosting.is_free(robot.port)
+    again = Page(hosting, "another")
+    assert again.connect(robot.port) == {}
+    again.until(lambda each: "connected" in each)
+    again.beat(do="leave")
+    began_ms = robot.robot_ms
+    robot.until(lambda: robot.robot_ms > began_ms + 1000, "it goes on")
+    assert robot.moves and other.process.poll() is None
+    assert hosting.close() == []
+    robot.until(lambda: not robot.moves, "it stands")
+    assert other.ended().code == 3
 
 
 def test_a_port_has_one_page(

@@ -52,6 +52,8 @@ class CountedLink:
 class SteppedRobot:
     """A connection without a thread and a port."""
 
+    holds = False
+
     def __init__(
         self, port: str, robot: str, language: str, tab: str, connection: int, stops: int,
         before: list[SteppedRobot],

@@ -18,7 +18,7 @@ from tiniscript.library.refusing import refusal
 from tiniscript.link import errors
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest, Requester, reason_of
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
-from tiniscript.link.outcomes import CANCELLED, LOOK_S, ConnectionLost, Event
+from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, ConnectionLost, Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply
 from tiniscript.link.port_names import is_at_broker, is_bluetooth
 from tiniscript.link.requests import DeviceInfo, Reply
@@ -77,6 +77,23 @@ class Client:
             return Server(self.line, self.port, baud, verb, is_latched)
         return None
 
+    @property
+    def holds_for_others(self) -> bool:
+        """Whether another command drives the robot through this one, or is about to: the end of
+        what this one has done is no stop of that one's program."""
+        server = self.server
+        return server is not None and not self.line.has_ended and server.is_needed
+
+    @property
+    def drives_another(self) -> bool:
+        """Whether the robot does what another command has started through this one."""
+        return self.server is not None and self.server.has_run
+
+    def hold_for_others(self, goes_on: Callable[[], bool] = lambda: True) -> None:
+        """Hold the port until they have ended. Raises RobotError where it is gone."""
+        while self.holds_for_others and goes_on():
+            self.event()
+
     def close(self, stop_s: float | None = None, has_run: bool = False) -> None:
         """Close the port. First stop what a client of the server has started, or what may run
         where `has_run`: wait `stop_s` for that, by default as long as a stop may take."""
@@ -120,10 +137,12 @@ class Client:
             return self.wait(self.search())
         sleep(opening.QUIET_S.get(board or self.profile.board.chip, 0.0))
         reply = self.wait(self.search(opening.CABLE_ANSWER_MS))
-        if self.line.heard:
-            return reply
-        sleep(opening.LONG_QUIET_S)
-        return self.wait(self.search(opening.CABLE_ANSWER_MS))
+        if not self.line.heard:
+            sleep(opening.LONG_QUIET_S)
+            reply = self.wait(self.search(opening.CABLE_ANSWER_MS))
+        if reply.status == LOST and self.line.heard and not self.line.is_echoed:
+            return self.wait(self.search())  # what is heard may be a robot that answers late
+        return reply
 
     def search(self, limit_ms: int | None = None) -> PendingRequest[HelloReply]:
         """Begin a session. HELLO is repeated until the robot answers, as a reset takes a while."""

@@ -7,11 +7,15 @@ process ends without it, the robot's dead-man timer stops the robot within a sec
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterator
+from contextlib import suppress
+from threading import Thread
 from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from tiniscript import robots
+from tiniscript.base import languages
 from tiniscript.base.source import printable
 from tiniscript.library import opening
 from tiniscript.library.client import Client, Saving
@@ -26,6 +30,7 @@ from tiniscript.link import known_ports, ports
 from tiniscript.link.connection import Requester
 from tiniscript.link.messages import STATE_RUNNING
 from tiniscript.link.names import saved_name
+from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory
@@ -76,7 +81,7 @@ class RobotConnection:
         self._reader = Reader()
         self._follower: Follower | None = None
         self._ending: Ending | None = None
-        self._is_detached = False
+        self._is_detached = self._is_replaced = False
         self._saving: Saving | None = None
         self._is_closed = False
         self._client = Client(port, VERB, profile, baud, language)
@@ -90,7 +95,8 @@ class RobotConnection:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        self._leave(is_clean=kind is None)
+        is_interrupted = kind is not None and not issubclass(kind, Exception)
+        self._leave(is_clean=kind is None, is_interrupted=is_interrupted)
 
     @property
     def info(self) -> RobotInfo:
@@ -178,9 +184,7 @@ class RobotConnection:
             left_s = LOOK_S if end_s is None else min(LOOK_S, end_s - monotonic())
             found = self._client.event(max(left_s, 0.0))
             told = None
-            if found is not None and follower.is_about(
-                found[1], opening.shown(self.port), self.language
-            ):
+            if found is not None and self._is_about(follower, found[1]):
                 told = self._reader.told(*found)
                 if told is not None and follower.end(found[1]) is not None and self._follower:
                     self._ending = ending_of(told)
@@ -190,6 +194,14 @@ class RobotConnection:
             last_s = monotonic() if found is None else found[0] / 1000
             if end_s is not None and last_s >= end_s:
                 return
+
+    def _is_about(self, follower: Follower, event: Event) -> bool:
+        """The same for sentences of this connection, which knows from then on what has happened."""
+        try:
+            return follower.is_about(event, opening.shown(self.port), self.language)
+        except RobotError as error:
+            self._is_replaced = error.reason == "replaced"
+            raise
 
     def wait(self, timeout: float | None = None) -> Ending:
         """Wait until the program that this connection has started ends; an uploaded one is also
@@ -215,22 +227,31 @@ class RobotConnection:
 
     def close(self) -> None:
         """Stop the robot, unless its program is detached, and close the port. A second call does
-        nothing. Raises StopNotConfirmed."""
+        nothing. Raises StopNotConfirmed.
+
+        What another command has started through this one goes on: a thread holds the port until it
+        has ended."""
         self._leave(is_clean=True)
 
     # -- leaving ----------------------------------------------------------------------------------
 
-    def _leave(self, is_clean: bool) -> None:
+    def _leave(self, is_clean: bool, is_interrupted: bool = False) -> None:
+        """Ctrl-C stops the robot, whoever has started what it does."""
         if self._is_closed:
             return
+        if self._follower is not None and self._ending is None:
+            with suppress(RobotError):
+                for _ in self.events(0):  # it may have been replaced since
+                    pass
         self._is_closed = True
+        is_others = (self._client.drives_another or self._is_replaced) and not is_interrupted
         try:
-            if not (is_clean and self._is_detached):
+            if not (is_clean and self._is_detached) and not is_others:
                 self._stop()
             if is_clean:
                 self._await_saving()
         finally:
-            self._part()
+            self._part(holds=not is_interrupted)
 
     def _stop(self) -> None:
         if not self._client.stop():
@@ -241,9 +262,22 @@ class RobotConnection:
         if self._follower is not None and self._ending is None:
             self._ending = Ending("STOPPED", cause="SEQUENCE")
 
-    def _part(self) -> None:
-        """Close the port, and stop the run of a client, which ends with this server."""
-        self._client.close()
+    def _part(self, holds: bool = False) -> None:
+        """Close the port: at once, or where it `holds` once no other command drives the robot
+        through it, which a thread waits for. The run of a client ends with this server."""
+        if not holds or not self._client.holds_for_others:
+            self._client.close()
+            return
+        said = languages.text("library", "holds_for_others", self.language)
+        warnings.warn(said.format(port=opening.shown(self.port)), RuntimeWarning, stacklevel=4)
+        Thread(target=self._hold, name="holder").start()
+
+    def _hold(self) -> None:
+        try:
+            with suppress(RobotError):  # the port is gone
+                self._client.hold_for_others()
+        finally:
+            self._client.close()
 
     def _await_saving(self) -> None:
         """Wait until the uploaded program is saved. Raises RobotError if it is not."""
@@ -286,6 +320,7 @@ class RobotConnection:
         # a program that waits for the button has no run number yet
         self._follower = Follower(receipt.run if is_running else None)
         self._ending = None
+        self._is_replaced = False
         self._is_detached = is_detached and is_running
         return Receipt(receipt.program, saved_name(receipt.saved), is_running)
 

@@ -89,7 +89,8 @@ class VirtualRobotConnection(RobotConnection):
         """Push and release its start button."""
         self._simulated.push()
 
-    def _part(self) -> None:
+    def _part(self, holds: bool = False) -> None:
+        """Close it at once: nobody drives a virtual robot that has ended."""
         try:
             super()._part()
         finally:

@@ -10,6 +10,7 @@ Knows no HTTP.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from threading import Thread
 from time import monotonic
 
@@ -52,15 +53,18 @@ class HostedRobot:
         self._before = before
         self._profile = robots.load(robot)
         self._language = language
-        self._leaves = False
+        self._leaves = self._lets_go = False
+        self.holds = False  # the port for another command, which drives the robot through it
         self._why = "left"
         self._link: RobotLink | None = None
         self._thread = Thread(target=self._run, name="studio robot", daemon=True)
         self._thread.start()
 
-    def leave(self, why: str = "left") -> None:
-        """Stop what the page has started, and close the port."""
+    def leave(self, why: str = "left", lets_go: bool = False) -> None:
+        """Stop what the page has started, and close the port: once no other command drives the
+        robot through it, or at once where it `lets_go`."""
         self._why = why
+        self._lets_go = self._lets_go or lets_go
         self._leaves = True
 
     @property
@@ -103,7 +107,10 @@ class HostedRobot:
                 while not self.was_left:
                     self.attending.attend(link)
                 self._part(link)
-                self._end(self._why)
+                self._end(self._why if self._leaves else "unheard")
+                self.holds = client.holds_for_others
+                with suppress(RobotError):  # the port is gone, and the page is told already
+                    client.hold_for_others(lambda: not self._lets_go)
         except ConnectionLost as gone:
             lost = client.lost(gone)
             self._end(lost.key, str(lost))
@@ -120,7 +127,7 @@ class HostedRobot:
         """Wait for those before, as long as their stops may take."""
         end_s = monotonic() + PARTS_S
         for each in self._before:
-            while each.is_parting and monotonic() < end_s and not self.was_left:
+            while each.is_parting and not each.holds and monotonic() < end_s and not self.was_left:
                 each.join(LOOK_S)
         self._before = ()
 

@@ -89,7 +89,7 @@ class Hosting:
         with self._lock:
             found = [*self._by_page.values(), *self._parting]
         for each in found:
-            each.leave()
+            each.leave(lets_go=True)
         for each in found:
             each.join(PARTS_S)
         return [each.port for each in found if each.is_unconfirmed]
@@ -123,10 +123,12 @@ class Hosting:
         return {}
 
     def _at(self, port: str) -> list[HostedRobot]:
-        """Return who has a port, or is closing it."""
+        """Return who has a port, or is closing it. One that holds it for another command shares it
+        with whoever comes."""
         same = same_for_all(port)
         all_of_them = [*self._by_page.values(), *self._parting]
-        held = [each for each in all_of_them if each.is_parting or not each.has_ended]
+        held = [each for each in all_of_them
+                if (each.is_parting or not each.has_ended) and not each.holds]  # fmt: skip
         return [each for each in held if same_for_all(each.port) == same]
 
     def _forget_ended(self) -> None:

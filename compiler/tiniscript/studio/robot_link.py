@@ -143,9 +143,13 @@ class RobotLink:
 
     def _follow(self, event: Event) -> None:
         """Find the end of the page's run. An end may come before the answer that names the run;
-        one without a number may be that of a run before."""
+        one without a number may be that of a run before. Another run that begins ends it, too: what
+        the page leaves to be stopped is its own."""
         if event.name == "STARTED":
-            self._begun, self._over = self._known(event.run), None
+            begun = self._known(event.run)
+            if self._begun == self._run != begun:
+                self._run = None
+            self._begun, self._over = begun, None
         elif event.name in ("DONE", "FAULT"):
             self._over = self._known(event.run)
         elif event.name == "STOPPED":
