@@ -5,15 +5,20 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from random import Random
+from typing import Any
 
 import pytest
 
+from tests.between.lines import BadLine, Fault
 from tests.support.command import Tsc
 from tests.support.pty_end import PtyEnd
-from tests.support.pty_robot import PtyRobot
+from tests.support.pty_robot import PtyRobot, on
 from tests.support.simulated_ends import Nobody
+from tests.support.terminal import Terminal
 from tests.support.waiting import HANGS_S, until
-from tiniscript.cli.commands import firmware
+from tiniscript.cli import main
+from tiniscript.cli.commands import firmware, studio
 from tiniscript.cli.robot import connect
 from tiniscript.cli.terminal import progress
 from tiniscript.flash import avrdude
@@ -21,6 +26,7 @@ from tiniscript.flash.bootloaders import UNO
 from tiniscript.flash.ready import Ready
 from tiniscript.library import opening
 from tiniscript.link.requests import DeviceInfo
+from tiniscript.studio import building, serving
 
 
 def looks_on(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -145,3 +151,100 @@ def test_a_bar_is_not_full_before_all_is_done(
         bar.draw(done)
     said = capsys.readouterr().err
     assert " 99 %" in said and "100 %" not in said and "." in said.rpartition("[")[2]
+
+
+def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is not said to be something else, nor to be silent while it waits for its button."""
+    monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
+    for late_ms in (990, 1300):  # who is silent for 3 s is lost
+        with BadLine(Fault("late", late_ms=late_ms), Random(1), 0) as line:
+            on(line, "ping", "--count", "1").gives(0)
+            on(line, "claim").gives(3, "hold its start button down", "waits for its button")
+
+
+def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
+    tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Behind HELLO and behind what came of it: whoever has waited for one waits for the other."""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    now_s = 0.0
+    monkeypatch.setattr(progress, "monotonic", lambda: now_s)
+    real = connect.Client.wait
+    waits: list[str] = []
+
+    def wait(self: connect.Connection, *given: Any) -> Any:
+        nonlocal now_s
+        reply = real(self, *given)
+        waits.append("wait")
+        now_s += 1.5
+        if len(given) > 1 and given[1] is not None:
+            given[1]()
+        return reply
+
+    monkeypatch.setattr(connect.Client, "wait", wait)
+    done = tsc("info", "--port", pty_robot.port).gives(0)
+    assert len(waits) > 2
+    assert done.err.count("Waiting for the robot") == 1  # nobody has seen 3 s of silence
+    monkeypatch.setattr(progress, "MOMENT_S", 0.0)
+    now_s += 100
+    done = tsc("info", "--port", pty_robot.port).gives(0)
+    assert done.err.count("Waiting for the robot") == 1  # of HELLO, and of the request
+
+
+def test_nothing_is_said_of_a_wait_that_is_over(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Even where the moment is over at the same time."""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setattr(progress, "MOMENT_S", HANGS_S)
+    silence = progress.Silence("waits")
+    silence.cancel()
+    silence._tell()
+    assert capsys.readouterr().err == "" and not silence.is_told
+
+
+def test_a_live_line_that_runs_for_long_says_so_and_its_warnings_once(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said = {}
+    for words in (["live", "M(80, 80);W(100);M(0, 0)"], ["live", "F(0.1, 80)"]):
+        terminal = Terminal(*words, "--port", pty_robot.port)
+        if "100" in words[1]:
+            terminal.until("The line is running. Ctrl-C stops the robot.")
+            terminal.interrupt()
+        code = terminal.end()
+        said[code] = "\n".join(terminal.whole())
+    assert "running" not in said[0] and "confirmed" in said[2]
+    assert said[2].count("This takes 100 seconds") == 1
+
+
+@pytest.mark.parametrize("moment", ["ended_by_signal", "say_aside"])
+def test_the_end_of_a_studio_says_what_it_waits_for(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, moment: str
+) -> None:
+    """Whenever that is, before its server has begun too."""
+    looks_on(monkeypatch)
+    said = ""
+
+    class Silent(studio.Hosting):
+        def close(self) -> list[str]:
+            def is_said() -> bool:
+                nonlocal said
+                said += capsys.readouterr().err
+                return "Waiting for the robots to confirm that they have stopped …\n" in said
+
+            until(is_said, "the sentence")
+            return ["/dev/x"]
+
+    def interrupted(*given: object, **values: object) -> None:
+        monkeypatch.undo()
+        looks_on(monkeypatch)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(studio, "Hosting", Silent)
+    monkeypatch.setattr(studio, moment, interrupted)
+    monkeypatch.setattr(serving, "is_built", lambda: True)
+    monkeypatch.setattr(serving, "files", dict)
+    monkeypatch.setattr(building, "is_possible", lambda: False)
+    assert main(["studio", "--listen", "0", "--no-browser"]) == 0
+    assert "/dev/x has not confirmed the stop" in capsys.readouterr().err

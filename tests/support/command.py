@@ -6,6 +6,7 @@ import io
 import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import ClassVar
@@ -82,11 +83,14 @@ class Command:
 
     begun: ClassVar[WeakSet[Command]] = WeakSet()
 
-    def __init__(self, *arguments: str, code: str = "", data: bytes = b"") -> None:
+    def __init__(
+        self, *arguments: str, code: str = "", data: bytes = b"",
+        env: Mapping[str, str] | None = None,
+    ) -> None:  # fmt: skip
         words = [sys.executable, "-c", code] if code else TSC
         self.process = subprocess.Popen(
             [*words, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            stderr=subprocess.PIPE, env={**os.environ, **(env or {})},
         )  # fmt: skip
         Command.begun.add(self)
         if data:

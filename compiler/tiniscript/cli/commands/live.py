@@ -62,20 +62,23 @@ def _may_be_done(line: str, known: Known, robot: Robot, options: Namespace) -> b
             found = own_kit.of_answering(options, robot, language)
             if found is not None:
                 return True  # it is compiled again for that robot
-    return _compiled(line, known, robot, language, True, SHORT_BYTES) is not None
+    return _compiled(line, known, robot, language, True, SHORT_BYTES, warns=False) is not None
 
 
 def _compiled(
-    line: str, known: Known, robot: Robot, language: str, is_last: bool, room: int
-) -> Line | None:
-    """Compile a line into at most `room` bytes of code, and print its diagnostics.
+    line: str, known: Known, robot: Robot, language: str, is_last: bool, room: int,
+    warns: bool = True,
+) -> Line | None:  # fmt: skip
+    """Compile a line into at most `room` bytes of code, and print its diagnostics, those of a right
+    line where it `warns`.
 
     Returns None if it has mistakes. Raises CommandError if it is too long.
     """
     if header(line) == "SB":
         raise CommandError(1, "live_button")
     found = known.line(line, 0 if is_last else room)
-    outputs.print_diagnostics(naming(found.compiled, robot, is_chosen=True), language)
+    if warns or not found.compiled.is_right:
+        outputs.print_diagnostics(naming(found.compiled, robot, is_chosen=True), language)
     if not found.compiled.is_right:
         return None
     assert found.compiled.verdict is not None
@@ -149,8 +152,10 @@ class Repl:
         simulator = self.connection.simulator
         if simulator is not None:
             simulator.watch()
+        quiet = self.connection.quiet.then(self.connection.text("line_runs"))
+        look = quiet.look if simulator is None else None  # its picture shows that
         try:
-            return RunMonitor(self.connection, printer, catch.hold).follow(reply.values.run)
+            return RunMonitor(self.connection, printer, catch.hold, look).follow(reply.values.run)
         finally:
             if simulator is not None:
                 simulator.unwatch()

@@ -15,6 +15,7 @@ from tiniscript.cli.commands.robot import ended_by_signal
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
+from tiniscript.cli.terminal.progress import waiting
 from tiniscript.cli.texts import say_aside
 from tiniscript.studio import building, class_keeping, serving
 from tiniscript.studio.classroom import Classroom
@@ -85,8 +86,11 @@ def _serve(
     except KeyboardInterrupt:
         pass
     finally:
-        server.shutdown()
-        for silent in hosting.close():
+        if thread.is_alive():
+            server.shutdown()  # of one that has not begun it would wait for ever
+        with waiting("studio_stops", language):
+            unconfirmed = hosting.close()
+        for silent in unconfirmed:
             say_aside("not_confirmed", language, port=shown(silent))
         server.server_close()
     return 0

@@ -92,8 +92,13 @@ def _upload(
     language = connection.language
     progress = Progress(language, 1 + len(ready.image.later) + len(ready.image.code))
     connection.quiet.before = progress.end
+
+    def draw(done: int) -> None:
+        if progress.draw(done):
+            connection.quiet.note_words()
+
     try:
-        values = send_program(connection, ready, options, progress.draw)
+        values = send_program(connection, ready, options, draw)
         began_s = monotonic()  # before anything else is loaded or told
     finally:
         progress.end()

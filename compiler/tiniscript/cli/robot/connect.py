@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from contextlib import contextmanager, suppress
 from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
@@ -123,8 +123,7 @@ class Connection(Client):
     def _hold_for_others(self) -> None:
         """Go on holding the port while another command drives the robot through it: the end of this
         one is no stop of that one's program."""
-        server = self.server
-        if server is None or self.line.has_ended or not server.is_needed:
+        if not self.holds_for_others:
             return
         self.drives = False  # nothing of its own
         with suppress(OSError):
@@ -132,17 +131,11 @@ class Connection(Client):
                 say_aside("holds_for_others", self.language, port=shown(self.port))
         try:
             with suppress(CommandError):  # the port is gone
-                while server.is_needed:
-                    self.event()
+                self.hold_for_others()
         except KeyboardInterrupt:
             if not self.stop():
                 say_aside("not_confirmed", self.language, port=shown(self.port))
             raise
-
-    @property
-    def drives_another(self) -> bool:
-        """Whether the robot does what another command has started through this one."""
-        return self.server is not None and self.server.has_run
 
     def stop_unseen(self) -> bool:
         """Stop the robot, because nobody reads, or can read, the output. Return True if this is the
@@ -170,10 +163,11 @@ class Connection(Client):
     ) -> DeviceInfo:  # fmt: skip
         """Send HELLO until the robot answers, and remember it. Raises CommandError if none does."""
         self._is_meeting = True
+        self.quiet.begin()
         with self._waiting():
             device_info = super().meet(board, is_patient or (lambda: self.starts_nothing))
         self._is_meeting = False
-        self.quiet.note_news()
+        self.quiet.go_on()
         _remember_profile(self.options, self.profile, device_info.kit)
         if not self.is_one_of_many:
             self.remember(device_info.name)
@@ -193,13 +187,15 @@ class Connection(Client):
                 look()
             self.quiet.look()
 
+        if self._is_meeting:
+            return super().wait(request, look)
         self.quiet.begin()
-        return super().wait(request, look if self._is_meeting else watch)
+        return super().wait(request, watch)
 
     def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
         found = super().event(limit_s)
         if found is not None:
-            self.quiet.note_news()
+            self.quiet.note_words()
         elif self._needs_a_reader:
             streams.refuse_unread()
         return found
@@ -214,11 +210,19 @@ class Connection(Client):
         with self._waiting("waits_for_stop"):
             return super().stop(limit_s)
 
-    def _waiting(self, key: str = "waits_for_robot") -> AbstractContextManager[object]:
-        """Say what takes so long; a fleet has a table that does."""
-        if self.is_one_of_many:
-            return nullcontext()
-        return waiting(key, self.language, self.port)
+    @contextmanager
+    def _waiting(self, key: str = "waits_for_robot") -> Iterator[None]:
+        """Say what takes so long, once; a fleet has a table that does."""
+        is_robot = key == "waits_for_robot"
+        if self.is_one_of_many or (is_robot and self.quiet.is_told):
+            yield
+            return
+        with waiting(key, self.language, self.port) as silence:
+            try:
+                yield
+            finally:
+                if is_robot and silence.is_told:
+                    self.quiet.note_told()
 
     def _tell_stale_key(self, device_info: DeviceInfo) -> None:
         """Say what to do where the robot has refused a key of this computer."""

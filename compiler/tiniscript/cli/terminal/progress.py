@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -34,22 +33,26 @@ class Progress:
         self._begin_s = monotonic()
         self._is_seen = sys.stderr.isatty()
         self._drawn = ""
+        self._is_there = False  # in the terminal's line
 
-    def draw(self, done: int) -> None:
-        if not self._is_seen or not self.whole or monotonic() - self._begin_s < BLINK_S:
-            return
+    def draw(self, done: int) -> bool:
+        """Draw it where it has grown; return whether it has."""
+        if not self._is_seen or not done or not self.whole or monotonic() - self._begin_s < BLINK_S:
+            return False
         percent = min(100 * done // self.whole, MOST_PERCENT)
         full = COLUMNS * percent // 100
         line = f"{self.label} [{'#' * full}{'.' * (COLUMNS - full)}] {percent:3} %"
-        if line != self._drawn:
-            self._drawn = line
-            print("\r" + line, end="", file=sys.stderr, flush=True)
+        if line == self._drawn:
+            return False
+        self._drawn, self._is_there = line, True
+        print("\r" + line, end="", file=sys.stderr, flush=True)
+        return True
 
     def end(self) -> None:
         """Clear the line of the bar."""
-        if self._drawn:
+        if self._is_there:
             print("\r" + " " * len(self._drawn) + "\r", end="", file=sys.stderr, flush=True)
-            self._drawn = ""
+            self._is_there = False
 
 
 class Doing:
@@ -71,21 +74,35 @@ PAUSE_S = 0.5  # between two waits: the person has typed or read something, so a
 
 
 class Silence:
-    """Somebody waits, and has been told nothing yet. Where nobody looks on, nothing is imported."""
+    """Somebody waits, and has been told nothing yet, or `is_told`.
+
+    Where nobody looks on, nothing is imported.
+    """
 
     def __init__(self, said: str) -> None:
+        self.is_told = False
+        self._said = said
         self._timer: Timer | None = None
         if sys.stderr.isatty():
             import threading
 
-            say = partial(print, said, file=sys.stderr, flush=True)
-            self._timer = threading.Timer(MOMENT_S, say)
+            self._lock = threading.Lock()
+            self._timer = threading.Timer(MOMENT_S, self._tell)
             self._timer.daemon = True
             self._timer.start()
 
+    def _tell(self) -> None:
+        with self._lock:
+            if self._timer is not None:
+                self.is_told = True
+                print(self._said, file=sys.stderr, flush=True)
+
     def cancel(self) -> None:
+        """From now on nothing is said."""
         if self._timer is not None:
             self._timer.cancel()
+            with self._lock:
+                self._timer = None
 
 
 class Quiet:
@@ -96,29 +113,48 @@ class Quiet:
         self._said = said
         self._is_seen = is_seen and sys.stderr.isatty()
         self._since_s = self._until_s = monotonic()
-        self._is_told = False
+        self.is_told = False
 
     def begin(self) -> None:
         """A wait begins."""
         if monotonic() - self._until_s > PAUSE_S:
-            self._is_told = False
-            self.note_news()
+            self.note_words()
+
+    def note_words(self) -> None:
+        """Something else was said, or typed."""
+        self.is_told = False
+        self.note_news()
+
+    def note_told(self) -> None:
+        """Another wait has said the same."""
+        self.is_told = True
+        self.note_news()
 
     def note_news(self) -> None:
         self._since_s = self._until_s = monotonic()
 
+    def go_on(self) -> None:
+        """The wait has ended, and nothing was said: what comes next is the same silence."""
+        self._until_s = monotonic()
+
+    def then(self, said: str) -> Quiet:
+        """Return the same silence, of which something else is said."""
+        found = Quiet(said, self._is_seen)
+        found._since_s = self._since_s
+        return found
+
     def look(self) -> None:
         """The wait goes on."""
         self._until_s = monotonic()
-        if self._is_told or not self._is_seen or self._until_s - self._since_s < MOMENT_S:
+        if self.is_told or not self._is_seen or self._until_s - self._since_s < MOMENT_S:
             return
-        self._is_told = True
+        self.is_told = True
         self.before()
         print(self._said, file=sys.stderr, flush=True)
 
 
 @contextmanager
-def waiting(key: str, language: str, port: str) -> Iterator[Silence]:
+def waiting(key: str, language: str, port: str = "") -> Iterator[Silence]:
     """Say the sentence `key` if this has not ended, nor been cancelled, in a moment."""
     silence = Silence(text(key, language).format(port=shown(port)))
     try:

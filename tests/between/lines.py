@@ -1,0 +1,154 @@
+"""What is in between a computer and its robot, and does what cables and radios do: faults by name.
+
+The time of a fault is its robot's: that of the wall, or slower where this computer is busy.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from random import Random
+from typing import NamedTuple
+
+from tests.machines.host_firmware import EMPTY
+from tests.support.pty_robot import PtyRobot
+from tiniscript import robots
+
+KIT = robots.load("tinibot").kit
+LATEST_MS = 2000  # a fault begins by then, however few bytes have come
+FOREVER_MS = 10**9
+
+
+class Fault(NamedTuple):
+    """What happens to bytes: `late_ms` each way, at `rate` a second, `lost` of them.
+
+    From a moment on, and for `held_ms`, none come through; then they do, all at once, or they are
+    lost where `drops`. `ways`: to the robot, and back. `pulls`, `resets` and `suspends` happen to
+    the port, the robot and the command.
+    """
+
+    name: str
+    late_ms: int = 0
+    rate: int = 0
+    lost: float = 0.0
+    held_ms: int = 0
+    drops: bool = False
+    ways: tuple[bool, bool] = (True, True)
+    pulls: bool = False
+    resets: bool = False
+    suspends: bool = False
+
+    @property
+    def has_end(self) -> bool:
+        """Whether a command that goes on will reach its robot."""
+        return self.held_ms < FOREVER_MS and not self.pulls
+
+
+FAULTS = (
+    Fault("nothing"),
+    Fault("loses", lost=0.01),
+    Fault("late", late_ms=300),
+    Fault("very late", late_ms=1000),
+    Fault("slow", rate=100),
+    Fault("stalls", held_ms=4000),
+    Fault("stalls long", held_ms=12_000),
+    Fault("loses all for a while", held_ms=5000, drops=True),
+    Fault("cut", held_ms=FOREVER_MS, drops=True),
+    Fault("robot hears nothing", held_ms=FOREVER_MS, drops=True, ways=(True, False)),
+    Fault("computer hears nothing", held_ms=FOREVER_MS, drops=True, ways=(False, True)),
+    Fault("pulled out", pulls=True),
+    Fault("off and on", resets=True),
+    Fault("suspended", held_ms=4000, suspends=True),
+)
+
+
+class Way:
+    """Bytes on their way."""
+
+    def __init__(self, fault: Fault, is_held: bool, chance: Random) -> None:
+        self._fault, self._is_held, self._chance = fault, is_held, chance
+        self._under_way: deque[tuple[float, int]] = deque()  # when each byte arrives
+        self._free_ms = 0.0
+        self.held_ms = (-1, -1)  # from when to when
+
+    def put(self, data: bytes, now_ms: int) -> None:
+        begin_ms, end_ms = self.held_ms
+        is_lost = self._is_held and self._fault.drops and begin_ms <= now_ms < end_ms
+        for byte in data:
+            if self._fault.rate:
+                self._free_ms = max(self._free_ms, now_ms) + 1000 / self._fault.rate
+            if is_lost or self._chance.random() < self._fault.lost:
+                continue
+            at_ms = max(self._free_ms, now_ms) + self._fault.late_ms
+            if self._is_held and begin_ms <= at_ms < end_ms:
+                at_ms = end_ms
+            self._under_way.append((at_ms, byte))
+
+    def arrived(self, now_ms: int) -> bytes:
+        found = bytearray()
+        while self._under_way and self._under_way[0][0] <= now_ms:
+            found.append(self._under_way.popleft()[1])
+        return bytes(found)
+
+
+class BadLine(PtyRobot):
+    """A robot behind a line with a fault that begins after `after` bytes, or after a while.
+
+    `mend` takes the fault away; what is still on its way arrives then.
+    """
+
+    def __init__(self, fault: Fault, chance: Random, after: int, memory: bytes = EMPTY) -> None:
+        self.fault = fault
+        self.has_begun = False
+        self._after = after
+        self._line_ms = 0
+        self._chance = chance
+        self._ways = [Way(fault, is_held, chance) for is_held in fault.ways]
+        self._is_mended = False
+        self._since_ms: int | None = None  # the first byte
+        super().__init__(KIT, memory)
+
+    def begin(self, fault: Fault) -> None:
+        """Have a fault from now on, in the place of the one before."""
+        with self._lock:
+            self.fault, self.has_begun, self._is_mended = fault, False, False
+            self._after, self._since_ms = 0, self._line_ms
+            self._ways = [Way(fault, is_held, self._chance) for is_held in fault.ways]
+
+    @property
+    def is_used(self) -> bool:
+        """Whether a byte has come from the computer."""
+        return self._since_ms is not None
+
+    def mend(self) -> None:
+        with self._lock:
+            self._is_mended = True
+
+    def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
+        self._line_ms += milliseconds
+        self._begin(len(data))
+        there, back = self._ways
+        if self._is_mended:
+            there._fault = back._fault = Fault("nothing")
+            there.held_ms = back.held_ms = (-1, -1)
+        there.put(data, self._line_ms)
+        arrived = there.arrived(FOREVER_MS if self._is_mended else self._line_ms)
+        back.put(super().pass_ms(milliseconds, arrived), self._line_ms)
+        return back.arrived(FOREVER_MS if self._is_mended else self._line_ms)
+
+    def _begin(self, count: int) -> None:
+        """Begin what the fault does from a moment on."""
+        self._after -= count
+        if count and self._since_ms is None:
+            self._since_ms = self._line_ms
+        if self.has_begun or self._since_ms is None:
+            return
+        if self._after <= 0 or self._line_ms - self._since_ms > LATEST_MS:
+            self.has_begun = True
+            if self.fault.held_ms and not self.fault.suspends:
+                for way in self._ways:
+                    way.held_ms = (self._line_ms, self._line_ms + self.fault.held_ms)
+            if self.fault.resets:
+                self._flags = []
+                with self._lock:
+                    self._take_power()
+                    self._robot = self._made(seed=0x9ABCDEF1)

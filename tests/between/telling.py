@@ -1,0 +1,143 @@
+"""What a command tells at a terminal, when, and for how long it is silent.
+
+Time goes by as on the wall, or slower where this computer is busy.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import time
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from pathlib import Path
+from threading import Thread
+
+from tests.support.command import rest_of
+from tests.support.terminal import Terminal
+
+STEP_S = 0.01
+LONGEST_S = 0.05  # of the time between two looks at the clock that counts
+ESCAPED = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
+# Who has said this goes on with it, or waits for what it names, until it says something else.
+STANDING = re.compile(r"…$|…Asking [^…]*$|: running$|Ctrl-C|hold its start button")
+
+ADVICE = "Try:"  # belongs to the line above it
+
+
+class Clock:
+    """Stands while this process gets no time."""
+
+    def __init__(self) -> None:
+        self.now_s = 0.0
+        Thread(target=self._run, daemon=True).start()
+
+    def _run(self) -> None:
+        last_s = time.monotonic()
+        while True:
+            time.sleep(STEP_S)
+            now_s = time.monotonic()
+            self.now_s += min(now_s - last_s, LONGEST_S)
+            last_s = now_s
+
+    def wait(self, seconds: float) -> None:
+        end_s = self.now_s + seconds
+        while self.now_s < end_s:
+            time.sleep(STEP_S)
+
+
+CLOCK = Clock()
+
+
+def own_folders(folder: str) -> dict[str, str]:
+    names = {"XDG_CACHE_HOME": "cache", "XDG_CONFIG_HOME": "settings"}
+    made = {name: str(Path(folder) / value) for name, value in names.items()}
+    return {**made, "LC_ALL": "C.UTF-8"}
+
+
+class Teller(Terminal):
+    """A command at a terminal of its own."""
+
+    def __init__(self, words: Sequence[str], env: Mapping[str, str]) -> None:
+        self.began_s = CLOCK.now_s  # or when it has sent its first byte
+        self.told: list[tuple[float, str]] = []  # "" is what a person has done
+        self.ended_s: float | None = None
+        self.suspended: list[tuple[float, float]] = []
+        super().__init__(*words, env=env, size=(300, 24))
+
+    def _read_on(self) -> None:
+        part = b"begun"
+        while part:
+            part = rest_of(self._ours)
+            if part:
+                self.written += part
+                self.told.append((CLOCK.now_s, part.decode(errors="replace")))
+        self.process.wait()
+        self.ended_s = CLOCK.now_s
+
+    def interrupt(self) -> None:
+        self.told.append((CLOCK.now_s, ""))
+        super().interrupt()
+
+    def end(self) -> int:
+        """End it, if it goes on; return its exit code."""
+        if self.process.poll() is None:
+            self.process.kill()
+        self._reader.join()
+        os.close(self._ours)
+        return self.process.wait()
+
+    def wait(self, limit_s: float) -> bool:
+        """Wait until it has ended; return whether it has."""
+        end_s = CLOCK.now_s + limit_s
+        while self.ended_s is None and CLOCK.now_s < end_s:
+            time.sleep(STEP_S)
+        return self.ended_s is not None
+
+    def has_said(self, pattern: str) -> bool:
+        return re.search(pattern, self.text) is not None
+
+    @property
+    def text(self) -> str:
+        return ESCAPED.sub("", "".join(said for _, said in list(self.told)))
+
+    @property
+    def kept(self) -> list[str]:
+        """What stays on the screen: of a line that was drawn over, its last state."""
+        found: list[str] = []
+        for line in self.text.replace("\r\n", "\n").split("\n"):
+            shown = [part.strip() for part in line.split("\r") if part.strip()]
+            found += shown[-1:]
+        return found
+
+    def repeated(self) -> list[str]:
+        """Return what was said twice; what is waited for, only with nothing else in between."""
+        parts = re.findall(r"([^\r\n]+)(\r*\n|\r|$)", self.text)
+        words = [(said.strip(), end) for said, end in parts if said.strip()]
+        awaited = [each for (each, end), (after, _) in pairwise(words)
+                   if each == after and end.endswith("\n")]  # fmt: skip
+        others = [each for each in self.kept
+                  if not STANDING.search(each) and not each.startswith(ADVICE)]  # fmt: skip
+        return sorted({*awaited, *(each for each in others if others.count(each) > 1)})
+
+    def longest_silence_s(self) -> float:
+        """Return the longest time without a word, but for what goes on as was said.
+
+        It counts from the first byte on: how long a process takes to begin is another question.
+        """
+        assert self.ended_s is not None
+        last_s, is_standing, longest_s = self.began_s, False, 0.0
+        for at_s, said in [*self.told, (self.ended_s, "")]:
+            parts = [part.strip() for part in re.split(r"[\r\n]", ESCAPED.sub("", said))]
+            parts = [part for part in parts if part]
+            if not parts and said:
+                continue  # a line is cleared
+            if not is_standing:
+                away_s = sum(
+                    max(0.0, min(end_s, at_s) - max(begin_s, last_s))
+                    for begin_s, end_s in self.suspended
+                )
+                longest_s = max(longest_s, at_s - last_s - away_s)
+            last_s = at_s
+            is_standing = bool(parts) and STANDING.search(parts[-1]) is not None
+        return longest_s

@@ -1,0 +1,253 @@
+"""Each command that talks to a robot, behind a line with a fault: it ends, and says what it waits
+for; nothing contradicts what was said, a thing is said once, and the next try works.
+
+`python -m tests.between.test_commands 100 --seed 1` draws commands, faults and moments, and prints
+how long each command was silent, and how long it took; a second figure is that of the line that is
+right. With `--whole` each command meets each fault, once for each seed.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import sys
+import tempfile
+from collections import defaultdict
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from functools import lru_cache
+from random import Random
+from typing import NamedTuple
+
+import pytest
+
+from tests.between.lines import FAULTS, KIT, BadLine, Fault
+from tests.between.telling import CLOCK, Teller, own_folders
+from tests.support.campaign import wanted
+from tests.support.command import FOREVER, LONG
+from tests.support.pty_robot import PtyRobot, on
+
+SILENT_S = 3.0  # for longer nobody is silent
+ROOM_S = 0.5  # until a word is there
+WORKERS = 8
+ENDS_S = 45.0  # the longest search for a robot, a request of 20 s, and a stop
+SLOW_ENDS_S = 240.0  # over a line that lets little through
+STOPS_S = 12.0  # from Ctrl-C to the end
+DRIVES_ON_S = 3.0  # a robot that hears nothing more stands after that
+SHORT = "SI|F(0.3, 80)"
+CONFIRMED = re.compile(r"[Ss]topped the robot.*confirmed it|has confirmed the stop|: stopped")
+UNCONFIRMED = re.compile(r"has not confirmed the stop")
+
+
+class Words(NamedTuple):
+    """A command; `stays`: until Ctrl-C."""
+
+    name: str
+    words: tuple[str, ...]
+    stays: bool = False
+    takes_s: float = 0.0  # of its own
+    may_fail: bool = False  # whatever the line does
+
+
+COMMANDS = (
+    Words("upload", ("upload", "-e", SHORT)),
+    Words("upload, long", ("upload", "-e", f"SI|{LONG}")),
+    Words("upload --detach", ("upload", "--detach", "-e", SHORT)),
+    Words("upload, Ctrl-C", ("upload", "-e", FOREVER), stays=True),
+    Words("start", ("start",)),
+    Words("live LINE", ("live", "F(0.3, 80)")),
+    Words("live, Ctrl-C", ("live", "M(80, 80); W(9); M(0, 0)"), stays=True),
+    Words("stop", ("stop",)),
+    Words("monitor, Ctrl-C", ("monitor",), stays=True),
+    Words("link, Ctrl-C", ("link",), stays=True),
+    Words("undo", ("undo",), may_fail=True),
+    Words("info", ("info",)),
+    Words("ping", ("ping",)),
+    Words("identify", ("identify",)),
+    Words("fetch", ("fetch",)),
+    Words("name", ("name", "TINI")),
+    Words("trim --show", ("trim", "--show")),
+    Words("trim --balance", ("trim", "--balance", "3")),
+    Words("text", ("text", "on")),
+    Words("claim", ("claim",), takes_s=30.0, may_fail=True),
+    Words("disown", ("disown",)),
+    Words("selftest --yes", ("selftest", "--yes"), may_fail=True),
+    Words("doctor --yes", ("doctor", "--yes"), may_fail=True),
+)
+
+
+class Found(NamedTuple):
+    """What came of one command."""
+
+    name: str
+    fault: str
+    silence_s: float
+    took_s: float  # until its end, from Ctrl-C on where it stays
+    wrong: tuple[str, ...]
+    said: str
+
+
+@lru_cache(maxsize=1)
+def with_program() -> bytes:
+    """The memory of a robot that holds a program."""
+    with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        for name, value in own_folders(folder).items():
+            patch.setenv(name, value)
+        with PtyRobot(KIT) as robot:
+            on(robot, "upload", "--detach", "-e", SHORT).gives(0)
+            on(robot, "ping").gives(0)
+            robot.switch_off()
+            return robot._memory
+
+
+def tried(words: Words, fault: Fault, seed: int) -> Found:
+    """Run a command behind a line with a fault, then another one behind the same, mended."""
+    chance = Random(f"{words.name} {fault.name} {seed}")
+    with ExitStack() as stack:
+        folder = stack.enter_context(tempfile.TemporaryDirectory())
+        env = own_folders(folder)
+        after = chance.choice((0, 1, 12, 30, 60, 150))
+        line = BadLine(fault, chance, after, with_program())
+        stack.callback(line.clear_away)
+        teller = Teller([*words.words, "--port", line.port], env)
+        stack.callback(teller.end)
+        has_ended = _played(teller, line, words, chance)
+        wrong = [] if has_ended else ["it has no end"]
+        if not has_ended:
+            teller.process.kill()
+            teller.wait(ENDS_S)
+        wrong += _contradictions(teller, line, words)
+        if fault.has_end or not fault.pulls:
+            wrong += _next_try(line, env)
+        asked_s = [at_s for at_s, said in teller.told if not said]
+        began_s = asked_s[0] if asked_s else teller.began_s
+        assert teller.ended_s is not None
+        return Found(words.name, fault.name, teller.longest_silence_s(),
+                     teller.ended_s - began_s, tuple(wrong), teller.text)  # fmt: skip
+
+
+def _played(teller: Teller, line: BadLine, words: Words, chance: Random) -> bool:
+    """Let the fault happen, and a person be there; return whether the command has ended."""
+    fault = line.fault
+    is_slow = fault.rate or fault.lost or fault.late_ms
+    limit_s = (SLOW_ENDS_S if is_slow else ENDS_S + fault.held_ms % 10**9 / 1000) + words.takes_s
+    end_s = CLOCK.now_s + limit_s
+    leaves_s = chance.choice((1.0, 6.0, 15.0)) if words.stays else limit_s
+    while not line.is_used and teller.ended_s is None and CLOCK.now_s < end_s:
+        CLOCK.wait(0.01)
+    teller.began_s = CLOCK.now_s
+    while not line.has_begun and teller.ended_s is None and CLOCK.now_s < end_s:
+        CLOCK.wait(0.01)
+    if fault.pulls:
+        line.pull()
+    if fault.suspends and teller.ended_s is None:
+        began_s = CLOCK.now_s
+        teller.process.send_signal(signal.SIGSTOP)
+        CLOCK.wait(fault.held_ms / 1000)
+        teller.suspended.append((began_s, CLOCK.now_s))
+        teller.process.send_signal(signal.SIGCONT)
+    if words.stays and not teller.wait(leaves_s):
+        teller.interrupt()
+        return teller.wait(STOPS_S + 2 * fault.late_ms / 1000 + (30 if fault.rate else 0))
+    return teller.wait(max(0.1, end_s - CLOCK.now_s))
+
+
+def _contradictions(teller: Teller, line: BadLine, words: Words) -> list[str]:
+    """Return what was said twice, or is not so."""
+    lines, code, fault = teller.kept, teller.process.returncode, line.fault
+    found = [f"said twice: {each}" for each in teller.repeated()]
+    if "Traceback" in teller.text:
+        found.append("a traceback")
+    is_confirmed = any(map(CONFIRMED.search, lines))
+    is_unconfirmed = any(map(UNCONFIRMED.search, lines))
+    if is_confirmed and is_unconfirmed:
+        found.append("a stop is both")
+    if code and not lines:
+        found.append("an exit code without a word")
+    is_heard = fault.name in ("nothing", "late", "slow", "loses")  # while a program runs, too
+    if is_heard and not words.may_fail and code not in ((0, 2) if words.stays else (0,)):
+        found.append(f"exit code {code}")
+    if fault.pulls:
+        return found
+    if words.name != "upload --detach":
+        CLOCK.wait(0 if is_confirmed or not line.moves else DRIVES_ON_S)
+        if line.moves:
+            found.append("it moves")
+    return found
+
+
+def _next_try(line: BadLine, env: dict[str, str]) -> list[str]:
+    line.mend()
+    CLOCK.wait(0.2)
+    teller = Teller(["upload", "-e", SHORT, "--port", line.port], env)
+    teller.wait(ENDS_S)
+    code = teller.end()
+    return [] if code == 0 else [f"the next try: {code}, {teller.kept}"]
+
+
+def judged(found: Found, room_s: float = ROOM_S) -> list[str]:
+    silent = found.silence_s > SILENT_S + room_s
+    return [*found.wrong, *([f"silent for {found.silence_s:.1f} s"] if silent else [])]
+
+
+def all_tried(rows: Sequence[tuple[Words, Fault, int]]) -> list[Found]:
+    with_program()
+    with ThreadPoolExecutor(WORKERS) as pool:
+        return list(pool.map(lambda row: tried(*row), rows))
+
+
+def printed(found: Sequence[Found]) -> None:
+    """Print the table: of each command the worst of each figure, and in which fault it was."""
+    rows: dict[str, list[Found]] = defaultdict(list)
+    for each in found:
+        rows[each.name].append(each)
+    print("| command | tries | longest silence, s | to its end, s |\n|---|---:|---:|---:|")
+    for command in COMMANDS:
+        if mine := rows[command.name]:
+            quiet = max(mine, key=lambda each: each.silence_s)
+            late = max(mine, key=lambda each: each.took_s)
+            print(f"| `{command.name}` | {len(mine)} | {quiet.silence_s:.1f} ({quiet.fault}) |"
+                  f" {late.took_s:.1f} ({late.fault}) |")  # fmt: skip
+
+
+def drawn(count: int, seed: int, is_whole: bool) -> list[tuple[Words, Fault, int]]:
+    if is_whole:
+        return [(words, fault, seed + k) for k in range(count)
+                for fault in FAULTS for words in COMMANDS]  # fmt: skip
+    rows = []
+    for k in range(seed, seed + count):
+        chance = Random(k)
+        rows.append((chance.choice(COMMANDS), chance.choice(FAULTS), k))
+    return rows
+
+
+def test_a_sample_of_commands_keeps_the_laws_behind_bad_lines(
+    request: pytest.FixtureRequest,
+) -> None:
+    from tests.support import sampling
+
+    seed = Random(sampling.seed(request.config)).randrange(10**6)
+    found = all_tried(drawn(SAMPLE, seed, is_whole=False))
+    wrong = {f"{each.name}, {each.fault}": (judged(each, ROOM_CI_S), each.said) for each in found}
+    assert not {name: why for name, why in wrong.items() if why[0]}
+
+
+SAMPLE = 12
+ROOM_CI_S = 2.0  # processes begin slowly beside others
+
+
+if __name__ == "__main__":
+    given = wanted(100, 1, "whole")
+    began_s = CLOCK.now_s
+    found = all_tried(drawn(given.count, given.seed, given.whole))
+    printed(found)
+    wrong = [(each, judged(each)) for each in found]
+    for each, why in wrong:
+        if why:
+            print(f"\n{each.name}, {each.fault}: {'; '.join(why)}\n{each.said}")
+    took = os.times()
+    print(f"\n{len(found)} tried, {sum(bool(why) for _, why in wrong)} wrong; "
+          f"{CLOCK.now_s - began_s:.0f} s, {sum(took[:4]):.0f} s of a processor")  # fmt: skip
+    sys.exit(any(why for _, why in wrong))
