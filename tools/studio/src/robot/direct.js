@@ -125,6 +125,8 @@ export class DirectRobot extends Asking {
         await pause(LINK.long_quiet_ms);
         answer = await this.ask({ do: 'hello', limit_ms: LINK.cable_answer_ms });
       }
+      // What is heard may be a robot that answers late.
+      if (answer.failure === 'link_other') answer = await this.ask({ do: 'hello', limit_ms: LINK.radio_answer_ms });
     }
     if (!answer.robot) throw new Failed(answer.failure ?? 'bug', [answer.said, answer.advice].join(' ').trim());
     return answer.robot;

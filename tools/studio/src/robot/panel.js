@@ -37,6 +37,7 @@ import { whole } from '../writing/messages.js';
 // The keys of robots that this browser keeps: the text of a file of keys, as `tsc keys` writes it. Who uses
 // this browser uses them; the page gives them to no one but the robot's session.
 const KEYS = 'tiniscript.link.keys';
+const WORD_MS = 2000; // after which it is said that the robot has not answered yet
 
 export class RobotPanel {
   #page;
@@ -255,12 +256,17 @@ export class RobotPanel {
    */
   async #ask(request, done) {
     if (!this.#way || !this.#about) return;
+    const isSaid = request['do'] === 'upload' || request['do'] === 'claim'; // what it waits for
+    const word = isSaid ? 0 : setTimeout(() => this.#speech.say('say_waits'), WORD_MS);
     try {
       const answer = await this.#way.ask(request);
+      clearTimeout(word);
       if (answer.ok) done(answer);
       else this.#speech.fail(new Failed(answer.failure ?? 'bug', refusal(answer)));
     } catch {
       // it is over, and that was said
+    } finally {
+      clearTimeout(word);
     }
   }
 

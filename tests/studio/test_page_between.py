@@ -1,0 +1,329 @@
+"""What a person presses on the page, while what is between the page, `tsc studio` and the robot
+has a fault: it ends, each thing is said once, and the next try works.
+
+`python -m tests.studio.test_page_between 1 --seed 1` tries each action with each fault, and prints
+how long the page was silent, and how long it took.
+"""
+
+from __future__ import annotations
+
+import re
+import signal
+import sys
+import tempfile
+import time
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from itertools import pairwise
+from random import Random
+from typing import TYPE_CHECKING, NamedTuple
+
+import pytest
+
+from tests.between.lines import FAULTS, BadLine, Fault
+from tests.between.telling import CLOCK, own_folders
+from tests.support import sampling, studio
+from tests.support.campaign import wanted
+from tests.support.command import FOREVER, Command
+from tests.support.network import Network
+from tests.support.studio import Pages, write
+from tiniscript.link import known_ports
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+SILENT_S, ROOM_S = 3.0, 0.5
+ENDS_S = 40.0  # the longest request, and a stop
+AGAIN_S = 40.0  # until the next try works
+LISTEN = """() => {
+  const line = document.querySelector('#link_said');
+  window.told = [];
+  window.listens?.disconnect();
+  const tell = () => window.told.push([performance.now(), line.textContent]);
+  window.listens = new MutationObserver(tell);
+  window.listens.observe(line, { childList: true, characterData: true, subtree: true });
+  return performance.now();
+}"""
+STANDING = re.compile(r"…|^Stopping")  # what it says goes on
+CONNECTED = "Connected: "
+CONFIRMED = "the robot has confirmed it|has confirmed the stop now"
+UNCONFIRMED = "has not confirmed the stop"
+
+
+class Between(NamedTuple):
+    """What happens between the page and `tsc studio`: pieces are late, or are lost with their
+    connection; for a while none come through, or `tsc studio` is suspended."""
+
+    name: str
+    late_s: float = 0.0
+    lost: float = 0.0
+    held_s: float = 0.0
+    is_cut: bool = False
+    suspends: bool = False
+
+
+BETWEEN = (
+    Between("page and studio: late", late_s=0.3),
+    Between("page and studio: loses", lost=0.2),
+    Between("page and studio: stalls", held_s=4.0),
+    Between("page and studio: stalls long", held_s=12.0),
+    Between("page and studio: cut for a while", held_s=4.0, is_cut=True),
+    Between("studio suspended", held_s=4.0, suspends=True),
+    Between("studio suspended long", held_s=12.0, suspends=True),
+)
+LINES = tuple(each for each in FAULTS if not each.pulls and not each.suspends)
+ACTIONS = ("connect", "run", "stop", "identify", "leave")
+ENDS = {
+    "connect": r"^(?!Connecting)",
+    "run": r"The robot has it|^(?!Sending|The robot)",
+    "stop": f"{CONFIRMED}|{UNCONFIRMED}",
+    "identify": "blinks|^(?!Asking)",
+    "leave": "Disconnected",
+}
+BUTTONS = {"connect": "#link_connect", "run": "#link_upload", "stop": "#stop",
+           "identify": "#link_identify", "leave": "#link_leave"}  # fmt: skip
+
+
+class BadNetwork(Network):
+    """To the browser it is the server: the port in what the browser asks is the server's."""
+
+    def __init__(self, target: int, chance: Random) -> None:
+        self.fault = Between("nothing")
+        self.begun_s = 0.0
+        self._chance = chance
+        super().__init__(target)
+        self._ports = [f":{port}".encode() for port in (self.port, target)]
+        assert len({*map(len, self._ports)}) == 1
+
+    def begin(self, fault: Between) -> None:
+        self.fault, self.begun_s = fault, CLOCK.now_s
+        if fault.is_cut:
+            self.cut()
+
+    def mend(self) -> None:
+        self.fault = Between("nothing")
+
+    @property
+    def is_held(self) -> bool:
+        fault = self.fault
+        return not fault.suspends and CLOCK.now_s < self.begun_s + fault.held_s
+
+    def passed(self, data: bytes, is_back: bool, number: int) -> bytes | None:
+        if self.fault.is_cut and self.is_held:
+            return None
+        while self.is_held:
+            time.sleep(0.02)
+        time.sleep(self.fault.late_s)
+        if self._chance.random() < self.fault.lost:
+            return None
+        return data if is_back else data.replace(*self._ports)
+
+
+class Found(NamedTuple):
+    action: str
+    fault: str
+    silence_s: float
+    took_s: float
+    wrong: tuple[str, ...]
+    told: tuple[str, ...]
+
+
+class Scene:
+    """A page, a `tsc studio` that is a process, a robot, and what is between them."""
+
+    def __init__(self, opened: Browser, chance: Random, stack: ExitStack) -> None:
+        self._folders = own_folders(stack.enter_context(tempfile.TemporaryDirectory()))
+        self._chance = chance
+        self._stack = stack
+        self.line = BadLine(Fault("nothing"), chance, 0)
+        stack.callback(lambda: self.line.clear_away())
+        self.studio = Command("studio", "--listen", "0", "--no-browser", env=self._folders)
+        stack.callback(self.studio.kill)
+        assert self.studio.process.stdout
+        entrance = self.studio.process.stdout.readline().decode().strip()
+        target = int(re.findall(r":(\d+)/", entrance)[0])
+        self.network = BadNetwork(target, chance)
+        stack.callback(self.network.close)
+        address = f"http://127.0.0.1:{self.network.port}/"
+        self.pages = Pages(opened, address, entrance=lambda: entrance.replace(
+            f":{target}/", f":{self.network.port}/"))  # fmt: skip
+        stack.callback(self.pages.close)
+        self.page: Page = self.pages.open(is_alone=True)
+        write(self.page, FOREVER)
+        self.page.click("#side_real")
+
+    def tried(self, action: str, fault: Fault | Between) -> Found:
+        """Do something while there is a fault, then all of it without."""
+        self._prepare(action, fault)
+        page = self.page
+        begun_ms = page.evaluate(LISTEN)
+        self._begin(fault)
+        page.click(BUTTONS[action])
+        has_ended = self._until(ENDS[action], ENDS_S)
+        told: list[tuple[float, str]] = page.evaluate("window.told")
+        wrong = [] if has_ended else ["it has no end"]
+        page.wait_for_timeout(500)
+        self._mend(fault)
+        told = page.evaluate("window.told")
+        said = [text for _, text in told]
+        wrong += [f"said twice: {each}" for each, after in pairwise(said) if each == after]
+        wrong += self._next_try()
+        times = [begun_ms, *(at_ms for at_ms, _ in told)]
+        gaps = [(after - at) / 1000 for k, (at, after) in enumerate(pairwise(times))
+                if not k or not STANDING.search(said[k - 1])]  # fmt: skip
+        first = [at_ms for at_ms, text in told if re.search(ENDS[action], text)]
+        took_s = ((first[0] if first else begun_ms + 1000 * ENDS_S) - begun_ms) / 1000
+        return Found(action, fault.name, gaps[0] if gaps else ENDS_S, took_s,
+                     tuple(wrong), tuple(said))  # fmt: skip
+
+    def _prepare(self, action: str, fault: Fault | Between) -> None:
+        if isinstance(fault, Fault):
+            self._leave()
+            self.line.clear_away()
+            self.line = BadLine(Fault("nothing"), self._chance, 0)
+        if action == "connect":
+            self._leave()
+            self._choose()
+        else:
+            assert self._connect() == "", self._said()
+        if action == "stop":
+            assert self._run() == "", self._said()
+
+    def _begin(self, fault: Fault | Between) -> None:
+        if isinstance(fault, Fault):
+            self.line.begin(fault)
+        else:
+            self.network.begin(fault)
+            if fault.suspends:
+                self.studio.signal(signal.SIGSTOP)
+
+    def _mend(self, fault: Fault | Between) -> None:
+        if isinstance(fault, Between):
+            left_s = self.network.begun_s + fault.held_s - CLOCK.now_s
+            self.page.wait_for_timeout(1000 * max(0.0, left_s))
+            self.studio.signal(signal.SIGCONT)
+            self.network.mend()
+        else:
+            self.line.mend()
+        self.page.wait_for_timeout(500)
+
+    def _next_try(self) -> list[str]:
+        """Connect if that is needed, run, and stop; return what does not work."""
+        why = self._connect() or self._run() or self._stop()
+        return [f"the next try: {why}"] if why else []
+
+    def _said(self) -> str:
+        return self.page.locator("#link_said").inner_text()
+
+    def _until(self, pattern: str, limit_s: float) -> bool:
+        end_s = CLOCK.now_s + limit_s
+        while CLOCK.now_s < end_s:
+            told = self.page.evaluate("window.told")
+            if any(re.search(pattern, text) for _, text in told):
+                return True
+            self.page.wait_for_timeout(50)
+        return False
+
+    def _choose(self) -> None:
+        """Have the robot's port in the list, and chosen."""
+        page = self.page
+        with pytest.MonkeyPatch.context() as patch:
+            for name, value in self._folders.items():
+                patch.setenv(name, value)
+            known_ports.remember(self.line.port, "TINI")
+        page.click("#link_look")
+        option = page.locator("#link_port option", has_text=self.line.port)
+        option.first.wait_for(state="attached")
+        page.select_option("#link_port", value=option.first.get_attribute("value"))
+
+    def _connect(self) -> str:
+        page = self.page
+        end_s = CLOCK.now_s + AGAIN_S
+        while not page.locator("html[data-robot=connected]").count():
+            if CLOCK.now_s > end_s:
+                return f"no connection: {self._said()}"
+            if (
+                page.locator("#link_connect").is_visible()
+                and page.locator("#link_connect").is_enabled()
+            ):
+                self._choose()
+                page.evaluate(LISTEN)
+                page.click("#link_connect")
+                self._until(r"^(?!Connecting)", AGAIN_S)
+            page.wait_for_timeout(100)
+        return ""
+
+    def _run(self) -> str:
+        self.page.evaluate(LISTEN)
+        self.page.click("#link_upload")
+        if not self._until("The robot has it|stopped", AGAIN_S):
+            return f"no run: {self._said()}"
+        end_s = CLOCK.now_s + AGAIN_S
+        while not self.line.moves:
+            if CLOCK.now_s > end_s:
+                return f"it does not drive: {self._said()}"
+            self.page.wait_for_timeout(50)
+        return ""
+
+    def _stop(self) -> str:
+        self.page.evaluate(LISTEN)
+        self.page.click("#stop")
+        if not self._until(CONFIRMED, AGAIN_S):
+            return f"no stop: {self._said()}"
+        return "it moves" if self.line.moves else ""
+
+    def _leave(self) -> None:
+        if self.page.locator("#link_leave").is_visible():
+            self.page.click("#link_leave")
+            self.page.locator("html:not([data-robot=connected])").wait_for(state="attached")
+
+
+@contextmanager
+def scene(opened: Browser, chance: Random) -> Iterator[Scene]:
+    with ExitStack() as stack:
+        yield Scene(opened, chance, stack)
+
+
+def judged(found: Found, room_s: float = ROOM_S) -> list[str]:
+    silent = found.silence_s > SILENT_S + room_s
+    return [*found.wrong, *([f"silent for {found.silence_s:.1f} s"] if silent else [])]
+
+
+def printed(found: Sequence[Found]) -> None:
+    rows: dict[str, list[Found]] = defaultdict(list)
+    for each in found:
+        rows[each.action].append(each)
+    print("| page | tries | longest silence, s | to its end, s |\n|---|---:|---:|---:|")
+    for action, mine in rows.items():
+        quiet = max(mine, key=lambda each: each.silence_s)
+        late = max(mine, key=lambda each: each.took_s)
+        print(f"| {action} | {len(mine)} | {quiet.silence_s:.1f} ({quiet.fault}) |"
+              f" {late.took_s:.1f} ({late.fault}) |")  # fmt: skip
+
+
+def test_a_sample_of_what_is_pressed_keeps_the_laws(
+    request: pytest.FixtureRequest, browser: Browser
+) -> None:
+    chance = Random(sampling.seed(request.config))
+    with scene(browser, chance) as seen:
+        for fault in (chance.choice(BETWEEN[:5]), chance.choice(LINES[:6])):
+            found = seen.tried(chance.choice(ACTIONS), fault)
+            assert not judged(found, 3.0), found
+
+
+if __name__ == "__main__":
+    given = wanted(1, 1, "network", "line")
+    all_found = []
+    with studio.driver() as driver, studio.browser(driver) as opened:
+        for seed in range(given.seed, given.seed + given.count):
+            with scene(opened, Random(seed)) as seen:
+                faults: list[Fault | Between] = [*BETWEEN * (not given.line),
+                                                 *LINES * (not given.network)]  # fmt: skip
+                for fault in faults:
+                    for action in ACTIONS:
+                        all_found.append(seen.tried(action, fault))
+                        found = all_found[-1]
+                        print(*found[:4], judged(found), found.told, sep="; ", flush=True)
+    printed(all_found)
+    sys.exit(any(map(judged, all_found)))
