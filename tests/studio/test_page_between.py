@@ -75,10 +75,10 @@ BETWEEN = (
 LINES = tuple(each for each in FAULTS if not each.pulls and not each.suspends)
 ACTIONS = ("connect", "run", "stop", "identify", "leave")
 ENDS = {
-    "connect": r"^(?!Connecting)",
-    "run": r"The robot has it|^(?!Sending|The robot)",
+    "connect": r"^(?!Connecting|Choose)",
+    "run": r"^(?!Sending)",
     "stop": f"{CONFIRMED}|{UNCONFIRMED}",
-    "identify": "blinks|^(?!Asking)",
+    "identify": "blinks|^(?!Waiting)",
     "leave": "Disconnected",
 }
 BUTTONS = {"connect": "#link_connect", "run": "#link_upload", "stop": "#stop",

@@ -10,10 +10,12 @@ import pytest
 
 from tests.studio.test_page_link import KIT, connect, said
 from tests.support import studio
+from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import Pages, drives, hears
+from tests.support.studio import Pages, drives, hang, hears, write
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
+from tiniscript.studio.attending import LEFT_S
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
@@ -231,6 +233,45 @@ def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
     said(page, SILENT)
     page.wait_for_timeout(2500)  # the link gives it up, too
     assert page.evaluate("window.told") == ["Stopping…", SILENT]
+
+
+def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
+    """What was asked of it ends, and the link does."""
+    connect(page, robot)
+    robot.switch_off()
+    page.evaluate(LISTEN)
+    write(page, FOREVER)
+    page.click("#link_upload")
+    said(page, "The robot does not answer any more")
+    page.wait_for_timeout(4000)
+    told = page.evaluate("window.told")
+    assert [each.split(";")[0] for each in told] == [
+        "Sending…",
+        "The robot does not answer any more",
+    ]
+
+
+def test_who_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
+    page: Page, robot: PtyRobot
+) -> None:
+    connect(page, robot)
+    Mute(page, "LOST")
+    robot.switch_off()
+    page.evaluate(LISTEN)
+    page.click("#link_identify")
+    said(page, "The robot does not answer any more")
+    assert page.evaluate("window.told")[0] == "Waiting for the robot…"
+
+
+def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
+    page: Page, robot: PtyRobot
+) -> None:
+    connect(page, robot)
+    torn = tears(page, "beat", lambda route: route.abort(), times=1)
+    hears(page, lambda: torn, "a beat is lost")
+    page.unroute_all(behavior="wait")
+    hang(page, round(1000 * LEFT_S) + 500)
+    said(page, "tsc studio heard nothing from this page for a while")
 
 
 def test_an_end_before_the_word_of_a_stop_says_that_there_is_none(

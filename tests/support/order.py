@@ -22,6 +22,7 @@ LONG = (
     "tests/flash/test_flash.py",
     "tests/flash/test_building.py",
     "tests/flash/test_bootloader.py",
+    "tests/between/test_commands.py",
     "tests/cli/test_many_robots.py",
     "tests/cli/test_doctor_command.py",
     "tests/vm/test_agreement.py",

@@ -195,7 +195,7 @@ class Connection(Client):
     def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
         found = super().event(limit_s)
         if found is not None:
-            self.quiet.note_words()
+            self.quiet.note_news()
         elif self._needs_a_reader:
             streams.refuse_unread()
         return found

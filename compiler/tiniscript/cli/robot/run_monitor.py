@@ -66,6 +66,8 @@ class RunMonitor:
                 raise CommandError(3, error.reason, **error.values) from None
             if self.hold is None or not self.hold(event):
                 self.printer.tell(time_ms, event)
+                if event.name != "STARTED":
+                    self.connection.quiet.note_words()
             code = ended(event, run)
             if code is not None:
                 return code

@@ -13,6 +13,7 @@ const SAID_CHARACTERS = 1000;
 export class Speech {
   /** What is said, so that it can be said in another language. @type {() => string} */
   #said = () => '';
+  #name = ''; // of it
   isHeld = false; // by a stop, which alone says what becomes of it
   /** @type {string[]} */
   #shown = [];
@@ -47,6 +48,7 @@ export class Speech {
   /** @param {string} said */
   tell(said) {
     if (this.isHeld) return;
+    this.#name = '';
     this.#said = () => said;
     this.#say();
   }
@@ -54,6 +56,9 @@ export class Speech {
   /** @param {() => string} said @param {string} name for tests */
   #put(said, name) {
     if (this.isHeld) return;
+    // A robot is lost once, whether a request says so or an event.
+    if (name.endsWith('link_lost') && this.#name.endsWith('link_lost') && said() === this.#said()) return;
+    this.#name = name;
     this.#said = said;
     this.#say();
     document.documentElement.dataset['link'] = name;
