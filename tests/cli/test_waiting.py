@@ -25,8 +25,10 @@ from tiniscript.flash import avrdude
 from tiniscript.flash.bootloaders import UNO
 from tiniscript.flash.ready import Ready
 from tiniscript.library import opening
+from tiniscript.library.client import Client
 from tiniscript.link.requests import DeviceInfo
 from tiniscript.studio import building, serving
+from tiniscript.studio.hosting import Hosting
 
 
 def looks_on(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -169,7 +171,7 @@ def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     now_s = 0.0
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
-    real = connect.Client.wait
+    real = Client.wait
     waits: list[str] = []
 
     def wait(self: connect.Connection, *given: Any) -> Any:
@@ -181,7 +183,7 @@ def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
             given[1]()
         return reply
 
-    monkeypatch.setattr(connect.Client, "wait", wait)
+    monkeypatch.setattr(Client, "wait", wait)
     done = tsc("info", "--port", pty_robot.port).gives(0)
     assert len(waits) > 2
     assert done.err.count("Waiting for the robot") == 1  # nobody has seen 3 s of silence
@@ -226,7 +228,7 @@ def test_the_end_of_a_studio_says_what_it_waits_for(
     looks_on(monkeypatch)
     said = ""
 
-    class Silent(studio.Hosting):
+    class Silent(Hosting):
         def close(self) -> list[str]:
             def is_said() -> bool:
                 nonlocal said

@@ -93,8 +93,8 @@ class BadNetwork(Network):
         self.begun_s = 0.0
         self._chance = chance
         super().__init__(target)
-        self._ports = [f":{port}".encode() for port in (self.port, target)]
-        assert len({*map(len, self._ports)}) == 1
+        self._own, self._servers = (f":{port}".encode() for port in (self.port, target))
+        assert len(self._own) == len(self._servers)
 
     def begin(self, fault: Between) -> None:
         self.fault, self.begun_s = fault, CLOCK.now_s
@@ -117,7 +117,7 @@ class BadNetwork(Network):
         time.sleep(self.fault.late_s)
         if self._chance.random() < self.fault.lost:
             return None
-        return data if is_back else data.replace(*self._ports)
+        return data if is_back else data.replace(self._own, self._servers)
 
 
 class Found(NamedTuple):

@@ -94,7 +94,7 @@ def _upload(
     connection.quiet.before = progress.end
 
     def draw(done: int) -> None:
-        if progress.draw(done):
+        if done and progress.draw(done):  # before that, it is what is waited for
             connection.quiet.note_words()
 
     try:
@@ -118,6 +118,7 @@ def _upload(
             print(json.dumps(receipt(connection, ready, name, values, options)), flush=True)
         else:
             print(_receipt_line(connection, ready, name, values, options), flush=True)
+        connection.quiet.note_words()
         _keep_map(ready)  # only now, so that the robot starts earlier
         return follow_run(connection, ready, saving, options, printer)
     except KeyboardInterrupt:

@@ -37,7 +37,7 @@ class Progress:
 
     def draw(self, done: int) -> bool:
         """Draw it where it has grown; return whether it has."""
-        if not self._is_seen or not done or not self.whole or monotonic() - self._begin_s < BLINK_S:
+        if not self._is_seen or not self.whole or monotonic() - self._begin_s < BLINK_S:
             return False
         percent = min(100 * done // self.whole, MOST_PERCENT)
         full = COLUMNS * percent // 100
