@@ -167,11 +167,12 @@ def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: servi
     assert page.locator("#link_serial:enabled").is_visible()
 
 
+@pytest.mark.parametrize("what", ["tiniscript.zip", "worker.js"])
 def test_a_compiler_that_does_not_come_is_told_and_goes_on_when_it_does(
-    pages: Pages, server: serving.Server
+    pages: Pages, server: serving.Server, what: str
 ) -> None:
     page = pages.blank(is_alone=True)
-    held = Held(page, "**/tiniscript.zip")
+    held = Held(page, f"**/{what}")
     page.goto(server.address)
     page.locator("#status").filter(has_text="The compiler does not come").wait_for(state="attached")
     held.let_go()

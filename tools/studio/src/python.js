@@ -61,6 +61,8 @@
 
 /** @typedef {{resolve: (answer: any) => void, reject: (why: Error) => void}} Waiting */
 
+const WORD_MS = 3000;
+
 export class Python {
   #worker;
   /** @type {Map<number, Waiting>} */
@@ -77,7 +79,10 @@ export class Python {
   constructor(language) {
     this.#worker = new Worker('./worker.js', { type: 'module', name: language });
     this.ready = new Promise((resolve, reject) => {
+      const word = setTimeout(() => this.waits(), WORD_MS); // the worker itself does not come
       this.#worker.addEventListener('message', ({ data }) => {
+        clearTimeout(word);
+        if (data.begun) return;
         if (data.waits) {
           this.waits();
           return;

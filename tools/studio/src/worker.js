@@ -6,6 +6,7 @@ import { watchedFetch } from './page/progress.js';
 import languages from '../made/languages.json';
 import lock from '../made/lock.json';
 
+postMessage({ id: 0, begun: true });
 const waits = () => postMessage({ id: 0, waits: true });
 const plainFetch = self.fetch.bind(self);
 // Also what Pyodide fetches: what is held on its way ends, and the page is told before.
