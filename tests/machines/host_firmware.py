@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
-from struct import iter_unpack, pack
+from struct import iter_unpack, pack, unpack
 from typing import Any, TypeVar
 
 from tests.machines.host import FLAGS, SOURCES, Process, compiled, files_in, first_text, texts
@@ -103,6 +103,18 @@ class HostFirmware(Process):
     def sense(self, *readings: int) -> None:
         """Let the sensors say so many thousandths."""
         self.ask(b"V", pack(f"<{len(readings)}i", *readings))
+
+    def discs(self, cm: int, degrees: int, left: int = 0, right: int = 0) -> None:
+        """Put discs on both wheels; what they go between two edges is as a robot's header says it.
+
+        They stand so many thousandths of the way behind an edge.
+        """
+        self.ask(b"G", pack("<IIHH", cm, degrees, left, right))
+
+    def gone(self) -> tuple[float, float]:
+        """Return how many edges both wheels have gone, less those that they went back."""
+        left, right = unpack("<ii", self.ask(b"O", b""))
+        return left / 1000, right / 1000
 
     def supply(self, is_low: bool) -> None:
         """Let the voltage be too low to save anything, or enough."""

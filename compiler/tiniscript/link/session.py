@@ -549,8 +549,10 @@ class Session(Requester):
 
     def _settle(self, robot: HelloReply, frame: Frame) -> None:
         """Find out from HELLO what has ended the epoch that is in doubt."""
-        self._epoch = frame.epoch
         is_same = self.robot is not None and self.robot.values.nonce == robot.nonce
+        if is_same and self._handshake.is_open:
+            self._doubt(frame)  # somebody has asked for HELLO, which is the first to notice it
+        self._epoch = frame.epoch
         if not is_same:
             self._told_epoch = None  # its epochs begin anew
         if is_same and self._pending and self._pending.wanted.may_be_done:

@@ -26,6 +26,22 @@ using namespace tiniscript;
 
 namespace {
 
+// What a motor turns, and whose disc has one channel: after `kLagMs` it has two thirds of its speed.
+constexpr double kLagMs = 60;
+constexpr double kEdgesPerMs = 0.09;  // at full power
+
+struct Wheel {
+  double speed = 0;  // in edges a millisecond
+  double gone = 0;   // edges, less those that it went back
+  double turned = 0;  // edges in all
+
+  void pass_millisecond(int8_t percent) {
+    speed += (percent * kEdgesPerMs / 100 - speed) / kLagMs;
+    gone += speed;
+    turned += fabs(speed);
+  }
+};
+
 struct Tabletop {
   std::string memory;  // the EEPROM
   uint16_t kit = 0;
@@ -40,6 +56,8 @@ struct Tabletop {
   std::string log;
   int8_t left = 0;
   int8_t right = 0;
+  Discs discs = {0, 0, false};
+  Wheel wheels[2];
   bool is_latched = true;
   bool is_lit = false;
   bool has_stalled = false;
@@ -123,6 +141,8 @@ void answer_begin(RequestReader* request, Writer*) {
 // Lets so many ticks of a millisecond pass, and as many more as bytes arrive, one in each tick.
 // Returns what the robot sends.
 std::string pass(uint32_t now_ms, uint16_t ticks, const uint8_t* heard, size_t length) {
+  table.wheels[0].pass_millisecond(table.left);
+  table.wheels[1].pass_millisecond(table.right);
   std::string sent;
   size_t next = 0;
   for (uint16_t k = 0; k < ticks || next < length; k++) {
@@ -210,6 +230,20 @@ void answer_codes(RequestReader*, Writer* answer) {
   table.codes.clear();
 }
 
+// G: puts discs on both wheels; they stand somewhere, in thousandths of the way between two edges.
+void answer_discs(RequestReader* request, Writer*) {
+  table.discs.cm = request->u32();
+  table.discs.degrees = request->u32();
+  for (Wheel& wheel : table.wheels) wheel.turned = request->u16() / 1000.0;
+}
+
+// O: how far both wheels have gone, in thousandths of the way between two edges.
+void answer_wheels(RequestReader*, Writer* answer) {
+  for (const Wheel& wheel : table.wheels) {
+    answer->u32(static_cast<uint32_t>(static_cast<int32_t>(lround(wheel.gone * 1000))));
+  }
+}
+
 // T: whether a trim is sound, and its levels for -128 to 127 percent, the left wheel's and that of
 // the right one.
 void answer_trim(RequestReader* request, Writer* answer) {
@@ -231,11 +265,18 @@ void board_motors(int16_t left, int16_t right) {
   if (!table.is_latched) turn(percent_of(left), percent_of(right));
 }
 
-void board_steer(int16_t left, int16_t right) { board_motors(left, right); }
+// What a measured move does meanwhile is not told.
+void board_steer(int16_t left, int16_t right) {
+  if (table.is_latched) return;
+  table.left = percent_of(left);
+  table.right = percent_of(right);
+}
 
-Discs board_discs() { return {0, 0, false}; }
+Discs board_discs() { return table.discs; }
 
-uint16_t board_edges(bool) { return 0; }
+uint16_t board_edges(bool is_right) {
+  return static_cast<uint16_t>(static_cast<uint64_t>(table.wheels[is_right].turned));
+}
 
 void robot_off() { turn(0, 0); }
 
@@ -349,6 +390,8 @@ const Answers answers = {
     {'V', answer_readings},
     {'C', answer_codes},
     {'T', answer_trim},
+    {'G', answer_discs},
+    {'O', answer_wheels},
 };
 
 }  // namespace tiniscript

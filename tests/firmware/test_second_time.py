@@ -1,0 +1,323 @@
+"""What a robot does the second time is what a fresh robot does, whatever it did the first time.
+
+A random program is stopped, ends, loses its computer or is written over at a random moment; then
+comes another, the same way or another, from the same computer or the next. All that can be seen
+of that one, motors, devices and what the computer hears, is what a robot does that was switched
+on for it.
+
+`python -m tests.firmware.test_second_time 2000` tries more.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections import Counter
+from collections.abc import Callable
+from typing import NamedTuple
+
+import pytest
+
+from tests.firmware.test_host_firmware import computer
+from tests.firmware.test_text import typed
+from tests.machines.esp32 import Esp32Robot
+from tests.machines.host_firmware import HostFirmware
+from tests.oracle.task_programs import task_program
+from tests.support.campaign import each_seed, wanted
+from tests.support.images import image_of
+from tiniscript import robots
+from tiniscript.base.source import Source
+from tiniscript.codegen.text.line import line_of
+from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.messages import BY_NAME
+from tiniscript.link.requests import OK
+
+KIT = robots.load("tinibot").kit
+ESP32 = robots.load("tinibot32")
+MARK = "BEEP(0.001, 31);"  # tells when a program begins
+MARKED = ("BEEP 31 1", "TONE 31")
+RUNS_MS = 600  # of the second program that are looked at
+STOP_MESSAGE = b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0))
+
+
+class SmallRobot(HostFirmware):
+    """As an Uno: it reads text where the program is that it holds."""
+
+    has_draft = False
+
+
+class Scene:
+    """A robot, and the computer that talks to it."""
+
+    def __init__(self, kind: str) -> None:
+        self.robot = KINDS[kind]()
+        self.robot.wait(300)
+        self.session = computer()
+        self.count = 1
+
+    def next_computer(self) -> None:
+        self.count += 1
+        self.session = computer(self.count)
+
+    def opened(self) -> None:
+        assert self.robot.until(self.session, self.session.hello()) == OK
+
+
+def sensing(robot: HostFirmware) -> HostFirmware:
+    robot.sense(9_000, 600_000, 5_000)
+    return robot
+
+
+KINDS: dict[str, Callable[[], HostFirmware]] = {
+    "a mega": lambda: sensing(HostFirmware(KIT)),
+    "an uno": lambda: sensing(SmallRobot(KIT)),
+    "an esp32": lambda: Esp32Robot(ESP32),
+}
+
+
+# How a program comes to run. -----------------------------------------------------------------
+
+
+def uploads(scene: Scene, text: str) -> list[str]:
+    scene.opened()
+    image = image_of(text, KIT)
+    assert scene.robot.until(scene.session, scene.session.upload(image, saves=False)) == OK
+    return []
+
+
+def saves(scene: Scene, text: str) -> list[str]:
+    scene.opened()
+    assert scene.robot.until(scene.session, scene.session.upload(image_of(text, KIT))) == OK
+    return []
+
+
+def pushes(scene: Scene, text: str) -> list[str]:
+    """The button starts what has been sent."""
+    scene.opened()
+    upload = scene.session.upload(image_of(text, KIT), runs=False, saves=False)
+    assert scene.robot.until(scene.session, upload) == OK
+    scene.robot.talk(scene.session, 100, flags=1)
+    scene.robot.talk(scene.session, 1, flags=2)
+    return []
+
+
+def types(scene: Scene, text: str) -> list[str]:
+    scene.robot.wait(4000)  # until the computer has gone
+    return typed(scene.robot, line_of(Source("SI|" + text)) + "\n", 1)
+
+
+STARTS: dict[str, Callable[[Scene, str], list[str]]] = {
+    each.__name__: each for each in (uploads, saves, pushes, types)
+}
+
+# What ends the first. ------------------------------------------------------------------------
+
+
+def loses(scene: Scene) -> None:
+    scene.robot.wait(2000)
+
+
+def stops(scene: Scene) -> None:
+    scene.session.stop(scene.robot.now_ms)
+    scene.robot.talk(scene.session, 100)
+
+
+def breaks_off(scene: Scene) -> None:
+    """The next upload is cut, mostly in its middle, by the next computer."""
+    scene.session.upload(image_of("SI|" + "F(0.1, 80); B(0.1, 60);" * 30, KIT))
+    scene.robot.talk(scene.session, 3)
+    scene.next_computer()
+
+
+ENDS: dict[str, Callable[[Scene], object]] = {
+    "nothing": lambda scene: None,  # the second writes over it
+    "zeros": lambda scene: scene.robot.step(bytes(8)),
+    "a message": lambda scene: scene.robot.wait(5, STOP_MESSAGE),
+    "a line": lambda scene: scene.robot.wait(5, b"\0S\n"),
+    "its computer": stops,
+    "the button": lambda scene: scene.robot.push(),
+    "the cable": lambda scene: scene.robot.step(flags=8),
+    "a stall": lambda scene: scene.robot.step(flags=4),
+    "silence": loses,
+    "an upload": breaks_off,
+    "a block": lambda scene: typed(scene.robot, "\nLOOP(2)\n"),
+    "a reset": lambda scene: scene.next_computer(),
+}
+
+
+class Story(NamedTuple):
+    first: str
+    begins: str
+    runs_ms: int
+    ends: str
+    waits_ms: int
+    is_next: bool  # computer
+    second: str
+    starts: str
+
+
+def story(seed: int, starts: str, kind: str) -> Story:
+    rng = random.Random(f"{seed} {starts} {kind}")
+    first, second = (drawn(rng) for _ in range(2))
+    return Story(first, rng.choice([*STARTS]), rng.choice((1, 30, 100, 300, 900)),
+                 rng.choice([*ENDS]), rng.choice((0, 1, 20, 300)), rng.random() < 0.5,
+                 second, starts)  # fmt: skip
+
+
+def drawn(rng: random.Random) -> str:
+    """Return a program that begins with the mark, and draws nothing by itself."""
+    text = re.sub(r"RANDOM\(\d, \d\)", str(rng.randint(0, 3)), task_program(rng)[0])
+    moves = rng.choice(("", "F(60, 80);", "X = 0;W(0.05);SHOW(1 / X);", "M(30, -30);"))
+    return MARK + text.replace("\n", ";") + ";" + moves
+
+
+def seen(scene: Scene, tale: Story) -> tuple[list[str], list[str]]:
+    """Return what the second program does, with times from its mark on, and what is heard."""
+    robot = scene.robot
+    scene.session.events()
+    robot.did.clear()
+    heard = STARTS[tale.starts](scene, tale.second)
+    heard += passed(scene, tale.starts, RUNS_MS + 300)
+    marks = [k for k, line in enumerate(robot.did) if line.split(" ", 1)[1] in MARKED]
+    if not marks:
+        return [], heard  # the line is too long for this robot, or another tone covers the mark
+    begin_ms = int(robot.did[marks[-1]].split()[0])
+    lines = (line.split(" ", 1) for line in robot.did[marks[-1] :])
+    did = [f"{int(ms) - begin_ms} {what}" for ms, what in lines if int(ms) <= begin_ms + RUNS_MS]
+    return did, heard
+
+
+def passed(scene: Scene, begins: str, milliseconds: int) -> list[str]:
+    """Let a program run that was begun so; return what its computer or person hears."""
+    if begins == "types":
+        return scene.robot.wait(milliseconds).decode("latin-1").splitlines()
+    scene.robot.talk(scene.session, milliseconds)
+    return [re.sub(r"run=\d+", "run", str(event)) for event in scene.session.events()]
+
+
+def after(tale: Story, scene: Scene) -> Scene:
+    """Return the robot when the first program is over."""
+    STARTS[tale.begins](scene, tale.first)
+    passed(scene, tale.begins, tale.runs_ms)
+    ENDS[tale.ends](scene)
+    if tale.waits_ms:
+        scene.robot.wait(tale.waits_ms)
+    if tale.is_next:
+        scene.next_computer()
+    return scene
+
+
+# What is still told of the first: its end, or that it was not saved, or a block that was open.
+OF_THE_FIRST = ("MissedEvent", "StartedEvent", "// Started again", "// The old program is lost.")
+GOES_ON = ("nothing", "a reset", "a block")  # until the second begins
+
+
+def check(seed: int, starts: str, kind: str) -> str:
+    tale = story(seed, starts, kind)
+    want, wanted_words = seen(Scene(kind), tale)
+    if not want:
+        return "too long"
+    did, heard = seen(after(tale, Scene(kind)), tale)
+    heard = [each for each in heard if not each.startswith(OF_THE_FIRST)]
+    if tale.ends in GOES_ON:
+        heard = heard[max(0, len(heard) - len(wanted_words)) :]
+    said = f"{kind} {tale}\n{did}\n{heard}\nnot\n{want}\n{wanted_words}"
+    assert did == want and heard == wanted_words, said
+    return tale.ends
+
+
+SOME = {"a mega": 20, "an uno": 10, "an esp32": 3}  # of each start on a commit
+PARTS = 20
+
+
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("starts", STARTS)
+def test_the_second_program_is_as_on_a_fresh_robot(starts: str, kind: str, part: int) -> None:
+    many = SOME[kind]
+    found = Counter(check(seed, starts, kind) for seed in range(part * many, (part + 1) * many))
+    assert found["too long"] <= many / 2, found
+
+
+# -- with discs -------------------------------------------------------------------------------
+
+EDGES = (32_673, 277_333)  # of a tinibot2
+NEAR_EDGES = 2.5
+NEAR_MS = 400
+
+
+def with_discs() -> Scene:
+    scene = Scene("a mega")
+    scene.robot.discs(*EDGES)
+    return scene
+
+
+def ways(rng: random.Random, most: int) -> str:
+    """Return moves by centimetres and degrees, which do the same wherever discs stand."""
+    moves = [f"{rng.choice('FB')}({rng.choice((5, 12, 30, 60))} CM, {rng.choice((40, 60, 100))})"
+             for _ in range(rng.randint(1, most))]  # fmt: skip
+    moves.insert(rng.randrange(len(moves) + 1), f"R({rng.choice((45, 90))} DEG, 60)")
+    return MARK + ";".join(moves)
+
+
+def driven(scene: Scene, starts: str, text: str) -> tuple[list[str], int, float, float]:
+    """Return what a program does, how long that takes, and how far the wheels go."""
+    robot = scene.robot
+    robot.did.clear()
+    left, right = robot.gone()
+    STARTS[starts](scene, text)
+    rows: list[list[str]] = []
+    while not rows or rows[-1][1] not in ("FINISHED", "FAULTED"):
+        passed(scene, starts, 100)
+        said = [line.split(" ", 1) for line in robot.did]
+        marks = [k for k, row in enumerate(said) if row[1] in MARKED]
+        rows = said[marks[-1] :] if marks else []
+        assert robot.now_ms < 120_000, text
+    passed(scene, starts, 700)  # until its wheels stand
+    took_ms = int(rows[-1][0]) - int(rows[0][0])
+    its_left, its_right = robot.gone()
+    return [what for _, what in rows], took_ms, its_left - left, its_right - right
+
+
+def stands(robot: HostFirmware) -> bool:
+    before = robot.gone()
+    robot.wait(50)
+    return all(abs(a - b) < 0.05 for a, b in zip(before, robot.gone(), strict=True))
+
+
+def check_ways(seed: int) -> str:
+    rng = random.Random(seed)
+    tale = story(seed, rng.choice([*STARTS]), "a mega")
+    first = rng.choice((tale.first, ways(rng, 4), task_program(rng, ways=True)[0], "F(60 CM, 60)"))
+    tale = tale._replace(
+        first=MARK + first,
+        second=ways(rng, 2),
+        runs_ms=rng.choice((1, 200, 700, 2500)),
+        waits_ms=rng.choice((800, 1500)),
+    )
+    scene = after(tale, with_discs())
+    stood = stands(scene.robot)
+    did, took_ms, *went = driven(scene, tale.starts, tale.second)
+    want, its_ms, *far = driven(with_discs(), tale.starts, tale.second)
+    said = f"{tale}\n{did} {took_ms} {went}\nnot\n{want} {its_ms} {far}"
+    assert did == want and abs(took_ms - its_ms) < NEAR_MS * len(want), said
+    assert not stood or all(abs(a - b) < NEAR_EDGES for a, b in zip(went, far, strict=True)), said
+    return "from where it stood" if stood else "from a move"
+
+
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(PARTS))
+def test_ways_behind_anything_are_as_on_a_fresh_robot(part: int) -> None:
+    found = Counter(check_ways(seed) for seed in range(part * 60, (part + 1) * 60))
+    assert found["from where it stood"] > 30 and found["from a move"] > 2, found
+
+
+def check_all(seed: int) -> str:
+    for starts in STARTS:
+        check(seed, starts, [*KINDS][seed % len(KINDS)])
+    return check_ways(seed)
+
+
+if __name__ == "__main__":
+    each_seed(check_all, wanted(2000, 10_000))

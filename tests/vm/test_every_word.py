@@ -1,0 +1,235 @@
+"""Every word of the language and of a kit, at every limit: for all it is a program, or for none.
+
+Each stands in the deepest block of each kind and one deeper, in tasks, in a DEF and behind an
+UNTIL, and its arguments at and beyond their edges. The oracle says what is right and what a robot
+does; the compiler, the machines, the formatter, the blocks, the robot's reader of text and the
+sketch have to agree. The words come from the table: what one of these lacks fails by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from tests.machines import Senses
+from tests.machines.host import run_host
+from tests.machines.python import run_python
+from tests.oracle import interpreter
+from tests.oracle.programs import WIDE_KIT
+from tests.sketch.agreement import with_wide_kit
+from tests.studio import test_blocks as blocks
+from tests.support.sampling import some_of
+from tests.text.test_line import check_line
+from tests.text.test_reader_agreement import check_bytes, check_program
+from tests.vm.test_agreement import same
+from tiniscript import compile_text
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.limits import BLOCKS, CALLS, STACK_VALUES
+from tiniscript.base.source import Source
+from tiniscript.base.words import (
+    ALIASES,
+    BLOCK_ENDS,
+    MOVES,
+    QUESTION,
+    UNIT_OF,
+    VALUE,
+    WORDS,
+    Argument,
+    Word,
+)
+from tiniscript.codegen.sketch.writing import sketch_of
+from tiniscript.semantics.ir import every
+from tiniscript.semantics.ways import is_open_way
+from tiniscript.syntax.formatter import formatted
+
+ROBOT = with_wide_kit()
+KIT = ROBOT.kit
+ORACLE_KIT = WIDE_KIT._replace(speed=KIT.speed, turn=KIT.turn)
+SENSES = Senses({"DISTANCE": [50_000, 9_000]}, 3_000, 3_000)
+UNTIL = "UNTIL(DISTANCE < 10)"
+LONG = "A" * 31
+
+
+def check(text: str) -> bool:
+    """All agree of a text; return whether it is a program."""
+    try:
+        want = interpreter.run(text, ORACLE_KIT, SENSES.readings, SENSES.max_ms, SENSES.max_steps)
+    except interpreter.Mistake:
+        want = None
+    compiled = compile_text(text, KIT)
+    assert compiled.is_right == (want is not None), (text, compiled.diagnostics)
+    if want is None:
+        check_bytes(text.encode(), KIT)
+        return False
+    for image in (compiled.image, compile_text(text, KIT, optimize=False).image):
+        for run in (run_python, run_host):
+            got = run(image, KIT, SENSES)
+            assert same(want, got), f"{text}\n{got}not\n{want}"
+    assert compile_text(formatted(Source(text)), KIT).image == compiled.image, text
+    blocks.check(text, KIT)
+    check_line(text, KIT)
+    check_program(text.encode(), KIT, SENSES)
+    program = compiled.program
+    assert program is not None
+    if not program.tasks and not any(map(is_open_way, every(program))):
+        assert sketch_of(compiled.source, program, ROBOT, "en")
+    return True
+
+
+# -- where a word may stand ------------------------------------------------------------------------
+
+
+def nested(head: str, end: str, times: int) -> str:
+    return f"{head};" * times + "{}" + f";{end}" * times
+
+
+def in_defs(calls: int) -> str:
+    """Return a word behind so many calls."""
+    defs = ["DEF D1;{};END_DEF", *(f"DEF D{k};D{k - 1};END_DEF" for k in range(2, calls + 1))]
+    return ";".join([*defs, f"D{calls}"])
+
+
+BLOCKS_OF = [
+    ("IF(TRUE)", "ENDIF"),
+    ("IF(FALSE);ELSEIF(TRUE)", "ENDIF"),
+    ("IF(FALSE);ELSE", "END_IF"),
+    ("WHILE(TRUE)", "BREAK;END_WHILE"),
+]
+
+
+def frames() -> Iterator[str]:
+    loops = [nested("LOOP(1)", "END_LOOP", times) for times in (*range(BLOCKS - 2, BLOCKS + 2),)]
+    yield from ("{}", "SI|{}", "SB|{}", "PING|{}", "X = 1;{};SHOW(X)")
+    for head, end in BLOCKS_OF:
+        yield from (nested(head, end, times) for times in (BLOCKS - 1, BLOCKS, BLOCKS + 1))
+    yield from loops
+    for task in ("TASK;{};END_TASK", "WHEN(DISTANCE < 10);{};END_WHEN"):
+        yield from (task.format(each) for each in ("{}", *loops[:-1]))
+        yield task.format("W(0.1)") + ";W(FOREVER) UNTIL(TIME > 0.05);{}"
+    for each in ("{}", *loops):
+        yield f"DEF A;{each};END_DEF;A"
+    yield from (f"DEF A;{{}};END_DEF;{each.format('A')}" for each in loops)
+    yield from map(in_defs, (CALLS, CALLS + 1))
+    yield from ("W(FOREVER) UNTIL(TRUE);{}", "F(2, 80) UNTIL(TIME > 0.1)\n{}")
+
+
+# -- what stands there ----------------------------------------------------------------------------
+
+
+def uses_of(word: Word) -> list[str]:
+    """Return instructions with a word. A KeyError: this test has to learn a role."""
+    text = word.text
+    if word.role.is_instruction:
+        return calls_of(word)
+    return {
+        "setup": lambda: [text, f"{text}|S", f"PING|{text}", f"{text}|CHECK_CONNECTION"],
+        "start": lambda: [text],
+        "until": lambda: [f"{each} {UNTIL}" for each in ("W(1)", "F(2, 80)", "S", "BEEP(1, 440)")],
+        "forever": lambda: [f"LOOP({text});{each};END_LOOP" for each in ("W(1)", "BREAK")],
+        "block": lambda: [f"{header(text)};{BLOCK_ENDS[text]}"],
+        "arm": lambda: [f"IF(FALSE);{word.example};SHOW(1);ENDIF"],
+        "end": lambda: [f"{begin_of(text)};{text}"],
+        "alias": lambda: [f"{begin_of(text)};{text}"],
+        "break": lambda: [text, f"LOOP(2);IF(TRUE);{text};ENDIF;END_LOOP"],
+        "value": lambda: [f"SHOW({text})", text],
+        "operator": lambda: [f"SHOW(TRUE {text} (FALSE))", f"SHOW({text} TRUE)"],
+        "function": lambda: [f"SHOW({word.example})", f"X = {word.example}"],
+        "unit": lambda: [f"{each}(20 {text}, 60)" for each in MOVES],
+        "later": lambda: [text, f"{text}(1)"],
+    }[word.role.name]()
+
+
+def calls_of(word: Word) -> list[str]:
+    uses = [word.example, word.text]
+    for what in [f"20 {UNIT_OF[word.text]}"] if word.role.is_move else []:
+        uses.append(f"{word.text}({what}, 80)")
+    if word.role.lasts:
+        forever = ", ".join(["FOREVER", *(each.sample for each in word.arguments[1:])])
+        uses.append(f"{word.text}({forever})")
+    return [*uses, *(f"{each} {UNTIL}" for each in uses)]
+
+
+def header(word: str) -> str:
+    return f"DEF {LONG}" if word == "DEF" else WORDS[word].example
+
+
+def begin_of(end: str) -> str:
+    """Return the header of the block that ends so, in one of its spellings."""
+    ends = {ALIASES.get(end, end)}
+    return header(next(begin for begin, its in BLOCK_ENDS.items() if its in ends))
+
+
+USES = [(name, use) for name, word in WORDS.items() for use in uses_of(word)]
+USES += [(each.name, use) for each in KIT.sensors for use in (each.name, f"SHOW({each.name})")]
+USES += [(each.name, use) for each in KIT.actuators for use in (each.word.example, each.name)]
+PARTS = 6  # of which a commit tries one in each frame, another in the next
+
+
+def test_every_word_in_every_frame(request: pytest.FixtureRequest) -> None:
+    first = some_of(request.config, "words in frames", range(PARTS))
+    programs = 0
+    for number, frame in enumerate(frames()):
+        for part in first:
+            for _, use in USES[(part + number) % PARTS :: PARTS]:
+                programs += check(frame.format(use))
+    assert programs > 400
+
+
+def test_every_word_is_a_program_somewhere() -> None:
+    found = {name for name, use in USES if check(use)}
+    later = {name for name, word in WORDS.items() if word.role.name == "later"}
+    assert {name for name, _ in USES} - found == later
+
+
+# -- arguments ------------------------------------------------------------------------------------
+
+
+def deep(value: str, values: int) -> str:
+    """Return a sum that keeps so many values on the stack."""
+    return f"+({value}".join([value, *[""] * (values - 1)]) + ")" * (values - 1)
+
+
+def edges(argument: Argument) -> Iterator[str]:
+    """Give what may stand at the place of an argument, and what may not."""
+    for values in range(STACK_VALUES - 2, STACK_VALUES + 2):
+        for value in ("V", "1"):
+            is_question = argument in (
+                QUESTION,
+                *WORDS["WHILE"].arguments,
+                *WORDS["WHEN"].arguments,
+            )
+            yield f"0 < {deep(value, values - 1)}" if is_question else deep(value, values)
+    for edge in (argument.low, argument.high):
+        yield from (as_text(value) for value in (edge - 1, edge, edge + 1))
+    yield from ("TRUE", "V", LONG, "DISTANCE", "TOUCH", "V / 0", "-V", "FOREVER", "", "V, V")
+
+
+def around(word: Word) -> str:
+    """Return a program around a call of a word."""
+    name, end = word.text, BLOCK_ENDS.get(word.text)
+    if word.role.name in ("until", "arm", "function"):
+        return {"until": "F(2, 80) {}", "arm": "IF(FALSE);{};SHOW(1);ENDIF",
+                "function": "SHOW({})"}[word.role.name]  # fmt: skip
+    return f"{{}};BREAK;{end}" if name in ("LOOP", "WHILE") else f"{{}};{end}" if end else "{}"
+
+
+CALLED = [each for each in (*WORDS.values(), *(it.word for it in KIT.actuators)) if each.arguments]
+
+
+@pytest.mark.parametrize("word", CALLED, ids=lambda word: word.text)
+def test_every_argument_at_its_edges(word: Word) -> None:
+    samples = [each.sample for each in word.arguments]
+    answers = set()
+    for place, argument in enumerate(word.arguments):
+        for edge in edges(argument):
+            values = ", ".join([*samples[:place], edge, *samples[place + 1 :]])
+            call = around(word).format(f"{word.text}({values})")
+            for text in (call, f"{call} {UNTIL}") if word.role.is_instruction else (call,):
+                answers.add(check(f"V = 1;{LONG} = 2;{text}"))
+    assert answers == {True, False}
+
+
+def test_a_value_of_a_variable_at_its_edges() -> None:
+    answers = [check(f"V = 1;{LONG} = 2;X = {edge}") for edge in edges(VALUE)]
+    assert {*answers} == {True, False}
