@@ -243,7 +243,7 @@ def test_the_second_program_is_as_on_a_fresh_robot(starts: str, kind: str, part:
 # -- with discs -------------------------------------------------------------------------------
 
 EDGES = (32_673, 277_333)  # of a tinibot2
-NEAR_EDGES = 2.5
+NEAR_EDGES, ROLLS_EDGES = 2.5, 9.0  # the latter from a move whose wheels still roll
 NEAR_MS = 400
 
 
@@ -259,6 +259,11 @@ def ways(rng: random.Random, most: int) -> str:
              for _ in range(rng.randint(1, most))]  # fmt: skip
     moves.insert(rng.randrange(len(moves) + 1), f"R({rng.choice((45, 90))} DEG, 60)")
     return MARK + ";".join(moves)
+
+
+def quiet(rng: random.Random) -> str:
+    """Return a program that measures nothing."""
+    return MARK + rng.choice(("W(2)", "S;W(1);SHOW(1)", "M(20, 20);W(0.3);M(0, 0)", "F(0.5, 50)"))
 
 
 def driven(scene: Scene, starts: str, text: str) -> tuple[list[str], int, float, float]:
@@ -292,25 +297,27 @@ def check_ways(seed: int) -> str:
     first = rng.choice((tale.first, ways(rng, 4), task_program(rng, ways=True)[0], "F(60 CM, 60)"))
     tale = tale._replace(
         first=MARK + first,
-        second=ways(rng, 2),
+        second=rng.choice((ways(rng, 2), quiet(rng))),
         runs_ms=rng.choice((1, 200, 700, 2500)),
-        waits_ms=rng.choice((800, 1500)),
+        waits_ms=rng.choice((0, 20, 300, 800, 1500)),
     )
     scene = after(tale, with_discs())
-    stood = stands(scene.robot)
+    is_over, stood = scene.robot.is_latched, stands(scene.robot)
     did, took_ms, *went = driven(scene, tale.starts, tale.second)
     want, its_ms, *far = driven(with_discs(), tale.starts, tale.second)
     said = f"{tale}\n{did} {took_ms} {went}\nnot\n{want} {its_ms} {far}"
     assert did == want and abs(took_ms - its_ms) < NEAR_MS * len(want), said
-    assert not stood or all(abs(a - b) < NEAR_EDGES for a, b in zip(went, far, strict=True)), said
-    return "from where it stood" if stood else "from a move"
+    if is_over:
+        near = NEAR_EDGES if stood else ROLLS_EDGES
+        assert all(abs(a - b) < near for a, b in zip(went, far, strict=True)), said
+    return "from a run" if not is_over else "from where it stood" if stood else "from a move"
 
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(PARTS))
 def test_ways_behind_anything_are_as_on_a_fresh_robot(part: int) -> None:
     found = Counter(check_ways(seed) for seed in range(part * 60, (part + 1) * 60))
-    assert found["from where it stood"] > 30 and found["from a move"] > 2, found
+    assert found["from where it stood"] > 20 and found["from a move"] > 2, found
 
 
 def check_all(seed: int) -> str:
