@@ -21,12 +21,14 @@ FILE_BYTES = 200_000
 
 def remember(path: str, kit: int) -> None:
     """Keep the path of a profile. If the cache cannot be written, the path is not kept."""
-    known = _known()
     entry = (kit, os.path.abspath(path))  # noqa: PTH100 - Path raises for some names
-    if known[:1] == [entry]:
+    if _known()[:1] == [entry]:
         return
-    kept = [entry, *(each for each in known if each != entry)][:KEPT]
-    files.keep(_path(), json.dumps(kept).encode())
+    with contextlib.suppress(OSError):
+        _path().parent.mkdir(mode=files.OWN, parents=True, exist_ok=True)
+        with files.alone(_path()):  # other commands do the same
+            kept = [entry, *(each for each in _known() if each != entry)][:KEPT]
+            files.keep(_path(), json.dumps(kept).encode())
 
 
 def recall(kit: int) -> Robot | None:

@@ -1,0 +1,273 @@
+"""What the computer keeps is whole whatever happens while it changes: a kill at any line, a disk
+that is full at any byte, two commands at once.
+
+A process of its own changes it, and is killed or held at a line of the code that writes. Whoever
+reads then finds what was kept before, with the change or without it; the next change finds it so,
+too.
+"""
+
+from __future__ import annotations
+
+import os
+import resource
+import signal
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from types import FrameType, ModuleType
+from typing import Any, NamedTuple
+
+import pytest
+
+from tests.support.sampling import some_of
+from tiniscript.base import files
+from tiniscript.bytecode import image as images
+from tiniscript.cli import outputs
+from tiniscript.cli.errors import CommandError
+from tiniscript.library import source_map
+from tiniscript.library.source_map import Map
+from tiniscript.link import keys, known_ports, met_robots
+from tiniscript.link.authority import RobotKey
+from tiniscript.link.keys import BadKeys, KeyFile
+from tiniscript.robots import given
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are made with fork")
+
+FIRST, SECOND, THIRD = 1, 2, 3
+LONG = "x" * 5000  # a disk that is full cuts it in its middle
+LINES = 8  # of each, at which a commit kills; a run of --whole at all
+
+
+class Kept(NamedTuple):
+    """`add` keeps a number, beside those before unless it `is_alone`; `all` finds them."""
+
+    add: Callable[[int], object]
+    all: Callable[[], list[int]]
+    module: ModuleType
+    is_alone: bool = False
+
+
+def key_file() -> KeyFile:
+    return KeyFile(files.settings_folder() / "keys.json")
+
+
+def add_key(number: int) -> None:
+    key_file().add([RobotKey(number, 0, bytes((number,)) * 16, LONG[:16])])
+
+
+def met_file() -> Path:
+    return files.settings_folder() / "robots.json"
+
+
+def program(number: int) -> bytes:
+    return images.pack("SI", 0, bytes((number,)))
+
+
+def found_maps() -> list[int]:
+    numbers = (FIRST, SECOND, THIRD)
+    return [each for each in numbers if source_map.recall(images.checksum(program(each)))]
+
+
+def output() -> Path:
+    files.settings_folder().mkdir(parents=True, exist_ok=True)
+    return files.settings_folder() / "out.hex"
+
+
+def found_output() -> list[int]:
+    with suppress(FileNotFoundError):
+        data = output().read_bytes()
+        assert data == data[:1] * len(LONG), "it is neither the old one nor the new"
+        return [data[0]]
+    return []
+
+
+KEPT = {
+    "ports": Kept(
+        lambda number: known_ports.remember(f"/dev/ttyUSB{number}", LONG),
+        lambda: [int(each[-1]) for each in known_ports.known().names],
+        known_ports,
+    ),
+    "keys": Kept(add_key, lambda: [key.id for key in key_file().all()], keys),
+    "robots that were met": Kept(
+        lambda number: met_robots.meet(met_file(), f"{number}{LONG}", number),
+        lambda: [*met_robots.met(met_file()).places.values()],
+        met_robots,
+    ),
+    "robots that may answer": Kept(
+        lambda number: met_robots.accept(met_file(), number),
+        lambda: met_robots.met(met_file()).accepted,
+        met_robots,
+    ),
+    "profiles": Kept(
+        lambda number: given.remember(f"/{LONG}{number}", number),
+        lambda: [number for number, _ in given._known()],
+        given,
+    ),
+    "maps": Kept(
+        lambda number: source_map.remember(program(number), Map(LONG, (), ())),
+        found_maps,
+        source_map,
+    ),
+    "a program": Kept(
+        lambda number: outputs.put(str(output()), bytes((number,)) * len(LONG)),
+        found_output,
+        outputs,
+        is_alone=True,
+    ),
+}
+each_kept = pytest.mark.parametrize("name", KEPT)
+
+
+@pytest.fixture(autouse=True)
+def _folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for variable in ("XDG_CACHE_HOME", "XDG_CONFIG_HOME"):
+        monkeypatch.setenv(variable, str(tmp_path / variable))
+
+
+def begun(does: Callable[[], object]) -> int:
+    """Return the number of a process of its own that does something and ends with 0."""
+    number = os.fork()
+    if number == 0:
+        code = 1
+        try:
+            does()
+            code = 0
+        finally:
+            os._exit(code)
+    return number
+
+
+def ended(number: int) -> int:
+    return os.waitstatus_to_exitcode(os.waitpid(number, 0)[1])
+
+
+def at_line(kept: Kept, line: int, then: Callable[[], object]) -> Callable[[], None]:
+    """Return what counts the lines of the code that writes, and does something at one."""
+    told = {kept.module.__file__, files.__file__}
+    left = [line]
+
+    def trace(frame: FrameType, event: str, _: Any) -> Any:
+        if frame.f_code.co_filename not in told:
+            return None
+        if event == "line":
+            left[0] -= 1
+            if left[0] == 0:
+                then()
+        return trace
+
+    return lambda: sys.settrace(trace)
+
+
+def lines_of(kept: Kept, number: int) -> int:
+    """Return how many lines that takes, which nobody has done before."""
+    read, write = os.pipe()
+    count = [0]
+
+    def does() -> None:
+        told = {kept.module.__file__, files.__file__}
+
+        def trace(frame: FrameType, event: str, _: Any) -> Any:
+            count[0] += event == "line"
+            return trace if frame.f_code.co_filename in told else None
+
+        sys.settrace(trace)
+        kept.add(number)
+        sys.settrace(None)
+        os.write(write, count[0].to_bytes(4, "little"))
+
+    assert ended(begun(does)) == 0
+    found = int.from_bytes(os.read(read, 4), "little")
+    os.close(read)
+    os.close(write)
+    return found
+
+
+def fresh(kept: Kept, tmp_path: Path) -> list[int]:
+    """Begin anew, with the first one kept; return what is kept."""
+    for folder in tmp_path.iterdir():
+        for each in sorted(folder.rglob("*"), reverse=True):
+            each.unlink() if each.is_file() else each.rmdir()
+    kept.add(FIRST)
+    assert kept.all() == [FIRST]
+    return [FIRST]
+
+
+@each_kept
+def test_a_kill_at_any_line_leaves_what_was_kept(
+    name: str, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    kept = KEPT[name]
+    fresh(kept, tmp_path)
+    lines = lines_of(kept, SECOND)
+    assert lines > 10
+    seen = set()
+    for line in some_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
+        before = fresh(kept, tmp_path)
+
+        def killed(line: int = line) -> None:
+            at_line(kept, line, lambda: os.kill(os.getpid(), signal.SIGKILL))()
+            kept.add(SECOND)
+
+        assert ended(begun(killed)) == -signal.SIGKILL, line
+        after = kept.all()
+        assert sorted(after) in (before, with_more(kept, before, SECOND)), line
+        seen.add(len(after))
+        kept.add(THIRD)
+        assert sorted(kept.all()) == with_more(kept, sorted(after), THIRD), line
+    assert seen
+
+
+def with_more(kept: Kept, before: list[int], number: int) -> list[int]:
+    return [number] if kept.is_alone else [*before, number]
+
+
+@each_kept
+def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_path: Path) -> None:
+    kept = KEPT[name]
+    for most in (0, 1, 10, 60):
+        before = fresh(kept, tmp_path)
+
+        def cut(most: int = most) -> None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+            with suppress(BadKeys, CommandError, OSError):
+                kept.add(SECOND)
+
+        assert ended(begun(cut)) == 0
+        assert kept.all() == before, most
+        assert not [*tmp_path.rglob(f"*{files.NEW}")], "nothing is left of what did not fit"
+        kept.add(SECOND)
+        assert sorted(kept.all()) == with_more(kept, before, SECOND), most
+
+
+@pytest.mark.parametrize("name", [name for name, kept in KEPT.items() if not kept.is_alone])
+def test_of_two_at_once_neither_loses_what_the_other_keeps(
+    name: str, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    """One is held at a line; the other one ends meanwhile, or waits for it."""
+    kept = KEPT[name]
+    fresh(kept, tmp_path)
+    lines = lines_of(kept, SECOND)
+    for line in some_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
+        before = fresh(kept, tmp_path)
+        there, holds = os.pipe(), os.pipe()
+        say = os.pipe()
+
+        def held(line: int = line, there: Any = there, holds: Any = holds) -> None:
+            at_line(kept, line, lambda: (os.write(there[1], b"1"), os.read(holds[0], 1)))()
+            kept.add(SECOND)
+
+        def other(say: Any = say) -> None:
+            vars(files)["sleep"] = lambda _: os.write(say[1], b"w")
+            kept.add(THIRD)
+            os.write(say[1], b"e")
+
+        first = begun(held)
+        assert os.read(there[0], 1)
+        second = begun(other)
+        assert os.read(say[0], 1) in (b"w", b"e")
+        os.write(holds[1], b"1")
+        assert (ended(first), ended(second)) == (0, 0), line
+        assert sorted(kept.all()) == [*before, SECOND, THIRD], line
+        for end in (*there, *holds, *say):
+            os.close(end)
