@@ -1,0 +1,184 @@
+"""Where a step of `test.sh`, `try.sh`, a release or the generator fails, the whole fails.
+
+Each step in its turn is one that fails; of the others nothing is there but their name.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from tests.project.test_setup import is_terminal, loaded
+from tests.support.casefile import ROOT
+from tools import CannotMake, environment
+from tools.generate import __main__ as generate
+from tools.release import __main__ as release
+from tools.release import facts
+from tools.release.parts import PARTS, Clone
+
+needs_sh = pytest.mark.skipif(not shutil.which("sh"), reason="no sh: Windows has no such scripts")
+
+# Writes down its steps; those in a file fail. To `-c` it answers that a test has failed.
+STEPS = """#!/bin/sh
+printf '%s\\n' "$*" >>"$HERE/steps"
+case "$1" in
+-c) echo tests/x.py::test_y ;;
+esac
+[ "$(grep -Fxc -- "$*" "$HERE/fails")" = 0 ] || exit 3
+"""
+# A first look at what the tests say again, or at what the next step makes.
+LOOKS = ("-m pytest --collect-only", "-m tools.builds.studio --check", "-m pip --version")
+
+
+def folder_of(tmp_path: Path, *scripts: str) -> Path:
+    """Return a folder with scripts of ours, and a Python in `.venv` that writes down its steps."""
+    clone = tmp_path / "clone"
+    (clone / "tools").mkdir(parents=True)
+    (clone / ".venv" / "bin").mkdir(parents=True)
+    for name in scripts:
+        shutil.copy(ROOT / "tools" / name, clone / "tools")
+    with (clone / "tools" / "venv.sh").open("a") as helps:
+        helps.write("test_packages() { :; }\n")
+    for name in ("environment.py", "try.py"):
+        (clone / "tools" / name).touch()
+    python = clone / ".venv" / "bin" / "python"
+    python.write_text(STEPS)
+    python.chmod(0o755)
+    return clone
+
+
+def ran(clone: Path, words: list[str], fails: str, ci: str) -> tuple[int, list[str]]:
+    """Run a script whose step `fails` does; return its exit code and all steps."""
+    (clone / "steps").write_text("")
+    (clone / "fails").write_text(f"{fails}\n")
+    variables = {**os.environ, "HERE": str(clone), "CI": ci, "LC_ALL": "C"}
+    done = subprocess.run(["sh", *words], cwd=clone, env=variables, capture_output=True)
+    return done.returncode, (clone / "steps").read_text().splitlines()
+
+
+@needs_sh
+@pytest.mark.parametrize(
+    ("words", "least"),
+    [(["tools/test.sh"], 10), (["tools/test.sh", "--quick"], 6), (["tools/try.sh"], 2)],
+    ids=["test.sh", "test.sh --quick", "try.sh"],
+)
+def test_a_script_fails_where_a_step_of_it_fails(
+    words: list[str], least: int, tmp_path: Path
+) -> None:
+    clone = folder_of(tmp_path, "venv.sh", "test.sh", "try.sh")
+    code, steps = ran(clone, words, "", "true")
+    assert code == 0 and len(steps) >= least, steps
+    for step in dict.fromkeys(steps):
+        if not step.startswith(LOOKS):
+            code, _ = ran(clone, words, step, "true")
+            assert code != 0, f"{step} fails, and nobody notices"
+
+
+@needs_sh
+def test_without_ci_a_page_that_cannot_be_made_is_no_failure(tmp_path: Path) -> None:
+    """Its tests are skipped, and say so."""
+    clone = folder_of(tmp_path, "venv.sh", "test.sh")
+    (clone / "steps").write_text("")
+    (clone / "fails").write_text("-m tools.builds.studio --check\n-m tools.builds.studio\n")
+    for ci, code in (("", 0), ("true", 1)):
+        variables = {**os.environ, "HERE": str(clone), "CI": ci}
+        done = subprocess.run(
+            ["sh", "tools/test.sh"], cwd=clone, env=variables, capture_output=True
+        )
+        assert bool(done.returncode) == bool(code), done.stderr
+
+
+@pytest.mark.parametrize("fails", ["upload", "studio"])
+def test_the_first_command_fails_as_what_it_starts(
+    fails: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def run(words: list[str], **options: object) -> subprocess.CompletedProcess[str]:
+        return subprocess.CompletedProcess(words, 5 * (fails in words), "0\n", "")
+
+    monkeypatch.setattr(subprocess, "run", run)
+    monkeypatch.setattr(environment, "make", lambda extras: Path(sys.executable))
+    monkeypatch.setattr("builtins.input", lambda question: "y")
+    is_terminal(monkeypatch, "stdin", "stdout")
+    assert loaded().main() == 5
+
+
+def test_the_generator_fails_where_any_file_is_stale(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(generate, "ROOT", tmp_path)
+    files = [tmp_path / f"{number}.md" for number in range(4)]
+    outputs = [(file, partial(str, number)) for number, file in enumerate(files)]
+    monkeypatch.setattr(generate, "OUTPUTS", outputs)
+    assert generate.main(["--check"]) == 1 and not any(map(Path.exists, files))
+    for file in files:
+        assert generate.main([]) == 0 and generate.main(["--check"]) == 0
+        file.write_text("old")
+        assert generate.main(["--check"]) == 1 and file.read_text() == "old"
+        file.unlink()
+        assert generate.main(["--check"]) == 1
+
+
+# -- a release ------------------------------------------------------------------------------------
+
+
+class Stage:
+    """A release of two parts, of whose steps the one that `fails` does."""
+
+    def __init__(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: str) -> None:
+        self.fails, self.steps = fails, list[str]()
+        self.folder = tmp_path / "made"
+        monkeypatch.setattr(release, "_clones", self.clones)
+        monkeypatch.setattr(facts, "complaints", lambda root: self.told("a fact"))
+        monkeypatch.setattr(release, "lacks", lambda parts: "".join(self.told("a tool")))
+        monkeypatch.setattr(Clone, "python", lambda clone, *words, **how: self.step("twine"))
+        for name in PARTS:
+            monkeypatch.setitem(PARTS, name, PARTS[name]._replace(make=partial(self.make, name)))
+
+    def step(self, name: str) -> str:
+        self.steps.append(name)
+        if name == self.fails:
+            raise CannotMake(f"{name} fails")
+        return ""
+
+    def told(self, name: str) -> list[str]:
+        self.steps.append(name)
+        return [name] * (name == self.fails)
+
+    def clones(self, scratch: Path, *_: object) -> list[Clone]:
+        self.step("git")
+        found = []
+        for number in (1, 2):
+            (scratch / str(number)).mkdir()
+            found.append(Clone(scratch, scratch / str(number), "1", "", 0, number, False))
+        return found
+
+    def make(self, name: str, clone: Clone) -> list[Path]:
+        self.step(f"{name} {clone.seed}")
+        file = clone.parts / f"{name}.whl"
+        differs = self.told(f"{name} is the same")
+        file.write_text(str(clone.seed) if differs else name)
+        return [file]
+
+    def code(self) -> int:
+        return release.main([str(self.folder)])
+
+
+def test_a_release_fails_where_a_step_of_it_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole = Stage(tmp_path / "whole", monkeypatch, "")
+    assert whole.code() == 0 and (whole.folder / release.SUMS).exists()
+    steps = dict.fromkeys(whole.steps)
+    assert len(steps) > 3 * len(PARTS)
+    for step in steps:
+        stage = Stage(tmp_path / step, monkeypatch, step)
+        assert stage.code() != 0, f"{step} fails, and nobody notices"
+        is_compared = step.endswith("is the same")
+        assert (stage.folder / release.SUMS).exists() == is_compared, step
+    capsys.readouterr()
