@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
+from tests.firmware.test_esp32_builds import complaints
+from tests.machines import board as boards
+from tests.machines.esp32 import flags_of
+from tests.machines.host import SOURCES, missing
 from tests.support.casefile import ROOT
+from tests.support.needs import need
 from tests.wiring.test_wiring import DEVICES, DISCS, MOTORS, robot_with, with_discs
 from tiniscript import compile_text
 from tiniscript.base.kit import Device
@@ -90,6 +96,41 @@ def test_discs_are_counted_by_the_firmware(name: str, chip: str) -> None:
         assert disc and ("kNoPin" in disc[1]) == (not has_two)
         if chip != "esp32dev":
             assert re.search(rf"#define tiniscript_disc_{side.lower()} INT\d_vect\n", header)
+
+
+# -- what is written is C++ ------------------------------------------------------------------------
+
+KNOWING = [path for path in sorted((SOURCES / "src" / "boards").glob("*.cpp"))
+           if '"kit.h"' in path.read_text(encoding="utf-8")]  # fmt: skip
+ALL = [
+    *(pytest.param(robot_with(motors, DEVICES), id=f"mega {motors}") for motors in MOTORS),
+    *(pytest.param(robot_with(motors, DEVICES[:3], "nano", False), id=f"nano {motors}")
+      for motors in MOTORS),
+    *(pytest.param(robot_with(motors, DEVICES[k % 2 :: 2], "esp32dev", False), id=f"esp32 {motors}")
+      for k, motors in enumerate(MOTORS)),
+    *(pytest.param(with_discs(chip, discs), id=f"{chip} {discs}")
+      for chip in ("mega", "esp32dev") for discs in DISCS),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("robot", ALL)
+def test_what_a_driver_writes_compiles(robot: Robot, tmp_path: Path) -> None:
+    """Nothing is made of it: in a second a compiler says what no text of a test shows."""
+    own = tmp_path / "own.h"
+    own.write_text(firmware.header([robot], "a test."), encoding="utf-8")
+    told = f'-Dtiniscript_own="{own}"'
+    if robot.board.chip.startswith("esp32"):
+        need(missing())
+        flags = (*flags_of(robot.board.chip, 2), told)
+        assert "".join(complaints(path, *flags) for path in KNOWING) == ""
+        return
+    need(boards.missing())
+    words = (*boards.flags_of(robot.board.chip, boards.FLAGS), *boards.CPP, "-Wall", "-Wextra",
+             "-Werror", "-fsyntax-only")  # fmt: skip
+    boards.run("avr-g++", *words, told, *KNOWING)
+    its = tmp_path / "sketch.cpp"
+    its.write_text(written(robot)[1], encoding="utf-8")
+    boards.run("avr-g++", *words, its)
 
 
 def test_motors_that_the_firmware_does_not_know_are_named() -> None:
