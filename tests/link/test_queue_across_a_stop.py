@@ -8,7 +8,7 @@ from an event, from a reply, or is what stops; the robot knows the epoch of each
 from __future__ import annotations
 
 import random
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -20,7 +20,7 @@ from tests.support.campaign import each_seed, wanted
 from tests.support.images import image_of
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, encoded
-from tiniscript.link.messages import BY_NAME
+from tiniscript.link.messages import BY_NAME, STATE_STOPPED
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -62,18 +62,24 @@ NOTHING = Losses(0, 0)
 
 
 class Wire:
-    """What goes between both: at times it loses what the one or the other says."""
+    """What goes between both: at times it loses what the one or the other says, and some carry
+    what the robot shall hear late: a frame is under way while somebody else stops it.
+    """
 
     def __init__(self, rng: random.Random) -> None:
         self.robot, self.session = switched_on(), computer()
         self.rng = rng
         self.loses = NOTHING
+        self.late_ms = rng.choice((0, 0, 4, 20))
+        self.under_way: deque[bytes] = deque()
 
     def turn(self, sent: bytes = b"") -> None:
         data = self.session.poll(self.robot.now_ms)
         if self.rng.random() < self.loses.to_robot:
             data = b""
-        sent += self.robot.step(data)
+        self.under_way.append(data)
+        is_late = len(self.under_way) <= self.late_ms
+        sent += self.robot.step(b"" if is_late else self.under_way.popleft())
         if self.rng.random() >= self.loses.to_session:
             self.session.receive(sent, self.robot.now_ms)
 
@@ -96,13 +102,14 @@ def check(seed: int) -> str:
     asked = [rng.choice(ACTING if rng.random() < 0.6 else OTHERS)(session)
              for _ in range(rng.randint(2, 5))]  # fmt: skip
     wire.loses = rng.choice((NOTHING, Losses(0.3, 0.3), Losses(0, 1)))
-    wire.turns(rng.choice((0, 0, 1, 2, 3, 5, 8, 13)))
+    wire.turns(rng.choice((0, 0, 1, 2, 3, 5, 8, 13, 30)))
     if how == "the button" and not is_driving(robot):  # it would start what is held
         how = "zeros"
     open_ones = [each for each in asked if each.outcome is None]
     if how == OWN:
         session.stop(robot.now_ms)
-        wire.turns(3)
+        assert all(each.outcome is not None for each in asked), f"seed {seed}"
+        wire.turns(wire.late_ms + 3)  # until it is there
         sent = b""
     else:
         sent = STOPS[how](robot, session)
@@ -112,10 +119,13 @@ def check(seed: int) -> str:
     wire.turn(b"" if rng.random() < 0.5 else sent)  # the event, or nobody has heard it
     wire.turns(rng.choice((1, 5, 200)))
     wire.loses = NOTHING
+    wire.turns(wire.late_ms)
+    robot.step(b"".join(wire.under_way))
     robot.talk(session, 6000)
     said = f"seed {seed}, {how}: {robot.did}, {[each.outcome for each in asked]}"
     assert robot.codes() == [], said
     assert all(each.outcome is not None for each in asked), said
+    assert robot.done(session, session.status()).state == STATE_STOPPED, said
     new = session.live(image_of("SI|F(0.2, 100)").code)
     status = robot.until(session, new)
     if status != OK:
