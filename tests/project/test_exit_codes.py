@@ -30,7 +30,7 @@ printf '%s\\n' "$*" >>"$HERE/steps"
 case "$1" in
 -c) echo tests/x.py::test_y ;;
 esac
-[ "$(grep -Fxc -- "$*" "$HERE/fails")" = 0 ] || exit 3
+[ "$(grep -Fxc -- "$*" "$HERE/fails")" = 0 ] || exit "${CODE:-3}"
 """
 # A first look at what the tests say again, or at what the next step makes.
 LOOKS = ("-m pytest --collect-only", "-m tools.builds.studio --check", "-m pip --version")
@@ -92,6 +92,21 @@ def test_without_ci_a_page_that_cannot_be_made_is_no_failure(tmp_path: Path) -> 
             ["sh", "tools/test.sh"], cwd=clone, env=variables, capture_output=True
         )
         assert bool(done.returncode) == bool(code), done.stderr
+
+
+@needs_sh
+@pytest.mark.parametrize("fails_alone", [False, True])
+def test_a_test_that_fails_beside_others_is_tried_alone(
+    fails_alone: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clone = folder_of(tmp_path, "venv.sh", "test.sh")
+    _, steps = ran(clone, ["tools/test.sh"], "", "true")
+    beside = next(step for step in steps if step.startswith("-m pytest -n 4"))
+    alone = "-m pytest --last-failed --last-failed-no-failures none"
+    monkeypatch.setenv("CODE", "1")  # of pytest where tests fail
+    fails = f"{beside}\n{alone}" if fails_alone else beside
+    code, steps = ran(clone, ["tools/test.sh"], fails, "true")
+    assert alone in steps and bool(code) == fails_alone
 
 
 @pytest.mark.parametrize("fails", ["upload", "studio"])

@@ -1,0 +1,68 @@
+"""Whatever real apps and modules send before and behind a right line: it runs, or an answer says
+why not. Nothing passes in silence.
+
+`python -m tests.text.test_bytes_around 20000` tries more.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections import Counter
+
+import pytest
+
+from tests.firmware.test_host_firmware import KIT
+from tests.machines.host_firmware import HostFirmware
+from tests.support.campaign import each_seed, wanted
+
+LINE = "SI|BEEP(0.1,97);W(9)"
+ENDS = (b"\n", b"\r\n", b"\r")
+BEEPS = "BEEP 97 100"
+# Between two zeros is a frame where not every byte is one of a line; a damaged one is not answered.
+DAMAGED_FRAME = re.compile(rb"\0[^\0]*[^ -~\0][^\0]*\0")
+# What apps, terminals and modules send by themselves, and what is left of other lines.
+PIECES = (
+    b"\n", b"\r", b"\r\n", b"\n\n", b" ", b"\t", b";", b"\xef\xbb\xbf", b"\0", b"\0\0", b"\0\0\0",
+    b"AT\r\n", b"AT", b"AT+NAMEx\r\n", b"OK+CONN", b"OK+LOST", b"+CONNECTED\r\n", b"OK\r\n",
+    b"S\n", b"S", b"F", b"x", b"1", b"SI|", b"si|", b"SB|", b"F(1,", b"80)\n", b"END_LOOP\n",
+    b"// note\n", b"~1234ABCD\n", b"\x1b[A", b"\x08", b"\x7f", b"\xff", b"\xc3", b"LOOP(2)\n",
+)  # fmt: skip
+
+
+class SmallRobot(HostFirmware):
+    """As an Uno: it reads text where the program is that it holds."""
+
+    has_draft = False
+
+
+def check(seed: int) -> str:
+    rng = random.Random(seed)
+    robot = rng.choice((HostFirmware, SmallRobot))(KIT)
+    robot.wait(rng.choice((200, 4000)))
+    before, behind = (b"".join(rng.choices(PIECES, k=rng.choice((0, 1, 1, 2, 4)))) for _ in "12")
+    line, end = LINE.encode(), rng.choice(ENDS)
+    is_spread = rng.random() < 0.7
+    sent = b""
+    for data in (before, line + end, behind):
+        if data:
+            sent += robot.latched_while(len(data), data, is_spread)[0]
+        sent += robot.wait(rng.choice((0, 0, 300, 1200)))
+    sent += robot.wait(5000)
+    if any(did.endswith(BEEPS) for did in robot.did):
+        return "it runs"
+    if b"// " not in sent and DAMAGED_FRAME.search(before + line + end + behind):
+        return "no line"
+    assert b"// " in sent, f"seed {seed}: {before!r} {end!r} {behind!r} {sent!r}"
+    return "an answer"
+
+
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(40))
+def test_a_right_line_runs_or_an_answer_says_why_not(part: int) -> None:
+    found = Counter(check(seed) for seed in range(part * 100, (part + 1) * 100))
+    assert found["it runs"] > 10 and found["an answer"] > 10 and found["no line"] < 4, found
+
+
+if __name__ == "__main__":
+    each_seed(check, wanted(2000, 10_000))
