@@ -21,12 +21,15 @@ ENDS = (b"\n", b"\r\n", b"\r")
 BEEPS = "BEEP 97 100"
 # Between two zeros is a frame where not every byte is one of a line; a damaged one is not answered.
 DAMAGED_FRAME = re.compile(rb"\0[^\0]*[^ -~\0][^\0]*\0")
+# Not answered yet: a wrong line behind a SETUP word whose line is what a module says.
+SPOKEN = re.compile(rb"(?i)S[IB]\|[^\r\n]*(AT|OK|\+)")
 # What apps, terminals and modules send by themselves, and what is left of other lines.
 PIECES = (
     b"\n", b"\r", b"\r\n", b"\n\n", b" ", b"\t", b";", b"\xef\xbb\xbf", b"\0", b"\0\0", b"\0\0\0",
     b"AT\r\n", b"AT", b"AT+NAMEx\r\n", b"OK+CONN", b"OK+LOST", b"+CONNECTED\r\n", b"OK\r\n",
     b"S\n", b"S", b"F", b"x", b"1", b"SI|", b"si|", b"SB|", b"F(1,", b"80)\n", b"END_LOOP\n",
     b"// note\n", b"~1234ABCD\n", b"\x1b[A", b"\x08", b"\x7f", b"\xff", b"\xc3", b"LOOP(2)\n",
+    b"x" * 300, b"F(0.1,80);" * 60,
 )  # fmt: skip
 
 
@@ -36,11 +39,18 @@ class SmallRobot(HostFirmware):
     has_draft = False
 
 
+def drawn(rng: random.Random) -> list[bytes]:
+    """Return what comes before and behind."""
+    return [b"".join(rng.choices(PIECES, k=rng.choice((0, 1, 1, 2, 4)))) for _ in "12"]
+
+
 def check(seed: int) -> str:
     rng = random.Random(seed)
     robot = rng.choice((HostFirmware, SmallRobot))(KIT)
     robot.wait(rng.choice((200, 4000)))
-    before, behind = (b"".join(rng.choices(PIECES, k=rng.choice((0, 1, 1, 2, 4)))) for _ in "12")
+    while SPOKEN.search((parts := drawn(rng))[0]):
+        pass
+    before, behind = parts
     line, end = LINE.encode(), rng.choice(ENDS)
     is_spread = rng.random() < 0.7
     sent = b""
