@@ -49,6 +49,7 @@ class _Block:
         self.word = item.word if is_header else ""  # nothing for braces that belong to no header
         self.end = BLOCK_ENDS.get(self.word, "")
         self.line = k
+        self.start = item.start
         self.indent = line.indent
         self.body: int | None = None  # its lines' indentation, 0 where that is not deeper
         self.has_brace = not self.word
@@ -271,16 +272,17 @@ class Matching:
                 break
             self.open.pop()
             self.is_sure = self.is_sure and block.is_begun
-            items = self.line.reading.items or []
-            if block.word in ("IF", "WHILE") and not any(each.kind == "arm" for each in items):
-                self.is_sure = self.is_sure and not self.is_parted(items)
+            if block.word in ("IF", "WHILE", "LOOP"):
+                self.is_sure = self.is_sure and not self.is_parted(block)
             elif block.word == "DEF" and after.kind == "do":
                 self.is_sure = self.is_sure and after.word == block.name
             self.tails.setdefault(self.k, []).append(block.end)
 
-    def is_parted(self, items: Sequence[Item]) -> bool:
+    def is_parted(self, block: _Block) -> bool:
         """Whether a block may end before its line: at a `;` of the text, or at another block."""
-        told = [each for each in items if each.kind == "do"]
+        items = [each for each in self.line.reading.items or () if each.start >= block.start]
+        arm = max((k for k, each in enumerate(items) if each.kind == "arm"), default=0)
+        told = [each for each in items[arm:] if each.kind == "do"]
         between = self.line.reading.tokens[told[0].end : told[-1].start] if told else []
         headers = sum(each.kind == "open" and each.word == "IF" for each in items)
         return headers > 1 or any(each.text == ";" and each.source is not None for each in between)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.spelling import Speller, nearest
-from tiniscript.base.words import BLOCK_ENDS, WAYS, WORDS, lexicon
+from tiniscript.base.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, lexicon
 from tiniscript.base.words import concept_of as concept_of
 from tiniscript.base.words import said_of as said_of
 from tiniscript.syntax.blocks import ENDS
@@ -43,12 +43,12 @@ _CLASSES = {
 }  # fmt: skip
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
 _MOST_POWER = 100
-_EIGHTH = 45  # degrees: eighths of a turn, and what is no power, are rather an angle
+_EIGHTH, _LAP = 45, 360  # degrees: eighths of a turn, and what is no power, are rather an angle
 # Classes of numbers by what they may be.
 _MAY_BE: dict[str, Callable[[float], bool]] = {
     "@whole": float.is_integer, "@time": lambda it: it < LONG_S,
     "@power": lambda it: LONG_S <= it <= _MOST_POWER,
-    "@angle": lambda it: it > _MOST_POWER or (it >= _EIGHTH and it % _EIGHTH == 0),
+    "@angle": lambda it: _MOST_POWER < it <= _LAP or (it >= _EIGHTH and it % _EIGHTH == 0),
 }  # fmt: skip
 _YEAR = ("ANO", "ANOS")  # nobody writes AÑO so
 REMEMBERED = 500  # lines: each is asked for often while one program is read
@@ -191,13 +191,15 @@ class _OfLine(NamedTuple):
     rows: set[tuple[str, ...]]
     parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets behind its own
     begun: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
+    called: set[str]  # words that are an instruction alone
     counted: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
     left: int  # headers that lack an end
 
 
 @lru_cache(REMEMBERED)
 def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
-    found = _OfLine(set(), set(), set(), set(), {}, *_begun_in(line))
+    begun, counted, left = _begun_in(line)
+    found = _OfLine(set(), set(), set(), set(), {}, begun, _alone_in(line), counted, left)
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
     for at, (token, after) in enumerate(pairwise([*line, made(";")]), 2):
@@ -226,6 +228,13 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
         found.rows.add(row)
         names.add(joined(row))
     return found
+
+
+def _alone_in(line: tuple[Lexeme, ...]) -> set[str]:
+    """Return words that stand alone between separators."""
+    around = (";", *texts(line), ";")
+    triples = zip(around, around[1:], around[2:], strict=False)
+    return {word for before, word, after in triples if before in ";|" and after == ";"}
 
 
 def _name_in_words(tokens: Sequence[Lexeme], after: str) -> tuple[str, ...]:
@@ -263,10 +272,17 @@ class Names:
             self.begun |= {word: "LOOP" for each in told for word in each.counted}
         self.variables = {name for each in told for name in each.variables}
         self.defs = {name for each in told for name in each.defs} - {row[0] for row in self.rows}
+        self.called = frozenset(self.defs & {word for each in told for word in each.called})
         values, instructions = self.sensors | self.variables, self.sensors | self.defs
         self.known = Known(values, instructions, frozenset(self.actuators))
         words = (frozenset(each) for each in (self.defs, self.in_brackets, self.rows))
-        self._content = (self.known, *words, frozenset(self.begun.items()), kit.actuators)
+        self._content = (
+            self.known,
+            *words,
+            self.called,
+            frozenset(self.begun.items()),
+            kit.actuators,
+        )
         self._labels: dict[tuple[str, str, bool], str] = {}
 
     def __eq__(self, other: object) -> bool:
@@ -335,6 +351,7 @@ class Names:
         found += ["@unit"] if "unit" in said and text not in WORDS else []
         meant = [each.concept for each in self.meanings(text) if each.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""
+        found += [ALIASES[word]] if word in ALIASES else []
         is_name = self.is_name(text)
         found += meant
         found += [each for each in ANY if not said_of(text, "do") or each not in _NO_DO]
@@ -388,8 +405,10 @@ def joined(row: Iterable[str]) -> str:
 
 # Classes of pieces: any token but these.
 _BUT: dict[str, tuple[str, ...]] = {
-    "@all": ("{", "}"), "@any": (";", "{", "}"), "@cond": (";", ":", "{", "}", "?"),
-    "@nobrace": ("{", "}", "(", ")", "<", ">"), "@noparen": (";", "{", "}", "(", ")"),
+    "@all": ("{", "}"), "@flat": ("{", "}", "(", ")"), "@any": (";", "{", "}"),
+    "@cond": (";", ":", "{", "}", "?"), "@nobrace": ("{", "}", "(", ")", "<", ">"),
+    "@noparen": (";", "{", "}", "(", ")"),
 }  # fmt: skip
 ANY = tuple(_BUT)
+SEPARATOR = "|".join(("s;", *(name for name, without in _BUT.items() if ";" not in without)))
 _NO_DO = ("@cond", "@noparen")

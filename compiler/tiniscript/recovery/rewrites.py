@@ -20,6 +20,7 @@ from tiniscript.recovery.concepts import (
     ANY,
     ENDED,
     NEAR,
+    SEPARATOR,
     Lexeme,
     Names,
     closed,
@@ -33,6 +34,15 @@ from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
 _ATOM = re.compile(r"'[^']*'|@\w+|[a-z]{2,}|[A-Z_0-9]+|\$|[^\w|'@\s$]+")
 _CAPTURE = re.compile(r"([a-z])=(?=.)")
 _PART = re.compile(r"<(\w+)>")
+# Where an instruction begins and ends, by the labels around it; and a line.
+_EDGES = {
+    "^": rf"(?:\A|(?<=\x01\|{re.escape(SEPARATOR)}\|\x02)|(?<=\x01\|s[{{}}]\|\x02))",
+    "$": r"(?:\Z|(?=\x01\|s[;}]\|))",
+    "^^": r"\A",
+    "$$": r"\Z",
+}
+_EDGE = re.compile(r"\\.|\[\^?\]?(?:\\.|[^]\\])*\]|[$^]")  # or what has none: `\$`, `[^;]`
+_DEEPEST = 3  # brackets in a body: `F(RANDOM(1, (X + 1)), 60)`
 _OF_NUMBERS = re.compile(r"@(?:dec|cat|cm|mmss|xn|same)\b|(?<![\w@])\d")
 _BEFORE_VALUE = COMPARISONS | frozenset("(,+-*/%")
 _HEADER_OF = {"FOREVER": "LOOP", "ELSEIF": "IF"}
@@ -101,9 +111,21 @@ def tried(line: Encoded, is_first: bool) -> Iterator[Row]:
 @cache
 def of_signs() -> tuple[SignRow, ...]:
     return tuple(
-        SignRow(re.compile(pattern, re.I), becomes[1:-1], CODES[code], how == "offered", _texts(it))
+        SignRow(
+            re.compile(_of_instruction(pattern), re.I),
+            becomes[1:-1],
+            CODES[code],
+            how == "offered",
+            _texts(it),
+        )
         for pattern, becomes, code, how, it in cells(rows.SIGNS)
     )
+
+
+def _of_instruction(pattern: str) -> str:
+    """Return a pattern of characters whose `^` and `$` are where an instruction begins and ends."""
+    edges = {"^": r"(?:\A|(?<=[;{}])|(?<=S[IB]\|))", "$": r"(?=\s*(?:[;}]|\Z))"}
+    return _EDGE.sub(lambda match: edges.get(match[0], match[0]), pattern)
 
 
 def _texts(example: str) -> tuple[str, str]:
@@ -138,8 +160,8 @@ def _whole(pattern: str, pieces: Mapping[str, str]) -> str:
 
 def _atom(atom: str) -> tuple[str, frozenset[str]]:
     """Return the pattern of one token, and labels of which there is one, none where it may miss."""
-    if atom == "^":
-        return r"\A", frozenset()
+    if atom in _EDGES:
+        return _EDGES[atom], frozenset()
     capture = _CAPTURE.match(atom) if len(atom) > 2 else None
     name, atom = (capture[1], atom[2:]) if capture else ("", atom)
     often = ""
@@ -151,11 +173,22 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
         for each in found
         if each != "$"
     ]
-    one = rf"\x01[^\x02]*\|(?:{'|'.join(map(re.escape, labels))})\|[^\x02]*\x02"
-    choices = [*([one] if labels else []), *([r"\Z"] if "$" in found else [])]
+    if labels == ["@all"] and often:  # the brackets in a body are closed in it
+        body = _token(["@flat"])
+        for _ in range(_DEEPEST):
+            body = rf"(?:{_token(['@flat'])}|{_token(['s('])}{body}*{_token(['s)'])})"
+        body = f"(?:{body}{often}?)"
+        return f"(?P<{name}>{body})" if name else body, frozenset()
+    one = _token(labels)
+    choices = [*([one] if labels else []), *([_EDGES["$"]] if "$" in found else [])]
     body = f"(?:{'|'.join(choices)}){often}{'?' if often and often in '+*' else ''}"
     is_needed = often in ("", "+") and "$" not in found
     return f"(?P<{name}>{body})" if name else body, frozenset(labels if is_needed else ())
+
+
+def _token(labels: Sequence[str]) -> str:
+    """Return the pattern of a token that has one of these labels."""
+    return rf"\x01[^\x02]*\|(?:{'|'.join(map(re.escape, labels))})\|[^\x02]*\x02"
 
 
 Places = Mapping[str, Sequence[int]]
@@ -333,6 +366,11 @@ def _known_name(place: _Place) -> _Made:
     return [made(name)._replace(space=words[0].space)] if is_known else None
 
 
+def _label(place: _Place) -> _Made:
+    """A name behind the end of its DEF says which one ends, where something else calls it."""
+    return [] if place.captured[0][0].text in place.line.names.called else None
+
+
 def _parameter(k: int, place: _Place) -> _Made:
     """A name in the brackets of the DEF that is called."""
     names = place.line.names.parameters.get(place.captured[0][0].text, ())
@@ -361,7 +399,8 @@ def _by(place: _Place) -> _Made:
 
 _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "not": lambda it: negated(it.captured[0]), "endof": _end_of, "dec": _decimal, "xn": _times,
-    "cat": _zero_behind, "mmss": _minutes, "same": _same, "known": _known_name, "by": _by,
+    "cat": _zero_behind, "mmss": _minutes, "same": _same, "known": _known_name, "label": _label,
+    "by": _by,
     "ms": partial(_in, 1), "cm": partial(_in, 100_000),
     "most": partial(_limit, True), "least": partial(_limit, False),
     "given": partial(_parameter, 0), "also": partial(_parameter, 1),

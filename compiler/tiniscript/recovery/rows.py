@@ -1,4 +1,4 @@
-"""The rows: each slip that the recovery reads, with an example that is a test.
+r"""The rows: each slip that the recovery reads, with an example that is a test.
 
 `TOKENS` is what concept tokens become. Its columns:
 
@@ -7,26 +7,29 @@
 A pattern is tokens with spaces between: a word of the language or one that means it (`LOOP`), a
 part of a sentence of the lexicon (`then`), a sign, or a class. `A|B` are alternatives, `'|'` is a
 sign that would be one of the signs here, `?`, `*` and `+` stand behind what may be missing or come
-more often. `^` is where a line begins, or goes on behind `SI|`, `$` where it ends, and no `;` is
-either. `c=` captures, and `<part>` is a piece of PARTS. The cheapest reading is told; 1 is usual.
+more often. `^` is where an instruction begins: a line, or what follows `SI|`, a `;` or a brace; `$`
+is where one ends. A row of a whole line says `^^` and `$$`. `c=` captures, and `<part>` is a piece
+of PARTS. The cheapest reading is told; 1 is usual.
 Classes: @num @word @val (a value with a name) @name @newname @usedname @def @callw (takes values)
 @device (an actuator) @start (begins an instruction) @close (ends one) @unit; a number that is
 @whole, or may be a @time, a @power or an @angle; any token but separators and braces: @any, nor `:`
-and `?`: @cond, nor brackets: @noparen; but braces: @all; but braces, brackets and `<`: @nobrace.
+and `?`: @cond, nor brackets: @noparen; but braces: @all, which closes the brackets that it opens;
+but braces, brackets and `<`: @nobrace.
 
 `becomes` is tokens: `$c` what was captured, `&c` that in words of the language or in digits, and
 functions: @not (the opposite question), @same (a number that is another one, too), @most and @least
 (the range of an actuator), @endof (the end of a header), @dec (a decimal comma), @cat (a zero
 apart), @mmss, @cm (of metres), @xn (`x4`), @given and @also (the names in the brackets of a DEF),
-@known (a name of two words). `how`: `first` is made before any other is tried, `applied` may be
-made without asking, `offered` is only shown, as is `first offered`. An example's lines are parted
-by ⏎.
+@known (a name of two words), @label (nothing, of a DEF that is called elsewhere). `how`: `first` is
+made before any other is tried, `applied` may be made without asking, `offered` is only shown, as is
+`first offered`. An example's lines are parted by ⏎.
 
 `⟨less¦more⟩` and, in the same row, `⟨<¦>⟩` make a row of each: one with `less` and `<`, and one
 with `more` and `>`. Each has its own example.
 
 `SIGNS` is what characters become before there are tokens: `re` patterns and what stands for them,
-in the same columns but for the cost. Rows are sorted by what they are about.
+in the same columns but for the cost. `^` and `$` are those of an instruction there, too, `\A` and
+`\Z` those of a line. Rows are sorted by what they are about.
 """
 
 from tiniscript.diagnostics import codes
@@ -79,7 +82,7 @@ SIGNS = r"""
 (?<=\))\s*[✓✔]\s*(?=\w)  |  `; `  |  TS005  |  applied  |  F(2, 80) ✓ R(1, 50) => F(2, 80); R(1, 50)
 \b([A-Za-z_]\w*)\s*=\+\s+(?=\d)  |  `\1 = \1 + `  |  TS050  |  applied  |  V = 5⏎V =+ 10⏎F(2, V) => V = 5⏎V = V + 10⏎F(2, V)
 (?<![^;])\s*([*/+=-]+)([A-Za-z](?:[^;]*[\w)])?)\1\s*(?![^;])  |  `\2`  |  TS054  |  applied  |  **F(2, 80)** => F(2, 80)
-^\s*["'«`](S?[IB]?\|?[^"'«»`]*\([^"'«»`]*)["'»`]\s*$  |  `\1`  |  TS006  |  applied  |  ⟨"SI|F(2,80);R(1,50)"¦“F(2,80);R(1,50)”⟩ => ⟨SI|¦⟩F(2,80);R(1,50)
+^^\s*["'«`](S?[IB]?\|?[^"'«»`]*\([^"'«»`]*)["'»`]\s*$$  |  `\1`  |  TS006  |  applied  |  ⟨"SI|F(2,80);R(1,50)"¦“F(2,80);R(1,50)”⟩ => ⟨SI|¦⟩F(2,80);R(1,50)
 \b(⟨[FBLR]¦BEEP¦M⟩)\((⟨\d¦\d¦-?[1-9]0|100⟩)\.(⟨[1-9]0|100¦\d{3,4}¦-?[1-9]0|100⟩)\)  |  `\1(\2, \3)`  |  TS020  |  offered  |  ⟨F(2.80)¦BEEP(1.440)¦M(-50.50)⟩ => ⟨F(2, 80)¦BEEP(1, 440)¦M(-50, 50)⟩
 (?<=[(,\s])😎\s*$  |  `8)`  |  TS010  |  offered  |  W(😎 => W(8)
 (?<=\d)=(?=\s*\))|(?<=\()=(?=\.\d)  |  `0`  |  TS076  |  offered  |  F(2, 8=) => F(2, 80)
@@ -96,15 +99,15 @@ SIGNS = r"""
 ^\s*'\s*(?=[^\W\d])(?!.*')  |  `// `  |  TS007  |  offered  |  'adelante⏎F(2, 80) => // adelante⏎F(2, 80)
 \b([FBLRM])\[(\d+)\]\[(\d+)\]  |  `\1(\2, \3)`  |  TS010  |  applied  |  F[2][80] => F(2, 80)
 \s(?:semicolon|punto y coma)(?:\s|$)  |  `; `  |  TS010  |  offered  |  S semicolon F(2, 80) => S; F(2, 80)
-^⟨ese i¦SI¦SB⟩ barr?a? (?=\w)  |  `⟨SI¦SI¦SB⟩|`  |  TS010  |  offered  |  ⟨ese i barra¦SI bar¦SB bar⟩ F(2, 80) => ⟨SI¦SI¦SB⟩|F(2, 80)
+\A⟨ese i¦SI¦SB⟩ barr?a? (?=\w)  |  `⟨SI¦SI¦SB⟩|`  |  TS010  |  offered  |  ⟨ese i barra¦SI bar¦SB bar⟩ F(2, 80) => ⟨SI¦SI¦SB⟩|F(2, 80)
 \b([a-z]+) (?:open |abre |abrir )?(?:bracket|parenthesis|par[eé]ntesis) ([\w.]+) comm?a (\w+)(?: (?:close|cierrar?) (?:bracket|parenthesis|par[eé]ntesis))?  |  `\1(\2, \3)`  |  TS015  |  offered  |  efe paréntesis dos coma ochenta => F(2, 80)
-^(S[IB]\s*\|)?\s*¿([^?]+)\?\s*(?:s[ií]|yes)\s*[:,]?\s*(.+?)[\s,;.]*\bno\s*[:,]\s*(.+)$  |  `\1IF(\2); \3; ELSE; \4; ENDIF`  |  TS042  |  offered  |  ¿DISTANCE < 20? SÍ: S NO: F(1, 60) => IF(DISTANCE < 20); S; ELSE; F(1, 60); ENDIF
+^\s*¿([^?]+)\?\s*(?:s[ií]|yes)\s*[:,]?\s*(.+?)[\s,;.]*\bno\s*[:,]\s*([^;]+)$  |  `IF(\1); \2; ELSE; \3; ENDIF`  |  TS042  |  offered  |  ¿DISTANCE < 20? SÍ: S NO: F(1, 60) => IF(DISTANCE < 20); S; ELSE; F(1, 60); ENDIF
 (?<==) *(\w+) ?: (?=\w+\s*(?:;|$))  |  ` \1 / `  |  TS010  |  offered  |  X = 10 : 4⏎SHOW(X) => X = 10 / 4⏎SHOW(X)
 (?<=\d)\. (?=\d)  |  `.`  |  TS008  |  applied  |  F(1. 5, 80) => F(1.5, 80)
-^S ([IB])(?=\s*\|)  |  `S\1`  |  TS034  |  applied  |  S I|F(2, 80) => SI|F(2, 80)
-^(S[IB]\s*\|)?\s*(\d+) (?:loop|repe[a-z]+)\s*:?$  |  `\1LOOP(\2)`  |  TS015  |  applied  |  5 LOOP⏎F(1, 50)⏎END_LOOP => LOOP(5)⏎F(1, 50)⏎END_LOOP
+\AS ([IB])(?=\s*\|)  |  `S\1`  |  TS034  |  applied  |  S I|F(2, 80) => SI|F(2, 80)
+^\s*(\d+) (?:loop|repe[a-z]+)\s*:?$  |  `LOOP(\1)`  |  TS015  |  applied  |  5 LOOP⏎F(1, 50)⏎END_LOOP => LOOP(5)⏎F(1, 50)⏎END_LOOP
 \bLOOP_?(\d+)(?=\s*(?:;|$))  |  `LOOP(\1)`  |  TS015  |  applied  |  LOOP4;F(2, 80);END_LOOP => LOOP(4);F(2, 80);END_LOOP
-^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
+\A(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
 &⟨lt¦gt¦nbsp⟩;  |  `⟨<¦>¦ ⟩`  |  ⟨TS010¦TS010¦TS072⟩  |  applied  |  IF(DISTANCE⟨ &lt; 10¦ &gt; 10¦&nbsp;< 10⟩);S;END IF => IF(DISTANCE ⟨<¦>¦<⟩ 10);S;END_IF
 (?<=\d) ?⟨½¦¼¦¾⟩  |  `⟨.5¦.25¦.75⟩`  |  TS010  |  applied  |  F(1 ⟨½¦¼¦¾⟩, 80) => F(⟨1.5¦1.25¦1.75⟩, 80)
 ⟨½¦¼¦¾⟩  |  `⟨0.5¦0.25¦0.75⟩`  |  TS010  |  applied  |  W(⟨½¦¼¦¾⟩) => W(⟨0.5¦0.25¦0.75⟩)
@@ -117,8 +120,8 @@ SIGNS = r"""
 ⟨≤¦≥¦≠¦¡=¦(?<= )><⟩  |  `⟨<=¦>=¦<>¦<>¦<>⟩`  |  TS010  |  applied  |  IF(DISTANCE ⟨≤¦≥¦≠¦¡=¦><⟩ 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=¦<>¦<>¦<>⟩ 10);S;ENDIF
 ⟨×¦÷¦−¦∞¦[，、]¦\\n⟩  |  `⟨*¦/¦-¦FOREVER¦,¦;⟩`  |  TS010  |  applied  |  ⟨SHOW(TIME × 2)¦SHOW(TIME ÷ 2)¦M(−50 50)¦F(∞,50) UNTIL(DISTANCE<10)¦F(2、80)¦SI|F(2,80)\nR(1,60)⟩ => ⟨SHOW(TIME * 2)¦SHOW(TIME / 2)¦M(-50, 50)¦F(FOREVER,50) UNTIL(DISTANCE<10)¦F(2,80)¦SI|F(2,80);R(1,60)⟩
 [→➜⇒]|[–—]>  |  `;`  |  TS061  |  applied  |  →F(2, 80) => ;F(2, 80)
-</?[a-z]+/?>|^\s*(?:[$>] tsc\b.*|```\w*\s*)$  |  ``  |  TS072  |  applied  |  <b>F(2, 80)</b> => F(2, 80)
-^\s*tsc(?: \w+)? (?:(["'])(S[IB]\|.*)\1$|(?=S[IB]\|))  |  `\2`  |  TS044  |  applied  |  tsc live "SI|F(2, 80)" => SI|F(2, 80)
+</?[a-z]+/?>|\A\s*(?:[$>] tsc\b.*|```\w*\s*)\Z  |  ``  |  TS072  |  applied  |  <b>F(2, 80)</b> => F(2, 80)
+\A\s*tsc(?: \w+)? (?:(["'])(S[IB]\|.*)\1\Z|(?=S[IB]\|))  |  `\2`  |  TS044  |  applied  |  tsc live "SI|F(2, 80)" => SI|F(2, 80)
 (?:^\s*\.|(?<=;)\s*[:.,])\s*(?=;|$)  |  ``  |  TS005  |  applied  |  F(2,80)⏎.⏎.⏎. => F(2,80)⏎⏎⏎
 ^\s*(?:(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z])|-(?=[A-Z]\w*\()|[=-]?>+\s*|(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\())  |  ``  |  TS054  |  applied  |  ⟨*¦>¦=>¦->¦✅⟩ F(2,80) => F(2,80)
 ⟨⬆¦⬇¦⬅¦➡⟩\ufe0f?  |  `⟨F¦B¦L¦R⟩ `  |  TS005  |  offered  |  ⟨⬆️¦⬇️¦⬅️¦➡️⟩ 2 => ⟨F¦B¦L¦R⟩(2, 80)
@@ -265,7 +268,7 @@ a=@close ⟨'|'|,|.|; UNTIL¦UNTIL that?⟩ ( | $a UNTIL ( | 1 | ⟨TS029¦TS102
 ^ W ⟨( c=@val s=<|<=|>|>=|=|<> d=@num|@val )¦during|that|to c=@val s=<|<=|>|>= d=@num|@val⟩ $ | W ( FOREVER ) UNTIL ( $c $s $d ) | ⟨.5¦.9⟩ | TS102 | ⟨applied¦offered⟩ | wait⟨(DISTANCE < 10)¦ for DISTANCE < 10⟩ => W(FOREVER) UNTIL(DISTANCE < 10)
 ^ W ⟨UNTIL that? c=@cond+¦( UNTIL (? c=@noparen+ )? )⟩ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | ⟨TS102¦TS029⟩ | ⟨applied¦offered⟩ | ⟨WAIT UNTIL DISTANCE < 10¦W(UNTIL DISTANCE < 10)⟩ => W(FOREVER) UNTIL(DISTANCE < 10)
 a=@close UNTIL that? ⟨c=@cond+ then+ ,? b=@start¦c=@noparen+ $⟩ | $a UNTIL ( $c ) ⟨; $b¦⟩ | 1 | TS015 | applied | F(2, 80) hasta DISTANCE < 10⟨ luego S¦⟩ => F(2, 80) UNTIL(DISTANCE < 10)⟨;S¦⟩
-^ ⟨UNTIL <question> ':'|'{'?¦LOOP ( FOREVER ) UNTIL <question>⟩ $ | WHILE ( @not:c ) | ⟨3¦1⟩ | ⟨TS029¦TS102⟩ | offered | ⟨¦LOOP(FOREVER) ⟩UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_⟨WHILE¦LOOP⟩ => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
+^^ ⟨UNTIL <question> ':'|'{'?¦LOOP ( FOREVER ) UNTIL <question>⟩ $ | WHILE ( @not:c ) | ⟨3¦1⟩ | ⟨TS029¦TS102⟩ | offered | ⟨¦LOOP(FOREVER) ⟩UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_⟨WHILE¦LOOP⟩ => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
 ^ ⟨a=F|B|L|R ( UNTIL (? c=@cond+ )? , b=@num¦UNTIL (? c=@cond+ )? a=F|B|L|R|W ( b=@noparen+⟩ ) $ | $a ( ⟨FOREVER ,¦⟩ $b ) UNTIL ( $c ) | 2 | TS029 | offered | ⟨F(UNTIL(DISTANCE < 10),¦UNTIL DISTANCE < 10 F(2,⟩ 60) => F(⟨FOREVER¦2⟩, 60) UNTIL(DISTANCE < 10)
 c=@callw ( a=@noparen+ UNTIL ( d=@any+ ) ) | $c ( $a ) UNTIL ( $d ) | 1 | TS016 | applied | F(5, 60 UNTIL(DISTANCE < 15)) => F(5, 60) UNTIL(DISTANCE < 15)
 # IF and WHILE
@@ -341,7 +344,7 @@ a=@num ( c=@noparen+ ) | $a * ( $c ) | 1 | TS048 | offered | X = 2(20 + 10)⏎F(
 ^ q=@val s=<|>|<=|>= n=@num|@val :|do|=|->|=>? b=@start r=@all* | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
 ^ ⟨BREAK¦S|STOP⟩ LOOP $ | BREAK | 1 | ⟨TS044¦TS102⟩ | applied | LOOP(2)⏎F(1, 50)⏎⟨BREAK¦STOP⟩ LOOP⏎END_LOOP => LOOP(2)⏎F(1, 50)⏎BREAK⏎END_LOOP
 ^ ⟨FOREVER :¦FOREVER¦LOOP FOREVER :?⟩ $ | LOOP ( FOREVER ) ⟨;¦¦⟩ | 1 | ⟨TS032¦TS032¦TS102⟩ | applied | ⟨forever:¦forever¦repetir siempre⟩⏎  F(1,50)⟨¦⏎end¦⏎fin repetir⟩ => LOOP(FOREVER)⏎  F(1,50)⏎END_LOOP
-^ FOREVER ( <body> ) $ | LOOP ( FOREVER ) ; $b $r | 1 | TS080 | applied | FOREVER(F(1, 80)) => LOOP(FOREVER);F(1, 80);END_LOOP
+^ FOREVER ( <body> ) $ | LOOP ( FOREVER ) ; $b $r ; END_LOOP | 1 | TS080 | applied | FOREVER(F(1, 80)) => LOOP(FOREVER);F(1, 80);END_LOOP
 ^ FOREVER that c=@cond+ ⟨':'? b=@start|'{'¦':'? $⟩ | WHEN ( $c ) ⟨; $b¦⟩ | 1 | TS102 | offered | siempre que DISTANCE > 10⟨: ¦⏎⟩F(1, 50)⟨¦⏎fin⟩ => WHEN(DISTANCE > 10)⟨;¦⏎⟩F(1, 50)⟨;¦⏎⟩END_WHEN
 ^ @word+ same|the moment :|,? $ | TASK | 1 | TS102 | applied | ⟨al mismo tiempo¦a la vez:¦at the same time¦ao mesmo tempo⟩⏎BEEP(1, 440)⏎FIN⏎F(2, 80) => TASK⏎BEEP(1, 440)⏎END_TASK⏎F(2, 80)
 ⟨^ TASK @num ':'? $¦TASK ( @num|@word? )⟩ | TASK | 1 | ⟨TS044¦TS039⟩ | offered | TASK⟨ 1¦(1)⟩⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
@@ -352,7 +355,7 @@ a=@num ( c=@noparen+ ) | $a * ( $c ) | 1 | TS048 | offered | X = 2(20 + 10)⏎F(
 # how often something is done, said behind it or before it
 ⟨^ n=@num b=@def $¦^ b=@def *|X? n=@num times? $¦call b=@def n=@num¦^ b=@def n=X2|X3|X4|X5|X6 $⟩ | LOOP ( ⟨$n¦$n¦$n¦@xn:n⟩ ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎⟨3 SALTO¦SALTO*3¦CALL SALTO 3¦SALTO x3⟩ => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ ⟨n=@num times|X|* :|,|of? <body>¦( <body> ) *|X|LOOP|by? n=@num times?¦n=@num *|X|times|LOOP? ( <body> )⟩ $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | ⟨TS062¦TS062¦TS080⟩ | applied | ⟨3 * F(1,50)¦(F(1,50)) x 3¦SI|3*(F(1,50))⟩ => ⟨¦¦SI|⟩LOOP(3);F(1, 50);END_LOOP
-^ <body> ,|;? then* LOOP all n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | .9 | TS062 | offered | F(2, 80) y B(2, 80) y repetir todo 3 veces => LOOP(3);F(2, 80);B(2, 80);END_LOOP
+^^ <body> ,|;? then* LOOP all n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | .9 | TS062 | offered | F(2, 80) y B(2, 80) y repetir todo 3 veces => LOOP(3);F(2, 80);B(2, 80);END_LOOP
 ^ every n=@num seconds ,|:|do? <body> $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
 ^ do|make? b=@start r=@any* n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
 # words behind a call: shown, not made
@@ -373,13 +376,13 @@ a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 
 DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩ | DEF $n ; ⟨¦$b⟩ | 1 | TS014 | applied | DEF SALUDO⟨ = ¦ ⟩BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ⟨; call¦^ call|do|make|the the|one?⟩ b=@def | ⟨;¦⟩ $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⟨;CALL¦⏎hacer⟩ SALTO => DEF SALTO;F(0.2, 60);END_DEF⟨;¦⏎⟩SALTO
 # ends of blocks
-^ ⟨end¦END_DEF⟩ @def $ | END_DEF | 1 | ⟨TS022¦TS044⟩ | ⟨applied¦first⟩ | DEF SALTO⏎F(1, 50)⏎⟨FIN¦END_DEF⟩ SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
+^ ⟨end¦END_DEF⟩ n=@def $ | END_DEF @label:n | 1 | ⟨TS022¦TS044⟩ | ⟨applied¦first⟩ | DEF SALTO⏎F(1, 50)⏎⟨FIN¦END_DEF⟩ SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
 h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS039 | first offered | LOOP(3)⏎F(2, 80)⏎END_LOOP(3) => LOOP(3)⏎F(2, 80)⏎END_LOOP
-; LOOP $ | ; END_LOOP | 4 | TS014 | applied | LOOP(4) F(1,50) R(0.5,50) LOOP => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
+; LOOP $$ | ; END_LOOP | 4 | TS014 | applied | LOOP(4) F(1,50) R(0.5,50) LOOP => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
 ^ ⟨program @word¦then ,?⟩ $ |  | 1 | TS044 | applied | ⟨programa baile¦luego,⟩⏎F(1, 50) => ⏎F(1, 50)
 ^ ⟨leaves 0¦import @any+⟩ ;? $ |  | 1 | ⟨TS065¦TS072⟩ | applied | ⟨return 0;¦import robot⟩⏎F(1, 50) => ⏎F(1, 50)
 ^ idles $ |  | 1 | TS044 | offered | NADA⏎F(1, 50) => ⏎F(1, 50)
-^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
+^ end program? $$ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
 ⟨^ by? please|first ,?¦; first+ ,?⟩ b=@start | ⟨¦;⟩ $b | 1 | TS044 | applied | ⟨please¦F(2, 80); y despues⟩ R(1, 50) => ⟨¦F(2, 80);⟩R(1, 50)
@@ -399,7 +402,7 @@ eff | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
 ⟨read ( v=@val )¦^ read the? v=@val $⟩ | $v | 1 | TS102 | applied | ⟨X = leer(DISTANCE)¦leer DISTANCE⟩ => ⟨X =DISTANCE¦DISTANCE⟩
 ^ ⟨no F|B|L|R|M extra?¦cease of F⟩ $ | S | .5 | TS102 | first | ⟨no avanzar mas¦para de avanzar⟩ => S
 ^ off|S the? engine $ | S | 1 | TS102 | applied | apaga motores => S
-^ ⟨START '|'¦b=@start r=@all* '|' s=SI|SB $⟩ | ⟨SI '|'¦$s '|' $b $r⟩ | 1 | TS034 | offered | ⟨start|F(2,80)¦F(2, 80)|SI⟩ => SI |F(2⟨,¦, ⟩80)
+^^ ⟨START '|'¦b=@start r=@all* '|' s=SI|SB $$⟩ | ⟨SI '|'¦$s '|' $b $r⟩ | 1 | TS034 | offered | ⟨start|F(2,80)¦F(2, 80)|SI⟩ => SI |F(2⟨,¦, ⟩80)
 IF ⟨c=@noparen+¦<question>⟩ BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | ⟨TS015¦TS014⟩ | applied | LOOP(3)⏎S⏎IF⟨ DISTANCE < 10¦(DISTANCE < 10)⟩ BREAK⏎END_LOOP => LOOP(3)⏎S⏎IF(DISTANCE < 10);BREAK;ENDIF⟨;¦⟩⏎END_LOOP
-^ declare|DEF? main ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
+^^ declare|DEF? main ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
 """

@@ -1,0 +1,76 @@
+"""Position: a row means the same wherever its instruction stands.
+
+The example of each row is read alone, and then first, last and in the middle of one line, and in an
+IF, a DEF and a TASK. A row of a whole line says so with `^^`, `$$`, `\\A` or `\\Z`.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache, partial
+from itertools import chain
+
+import pytest
+
+from tests.support.rows import each_row
+from tiniscript import robots
+from tiniscript.base.kit import Kit
+from tiniscript.diagnostics.codes import Code
+from tiniscript.library.compiling import analyzed
+from tiniscript.recovery import rewrites, rows
+from tiniscript.recovery.concepts import ENDED, lexemes, texts
+from tiniscript.recovery.search import Candidate, Recovery
+
+KITS = [robots.load(name).kit for name in ("tinibot", "grabber", "liner")]
+ON_A_LINE = ("W(3);{}", "{};W(3)", "W(3);{};W(3)")
+IN_A_BLOCK = ("IF(DISTANCE < 9);{};ENDIF", "DEF A1;{};END_DEF;A1", "TASK;{};END_TASK")
+AT_THE_TOP = re.compile(r"\b(?:DEF|TASK|WHEN|BREAK)\b")  # these are in no block, or in a loop
+OF_A_LINE = ("^^", "$$", r"\A", r"\Z")
+
+
+def examples() -> list[str]:
+    """Return the examples of all rows that speak of an instruction, each on one line."""
+    found = []
+    for pattern, *_, example in chain(rewrites.cells(rows.SIGNS), rewrites.cells(rows.TOKENS)):
+        wrong = example.rpartition(" => ")[0].strip()
+        if not any(each in pattern for each in OF_A_LINE) and "//" not in example:
+            found.append(re.sub(r"\s*⏎\s*", ";", re.sub(r"^SI\s*\|", "", wrong)))
+    return [*dict.fromkeys(found)]
+
+
+@lru_cache(None)
+def mistakes(kit: Kit, text: str) -> tuple[Code, ...]:
+    return tuple(each.code for each in analyzed(text, kit).diagnostics if each.is_mistake)
+
+
+def meant(text: str) -> Candidate | None:
+    """Return what is meant, on the first robot for which it is a right program."""
+    found = [Recovery(text, kit, partial(mistakes, kit)).best() for kit in KITS]
+    return next((each for each in found if each and each.is_whole), found[-1])
+
+
+def told(text: str) -> tuple[str, ...]:
+    """Return the words of a program; between two instructions is one separator."""
+    parts = (texts(lexemes(each)) for each in re.split("[;\n]", text))
+    return tuple(chain(*((*part, ";") for part in parts if part)))
+
+
+def ends(text: str) -> int:
+    return sum(each in ENDED for each in texts(lexemes(text)))
+
+
+@each_row("wrong", [pytest.param(each, id=each) for each in examples()])
+def test_a_row_means_the_same_wherever_its_instruction_stands(wrong: str) -> None:
+    alone = meant(wrong)
+    if alone is None:
+        return  # it needs the lines that it has in the table
+    is_open = ends(alone.text) > ends(wrong)  # what follows may be in the block that it begins
+    is_free = not AT_THE_TOP.search(alone.text.upper())
+    for place in (*ON_A_LINE, *(IN_A_BLOCK if is_free else ())):
+        found = meant(place.format(wrong))
+        same = place.format(alone.text)
+        if is_open and not place.endswith("{}"):
+            assert found is None or not found.is_applied or told(found.text) == told(same), place
+        else:
+            assert found, place
+            assert (told(found.text), found.is_applied) == (told(same), alone.is_applied), place
