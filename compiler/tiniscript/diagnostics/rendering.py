@@ -53,6 +53,11 @@ class Message(NamedTuple):
     fix: str
 
 
+# What else belongs to what is to be tried: what is written then where it is used, what may be meant
+# as well, and what it leaves out.
+_BESIDE = ("carried", "rival", "lost")
+
+
 def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
     """Return what is said of a diagnostic, and where."""
     number = diagnostic.code.number
@@ -62,6 +67,10 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
     if end > start:
         end_line, last_column = source.position(end - 1)
         end_column = last_column + 1
+    fix = _filled(f"{number}/try", diagnostic.values, lang)
+    for gap in _BESIDE:
+        if diagnostic.values.get(gap):
+            fix = _filled(f"label/{gap}", {"fix": fix, gap: diagnostic.values[gap]}, lang)
     return Message(
         number,
         "mistake" if diagnostic.is_mistake else "warning",
@@ -70,7 +79,7 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
         end_line,
         end_column,
         _filled(f"{number}/message", diagnostic.values, lang),
-        _filled(f"{number}/try", diagnostic.values, lang),
+        fix,
     )
 
 

@@ -93,6 +93,10 @@ def _lexemes(line: str) -> tuple[Lexeme, ...]:
     return tuple(found)
 
 
+def number_text(number: float) -> str:
+    return f"{number:.3f}".rstrip("0").rstrip(".")
+
+
 @cache
 def made(text: str) -> Lexeme:
     """Return a token that a repair writes."""

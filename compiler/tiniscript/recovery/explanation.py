@@ -389,8 +389,8 @@ def _slip(
         found = old[start : start + len(found) + 1]
     elif not right and code is codes.BAD_NUMBER:
         found = old[start + len(found) - 1 : start + len(found) + 1]
-    elif code is codes.UNIT:  # the first number that has one
-        pairs = ([*pair] for pair in pairwise(old) if pair[0].kind is NUMBER)
+    elif code is codes.UNIT:  # the first number that has one, and is changed
+        pairs = ([*pair] for pair in pairwise(old[max(0, start - 1) :]) if pair[0].kind is NUMBER)
         units = (it for it in pairs if said_of(it[1].text, "unit") or it[1].text == "%")
         found = next(units, found)
     told, fix = _parted(before), _parted(after)

@@ -7,25 +7,25 @@ if they were made, so that no consequence of a mistake is reported.
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, applied, overlap
 from tiniscript.base.spelling import nearest
-from tiniscript.base.words import lexicon, said_of
+from tiniscript.base.words import MOVES, UNIT_OF, WAYS, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import is_better
 from tiniscript.recovery import lines, rows
-from tiniscript.recovery.concepts import Names, lexemes, texts, words_of
+from tiniscript.recovery.concepts import Names, lexemes, plain
+from tiniscript.recovery.conserved import difference
 from tiniscript.recovery.explanation import Explanation, explained, trimmed
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.setup import setup
 from tiniscript.recovery.suggestions import suggested
 from tiniscript.recovery.usage import with_usage
-from tiniscript.recovery.writing import in_one_line, without_note
+from tiniscript.recovery.writing import in_one_line, laid_out, without_note
 
 LONGEST = 4_000  # characters of a text that is read as a whole
 # Codes whose sentence names what is right.
@@ -34,9 +34,8 @@ _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HE
 _FIRST_NUMBERS = (1, 10, 100)
 _BEGUN, _ROW = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
 _NUMBER = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
-_NOTES = "|".join(word for word in lexicon() if said_of(word, "note"))
-_NOTE = re.compile(rf"(?i)\b(?:{_NOTES})\b")  # its 4 is no number: C4
-_TIMES = re.compile(r"(?i)(?<=[\w)]) x (?=[\w(])")  # a sign, and no variable X
+_SET = re.compile(r"(\w+) = -?[0-9.]+")
+_UNIT = re.compile(r"[^\d\s.]+$")
 Check = Callable[[str], Sequence[Diagnostic]]
 
 
@@ -132,23 +131,53 @@ def _meant(
         misplaced = [each for each in found if each.code in rows.MISPLACED]
         said_of_it = misplaced or [each for each in found if each.is_mistake]
         return [_moved(each, written, meant) for each in said_of_it][:1]
-    said_with = {each.code for each in told}
-    said_with |= {step.code for each in meant.changes for step in each.steps}
-    if not told or not _keeps(text, meant.text, said_with, is_sure):
+    if not told:
         return []
-    if not (meant.is_whole or meant.is_applied or _keeps(text, meant.text, set(), is_sure=False)):
-        return []  # a guess at a part gives up no number
-    is_exact = is_sure or _keeps(text, meant.text, said_with, is_sure=True)
-    return [_diagnostic(each, meant, is_exact, found) for each in told]
+    if is_sure or not (meant.is_whole or meant.is_applied):  # a guess at a part gives up nothing
+        if difference(text, meant.text, recovery.kit).lost:
+            return []
+    told_of = [_diagnostic(each, meant, found) for each in told]
+    others = explained(written, recovery.other) if recovery.other else []
+    return [
+        _either(_carried(own, source.text), each, others)
+        for own, each in zip(told_of, told, strict=True)
+    ]
 
 
-def _diagnostic(
-    told: Explanation, meant: Candidate, is_exact: bool, found: Sequence[Diagnostic]
-) -> Diagnostic:
+def _carried(found: Diagnostic, text: str) -> Diagnostic:
+    """Return a mistake of a unit in a variable; moves that take the value get it: `carried`."""
+    set_to = _SET.fullmatch(found.values.get("fix", "")) if found.code is codes.UNIT else None
+    unit = _UNIT.search(found.values.get("found", ""))
+    said = said_of(plain(unit[0]), "unit") if unit else ()
+    way = next((way for way, its in WAYS.items() if said and its.unit == said[0]), "")
+    if not (set_to and way and found.repair):
+        return found
+    moves = "|".join(move for move in MOVES if UNIT_OF[move] == way)
+    own = rf"(?i)\b(?:{moves})\s*\(\s*{set_to[1]}(?P<unit>)\s*,[^();\n]*\)"
+    uses = [*re.finditer(own, text)]
+    if not uses:
+        return found
+    edits = (Edit(Span(*each.span("unit")), f" {way}") for each in uses)
+    start, end = uses[0].span()
+    place = uses[0].start("unit")
+    carried = laid_out(lexemes(f"{text[start:place]} {way}{text[place:end]}"))
+    repair = found.repair._replace(edits=(*found.repair.edits, *edits))
+    return found._replace(values={**found.values, "carried": carried}, repair=repair)
+
+
+def _either(found: Diagnostic, told: Explanation, others: Sequence[Explanation]) -> Diagnostic:
+    """Return what is told with its `rival`, which costs about the same, where there is one."""
+    other = next((each.values["fix"] for each in others if each.place == told.place), "")
+    if not other or other == found.values.get("fix"):
+        return found
+    return found._replace(values={**found.values, "rival": other})
+
+
+def _diagnostic(told: Explanation, meant: Candidate, found: Sequence[Diagnostic]) -> Diagnostic:
     code, values = told.code, told.values
     is_said = code is not codes.ASKED_BEHIND or "BREAK" in meant.text.upper()  # how often
     is_sure = meant.is_applied or (meant.is_whole and told.is_sure)
-    repair = Repair(tuple(told.edits), is_exact and is_said and is_sure)
+    repair = Repair(tuple(told.edits), is_said and is_sure)
     if not meant.has_sure_blocks and "FOREVER" not in values.get("fix", ""):
         values |= {"whole": ""}  # where it ends is a guess
     if code in _WITH_RIGHT and not values["right"]:
@@ -180,25 +209,6 @@ def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
             values |= {"open": move.name}  # its end is in no line
     repair = Repair((trimmed(0, text, meant.text),), meant.is_applied)
     return found._replace(values=values, repair=repair)
-
-
-def _keeps(text: str, new: str, said_with: set[Code], is_sure: bool) -> bool:
-    """Whether all numbers of a text are used, and all names that it gives to variables and DEFs.
-
-    `is_sure`: and no others.
-    """
-    text, new = (
-        "\n".join(without_note(line)[0] for line in each.split("\n")) for each in (text, new)
-    )
-    before, after = (Counter(texts(lexemes(it))) for it in (text, new))
-    names = {each.upper() for each in re.findall(r"(?i)(?<=\bDEF )\w+|\w+(?=\s*=)", new)}
-    closed = Counter(re.findall(rf"\b(?:END_?DEF|{words_of('end')}) +(\w+)", text.upper()))
-    before -= Counter({name: n for name, n in closed.items() if after[name] > 1})
-    before -= Counter(X=len(_TIMES.findall(text)))
-    is_kept = all(after[name] >= before[name] for name in names)
-    old, kept = (Counter(re.findall("[0-9]", _NOTE.sub("", it))) for it in (text, new))
-    has_all = old == kept if is_sure else not old - kept
-    return is_kept and (has_all or bool(said_with & rows.OTHER_NUMBERS))
 
 
 def _mistakes(found: Sequence[Diagnostic]) -> list[Code]:

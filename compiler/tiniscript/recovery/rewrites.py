@@ -26,6 +26,7 @@ from tiniscript.recovery.concepts import (
     closed,
     joined,
     made,
+    number_text,
     texts,
 )
 from tiniscript.syntax.lexer import NUMBER, WORD
@@ -43,7 +44,7 @@ _EDGES = {
 }
 _EDGE = re.compile(r"\\.|\[\^?\]?(?:\\.|[^]\\])*\]|[$^]")  # or what has none: `\$`, `[^;]`
 _DEEPEST = 3  # brackets in a body: `F(RANDOM(1, (X + 1)), 60)`
-_OF_NUMBERS = re.compile(r"@(?:dec|cat|cm|mmss|xn|same)\b|(?<![\w@])\d")
+_OF_NUMBERS = re.compile(r"@(?:dec|cat|own|ms|mmss|xn|same)\b|(?<![\w@])\d")
 _BEFORE_VALUE = COMPARISONS | frozenset("(,+-*/%")
 _HEADER_OF = {"FOREVER": "LOOP", "ELSEIF": "IF"}
 
@@ -385,10 +386,19 @@ def _limit(is_high: bool, place: _Place) -> _Made:
     return None if known.is_yes_no else [made(f"{most / 1000:g}")]
 
 
-def _in(thousandths: int, place: _Place) -> _Made:
-    """A number in another unit: `1000` milliseconds are 1, `1` m is 100."""
+def _seconds(place: _Place) -> _Made:
+    """So many milliseconds, in seconds."""
     (token,) = place.captured[0]
-    return [made(f"{float(token.text) * thousandths / 1000:g}")]
+    return [made(f"{float(token.text) / 1000:g}")]
+
+
+def _own(place: _Place) -> _Made:
+    """A number with its unit, in the unit that values have: `500 ms` is 0.5, `1 m` is 100."""
+    (number,), (unit,) = place.captured
+    said = said_of(unit.text, "unit") or ("", "1000")
+    return [
+        number if said[1] == "1000" else made(number_text(float(number.text) * int(said[1]) / 1000))
+    ]
 
 
 def _by(place: _Place) -> _Made:
@@ -401,7 +411,7 @@ _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "not": lambda it: negated(it.captured[0]), "endof": _end_of, "dec": _decimal, "xn": _times,
     "cat": _zero_behind, "mmss": _minutes, "same": _same, "known": _known_name, "label": _label,
     "by": _by,
-    "ms": partial(_in, 1), "cm": partial(_in, 100_000),
+    "ms": _seconds, "own": _own,
     "most": partial(_limit, True), "least": partial(_limit, False),
     "given": partial(_parameter, 0), "also": partial(_parameter, 1),
 }  # fmt: skip

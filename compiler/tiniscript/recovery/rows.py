@@ -19,7 +19,7 @@ but braces, brackets and `<`: @nobrace.
 `becomes` is tokens: `$c` what was captured, `&c` that in words of the language or in digits, and
 functions: @not (the opposite question), @same (a number that is another one, too), @most and @least
 (the range of an actuator), @endof (the end of a header), @dec (a decimal comma), @cat (a zero
-apart), @mmss, @cm (of metres), @xn (`x4`), @given and @also (the names in the brackets of a DEF),
+apart), @mmss, @own (a number with its unit, in the unit that values have), @xn (`x4`), @given and @also (the names in the brackets of a DEF),
 @known (a name of two words), @label (nothing, of a DEF that is called elsewhere). `how`: `first` is
 made before any other is tried, `applied` may be made without asking, `offered` is only shown, as is
 `first offered`. An example's lines are parted by ⏎.
@@ -47,14 +47,6 @@ PARTS = {
 
 # Of a DEF or an end that stands where it may not.
 MISPLACED = {codes.CALL_BEFORE_DEF, codes.CALLS_ITSELF, codes.DEF_NOT_TOP, codes.WRONG_END}
-
-# Those that write a number in another way: `500 ms`, `8O`, `X++`, `1) F(2, 80)`, `tres segundos`,
-# or drop one: `TASK(1)`, `LOOP(1 TO 5)`.
-OTHER_NUMBERS = {
-    codes.BAD_NUMBER, codes.NEEDLESS_FRAME, codes.OTHER_SIGN, codes.UNIT, codes.OTHER_ASSIGNMENT,
-    codes.LINE_NUMBER, codes.LOOP_COUNTS, codes.OTHER_LANGUAGE, codes.SET_TOGETHER,
-    codes.NO_BRACKETS_HERE,
-}  # fmt: skip
 
 # Slips of one sign, tried where no row reads a line: of one that is missing, of one that is taken
 # for another, of one too many, and of one behind its neighbour.
@@ -201,8 +193,8 @@ a=@num by @hundred | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 50)
 ⟨half¦a=@num %⟩ of b=@num|@val | $b ⟨/ 2¦* $a / 100⟩ | 1 | ⟨TS010¦TS049⟩ | first offered | X = ⟨half¦50%⟩ of DISTANCE => X = DISTANCE ⟨/ 2¦* 50 / 100⟩
 a=@num|@val s=+|- n=@num % e=)|$ | $a $s $a * $n / 100 $e | 1 | TS049 | offered | F(2, 80 - 20%) => F(2, 80 - 80 * 20 / 100)
 a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
-s=<|>|<=|>= n=@num M|@in_m e=) | $s @cm:n $e | 1 | TS049 | applied | IF(DISTANCE < 1 m);S;ENDIF => IF(DISTANCE < 100);S;ENDIF
-s=<|>|<=|>=|=|<> n=@num @unit | $s $n | 1 | TS049 | first | x = 5 cm => x = 5
+⟨s=<|>|<=|>=|=|<> n=@num u=M|MIN|S e=)¦^ s=@name = n=@num u=M|MIN $⟩ | $s ⟨¦=⟩ @own:n:u ⟨$e¦⟩ | 1 | TS049 | applied | ⟨IF(DISTANCE < 1 m);S;ENDIF¦D = 1 m⟩ => ⟨IF(DISTANCE < 100);S;ENDIF¦D = 100⟩
+s=<|>|<=|>=|=|<> n=@num u=@unit | $s @own:n:u | 1 | TS049 | first | ⟨x = 5 cm¦T = 500 ms⏎W(T)⟩ => ⟨x = 5¦T = 0.5⏎W(T)⟩
 v=@val CM|in? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
 ⟨ROUND ( v=@noparen+ , n=@num decimals )¦v=@val ROUND n=@num⟩ | ROUND ( $v , $n ) | 1 | ⟨TS049¦TS015⟩ | ⟨applied¦offered⟩ | SHOW(⟨ROUND(DISTANCE, 1 decimales)¦DISTANCE ROUND 1⟩) => SHOW(ROUND(DISTANCE, 1))
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
@@ -255,7 +247,7 @@ SHOW ( a=@val ⟨,¦,¦&|+|, " " &|+|,⟩ b=@val ⟨¦, c=@val¦⟩ ) | SHOW ( $
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
 c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|UNTIL|@start¦⟩ | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80⟨¦) UNTIL(DISTANCE<10⟩ => F(2,80)⟨¦ UNTIL(DISTANCE<10)⟩
 ⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
-a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦p=@power , n=@num u=CM|DEG⟩ ) | $a ( $n $u , $p ) | 1 | TS076 | offered | ⟨B(CM(20), 60)¦R(60, 90 DEG)⟩ => ⟨B(20 CM, 60)¦R(90 DEG, 60)⟩
+a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@num u=CM|DEG¦p=@power , n=@num u=CM|DEG⟩ ) | $a ( $n $u , $p ) | ⟨1¦.9¦1⟩ | TS076 | offered | ⟨B(CM(20), 60)¦F(25, 60 CM)¦R(60, 120 DEG)⟩ => ⟨B(20 CM, 60)¦F(25 CM, 60)¦R(120 DEG, 60)⟩
 ⟨^ c=F|B|L|R two ,? n=@num $¦c=F|B|L|R ( two ,⟩ | $c ( 2 , ⟨$n )¦⟩ | ⟨.5¦1⟩ | ⟨TS015¦TS102⟩ | offered | ⟨f to 80¦F(too, 80)⟩ => ⟨f¦F⟩(2, 80)
 ⟨^¦;⟩ BEEP BEEP e=;|$ | ⟨¦;⟩ BEEP ( 0.2 , 440 ) ; W ( 0.2 ) ; BEEP ( 0.2 , 440 ) $e | 1 | TS102 | offered | ⟨¦S;⟩bip bip => ⟨¦S;⟩BEEP(0.2, 440);W(0.2);BEEP(0.2, 440)
 BEEP ( a=<note> , b=<note> ⟨¦, c=<note>⟩ ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $b ) ⟨¦; BEEP ( 1 , $c )⟩ | 1 | TS020 | offered | BEEP(DO, RE⟨¦, MI⟩) => BEEP(1, 262);BEEP(1, 294)⟨¦;BEEP(1, 330)⟩
@@ -310,7 +302,7 @@ LOOP n=X1|X2|X3|X4|X5|X6|X8 | LOOP ( @xn:n ) | 1 | TS015 | applied | LOOP x4⏎F
 LOOP ⟨n=@val $¦X|=|-|-> n=@num⟩ | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP ⟨X4¦x 3⟩⏎F(1,50)⏎END_LOOP => X4 = 3⏎LOOP(⟨X4¦3⟩)⏎F(1,50)⏎END_LOOP
 ^ LOOP <body> n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1.5 | TS102 | applied | repeat F(1,60) R(1,60) 4 times => LOOP(4);F(1, 60);R(1, 60);END_LOOP
 ^ LOOP ;? <body> ;? UNTIL c=@cond+ $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | repeat F(1,50) until DISTANCE < 10 => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
-⟨LOOP¦SHOW⟩ ( n=@num ⟨¦M|⟩@unit ) | ⟨LOOP¦SHOW⟩ ( $n ) | 1 | TS049 | applied | ⟨LOOP(3 veces);F(1,50);END_LOOP¦SHOW(2 M)⟩ => ⟨LOOP(3);F(1,50);END_LOOP¦SHOW(2)⟩
+⟨LOOP¦SHOW⟩ ( n=@num u=⟨¦M|⟩@unit ) | ⟨LOOP¦SHOW⟩ ( @own:n:u ) | 1 | TS049 | applied | ⟨LOOP(3 veces);F(1,50);END_LOOP¦SHOW(2 M)⟩ => ⟨LOOP(3);F(1,50);END_LOOP¦SHOW(200)⟩
 LOOP n=number times :|,|do|;? | LOOP ( &n ) ; | 1 | TS102 | applied | repite cuatro veces⏎F(1,60)⏎fin => LOOP(4)⏎F(1,60)⏎END_LOOP
 LOOP by? n=@num times? ⟨:|,|do|;¦b=@start|'{'¦$⟩ | LOOP ( $n ) ⟨;¦; $b¦⟩ | 1 | TS102 | applied | repite 4⟨:⏎¦ ¦⏎⟩F(1, 60)⟨¦¦⏎fin⟩ => LOOP(4)⟨⏎¦;¦⏎⟩F(1, 60)⟨⏎¦;¦⏎⟩END_LOOP
 LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2⏎LOOP X * 4⏎F(1,50)⏎END_LOOP => X = 2⏎LOOP(X * 4)⏎F(1,50)⏎END_LOOP

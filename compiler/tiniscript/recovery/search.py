@@ -20,7 +20,7 @@ from tiniscript.recovery.blocks import Edit, Line, Matching
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, texts, words_of
 from tiniscript.recovery.lines import MARGIN, Reading, Step, is_right
 from tiniscript.recovery.moved import Moved, ordered
-from tiniscript.recovery.writing import as_written, laid_out, without_note
+from tiniscript.recovery.writing import PLAIN_SIGNS, as_written, laid_out, without_note
 from tiniscript.syntax.outline import Failure
 
 UNREAD = 5  # lines that nobody can read, after which others are read quickly
@@ -30,8 +30,6 @@ _DO_ALONE = re.compile(rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make
 _END_UNTIL = re.compile(rf"\b{words_of('end')}[ _]?{words_of('until')}\b")
 _SETUP = re.compile(r"^\s*SI\s*\|\s*(?=\w)", re.IGNORECASE)
 _WHEN = re.compile(rf"\s*(S[IB]\s*\|)?\s*{words_of('whenever')}\b")
-_QUOTES = str.maketrans("“”„‘’", '"""\'\'')
-_QUOTES |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese keyboards
 
 Mistakes = Callable[[str], Sequence[Code]]  # the codes of a program's mistakes
 
@@ -130,7 +128,7 @@ class Recovery:
         """Make the rewrites of signs, in the lines that have them, but none that loses a DEF."""
         names = Names([lexemes(each.body) for each in self.lines], self.kit)
         for line in self.lines:
-            body = line.body.translate(_QUOTES)
+            body = line.body.translate(PLAIN_SIGNS)
             if body == line.body and is_right(lexemes(body), names):
                 continue
             for row in rewrites.of_signs():
@@ -222,36 +220,57 @@ class Recovery:
                 break
             if best is not None and has_blocks and all(it.items is not None for it in readings):
                 continue
-            blocks = self.matched(readings if has_blocks else ())
-            if blocks is None:
-                continue
-            changes = self.changes(readings, blocks)
-            has_sure_blocks, move = blocks.is_sure, None
-            is_sure = has_sure_blocks and all(each.is_sure for each in changes)
-            text = "\n".join(each.text for each in changes)
-            left = self.mistakes(text)
-            if left and set(left) & rows.MISPLACED:
-                for moved in ordered(text):
-                    if left and not self.mistakes(moved.text):
-                        text, left, changes, move = moved.text, [], [], moved
-            is_alone = has_sure_blocks and _ends(text) == self.ends
-            if left and not ((is_sure or is_alone) and len(left) < self.count):
-                continue
-            is_applied = is_sure and bool(text.strip(" ;\n")) and not (move and move.is_guess)
-            if best is None or (not left, is_applied) > (best.is_whole, best.is_applied):
-                best = Candidate(text, is_applied, not left, changes, has_sure_blocks, move)
+            found = self.candidate(readings, has_blocks)
+            if found and (best is None or _rank(found) > _rank(best)):
+                best = found
         return best
+
+    @cached_property
+    def other(self) -> Candidate | None:
+        """Return a program that may have been meant as well: it costs about the same."""
+        if not (self.whole and self.whole.is_whole) or self.whole.is_applied:
+            return None
+        for cost, k, rival in self.rivals():
+            readings = [rival if it is self.lines[k] else it.reading for it in self.lines]
+            found = self.candidate(readings, True) if cost < MARGIN else None
+            if found and found.is_whole and found.text != self.whole.text:
+                return found
+        return None
+
+    def candidate(self, readings: list[Reading], has_blocks: bool) -> Candidate | None:
+        """Return the program of some readings, None where it is no better than the text."""
+        blocks = self.matched(readings if has_blocks else ())
+        if blocks is None:
+            return None
+        changes = self.changes(readings, blocks)
+        has_sure_blocks, move = blocks.is_sure, None
+        is_sure = has_sure_blocks and all(each.is_sure for each in changes)
+        text = "\n".join(each.text for each in changes)
+        left = self.mistakes(text)
+        if left and set(left) & rows.MISPLACED:
+            for moved in ordered(text):
+                if left and not self.mistakes(moved.text):
+                    text, left, changes, move = moved.text, [], [], moved
+        is_alone = has_sure_blocks and _ends(text) == self.ends
+        if left and not ((is_sure or is_alone) and len(left) < self.count):
+            return None
+        is_applied = is_sure and bool(text.strip(" ;\n")) and not (move and move.is_guess)
+        return Candidate(text, is_applied, not left, changes, has_sure_blocks, move)
+
+    def rivals(self) -> list[tuple[float, int, Reading]]:
+        """Return readings that are not the cheapest ones: how much more they cost, and the line."""
+        found = [
+            (rival.cost - each.reading.cost, k, rival)
+            for k, each in enumerate(self.lines)
+            for rival in each.rivals
+        ]
+        return sorted(found, key=lambda it: it[0])
 
     def choices(self) -> Iterator[tuple[list[Reading], bool]]:
         """Give what each line may be read as; at last without the blocks of a program."""
         cheapest = [each.reading for each in self.lines]
         yield cheapest, True
-        rivals = [
-            (rival.cost - each.reading.cost, k, rival)
-            for k, each in enumerate(self.lines)
-            for rival in each.rivals
-        ]
-        for _, k, rival in sorted(rivals, key=lambda it: it[0])[:ALTERNATIVES]:
+        for _, k, rival in self.rivals()[:ALTERNATIVES]:
             yield [*cheapest[:k], rival, *cheapest[k + 1 :]], True
         sure = [each if each.is_sure else _UNREAD for each in cheapest]
         yield sure, False
@@ -293,6 +312,10 @@ def _is_key(old: Sequence[Lexeme], new: Sequence[Lexeme]) -> bool:
 
 def _ends(text: str) -> int:
     return sum(each.text in ENDED for each in lexemes(text))
+
+
+def _rank(found: Candidate) -> tuple[bool, bool]:
+    return found.is_whole, found.is_applied
 
 
 def _kept(reading: Reading) -> int:

@@ -10,10 +10,20 @@ from itertools import pairwise
 from math import nan
 from typing import NamedTuple
 
-from tiniscript.base.words import MOVES, UNIT_OF, WAYS, WORDS, Argument, said_of
+from tiniscript.base.words import MOVES, OTHER_WAY, UNIT_OF, WAYS, WORDS, Argument, said_of
 from tiniscript.base.words import names as is_called
 from tiniscript.recovery import rows
-from tiniscript.recovery.concepts import CALLED, DONE, LONG_S, NEAR, Lexeme, Names, lexemes, made
+from tiniscript.recovery.concepts import (
+    CALLED,
+    DONE,
+    LONG_S,
+    NEAR,
+    Lexeme,
+    Names,
+    lexemes,
+    made,
+    number_text,
+)
 from tiniscript.syntax.lexer import NUMBER, WORD
 
 _STEPS_FROM = 10  # so many are as many centimetres
@@ -74,6 +84,7 @@ class _Reader:
         self.mark: str | None = None  # the unit of the next value, by its name: `potencia 80`
         self.times: str | None = None
         self.is_turn = False
+        self.is_back = False  # `R -1 50`: the other way
         self.way = ""  # the unit behind the first value of a move: `20 CM`
         self.is_sure = True
         self.cost = 1.0
@@ -169,9 +180,9 @@ class _Reader:
         if unit == "times":
             if self.times is not None:
                 return None
-            self.times = _told(number)
+            self.times = number_text(number)
             return k
-        self._take(_told(number * thousandths / 1000), unit)
+        self._take(number_text(number * thousandths / 1000), unit)
         return k
 
     def _is_number(self, k: int) -> bool:
@@ -186,10 +197,12 @@ class _Reader:
         is_minus = sign == "-" and self._is_number(k + 1)
         if is_minus and self.command in ("M", "SHOW"):
             self.is_sure = self.is_sure and not (self.values and before != ",")
-            self._take("-" + _told(float(self.text(k + 1))), self.mark)
+            self._take("-" + number_text(float(self.text(k + 1))), self.mark)
             return k + 2
-        if is_minus and self.words[k].space and self.words[k + 1].space == "":
-            return None  # `R -1 50`: nobody drops a sign
+        if is_minus and (before in ("(", ",") or self._is_glued(k)):
+            is_back = self.command in MOVES and not self.is_back and not self.values
+            self.is_sure, self.is_back = False, True
+            return k + 1 if is_back else None  # nobody drops a sign
         if sign not in _PASSED or (sign == "=" and not self.mark):
             return None
         if sign == "," and self.mark and before != ",":
@@ -198,6 +211,10 @@ class _Reader:
         is_odd = sign in ("-", ".") or (sign == "%" and not self._is_number(k - 1))
         self.is_sure = self.is_sure and not is_odd
         return k + 1
+
+    def _is_glued(self, k: int) -> bool:
+        """Whether a sign belongs to what is behind it, not to what is before it: `R -1 50`."""
+        return bool(self.words[k].space) and self.words[k + 1].space == ""
 
     def _word(self, k: int) -> int | None:
         word, after = self.text(k), self.text(k + 1)
@@ -270,6 +287,7 @@ class _Reader:
 
     def call(self, has_until: bool, is_order: bool) -> Filled | None:
         assert self.command is not None
+        self.command = OTHER_WAY[self.command] if self.is_back else self.command
         device = self.names.actuators.get(self.command)
         word = device.word if device else WORDS[self.command]
         if not word.arguments:
@@ -310,14 +328,16 @@ class _Reader:
         if count == 1 and values[0].text != "0":
             return None
         pairs = zip(values[::2], values[1::2], strict=True)
-        return [_Value(_told(float(f"{a.text}.{b.text}")), b.unit) for a, b in pairs]
+        return [_Value(number_text(float(f"{a.text}.{b.text}")), b.unit) for a, b in pairs]
 
     def _in_seconds(self, values: list[_Value] | None) -> list[_Value] | None:
         """Take a plain number behind a command that counts milliseconds for these."""
         plain = [it for it in values or () if it.unit is None and not it.text.isidentifier()]
         if plain and values and said_of(self.words[0].text, "milliseconds"):
             self.is_sure = False
-            return [_Value(_told(it.number / 1000), "s") if it in plain else it for it in values]
+            return [
+                _Value(number_text(it.number / 1000), "s") if it in plain else it for it in values
+            ]
         is_long = any(it.number >= MILLISECONDS_FROM for it in plain)
         return None if self.command == "W" and is_long else values
 
@@ -375,7 +395,3 @@ class _Reader:
             if thousandths < argument.low or thousandths > argument.high:
                 return None
         return slots
-
-
-def _told(number: float) -> str:
-    return f"{number:.3f}".rstrip("0").rstrip(".")

@@ -10,6 +10,8 @@ from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 
 LONGEST_BLOCK = 160  # characters of one that a message shows
+PLAIN_SIGNS = str.maketrans("“”„‘’", '"""\'\'')
+PLAIN_SIGNS |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese keyboards
 _NOTE = re.compile(r"(?i)(?<!\bSI)(?<!\bSB)//")
 
 

@@ -1,0 +1,508 @@
+"""Conservation: what a text says that a repair of it leaves out, and what a robot does more by it.
+
+Counts numbers with their signs and units, names, commands, comparisons and branches, as far as
+words and signs say them. Knows no row: what was written is compared with what is written then.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Edit, applied, overlap
+from tiniscript.base.words import (
+    ALIASES,
+    BLOCK_ENDS,
+    FUNCTIONS,
+    MOVES,
+    UNIT_OF,
+    WAYS,
+    WORDS,
+    lexicon,
+)
+from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.recovery.concepts import (
+    CALLED,
+    ENDED,
+    NEAR,
+    Lexeme,
+    Names,
+    closed,
+    concept_of,
+    lexemes,
+    said_of,
+    texts,
+)
+from tiniscript.recovery.rewrites import one_word
+from tiniscript.recovery.writing import PLAIN_SIGNS, without_note
+from tiniscript.syntax.lexer import NUMBER, WORD
+
+_SENSES = {"<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>": ">", "!=": "<>",
+           "=!": "<>", "≤": "<", "≥": ">", "≠": "<>"}  # fmt: skip
+_UNITS = ("s", "cm", "°", "%", "Hz")
+_ARMS = ("ELSE", "ELSEIF")
+_HEADS = frozenset((*BLOCK_ENDS, *_ARMS))
+_DRIVES = frozenset((*MOVES, "M", "W", "BEEP", "S"))
+_COUNTED = frozenset((*_DRIVES, *_HEADS, *FUNCTIONS, "SHOW", "UNTIL", "BREAK", "AND", "OR", "NOT",
+                      "TRUE", "FALSE", "TIME", "FOREVER"))  # fmt: skip
+# What says the same where a word is gone: `repeat until` is WHILE, `void loop` is FOREVER.
+_AS = {
+    "LOOP": ("WHILE", "BREAK", "FOREVER"), "WHILE": ("BREAK", "UNTIL"), "UNTIL": ("WHILE", "BREAK"),
+    "FOREVER": ("TRUE", "LOOP", "WHILE"), "TRUE": ("FOREVER",), "S": ("BREAK",), "IF": ("WHEN",),
+    "WHEN": ("IF",), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
+}  # fmt: skip
+_TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
+_NEGATES = ("no", "without", "unless")
+# What frames a program and says nothing: its setup, the tags of a page, numbers that count lines.
+_FRAME = re.compile(
+    r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>"
+    r"|^\s*(?:(?:paso|passo|step|linea|linha|line)\s*)?\d+\s*[.):-]+\s*(?=[a-z])"
+)
+_NUMBERED = re.compile(r"(?m)^[ \t]*(\d{1,4})(?=[ \t]+[A-Za-z])")
+_ESCAPED = {"&lt;": "<", "&gt;": ">", "&nbsp;": " ", "½": ".5", "¼": ".25", "¾": ".75"}
+_GLUED = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
+# Digits, and letters that look like some; and what may stand between two parts of one number.
+_DIGITS = re.compile(r"[0-9oOlI]*[0-9][0-9oOlI]*|\b[oO](?=\.)")
+_BETWEEN = re.compile(r"[.,:;'´`·_ ]*")
+_LETTERS = str.maketrans("oOlI", "0011")
+_LONGEST = 3  # parts of a number
+_END = lexemes(";")[0]
+
+
+class Amount(NamedTuple):
+    """A number with its sign and its unit, "" for one that is not known; and how it is written."""
+
+    value: float
+    unit: str
+    written: str
+
+
+class Difference(NamedTuple):
+    """What is `lost`, as it is written, and which commands there are `more` of."""
+
+    lost: list[str]
+    more: list[str]
+
+
+def difference(text: str, repaired: str, kit: Kit) -> Difference:
+    """Return what a text says that a repaired one doesn't, and what only that does."""
+    before, after = _Said(text, repaired, kit), _Said(repaired, repaired, kit)
+    lost = [*_amounts(before, after), *_words(before, after), *_questions(before, after)]
+    more = [word for word in _DRIVES if after.words[word] > before.meant[word]]
+    more = more if len(more) > before.strange else []
+    more += [name for name in after.names.defs if after.calls(name) > before.calls(name)]
+    return Difference([*dict.fromkeys(lost)], more)
+
+
+def conserving(found: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
+    """Return diagnostics of which no repair is sure that loses something, or does more.
+
+    It is shown together with what is `lost`. Together they may keep what one alone does not.
+    """
+    sure = [each for each in found if each.repair and each.repair.is_sure]
+    joint: list[Edit] = []
+    for each in sure:
+        if each.repair and not overlap(each.repair.edits, joint):
+            joint += each.repair.edits
+    if not joint or not any(difference(text, applied(text, joint), kit)):
+        return [*found]
+    lost = {id(each): difference(text, applied(text, each.repair.edits), kit)
+            for each in sure if each.repair}  # fmt: skip
+    is_joint = not any(any(each) for each in lost.values())  # none alone: then all together do it
+    return [
+        _shown(each, lost[id(each)].lost)
+        if id(each) in lost and (is_joint or any(lost[id(each)]))
+        else each
+        for each in found
+    ]
+
+
+def _shown(found: Diagnostic, lost: Sequence[str]) -> Diagnostic:
+    edits = found.repair.edits if found.repair else ()
+    values = {**found.values, "lost": ", ".join(lost)} if lost else found.values
+    return found._replace(values=values, repair=Repair(edits, False))
+
+
+class _Said:
+    """What a text says, in words of any language; `repaired` has the names that there are then."""
+
+    def __init__(self, text: str, repaired: str, kit: Kit) -> None:
+        self.is_right = text == repaired  # as far as it is repaired
+        self.others = {each.upper() for each in re.findall(r"[A-Za-z_]\w*", repaired)}
+        parts = [without_note(line.translate(PLAIN_SIGNS)) for line in text.split("\n")]
+        self.notes = Counter(self._all_of([note for _, note in parts]))
+        self.body = self._without_frame("\n".join(body for body, _ in parts))
+        lines = [lexemes(self._apart(line)) for line in self.body.split("\n")]
+        self.names = Names(lines, kit)
+        self.tokens = [each for line in lines for each in (*self._joined(line), _END)]
+        self.units = {each.name: each.unit for each in kit.sensors} | {"TIME": "s"}
+        self.units |= self._units_of_names()
+        self.words: Counter[str] = Counter()  # that it surely says
+        self.meant: Counter[str] = Counter()  # that it may say
+        self.written: dict[str, str] = {}
+        self.amounts: list[Amount] = []
+        self.loose: list[tuple[str, str]] = []  # units behind no number, and how they are written
+        self.foreign: Counter[str] = Counter()  # of those, in words of another language
+        self.strange = 0  # words of other languages, or of none
+        self._read()
+
+    @staticmethod
+    def _all_of(lines: Sequence[str]) -> list[str]:
+        return [concept_of(each) or each for line in lines for each in texts(lexemes(line))]
+
+    @staticmethod
+    def _without_frame(text: str) -> str:
+        for sign, meant in _ESCAPED.items():
+            text = re.sub(rf"(?<=\d) ?{sign}", meant, text) if meant[0] == "." else text
+            text = text.replace(sign, f"0{meant}" if meant[0] == "." else meant)
+        text = _FRAME.sub(";", text)
+        counted = [int(each) for each in _NUMBERED.findall(text)]
+        is_counting = len(counted) > 1 and counted == sorted(set(counted))
+        return _NUMBERED.sub("", text) if is_counting else text
+
+    def _apart(self, line: str) -> str:
+        """Return a line in which numbers stand alone, but for those of names: `F2,80`, `F_2_80`."""
+        line = re.sub(r"(?<!\d)(\d) 1/2(?!\d)", r"\1.5", line)
+        line = re.sub(r"(?<![\d)] )(?<!\d)1/2(?!\d)(?=\s*[a-z])", "0.5", line)
+        return _GLUED.sub(
+            lambda it: it[0] if it[0].upper() in self.others else f"{it[1]} {it[2]} ", line
+        )
+
+    def _joined(self, line: list[Lexeme]) -> list[Lexeme]:
+        """Return a line in which words are one that the language, or the repair, has as one."""
+        found: list[Lexeme] = []
+        for token in line:
+            last = found[-1] if found else _END
+            before = found[-2] if last.text in ("-", "_", ".") and len(found) > 1 else last
+            one = f"{before.text}_{token.text}"
+            if before.kind is token.kind is WORD and one in self.others:
+                found[found.index(before, -2 if before is not last else -1) :] = [
+                    token._replace(text=one)
+                ]
+            elif last.text == "ELSE" and token.text == "IF":
+                found[-1] = token._replace(text="ELSEIF")
+            else:
+                found.append(token)
+        while joined := one_word(found, self.names):
+            found = joined[0]
+        return found
+
+    # -- what each word is -----------------------------------------------------------------------
+
+    def _word(self, token: Lexeme) -> str:
+        """Return the word of the language, or the name, that a word surely says, "" for none."""
+        text = ALIASES.get(token.text, token.text)
+        if self.names.is_name(text) or (text in WORDS and text != "SI"):
+            return "S" if text == "STOP" else text
+        return (concept_of(text) or "") if len(lexicon().get(text, ())) == 1 else ""
+
+    def _may_be(self, token: Lexeme) -> set[str]:
+        """Return the words of the language that a word may say."""
+        found = {self._word(token), concept_of(token.text) or ""}
+        found |= {each.concept for each in self.names.meanings(token.text) if each.cost <= NEAR}
+        return {"S" if each == "STOP" else each for each in found}
+
+    def _read(self) -> None:
+        slots = self._slots()
+        k, depth = 0, [False]  # whether each bracket is that of a call
+        while k < len(self.tokens):
+            token, before = self.tokens[k], self.tokens[k - 1] if k else _END
+            if token.text == "(":
+                depth.append(bool(self._may_be(before) & CALLED))
+            elif token.text == ")":
+                depth = depth[:-1] or [False]
+            elif token is _END:
+                depth = [False]
+            if (value := self._number(token)) is not None:
+                is_said = said_of(before.text, "leaves", "by") and before.kind is WORD
+                k = k + 1 if is_said else self._take(k, value, slots[k])
+                continue
+            if token.kind is WORD and not self._is_label(k):
+                self._take_word(k, len(depth) > 1)
+            k += 1
+        self.words["ELSE"] += self._arms_in_brackets()
+
+    def _take_word(self, k: int, is_in_brackets: bool) -> None:
+        token, before, after = self.tokens[k], self.tokens[k - 1] if k else _END, self._after(k)
+        if self._is_loose_unit(k):
+            self.loose.append((said_of(token.text, "unit")[0], token.source or token.text))
+            return
+        word = self._word(token)
+        around = {before.text, after.text}
+        is_part = any(token.text == row[-1] for row in self.names.rows)  # of `mi velocidad`
+        is_sign = token.text == "X" and before.kind is NUMBER and after.kind in (NUMBER, WORD)
+        is_joint = (
+            word in ("AND", "OR") and not is_in_brackets and bool(self._may_be(after) & _DRIVES)
+        )
+        is_again = (word == "IF" and before.text in ("AND", "OR")) or (
+            word == "OR" and before.text in _SENSES
+        )
+        is_needless = (word == "TRUE" and "=" in around and is_in_brackets) or (
+            word == "TIME" and not around & _SENSES.keys()
+        )
+        self.meant.update(self._may_be(token))
+        self.strange += token.text not in WORDS and not self.names.is_name(token.text)
+        if is_part or is_sign or is_joint or is_again or is_needless:
+            return
+        if word in _COUNTED or (word and word not in WORDS):
+            self.words[word] += 1
+            self.foreign[word] += word != token.text
+            self.written.setdefault(word, token.source or token.text)
+
+    def _after(self, k: int) -> Lexeme:
+        return self.tokens[k + 1] if k + 1 < len(self.tokens) else _END
+
+    def _is_label(self, k: int) -> bool:
+        """Whether a word behind an end says which one ends."""
+        back = k - 2 if k > 1 and self.tokens[k - 1].text in ("-", "_", ".") else k - 1
+        before = self.tokens[back] if k else _END
+        is_end = before.text in ENDED or bool(said_of(before.text, "end"))
+        token = self.tokens[k]
+        is_block = token.text in self.names.defs or bool(self._may_be(token) & BLOCK_ENDS.keys())
+        return is_end and is_block and before.kind is WORD and self._after(k).text in (";", "(")
+
+    # -- numbers ---------------------------------------------------------------------------------
+
+    def _number(self, token: Lexeme) -> float | None:
+        if token.kind is NUMBER:
+            return float(token.text)
+        said = said_of(token.text, "number") if token.kind is WORD else ()
+        is_other = self.names.is_name(token.text) or len(lexicon().get(token.text, ())) > 1
+        return float(said[0]) if said and not is_other and said != ("1",) else None
+
+    def _take(self, k: int, value: float, slot: str) -> int:
+        """Keep the number at a place with its sign and its unit; return where to read on."""
+        token, after = self.tokens[k], self._after(k)
+        is_minus = self._is_minus(k)
+        written = f"{'-' if is_minus else ''}{token.source or token.text}"
+        while token.kind is WORD and value % 10 == 0:  # `ochenta y cinco`
+            at = k + 1 + bool(said_of(self._after(k).text, "and"))
+            more = self._number(self.tokens[at]) if at < len(self.tokens) else None
+            if more is None or more >= (100 if value % 100 == 0 else 10):
+                break
+            value, k = value + more, at
+        unit = slot if self.is_right else ""
+        if said := self._unit_behind(k):
+            unit, scale = said
+            value, k = value * scale / 1000, k + 1
+            written += f"{after.space or ''}{after.source or after.text}"
+        self.amounts.append(Amount(-value if is_minus else value, unit, written))
+        return k + 1
+
+    def _is_minus(self, k: int) -> bool:
+        """Whether the sign before a number belongs to it, and is none of a sum."""
+        sign, before = self.tokens[k - 1] if k else _END, self.tokens[k - 2] if k > 1 else _END
+        if sign.text != "-":
+            return False
+        is_value = before.kind is NUMBER or before.text == ")" or self.names.is_name(before.text)
+        is_even = self.is_right or bool(sign.space) == bool(self.tokens[k].space)
+        return not (is_value and is_even)
+
+    def _unit_behind(self, k: int) -> tuple[str, float] | None:
+        """Return the unit behind a number, and how many thousandths of it one is."""
+        token, next_one = self._after(k), self._after(k + 1).text
+        said = said_of(token.text, "unit")
+        is_letter = len(token.text) == 1 and token.kind is WORD
+        is_apart = is_letter and token.space != "" and next_one not in (",", ")")
+        is_order = is_letter and token.source == token.text and token.space != ""
+        if not said or (is_apart and is_order) or self.names.is_name(token.text):
+            return None
+        return said[0] if said[0] in _UNITS else "", float(said[1])
+
+    def _is_loose_unit(self, k: int) -> bool:
+        """Whether a word says a unit and nothing else, of no number."""
+        token, before, after = self.tokens[k], self.tokens[k - 1] if k else _END, self._after(k)
+        said = {each.split()[0] for each in lexicon().get(token.text, ())}
+        is_behind = len(token.text) == 1 and after.text in (",", ")") and before.kind is WORD
+        is_unit = said == {"unit"} or ("unit" in said and (is_behind or token.text in WAYS))
+        is_free = not self.names.is_name(token.text) and after.kind is not NUMBER
+        if not is_unit or not is_free or (len(token.text) == 1 and not is_behind):
+            return False
+        return said_of(token.text, "unit")[0] in _UNITS
+
+    def _slots(self) -> list[str]:
+        """Return the unit that a value at each token has by its place, "" for none."""
+        found = [""] * len(self.tokens)
+        around: list[list[str]] = [[""]]
+        for k, token in enumerate(self.tokens):
+            if token.text == "(":
+                around.append(self._arguments(k) or [around[-1][0]])
+            elif token.text == ")" and len(around) > 1:
+                around.pop()
+            elif token.text == "," and len(around[-1]) > 1:
+                around[-1] = around[-1][1:]
+            elif token is _END:
+                around = [[""]]
+            found[k] = around[-1][0]
+        triples = zip(self.tokens, self.tokens[1:], self.tokens[2:], strict=False)
+        for k, (one, sign, other) in enumerate(triples):
+            if sign.text in _SENSES or sign.text == "=":
+                at = min(k + 3 if other.text == "-" else k + 2, len(found) - 1)
+                found[at] = found[at] or self.units.get(one.text, "")
+                found[k] = found[k] or self.units.get(other.text, "")
+        return found
+
+    def _arguments(self, k: int) -> list[str]:
+        """Return the units of what is in the brackets that begin at a token."""
+        word = self.tokens[k - 1] if k else _END
+        if word.kind is not WORD:
+            return []
+        if word.text not in WORDS or not WORDS[word.text].role.is_call:
+            return [""]
+        units = [each.unit for each in WORDS[word.text].arguments]
+        behind = texts(self.tokens[k : closed(self.tokens, k) or k])
+        way = UNIT_OF.get(word.text, "")
+        if way in behind:
+            units[0] = WAYS[way].unit
+        return units
+
+    def _units_of_names(self) -> dict[str, str]:
+        """Return the units that variables have by their use; where they are two, with a `/`."""
+        found: dict[str, dict[str, None]] = {}
+        for token, unit in zip(self.tokens, self._slots(), strict=True):
+            if unit and token.text in self.names.variables:
+                found.setdefault(token.text, {})[unit] = None
+        return {name: "/".join(units) for name, units in found.items()}
+
+    # -- branches --------------------------------------------------------------------------------
+
+    def calls(self, name: str) -> int:
+        """Return how often a DEF is called: behind DEF, or behind an end, its name is no call."""
+        found = 0
+        for k, (before, each) in enumerate(pairwise([_END, *self.tokens])):
+            found += each.text == name and not ("DEF" in self._may_be(before) or self._is_label(k))
+        return found
+
+    def empty(self) -> int:
+        """Return how many branches have nothing in them."""
+        left = [each for each in self.tokens if each is not _END and each.text not in (";", "{")]
+        found = 0
+        for k, token in enumerate(left):
+            word = self._word(token)
+            if word in _HEADS:
+                end = closed(left, k + 1) if texts(left[k + 1 : k + 2]) == ("(",) else k + 1
+                end += word == "DEF"
+                if 0 < end < len(left):
+                    is_over = left[end].text in (*ENDED, "}") or self._word(left[end]) in _ARMS
+                    found += is_over
+        return found
+
+    def _arms_in_brackets(self) -> int:
+        """Return how many IFs have two branches in their brackets: `IF(question, F, B)`."""
+        found = 0
+        for k, token in enumerate(self.tokens[:-1]):
+            end = closed(self.tokens, k + 1) if self._after(k).text == "(" else 0
+            if end and "IF" in self._may_be(token):
+                inside = pairwise(self.tokens[k + 2 : end - 1])
+                begun = [b for a, b in inside if a.text in (",", ";")]
+                found += sum(bool(self._may_be(each) & _DRIVES) for each in begun) > 1
+        return found
+
+
+def _amounts(before: _Said, after: _Said) -> Iterator[str]:
+    """Give the numbers that are gone, or have another sign or unit."""
+    left, lost = list(after.amounts), list(before.amounts)
+    for value, parts in _runs(before.body):
+        written = next((it for it in left if abs(it.value) == value), None)
+        gone = _all_in(parts, lost)
+        if written and gone and not _all_in(parts, left):
+            left.remove(written)
+            for each in gone:
+                lost.remove(each)
+    for each in [*lost]:
+        if fitting := [it for it in left if _is_same(each, it)]:
+            left.remove(max(fitting, key=lambda it: it.unit == each.unit))
+            lost.remove(each)
+    yield from (each.written for each in lost)
+    units = {unit for it in after.amounts for unit in it.unit.split("/")}
+    units |= {after.units.get(each.text, "") for each in after.tokens}
+    kept = Counter(after.loose)
+    yield from (each[1] for each in before.loose if each[0] not in units and not kept[each])
+
+
+def _all_in(parts: Sequence[float], amounts: Sequence[Amount]) -> list[Amount]:
+    """Return an amount for each of these numbers, nothing where there is none for one of them."""
+    left = list(amounts)
+    found = []
+    for part in parts:
+        own = next((each for each in left if abs(each.value) == part), None)
+        if own is None:
+            return []
+        left.remove(own)
+        found.append(own)
+    return found
+
+
+def _is_same(before: Amount, after: Amount) -> bool:
+    units = {*after.unit.split("/")} - {""}
+    is_unit = not before.unit or units <= {*before.unit.split("/")}
+    return is_unit and abs(before.value - after.value) < 0.001
+
+
+def _runs(text: str) -> Iterator[tuple[float, list[float]]]:
+    """Give what digits may mean as one number, and as several: `2,5`, `8 0`, `8O`, `1:30`."""
+    pieces = [*_DIGITS.finditer(text)]
+    for first in range(len(pieces)):
+        for last in range(first, min(first + _LONGEST, len(pieces))):
+            run = pieces[first : last + 1]
+            gaps = [text[a.end() : b.start()] for a, b in pairwise(run)]
+            if not all(_BETWEEN.fullmatch(each) for each in gaps):
+                break
+            digits = [each[0].translate(_LETTERS) for each in run]
+            written = text[run[0].start() : run[-1].end()]
+            parts = [float(each) for each in re.findall(r"\d+(?:\.\d+)?|\.\d+", written)]
+            yield from ((value, parts) for value in _values(digits, ":" in written))
+
+
+def _values(digits: Sequence[str], is_time: bool) -> Iterator[float]:
+    yield float("".join(digits))
+    for k in range(1, len(digits)):
+        yield float(f"{''.join(digits[:k])}.{''.join(digits[k:])}")
+    if is_time and len(digits) > 1:
+        yield 60 * float(digits[0]) + float(digits[1])
+
+
+def _words(before: _Said, after: _Said) -> Iterator[str]:
+    """Give the words that are gone, and are not in a note."""
+    noted = after.notes - before.notes
+    is_turned = _senses(before) != _senses(after)
+    for word, count in before.words.items():
+        missing = count - after.words[word]
+        instead = max((after.words[it] - before.words[it] for it in _AS.get(word, ())), default=0)
+        instead = max(instead, min(noted[word], before.foreign[word]))
+        if missing > instead and not (word == "NOT" and is_turned):
+            yield before.written.get(word, word)
+
+
+def _questions(before: _Said, after: _Said) -> Iterator[str]:
+    """Give the comparisons that are gone, or turned round, and branches that nothing is in."""
+    asked = _senses(before) - (after.notes - before.notes)
+    left = _senses(after)
+    turners = ({word: said.words[word] for word in _TURNERS} for said in (before, after))
+    negated = any(said_of(it.text, *_NEGATES) or it.text == "!" for it in before.tokens)
+    may_turn = negated or len({str(each) for each in turners}) > 1
+    if asked.total() > left.total() or (asked - left and not may_turn):
+        yield from (asked - left) or asked
+    if after.empty() > before.empty():
+        yield "ELSE"
+
+
+def _senses(said: _Said) -> Counter[str]:
+    found: Counter[str] = Counter()
+    in_call = [False]
+    for one, sign, other in zip(said.tokens, said.tokens[1:], said.tokens[2:], strict=False):
+        if sign.text == "(":
+            in_call.append(one.text in CALLED)
+        elif sign.text == ")":
+            in_call = in_call[:-1] or [False]
+        elif sign is _END:
+            in_call = [False]
+        is_between = one.kind in (WORD, NUMBER) or one.text == ")"
+        is_between &= other.kind in (WORD, NUMBER) or other.text in ("(", "-", "+")
+        if sign.text in _SENSES and is_between and not in_call[-1] and one.text not in CALLED:
+            found[_SENSES[sign.text]] += 1
+    return found

@@ -1,0 +1,183 @@
+"""Conservation: what `tsc check --fix` makes keeps what was written, whichever row makes it."""
+
+from __future__ import annotations
+
+import re
+from itertools import product
+
+import pytest
+
+from tests.pupils.corpus import check
+from tests.support.rows import each_row
+from tiniscript import robots
+from tiniscript.base.languages import languages, table
+from tiniscript.base.source import Source
+from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.rendering import message
+from tiniscript.recovery import rewrites
+from tiniscript.recovery.conserved import difference
+
+KIT = robots.load(robots.DEFAULT).kit
+# A number that stands alone, and has no unit.
+NUMBER = re.compile(r"(?<![\w.,:'´])(?<!\d )\d+(?:\.\d+)?(?![\w.,:'´%°]| ?[a-z]| \d)")
+# Which unit a number has by what stands before it, and what is behind it.
+PLACES = (
+    (re.compile(r"\b[FBLR]\(-?$"), ""),
+    (re.compile(r"\b[FBLR]\([^(),]*,\s*-?$|\bM\([^()]*$"), "%"),
+    (re.compile(r"\b(?:W|BEEP)\(-?$|\bTIME\s*[<>=]+\s*-?$"), "s"),
+    (re.compile(r"\bBEEP\([^(),]*,\s*-?$"), "Hz"),
+    (re.compile(r"\bDISTANCE\s*[<>=]+\s*-?$"), "cm"),
+)
+
+
+def units() -> list[tuple[str, str, float]]:
+    """Return one word for each unit of the lexicons, which it is, and how much one is."""
+    found = {}
+    for language in languages():
+        for row in table(language, "lexicon.txt").split("\n"):
+            if row.startswith("unit ") and row.split()[1] in ("s", "cm", "°", "%", "Hz"):
+                _, unit, scale = row.partition("|")[0].split()
+                found[unit, int(scale) / 1000] = row.partition("|")[2].split()[0].lower()
+    return [(word, *its) for its, word in found.items()]
+
+
+def numbers(text: str) -> list[tuple[float, str]]:
+    """Return the numbers of a program with their signs, and the unit of each by its place."""
+    found = []
+    for each in re.finditer(r"(?<![\w.])\d+(?:\.\d+)?", text):
+        before, behind = text[: each.start()], text[each.end() :]
+        own = next((unit for pattern, unit in PLACES if pattern.search(before)), None)
+        if own == "":
+            way = re.match(r"(?i) ?(CM|DEG)\b", behind)
+            own = {"CM": "cm", "DEG": "°"}[way[1].upper()] if way else "s"
+        is_minus = re.search(r"(?:[(,=<>+*/]|^)\s*-$", before) is not None
+        found.append((-float(each[0]) if is_minus else float(each[0]), own or ""))
+    return found
+
+
+def is_kept(written: str, value: float, unit: str, made: str) -> bool:
+    """Whether a program has a number with its sign and unit, or still as it was written."""
+    return written in made or any(
+        abs(each - value) < 0.001 and (not own or not unit or own == unit)
+        for each, own in numbers(made)
+    )
+
+
+ROWS: list[rewrites.SignRow | rewrites.Row] = [*rewrites.of_signs(), *rewrites.of_tokens()]
+EXAMPLES = [each.example[0] for each in ROWS]
+WRITTEN = [
+    *("{}({}, 60)".replace("{}", word, 1) for word in "FBLR"),
+    *("W({})", "SHOW({})", "X = {}\nSHOW(X)", "X = {}\nW(X)", "X = {}\nF(X, 60)\nR(X, 60)"),
+    *("F(2, {})", "BEEP(1, {})", "F(5, 60) UNTIL(DISTANCE < {})", "W(9) UNTIL(TIME > {})"),
+    *("W(1);F({} 60)", "W(1); R 60 {}", "F({}; 60);W(1)"),
+]
+
+
+def variants(text: str) -> list[tuple[str, str, float, str]]:
+    """Return a program with another sign or a unit at each of its numbers, and that number."""
+    found = []
+    for each in NUMBER.finditer(text):
+        value = float(each[0])
+        start, end = each.span()
+        if text[:start].rstrip()[-1:] not in ("-", "+"):
+            found.append((f"{text[:start]}-{text[start:]}", f"-{each[0]}", -value, ""))
+        for written, unit, scale in units():
+            new = f"{text[:end]} {written}{text[end:]}"
+            found.append((new, f"{each[0]} {written}", value * scale, unit))
+    return found
+
+
+@pytest.mark.sampled("text", keep=30)
+@pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
+def test_no_repair_loses_a_sign_or_a_unit_in_the_example_of_a_row(text: str) -> None:
+    for wrong, written, value, unit in variants(text):
+        made = fixed(wrong, check).text
+        assert is_kept(written, value, unit, made), (wrong, made)
+
+
+@each_row("text", WRITTEN)
+def test_no_repair_loses_a_sign_or_a_unit(text: str) -> None:
+    for number, sign, space in product(("2", "0.5"), ("", "-", "- "), ("", " ")):
+        for word, unit, scale in units():
+            written = f"{sign}{number}{space}{word}"
+            wrong = text.replace("{}", written)
+            made = fixed(wrong, check).text
+            value = float(number) * scale * (-1 if sign else 1)
+            assert is_kept(written, value, unit, made), (wrong, made)
+
+
+@pytest.mark.parametrize(
+    ("text", "repaired", "lost", "more"),
+    [
+        ("F(2 s, 80 %)", "F(2, 80)", [], []),
+        ("avanza 2,5 s", "F(2.5, 80)", [], []),
+        ("T = 500 ms;W(T)", "T = 0.5;W(T)", [], []),
+        ("T = 500 ms;W(T)", "T = 500;W(T)", ["500 ms"], []),
+        ("A = 30 CM;F(A, 60)", "A = 30;F(A, 60)", ["30 CM"], []),
+        ("A = 30 CM;F(A, 60)", "A = 30;F(A CM, 60)", [], []),
+        ("F(-2, 80)", "F(2, 80)", ["-2"], []),
+        ("W(1);F(20, 60) CM", "W(1);F(20, 60)", ["CM"], []),
+        ("SHOW(DISTANCE) cm", "SHOW(DISTANCE)", [], []),
+        ("X = 5;F(2, 80) X", "X = 5;F(2, 80)", ["X"], []),
+        ("IF(NOT DISTANCE < 9) S", "IF(DISTANCE < 9);S;ENDIF", ["NOT"], []),
+        ("unless DISTANCE < 9 S", "IF(DISTANCE >= 9);S;ENDIF", [], []),
+        ("IF(DISTANCE < 9) S", "IF(DISTANCE > 9);S;ENDIF", ["<"], []),
+        ("IF(DISTANCE < 9, B(1, 60), F(1, 60))", "IF(DISTANCE < 9);B(1, 60);F(1, 60);ENDIF",
+         ["ELSE"], []),
+        ("S if DISTANCE < 9 else S", "S;IF(DISTANCE < 9);ELSE;S;ENDIF", ["ELSE"], []),
+        ("DEF A1;S;END_DEF A1;A1", "DEF A1;S;END_DEF;A1;A1", [], ["A1"]),
+        ("F(1, 80)", "F(1, 80);B(1, 80)", [], ["B"]),
+        ("1. F(2, 80)\n2. S", "F(2, 80)\nS", [], []),
+        ("F(2, 8O)", "F(2, 80)", [], []),
+        ("W(1:30)", "W(90)", [], []),
+        ("W(1 1/2)", "W(1.5)", [], []),
+    ],
+)  # fmt: skip
+def test_what_a_repair_loses_or_does_more(
+    text: str, repaired: str, lost: list[str], more: list[str]
+) -> None:
+    assert difference(text, repaired, KIT) == (lost, more)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "made"),
+    [
+        ("T = 500 ms;W(T)", "T = 0.5;W(T)"),
+        ("F(5, 60) UNTIL(TIME > 500 ms)", "F(5, 60) UNTIL(TIME > 0.5)"),
+        ("D = 300 mm\nF(5, 60) UNTIL(DISTANCE < D)", "D = 30\nF(5, 60) UNTIL(DISTANCE < D)"),
+        ("ANGULO = 90 graus; R(ANGULO, 60)", "ANGULO = 90; R(ANGULO DEG, 60)"),
+        ("SIDE = 30 CM\nF(SIDE, 60)", "SIDE = 30\nF(SIDE CM, 60)"),
+        ("SIDE = 30 CM\nW(SIDE)", "SIDE = 30 CM\nW(SIDE)"),
+        ("IF(TIME > 2 min);S;ENDIF", "IF(TIME > 120);S;ENDIF"),
+        ("D = 1 m\nSHOW(D)", "D = 100\nSHOW(D)"),
+        ("W(1);F(20, 60) CM", "W(1);F(20, 60) CM"),
+        ("DEF PASO;S\nENDDEF PASO\nPASO;PASO", "DEF PASO;S\nEND_DEF\nPASO;PASO"),
+    ],
+)
+def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(wrong: str, made: str) -> None:
+    assert fixed(wrong, check).text == made
+
+
+@pytest.mark.parametrize(
+    ("wrong", "tried"),
+    [
+        ("SIDE = 30 CM\nF(SIDE, 60)", "SIDE = 30 and F(SIDE CM, 60)"),
+        ("SIDE = 30 CM\nW(SIDE)", "SIDE = 30 (without 30 CM)"),
+        ("F(25, 60 CM)", "F(25 CM, 60) or F(60 CM, 25)"),
+        ("F(-0.5 M, 60)", "B(50 CM, 60)"),
+        ("R(-90 grados, 60)", "L(90 DEG, 60)"),
+        ("F(- 2 sec, 60)", "B(2, 60)"),
+    ],
+)
+def test_what_is_only_shown_says_what_it_loses_and_what_else_is_meant(
+    wrong: str, tried: str
+) -> None:
+    (found,) = check(wrong)
+    assert message(found, Source(wrong), "en").fix == tried
+    assert fixed(wrong, check).text == wrong or found.values.get("carried")
+
+
+def test_a_unit_is_told_where_it_stands() -> None:
+    wrong = "F(25 CM, 60) UNTIL(DISTANCE < 10 CM)"
+    (found,) = check(wrong)
+    assert (found.values["found"], wrong[slice(*found.span)]) == ("10 CM", " CM")
