@@ -120,6 +120,8 @@ def test_no_repair_loses_a_sign_or_a_unit(text: str) -> None:
         ("SHOW(DISTANCE) cm", "SHOW(DISTANCE)", [], []),
         ("X = 5;F(2, 80) X", "X = 5;F(2, 80)", ["X"], []),
         ("IF(NOT DISTANCE < 9) S", "IF(DISTANCE < 9);S;ENDIF", ["NOT"], []),
+        ("IF(DISTANCE NO ES 9);S;ENDIF", "IF(DISTANCE = 9);S;ENDIF", ["NO"], []),
+        ("IF(DISTANCE ¡= 9);S;ENDIF", "IF(DISTANCE = 9);S;ENDIF", ["<>"], []),
         ("unless DISTANCE < 9 S", "IF(DISTANCE >= 9);S;ENDIF", [], []),
         ("IF(DISTANCE < 9) S", "IF(DISTANCE > 9);S;ENDIF", ["<"], []),
         ("IF(DISTANCE < 9, B(1, 60), F(1, 60))", "IF(DISTANCE < 9);B(1, 60);F(1, 60);ENDIF",

@@ -56,14 +56,15 @@ _AS = {
     "WHEN": ("IF",), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
 }  # fmt: skip
 _TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
-_NEGATES = ("no", "without", "unless")
+_ASKING = frozenset(("IF", "ELSEIF", "WHILE", "UNTIL", "WHEN"))
+_NEGATES = ("no", "without", "unless", "different")
 # What frames a program and says nothing: its setup, the tags of a page, numbers that count lines.
 _FRAME = re.compile(
     r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>"
     r"|^\s*(?:(?:paso|passo|step|linea|linha|line)\s*)?\d+\s*[.):-]+\s*(?=[a-z])"
 )
 _NUMBERED = re.compile(r"(?m)^[ \t]*(\d{1,4})(?=[ \t]+[A-Za-z])")
-_ESCAPED = {"&lt;": "<", "&gt;": ">", "&nbsp;": " ", "½": ".5", "¼": ".25", "¾": ".75"}
+_ESCAPED = {"¡=": "!=", "&lt;": "<", "&gt;": ">", "&nbsp;": " ", "½": ".5", "¼": ".25", "¾": ".75"}
 _GLUED = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
 # Digits, and letters that look like some; and what may stand between two parts of one number.
 _DIGITS = re.compile(r"[0-9oOlI]*[0-9][0-9oOlI]*|\b[oO](?=\.)")
@@ -377,6 +378,17 @@ class _Said:
             found += each.text == name and not ("DEF" in self._may_be(before) or self._is_label(k))
         return found
 
+    def negations(self) -> list[str]:
+        """Return the words that turn a question round, as they are written."""
+        found = []
+        for k, token in enumerate(self.tokens):
+            is_asked = any(self._may_be(each) & _ASKING for each in self.tokens[max(0, k - 4) : k])
+            is_no = token.text in ("NOT", "!") or bool(said_of(token.text, *_NEGATES))
+            is_asked |= bool(said_of(token.text, "unless"))
+            if is_no and is_asked and not self.names.is_name(token.text):
+                found.append(token.source or token.text)
+        return found
+
     def empty(self) -> int:
         """Return how many branches have nothing in them."""
         left = [each for each in self.tokens if each is not _END and each.text not in (";", "{")]
@@ -483,10 +495,12 @@ def _questions(before: _Said, after: _Said) -> Iterator[str]:
     asked = _senses(before) - (after.notes - before.notes)
     left = _senses(after)
     turners = ({word: said.words[word] for word in _TURNERS} for said in (before, after))
-    negated = any(said_of(it.text, *_NEGATES) or it.text == "!" for it in before.tokens)
-    may_turn = negated or len({str(each) for each in turners}) > 1
+    negated = (before.negations(), after.negations())
+    may_turn = bool(negated[0] or negated[1]) or len({str(each) for each in turners}) > 1
     if asked.total() > left.total() or (asked - left and not may_turn):
         yield from (asked - left) or asked
+    elif asked == left and len(negated[0]) > len(negated[1]):  # nothing is turned round instead
+        yield negated[0][0]
     if after.empty() > before.empty():
         yield "ELSE"
 
