@@ -177,7 +177,6 @@ def test_words_of_a_kit_are_read_on_its_robots_alone(
 @pytest.mark.parametrize(
     ("wrong", "asked"),
     [
-        ("\u2b06\ufe0f 2", "F(2, 80)"),
         ("X == 6", "X = 6"),
         ("F(1, 50)\nREPITE", None),  # no empty block is offered
     ],

@@ -59,7 +59,6 @@ def test_what_is_wrong_beside_the_words_is_told_too() -> None:
     ("wrong", "told"),
     [
         ("F(2, 80)\nS\nF(2, 80)\nS\netc", {"all": "LOOP(4);F(2, 80);S;END_LOOP"}),
-        ('F(2, 80)\n"\nR(1, 60)\n"\n"', {"right": "R(1, 60)", "line": "5"}),
     ],
 )  # fmt: skip
 def test_what_stands_above_is_meant_again(wrong: str, told: dict[str, str]) -> None:

@@ -359,23 +359,15 @@ def _same(place: _Place) -> _Made:
     return [two] if one.text == two.text else None
 
 
-def _known_name(place: _Place) -> _Made:
-    """`mi vel` is MI_VEL, where the program has that."""
-    words = [each for part in place.captured for each in part]
-    name = joined(each.text for each in words)
-    is_known = place.line.names.is_name(name)
-    return [made(name)._replace(space=words[0].space)] if is_known else None
-
-
 def _label(place: _Place) -> _Made:
     """A name behind the end of its DEF says which one ends, where something else calls it."""
     return [] if place.captured[0][0].text in place.line.names.called else None
 
 
-def _parameter(k: int, place: _Place) -> _Made:
-    """A name in the brackets of the DEF that is called."""
+def _given(place: _Place) -> _Made:
+    """The name in the brackets of the DEF that is called."""
     names = place.line.names.parameters.get(place.captured[0][0].text, ())
-    return [made(names[k])] if k < len(names) else None
+    return [made(names[0])] if names else None
 
 
 def _limit(is_high: bool, place: _Place) -> _Made:
@@ -401,19 +393,12 @@ def _own(place: _Place) -> _Made:
     ]
 
 
-def _by(place: _Place) -> _Made:
-    """`2VEL` is 2 * VEL."""
-    (number,), (name,) = place.captured
-    return [number, made("*"), name._replace(space=None)] if name.space == "" else None
-
-
 _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "not": lambda it: negated(it.captured[0]), "endof": _end_of, "dec": _decimal, "xn": _times,
-    "cat": _zero_behind, "mmss": _minutes, "same": _same, "known": _known_name, "label": _label,
-    "by": _by,
+    "cat": _zero_behind, "mmss": _minutes, "same": _same, "label": _label,
     "ms": _seconds, "own": _own,
     "most": partial(_limit, True), "least": partial(_limit, False),
-    "given": partial(_parameter, 0), "also": partial(_parameter, 1),
+    "given": _given,
 }  # fmt: skip
 
 

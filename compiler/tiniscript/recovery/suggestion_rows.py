@@ -40,8 +40,6 @@ PARTS = {
 
 SUGGESTIONS = """
 # what stands for what is above it, and for what follows
-^ @after ⟨@mark* @quote @mark*¦, ,+⟩ $ | TS130 | right={above?} | F(2, 80)⏎⟨"¦,,⟩ => right=F(2, 80)
-^ @after <again> $ | TS130 | right=; last={above?}; all={twice} | F(2, 80)⏎R(1, 60)⏎y lo mismo => last=R(1, 60)
 ^ @after <again> $ | TS130 | right={above?} | F(2, 80)⏎igual que arriba => right=F(2, 80)
 ^ @after <again> by? n=@often times ⟨¦extra ⟩$ | TS130 | right=; often={⟨all¦more⟩} | F(2, 80)⏎otra vez ⟨3¦2⟩ veces⟨¦ mas⟩ => often=LOOP(3);F(2, 80);END_LOOP
 ^ @after|@later ⟨<rest> etc @any*¦<rest> so forth @any*¦,? and forth so|all?¦,? @dots+⟩ $ | TS131 | found={said}; all={often?} | F(2, 80)⏎⟨etc.¦y asi siempre¦y todo eso¦...⟩ => all=LOOP(4);F(2, 80);END_LOOP
@@ -53,81 +51,61 @@ SUGGESTIONS = """
 ^ @none 1|@one times :? $ | TS062 | found={words}; line={said} | 1 vez:⏎S => line=1 vez
 ^ @none n=@number times :? $ | TS062 | found={words}; fix=LOOP({n}) | 4 veces:⏎S => fix=LOOP(4)
 ^ @last repeat (? n=@num? )? times? $ | TS062 | found={words}; all={all?} | F(1, 50)⏎repetir 3 => all=LOOP(3);F(1, 50);END_LOOP
-^ @last @word s=FOREVER $ | TS062 | found={words}; all={endless} | F(1, 50)⏎por siempre => all=LOOP(FOREVER);F(1, 50);END_LOOP
 # questions in words
-^ ⟨@unbegun¦@none⟩ when|at @word* flag @word* $ | TS102 | found={words}; right=⟨SI|¦START⟩; usage=⟨SI|¦START⟩; fix=⟨¦START⟩ | ⟨¦SI|⟩when green flag clicked => right=⟨SI|¦START⟩
+^ @unbegun when|at @word* flag @word* $ | TS102 | found={words}; right=SI|; usage=SI|; fix= | when green flag clicked => right=SI|
 ^ ⟨@unbegun¦@none⟩ when|at @word? @word? beginning :? $ | TS102 | found={words}; right=⟨SI|¦START⟩; usage=⟨SI|¦START⟩; fix=⟨¦START⟩ | ⟨¦SI|⟩on start => right=⟨SI|¦START⟩
 ^ @none @any* h=IF|ELSEIF|WHILE|UNTIL (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
-^ @none @any* <asks> ( s=light|ahead =|is f=FALSE|0 ) $ | TS135 | word={head} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
 ^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
 ^ @none @any* <asks> ( v=@word s=@num ) <body> $ | TS048 | before={v}; found={s}; words= | IF(DISTANCE 10)⏎S⏎ENDIF => found=10
 ^ @none g=IF|WHILE ( s=@any+ , w=@start @any* ) $ | TS080 | word={block}; head={block}({s}); right={end} | IF(distancia < poca, S) => head=IF(distancia < poca)
 ^ @none s=FOREVER t=that q=@cond+ @startm $ | TS102 | found={s} {t}; right=WHEN; usage=WHEN({question}) | siempre que distancia > 20 avanza => usage=WHEN(DISTANCE > 20)
-^ ⟨@none s=ELSEIF¦@none ELSE s=IF¦c=ELSE s=IF⟩ :? $ | TS015 | word=ELSEIF; words=; usage=ELSEIF; example=ELSEIF({distance} < 10); bare=ELSE | IF(DISTANCE < 10)⏎S⏎⟨ELIF¦SINO SI¦ELSE IF⟩⏎F(1, 60)⏎ENDIF => bare=ELSE
+^ ⟨@none s=ELSEIF¦c=ELSE s=IF⟩ :? $ | TS015 | word=ELSEIF; words=; usage=ELSEIF; example=ELSEIF({distance} < 10); bare=ELSE | IF(DISTANCE < 10)⏎S⏎⟨ELIF¦ELSE IF⟩⏎F(1, 60)⏎ENDIF => bare=ELSE
 # what asks or calculates, alone
 ^ @none IF <either> do? w=@start @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n});{then};ENDIF; another=IF({two} {r} {n});{then};ENDIF | si luz > 50 apita => another=IF(LIGHT_R > 50);BEEP(1, 440);ENDIF
-^ @none h=SI <either> <body> $ | TS045 | one=IF({one} {r} {n}); two=IF({two} {r} {n}) | si luz > 50⏎S⏎fin => two=IF(LIGHT_R > 50)
-^ @none <either> @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n})⟨; another=IF({two} {r} {n})¦⟩ | ⟨luz¦pared⟩ > 50: F(2, 80) => one=IF(⟨LIGHT_L¦DISTANCE⟩ > 50)
-^ @none s=@cond+ :? w=@start @any* $ | TS042 | found={s}; asked={s}; fix=IF({alone});{then};ENDIF | DISTANCE < 10: S => fix=IF(DISTANCE < 10);S;ENDIF
+^ @none <either> @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n}) | pared > 50: F(2, 80) => one=IF(DISTANCE > 50)
 ^ @none s=@cond+ $ | TS042 | found={s}; asked={s}; fix=IF({alone}) | DISTANCE < 20 => fix=IF(DISTANCE < 20)
-^ @none s=@cond+ ¿|¡ @any* $ | TS042 | found={s}; asked={s}; one=IF({alone}) | DISTANCE < 20 ¿si? S => one=IF(DISTANCE < 20)
 ^ @none v=@word|@num|+|-|*|/|%|(|)+ = x=@name $ | TS042 | found={x}; turned={x}; fix={free} = {v} | DISTANCE - 5 = FALTA => fix=FALTA = DISTANCE - 5
-^ @none F ( s=UNTIL @word+ , n=@num ) $ | TS102 | found={s}; right=UNTIL; usage=F(FOREVER, {n}) UNTIL({distance} < 10) | F(hasta la pared, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)
-^ @none c=F|B|L|R ( s=⟨FOREVER¦@word+ t=endless⟩ , n=@num ) $ | TS102 | found={s}⟨¦ {t}⟩; right=FOREVER; usage={c}(FOREVER, {n}) UNTIL({distance} < 10) | F(⟨siempre¦sin fin⟩, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)
-^ @none W ( s=FOREVER ) $ | TS102 | found={s}; right=FOREVER; usage=W(FOREVER) UNTIL({distance} < 10) | W(siempre) => usage=W(FOREVER) UNTIL(DISTANCE < 10)
-^ @none v=@name ⟨[ @num ] =¦= s=[⟩ @any* $ | TS067 | found={v} | NOTAS⟨[1] = 5¦ = [50, 60]⟩ => found=NOTAS
+^ @none v=@name = s=[ @any* $ | TS067 | found={v} | NOTAS = [50, 60] => found=NOTAS
 ^ @none s=cases ⟨( v=@word ¦⟩@any* $ | TS066 | found={s}; first=IF(⟨{v}¦X⟩ = 1)⟨; second=ELSEIF({v} = 2)¦⟩ | ⟨SWITCH(X)¦CASE 1: F(1, 50)⟩ => first=IF(X = 1)
 ^ @none most|least|on|off the|one? s=@noGRIPPER|@noLED $ | TS101 | found={s}; near= | OPEN GRIPPER => found=GRIPPER
-^ @none w=⟨F|B|L|R ( @num s=@in_steps|times¦BEEP|W ( @num s=@in_steps|times|@in_cm|@in_deg⟩ @any* $ | TS053 | word={called}; name=⟨time¦seconds⟩; wanted=seconds; unit={s}; usage={usage} | ⟨F(3 pasos, 60)¦BEEP(3 veces)⟩ => usage=⟨F(time, power)¦BEEP(seconds, hertz)⟩
-^ @none s=@num @call @any* $ | TS054 | found={s} | 2 F(1, 50) => found=2
+^ @none w=BEEP|W ( @num s=@in_steps|times|@in_cm|@in_deg @any* $ | TS053 | word={called}; name=seconds; wanted=seconds; unit={s}; usage={usage} | BEEP(3 veces) => usage=BEEP(seconds, hertz)
 # letters for a way
-^ @none s=⟨FL|LF¦FR|RF⟩ ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(⟨30, 60¦60, 30⟩);W({n});S | ⟨FL¦FR⟩(1, 60) => curve=M(⟨30, 60¦60, 30⟩);W(1);S
+^ @none s=FL|LF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(30, 60);W({n});S | FL(1, 60) => curve=M(30, 60);W(1);S
 ^ @none s=A ( n=@num , m=@num ) $ | TS101 | found=A; near=; ahead=F({n}, {m}); back=B({n}, {m}) | A(2, 80) => ahead=F(2, 80)
 # an order that is chosen, or stands for a value
 ^ @none RANDOM ( l=@any+ ) $ | TS136 | fix={choice}; example={choices} | RANDOM(L(1, 60), S) => fix=IF(RANDOM(1, 2) = 1);L(1, 60);ELSE;S;ENDIF
 ^ @none @any* RANDOM ( l=@any+ ) $ | TS136 | example={choices} | giro = RANDOM(L, R) => example=IF(RANDOM(1, 2) = 1); L(2, 80); ELSE; R(2, 80); ENDIF
 ^ @none RANDOM ( n=@num to|, m=@num ) $ | TS042 | found=RANDOM; given={words}; number={number} = RANDOM({n}, {m}) | RANDOM(440 a 880) => number=N = RANDOM(440, 880)
-^ @none w=F|B|L|R ( u=@num|@val , v=@num|@val , s=F|B|L|R ) $ | TS051 | word={s}; apart={w}({u}, {v});{s}({u}, {v}) | F(1, 60, R) => apart=F(1, 60);R(1, 60)
-^ @none w=⟨F|B|L|R|M|BEEP ( u=-|@num|@val+ ,¦W|SHOW (⟩ v=-|@num|@val+ , s=@order ) $ | TS051 | word={s}; apart={w}(⟨{u}, ¦⟩{v});{next} | ⟨F(1, 60¦W(2⟩, S) => apart=⟨F(1, 60)¦W(2)⟩;S
+^ @none w=F|B|L|R|M|BEEP ( u=-|@num|@val+ , v=-|@num|@val+ , s=@order ) $ | TS051 | word={s}; apart={w}({u}, {v});{next} | F(1, 60, S) => apart=F(1, 60);S
 ^ @none w=@call @any* (|, s=@order ) $ | TS051 | word={s}; example={example} | F(2, R) => example=F(2, 80)
-^ @none <asks> ( s=@order @any* ) $ | TS105 | word={s}; right= | IF(L > 5)⏎S⏎ENDIF => word=L
 # words for nothing, and those that are no words behind it
-^ ⟨c=F|B CM|@in_cm¦c=L|R @in_deg|°⟩ $ | TS085 | fix={by_way} | ⟨F(20, 60) cm¦R(90, 60) grados⟩ => fix=⟨F(20 CM, 60)¦R(90 DEG, 60)⟩
-^ c=S|STOP s=LOOP $ | TS102 | found={text}; right=BREAK; fix=BREAK; usage=BREAK | STOP LOOP => fix=BREAK
+^ c=F|B CM|@in_cm $ | TS085 | fix={by_way} | F(20, 60) cm => fix=F(20 CM, 60)
 ^ c=@move|W s=UN u=TIL q=@any+ $ | TS102 | found={s} {u}; right=UNTIL; usage=UNTIL{q} | F(5, 60) UN TIL(DISTANCE < 30) => usage=UNTIL(DISTANCE < 30)
 # how often
 ^ c=@more <lead> <often> <close> $ | TS062 | found={text}; last={loop}; all={all} | F(1, 60); L(1, 60) x4 => last=LOOP(4);L(1, 60);END_LOOP
-^ ⟨<does> <lead> <often> <close>¦c=@did n=@num⟩ $ | TS062 | found={text}; fix={loop?}; once={once?} | ⟨F(2, 80) 3 veces¦DEF SALTO;S;END_DEF;SALTO 3⟩ => fix=LOOP(3);⟨F(2, 80)¦SALTO⟩;END_LOOP
-^ c=@cmd n=@often times @any+ $ | TS085 | times={n}; often={loop} | F(1,50) 3 veces mas => times=3
-^ c=M , n=@num $ | TS085 | seconds={n}; waiting={c};W({n});S | M(50,50), 2 => waiting=M(50,50);W(2);S
-^ c=S|STOP n=@num $ | TS013 | fix={c};W({n}) | STOP 2 => fix=STOP;W(2)
+^ <does> <lead> <often> <close> $ | TS062 | found={text}; fix={loop?}; once={once?} | F(2, 80) 3 veces => fix=LOOP(3);F(2, 80);END_LOOP
 ^ c=@cmd (? n=@time )? $ | TS085 | times={n}; often={loop} | F(2,80)(3) => often=LOOP(3);F(2,80);END_LOOP
-^ ⟨<does> anew|over then anew|over¦<does> one then anew times¦c=@cmd count? FOREVER¦c=@cmd @any* without|all endless|the @any*⟩ $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) ⟨over and over¦una y otra vez¦siempre¦sin parar⟩ => endless=LOOP(FOREVER);F(1, 80);END_LOOP
+^ ⟨<does> one then anew times¦c=@cmd count? FOREVER⟩ $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) ⟨una y otra vez¦siempre⟩ => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ @none do|LOOP|make w=⟨@callw ( v=@noparen+ )¦@def⟩ @word* FOREVER|anew|over @word* $ | TS064 | fix=LOOP(FOREVER);{w}⟨({v})¦⟩;END_LOOP | ⟨repeat F(1, 80)¦DEF A1;S;END_DEF⏎do A1⟩ again and again => fix=LOOP(FOREVER);⟨F(1, 80)¦A1⟩;END_LOOP
 ^ <does> @any* anew @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) again => again=LOOP(2);F(1, 80);END_LOOP
 ^ @none TASK s=@num :|.|-|=|)? r=@any+ $ | TS044 | found={s}; fix=TASK;{r};END_TASK | TASK 1: F(5, 60) => fix=TASK;F(5, 60);END_TASK
 # how long
-^ c=S|STOP after of? n=@number @in_s $ | TS013 | fix=W({n});{c} | STOP AFTER 5 SECONDS => fix=W(5);STOP
 ^ c=⟨S|STOP¦M⟩ (? during? n=@number u=@in_s )? $ | TS085 | fix={c};W({n})⟨¦;S⟩ | ⟨S¦M(50, 50)⟩ 2 segundos => fix=⟨S¦M(50, 50)⟩;W(2)⟨¦;S⟩
 ^ c=@clock <lead> during|to|then|X? n=@number u=@in_s <close> t=UNTIL? q=@any* $ | TS085 | time={n} s; longer={longer}{until?} | F(2,80) por 5 segundos => longer=F(5,80)
 # how fast
 ^ c=@move ⟨<lead> @told* n=@percent @told* <close>¦A n=@num⟩ $ | TS085 | power={paced} | F(2,80) ⟨al 50%¦a 50⟩ => power=F(2,50)
-^ c=@move @word? ⟨@paced @of_power¦@word? @paced⟩ $ | TS085 | power={c} | F(2, 80) ⟨at half speed¦despacio⟩ => power=F(2, 80)
+^ c=@move @word? @word? @paced $ | TS085 | power={c} | F(2, 80) despacio => power=F(2, 80)
 # until when
-^ c=@move|W ( q=@cond+ ) $ | TS071 | found={words}; until={c} UNTIL({question}) | F(5, 60) (DISTANCE < 30) => until=F(5, 60) UNTIL(DISTANCE < 30)
 ^ c=@cmd s=WHEN (? q=@cond+ )? w=@start @any* $ | TS071 | found={s}; fix=WHEN({question});{then};END_WHEN;{c} | F(10, 50) WHEN DISTANCE < 15 BEEP(1, 440) => fix=WHEN(DISTANCE < 15);BEEP(1, 440);END_WHEN;F(10, 50)
-^ c=@cmd s=⟨provided¦unless⟩ (? q=@cond+ )? $ | TS071 | found={s}; fix=IF({⟨question¦contrary⟩});{c};ENDIF | F(2, 80) ⟨si¦unless⟩ DISTANCE > 10 => fix=IF(DISTANCE ⟨>¦<=⟩ 10);F(2, 80);ENDIF
-^ c=F s=IF (? q=@cond+ )? $ | TS071 | found={s}; until={c} UNTIL({near}) | F(5, 60) IF(DISTANCE < 20) => until=F(5, 60) UNTIL(DISTANCE < 20)
+^ c=@cmd s=provided (? q=@cond+ )? $ | TS071 | found={s}; fix=IF({question});{c};ENDIF | F(2, 80) si DISTANCE > 10 => fix=IF(DISTANCE > 10);F(2, 80);ENDIF
 ^ c=@move|W s=WHILE (? q=@cond+ )? $ | TS071 | found={s}; fix={c} UNTIL({contrary}) | F(2, 80) while DISTANCE > 10 => fix=F(2, 80) UNTIL(DISTANCE <= 10)
-^ c=@cmd s=⟨IF¦WHILE⟩ (? q=@cond+ )? $ | TS071 | found={s}; fix=⟨IF¦WHILE⟩({question});{c};⟨ENDIF¦END_WHILE⟩ | S ⟨IF¦WHILE⟩(DISTANCE < 10) => fix=⟨IF¦WHILE⟩(DISTANCE < 10);S;⟨ENDIF¦END_WHILE⟩
+^ c=@cmd s=IF (? q=@cond+ )? $ | TS071 | found={s}; fix=IF({question});{c};ENDIF | S IF(DISTANCE < 10) => fix=IF(DISTANCE < 10);S;ENDIF
 ^ c=@move s=WHILE @word* no @word* wall $ | TS071 | found={s}; fix={c} UNTIL({distance} < 10) | F(2, 80) mientras no haya pared => fix=F(2, 80) UNTIL(DISTANCE < 10)
-^ c=@cmd s=when @word* ⟨no @word* ¦⟩wall $ | TS071 | found={s}; fix=IF({distance} ⟨>¦<⟩ 10);{c};ENDIF | S cuando ⟨no ¦⟩hay pared => fix=IF(DISTANCE ⟨>¦<⟩ 10);S;ENDIF
-^ c=@unasked h=UNTIL s=light $ | TS135 | word={head} | F(2, 60) UNTIL dark => another=LIGHT_R < 500
-^ c=@unasked s=UNTIL ⟨@word* n=@num CM|@in_cm?¦@word+⟩ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < ⟨{n}¦10⟩) | F(2, 80) hasta ⟨30 cm¦la pared⟩ => usage=F(2, 80) UNTIL(DISTANCE < ⟨30¦10⟩)
+^ c=@cmd s=when @word* no @word* wall $ | TS071 | found={s}; fix=IF({distance} > 10);{c};ENDIF | S cuando no hay pared => fix=IF(DISTANCE > 10);S;ENDIF
+^ c=@unasked s=UNTIL @word+ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < 10) | F(2, 80) hasta la pared => usage=F(2, 80) UNTIL(DISTANCE < 10)
 # which way, and what comes next
-^ ⟨c=@cmd then|+|&|,|beside? <call> <moment>¦c=@cmd <moment> <call>¦@after <moment> <call>⟩ $ | TS061 | found={s} {k} {t}; together=TASK;{w}({v});END_TASK;⟨{c}¦{c}¦{above}⟩ | F(2, 80)⟨ y BEEP(1, 440) al mismo tiempo¦ at the same time BEEP(1, 440)¦; a la vez BEEP(1, 440)⟩ => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
-^ c=@more|@later ⟨@word* together¦@word+ same|the moment⟩ $ | TS061 | found={words}; together=TASK;{c};END_TASK;{above} | F(2, 80); BEEP(1, 440) ⟨juntos¦a la vez⟩ => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
-^ @none <moment> ,|:? <call> then|+|&|, x=@call ( u=@noparen+ ) $ | TS061 | found={s} {k} {t}; together=TASK;{x}({u});END_TASK;{w}({v}) | al mismo tiempo F(2, 80) y BEEP(1, 440) => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
+^ c=@cmd then|+|&|,|beside? <call> <moment> $ | TS061 | found={s} {k} {t}; together=TASK;{w}({v});END_TASK;{c} | F(2, 80) y BEEP(1, 440) al mismo tiempo => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
+^ c=@more|@later @word+ same|the moment $ | TS061 | found={words}; together=TASK;{c};END_TASK;{above} | F(2, 80); BEEP(1, 440) a la vez => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
 ^ @after <moment> :? $ | TS061 | found={s} {k} {t}; together=TASK;...;END_TASK;{above} | F(2, 80)⏎al mismo tiempo => together=TASK;...;END_TASK;F(2, 80)
 ^ c=@move s=+|&|AND|then|beside w=BEEP ( v=@noparen+ ) @word* $ | TS061 | found={s}; both=TASK;{w}({v});END_TASK;{c} | F(2, 80) con BEEP(1, 440) => both=TASK;BEEP(1, 440);END_TASK;F(2, 80)
 ^ c=@cmd then @word+ $ | TS074 | fix={orders}; example={made_up?} | F(1, 80) y luego retrocede => fix=F(1, 80);B(2, 80)
@@ -136,7 +114,6 @@ SUGGESTIONS = """
 ^ c=@cmd or l=@any+ $ | TS136 | fix={choice}; example={choices} | L(1, 60) o R(2, 60) => fix=IF(RANDOM(1, 2) = 1);L(1, 60);ELSE;R(2, 60);ENDIF
 # notes
 ^ @none SHOW s=@newname @word* $ | TS070 | words={shown} | SHOW Hola => words=Hola
-^ c=@cmd ( ) $ | TS085 | extra={words} | F(2,80)() => extra=()
 ^ c=@any w=@told+ $ | TS085 | fix={note?} | F(1, 80) voy a la bodega => fix=F(1, 80) // voy a la bodega
 ^ c=@cmd|@set (|,? @num @any* $ | TS085 | extra={words} | F(2,80) (2,80) => extra=(2,80)
 ^ c=@outer LOOP $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) repite => again=LOOP(2);F(1, 80);END_LOOP

@@ -36,7 +36,6 @@ MOST = 1_000  # instructions of a text that are read
 _ASIDE = (codes.REPEATED.number, codes.WORDS_BEHIND.number)
 _MOST_BEFORE = 8  # instructions that an example repeats
 _FARTHEST = 40  # lines and instructions that are looked at for what is done again
-_ONE_IN_LOOP = 2  # separators of a loop of one instruction
 _BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
 # An instruction of a line, and the bar of a `SI|`.
 _PART = re.compile(r"((?:[^;{}|]|\|\|)+)(\|?)")
@@ -388,7 +387,6 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "all": lambda gaps: _all(gaps, gaps["n?"]), "often": lambda gaps: _all(gaps, "4"),
     "endless": lambda gaps: _all(gaps, "FOREVER"),
     "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)),
-    "twice": lambda gaps: it if (it := _all(gaps, "2")).count(";") > _ONE_IN_LOOP else "",
     "said": lambda gaps: gaps.part.words.strip(" ,:"),
     "head": lambda gaps: gaps.meant("h"), "called": lambda gaps: gaps.meant("w"),
     "block": lambda gaps: gaps.meant("g"), "usage": lambda gaps: WORDS[gaps.meant("w")].usage,
@@ -408,7 +406,6 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "longer": lambda gaps: _with(gaps, gaps.part.time, gaps["n"]), "paced": _paced,
     "question": lambda gaps: laid_out(_asked(gaps)),
     "contrary": lambda gaps: laid_out(rewrites.negated(it)) if (it := _asked(gaps)) else "",
-    "near": lambda gaps: it if "<" in (it := laid_out(_asked(gaps))).split() else "",
     "made_up": lambda gaps: made_up(_calls(gaps.part)),
     "until": lambda gaps: f" {_rest(gaps, 't')}".rstrip(),
     "behind": lambda gaps: _rest(gaps, "w"), "orders": _orders,
