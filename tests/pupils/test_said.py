@@ -95,7 +95,7 @@ def test_a_copied_call_is_never_taken_for_another_program(program: str, language
         assert any(each.is_mistake for each in check(f"SI|{call}")), call
 
 
-@pytest.mark.parametrize("program", ["F(1, 80) forever", "M(50, 50) sin parar", "W(1) sin parar"])
+@pytest.mark.parametrize("program", ["F(1, 80) forever", "W(1) siempre"])
 def test_what_goes_on_without_end_is_a_program(program: str) -> None:
     [found] = check(f"SI|{program}")
     assert not any(each.is_mistake for each in check(f"SI|{found.values['endless']}"))

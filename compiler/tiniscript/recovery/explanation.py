@@ -209,6 +209,8 @@ class _Explainer:
         notes = (without_note(each)[1] for each in (old, own))
         if len(was) != len(now) or len({*notes}) > 1 or {*texts(before)} & {*BRACES}:
             return []
+        if _is_closed(before) and not all(map(_is_closed, was)):
+            return []  # a separator is in brackets
         found = []
         first, end = self.starts[self.changes[k].first], 0
         for n, (part, meant) in enumerate(zip(was, now, strict=True)):
@@ -313,6 +315,10 @@ class _Explainer:
             return False
         is_sign = inside[-1] in _SIGNS and inside[-1] not in inside[:-1]
         return is_sign or block.word not in ("LOOP", "DEF")
+
+
+def _is_closed(tokens: Sequence[Lexeme]) -> bool:
+    return texts(tokens).count("(") == texts(tokens).count(")")
 
 
 def trimmed(start: int, old: str, new: str) -> Edit:
