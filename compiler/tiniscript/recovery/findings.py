@@ -133,7 +133,7 @@ def _meant(
         return [_moved(each, written, meant) for each in said_of_it][:1]
     if not told:
         return []
-    if is_sure or not (meant.is_whole or meant.is_applied):  # a guess at a part gives up nothing
+    if is_sure or not meant.is_whole:  # what is read of a part gives up nothing
         if difference(text, meant.text, recovery.kit).lost:
             return []
     told_of = [_diagnostic(each, meant, found) for each in told]
