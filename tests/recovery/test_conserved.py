@@ -182,4 +182,4 @@ def test_what_is_only_shown_says_what_it_loses_and_what_else_is_meant(
 def test_a_unit_is_told_where_it_stands() -> None:
     wrong = "F(25 CM, 60) UNTIL(DISTANCE < 10 CM)"
     (found,) = check(wrong)
-    assert (found.values["found"], wrong[slice(*found.span)]) == ("10 CM", " CM")
+    assert (found.values["found"], wrong[slice(*found.span)]) == ("10 CM", "10 CM")

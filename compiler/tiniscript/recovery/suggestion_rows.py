@@ -68,7 +68,7 @@ SUGGESTIONS = """
 ^ @none v=@name = s=[ @any* $ | TS067 | found={v} | NOTAS = [50, 60] => found=NOTAS
 ^ @none s=cases ⟨( v=@word ¦⟩@any* $ | TS066 | found={s}; first=IF(⟨{v}¦X⟩ = 1)⟨; second=ELSEIF({v} = 2)¦⟩ | ⟨SWITCH(X)¦CASE 1: F(1, 50)⟩ => first=IF(X = 1)
 ^ @none most|least|on|off the|one? s=@noGRIPPER|@noLED $ | TS101 | found={s}; near= | OPEN GRIPPER => found=GRIPPER
-^ @none w=BEEP|W ( @num s=@in_steps|times|@in_cm|@in_deg @any* $ | TS053 | word={called}; name=seconds; wanted=seconds; unit={s}; usage={usage} | BEEP(3 veces) => usage=BEEP(seconds, hertz)
+^ @none w=⟨F|B|L|R ( @num s=@in_steps|times¦BEEP|W ( @num s=@in_steps|times|@in_cm|@in_deg⟩ @any* $ | TS053 | word={called}; name=⟨time¦seconds⟩; wanted=seconds; unit={s}; usage={usage} | ⟨F(3 pasos, 60)¦BEEP(3 veces)⟩ => usage=⟨F(time, power)¦BEEP(seconds, hertz)⟩
 # letters for a way
 ^ @none s=FL|LF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(30, 60);W({n});S | FL(1, 60) => curve=M(30, 60);W(1);S
 ^ @none s=A ( n=@num , m=@num ) $ | TS101 | found=A; near=; ahead=F({n}, {m}); back=B({n}, {m}) | A(2, 80) => ahead=F(2, 80)
