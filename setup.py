@@ -48,6 +48,12 @@ def missing(package: Path) -> list[str]:
     return [what for what, (file, _) in MADE.items() if not any(package.glob(file))]
 
 
+def is_made_into_texts(path: Path) -> bool:
+    """Return whether a package has a file of a language in another form."""
+    of_language = path.parent.parent.name == "languages"
+    return of_language and (path.suffix in (".toml", ".po") or path.name == "seen.txt")
+
+
 def build_page() -> None:
     """Let the clone's tsc build the page, which says how much it fetches, and asks.
 
@@ -98,10 +104,17 @@ class Build(build_py):
     def _catalogues(self) -> dict[Path, bytes]:
         """Return the texts of each language as the package reads them."""
         sys.path.insert(0, str(ROOT / "compiler"))
-        from tiniscript.base.languages import machine_objects
+        from tiniscript.base.languages import kept_files
 
         folder = Path(self.build_lib) / "tiniscript" / "languages"
-        return {folder / name: data for name, data in machine_objects().items()}
+        return {folder / name: data for name, data in kept_files().items()}
+
+    def exclude_data_files(  # type: ignore[no-untyped-def]
+        self, package, src_dir, files
+    ) -> list[str]:
+        """Leave out what these are made of."""
+        found: list[str] = super().exclude_data_files(package, src_dir, files)
+        return [each for each in found if not is_made_into_texts(Path(each))]
 
     def get_outputs(self, include_bytecode: bool = True) -> list[str]:
         outputs: list[str] = super().get_outputs(include_bytecode)

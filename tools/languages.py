@@ -1,10 +1,12 @@
-"""Brings all catalogues in step with the English texts: `python -m tools.languages`.
+"""Brings all languages in step with the English texts: `python -m tools.languages`.
 
-These are in `languages/en/*.toml`, those of `names` in other `.toml` files of the package. What is
-new gets an empty place, what is gone goes, and the translation of a text whose English has changed
-is marked as fuzzy: it is not used until somebody has looked at it. With codes, `pt fr`, it makes
-their folders. `--check` writes nothing, and says what is wrong and how much is translated.
-`--pseudo` makes a language that shows where longer texts do not fit.
+These are in `languages/en/*.toml`, those of `names` in other `.toml` files of the package. A
+translation follows its English text to another key, and what is gone goes. With codes, `pt fr`, it
+makes their folders. `--check` writes nothing, and lists what is wrong, and each translation of what
+the English text was before. `--seen pt` notes of which English texts the new translations are, and
+with keys after it, `--seen pt no_verb "TS005/*"`, of stale ones, too, which somebody has looked at.
+`--po pt` writes `pt.po` for translators' tools, and `--po pt.po` reads it. `--pseudo` makes a
+language that shows where longer texts do not fit.
 """
 
 from __future__ import annotations
@@ -12,9 +14,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Iterator, Mapping
-from difflib import SequenceMatcher
-from pathlib import Path
+from collections.abc import Iterator
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -23,11 +23,13 @@ else:
 
 
 from tiniscript.base import catalogue_source
-from tiniscript.base.catalogue_file import Catalogue, Entry, load, written
-from tiniscript.base.languages import FOLDER, SOURCE, files, languages, table
+from tiniscript.base.catalogue_source import UNKNOWN, Catalogue, Entry, Problem
+from tiniscript.base.languages import FOLDER, ITSELF, NAMES, SOURCE, files, languages, table
+from tiniscript.base.translations import read_language
 from tiniscript.base.words import WORDS
 from tiniscript.diagnostics.codes import CODES
 from tiniscript.recovery.concepts import plain
+from tools.translation_files import Translation, heading, tell
 
 PSEUDO = "qps"  # by custom: no language has this code
 ROBOT_SIGNS = 40
@@ -40,19 +42,20 @@ def sources() -> dict[str, Catalogue]:
     Beside a message, and what to try, stands the wrong program of its code: beside the last text,
     which is the one without a special case.
     """
-    found = {path.stem: catalogue_source.load(path) for path in (FOLDER / SOURCE).glob("*.toml")}
-    lasts = {each.key: each for each in found["messages"].entries.values()}
+    paths = [path for path in (FOLDER / SOURCE).glob("*.toml") if path.name != ITSELF]
+    found = {path.stem: catalogue_source.load(path) for path in paths}
+    lasts = {each.key: each for each in found.get("messages", Catalogue()).entries.values()}
     programs = {key: each.english.splitlines() for key, each in lasts.items()}
     for key, entry in lasts.items():
         code, _, part = key.partition("/")
         if code in CODES and part in ("message", "try"):
             entry.notes = [f"wrong: {row}" for row in programs.get(f"{code}/wrong", [])]
-    return dict(sorted({**found, "names": names()}.items()))
+    return dict(sorted({**found, NAMES: names()}.items()))
 
 
 def names() -> Catalogue:
     """Return the catalogue of what is said in other TOML files of the package, each text once."""
-    made = Catalogue(catalogue_source.HEAD)
+    made = Catalogue()
     for folder in ("robots", "virtual/worlds", "lessons"):
         for path in sorted((FOLDER.parent / folder).rglob("*.toml")):
             place = path.relative_to(FOLDER.parent).as_posix()
@@ -72,57 +75,13 @@ def _said_in(value: object) -> Iterator[str]:
             yield from _said_in(each)
 
 
-def in_step(source: Catalogue, own: Catalogue, language: str) -> Catalogue:
-    """Return a catalogue with the English texts that have words, and its own translations."""
-    head = own.head or re.sub(
-        r"^(Language|X-Name): .*$", rf"\1: {language}", source.head, flags=re.M
-    )
-    made = Catalogue(head)
-    entries = {at: each for at, each in source.entries.items() if not each.is_same}
-    olds = _before(entries, own)
-    for at, entry in entries.items():
-        old = olds.get(at, entry)
-        has_changed = (old.at, old.plural) != (at, entry.plural)
-        is_fuzzy = any(old.said) and (old.is_fuzzy or has_changed)
-        said = old.said if bool(old.plural) == bool(entry.plural) else []
-        made.entries[at] = Entry(*at, entry.plural, said, entry.notes, is_fuzzy)
-    return made
-
-
-def _before(
-    source: Mapping[tuple[str, str], Entry], own: Catalogue
-) -> dict[tuple[str, str], Entry]:
-    """Return what each text was before: itself, else what is gone and most like it.
-
-    That one has the same key, or the same English text under another key. A text that is asked
-    for at another key than before has what is there for these words.
-    """
-    found = {at: own.entries[at] for at in source if at in own.entries}
-    for entry in own.entries.values():
-        if entry.at in found or not any(entry.said):
-            continue
-        new = [at for at in source if at not in found]
-        places = [at for at in new if at[0] == entry.key]
-        places = places or [at for at in new if at[1] == entry.english]
-        if places:
-            found[max(places, key=lambda at: _likeness(at[1], entry.english))] = entry
-    by_words = {each.english: each for each in own.entries.values() if any(each.said)}
-    return {**{at: by_words[at[1]] for at in source if at[1] in by_words}, **found}
-
-
-def _likeness(one: str, other: str) -> float:
-    return SequenceMatcher(a=one, b=other).ratio()
-
-
 def pseudo(source: Catalogue) -> Catalogue:
-    """Return a catalogue whose texts are the English ones, a third longer and with accents."""
-    head = re.sub(r"^(Language|X-Name): .*$", rf"\1: {PSEUDO}", source.head, flags=re.M)
-    made = Catalogue(head)
+    """Return the English texts with translations that are a third longer and have accents."""
+    made = Catalogue()
     for at, entry in source.entries.items():
-        if entry.is_same:
-            continue
-        forms = [_longer(each) for each in (entry.english, entry.plural) if each]
-        made.entries[at] = Entry(*at, entry.plural, forms, entry.notes)
+        said = {name: _longer(form) for name, form in entry.forms.items()}
+        said = entry.forms if entry.is_same and not entry.like else said
+        made.entries[at] = Entry(*at, entry.plural, said, entry.hash, is_same=entry.is_same)
     return made
 
 
@@ -134,10 +93,24 @@ def _longer(text: str) -> str:
     return f"{''.join(parts)} {more}".rstrip()
 
 
-def check_robot(own: Catalogue) -> Iterator[tuple[int, str]]:
+def make_pseudo(english: dict[str, Catalogue]) -> None:
+    """Write the language PSEUDO."""
+    folder = FOLDER / PSEUDO
+    folder.mkdir(exist_ok=True)
+    for path in folder.glob("*.*"):
+        path.unlink()
+    itself = heading(PSEUDO, PSEUDO, ("one", "other"), "n != 1")
+    (folder / ITSELF).write_text(itself, encoding="utf-8")
+    made = Translation(PSEUDO, english)
+    for name, source in english.items():
+        made.put_all(name, pseudo(source))
+    made.write()
+
+
+def check_robot(own: Catalogue) -> Iterator[Problem]:
     """What a robot cannot say in its few bytes."""
     for entry in own.entries.values():
-        for said in entry.said or [entry.english]:
+        for said in (entry.said or entry.forms).values():
             if not said.isascii() or len(said) > ROBOT_SIGNS:
                 yield entry.line, f"a robot says at most {ROBOT_SIGNS} signs, in ASCII: {said}"
 
@@ -159,47 +132,106 @@ def _rows(language: str) -> list[str]:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("languages", nargs="*", default=list(languages()))
-    parser.add_argument("--check", action="store_true")
-    parser.add_argument("--pseudo", action="store_true", help=f"make the language {PSEUDO}")
+    does = parser.add_mutually_exclusive_group()
+    does.add_argument("--check", action="store_true")
+    does.add_argument("--seen", nargs="+", metavar=("LANGUAGE", "KEY"))
+    does.add_argument("--po", metavar="LANGUAGE|FILE")
+    does.add_argument("--pseudo", action="store_true", help=f"make the language {PSEUDO}")
     options = parser.parse_args()
     english = sources()
+    if robot := english.get("robot"):
+        robot.problems += check_robot(robot)
     if options.pseudo:
-        (FOLDER / PSEUDO).mkdir(exist_ok=True)
-        for name, source in english.items():
-            target = FOLDER / PSEUDO / f"{name}.po"
-            target.write_text(written(pseudo(source)), encoding="utf-8")
+        make_pseudo(english)
         return 0
-    english["robot"].problems += check_robot(english["robot"])
-    wrong = sum(tell(files(name, SOURCE)[0], source) for name, source in english.items())
-    for language in options.languages:
-        done = every = 0
-        for name, source in english.items():
-            if language == SOURCE or source.problems:
-                continue
-            target = files(name, language)[1]
-            own = load(target)
-            made = in_step(source, own, language)
-            if name == "robot":
-                own.problems += check_robot(own)
-            wrong += tell(target, own)
-            done += sum(entry.is_translated for entry in made.entries.values())
-            every += len(made.entries)
-            if not options.check and not own.problems:
-                target.parent.mkdir(exist_ok=True)
-                target.write_text(written(made), encoding="utf-8")
+    wrong = sum(tell(files(name, SOURCE)[0], each.problems) for name, each in english.items())
+    wrong += tell(FOLDER / SOURCE / ITSELF, read_language(FOLDER / SOURCE / ITSELF).problems)
+    if wrong:
+        return 1
+    if options.po:
+        from tools import translators
+
+        return translators.exchange(options.po, english)
+    codes = options.seen[:1] if options.seen else options.languages
+    for language in codes:
+        if not re.fullmatch(r"[a-z]{2,3}(_[a-z0-9]+)*", language):
+            print(f"{language}: this is no code of a language, such as fr or pt_br")
+            return 1
+        if (options.check or options.seen) and language not in languages():
+            print(f"{language}: no such language. Try:  python -m tools.languages {language}")
+            return 1
+        if language != SOURCE:
+            wrong += in_step(language, english, options.check, options.seen and options.seen[1:])
         for row in check_lexicon(language):
             print(f"languages/{language}/lexicon.txt: no row of a lexicon: {row}")
             wrong += 1
-        if language != SOURCE:
-            print(f"{language}: {done} of {every} texts are translated")
     return 1 if wrong else 0
 
 
-def tell(path: Path, found: Catalogue) -> int:
-    """Print what is wrong with a file, and return how much that is."""
-    for line, problem in found.problems:
-        print(f"{path.relative_to(FOLDER.parent)}:{line}: {problem}")
-    return len(found.problems)
+def in_step(
+    language: str, english: dict[str, Catalogue], is_check: bool, seen: list[str] | None
+) -> int:
+    """Bring a language in step, and say what is wrong with it; return how much that is.
+
+    `seen` has patterns of the keys whose stale translations somebody has looked at; without it no
+    text is noted as seen.
+    """
+    folder = FOLDER / language
+    if not folder.is_dir() and not is_check:
+        folder.mkdir()
+        (folder / ITSELF).write_text(_heading(language), encoding="utf-8")
+    own = Translation(language, english)
+    wrong = 0
+    if not is_check:
+        for gone in own.follow():
+            print(f"languages/{language}/{gone}: its English text is gone, and so it goes")
+        for unused in own.see(seen) if seen is not None else []:
+            print(f"{language}: there is no translation with the key {unused}")
+            wrong += 1
+        own.write()
+    return wrong + report(own)
+
+
+def _heading(language: str) -> str:
+    """Return what a new language says of itself, without Babel nearly nothing."""
+    try:
+        from tools.translators import itself
+    except ImportError:
+        return heading(language, language, ("one", "other"), "n != 1")
+    return heading(*itself(language))
+
+
+def report(own: Translation) -> int:
+    """Say what is wrong with a language, and how much of it is there; return what must not be."""
+    wrong = sum(tell(path, problems) for path, problems in own.problems())
+    for path in sorted(own.folder.glob("*.toml")):
+        if path.name != ITSELF and path.stem not in own.english:
+            wrong += tell(path, [(1, f"there is no {SOURCE}/{path.name}")])
+    entries: list[Entry] = []
+    lacks = stale = 0
+    for name in own.english:
+        found = own.joined(name)
+        path = own.path(name)
+        wrong += tell(path, [*check_robot(found)] if name == "robot" else [])
+        there = [each for each in found.entries.values() if each.seen or not each.is_same]
+        entries += there
+        stales = [each for each in there if each.is_stale]
+        was = "its English text has changed, and so it is said in English"
+        stale += tell(path, [(each.line, f"{each.key}: {was}: {each.english}") for each in stales])
+        if own.language.is_complete:
+            empty = [each for each in there if not each.said]
+            lacks += tell(path, [(1, f"{each.key} is missing: {each.english}") for each in empty])
+    new = [each for each in entries if each.seen == UNKNOWN]
+    if new:
+        print(f"{own.code}: {len(new)} texts are new. Note of which English texts they are:  "
+              f"python -m tools.languages --seen {own.code}")  # fmt: skip
+    if stale:
+        print(f"{own.code}: {stale} texts are stale. Note of which English texts they are now:  "
+              f"python -m tools.languages --seen {own.code} KEY ...")  # fmt: skip
+    asked = [each for each in entries if not each.is_same]
+    done = sum(each.is_translated for each in asked)
+    print(f"{own.code}: {done} of {len(asked)} texts are translated")
+    return wrong + (lacks + stale + len(new) if own.language.is_complete else 0)
 
 
 if __name__ == "__main__":

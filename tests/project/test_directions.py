@@ -35,10 +35,15 @@ UPSTREAM: dict[str, set[str]] = {
     "base.version": set(),
     "base.source": set(),
     "base.files": set(),
-    "base.catalogue_file": set(),
-    "base.catalogue_source": {"base.catalogue_file"},
-    "base.catalogue_compiler": {"base.catalogue_file", "base.catalogue_source"},
-    "base.languages": {"base.files", "base.catalogue_compiler"},
+    "base.catalogue_source": set(),
+    "base.catalogue_file": {"base.catalogue_source"},
+    "base.translations": {"base.catalogue_source", "base.catalogue_file"},
+    "base.languages": {
+        "base.files",
+        "base.catalogue_file",
+        "base.catalogue_source",
+        "base.translations",
+    },
     "base.fixed_point": set(),
     "base.words": {"base.fixed_point", "base.languages"},
     "base.spelling": {"base.languages"},
@@ -188,7 +193,7 @@ def test_a_right_program_loads_nothing_for_wrong_ones_or_other_verbs(
     assert not {each for each in own if OF_WRONG.match(each)}
     assert len(own) <= 68
     unwanted = {"cobs", "serial", "tomllib", "tomli", "rich", "dataclasses",
-                "tiniscript.link", "tiniscript.base.catalogue_compiler",
+                "tiniscript.link", "tiniscript.base.translations",
                 "tiniscript.vm.machine", "tiniscript.vm.runner", "tiniscript.bytecode.disassembly",
                 "tiniscript.syntax.formatter"}  # fmt: skip
     if sys.platform == "linux":  # and what only finds the cache

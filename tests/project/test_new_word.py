@@ -131,10 +131,10 @@ def test_it_is_on_the_poster(
     language: str, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(languages, "FOLDER", with_texts(tmp_path / "said"))
-    languages.catalogue.cache_clear()
+    languages.forget()
     monkeypatch.setitem(WORDS, "CHIME", HORN._replace(text="CHIME"))
     lines = [each for each in poster.page(language) if isinstance(each, Line)]
-    languages.catalogue.cache_clear()
+    languages.forget()
     texts = [each.text for each in lines]
     assert texts[texts.index(HORN.text) + 1] == says
     assert texts[texts.index("CHIME") + 1] == "= BEEP(0.5, 440)"

@@ -12,8 +12,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.needs import need
-from tiniscript.base.catalogue_file import load
-from tiniscript.base.languages import FOLDER, SOURCE, catalogue, languages
+from tiniscript.base.languages import SOURCE, counted, entries, languages
 from tiniscript.flash import ready
 from tiniscript.studio import serving
 from tiniscript.studio.block_kinds import KINDS, SAYS
@@ -61,10 +60,9 @@ def test_node_trusts_the_certificates_of_the_system(monkeypatch: pytest.MonkeyPa
 @pytest.mark.parametrize("language", languages()[1:])
 def test_a_text_has_the_places_of_the_english_one(language: str) -> None:
     """`%1` and so on, which Blockly and the page fill; gaps are checked of all catalogues."""
-    for (key, _), entry in load(FOLDER / language / "studio.po").entries.items():
-        for said in entry.said:
-            places = re.findall(r"%[\d%]", entry.english) if said else []
-            assert sorted(re.findall(r"%[\d%]", said)) == sorted(places), key
+    for entry in entries("studio", language).entries.values():
+        places = sorted(re.findall(r"%[\d%]", entry.english))
+        assert all(sorted(re.findall(r"%[\d%]", each)) == places for each in entry.said.values())
 
 
 def test_every_sentence_is_said_somewhere() -> None:
@@ -99,10 +97,9 @@ def test_a_plural_has_the_form_of_its_number() -> None:
     for language in languages():
         texts = page_texts(language)
         forms = texts[""]
-        said = catalogue("studio", language)
         for number in (*range(200), 1000, 1001, 2101, 1_000_000):
             form = forms[number if number < 100 else 100 + number % 100]
-            wanted = said.ngettext("mistakes", "mistakes", number)
+            wanted = counted("studio", "mistakes", number, language)
             assert texts["mistakes"][int(form)] == wanted, (language, number)
 
 

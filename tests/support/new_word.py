@@ -14,7 +14,7 @@ SAID = {"en": "honks", "es": "toca la bocina"}
 
 def with_texts(folder: Path) -> Path:
     """Return a copy of the languages that say what the word does."""
-    shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("*.mo"))
+    shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("*.texts"))
     english, spanish = (f"{{{HORN.text}}} {said}" for said in SAID.values())
     with (folder / "en" / "studio.toml").open("a", encoding="utf-8") as file:
         file.write(f'"block/{HORN.text}" = "{english}"\n')

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from tiniscript.base.catalogue_compiler import merged
-from tiniscript.base.languages import files, languages
+from tiniscript.base.languages import languages, texts
 
 LANGUAGES = languages()
 
@@ -13,7 +12,8 @@ LANGUAGES = languages()
 @cache
 def said(language: str, name: str = "command") -> dict[str, str]:
     """Return all texts of a catalogue by key; of one with a plural, its last form."""
-    return {key: forms[-1] for key, forms in merged(*files(name, language))[1].items()}
+    found = texts(name, language)
+    return {key: each if isinstance(each, str) else each["other"] for key, each in found.items()}
 
 
 def in_all(key: str) -> list[str]:

@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from gettext import c2py
-from typing import Any
-
-from tiniscript.base.catalogue_compiler import merged
-from tiniscript.base.languages import files
+from tiniscript.base.languages import Texts, about, texts
 
 # Of what the page's Python says; the sentences of lessons come with these.
 MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names")
@@ -24,7 +19,6 @@ OF_COMMAND = {
     "robot_stopped": "stopped", "say_done": "robot_done", "line": "replay_line",
     "class_free": "whose_free",
 }  # fmt: skip
-PERIOD = 100  # after so many numbers a rule of plurals repeats itself, but for the first hundred
 
 
 def page_texts(language: str) -> dict[str, str | list[str]]:
@@ -32,22 +26,19 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
 
     The one without a key has which form is for which number, from 0 to 199.
     """
-    head, found = _texts("studio", language)
-    _, said = _texts("command", language)
-    found |= {key: said[each] for key, each in OF_COMMAND.items()}
-    rule = re.search(r"plural=([^;\n]+)", head)
-    form = c2py(rule[1] if rule else "0")
+    own = about(language)
+    said = texts("command", language)
+    found = texts("studio", language) | {key: said[each] for key, each in OF_COMMAND.items()}
     return {
-        "": "".join(str(form(number)) for number in range(2 * PERIOD)),
-        **{key: forms if len(forms) > 1 else forms[0] for key, forms in found.items()},
-    }
+        "": own.form_of,
+        **{
+            key: each if isinstance(each, str)
+            else [each.get(form, each["other"]) for form in own.forms]
+            for key, each in found.items()
+        },
+    }  # fmt: skip
 
 
-def messages(language: str) -> dict[str, dict[str, Any]]:
+def messages(language: str) -> dict[str, Texts]:
     """Return what `tiniscript.studio.worker` learns, by catalogue."""
-    found = {name: _texts(name, language) for name in MESSAGES}
-    return {name: {"": head, **texts} for name, (head, texts) in found.items()}
-
-
-def _texts(name: str, language: str) -> tuple[str, dict[str, list[str]]]:
-    return merged(*files(name, language))
+    return {name: texts(name, language) for name in MESSAGES}

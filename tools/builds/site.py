@@ -101,7 +101,7 @@ def halves_of(found: list[Document]) -> list[str]:
 
 
 def _chosen(language: str) -> str:
-    said = f"{about('x-name', language)}: {text('documents', 'site/choice', language)}"
+    said = f"{about(language).name}: {text('documents', 'site/choice', language)}"
     return f'<a href="{language}/index.html" lang="{language}" hreflang="{language}">{said}</a>'
 
 
@@ -129,7 +129,7 @@ def stage(half: Path, found: list[Document], on: Shelf, language: str) -> None:
 def render(half: Path, folder: Path, found: list[Document], has_studio: bool) -> None:
     """Make the pages of one half with Sphinx. Raises CannotMake with what it complains about."""
     language = folder.name
-    others = {each: about("x-name", each) for each in halves_of(found) if each != language}
+    others = {each: about(each).name for each in halves_of(found) if each != language}
     told = {"others": others, "pages": {each.name: list(each.sources) for each in found},
             "has_studio": has_studio}  # fmt: skip
     (half / "half.json").write_text(json.dumps(told), encoding="utf-8")

@@ -119,7 +119,7 @@ def _index(root: Path, folder: Path, language: str) -> str:
         text("documents", f"stick/{key}", language) for key in keys
     )
     others = " · ".join(
-        f'<a href="{name_in(each, INDEX)}">{about("x-name", each)}</a>'
+        f'<a href="{name_in(each, INDEX)}">{about(each).name}</a>'
         for each in told_in("documents", "stick/title")
         if each != language
     )

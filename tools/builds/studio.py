@@ -97,7 +97,7 @@ def build(page: Path = PAGE) -> None:
     lock = json.loads((MODULES / "pyodide" / "pyodide-lock.json").read_text(encoding="utf-8"))
     for code in languages():
         catalogue("lessons", code)  # made where it is stale
-    make("languages.json", [(code, about("x-name", code)) for code in languages()])
+    make("languages.json", [(code, about(code).name) for code in languages()])
     make(f"texts.{SOURCE}.json", page_texts(SOURCE))  # whose keys are checked
     make("description.json", description())
     make("blocks.json", block_kinds.data())

@@ -56,7 +56,7 @@ def sources(root: Path, english: str) -> dict[str, str]:
 def links(language: str, english: str, others: Iterable[str]) -> list[str]:
     """Return the links on a document to itself in other languages."""
     return [
-        f"[{about('x-name', each)}]({PurePosixPath(name_in(each, english)).name})"
+        f"[{about(each).name}]({PurePosixPath(name_in(each, english)).name})"
         for each in others
         if each != language
     ]

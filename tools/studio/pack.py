@@ -31,7 +31,7 @@ DATA = {
     "virtual/worlds": ("*.toml",),
 }
 DATA_OF_LESSONS = {"lessons": ("*/lesson.toml", "*/world.toml", "*/pupil.*.md"),
-                   "languages": ("*/lessons.mo",)}  # fmt: skip
+                   "languages": ("*/lessons.texts",)}  # fmt: skip
 ENCODINGS = ("encodings.latin_1", "encodings.ascii", "encodings.utf_8_sig", "encodings.cp437")
 STAMP = (1980, 1, 1, 0, 0, 0)
 Files = dict[str, bytes]

@@ -10,7 +10,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from string import Formatter
+
+from tiniscript.base import catalogue_source as source
+from tiniscript.base.catalogue_source import gaps
 
 ESCAPES = {"n": "\n", "t": "\t", "r": "\r", '"': '"', "\\": "\\"}
 BRACES = "python-brace-format"  # gettext's flag for a text with gaps like {file}
@@ -143,45 +145,28 @@ def _problems(entry: Entry, plurals: int) -> list[str]:
     return found
 
 
-def gaps(text: str) -> set[str]:
-    """Return the names of the gaps, with what follows a colon: how their value is written."""
-    return {
-        name + (":" + form if form else "")
-        for _, name, form, _ in Formatter().parse(text)
-        if name is not None
-    }
-
-
 def _unescaped(text: str) -> str:
     return re.sub(r"\\(.)", lambda match: ESCAPES.get(match[1], match[1]), text)
 
 
-def _quoted(name: str, text: str) -> str:
-    """Return a text as rows of a file: one for each line of it."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\t", "\\t")
-    lines = [line + "\\n" for line in escaped.split("\n")]
-    lines[-1] = lines[-1][:-2]
-    lines = [line for line in lines if line] or [""]
-    if len(lines) == 1:
-        return f'{name} "{lines[0]}"'
-    return "\n".join([f'{name} ""', *(f'"{line}"' for line in lines)])
+def joined(english: source.Catalogue, path: Path) -> source.Catalogue:
+    """Return English texts with those of a file."""
+    own = load(path)
+    for entry in english.entries.values() or map(_name, own.entries):
+        english.entries[entry.at] = entry
+        old = own.entries.get((entry.like or entry.key, entry.english))
+        if old and old.is_translated and old.plural == entry.plural:
+            names = entry.forms if entry.plural else [""]
+            entry.said, entry.seen = dict(zip(names, old.said, strict=True)), entry.hash
+    return english
 
 
-def written(catalogue: Catalogue) -> str:
-    """Return a catalogue as the text of a file."""
-    parts = ["\n".join(['msgid ""', _quoted("msgstr", catalogue.head)])]
-    for entry in catalogue.entries.values():
-        has_gaps = "{" in entry.english + entry.plural
-        flags = ["fuzzy"] * entry.is_fuzzy + [BRACES] * has_gaps
-        rows = [f"#. {note}" for note in entry.notes]
-        rows += [f"#, {', '.join(flags)}"] * bool(flags)
-        rows += [_quoted("msgctxt", entry.key)] * (entry.key != entry.english)
-        rows.append(_quoted("msgid", entry.english))
-        if entry.plural:
-            rows.append(_quoted("msgid_plural", entry.plural))
-            forms = entry.said or [""] * catalogue.plurals
-            rows += [_quoted(f"msgstr[{k}]", said) for k, said in enumerate(forms)]
-        else:
-            rows.append(_quoted("msgstr", entry.said[0] if entry.said else ""))
-        parts.append("\n".join(rows))
-    return "\n\n".join(parts) + "\n"
+def _name(at: tuple[str, str]) -> source.Entry:
+    return source.Entry(*at)
+
+
+def head(path: Path) -> tuple[str, str, str]:
+    """Return what a language says of itself: a rule, its name, and its English name."""
+    said = dict(row.split(": ", 1) for row in load(path).head.splitlines())
+    rule = re.sub(r".*plural=(.*);", r"\1", said["Plural-Forms"])
+    return rule, said["X-Name"], said["Language-Team"]

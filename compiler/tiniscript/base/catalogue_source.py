@@ -1,81 +1,235 @@
-"""Reads the English texts, `en/*.toml`, from which all languages are translated.
+"""Reads texts in TOML: the English ones, `en/*.toml`, from which all languages are translated, and
+those of a language, `es/*.toml`, which has the same keys.
 
 A row is a text by its key. A list has several texts with one key, of which a message says the first
-whose gaps all have values; `one` and `other` are a text with a plural; `same` is a program, which
-no language says in another way. A text under several keys is translated once, at the first of them:
-`own` is one that means something else there. The name of a table is the note that translators read
-beside each of its texts, but where the key begins with it; rows above all tables need none.
+whose gaps all have values; `one`, `few`, `many`, `other` and so on are the forms of a text with a
+plural. In English, `same` is a program, which no language says in another way, and a text under
+several keys is translated once, at the first of them: `own` is one that means something else there.
+There the name of a table is the note that translators read beside each of its texts, but where the
+key begins with it; rows above all tables need none. A mistake in a row costs that row alone.
 """
 
 from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator
+from dataclasses import dataclass, field
+from hashlib import sha256
 from pathlib import Path
+from string import Formatter
+from typing import Any
 
-from tiniscript.base.catalogue_file import Catalogue, Entry, gaps
-
+PLURALS = ("zero", "one", "two", "few", "many", "other")  # as Unicode's CLDR names them
+UNKNOWN, DIGITS = "-", 8  # instead of a hash; of one
 _GAP = re.compile(r"\{@?\w+\}")
-_FORMS = {"one", "other", "own", "same"}
-HEAD = """\
-Project-Id-Version: TiniScript
-Language: en
-Language-Team: English
-X-Name: English
-MIME-Version: 1.0
-Content-Type: text/plain; charset=UTF-8
-Content-Transfer-Encoding: 8bit
-Plural-Forms: nplurals=2; plural=(n != 1);
-"""
+_HEAD = re.compile(r"""\s*("(?:[^"\\]|\\.)*"|'[^']*'|[\w-]+)\s*(\.\s*[\w-]+\s*)*=""")
+_TABLE = re.compile(r"\s*\[.*\]\s*(#.*)?")
+_QUOTES = re.compile(r'"""|\'\'\'')
+_PLACE = re.compile(r" \(at (line \d+, column \d+|end of document)\)$")
+
+Forms = dict[str, str]  # of a text: by their names, or one that has none
+Problem = tuple[int, str]  # a line of a file, and a sentence
 
 
-def load(path: Path) -> Catalogue:
-    """Read a file. What is wrong in it is a problem."""
+@dataclass
+class Entry:
+    """An English text, and what a language has of it.
+
+    `said` are the forms of its translation, empty without one, and `seen` is the hash of the text
+    that it translates, UNKNOWN where nobody has said that. A stale one is of what the English text
+    was before. `notes` are for translators. `is_same`: no translator is asked for it, since no
+    language says it in another way, or since its words stand under the key `like`, too.
+    """
+
+    key: str
+    english: str
+    plural: str = ""
+    said: Forms = field(default_factory=dict)
+    seen: str = ""
+    notes: list[str] = field(default_factory=list)
+    is_same: bool = False
+    like: str = ""
+    line: int = 0
+
+    @property
+    def at(self) -> tuple[str, str]:
+        return self.key, self.english
+
+    @property
+    def hash(self) -> str:
+        """Return what stands for the English text in a file of what is seen."""
+        return sha256("\0".join(self.forms.values()).encode()).hexdigest()[:DIGITS]
+
+    @property
+    def is_stale(self) -> bool:
+        return self.seen not in ("", UNKNOWN, self.hash)
+
+    @property
+    def is_translated(self) -> bool:
+        return bool(self.said) and not self.is_stale
+
+    @property
+    def forms(self) -> Forms:
+        return {"one": self.english, "other": self.plural} if self.plural else {"": self.english}
+
+
+@dataclass
+class Catalogue:
+    """The texts of a file by key and English text, and what is wrong with it."""
+
+    entries: dict[tuple[str, str], Entry] = field(default_factory=dict)
+    problems: list[Problem] = field(default_factory=list)
+
+    def groups(self) -> dict[str, list[Entry]]:
+        """Return the texts of each key, in their order."""
+        found: dict[str, list[Entry]] = {}
+        for entry in self.entries.values():
+            found.setdefault(entry.key, []).append(entry)
+        return found
+
+
+@dataclass
+class Row:
+    """A key of a file with what stands behind it, which is None where it cannot be read.
+
+    `above` are the rows of notes and tables before it.
+    """
+
+    key: str
+    value: Any
+    line: int
+    text: str
+    above: str = ""
+    table: str = ""
+
+    def takes(self, other: Row) -> bool:
+        """Take other forms of the same text from another row, `KEY.one` and `KEY.other`."""
+        one, more = self.value, other.value
+        if not isinstance(one, dict) or not isinstance(more, dict) or one.keys() & more.keys():
+            return False
+        self.value = {**one, **more}
+        self.text += other.above + other.text
+        return True
+
+
+def decoded(path: Path) -> tuple[str, list[Problem]]:
+    """Return the text of a file, and what is wrong where it cannot be read, or is no UTF-8."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        return "", [(1, f"this cannot be read: {error.strerror or error}")]
+    if b"\0" in data:
+        return "", [(1, "this is no UTF-8 text: save the file as UTF-8")]
+    text = data.decode("utf-8-sig", errors="replace").replace("\r\n", "\n")
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        return text, [(line, "this is no UTF-8: save the file as UTF-8")]
+    return text, []
+
+
+def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
+    """Return the rows of a TOML file, what stands below all of them, and what is no TOML."""
+    found: dict[str, Row] = {}
+    again: list[Row] = []  # a key that is there twice
+    problems: list[Problem] = []
+    above, table = "", ""
+    lines = re.findall(r".*\n|.+", text)
+    at = 0
+    while at < len(lines):
+        is_row = _HEAD.match(lines[at]) is not None
+        end = _end(lines, at) if is_row else at + 1
+        value, why = _parsed(block := "".join(lines[at:end]))
+        if why:  # the next row is what begins as one, whatever is open here
+            problems.append((at + 1, f"this is no TOML: {why[1]}"))
+            end = next((k for k in range(at + 1, len(lines)) if _is_head(lines[k])), len(lines))
+            value, block = {_key(lines[at]): None} if is_row else {}, "".join(lines[at:end])
+        if is_row:
+            row = Row(*next(iter(value.items())), at + 1, block, above, table)
+            if (first := found.setdefault(row.key, row)) is not row and not first.takes(row):
+                again.append(row)
+            above = ""
+        else:
+            above += block
+            table = next(iter(value), table)
+        at = end
+    if not problems and not again:
+        problems = [(line, f"this is no TOML: {said}") for line, said in _whole(text)]
+    return sorted([*found.values(), *again], key=lambda row: row.line), above, problems
+
+
+def _is_head(line: str) -> bool:
+    """Return whether a row or a table begins with this line."""
+    return _HEAD.match(line) is not None or _TABLE.fullmatch(line.rstrip()) is not None
+
+
+def _end(lines: list[str], at: int) -> int:
+    """Return where a row ends: a text of several lines or a list goes on."""
+    quotes = ""
+    if not _parsed(lines[at])[1]:
+        return at + 1
+    for k in range(at, len(lines)):
+        if k > at and not quotes and (_is_head(lines[k]) or lines[k].strip()[:1] in ("", "#")):
+            if _is_head(lines[k]) or not _parsed("".join(lines[at:k]))[1]:
+                return k
+        for each in _QUOTES.findall(lines[k]):
+            quotes = "" if quotes == each else quotes or each
+    return len(lines)
+
+
+def _parsed(block: str) -> tuple[dict[str, Any], tuple[int, str] | None]:
+    """Return what TOML says, or in which line after the first it is none, and why."""
     if sys.version_info >= (3, 11):
         import tomllib
     else:
         import tomli as tomllib
 
-    found = Catalogue(HEAD)
-    text = path.read_text(encoding="utf-8-sig", errors="replace")
     try:
-        tables = tomllib.loads(text)
+        return tomllib.loads(block), None
     except ValueError as error:
         at = re.search(r"at line (\d+)", str(error))
-        found.problems.append((int(at[1]) if at else text.count("\n"), f"this is no TOML: {error}"))
-        return found
-    heads = (re.sub(r"(\.own|\.same)? = .*", "", row) for row in text.split("\n"))
-    lines = {head.strip("\"'"): number for number, head in enumerate(heads, 1)}
+        return {}, (int(at[1]) - 1 if at else 0, _PLACE.sub("", str(error)))
+
+
+def _whole(text: str) -> list[Problem]:
+    """Return what is no TOML of a file each of whose rows is."""
+    _, why = _parsed(text)
+    return [(why[0] + 1, why[1])] if why else []
+
+
+def _key(line: str) -> str:
+    found = _HEAD.match(line)
+    return found[1].strip("\"'") if found else ""
+
+
+def load(path: Path) -> Catalogue:
+    """Read the English texts of a file. What is wrong in it is a problem."""
+    found = Catalogue()
+    text, found.problems = decoded(path)
+    read, _, problems = rows(text)
+    found.problems += problems
     keys, firsts = set[str](), dict[tuple[str, str], Entry]()
-    for key, value, notes in _rows(tables):
-        line = lines.get(key, 1)
+    for row in read:
+        notes = [row.table] * (bool(row.table) and not row.key.startswith(row.table))
         entries = []
-        for each in value if isinstance(value, list) else [value]:
+        for each in row.value if isinstance(row.value, list) else [row.value]:
             form = each if isinstance(each, dict) else {"": each}
-            entries.append(entry := Entry(key, *_text(form), [], notes, line=line))
+            entries.append(entry := Entry(row.key, *_text(form), notes=notes, line=row.line))
             entry.is_same = "same" in form or _GAP.fullmatch(entry.english) is not None
             if not entry.is_same and "own" not in form:
                 first = firsts.setdefault((entry.english, entry.plural), entry)
                 if first is not entry:
                     entry.is_same, entry.like = True, first.key
                     first.notes = list(dict.fromkeys([*first.notes, *notes]))
-        if why := "it is there twice" if key in keys else _problem(entries):
-            found.problems.append((line, f"{key}: {why}"))
-        keys.add(key)
+        if row.key in keys:
+            found.problems.append((row.line, f"{row.key}: it is there twice"))
+        elif row.value is not None and (why := _problem(entries)):
+            found.problems.append((row.line, f"{row.key}: {why}"))
+        keys.add(row.key)
         for entry in entries:
             found.entries.setdefault(entry.at, entry)
     return found
-
-
-def _rows(tables: dict[str, object]) -> Iterator[tuple[str, object, list[str]]]:
-    """Yield each key, what stands behind it, and the notes for translators."""
-    for name, value in tables.items():
-        if isinstance(value, dict) and not _FORMS & value.keys():
-            for key, each in value.items():
-                yield key, each, [name] * (not key.startswith(name))
-        else:
-            yield name, value, []
 
 
 def _text(form: dict[str, object]) -> tuple[str, str]:
@@ -102,3 +256,12 @@ def _problem(entries: list[Entry]) -> str:
     except ValueError:
         return "a brace { or } has no other half"
     return ""
+
+
+def gaps(text: str) -> set[str]:
+    """Return the names of the gaps, with what follows a colon: how their value is written."""
+    return {
+        name + (":" + form if form else "")
+        for _, name, form, _ in Formatter().parse(text)
+        if name is not None
+    }

@@ -1,26 +1,48 @@
-"""The languages: a folder each, with the catalogues that a translator fills.
+"""The languages: a folder each, with the texts that a translator fills.
 
-A catalogue, `es/command.po`, has its texts by key, which is their context; the English ones are in
-`en/command.toml`. A language is there as soon as its folder is, and what it lacks is said in
-English, text by text. Catalogues are read as `.mo`: `setup.py` makes them for a package, and in a
-clone they are made where a source is newer. The English texts of the catalogue `names` are in other
+A catalogue, `es/command.toml`, has its texts by the keys of the English one, `en/command.toml`. A
+language is there as soon as its folder is, and what it lacks is said in English, text by text. What
+is read is made of these files, `es/command.texts`: `setup.py` does that for a package, and in a
+clone it is made where a source is newer. The English texts of the catalogue `names` are in other
 `.toml` files of the package. Knows no text.
 """
 
 from __future__ import annotations
 
+import marshal
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import cache
-from gettext import GNUTranslations
-from io import BytesIO
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+if TYPE_CHECKING:
+    from tiniscript.base.catalogue_source import Catalogue
 
 FOLDER = Path(__file__).parent.parent / "languages"
 SOURCE = "en"  # what is translated, and said where there is no translation
+ITSELF, SEEN = "language.toml", "seen.txt"  # what a language says of itself, and what it is of
+NAMES = "names"  # the catalogue whose keys are the English texts
+KEPT = ".texts"  # the end of the name of what is made of sources
+KEPT_FORM = 2  # of `marshal`: every Python reads it
 
-
+Forms = dict[str, str]  # of a text that counts, by their names in Unicode's CLDR
+Texts = dict[str, "str | Forms"]
 T = TypeVar("T")
+
+
+class Language(NamedTuple):
+    """What a language says of itself. `form_of` has which of `forms` goes with a number, a digit
+    for each before 200; from 100 on they repeat themselves each hundred."""
+
+    name: str
+    english_name: str
+    forms: tuple[str, ...]
+    form_of: str
+
+
+class WrongTexts(Exception):
+    """The English texts of a clone are wrong: there is no language to say that in."""
 
 
 class ByLanguage(dict[str, T]):
@@ -54,7 +76,7 @@ def find(name: str) -> str:
         if each in languages():
             return each
     team = code.partition("_")[0]
-    by_team = {about("language-team", each).lower(): each for each in languages()} if team else {}
+    by_team = {about(each).english_name.lower(): each for each in languages()} if team else {}
     return by_team.get(team, SOURCE)
 
 
@@ -64,28 +86,41 @@ def table(language: str, name: str) -> str:
     return path.read_text(encoding="utf-8-sig") if path.is_file() else ""
 
 
-def about(field: str, language: str) -> str:
-    """Return what the head of a language's catalogue says, such as its name."""
-    return catalogue("command", language).info().get(field, "")
+def about(language: str) -> Language:
+    """Return what a language says of itself."""
+    return _about(language if language in languages() else SOURCE)
+
+
+@cache
+def _about(language: str) -> Language:
+    path = FOLDER / language / ITSELF
+    return Language(*_kept(path.with_suffix(KEPT), [path], lambda: _said(language)))
+
+
+def _said(language: str) -> tuple[Any, ...]:
+    from tiniscript.base.translations import read_language
+
+    found = read_language(FOLDER / language / ITSELF)
+    return found.name, found.english_name, found.forms, found.form_of
 
 
 def found(name: str, key: str, language: str) -> str | None:
-    """Return a text of a catalogue, None where it has no such key."""
-    said = catalogue(name, language).gettext(key)
-    return None if said is key else said
+    """Return a text of a catalogue, None where it has no such key, or one that counts."""
+    said = catalogue(name, language).get(key)
+    return said if isinstance(said, str) else None
 
 
 def text(name: str, key: str, language: str) -> str:
     """Return a text of a catalogue."""
     said = found(name, key, language)
-    if said is None:
-        raise KeyError(key)
-    return said
+    if said is not None:
+        return said
+    raise KeyError(key)
 
 
 def keys(name: str) -> list[str]:
-    """Return the keys of a catalogue, which gettext itself tells nobody."""
-    return [key for key in vars(catalogue(name, SOURCE))["_catalog"] if isinstance(key, str)]
+    """Return the keys of a catalogue's texts, without those that count."""
+    return [key for key, said in catalogue(name, SOURCE).items() if isinstance(said, str)]
 
 
 def told_in(name: str, key: str) -> list[str]:
@@ -96,43 +131,95 @@ def told_in(name: str, key: str) -> list[str]:
 
 def counted(name: str, key: str, count: int, language: str) -> str:
     """Return the form of a text with a plural that goes with a number."""
-    return catalogue(name, language).ngettext(key, key, count)
+    forms = catalogue(name, language)[key]
+    assert isinstance(forms, dict), key
+    said = about(language)
+    number = count if count < 100 else 100 + count % 100
+    return forms.get(said.forms[int(said.form_of[number])]) or forms["other"]
 
 
 @cache
-def catalogue(name: str, language: str) -> GNUTranslations:
-    """Return a catalogue of a language; of an unknown one it is English."""
+def catalogue(name: str, language: str) -> Texts:
+    """Return the texts of a catalogue by key; of an unknown language they are English."""
     language = language if language in languages() else SOURCE
-    made = FOLDER / language / f"{name}.mo"
-    if _is_fresh(made, files(name, language)):
-        with made.open("rb") as file:
-            return GNUTranslations(file)
-    if language != SOURCE and not any(map(Path.is_file, files(name, language))):
-        return catalogue(name, SOURCE)  # a page has not fetched it
-    from tiniscript.base.catalogue_compiler import compiled
+    own, made = files(name, language)[1], FOLDER / language / (name + KEPT)
+    if not own.is_file() and (is_clone() or not made.is_file()):
+        if language != SOURCE:  # nothing is translated, or a page has not fetched it
+            return catalogue(name, SOURCE)
+        if not is_clone():
+            return {}
+    beside = (own.with_name(each) for each in (SEEN, ITSELF))
+    found: Texts = _kept(made, [*files(name, language), *beside], lambda: texts(name, language))
+    return found
+
+
+def texts(name: str, language: str) -> Texts:
+    """Return the texts of a catalogue as its sources have them."""
+    from tiniscript.base.translations import texts_of
+
+    return texts_of(entries(name, language))
+
+
+def entries(name: str, language: str) -> Catalogue:
+    """Return the English texts of a catalogue with what a language has of them."""
+    from tiniscript.base import catalogue_file
+    from tiniscript.base.catalogue_source import load
+    from tiniscript.base.translations import Own, joined, named, read_language, read_own, read_seen
+
+    source, path = files(name, language)
+    own = read_own(path) if language != SOURCE and path.suffix == ".toml" else Own()
+    english = load(source) if name != NAMES else named(own)
+    for line, why in english.problems:
+        raise WrongTexts(f"{source}:{line}: {why}")
+    if path.suffix == ".po":
+        return catalogue_file.joined(english, path)
+    seen, _ = read_seen(path.with_name(SEEN))
+    return joined(english, name, own, seen, read_language(path.with_name(ITSELF)))
+
+
+def _kept(made: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:
+    """Return what is kept in a file if no source is newer, else make it, and keep it."""
+    if _is_fresh(made, sources):
+        with suppress(ValueError, EOFError, TypeError, OSError):  # half a file
+            return marshal.loads(made.read_bytes())
     from tiniscript.base.files import replace
 
-    data = compiled(*files(name, language))
-    with suppress(OSError):  # a folder that nobody may write to
-        replace(made, data)
-    return GNUTranslations(BytesIO(data))
+    found = make()
+    with suppress(OSError, ValueError):  # a folder that nobody may write to, a full disk
+        replace(made, marshal.dumps(found, KEPT_FORM))
+    return found
 
 
-def machine_objects() -> dict[str, bytes]:
+def forget() -> None:
+    """Read all languages again when they are next asked for: their folder is another one now."""
+    for each in (languages, catalogue, _about):
+        each.cache_clear()
+
+
+def kept_files() -> dict[str, bytes]:
     """Return all catalogues as a package has them, by their paths in FOLDER."""
-    from tiniscript.base.catalogue_compiler import compiled
+    named = {path.stem for path in FOLDER.glob("*/*.toml") if path.name != ITSELF}
+    names = sorted(named | {NAMES})
+    made: dict[str, Any] = {}
+    for each in languages():
+        made |= {f"{each}/{name}": texts(name, each) for name in names}
+        made[f"{each}/{ITSELF.removesuffix('.toml')}"] = _said(each)
+    return {name + KEPT: marshal.dumps(each, KEPT_FORM) for name, each in made.items()}
 
-    names = sorted({path.stem for path in FOLDER.glob("*/*") if path.suffix in (".toml", ".po")})
-    pairs = [(name, language) for language in languages() for name in names]
-    return {f"{language}/{name}.mo": compiled(*files(name, language)) for name, language in pairs}
+
+def is_clone() -> bool:
+    """Return whether the sources are there: a package has none."""
+    return (FOLDER / SOURCE / ITSELF).is_file()
 
 
 def files(name: str, language: str) -> tuple[Path, Path]:
     """Return the English source of a catalogue, and what a language has of it."""
-    return FOLDER / SOURCE / f"{name}.toml", FOLDER / language / f"{name}.po"
+    own = FOLDER / language / f"{name}.po"
+    own = own if own.is_file() else own.with_suffix(".toml")
+    return FOLDER / SOURCE / f"{name}.toml", own
 
 
-def _is_fresh(made: Path, sources: tuple[Path, Path]) -> bool:
+def _is_fresh(made: Path, sources: Iterable[Path]) -> bool:
     """Return whether a file is there, and no source is newer: a package has none at all."""
     return made.is_file() and _time(made) >= max(map(_time, sources))
 

@@ -14,6 +14,7 @@ import stat
 import sys
 from importlib import import_module
 
+from tiniscript.base.languages import WrongTexts
 from tiniscript.cli import streams
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import language_of, say, say_aside, text
@@ -37,6 +38,9 @@ def main(arguments: list[str] | None = None) -> int:
         return CLOSED
     except KeyboardInterrupt:  # before the language is known
         return 2
+    except WrongTexts as failure:
+        print(f"tsc: {failure}", file=sys.stderr)
+        return 2
     finally:
         if arguments is None:
             gc.freeze()
@@ -53,7 +57,7 @@ def _main(arguments: list[str]) -> int:
         streams.drop_unread()
         print("\n" + text("stopped", language), file=sys.stderr)
         return 2
-    except BrokenPipeError:
+    except (BrokenPipeError, WrongTexts):
         raise
     except OSError as failure:  # files have sentences of their own; this is the output
         if _is_left_pipe(failure):

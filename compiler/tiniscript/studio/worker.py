@@ -6,10 +6,10 @@ Knows the form of both. Runs in Pyodide, in a worker; knows nothing of a browser
 from __future__ import annotations
 
 import json
+import marshal
 from collections.abc import Callable
 from typing import Any
 
-from tiniscript.base import catalogue_compiler as compiling
 from tiniscript.base import languages
 from tiniscript.bytecode.image import checksum
 from tiniscript.diagnostics.rendering import Message
@@ -96,10 +96,8 @@ def _learn(fields: Answer, data: bytes) -> Answer:
     folder = languages.FOLDER / fields["language"]
     folder.mkdir(exist_ok=True)
     for name, texts in json.loads(data).items():
-        made = compiling.machine_object(texts.pop(""), texts)
-        (folder / f"{name}.mo").write_bytes(made)
-    languages.languages.cache_clear()
-    languages.catalogue.cache_clear()
+        (folder / f"{name}{languages.KEPT}").write_bytes(marshal.dumps(texts, languages.KEPT_FORM))
+    languages.forget()
     return {}
 
 

@@ -1,0 +1,256 @@
+"""What a language has of the English texts: reads its files, and says what is wrong with them.
+
+`es/language.toml` says what the language calls itself, and its forms of a text that counts. Each
+other `es/NAME.toml` has texts by the keys of `en/NAME.toml`. `es/seen.txt` has of which English
+text each is a translation: rows of a file's name, a key and a hash, which `tools/languages.py`
+writes; of a list one for each of its texts, `-` where that is not known. So a text in front of
+others moves no translation to another text, and a translation of what the English text was before
+is stale: it is not said. Knows no language.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from tiniscript.base import catalogue_file
+from tiniscript.base.catalogue_source import (
+    DIGITS,
+    PLURALS,
+    UNKNOWN,
+    Catalogue,
+    Entry,
+    Forms,
+    Problem,
+    Row,
+    decoded,
+    gaps,
+    rows,
+)
+
+NUMBERS = 200  # after the first hundred a rule of plurals repeats itself each hundred
+_SEEN = re.compile(rf"(\w+ .+?)((?: (?:{UNKNOWN}|[0-9a-f]{{{DIGITS}}}))+) *")
+_RULE = "n != 1"
+_FORMS = ("one", "other")
+
+
+@dataclass
+class Language:
+    """What `languages.Language` says, the `rule` of its plurals, which is one of gettext, and
+    `read_by`: whether somebody has read it whose language it is. One that is complete lacks none.
+    """
+
+    name: str
+    english_name: str
+    forms: tuple[str, ...] = _FORMS
+    rule: str = _RULE
+    form_of: str = ""
+    read_by: str = ""
+    is_complete: bool = False
+    problems: list[Problem] = field(default_factory=list)
+
+
+def read_language(path: Path) -> Language:
+    """Read what a language says of itself; what it does not say is as in English."""
+    found = Language(path.parent.name, path.parent.name)
+    if (old := path.with_name("command.po")).is_file():
+        rule, found.name, found.english_name = catalogue_file.head(old)
+        return replace(found, rule=rule, form_of=_form_of(rule, _FORMS)[0], is_complete=True)
+    text, found.problems = decoded(path)
+    read, _, problems = rows(text)
+    found.problems += problems
+    known: dict[str, Any] = {"name": str, "english_name": str, "read_by": str, "is_complete": bool,
+                             "forms": list, "which_form": str}  # fmt: skip
+    said: dict[str, Any] = {}
+    for row in read:
+        if row.key not in known:
+            found.problems.append((row.line, f"{row.key}: a language does not say that"))
+        elif row.key in said:
+            found.problems.append((row.line, f"{row.key}: it is there twice"))
+        elif isinstance(row.value, known[row.key]):
+            said[row.key] = row.value
+        elif row.value is not None:
+            found.problems.append((row.line, f"{row.key}: it is no {_KINDS[known[row.key]]}"))
+    found.name = said.get("name", found.name)
+    found.english_name = said.get("english_name", found.english_name)
+    found.read_by, found.is_complete = said.get("read_by", ""), said.get("is_complete", False)
+    names, rule = tuple(said.get("forms", _FORMS)), said.get("which_form", _RULE)
+    form_of, why = _form_of(rule, names)
+    if why:
+        line = next((each.line for each in read if each.key in ("which_form", "forms")), 1)
+        found.problems.append((line, why))
+        names, rule, (form_of, _) = _FORMS, _RULE, _form_of(_RULE, _FORMS)
+    found.forms, found.rule, found.form_of = names, rule, form_of
+    return found
+
+
+_KINDS = {str: "text", bool: "true or false", list: "list"}
+
+
+def _form_of(rule: str, names: tuple[object, ...]) -> tuple[str, str]:
+    """Return the digit of a form for each number, or why there is none."""
+    from gettext import c2py
+
+    if not names or any(each not in PLURALS or names.count(each) > 1 for each in names):
+        return "", f"forms: it is no list of some of {', '.join(PLURALS)}"
+    try:
+        rule_of = c2py(rule)
+        digits = [int(rule_of(number)) for number in range(NUMBERS)]
+    except (ValueError, ArithmeticError, RecursionError) as error:
+        return "", f"which_form: {error}"
+    if {*digits} <= {*range(len(names))}:
+        return "".join(map(str, digits)), ""
+    return "", f"which_form: it gives {max(digits)}, and forms has {len(names)}"
+
+
+def read_seen(path: Path) -> tuple[dict[str, list[str]], list[Problem]]:
+    """Return the hashes of a language by file and key, and what is wrong with the file of them."""
+    found: dict[str, list[str]] = {}
+    text, problems = decoded(path) if path.is_file() else ("", [])
+    for number, line in enumerate(text.split("\n"), 1):
+        row = _SEEN.fullmatch(line)
+        if not line.strip() or line[0] == "#":
+            continue
+        if row is None:
+            problems.append((number, f"this is no file, key and hash: {line[:60]}"))
+        elif row[1] in found:
+            problems.append((number, f"{row[1]} is there twice"))
+        else:
+            found[row[1]] = row[2].split()
+    return found, problems
+
+
+@dataclass
+class Own:
+    """A file of a language: its rows, the forms of each text of a key, what is wrong."""
+
+    rows: list[Row] = field(default_factory=list)
+    texts: dict[str, list[Forms]] = field(default_factory=dict)
+    lines: dict[str, int] = field(default_factory=dict)
+    problems: list[Problem] = field(default_factory=list)
+    below: str = ""
+
+
+def read_own(path: Path) -> Own:
+    """Read the texts of a language; of a file that is not there none."""
+    own = Own()
+    if not path.is_file():
+        return own
+    text, own.problems = decoded(path)
+    own.rows, own.below, problems = rows(text)
+    own.problems += problems
+    for row in own.rows:
+        if row.key in own.texts:
+            own.problems.append((row.line, f"{row.key}: it is there twice"))
+            continue
+        values = row.value if isinstance(row.value, list) else [row.value]
+        texts = [_forms(each) for each in values]
+        if row.value is None or "\ufffd" in row.text:
+            texts = []
+        elif None in texts or not texts:
+            own.problems.append((row.line, f"{row.key}: it has no text"))
+            texts = []
+        own.texts[row.key] = [each for each in texts if each is not None]
+        own.lines[row.key] = row.line
+    return own
+
+
+def _forms(value: object) -> Forms | None:
+    """Return the forms of a text, none where it is empty; None of what is no text."""
+    if isinstance(value, str):
+        return {"": value} if value else {}
+    if isinstance(value, dict) and value and all(isinstance(each, str) for each in value.values()):
+        return dict(value)
+    return None
+
+
+def named(own: Own) -> Catalogue:
+    """Return the texts of a file whose keys are the English texts."""
+    return Catalogue({(key, key): Entry(key, key) for key in own.texts})
+
+
+def joined(
+    english: Catalogue, name: str, own: Own, seen: dict[str, list[str]], language: Language
+) -> Catalogue:
+    """Return English texts with those of a language, and what is wrong with these."""
+    found = Catalogue({at: untold(each) for at, each in english.entries.items()}, own.problems[:])
+    groups = found.groups()
+    for key, texts in own.texts.items():
+        line, group = own.lines[key], groups.get(key, [])
+        unknown = [each.hash if each.english == key else UNKNOWN for each in group]
+        hashes = seen.get(f"{name} {key}", unknown)
+        hashes = [*hashes, *[UNKNOWN] * len(texts)][: len(texts)]
+        if not group:
+            found.problems.append((line, f"{key}: there is no such English text"))
+        elif why := pair(group, texts, hashes):
+            found.problems.append((line, f"{key}: {why}"))
+        for entry in group:
+            entry.line = line
+            for why in misfits(entry, language):
+                found.problems.append((line, f"{key}: {why}"))
+                entry.said, entry.seen = {}, ""
+    for entry in found.entries.values():
+        if entry.like and not entry.said:
+            first = found.entries[entry.like, entry.english]
+            entry.said = first.said if first.is_translated else {}
+    return found
+
+
+def untold(entry: Entry) -> Entry:
+    at = (entry.key, entry.english, entry.plural)
+    return Entry(*at, notes=entry.notes, is_same=entry.is_same, like=entry.like, line=entry.line)
+
+
+def pair(group: list[Entry], texts: list[Forms], hashes: list[str]) -> str:
+    """Give each English text of a key its translation; return why one has no text, or nothing."""
+    own = {place: each.hash for place, each in enumerate(group)}
+    given = {place for place, forms in enumerate(texts) if forms}
+    has_moved = False
+    for place in sorted(given):
+        if places := [at for at, each in own.items() if each == hashes[place]]:
+            at = place if place in places else places[0]
+            has_moved |= at != place
+            group[at].said, group[at].seen = texts[place], hashes[place]
+            del own[at]
+            given.remove(place)
+    for place in sorted(given):
+        if hashes[place] == UNKNOWN and has_moved:
+            return "its English texts have other places now: first run  python -m tools.languages"
+        if place not in own:
+            return f"it has {len(texts)} texts, and English {len(group)}"
+        group[place].said, group[place].seen = texts[place], hashes[place]
+    return ""
+
+
+def misfits(entry: Entry, language: Language) -> list[str]:
+    """Return what is wrong with the translation of a text that has not changed."""
+    if not entry.is_translated:
+        return []
+    used = {language.forms[int(digit)] for digit in language.form_of}
+    wanted, known = (used, {*language.forms, "other"}) if entry.plural else ({""}, {""})
+    if not wanted <= entry.said.keys() <= known:
+        has, needs = (", ".join(sorted(each)) or "one text" for each in (entry.said, wanted))
+        return [f"it has {has}, and needs {needs}"]
+    places = gaps(entry.english) | gaps(entry.plural)
+    found = []
+    for said in entry.said.values():
+        try:
+            own = gaps(said)
+        except ValueError:
+            return ["a brace { or } has no other half"]
+        found += [f"{{{gap}}} is missing" for gap in sorted(gaps(entry.english) - own)]
+        found += [f"{{{gap}}} is no gap of the English text" for gap in sorted(own - places)]
+    return list(dict.fromkeys(found))
+
+
+def texts_of(found: Catalogue) -> dict[str, str | Forms]:
+    """Return what is said by key, and of several texts with one key the second under `key/2`: a
+    text, or its forms. What has no translation that fits is English."""
+    texts: dict[str, str | Forms] = {}
+    for key, group in found.groups().items():
+        for number, entry in enumerate(group, 1):
+            forms = entry.said if entry.is_translated else entry.forms
+            texts[f"{key}/{number}" if number > 1 else key] = forms.get("", forms)
+    return texts

@@ -1,0 +1,759 @@
+"""The files of a language: what is wrong costs little, and a translation follows its text."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+from babel.messages.catalog import Catalog
+from babel.messages.pofile import read_po
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.support.copies import linked
+from tests.support.waiting import HANGS_S
+from tiniscript.base import catalogue_source, languages
+from tiniscript.base.catalogue_source import Catalogue, Entry
+from tiniscript.base.languages import FOLDER, ITSELF, NAMES, SEEN, SOURCE
+from tiniscript.base.translations import NUMBERS, joined, read_language, read_own, read_seen
+from tiniscript.cli.texts import Said
+from tools import languages as tool
+from tools import translation_files, translators
+from tools.languages import check_lexicon, check_robot, pseudo
+from tools.translation_files import Translation, quoted, written
+
+ENGLISH = """
+[note]
+a = "Read {file}."
+b = "Stop."
+more = ["{fix}", "Take it out.", "Put it in."]
+n = { one = "{n} byte", other = "{n} bytes" }
+"""
+OWN = 'b = "Alto."\n'
+
+
+@pytest.fixture
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A folder of languages with English and one more, `xx`."""
+    for module in (languages, tool, translation_files):
+        monkeypatch.setattr(module, "FOLDER", tmp_path / "languages")
+    for code in (SOURCE, "xx"):
+        (tmp_path / "languages" / code).mkdir(parents=True)
+    itself = FOLDER / SOURCE / ITSELF
+    shutil.copyfile(itself, tmp_path / "languages" / SOURCE / itself.name)
+    write(tmp_path / "languages" / "xx" / ITSELF, 'name = "xx"\n')
+    write(tmp_path / "languages" / SOURCE / "some.toml", ENGLISH)
+    languages.forget()
+    yield tmp_path / "languages"
+    monkeypatch.undo()
+    languages.forget()
+
+
+def write(path: Path, said: str) -> None:
+    path.write_text(said, encoding="utf-8", newline="")
+
+
+def said(key: str, language: str = "xx") -> str | dict[str, str]:
+    languages.forget()
+    return languages.texts("some", language)[key]
+
+
+def opened(place: Path, own: str | None = None, seen: bool = False) -> Translation:
+    """Return what `xx` has, as the tool sees it; `seen`: of the English texts of now."""
+    if own is not None:
+        write(place / "xx" / "some.toml", own)
+    english = {"some": catalogue_source.load(place / SOURCE / "some.toml")}
+    made = Translation("xx", english)
+    if seen:
+        made.see([])
+        made.write()
+    return made
+
+
+def problems(made: Translation) -> list[tuple[str, int, str]]:
+    return [(path.name, *each) for path, some in made.problems() for each in some]
+
+
+# -- what is wrong
+
+
+@pytest.mark.parametrize(("row", "line", "why"), [
+    ('a = "Lee {fila}."', 2, "a: {file} is missing"),
+    ('a = "Lee {file} {x}."', 2, "a: {x} is no gap of the English text"),
+    ('a = "Lee {file}}."', 2, "a: a brace { or } has no other half"),
+    ('a = "Lee {file}."\na = "Mira {file}."', 3, "a: it is there twice"),
+    ('b = "Basta."', 2, "b: it is there twice"),
+    ('a = "Lee {file}.', 2, "this is no TOML: Illegal character '\\n'"),
+    ('a = """Lee {file}.', 2, "this is no TOML: Unterminated string"),
+    ('a = ["Lee {file}.",', 2, "this is no TOML: Invalid value"),
+    ("a = Lee", 2, "this is no TOML: Invalid value"),
+    ("a", 2, "this is no TOML: Expected '=' after a key in a key/value pair"),
+    ("[a", 2, "this is no TOML: Expected ']' at the end of a table declaration"),
+    ("\n\na = 5", 4, "a: it has no text"),
+    ("a = []", 2, "a: it has no text"),
+    ("a = [5]", 2, "a: it has no text"),
+    ("a.x.y = 'A.'", 2, "a: it has no text"),
+    ('z = "Z."', 2, "z: there is no such English text"),
+    ('a = ["Lee {file}.", "Mira {file}."]', 2, "a: it has 2 texts, and English 1"),
+    ('a.one = "Lee {file}."', 2, "a: it has one, and needs one text"),
+    ('n = "{n} bytes"', 2, "n: it has one text, and needs one, other"),
+    ('n.one = "{n} byte"', 2, "n: it has one, and needs one, other"),
+    ('n.one = "{n} byte"\nn.many = "{n} bytes"', 2, "n: it has many, one, and needs one, other"),
+    ('n.one = "{n} byte"\nn.one = "{n} bytes"', 3, "n: it is there twice"),
+    ('n.one = "{n} byte"\nn.other = "{m} bytes"', 2, "n: {n} is missing"),
+])  # fmt: skip
+def test_what_is_wrong_costs_its_row_and_is_said_with_its_line(
+    row: str, line: int, why: str, place: Path
+) -> None:
+    found = problems(opened(place, f"{OWN}{row}\nmore = ['', 'Quítalo.']\n"))
+    assert found[0][:2] == ("some.toml", line) and found[0][2].startswith(why)
+    assert said("b") == "Alto." and said("more/2") == "Quítalo."
+    if not row.startswith(("b", 'a = "Lee {file}."\n', 'a = ["Lee {file}.", "Mi')):
+        assert said("a") == "Read {file}."
+    before = (place / "xx" / "some.toml").read_text().splitlines()
+    again = opened(place)
+    assert [*again.follow()] == []
+    again.write()
+    after = (place / "xx" / "some.toml").read_text().splitlines()
+    assert sorted(after) == sorted(before), "it keeps what somebody must mend"
+
+
+@pytest.mark.parametrize(("data", "line"), [
+    (OWN.encode() + 'a = "Lée {file}."\n'.encode("latin-1"), 2),
+    (OWN.encode() + b"\xff\n", 2),
+])  # fmt: skip
+def test_a_row_that_is_not_in_utf_8_is_said_in_english(data: bytes, line: int, place: Path) -> None:
+    (place / "xx" / "some.toml").write_bytes(data)
+    assert ("some.toml", line, "this is no UTF-8: save the file as UTF-8") in problems(
+        opened(place)
+    )
+    assert said("b") == "Alto."
+    assert said("a") == "Read {file}."
+
+
+def test_a_file_in_another_encoding_has_no_texts(place: Path) -> None:
+    (place / "xx" / "some.toml").write_bytes(OWN.encode("utf-16"))
+    assert problems(opened(place)) == [
+        ("some.toml", 1, "this is no UTF-8 text: save the file as UTF-8")
+    ]
+    assert said("b") == "Stop."
+
+
+def test_what_an_editor_does_to_a_file_is_no_mistake(place: Path) -> None:
+    changed = '\ufeff# by somebody\r\n[x]\r\nb = "Alto."\r\na = """\r\nLee\r\n{file}."""\r\n'
+    write(place / "xx" / "some.toml", changed)
+    assert problems(opened(place)) == []
+    assert said("b") == "Alto." and said("a") == "Lee\n{file}."
+
+
+@pytest.mark.parametrize(("row", "line", "why"), [
+    ("some b", 1, "this is no file, key and hash: some b"),
+    ("some b 123", 1, "this is no file, key and hash: some b 123"),
+    ("# note\n\nsome b 00000000\nsome b 00000000", 4, "some b is there twice"),
+])  # fmt: skip
+def test_what_is_wrong_in_the_hashes_is_said_with_its_line_and_kept(
+    row: str, line: int, why: str, place: Path
+) -> None:
+    write(place / "xx" / SEEN, row)
+    own = opened(place, OWN)
+    assert problems(own) == [(SEEN, line, why)]
+    own.see(["*"])
+    own.write()
+    assert (place / "xx" / SEEN).read_text() == row
+
+
+@pytest.mark.parametrize(("row", "line", "why"), [
+    ('name = 5', 1, "name: it is no text"),
+    ('\nforms = "one"', 2, "forms: it is no list"),
+    ('forms = ["one", "some"]', 1, "forms: it is no list of some of zero, one, two, few, many, "),
+    ('forms = [["one"]]', 1, "forms: it is no list of some of"),
+    ('forms = []', 1, "forms: it is no list of some of"),
+    ('which_form = "n !"', 1, "which_form: "),
+    ('which_form = "n / 0"', 1, "which_form: "),
+    ('which_form = "n"', 1, "which_form: it gives 199, and forms has 2"),
+    ('which_form = "' + "(" * 9999 + '"', 1, "which_form: "),
+    ('colour = "red"', 1, "colour: a language does not say that"),
+    ('name = "X"\nname = "Y"', 2, "name: it is there twice"),
+    ('name = "X', 1, "this is no TOML: Illegal character"),
+])  # fmt: skip
+def test_what_a_language_cannot_say_of_itself_is_as_in_english(
+    row: str, line: int, why: str, place: Path
+) -> None:
+    write(place / "xx" / ITSELF, row + "\n")
+    ((name, at, found),) = problems(opened(place, OWN))
+    assert (name, at) == (ITSELF, line) and found.startswith(why)
+    languages.forget()
+    assert languages.about("xx").forms == ("one", "other")
+    assert said("b") == "Alto."
+
+
+TOML = st.lists(st.sampled_from(["a", '"b/c"', " = ", '"', "'", '"""', "x", "[", "]", "{", "}",
+                                 ".one", ", ", "\n", "\\", "#", "\r", "\ud800"]))  # fmt: skip
+
+
+@settings(deadline=None)
+@given(st.one_of(st.binary(), TOML.map(lambda parts: "".join(parts).encode(errors="replace"))))
+def test_no_bytes_in_a_file_stop_a_command(data: bytes) -> None:
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        for each in ("some.toml", SEEN, ITSELF):
+            (folder / each).write_bytes(data)
+        found = read_language(folder / ITSELF)
+        assert len(found.form_of) == NUMBERS
+        read_seen(folder / SEEN)
+        english = catalogue_source.load(folder / "some.toml")
+        joined(english, "some", read_own(folder / "some.toml"), {}, found)
+
+
+def test_what_cannot_be_read_is_wrong_and_costs_the_file(
+    place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = place / "xx" / "some.toml"
+    write(own, OWN)
+
+    def refused(path: Path) -> bytes:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_bytes", refused)
+    assert read_own(own).problems == [(1, "this cannot be read: Permission denied")]
+
+
+# -- what a language has
+
+
+def test_plurals_follow_the_rule_of_the_language(place: Path) -> None:
+    polish = "n==1 ? 0 : n%10>=2 && n%10<=4 && (n%100<10 || n%100>=20) ? 1 : 2"
+    rules = (
+        ("one few many", polish, {1: "one", 2: "few", 5: "many", 12: "many", 22: "few"}),
+        ("zero one two few many other",
+         "n==0 ? 0 : n==1 ? 1 : n==2 ? 2 : n%100>=3 && n%100<=10 ? 3 : n%100>=11 ? 4 : 5",
+         {0: "zero", 1: "one", 2: "two", 7: "few", 11: "many", 100: "other", 1103: "few"}),
+        ("other", "0", {0: "other", 1: "other", 5: "other"}),
+    )  # fmt: skip
+    for names, rule, wanted in rules:
+        forms = names.split()
+        write(place / "xx" / ITSELF, f"forms = {forms}\nwhich_form = '{rule}'\n")
+        rows = "".join(f"n.{form} = '{{n}} {form}'\n" for form in forms)
+        assert problems(opened(place, rows)) == []
+        languages.forget()
+        for number, form in wanted.items():
+            assert languages.counted("some", "n", number, "xx") == f"{{n}} {form}"
+    write(place / "xx" / "some.toml", OWN)
+    languages.forget()
+    assert [languages.counted("some", "n", n, "xx") for n in (1, 5)] == ["{n} bytes"] * 2
+
+
+def test_a_form_that_no_number_has_may_be_missing(place: Path) -> None:
+    """CLDR has one for parts of one in Polish: who knows that may write it."""
+    write(place / "xx" / ITSELF, 'forms = ["one", "many"]\nwhich_form = "n != 1"\n')
+    row = "n.one = '{n} a'\nn.many = '{n} b'\n"
+    assert (
+        problems(opened(place, row)) == problems(opened(place, f"{row}n.other = '{{n}}'\n")) == []
+    )
+
+
+@pytest.mark.parametrize(("language", "many", "one"), [
+    ("en", "{n} checks", "1 check"), ("es", "{n} pruebas", "1 prueba"),
+])  # fmt: skip
+def test_a_sentence_has_the_form_of_its_number(language: str, many: str, one: str) -> None:
+    said = Said(many)
+    said.language = language
+    assert said.format(n="1") == one
+    assert said.format(n=0) != f"0 {one[2:]}"
+
+
+def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
+    place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    opened(place, OWN + 'a = "Lee {file}."\n')
+    assert said("b") == "Alto.", "a new one is said at once"
+    opened(place, seen=True)
+    write(place / SOURCE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
+    assert said("b") == "Stop now." and said("a") == "Lee {file}."
+    own = opened(place)
+    assert tool.report(own) == 0
+    out = capsys.readouterr().out
+    assert "some.toml:2: b: its English text has changed, and so it is said in English: St" in out
+    assert "xx: 1 texts are stale." in out and "xx: 1 of 5 texts are translated" in out
+    write(place / "xx" / ITSELF, "is_complete = true\n")
+    assert tool.report(opened(place)) == 4, "a whole language says all, and as it is now"
+    opened(place, seen=True)
+    assert said("b") == "Stop now.", "somebody has run the tool for others"
+    assert own.see(["x*", "b"]) == ["x*"]
+    own.write()
+    assert said("b") == "Alto."
+    write(place / SOURCE / "some.toml", ENGLISH)
+    assert said("b") == "Stop.", "of the text before it is none now"
+
+
+@pytest.mark.parametrize("has_run", [False, True])
+def test_a_text_in_front_of_others_moves_and_loses_no_translation(
+    place: Path, has_run: bool
+) -> None:
+    opened(place, 'more = ["", "Quítalo.", "Ponlo."]\n', seen=True)
+    moved = ENGLISH.replace('["{fix}", "Take it out.", "Put it in."]',
+                            '["New.", "Put it in.", "{fix}", "Take it out."]')  # fmt: skip
+    write(place / SOURCE / "some.toml", moved)
+    if has_run:
+        own = opened(place)
+        assert [*own.follow()] == []
+        own.write()
+        assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
+            'more = ["", "Ponlo.", "", "Quítalo."]\n'
+        )
+        write(place / "xx" / "some.toml", 'more = ["Nuevo.", "Ponlo.", "", "Quítalo."]\n')
+    assert problems(opened(place)) == []
+    assert [said("more/2"), said("more/3"), said("more/4")] == ["Ponlo.", "{fix}", "Quítalo."]
+    assert said("more") == ("Nuevo." if has_run else "New.")
+
+
+def test_a_new_text_of_a_list_whose_english_has_moved_is_none_of_another_text(place: Path) -> None:
+    opened(place, 'more = ["", "Quítalo."]\n', seen=True)
+    write(place / SOURCE / "some.toml", ENGLISH.replace('"{fix}", ', '"{fix}", "New.", '))
+    ((_, line, why),) = problems(opened(place, 'more = ["", "Nuevo.", "Quítalo."]\n'))
+    assert line == 1 and why.startswith("more: its English texts have other places now")
+    assert said("more/2") == "New."
+
+
+def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(place: Path) -> None:
+    """What is gone goes; a key that somebody has mistyped stays, and is wrong."""
+    notes = '# who\n[x]\nb = "Alto."  # short\n# why\na = "Lee {file}."\ngoes = "Se va."\n# end\n'
+    opened(place, notes)
+    write(place / SOURCE / "some.toml", ENGLISH + 'goes = "It goes."\n')
+    opened(place, seen=True)
+    write(place / SOURCE / "some.toml", ENGLISH.replace("b =", "moved ="))
+    own = opened(place, (place / "xx" / "some.toml").read_text("utf-8") + 'mistyped = "Ay."\n')
+    assert [*own.follow()] == ["some.toml: goes"]
+    own.write()
+    assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
+        '# why\na = "Lee {file}."\n# who\n[x]\nmoved = "Alto."\n# end\nmistyped = "Ay."\n'
+    )
+    assert said("moved") == "Alto."
+    seen = (place / "xx" / SEEN).read_text(encoding="utf-8")
+    assert [row.rpartition(" ")[0] for row in seen.splitlines()[1:]] == ["some a", "some moved"]
+    assert problems(opened(place)) == [("some.toml", 7, "mistyped: there is no such English text")]
+    again = opened(place)
+    assert [*again.follow()] == []
+    again.write()
+    assert (place / "xx" / SEEN).read_text(encoding="utf-8") == seen
+
+
+def test_a_mistake_in_a_file_costs_nothing_that_is_noted(place: Path) -> None:
+    opened(place, OWN + 'more = ["", "Quítalo."]\n', seen=True)
+    seen = (place / "xx" / SEEN).read_text(encoding="utf-8")
+    write(place / SOURCE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
+    for spoilt in ('b = "Alto.\n', 'more = ["", "a", "b", "c"]\n' + OWN, OWN + "b = 'x'\n"):
+        own = opened(place, spoilt, seen=True)
+        assert [*own.follow()] == []
+        own.write()
+        assert (place / "xx" / SEEN).read_text(encoding="utf-8").startswith(seen[:60])
+        kept = (place / "xx" / "some.toml").read_text(encoding="utf-8")
+        assert sorted(kept.splitlines()) == sorted(spoilt.splitlines())
+    (place / "xx" / "some.toml").write_bytes(OWN.encode("utf-16"))
+    own = opened(place, seen=True)
+    assert "some b" in (place / "xx" / SEEN).read_text(encoding="utf-8")
+    opened(place, OWN)
+    assert said("b") == "Stop now.", "it is stale still"
+
+
+def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_else(
+    place: Path,
+) -> None:
+    """A note that the key begins with is not said beside it; a list says its texts itself."""
+    write(
+        place / SOURCE / "some.toml",
+        '[verb]\na = "Open"\nb = ["Shut", "Open"]\n[door]\ndoor.own = "Open"\n[menu]\nd = "Open"\n',
+    )
+    own = opened(place, 'a = "Abrir"\nb = ["Cierra"]\ndoor = "Abierta"\n')
+    asked = [each for each in own.joined("some").entries.values() if not each.is_same]
+    assert [(each.key, each.english, each.notes, each.said[""]) for each in asked] == [
+        ("a", "Open", ["verb", "menu"], "Abrir"), ("b", "Shut", ["verb"], "Cierra"),
+        ("door", "Open", [], "Abierta"),
+    ]  # fmt: skip
+    languages.forget()
+    assert languages.texts("some", "xx") == {
+        "a": "Abrir", "b": "Cierra", "b/2": "Abrir", "door": "Abierta", "d": "Abrir",
+    }  # fmt: skip
+    opened(place, 'a = "Abrir"\nb = ["Cierra", "Abre"]\n')
+    assert said("b/2") == "Abre"
+
+
+def test_a_program_is_for_no_translator_and_may_have_a_lone_brace(place: Path) -> None:
+    write(place / SOURCE / "some.toml", 'a = "A."\n"b/wrong".same = "LOOP(3) {"\n')
+    own = opened(place)
+    assert problems(own) == []
+    own.put_all("some", pseudo(own.english["some"]))
+    own.write()
+    assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == 'a = "À. ñandú"\n'
+    assert said("b/wrong") == "LOOP(3) {"
+
+
+TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"))
+
+
+@settings(deadline=None)
+@given(TEXTS, st.lists(TEXTS, min_size=2))
+def test_what_is_written_is_what_is_read(key: str, texts: list[str]) -> None:
+    forms = [{"": each} if each else {} for each in texts]
+    rows = written(key, forms, True) + written(f"{key}.", [{"": texts[0] or "x"}], False)
+    plural = written(f"{key}..", [{"one": texts[0], "few": texts[1]}], False)
+    read, _, wrong = catalogue_source.rows(rows + plural)
+    assert wrong == []
+    assert {row.key: row.value for row in read} == {
+        key: texts, f"{key}.": texts[0] or "x", f"{key}..": {"one": texts[0], "few": texts[1]},
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(("said", "row"), [
+    ("A.", '"A."'), ('-e "S"', "'-e \"S\"'"), ("it's \"S\"", '"it\'s \\"S\\""'),
+    ("a\nb\\", '"""\na\nb\\\\"""'), ('a\n"b"', '"""\na\n"b\\""""'), ("\t\x07", '"\\t\\u0007"'),
+])  # fmt: skip
+def test_a_text_is_written_as_a_person_would(said: str, row: str) -> None:
+    assert quoted(said) == row
+
+
+def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    said = [Entry("a", "Stop.", "", {"": each}) for each in ("x" * 41, "Arrêt", "Halte")]
+    own = Catalogue({(str(k), each.key): each for k, each in enumerate(said)})
+    assert [why for _, why in check_robot(own)] == [
+        f"a robot says at most 40 signs, in ASCII: {each.said['']}" for each in said[:2]
+    ]
+    rows = ["F | AVANCE", "F AVANCE", "QQ | RECULE", "B | recule", "B | RECULÉ", "number 2 | DEUX"]
+    english = languages.table(SOURCE, "lexicon.txt")
+    tables = {SOURCE: english, "fr": "\n".join(rows)}
+    monkeypatch.setattr("tools.languages.table", lambda language, _: tables[language])
+    assert [*check_lexicon("fr")] == rows[1:5]
+
+
+# -- the tool
+
+
+@pytest.fixture
+def whole(place: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
+    """The tool, with all English texts and no language."""
+    shutil.rmtree(place)
+    shutil.copytree(FOLDER / SOURCE, place / SOURCE)
+    languages.forget()
+
+    def run(*words: str) -> int:
+        languages.forget()
+        monkeypatch.setattr(sys, "argv", ["tools.languages", *words])
+        return tool.main()
+
+    return run
+
+
+@pytest.mark.parametrize(("code", "name", "english_name", "forms", "of_1_0_2_5_11"), [
+    ("fr", "français", "French", "one other", "00111"),
+    ("it", "italiano", "Italian", "one other", "01111"),
+    ("pl", "polski", "Polish", "one few many", "02122"),
+    ("ar", "العربية", "Arabic", "zero one two few many other", "10234"),
+    ("ja", "日本語", "Japanese", "other", "00000"),
+    ("tlh", "tlh", "tlh", "one other", "01111"),
+])  # fmt: skip
+def test_a_new_language_begins_with_what_unicode_knows_of_it(
+    code: str, name: str, english_name: str, forms: str, of_1_0_2_5_11: str, place: Path,
+    whole: Callable[..., int], capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    assert whole(code) == 0
+    made = read_language(place / code / ITSELF)
+    assert made.problems == []
+    assert (made.name, made.english_name, " ".join(made.forms)) == (name, english_name, forms)
+    assert "".join(made.form_of[number] for number in (1, 0, 2, 5, 11)) == of_1_0_2_5_11
+    assert f"{code}: 0 of " in capsys.readouterr().out
+    before = {path: path.read_bytes() for path in (place / code).iterdir()}
+    assert whole() == 0
+    assert {path: path.read_bytes() for path in (place / code).iterdir()} == before
+
+
+def test_a_stranger_adds_a_language_text_by_text(
+    place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole("fr")
+    own = place / "fr" / "command.toml"
+    write(own, 'no_verb = "tsc : la commande {found} n\'existe pas. Essaie :  tsc --help"\n')
+    languages.forget()
+    assert languages.find("fr_CA.UTF-8") == languages.find("French_France.1252") == "fr"
+    assert languages.text("command", "no_verb", "fr").startswith("tsc : la commande")
+    capsys.readouterr()
+    assert whole("--check") == 0
+    out = capsys.readouterr().out
+    assert "fr: 1 texts are new. Note of which English texts they are:" in out
+    assert whole("--seen", "fr") == 0
+    assert "fr: 1 of " in (out := capsys.readouterr().out) and "new" not in out
+    (row,) = (place / "fr" / SEEN).read_text(encoding="utf-8").splitlines()[1:]
+    assert row.startswith("command no_verb ")
+    write(own, 'no_verb = "tsc : la commande {fond} n\'existe pas."\nno_verbe = "x"\n')
+    assert whole("--check") == whole() == 1
+    out = capsys.readouterr().out
+    assert "languages/fr/command.toml:1: no_verb: {found} is missing\n" in out
+    assert "languages/fr/command.toml:2: no_verbe: there is no such English text\n" in out
+
+
+@pytest.mark.parametrize("name", ["messages", "robot", "command"])
+def test_a_file_that_is_missing_is_named(
+    name: str, place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole("fr")
+    write(place / "fr" / f"{name}.toml", "")
+    (place / SOURCE / f"{name}.toml").unlink()
+    (place / "fr" / ITSELF).unlink()
+    capsys.readouterr()
+    assert whole("--check") == 1
+    out = capsys.readouterr().out
+    assert f"languages/fr/{name}.toml:1: there is no en/{name}.toml\n" in out
+    assert "languages/fr/language.toml:1: this cannot be read: No such file" in out
+
+
+def test_what_is_no_language_is_not_made(
+    place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    for words in (["../x"], ["X"], ["--check", "fr"], ["--seen", "fr"], ["--po", "fr"]):
+        assert whole(*words) == 1
+    assert [path.name for path in place.iterdir()] == [SOURCE]
+    out = capsys.readouterr().out
+    assert out.count("no such language. Try:  python -m tools.languages fr") == 3
+
+
+@pytest.mark.parametrize("spoilt", ["x = ", 'x = "{"', f'x = "{"y" * 41}"'])
+def test_a_wrong_english_text_goes_into_no_language(
+    spoilt: str, place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole("fr")
+    write(place / "fr" / "robot.toml", 'gone = "Ô"\n')
+    write(place / "fr" / SEEN, "robot gone 00000000\n")
+    source = place / SOURCE / "robot.toml"
+    write(source, f"{spoilt}\n{source.read_text(encoding='utf-8')}")
+    capsys.readouterr()
+    assert whole() == 1
+    assert capsys.readouterr().out.startswith("languages/en/robot.toml:1: ")
+    assert (place / "fr" / "robot.toml").is_file()
+
+
+# -- what is made of them
+
+
+def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
+    place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own, made = place / "xx" / "some.toml", place / "xx" / f"some{languages.KEPT}"
+
+    def stop() -> str:
+        languages.forget()
+        return languages.text("some", "b", "xx")
+
+    write(own, OWN)
+    assert stop() == "Alto."
+    made.write_bytes(made.read_bytes().replace(b"Alto.", b"Paro."))
+    assert stop() == "Paro.", "it is read as it is while nothing is newer"
+    for source in (own, place / "xx" / SEEN, place / "xx" / ITSELF,
+                   place / SOURCE / "some.toml"):  # fmt: skip
+        made.write_bytes(made.read_bytes().replace(b"Alto.", b"Paro."))
+        source.touch()
+        os.utime(source, (made.stat().st_mtime + 2,) * 2)
+        assert stop() == "Alto.", source
+        os.utime(source, (0, 0))
+    for half in (b"", made.read_bytes()[:20], b"\xff", b"[]"):
+        made.write_bytes(half)
+        assert stop() == "Alto.", half
+    own.unlink()
+    assert stop() == "Stop.", "what was made of it is no translation"
+    write(own, OWN)
+    made.unlink()
+    made.mkdir()  # nobody can write this file
+    assert stop() == "Alto."
+
+
+def test_a_package_has_no_sources_and_a_page_learns_what_it_needs(place: Path) -> None:
+    write(place / "xx" / "some.toml", OWN)
+    write(place / "xx" / "names.toml", '"First" = "Primero"\n')
+    files = languages.kept_files()
+    assert sorted(files) == [
+        f"{code}/{name}{languages.KEPT}"
+        for code in ("en", "xx")
+        for name in ("language", NAMES, "some")
+    ]
+    for path in place.glob("*/*"):
+        path.unlink()
+    for name, data in files.items():
+        (place / name).write_bytes(data)
+    languages.forget()
+    assert languages.text("some", "b", "xx") == "Alto."
+    assert languages.found(NAMES, "First", "xx") == "Primero"
+    assert languages.found(NAMES, "First", SOURCE) is None
+    assert languages.about("xx").name == "xx" and languages.about("zz").name == "English"
+    for path in (place / "xx").iterdir():
+        path.unlink()
+    languages.forget()
+    assert languages.text("some", "b", "xx") == "Stop."
+
+
+WITHOUT = (
+    "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)); "
+    "from tiniscript.cli import main; sys.exit(main())"
+)
+
+
+def command(package: Path, *words: str, code: str = WITHOUT) -> tuple[int, str]:
+    """Return what the command of a package says, of which no file can get a byte."""
+    run = subprocess.run(
+        [sys.executable, "-c", code, *words],
+        env={**os.environ, "PYTHONPATH": str(package.parent), "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True, text=True, timeout=HANGS_S,
+    )  # fmt: skip
+    return run.returncode, run.stderr
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A package as a clone has it, in which nothing is made yet."""
+    target = tmp_path_factory.mktemp("clone") / "tiniscript"
+    return linked(FOLDER.parent, target, f"*{languages.KEPT}", "__pycache__", "page", "ready")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows limits no files of a process")
+def test_a_clone_on_a_full_disk_speaks(package: Path) -> None:
+    code, said = command(package, "complie", "--lang", "es")
+    assert code == 2 and "¿Quisiste decir compile?" in said and said.count("\n") == 1
+    assert list(package.glob(f"languages/*/*{languages.KEPT}*")) == []
+
+
+@pytest.mark.parametrize(("spoil", "why"), [
+    (lambda path: path.unlink(missing_ok=True), "1: this cannot be read: No such file"),
+    (lambda path: path.write_text('[tsc]\nstopped = "S\n'), "2: this is no TOML: Illegal"),
+    (lambda path: path.write_text('[tsc]\na = "S"\na = "S"\n'), "3: a: it is there twice"),
+    (lambda path: path.write_bytes(b"[tsc]\n\na = '\xff'\n"), "3: this is no UTF-8"),
+])  # fmt: skip
+def test_english_texts_that_are_wrong_are_said_without_words_of_ours(
+    spoil: Callable[[Path], object], why: str, package: Path, tmp_path: Path
+) -> None:
+    own = tmp_path / "tiniscript"
+    shutil.copytree(package, own)
+    for name, words in (
+        ("messages", ["check", "-e", "SI|F(2 80)"]),
+        ("command", ["check", "no_such.ts", "--lang", "es"]),
+        ("command", ["complie"]),
+    ):
+        path = own / "languages" / SOURCE / f"{name}.toml"
+        if path.is_file():
+            path.chmod(0o644)
+        spoil(path)
+        code, said = command(own, *words)
+        assert code == 2 and said == said.splitlines()[0] + "\n"
+        assert said.startswith(f"tsc: {path}:{why}")
+
+
+# -- translators' tools
+
+
+@pytest.fixture
+def own(place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Translation:
+    """A language with a translation, a stale one, and a form missing."""
+    monkeypatch.chdir(tmp_path)
+    before = ENGLISH.replace("Stop.", "Halt.")
+    write(place / SOURCE / "some.toml", before)
+    opened(place, OWN + 'a = "Lee {file}."\nmore = ["", "", "Ponlo."]\n', seen=True)
+    write(place / SOURCE / "some.toml", ENGLISH)
+    return opened(place)
+
+
+def po(own: Translation) -> Catalog:
+    with Path("xx.po").open("rb") as file:
+        return read_po(file, abort_invalid=True)
+
+
+def test_a_po_has_texts_with_their_context_notes_and_marks(own: Translation) -> None:
+    assert translators.exchange("xx", own.english) == 0
+    assert [
+        (each.context, each.id, each.string, each.fuzzy, each.auto_comments, {*each.flags})
+        for each in po(own) if each.id
+    ] == [
+        ("some/a", "Read {file}.", "Lee {file}.", False, ["note"], {"python-brace-format"}),
+        ("some/b", "Stop.", "Alto.", True, ["note"], {"fuzzy"}),
+        ("some/more", "Take it out.", "", False, ["note"], set()),
+        ("some/more", "Put it in.", "Ponlo.", False, ["note"], set()),
+        ("some/n", ("{n} byte", "{n} bytes"), ("", ""), False, ["note"], {"python-brace-format"}),
+    ]  # fmt: skip
+
+
+def test_what_comes_back_is_of_the_english_text_beside_it(
+    own: Translation, place: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A fuzzy one and an empty one are left out; a text that has changed meanwhile is said."""
+    translators.exchange("xx", own.english)
+    english, said = ENGLISH.replace("{n} b", "{n} B"), Path("xx.po").read_text(encoding="utf-8")
+    write(place / SOURCE / "some.toml", english.replace('["{fix}", ', '["New.", "{fix}", '))
+    said = said.replace('"Take it out."\nmsgstr ""', '"Take it out."\nmsgstr "¡Fuera \\"x\\"!"')
+    said = said.replace('msgstr[0] ""', 'msgstr[0] "{n} b"').replace('[1] ""', '[1] "{n} bb"')
+    write(Path("xx.po"), said.replace("Lee {file}", "Mira {file}"))
+    assert translators.exchange("xx.po", opened(place).english) == 1
+    out = capsys.readouterr().out
+    assert "some/n: its English text is not this one now: {n} byte" in out
+    assert "xx.po: 3 texts are taken" in out
+    assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
+        'a = "Mira {file}."\nb = "Alto."\n'
+        """more = ["", "", '¡Fuera "x"!', "Ponlo."]\n"""
+    )
+    made = opened(place)
+    assert problems(made) == [] and made.joined("some").entries["b", "Stop."].is_stale
+    write(Path("xx.po"), said.replace("#, fuzzy", "#"))
+    translators.exchange("xx.po", opened(place).english)
+    languages.forget()
+    assert languages.text("some", "b", "xx") == "Alto."
+
+
+@pytest.mark.parametrize("language", languages.languages()[1:])
+def test_a_language_goes_out_and_comes_back_with_every_text(
+    language: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    english = tool.sources()
+    before = Translation(language, english)
+    translators.give(Path("out.po"), before)
+    shutil.copytree(FOLDER / SOURCE, tmp_path / "languages" / SOURCE)
+    (tmp_path / "languages" / language).mkdir()
+    for itself in (FOLDER / language).glob(ITSELF):
+        shutil.copy(itself, tmp_path / "languages" / language)
+    monkeypatch.setattr(translation_files, "FOLDER", tmp_path / "languages")
+    assert translators.take(Path("out.po"), Translation(language, english)) == 0
+    after = Translation(language, english)
+    for name in english:
+        old, new = (each.joined(name) for each in (before, after))
+        assert new.problems == []
+        for at, entry in old.entries.items():
+            is_asked = not entry.is_same
+            assert new.entries[at].said == entry.said or not is_asked, at
+            assert new.entries[at].seen == entry.seen or not is_asked, at
+
+
+HEAD = 'msgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\n"\n\n'
+
+
+@pytest.mark.parametrize(("data", "why"), [
+    (b"msgid 'x'\n", "xx.po:1: this is no row of a catalogue: "),
+    (HEAD.encode() + b'msgid "a"\nmsgstr "\xff"\n', "xx.po: this cannot be read: "),
+    (None, "xx.po: this cannot be read: "),
+    (HEAD.encode() + b'msgctxt "some/a"\nmsgid "Read {file}."\nmsgstr "Lee {fila}."\n',
+     "xx.po:5: some/a: {file} is missing"),
+    (HEAD.encode() + b'msgid "a"\nmsgstr "b"\n',
+     "xx.po:4: there is no English text with the context of nothing"),
+])  # fmt: skip
+def test_a_po_with_a_mistake_is_said_with_its_line_and_changes_nothing(
+    data: bytes | None, why: str, own: Translation, place: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if data is not None:
+        Path("xx.po").write_bytes(data)
+    before = {path: path.read_bytes() for path in place.glob("*/*.t*")}
+    assert translators.exchange("xx.po", own.english) == 1
+    assert capsys.readouterr().out.startswith(why)
+    assert {path: path.read_bytes() for path in place.glob("*/*.t*")} == before
+    assert translators.exchange("zz", own.english) == 1
+    assert "zz: no such language. Try:  python -m tools.languages zz" in capsys.readouterr().out

@@ -1,0 +1,225 @@
+"""The files of a language, as `tools.languages` changes them: a row stays as somebody has written
+it until its text goes to another place.
+
+A file with a mistake in it that costs a row is not written.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+from tiniscript.base.catalogue_source import UNKNOWN, Catalogue, Entry, Forms, Problem, Row
+from tiniscript.base.languages import FOLDER, ITSELF, NAMES, SEEN
+from tiniscript.base.translations import (
+    Own,
+    joined,
+    pair,
+    read_language,
+    read_own,
+    read_seen,
+    untold,
+)
+
+WIDTH = 100  # of a list in one row
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_SIGNS = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r", "\b": "\\b", "\f": "\\f"}
+SEEN_NOTE = "# Of which English text each is a translation: python -m tools.languages --seen {}\n"
+
+
+class Translation:
+    """What a language has of the English texts, `english` by the names of their files."""
+
+    def __init__(self, code: str, english: dict[str, Catalogue]) -> None:
+        self.code = code
+        self.folder = FOLDER / code
+        self.english = english
+        self.groups = {name: each.groups() for name, each in english.items()}
+        self.own = {name: read_own(self.path(name)) for name in english}
+        self.seen, self.seen_problems = read_seen(self.folder / SEEN)
+        self.language = read_language(self.folder / ITSELF)
+        self._is_seen_new = False
+
+    def path(self, name: str) -> Path:
+        return self.folder / f"{name}.toml"
+
+    def joined(self, name: str) -> Catalogue:
+        """Return the English texts of a file with those of the language."""
+        return joined(self.english[name], name, self.own[name], self.seen, self.language)
+
+    def follow(self) -> Iterator[str]:
+        """Put translations where their English texts are now; yield the keys of those that go."""
+        for name, own in self.own.items():
+            is_left = name == NAMES or bool(own.problems or self.seen_problems)
+            for row in own.rows[:] if not is_left else []:
+                if row.key not in self.groups[name]:
+                    yield from self._follow_key(name, own, row)
+                if row.key in self.groups[name]:
+                    self._follow_places(name, own, row)
+
+    def _follow_key(self, name: str, own: Own, row: Row) -> Iterator[str]:
+        hashes = self.seen.get(f"{name} {row.key}", [])
+        known = {*hashes} - {UNKNOWN}
+        new = [key for key, group in self.groups[name].items()
+               if key not in own.texts and known <= {each.hash for each in group}]  # fmt: skip
+        if not known:
+            return  # somebody has mistyped a key: it is wrong
+        del self.seen[f"{name} {row.key}"]
+        self._is_seen_new = True
+        texts = own.texts.pop(row.key)
+        if not new:
+            own.rows.remove(row)
+            yield f"{name}.toml: {row.key}"
+            return
+        row.key = new[0]
+        row.text = written(row.key, texts, len(texts) > 1)
+        own.texts[row.key], own.lines[row.key] = texts, row.line
+        self.seen[f"{name} {row.key}"] = hashes
+
+    def _follow_places(self, name: str, own: Own, row: Row) -> None:
+        group, texts = self.paired(name, row.key), own.texts[row.key]
+        if group and (len(group) > 1 or len(texts) > 1):
+            if (now := _without_end([each.said for each in group])) != texts:
+                own.texts[row.key] = now
+                row.text = written(row.key, now, len(group) > 1)
+                self._note(name, row.key, [each.seen for each in group])
+
+    def paired(self, name: str, key: str) -> list[Entry]:
+        """Return the texts of a key with their translations, none where that is not possible."""
+        texts = self.own[name].texts.get(key, [])
+        group = [untold(each) for each in self.groups[name].get(key, [])]
+        unknown = [UNKNOWN] * len(texts)
+        hashes = [*self.seen.get(f"{name} {key}", []), *unknown][: len(texts)]
+        return [] if pair(group, texts, hashes) else group
+
+    def _note(self, name: str, key: str, hashes: list[str]) -> None:
+        while hashes and hashes[-1] in ("", UNKNOWN):
+            hashes.pop()
+        old = self.seen.pop(f"{name} {key}", [])
+        if hashes:
+            self.seen[f"{name} {key}"] = [each or UNKNOWN for each in hashes]
+        self._is_seen_new |= old != self.seen.get(f"{name} {key}", [])
+
+    def see(self, patterns: list[str]) -> list[str]:
+        """Note of which English texts new translations are, and stale ones of these keys; return
+        the patterns that no key has. A file with a mistake in it is left alone."""
+        unused = {*patterns}
+        for name, own in self.own.items():
+            if name == NAMES or own.problems:
+                continue
+            for key in own.texts:
+                fitting = {each for each in patterns if fnmatchcase(key, each)}
+                unused -= fitting
+                if group := self.paired(name, key):
+                    new = (UNKNOWN, *[each.seen for each in group if fitting and each.seen])
+                    self._note(name, key, [each.hash if each.seen in new else each.seen
+                                           for each in group])  # fmt: skip
+            there = {f"{name} {key}" for key in own.texts}
+            for gone in [at for at in self.seen if at.startswith(f"{name} ") and at not in there]:
+                self._note(name, gone.removeprefix(f"{name} "), [])
+        return [each for each in patterns if each in unused]
+
+    def put(self, name: str, key: str, group: list[Entry]) -> None:
+        """Take what these entries say as the texts of a key."""
+        own, texts = self.own[name], _without_end([each.said for each in group])
+        row = next((each for each in own.rows if each.key == key), None)
+        if own.texts.get(key) != texts and texts:
+            if row is None:
+                own.rows.append(row := Row(key, None, 0, ""))
+            row.text = written(key, texts, len(group) > 1)
+            own.texts[key], own.lines[key] = texts, row.line
+        if name != NAMES:
+            self._note(name, key, [each.seen for each in group])
+
+    def put_all(self, name: str, texts: Catalogue) -> None:
+        """Take what these entries say of each text that somebody translates."""
+        for key, group in texts.groups().items():
+            if len(group) > 1 or not group[0].is_same:
+                self.put(name, key, group)
+
+    def write(self) -> None:
+        """Write the files that are others now."""
+        self.folder.mkdir(exist_ok=True)
+        for name, own in self.own.items():
+            places = {key: place for place, key in enumerate(self.groups[name])}
+            rows = sorted(own.rows, key=lambda row: places.get(row.key, len(places)))
+            text = "".join(row.above + row.text for row in rows) + own.below
+            if not own.problems and (rows or self.path(name).is_file()):
+                _write(self.path(name), text)
+        if self._is_seen_new and not self.seen_problems:
+            order = [f"{name} {key}" for name, keys in self.groups.items() for key in keys]
+            rest = sorted(self.seen.keys() - {*order})
+            there = (at for at in [*order, *rest] if at in self.seen)
+            lines = [f"{at} {' '.join(self.seen[at])}\n" for at in there]
+            _write(self.folder / SEEN, SEEN_NOTE.format(self.code) + "".join(lines))
+
+    def problems(self) -> Iterator[tuple[Path, list[Problem]]]:
+        """Yield what is wrong with each file."""
+        yield self.folder / ITSELF, self.language.problems
+        yield self.folder / SEEN, self.seen_problems
+        for name in self.english:
+            yield self.path(name), self.joined(name).problems
+
+
+def tell(path: Path, problems: list[Problem]) -> int:
+    """Print what is wrong with a file, and return how much that is."""
+    shown = path.relative_to(FOLDER.parent) if path.is_relative_to(FOLDER.parent) else path
+    for line, problem in problems:
+        print(f"{shown}:{line}: {problem}")
+    return len(problems)
+
+
+def _write(path: Path, text: str) -> None:
+    if not path.is_file() or path.read_text(encoding="utf-8-sig") != text:
+        path.write_text(text, encoding="utf-8", newline="\n")
+
+
+def _without_end(texts: list[Forms]) -> list[Forms]:
+    """Return texts without the empty ones behind all others."""
+    return texts[: max((k for k, each in enumerate(texts, 1) if each), default=0)]
+
+
+def written(key: str, texts: list[Forms], is_list: bool) -> str:
+    """Return the rows of a key."""
+    head = key if _BARE.fullmatch(key) else _basic(key)
+    if is_list:
+        parts = [quoted(each.get("", "")) for each in texts]
+        row = f"{head} = [{', '.join(parts)}]\n"
+        if len(row) <= WIDTH and row.count("\n") == 1:
+            return row
+        return f"{head} = [\n" + "".join(f"  {part},\n" for part in parts) + "]\n"
+    return "".join(f"{head}{'.' * bool(name)}{name} = {quoted(form)}\n"
+                   for each in texts for name, form in each.items())  # fmt: skip
+
+
+def quoted(text: str) -> str:
+    """Return a text as TOML has it, with as few signs as it can."""
+    if "\n" in text:
+        rows = ["".join(_SIGNS.get(each, each) if each != '"' else each for each in row)
+                for row in text.replace('"""', '""\0').split("\n")]  # fmt: skip
+        inside = _control("\n".join(rows)).replace("\0", '\\"')
+        return '"""\n' + (inside[:-1] + '\\"' if inside[-1] == '"' else inside) + '"""'
+    if ('"' in text or "\\" in text) and "'" not in text and text.isprintable():
+        return f"'{text}'"
+    return _basic(text)
+
+
+def _basic(text: str) -> str:
+    return '"' + _control("".join(_SIGNS.get(each, each) for each in text)) + '"'
+
+
+def _control(text: str) -> str:
+    """Return a text with signs that TOML does not take as numbers."""
+    return re.sub(r"[\x01-\x08\x0b-\x1f\x7f]", lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+def heading(name: str, english_name: str, forms: Iterable[str], rule: str) -> str:
+    """Return what a new language says of itself."""
+    return (
+        f"name = {quoted(name)}  # what it calls itself\n"
+        f"english_name = {quoted(english_name)}  # by which Windows may know it\n"
+        f"forms = [{', '.join(map(quoted, forms))}]  # of a text that counts\n"
+        f"which_form = {quoted(rule)}  # has the number n: the place in forms, from 0\n"
+    )

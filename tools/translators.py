@@ -1,0 +1,157 @@
+"""Exchanges a language with translators' tools, as a catalogue of gettext: `pt.po`.
+
+Its contexts are `command/no_verb`: a file's name and a key. A translation that comes back is of the
+English text beside it: one that is marked as fuzzy, or empty, is left out, and so is one whose
+English text is another one now.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from gettext import c2py
+from pathlib import Path
+
+from babel import Locale, UnknownLocaleError
+from babel.messages.catalog import Catalog, Message
+from babel.messages.plurals import get_plural
+from babel.messages.pofile import PoFileError, read_po, write_po
+
+from tiniscript.base.catalogue_source import Catalogue, Entry, Forms
+from tiniscript.base.languages import NAMES, languages
+from tiniscript.base.translations import NUMBERS, Language, misfits
+from tiniscript.base.version import __version__
+from tools.translation_files import Translation, tell
+
+END = ".po"
+# Names of forms, and gettext's rule for them: what most languages have.
+SIMPLE = ((["one", "other"], "n != 1"), (["one", "other"], "n > 1"), (["other"], "0"))
+BRACES = "python-brace-format"  # gettext's flag for a text with gaps like {file}
+
+
+def exchange(what: str, english: dict[str, Catalogue]) -> int:
+    """Write a language into a file, or read one; return 1 where something is wrong."""
+    path = Path(what if what.endswith(END) else what + END)
+    if path.stem not in languages()[1:]:
+        print(f"{path.stem}: no such language. Try:  python -m tools.languages {path.stem}")
+        return 1
+    own = Translation(path.stem, english)
+    wrong = sum(tell(file, problems) for file, problems in own.problems())
+    if wrong or what.endswith(END):
+        return 1 if wrong else take(path, own)
+    print(f"{path}: {give(path, own)} texts. Read it with:  python -m tools.languages --po {path}")
+    return 0
+
+
+def give(path: Path, own: Translation) -> int:
+    """Write the texts of a language; return their number."""
+    said = own.language
+    made = Catalog(
+        locale=own.code, project="TiniScript", version=__version__, fuzzy=False, charset="utf-8",
+        header_comment=f"# {said.english_name} texts of TiniScript, in {END} for translators",
+        language_team=said.english_name,
+    )  # fmt: skip
+    plurals = f"nplurals={len(said.forms)}; plural=({said.rule});"
+    made.mime_headers = [("Plural-Forms", plurals)]
+    for name in own.english:
+        for entry in own.joined(name).entries.values():
+            if not entry.is_same:
+                _add(made, name, entry, said.forms)
+    with path.open("wb") as file:
+        write_po(file, made, width=0)
+    return len(made)
+
+
+def _add(made: Catalog, name: str, entry: Entry, forms: tuple[str, ...]) -> None:
+    english: str | tuple[str, str] = entry.english
+    own: str | tuple[str, ...] = entry.said.get("", "")
+    if entry.plural:
+        english = (entry.english, entry.plural)
+        own = tuple(entry.said.get(each, "") for each in forms)
+    flags = {BRACES} if "{" in entry.english else set()
+    message = made.add(
+        english, own, context=_context(name, entry.key), auto_comments=entry.notes,
+        flags=flags | ({"fuzzy"} if entry.is_stale else set()),
+    )  # fmt: skip
+    message.flags.discard("python-format")  # `5 % of` looks like one
+
+
+def _context(name: str, key: str) -> str:
+    return name if name == NAMES else f"{name}/{key}"
+
+
+def take(path: Path, own: Translation) -> int:
+    """Read texts of a language; say what is wrong with one, and return 1 then."""
+    try:
+        with path.open("rb") as file:
+            found = read_po(file, abort_invalid=True)
+    except PoFileError as error:
+        print(f"{path}:{error.lineno + 1}: this is no row of a catalogue: {error.line[:40]}")
+        return 1
+    except (OSError, ValueError, LookupError) as error:  # UnicodeDecodeError is a ValueError
+        print(f"{path}: this cannot be read: {error}")
+        return 1
+    taken = wrong = 0
+    for message in found:
+        forms = _forms(message, own.language)
+        if message.id and not message.fuzzy and all(forms.values()):
+            if why := _take(message, forms, own):
+                print(f"{path}:{message.lineno}: {why}")
+                wrong += 1
+            taken += not why
+    own.write()
+    print(f"{path}: {taken} texts are taken")
+    return 1 if wrong else 0
+
+
+def _forms(message: Message, language: Language) -> Forms:
+    if isinstance(message.string, str):
+        return {"": message.string}
+    return dict(zip(language.forms, message.string or ("",), strict=False))
+
+
+def _take(message: Message, forms: Forms, own: Translation) -> str:
+    """Take one text; return why that is not possible, or nothing."""
+    english, *plural = [message.id] if isinstance(message.id, str) else message.id
+    name, _, key = (message.context or "").partition("/")
+    key = key if name != NAMES else english
+    if key not in own.groups.get(name, {}):
+        return f"there is no English text with the context {message.context or 'of nothing'}"
+    group = own.paired(name, key)
+    wanted = (english, "".join(plural))
+    entry = next((each for each in group if (each.english, each.plural) == wanted), None)
+    if entry is None:
+        return f"{message.context}: its English text is not this one now: {english[:40]}"
+    said, seen = entry.said, entry.seen
+    entry.said, entry.seen = forms, entry.hash
+    if why := misfits(entry, own.language):
+        entry.said, entry.seen = said, seen
+        return f"{message.context}: {why[0]}"
+    own.put(name, key, group)
+    return ""
+
+
+def itself(code: str) -> tuple[str, str, list[str], str]:
+    """Return what a language says of itself, as far as Unicode's CLDR knows it."""
+    try:
+        locale = Locale.parse(code)
+    except (UnknownLocaleError, ValueError):
+        return code, code, *SIMPLE[0]
+    name, english_name = (locale.get_display_name(each) or code for each in (code, "en"))
+    count, rule = get_plural(code)
+    known = (*SIMPLE, (_names_of(count, rule, locale.plural_form), rule))
+    wanted = [locale.plural_form(number) for number in range(NUMBERS)]
+    fitting = (each for each in known if each[0] and _forms_by(*each) == wanted)
+    return name, english_name, *next(fitting, SIMPLE[0])
+
+
+def _forms_by(names: list[str], rule: str) -> list[str]:
+    """Return the names of the forms that numbers have."""
+    form = c2py(rule)
+    return [names[form(number)] for number in range(NUMBERS)]
+
+
+def _names_of(count: int, rule: str, of_cldr: Callable[[int], str]) -> list[str]:
+    """Return how CLDR calls the forms of a rule of gettext, nothing if a form has no number."""
+    form = c2py(rule)
+    found = {form(number): of_cldr(number) for number in range(NUMBERS)}
+    return [found[k] for k in range(count)] if found.keys() == {*range(count)} else []
