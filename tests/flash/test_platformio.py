@@ -63,9 +63,20 @@ def says_what_it_is(log: str) -> bool:
 def test_tests_pass(native: Path) -> None:
     log = pio(native, "test", "-e", "native").gives(0).out
     count = re.search(r"(\d+) test cases: (\d+) succeeded", log)
-    files = "".join(path.read_text(encoding="utf-8") for path in native.glob("test/test_*.cpp"))
-    assert count and int(count[1]) == int(count[2]) == files.count("\nTEST_CASE("), log
+    files = "".join(path.read_text(encoding="utf-8") for path in native.glob("test/*.cpp"))
+    written = len(re.findall(r"^(?:TEST_)?CASE\(", files, re.MULTILINE))
+    assert count and int(count[1]) == int(count[2]) == written > 300, log
+    assert "\nPASSED: blocks: BREAK leaves the innermost loop\n" in log
     assert says_what_it_is(log)
+
+
+def test_a_test_case_that_fails_is_one_and_has_its_name(native: Path) -> None:
+    broken = native / "test" / "cases.cpp"
+    with changed(broken, ('"0 SHOW 2\\n0 MOTORS 0 0\\n0 DONE\\n")', '"0 SHOW 3\\n")')):
+        log = pio(native, "test", "-e", "native").gives(1).out
+    named = re.findall(r"^FAILED: (.*)$", log, re.MULTILINE)
+    assert "accepted: ELSE after ELSE, where the condition is FALSE" in named
+    assert f"{len(named)} failed, " in log.splitlines()[-1] + log.splitlines()[-2], log
 
 
 def test_no_test_case_fails(native: Path) -> None:
@@ -78,7 +89,7 @@ def test_early_end_fails(native: Path) -> None:
     broken = native / "test" / "test_cases.cpp"
     with changed(
         broken,
-        ('TEST_CASE("a robot does', 'TEST_CASE("ends") { exit(0); }\nTEST_CASE("a robot does'),
+        ('TEST_CASE("a robot that', 'TEST_CASE("ends") { exit(0); }\nTEST_CASE("a robot that'),
         ("#include <doctest.h>", "#include <doctest.h>\n#include <stdlib.h>"),
     ):
         pio(native, "test", "-e", "native").gives(1, out="have ended before their end")

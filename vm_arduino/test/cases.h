@@ -3,17 +3,18 @@
 #ifndef TINISCRIPT_TEST_CASES_H_
 #define TINISCRIPT_TEST_CASES_H_
 
+#include <doctest.h>
+
 #include <string>
-#include <vector>
 
-// The request to run an image, as `../extras/chip/runner.h` reads it, in hexadecimal digits; and the
-// answer: the trace of `tsc run`, or the rule that the code breaks and where.
-struct Case {
-  std::string title;
-  std::string request;
-  std::string answer;
-};
+// Checks the answer to a request to run an image, which is as `../extras/chip/runner.h` reads it, in
+// hexadecimal digits: the trace of `tsc run`, or the rule that the code breaks and where.
+void check(const std::string& request, const std::string& answer);
 
-const std::vector<Case>& cases();
+// A test case of doctest for each of them.
+#define CASE(title, request, answer) \
+  TEST_CASE(title) { check(request, answer); }
+
+extern const char kRequest[];  // one of tinibot
 
 #endif  // TINISCRIPT_TEST_CASES_H_

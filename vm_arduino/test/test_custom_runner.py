@@ -1,4 +1,4 @@
-"""How PlatformIO runs the tests: it takes the counts of test cases that doctest ends with.
+"""How PlatformIO runs the tests: it takes each test case by name, as `test_cases.cpp` says it.
 
 A run that ends early, or in which no test case runs, is an error. PlatformIO's own runner for
 doctest counts what it finds in the printed assertions, and lets both pass.
@@ -13,7 +13,8 @@ from platformio.test.exception import UnitTestError, UnitTestSuiteError
 from platformio.test.result import TestCase, TestStatus
 from platformio.test.runners.base import TestRunnerBase
 
-END = re.compile(r"\[doctest\] test cases: .*\b(\d+) passed .*\b(\d+) failed")
+ENDING = re.compile(r"(PASSED|FAILED): (.*)")
+END = "[doctest] test cases:"
 
 
 class CustomTestRunner(TestRunnerBase):  # type: ignore[misc] # PlatformIO has no types
@@ -26,13 +27,9 @@ class CustomTestRunner(TestRunnerBase):  # type: ignore[misc] # PlatformIO has n
 
     def on_testing_line_output(self, line: str) -> None:
         click.echo(line, nl=False)
-        if found := END.match(line):
-            self.has_ended = True
-            for status, count in zip(
-                (TestStatus.PASSED, TestStatus.FAILED), found.groups(), strict=True
-            ):
-                for number in range(int(count)):
-                    self.test_suite.add_case(TestCase(f"{status.name} {number + 1}", status))
+        if found := ENDING.fullmatch(line.rstrip()):
+            self.test_suite.add_case(TestCase(found[2], TestStatus[found[1]]))
+        self.has_ended |= line.startswith(END)
 
     def stage_testing(self) -> None:
         if self.options.without_testing:
