@@ -15,9 +15,7 @@ SAID = {"en": "honks", "es": "toca la bocina"}
 def with_texts(folder: Path) -> Path:
     """Return a copy of the languages that say what the word does."""
     shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("*.texts"))
-    english, spanish = (f"{{{HORN.text}}} {said}" for said in SAID.values())
-    with (folder / "en" / "studio.toml").open("a", encoding="utf-8") as file:
-        file.write(f'"block/{HORN.text}" = "{english}"\n')
-    with (folder / "es" / "studio.po").open("a", encoding="utf-8") as file:
-        file.write(f'\nmsgctxt "block/{HORN.text}"\nmsgid "{english}"\nmsgstr "{spanish}"\n')
+    for language, said in SAID.items():
+        with (folder / language / "studio.toml").open("a", encoding="utf-8") as file:
+            file.write(f'"block/{HORN.text}" = "{{{HORN.text}}} {said}"\n')
     return folder

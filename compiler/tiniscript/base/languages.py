@@ -162,17 +162,14 @@ def texts(name: str, language: str) -> Texts:
 
 def entries(name: str, language: str) -> Catalogue:
     """Return the English texts of a catalogue with what a language has of them."""
-    from tiniscript.base import catalogue_file
     from tiniscript.base.catalogue_source import load
     from tiniscript.base.translations import Own, joined, named, read_language, read_own, read_seen
 
     source, path = files(name, language)
-    own = read_own(path) if language != SOURCE and path.suffix == ".toml" else Own()
+    own = read_own(path) if language != SOURCE else Own()
     english = load(source) if name != NAMES else named(own)
     for line, why in english.problems:
         raise WrongTexts(f"{source}:{line}: {why}")
-    if path.suffix == ".po":
-        return catalogue_file.joined(english, path)
     seen, _ = read_seen(path.with_name(SEEN))
     return joined(english, name, own, seen, read_language(path.with_name(ITSELF)))
 
@@ -198,8 +195,7 @@ def forget() -> None:
 
 def kept_files() -> dict[str, bytes]:
     """Return all catalogues as a package has them, by their paths in FOLDER."""
-    named = {path.stem for path in FOLDER.glob("*/*.toml") if path.name != ITSELF}
-    names = sorted(named | {NAMES})
+    names = sorted({path.stem for path in FOLDER.glob("*/*.toml") if path.name != ITSELF})
     made: dict[str, Any] = {}
     for each in languages():
         made |= {f"{each}/{name}": texts(name, each) for name in names}
@@ -214,9 +210,7 @@ def is_clone() -> bool:
 
 def files(name: str, language: str) -> tuple[Path, Path]:
     """Return the English source of a catalogue, and what a language has of it."""
-    own = FOLDER / language / f"{name}.po"
-    own = own if own.is_file() else own.with_suffix(".toml")
-    return FOLDER / SOURCE / f"{name}.toml", own
+    return FOLDER / SOURCE / f"{name}.toml", FOLDER / language / f"{name}.toml"
 
 
 def _is_fresh(made: Path, sources: Iterable[Path]) -> bool:

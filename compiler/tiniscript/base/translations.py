@@ -11,11 +11,10 @@ is stale: it is not said. Knows no language.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tiniscript.base import catalogue_file
 from tiniscript.base.catalogue_source import (
     DIGITS,
     PLURALS,
@@ -55,9 +54,6 @@ class Language:
 def read_language(path: Path) -> Language:
     """Read what a language says of itself; what it does not say is as in English."""
     found = Language(path.parent.name, path.parent.name)
-    if (old := path.with_name("command.po")).is_file():
-        rule, found.name, found.english_name = catalogue_file.head(old)
-        return replace(found, rule=rule, form_of=_form_of(rule, _FORMS)[0], is_complete=True)
     text, found.problems = decoded(path)
     read, _, problems = rows(text)
     found.problems += problems

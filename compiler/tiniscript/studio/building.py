@@ -74,7 +74,7 @@ def _sources() -> list[Path]:
            and "made" not in path.relative_to(SOURCES).parts]  # fmt: skip
     made = Path(__file__).with_name("page")
     package = [path for path in made.parent.parent.rglob("*")
-               if path.suffix in (".py", ".toml", ".wasm", ".md", ".po", ".txt")]  # fmt: skip
+               if path.suffix in (".py", ".toml", ".wasm", ".md", ".txt")]  # fmt: skip
     files = [*own, *(path for path in package if made not in path.parents), BUILDER]
     return sorted(path for path in files if path.is_file() and "__pycache__" not in path.parts)
 
