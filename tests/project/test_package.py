@@ -242,19 +242,21 @@ def test_an_installation_without_cases_names_the_command_that_makes_them(
     unpacked: Path, tmp_path: Path
 ) -> None:
     """Run in the sources it names, the command makes them for that installation."""
+    sources = tmp_path / "sources"  # of its own: what runs there leaves bytecode
+    shutil.copytree(unpacked, sources)
     package = tmp_path / "an installation" / "tiniscript"
-    shutil.copytree(unpacked / "compiler" / "tiniscript", package)
+    shutil.copytree(sources / "compiler" / "tiniscript", package)
     words = ("-m", "tiniscript", "conform", "--lang", "en", "--only", "images: no code", "--json",
              "--machine", f"{sys.executable} -m tests.conform.spec_machine")  # fmt: skip
-    tsc = partial(python, *words, folder=unpacked, PYTHONPATH=str(package.parent))
+    tsc = partial(python, *words, folder=sources, PYTHONPATH=str(package.parent))
     lacks = tsc()
     assert lacks.returncode == 2 and not lacks.stdout
     _, _, command = lacks.stderr.strip().rpartition(":  ")
     assert CASES_MISSING in command and str(package) in command
-    done = subprocess.run(shlex.split(command), cwd=unpacked, capture_output=True, text=True)
+    done = subprocess.run(shlex.split(command), cwd=sources, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert not (unpacked / "compiler" / CASES).exists()
-    found = tsc(PYTHONPATH=os.pathsep.join((str(package.parent), str(unpacked))))
+    assert not (sources / "compiler" / CASES).exists()
+    found = tsc(PYTHONPATH=os.pathsep.join((str(package.parent), str(sources))))
     assert found.returncode == 0, found.stderr
     assert json.loads(found.stdout)["agree"] == 1
 
