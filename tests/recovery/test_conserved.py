@@ -133,6 +133,10 @@ def test_no_repair_loses_a_sign_or_a_unit(text: str) -> None:
         ("F(2, 8O)", "F(2, 80)", [], []),
         ("W(1:30)", "W(90)", [], []),
         ("W(1 1/2)", "W(1.5)", [], []),
+        ("IF(LIGHT_L > 50%);S;ENDIF", "IF(LIGHT_L > 50);S;ENDIF", ["50%"], []),
+        ("T = 1;SHOW(ROUND(TIME() - T))", "T = 1;SHOW(ROUND(TIME, - T))", ["-"], []),
+        ("X = RANDOM(1-6)", "X = RANDOM(1, 6)", [], []),
+        ("4*(F(2, 80))", "LOOP(4);F(2, 80);END_LOOP", [], []),
     ],
 )  # fmt: skip
 def test_what_a_repair_loses_or_does_more(

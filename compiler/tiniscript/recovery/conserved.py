@@ -55,6 +55,7 @@ _AS = {
     "FOREVER": ("TRUE", "LOOP", "WHILE"), "TRUE": ("FOREVER",), "S": ("BREAK",), "IF": ("WHEN",),
     "WHEN": ("IF",), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
 }  # fmt: skip
+_SUMS = ("+", "-", "*", "/", "%")
 _TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
 _ASKING = frozenset(("IF", "ELSEIF", "WHILE", "UNTIL", "WHEN"))
 _NEGATES = ("no", "without", "unless", "different")
@@ -93,6 +94,7 @@ def difference(text: str, repaired: str, kit: Kit) -> Difference:
     """Return what a text says that a repaired one doesn't, and what only that does."""
     before, after = _Said(text, repaired, kit), _Said(repaired, repaired, kit)
     lost = [*_amounts(before, after), *_words(before, after), *_questions(before, after)]
+    lost += before.sums() - after.sums()
     more = [word for word in _DRIVES if after.words[word] > before.meant[word]]
     more = more if len(more) > before.strange else []
     more += [name for name in after.names.defs if after.calls(name) > before.calls(name)]
@@ -140,7 +142,8 @@ class _Said:
         lines = [lexemes(self._apart(line)) for line in self.body.split("\n")]
         self.names = Names(lines, kit)
         self.tokens = [each for line in lines for each in (*self._joined(line), _END)]
-        self.units = {each.name: each.unit for each in kit.sensors} | {"TIME": "s"}
+        # what has no unit counts something of its own: 50 % of light is no 50
+        self.units = {each.name: each.unit or each.name for each in kit.sensors} | {"TIME": "s"}
         self.units |= self._units_of_names()
         self.words: Counter[str] = Counter()  # that it surely says
         self.meant: Counter[str] = Counter()  # that it may say
@@ -306,6 +309,8 @@ class _Said:
     def _unit_behind(self, k: int) -> tuple[str, float] | None:
         """Return the unit behind a number, and how many thousandths of it one is."""
         token, next_one = self._after(k), self._after(k + 1).text
+        if token.text == "%" and next_one in (")", ",", ";"):  # no remainder of a division
+            return "%", 1000
         said = said_of(token.text, "unit")
         is_letter = len(token.text) == 1 and token.kind is WORD
         is_apart = is_letter and token.space != "" and next_one not in (",", ")")
@@ -388,6 +393,24 @@ class _Said:
             if is_no and is_asked and not self.names.is_name(token.text):
                 found.append(token.source or token.text)
         return found
+
+    def sums(self) -> Counter[str]:
+        """Count the signs between two values, of which one at least is no plain number."""
+        found: Counter[str] = Counter()
+        behind = (*self.tokens[3:], _END)
+        for one, sign, other, inner in zip(
+            self.tokens, self.tokens[1:], self.tokens[2:], behind, strict=False
+        ):
+            is_value = one.text == ")" or self._is_read(one)
+            is_other = self._is_read(inner if other.text == "(" else other)
+            is_plain = one.kind is NUMBER and other.kind is NUMBER
+            if sign.text in _SUMS and is_value and is_other and not is_plain:
+                found[sign.text] += 1
+        return found
+
+    def _is_read(self, token: Lexeme) -> bool:
+        """Whether a token is a number, or a name that has a value."""
+        return token.kind is NUMBER or token.text == "TIME" or token.text in self.names.known.values
 
     def empty(self) -> int:
         """Return how many branches have nothing in them."""

@@ -104,6 +104,7 @@ SIGNS = r"""
 ^\s*(?:(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z])|-(?=[A-Z]\w*\()|[=-]?>+\s*|(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\())  |  ``  |  TS054  |  applied  |  ⟨*¦>¦=>¦->¦✅⟩ F(2,80) => F(2,80)
 (?<!\d)1/2(?!\d)(?=\s*(?:s|seg|min|h))  |  `0.5`  |  TS049  |  applied  |  F(1/2 minuto, 80) => F(30, 80)
 (?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))|(?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  TS005  |  applied  |  F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
+\bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$)))  |  `W(\1)`  |  TS015  |  applied  |  S; W2.5) => S; W(2.5)
 ^\s*(?:(?:paso|step|linea|line)\s*\d+\s*[.):-]*\s|\d+\s*(?:[.)]|[.):-]+\s))\s*(?=[A-Za-z])  |  ``  |  TS054  |  applied  |  1) F(2,80)⏎2) S => F(2,80)⏎S
 (?<![\w.])([1-9])[oO]⟨[oO]¦⟩\b  |  `\g<1>0⟨0¦⟩`  |  TS008  |  applied  |  F(2,⟨1OO¦8O⟩) => F(2,⟨100¦80⟩)
 \b[oO]\.(\d+)  |  `0.\1`  |  TS008  |  applied  |  F(O.5, 60) => F(0.5, 60)
@@ -111,6 +112,7 @@ SIGNS = r"""
 (?<=\d)(?:'(?=\d+\s*(?:[,;]|$))|,(?=\d+\s*(?:s|segs?|segundos?|sec|seconds?|minutos?)\b))  |  `.`  |  TS012  |  applied  |  F(1'5, 80) => F(1.5, 80)
 (?<=[\w)])(?:\s*(?:[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)|\.{2,})\s*$  |  ``  |  TS005  |  applied  |  STOP! => STOP
 (?:(?<=\|)|(?<=;)|^)(\s*)([FBLR])(?!\s+-\d|\s+\.\d|\.\d+(?![\d.]))\s*[_.<=,;" -]?\s*([12]?\d(?:\.\d+)?)(?:[_,;<=-]+ ?| +|[ .]+(?=[1-9]0\b|100\b))(?:= ?)?(\d+)\s*[])>"]?\s*(?=;|$)  |  `\1\2(\3, \4)`  |  TS015  |  applied  |  F2,80 => F(2, 80)
+(?:^|(?<=[;|]))(\s*)M(-?\d+)[\s,;]+(-?\d+)\s*\)?\s*(?=;|$)  |  `\1M(\2, \3)`  |  TS015  |  applied  |  M50 -50 => M(50, -50)
 (?<=\d)(?:\)\((?=\d)|['·_=&<]\s*(?=\d+\)))  |  `,`  |  TS076  |  applied  |  F(3)(70) => F(3,70)
 (?<=\w)\.(?=\()  |  ``  |  TS005  |  applied  |  F.(2, 80) => F(2, 80)
 ⟨(?<=[\w)])\s*\.\s*$¦(?<=\))\s*\.\s+(?=\w)⟩  |  `;⟨¦ ⟩`  |  TS010  |  applied  |  ⟨S.¦F(2,80). R(1,60). S.⟩ => ⟨S;¦F(2,80); R(1,60); S;⟩
@@ -135,9 +137,9 @@ o==|(|, a=@num|@val minus b=@num|@val | $o $a - $b | 1 | TS010 | first | SHOW(8 
 o==|( the? largest of|between? a=@num|@val ,|then b=@num|@val e=)|,|$ | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(el mayor de LIGHT_L y LIGHT_R) => SHOW(MAX(LIGHT_L, LIGHT_R))
 o==|( a=@num|@val ,|then|or b=@num|@val the? largest e=)|,|$ | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(LIGHT_L or LIGHT_R the bigger) => SHOW(MAX(LIGHT_L, LIGHT_R))
 # comparisons in words: a row for each sense, and a sign
-is? more or? equal to|than? | >= | 1 | TS010 | first | IF(DISTANCE es mayor o igual que 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
-is? ⟨one? less than?¦one? more than?⟩ | ⟨<¦>⟩ | 1 | TS010 | first | IF(DISTANCE ⟨menor¦mayor⟩ 10);S;ENDIF => IF(DISTANCE ⟨<¦>⟩ 10);S;ENDIF
-no is|equal to|equal? one? | <> | 1 | TS010 | first | IF(DISTANCE NO ES 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
+is? ⟨less than?¦more⟩ or? equal to|than? | ⟨<=¦>=⟩ | 1 | TS010 | first | IF(DISTANCE es ⟨menor¦mayor⟩ o igual que 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=⟩ 10);S;ENDIF
+is? ⟨one? less than?¦one? more than?¦extra than⟩ | ⟨<¦>¦>⟩ | 1 | TS010 | first | IF(DISTANCE ⟨menor¦mayor¦es mas de⟩ 10);S;ENDIF => IF(DISTANCE ⟨<¦>¦>⟩ 10);S;ENDIF
+⟨is? different than?¦no is|equal to|equal? one?⟩ | <> | 1 | TS010 | first | IF(DISTANCE ⟨distinto de¦NO ES⟩ 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
 = @word* RANDOM between|from? a=@num to|and|until|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS037 | offered | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
 # questions and sums
@@ -147,11 +149,12 @@ a=@num|@val ⟨modulo¦plus⟩ b=@num|@val | $a ⟨%¦+⟩ $b | 1 | TS010 | firs
 no l=@val|( | NOT $l | 1 | TS010 | applied | IF(NO⟨ DISTANCE < 10¦(DISTANCE < 10)⟩)⏎F(1,50)⏎ENDIF => IF(NOT⟨ DISTANCE < 10¦(DISTANCE < 10)⟩)⏎F(1,50)⏎ENDIF
 l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
 l=MIN|MAX ( c=@noparen+ ) s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l ( $c ) $s $a &o $l ( $c ) $t $b | 1 | TS018 | offered | IF(MIN(2, DISTANCE) < 10 OR < 5);S;ENDIF => IF(MIN(2, DISTANCE) < 10 OR MIN(2, DISTANCE) < 5);S;ENDIF
+l=@val = a=@num or b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
 ( s=<|<= n=@num ) | ( DISTANCE $s $n ) | 1 | TS018 | offered | IF(< 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ c=@cond+ ? <body> : d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
 o==|( a=@num|@val over by|over? b=@num|@val | $o $a / $b | 1 | TS010 | applied | SHOW(10 entre 2) => SHOW(10 / 2)
-h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val then|& b=@val s=<|> n=@num ) | &h ( $a $s $n AND $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L y LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 AND LIGHT_R > 500)⏎S⏎ENDIF
+h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val ⟨then|&¦or|OR⟩ b=@val s=<|> n=@num ) | &h ( $a $s $n ⟨AND¦OR⟩ $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L ⟨y¦o⟩ LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 ⟨AND¦OR⟩ LIGHT_R > 500)⏎S⏎ENDIF
 a=@num|@val ⟨then|&¦or⟩ b=@val|less|more|NOT⟨|<¦⟩ | $a ⟨AND¦OR⟩ $b | 1 | TS010 | first | IF(DISTANCE < 10 ⟨y¦o⟩ LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 ⟨AND¦OR⟩ LIGHT_L > 100);S;ENDIF
 o=AND|OR IF | &o | 1 | TS010 | first | IF(DISTANCE > 5 AND IF DISTANCE < 9);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 9);S;ENDIF
 a=@num|@val '|' b=@val | $a OR $b | 1 | TS010 | applied | IF(DISTANCE<10 | LIGHT_R>50)⏎S⏎ENDIF => IF(DISTANCE<10 OR LIGHT_R>50)⏎S⏎ENDIF
@@ -165,6 +168,7 @@ a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
 s=<|>|<=|>=|=|<> n=@num u=@unit | $s @own:n:u | 1 | TS049 | first | ⟨x = 5 cm¦T = 500 ms⏎W(T)⟩ => ⟨x = 5¦T = 0.5⏎W(T)⟩
 v=@val CM|in? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
+h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
 # variables
 v=@name = a=@num|@val b=@start | $v = $a ; $b | 1 | TS013 | applied | X = DISTANCE F(1, 50) => X = DISTANCE;F(1, 50)
@@ -173,9 +177,12 @@ v=@name ++ | $v = $v + 1 | 1 | TS050 | applied | v = 0⏎v++ => v = 0⏎v = v + 
 v=@name += e=@any+ | $v = $v + $e | 1 | TS050 | applied | X = 1⏎X += 2 => X = 1⏎X = X + 2
 ^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
 ^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
+^ v=@name = e=@num ,? w=@name = f=@num $ | $v = $e ; $w = $f | 1 | TS013 | applied | x = 5, y = 80⏎F(x, y) => X = 5;Y = 80⏎F(x, y)
 ^ n=@newname = b=@callw|LOOP r=@any+ $ | DEF $n ; $b $r | 2 | TS051 | applied | BAILE = L(1,60)⏎BAILE => DEF BAILE;L(1, 60);END_DEF⏎BAILE
 ^ declare ⟨v=@newname ;? $¦declare? v=@name =⟩ | $v = ⟨0¦⟩ | 1 | TS044 | ⟨offered¦applied⟩ | var vel⟨¦ = 50⟩⏎F(2, vel) => vel = ⟨0¦50⟩⏎F(2, vel)
 ^ ⟨set|declare the? v=@word =|to|is?¦v=@newname is|equal|: to|equal? one?⟩ e=@num $ | $v = $e | ⟨1¦2⟩ | TS050 | applied | ⟨set x to 5¦velocidad es 60⏎F(2, velocidad)⟩ => ⟨x = 5¦velocidad = 60⏎F(2, velocidad)⟩
+= SI|TRUE $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
+a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
 ^ v=@usedname e=@num f=;|$ | $v = $e $f | 3 | TS050 | applied | X 17⏎SHOW(X) => X = 17⏎SHOW(X)
 ^ ⟨add¦subtract⟩ n=@num|@val from|to the? v=@name $ | $v = $v ⟨+¦-⟩ $n | 1 | TS050 | offered | X = 40⏎⟨suma¦resta⟩ 5 a X⏎F(1, X) => X = 40⏎X = X ⟨+¦-⟩ 5⏎F(1, X)
 ^ ⟨multiply¦divide¦increase¦decrease⟩ the? v=@name by|over n=@num|@val $ | $v = $v ⟨*¦/¦+¦-⟩ $n | 1 | TS050 | offered | X = 40⏎⟨multiply¦divide¦increase¦decrease⟩ X by 2 => X = 40⏎X = X ⟨*¦/¦+¦-⟩ 2
@@ -208,8 +215,10 @@ a=@close UNTIL that? ⟨c=@cond+ then+ ,? b=@start¦c=@noparen+ $⟩ | $a UNTIL 
 ^ ⟨a=F|B|L|R ( UNTIL (? c=@cond+ )? , b=@num¦UNTIL (? c=@cond+ )? a=F|B|L|R|W ( b=@noparen+⟩ ) $ | $a ( ⟨FOREVER ,¦⟩ $b ) UNTIL ( $c ) | 2 | TS029 | offered | ⟨F(UNTIL(DISTANCE < 10),¦UNTIL DISTANCE < 10 F(2,⟩ 60) => F(⟨FOREVER¦2⟩, 60) UNTIL(DISTANCE < 10)
 # IF and WHILE
 ELSE ( a=@val s=<|<=|>|>= b=@num|@val ) | ELSEIF ( $a $s $b ) | 1 | TS039 | offered | IF(DISTANCE < 10)⏎S⏎ELSE(DISTANCE < 30)⏎B(1, 50)⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ELSEIF(DISTANCE < 30)⏎B(1, 50)⏎ENDIF
+c=IF|WHILE|ELSEIF|UNTIL ( ( a=@noparen* b=@num|@word ) e=;|$ | $c ( ( $a $b ) ) $e | 1 | TS016 | applied | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+<asks> ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ ) | &h ( ( $c ) ⟨AND¦OR⟩ ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) ⟨y¦o⟩ (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) ⟨AND¦OR⟩(LIGHT_R > 9));S;ENDIF
 h=IF|WHILE|LOOP|UNTIL|ELSEIF :|.|->|, ( | &h ( | 1 | TS015 | applied | IF:(DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-^ unless <question> | IF ( @not:c ) ; | 1 | TS102 | applied | unless(distance < 10)⏎F(1,50)⏎end => IF(DISTANCE >= 10)⏎F(1,50)⏎ENDIF
+^ unless ⟨<question>¦that? c=@noparen+ :|,|;¦that? c=@noparen+ b=@start⟩ | IF ( @not:c ) ; ⟨¦¦$b⟩ | ⟨1¦1.2¦1.2⟩ | TS102 | applied | unless⟨(distance < 10)⏎¦ distance < 10:⏎¦ distance < 10 ⟩F(1,50)⟨⏎end¦⏎ENDIF¦⟩ => IF(DISTANCE >= 10)⟨⏎F(1,50)⏎¦⏎F(1,50)⏎¦;F(1, 50);⟩ENDIF
 <asks> ( c=@any+ ) and ( d=@any+ ) | &h ( ( $c ) AND ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) y (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) AND(LIGHT_R > 9));S;ENDIF
 h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@any+ '}' | &h ( $c ) | 1 | TS015 | applied | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 <asks> ( c=@noparen+ b=@start | &h ( $c ) ; $b | 1 | TS016 | offered | si DISTANCE < 10 S si DISTANCE > 10 F(1,50) => IF(DISTANCE < 10);S;IF(DISTANCE > 10);F(1, 50);ENDIF;ENDIF
@@ -239,6 +248,7 @@ LOOP X|=|-|-> n=@num | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP x 3⏎F
 LOOP n=number times :|,|do|;? | LOOP ( &n ) ; | 1 | TS102 | applied | repite cuatro veces⏎F(1,60)⏎fin => LOOP(4)⏎F(1,60)⏎END_LOOP
 LOOP by? n=@num times? ⟨:|,|do|;¦b=@start|'{'¦$⟩ | LOOP ( $n ) ⟨;¦; $b¦⟩ | 1 | TS102 | applied | repite 4⟨:⏎¦ ¦⏎⟩F(1, 60)⟨¦¦⏎fin⟩ => LOOP(4)⟨⏎¦;¦⏎⟩F(1, 60)⟨⏎¦;¦⏎⟩END_LOOP
 o=(|,|=|<|>|+|- '|' v=@num|@val c=@noparen* '|' | $o ABS ( $v $c ) | 1 | TS010 | offered | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
+h=UNTIL|IF|WHILE|WHEN|ELSEIF ( c=@any+ ) o=AND|OR (? d=@any+ )? e=;|$ | &h ( $c &o $d ) $e | 1 | TS015 | offered | F(5, 60) UNTIL(LIGHT_L > 9) OR (LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
 ^ a=F|B|L|R|M|W|BEEP ( c=@noparen+ ) WHEN (? q=@cond+ )? ;|:|,? <body> $ | WHEN ( $q ) ; $b $r ; END_WHEN ; $a ( $c ) | .9 | TS071 | offered | F(9, 50) WHEN(DISTANCE < 9) S => WHEN(DISTANCE < 9);S;END_WHEN;F(9, 50)
 m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
 LOOP ( @name = 1 to|until n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
@@ -299,6 +309,7 @@ a=@close ⟨by? please+¦CM|@in_cm|@in_secs+⟩ $ | $a | 1 | TS044 | applied | S
 ^ a=F|B ( n=@num , p=@num ) CM|@in_cm $ | $a ( $n CM , $p ) | .5 | TS076 | offered | F(20, 60) CM => F(20 CM, 60)
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ⟨,? then|soon+ ,? b=@start¦,|.|:? b=@start¦&|+|AND b=@startm¦->|=>|/|>|>>|_|*|'|' b=@start⟩ | $a ; $b | 1 | ⟨TS044¦TS013¦TS061¦TS061⟩ | applied | F(1, 75)⟨ y¦,¦&¦->⟩ R(1, 75) => F(1, 75);R(1, 75)
+a=@close ⟨+|&|AND|->|'|'¦,⟩ $ | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | applied | F(2, 80)⟨ +¦,⟩⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 a=@close , $ | $a ; | .8 | TS013 | applied | F(2, 80),⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 # words of other languages around a program
 brake | BREAK | 1 | TS102 | offered | LOOP(3)⏎S⏎BRAKE⏎END_LOOP => LOOP(3)⏎S⏎BREAK⏎END_LOOP
