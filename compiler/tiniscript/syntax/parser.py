@@ -41,6 +41,7 @@ from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, sca
 from tiniscript.syntax.reporter import Failed, Reporter
 
 ENOUGH = 100  # diagnostics after which reading on helps nobody
+_SUMS = ("+", "-", "*", "/", "%")
 # The rule of an instruction, by its first word; of all others `command`.
 _RULES = {
     **dict.fromkeys(HEADERS, "header"), **dict.fromkeys(ENDS, "block_end"),
@@ -71,6 +72,7 @@ class Parser:
         self.reporter = Reporter(scanned.diagnostics)
         self.blocks = Blocks(self.reporter)
         self.expressions = ExpressionParser(self.cursor, self.reporter)
+        self.variables: set[str] = set()  # those that have been set so far
 
     # -- the program ------------------------------------------------------------------------
 
@@ -135,6 +137,7 @@ class Parser:
         if name.text in WORDS:
             self.reporter.fail(codes.RESERVED, name.span, word=name.text)
         self.cursor.i += 2
+        self.variables.add(name.text)
         try:
             value = self.expressions.expression(in_brackets=False)
         except Failed:  # the name has a value, whichever
@@ -171,8 +174,14 @@ class Parser:
 
     def own_name(self, word: Token, following: Token) -> None:
         """A word that may stand for a device or a DEF of the program, if no other follows it."""
-        if following.kind != "(" and following.kind not in AT_END:
-            self.reporter.fail(codes.UNKNOWN_WORD, word.span, found=word.text)
+        if following.kind == "(" or following.kind in AT_END:
+            return
+        if word.text in self.variables and following.kind in _SUMS:
+            sum_ = self.expressions.expression(in_brackets=False)
+            rest = self.cursor.source[Span(word.end, sum_.span.end)]
+            fix = f"{word.text} = {word.text}{rest}"
+            self.reporter.fail(codes.VARIABLE_ALONE, sum_.span, name=word.text, fix=fix)
+        self.reporter.fail(codes.UNKNOWN_WORD, word.span, found=word.text)
 
     def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
         if known is not None and not known.arguments:
