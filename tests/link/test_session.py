@@ -551,6 +551,27 @@ def test_a_heartbeat_has_three_seconds_and_so_has_asking_for_the_end_of_a_run() 
     assert 3000 <= lost_at(session, at) - at < 3500
 
 
+@pytest.mark.parametrize("is_event_first", [True, False])
+def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
+    """A heartbeat's reply may tell of it in the same moment as its event."""
+    session = greeted()
+    session.live(FORWARD)
+    session.receive(answer(session.poll(0), receipt(1)), 0)
+    at = session.wakes_at()
+    assert at is not None
+    session.receive(answer(session.poll(at), {"state": 0, "run": 1}), at)
+    status: dict[str, int | bytes] = {
+        "state": 0, "run": 1, "program": 0, "length": 0, "slot": 0, "saved": 0, "fault": 0,
+        "fault_at": 0, "fault_program": 0, "damaged": 0, "dropped": 0, "framing": 0, "overrun": 0,
+        "noise": b"",
+    }  # fmt: skip
+    told = [answer(session.poll(at), status),
+            event("DONE", 0, {"run": 1}, epoch=10)]  # fmt: skip
+    for each in reversed(told) if is_event_first else told:
+        session.receive(each, at)
+    assert [each.name for each in session.events()] == ["DONE"]
+
+
 def asked(statuses: list[int]) -> tuple[int, int]:
     """Name a robot that answers with these statuses, the last one for ever; return how many
     times it is asked, and how that ends."""

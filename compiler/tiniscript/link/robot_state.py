@@ -80,6 +80,10 @@ class RobotState:
         self._is_going, self._is_asked = False, True
         return True
 
+    def has_ended(self, run: int | None) -> bool:
+        """Return whether it is known how a run has ended: it was told then, and is told once."""
+        return run is not None and self._ended == run
+
     def end(self) -> None:
         """Note that it is known how our run has ended, of which no event has told."""
         self._ended, self._is_asked = self.run, False

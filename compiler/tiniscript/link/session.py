@@ -612,7 +612,8 @@ class Session(Requester):
             if hello.status != OK:
                 return refused(hello)
         reply = yield from self._handshake.with_key(status)
-        if reply.status == OK and has_ended and self._state.run == run:
+        is_told = self._state.has_ended(run)  # by an event that has come meanwhile
+        if reply.status == OK and has_ended and self._state.run == run and not is_told:
             self._tell_end(reply.values)
         return reply
 
@@ -661,8 +662,11 @@ class Session(Requester):
             self._told_epoch = frame.epoch
         if isinstance(event, (StoppedEvent, FaultEvent)):
             self._take_end(event, frame)
+        # by a reply to STATUS
+        is_told = isinstance(event, (DoneEvent, FaultEvent)) and self._state.has_ended(event.run)
         self._state.take(event)
-        self._events.append(event)
+        if not is_told:
+            self._events.append(event)
 
     def _confirms(self, event: StoppedEvent, frame: Frame) -> bool:
         """Whether the stop that is under way has stopped the robot, or has found it stopped.
