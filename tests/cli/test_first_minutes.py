@@ -232,13 +232,13 @@ def test_what_the_other_verb_takes_leads_there(language: str, try_it: str, tsc: 
 def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     done = tsc("check", *LINE)
     assert done.code == 1
-    said = "tinibot has no LINE_L; the robot liner has it.   Try:  "
+    said = "tinibot has no BUTTON; the robot liner has it.   Try:  "  # its first word
     assert f"{said}Write above the program: // robot: liner" in done.err
     assert "LINE_L = 0" not in done.err
     for verb in (["run"], ["compile", "-o", "-"], ["upload", "--virtual"], ["upload"]):
         assert "the robot liner has it" in tsc(*verb, *LINE).err, verb
     done = tsc("check", *LINE, "--lang", "es")
-    assert "tinibot no tiene LINE_L; lo tiene el robot liner." in done.err
+    assert "tinibot no tiene BUTTON; lo tiene el robot liner." in done.err
     assert "Prueba:  Escribe encima del programa: // robot: liner" in done.err
     done = tsc("check", "-e", "LED(BUTTON)", "--json")
     (found,) = [each for each in json.loads(done.out) if each["column"] == 1]
