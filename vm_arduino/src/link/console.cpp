@@ -280,7 +280,8 @@ inline Console::Act Console::end_line(bool is_heard) {
     case Text::kProblem:
       is_ignoring_ = has_setup || was_waiting;
       if (!has_mark_ && first_ != '+' && !is_heard && mistakes_ <= kMostMistakes) {
-        const uint8_t word = reader_.find_unknown(kSpoken);
+        // behind a SETUP word a module's word is a wrong one: it begins no program
+        const uint8_t word = has_setup ? kAsking : reader_.find_unknown(kSpoken);
         if (word < kChatter) break;
         is_talking_ = true;
         say(mistakes_ == kMostMistakes ? Remark::kMute
