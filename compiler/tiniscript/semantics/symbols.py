@@ -60,9 +60,9 @@ class Scope:
         said = self._line_to_move_up(name, used)
         body = self.parsed.body
         around = next((each for each in body if each.span.end > used.start), body[0])
-        if said["line"] and not isinstance(around, (ast.Assign, ast.Command)):
-            # right before it is inside a block: there it would be done again and again
-            said = {**said, "line": "", "first": "", "before": said["first"]}
+        row = self.source.position(around.span.start)[0]
+        if said["line"] and row < self.source.position(used.start)[0]:
+            said = {**said, "row": str(row)}  # inside a block it would be done again and again
         begin = (around if said["line"] else body[0]).span.start
         value = said["first"] or said["before"] or f"{name} = {said['zero']}"
         between = "\n" if "\n" in self.source.text else "; "
@@ -82,7 +82,7 @@ class Scope:
                 text = self.source.line_text(line).strip()
                 is_alone = text == self.source[node.span].strip()
                 if line > here and is_alone and node.value.is_plain:
-                    return {"line": str(line), "first": text, "zero": ""}
+                    return {"line": str(line), "first": text}
                 break
         zero = "FALSE" if self._is_yes_no(name) else "0"
         return {"line": "", "first": "", "before": self._first_number(name), "zero": zero}
