@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,7 @@ from tiniscript.studio.serving import POLICY
 from tools import CannotMake
 from tools.builds import studio
 from tools.builds.page_texts import page_texts
+from tools.studio.pack import NOT_HERE
 
 LARGEST = 6_000_000  # bytes of all files, gzipped, with one language: no browser fetches another
 SOURCES = ROOT / "tools" / "studio"
@@ -46,6 +48,15 @@ def test_the_packages_are_pinned_and_come_from_nowhere_in_particular() -> None:
     for name, package in lock["packages"].items():
         assert "resolved" not in package, name
         assert not name or package["integrity"].startswith("sha512-"), name
+
+
+def test_no_part_is_packed_of_what_no_browser_has(page: Path) -> None:
+    found = []
+    for archive in page.glob("*.zip"):
+        with zipfile.ZipFile(archive) as packed:
+            found += [name.replace("/", ".") for name in packed.namelist()]
+    assert len(found) > 200
+    assert not [each for each in found if each.startswith(tuple(f"{name}." for name in NOT_HERE))]
 
 
 def test_node_trusts_the_certificates_of_the_system(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -20,7 +20,7 @@ LESSONS = "tiniscript.studio.page_lessons"  # fetched when it is first needed
 LEFT_OUT = ("tiniscript.cli", "tiniscript.doctor", "tiniscript.flash", "tiniscript.link.modules",
             "tiniscript.link.sharing", "tiniscript.robots.reader",
             "tiniscript.robots.wiring")  # fmt: skip
-# Imported where there is a port, wasmtime or another system; never in a browser.
+# Imported where there is a port, wasmtime or another system; never in a browser, nor a part of it.
 NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli",
             "ctypes", "multiprocessing", "urllib.request", "ssl",
             "asyncio.windows_events", "asyncio.windows_utils",
@@ -83,7 +83,8 @@ class Packer:
                 wanted += self._take(".".join(name.split(".")[:k]))
 
     def _take(self, name: str) -> list[str]:
-        if name in self._seen or name in NOT_HERE or name.startswith(LEFT_OUT):
+        parents = (name.rsplit(".", k)[0] for k in range(name.count(".") + 1))
+        if name in self._seen or not NOT_HERE.isdisjoint(parents) or name.startswith(LEFT_OUT):
             return []
         self._seen.add(name)
         path = name.replace(".", "/")
