@@ -134,6 +134,7 @@ def test_no_repair_loses_a_sign_or_a_unit(text: str) -> None:
         ("W(1:30)", "W(90)", [], []),
         ("W(1 1/2)", "W(1.5)", [], []),
         ("IF(LIGHT_L > 50%);S;ENDIF", "IF(LIGHT_L > 50);S;ENDIF", ["50%"], []),
+        ("IF(LIGHT_L > 50%)\nF(1, 50)", "IF(LIGHT_L > 50)\nF(1, 50)", ["50%"], []),
         ("T = 1;SHOW(ROUND(TIME() - T))", "T = 1;SHOW(ROUND(TIME, - T))", ["-"], []),
         ("X = RANDOM(1-6)", "X = RANDOM(1, 6)", [], []),
         ("4*(F(2, 80))", "LOOP(4);F(2, 80);END_LOOP", [], []),
@@ -181,6 +182,12 @@ def test_what_is_only_shown_says_what_it_loses_and_what_else_is_meant(
     (found,) = check(wrong)
     assert message(found, Source(wrong), "en").fix == tried
     assert fixed(wrong, check).text == wrong or found.values.get("carried")
+
+
+def test_what_one_line_would_lose_costs_the_others_nothing() -> None:
+    """A number of another line is not that of this one, and nobody knows what BLA is."""
+    wrong = "IF(LUZ_ESQ > 50%)\nF(2 80)\nENDIF\nBLA(3);F(1, 50)"
+    assert fixed(wrong, check).text == wrong.replace("F(2 80)", "F(2, 80)")
 
 
 def test_a_unit_is_told_where_it_stands() -> None:

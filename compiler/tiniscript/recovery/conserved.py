@@ -40,6 +40,7 @@ from tiniscript.recovery.concepts import (
 from tiniscript.recovery.rewrites import one_word
 from tiniscript.recovery.writing import PLAIN_SIGNS, without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
+from tiniscript.syntax.operators import SUMS
 
 _SENSES = {"<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>": ">", "!=": "<>",
            "=!": "<>", "≤": "<", "≥": ">", "≠": "<>"}  # fmt: skip
@@ -55,7 +56,6 @@ _AS = {
     "FOREVER": ("TRUE", "LOOP", "WHILE"), "TRUE": ("FOREVER",), "S": ("BREAK",), "IF": ("WHEN",),
     "WHEN": ("IF",), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
 }  # fmt: skip
-_SUMS = ("+", "-", "*", "/", "%")
 _TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
 _ASKING = frozenset(("IF", "ELSEIF", "WHILE", "UNTIL", "WHEN"))
 _NEGATES = ("no", "without", "unless", "different")
@@ -76,11 +76,12 @@ _END = lexemes(";")[0]
 
 
 class Amount(NamedTuple):
-    """A number with its sign and its unit, "" for one that is not known; and how it is written."""
+    """A number with its sign and its unit, "" for none that is known; how it is written, where."""
 
     value: float
     unit: str
     written: str
+    line: int
 
 
 class Difference(NamedTuple):
@@ -294,7 +295,8 @@ class _Said:
             unit, scale = said
             value, k = value * scale / 1000, k + 1
             written += f"{after.space or ''}{after.source or after.text}"
-        self.amounts.append(Amount(-value if is_minus else value, unit, written))
+        line = sum(each is _END for each in self.tokens[:k])
+        self.amounts.append(Amount(-value if is_minus else value, unit, written, line))
         return k + 1
 
     def _is_minus(self, k: int) -> bool:
@@ -404,7 +406,7 @@ class _Said:
             is_value = one.text == ")" or self._is_read(one)
             is_other = self._is_read(inner if other.text == "(" else other)
             is_plain = one.kind is NUMBER and other.kind is NUMBER
-            if sign.text in _SUMS and is_value and is_other and not is_plain:
+            if sign.text in SUMS and is_value and is_other and not is_plain:
                 found[sign.text] += 1
         return found
 
@@ -448,10 +450,12 @@ def _amounts(before: _Said, after: _Said) -> Iterator[str]:
             left.remove(written)
             for each in gone:
                 lost.remove(each)
-    for each in [*lost]:
-        if fitting := [it for it in left if _is_same(each, it)]:
-            left.remove(max(fitting, key=lambda it: it.unit == each.unit))
-            lost.remove(each)
+    for is_near in (True, False):  # first what stays in its line: another line's 50 is no 50 %
+        for each in [*lost]:
+            fitting = [it for it in left if _is_same(each, it)]
+            if fitting := [it for it in fitting if it.line == each.line or not is_near]:
+                left.remove(max(fitting, key=lambda it: it.unit == each.unit))
+                lost.remove(each)
     yield from (each.written for each in lost)
     units = {unit for it in after.amounts for unit in it.unit.split("/")}
     units |= {after.units.get(each.text, "") for each in after.tokens}

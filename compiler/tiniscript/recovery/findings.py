@@ -133,15 +133,18 @@ def _meant(
         return [_moved(each, written, meant) for each in said_of_it][:1]
     if not told:
         return []
-    if is_sure or not meant.is_whole:  # what is read of a part gives up nothing
-        if difference(text, meant.text, recovery.kit).lost:
-            return []
-    told_of = [_diagnostic(each, meant, found) for each in told]
+    told_of = [(each, _diagnostic(each, meant, found)) for each in told]
+    is_part = is_sure or not meant.is_whole  # what is read of a part gives up nothing
+    if is_part and difference(text, meant.text, recovery.kit).lost:
+        told_of = [] if is_sure else [it for it in told_of if _keeps_all(it[1], source, recovery)]
     others = explained(written, recovery.other) if recovery.other else []
-    return [
-        _either(_carried(own, source.text), each, others)
-        for own, each in zip(told_of, told, strict=True)
-    ]
+    return [_either(_carried(own, source.text), each, others) for each, own in told_of]
+
+
+def _keeps_all(found: Diagnostic, source: Source, recovery: Recovery) -> bool:
+    """Whether the changes of a diagnostic alone lose nothing that was written."""
+    edits = found.repair.edits if found.repair else ()
+    return not difference(source.text, applied(source.text, edits), recovery.kit).lost
 
 
 def _carried(found: Diagnostic, text: str) -> Diagnostic:

@@ -23,6 +23,7 @@ BINARY: Final = {
 }  # fmt: skip
 COMPARISONS = frozenset(sign for _, sign in COMPARATORS)
 SIGNS = frozenset(sign for sign in BINARY if not sign.isalpha())
+SUMS = SIGNS - COMPARISONS  # + - * / %
 SIGN_OF: Final = {name: sign for sign, (_, name) in BINARY.items()}
 # What is TRUE where a comparison is not.
 OPPOSITES: Final = {

@@ -38,10 +38,10 @@ from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.expressions import ExpressionParser
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
+from tiniscript.syntax.operators import SUMS
 from tiniscript.syntax.reporter import Failed, Reporter
 
 ENOUGH = 100  # diagnostics after which reading on helps nobody
-_SUMS = ("+", "-", "*", "/", "%")
 # The rule of an instruction, by its first word; of all others `command`.
 _RULES = {
     **dict.fromkeys(HEADERS, "header"), **dict.fromkeys(ENDS, "block_end"),
@@ -176,11 +176,10 @@ class Parser:
         """A word that may stand for a device or a DEF of the program, if no other follows it."""
         if following.kind == "(" or following.kind in AT_END:
             return
-        if word.text in self.variables and following.kind in _SUMS:
-            sum_ = self.expressions.expression(in_brackets=False)
-            rest = self.cursor.source[Span(word.end, sum_.span.end)]
-            fix = f"{word.text} = {word.text}{rest}"
-            self.reporter.fail(codes.VARIABLE_ALONE, sum_.span, name=word.text, fix=fix)
+        if word.text in self.variables and following.kind in SUMS:
+            span = self.expressions.expression(in_brackets=False).span
+            fix = f"{word.text} = {word.text}{self.cursor.source[Span(word.end, span.end)]}"
+            self.reporter.fail(codes.VARIABLE_ALONE, span, name=word.text, fix=fix)
         self.reporter.fail(codes.UNKNOWN_WORD, word.span, found=word.text)
 
     def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
