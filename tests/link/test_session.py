@@ -539,14 +539,20 @@ def lost_at(session: Session, now_ms: int = 0) -> int:
     raise AssertionError("it waits for ever")
 
 
-def test_a_heartbeat_has_three_seconds_and_so_has_asking_for_the_end_of_a_run() -> None:
-    assert 3000 <= lost_at(greeted()) - IDLE_HEARTBEAT_MS < 3500  # the end of a try
+def over() -> tuple[Session, int]:
+    """Return a session whose heartbeat has just said that its run is over, and the time."""
     session = greeted()
     session.live(FORWARD)
     session.receive(answer(session.poll(0), receipt(1)), 0)
     at = session.wakes_at()
     assert at is not None
     session.receive(answer(session.poll(at), {"state": 0, "run": 1}), at)
+    return session, at
+
+
+def test_a_heartbeat_has_three_seconds_and_so_has_asking_for_the_end_of_a_run() -> None:
+    assert 3000 <= lost_at(greeted()) - IDLE_HEARTBEAT_MS < 3500  # the end of a try
+    session, at = over()
     assert session.poll(at), "it asks how the run has ended"
     assert 3000 <= lost_at(session, at) - at < 3500
 
@@ -554,12 +560,7 @@ def test_a_heartbeat_has_three_seconds_and_so_has_asking_for_the_end_of_a_run() 
 @pytest.mark.parametrize("is_event_first", [True, False])
 def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
     """A heartbeat's reply may tell of it in the same moment as its event."""
-    session = greeted()
-    session.live(FORWARD)
-    session.receive(answer(session.poll(0), receipt(1)), 0)
-    at = session.wakes_at()
-    assert at is not None
-    session.receive(answer(session.poll(at), {"state": 0, "run": 1}), at)
+    session, at = over()
     status: dict[str, int | bytes] = {
         "state": 0, "run": 1, "program": 0, "length": 0, "slot": 0, "saved": 0, "fault": 0,
         "fault_at": 0, "fault_program": 0, "damaged": 0, "dropped": 0, "framing": 0, "overrun": 0,

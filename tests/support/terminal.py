@@ -15,6 +15,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from queue import Queue
 from threading import Thread
+from time import monotonic
 
 import pyte
 
@@ -66,11 +67,13 @@ class Terminal:
 
     def until(self, pattern: str) -> re.Match[str]:
         """Wait until something is to be seen."""
+        end_s = monotonic() + HANGS_S
         while True:
             found = re.search(pattern, "\n".join(self.lines()))
             if found:
                 return found
             assert self.take(), f"it ends without {pattern}: {self.lines()}"
+            assert monotonic() < end_s, f"it draws on without {pattern}: {self.lines()}"
 
     def type(self, keys: str) -> None:
         os.write(self._ours, keys.encode())
