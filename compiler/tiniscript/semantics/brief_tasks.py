@@ -67,6 +67,7 @@ def _goes_on(task: ir.Task, driving: ir.Statement, source: Source) -> Diagnostic
     if head is not None:
         ended = f"IF{head[1]};BREAK;ENDIF" if isinstance(driving, ir.Loop) else f"UNTIL{head[1]}"
         values["ended"] = ended
-    stop = next(each for each in task.body if not isinstance(each, ir.Read))
-    stop = next((each for each in task.body if isinstance(each, ir.Stop)), stop)
+    # a DEF that is called may have it
+    stops = [each for each in task.body if isinstance(each, (ir.Stop, ir.Call))]
+    stop = min(stops, key=lambda each: isinstance(each, ir.Call))
     return Diagnostic(codes.WHEN_GOES_ON, stop.span, values)
