@@ -26,6 +26,8 @@ FILES = [
     *sorted((EXTRAS / "wasm").glob("*.cpp")),
     *sorted((EXTRAS / "library" / "src").glob("*.[ch]*")),
 ]
+KITS = SOURCES / "src" / "boards" / "kits"  # `boards/kit.h` chooses one of them
+HEADERS = sorted(path for part in ("src", "extras") for path in (SOURCES / part).rglob("*.h"))
 BOARDS = sorted(
     path for folder in ("", "avr") for path in (SOURCES / "src/boards" / folder).glob("*.[ch]*")
 )
@@ -46,12 +48,11 @@ def code_of(path: Path) -> str:
 
 
 def shouting(path: Path) -> set[str]:
-    """Return the names in capitals that are no include guard of the file."""
+    """Return the names in capitals."""
     text = code_of(path)
-    guard = re.match(r"\s*#ifndef (\w+_H_)\s*\n#define \1\s", text)
     found = set(re.findall(r"\b[A-Z][A-Z0-9_]*\b", text))
     arduinos = ARDUINOS if "#include <Arduino.h>" in text else set()
-    return found - {guard.group(1) if guard else "", CHIP_OF_THE_CORE} - arduinos
+    return found - {CHIP_OF_THE_CORE} - arduinos
 
 
 @each_row("path", FILES)
@@ -78,12 +79,19 @@ def test_nothing_on_a_board_waits(path: Path) -> None:
     assert not waiting & set(re.findall(r"\w+", code_of(path)))
 
 
+@each_row("path", [path for path in HEADERS if path.parent != KITS])
+def test_each_header_is_read_once(path: Path) -> None:
+    assert code_of(path).split()[:2] == ["#pragma", "once"]
+
+
 @pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
-def test_each_header_compiles_alone_without_a_warning() -> None:
-    headers = [path for path in PORTABLE if path.suffix == ".h"]
-    done = subprocess.run(
-        ["g++", *STRICT, "-x", "c++", *map(str, headers)], capture_output=True, text=True
-    )
+def test_each_header_compiles_alone_without_a_warning(tmp_path: Path) -> None:
+    """Twice in a file: the second time says nothing."""
+    for number, header in enumerate(path for path in PORTABLE if path.suffix == ".h"):
+        twice = f'#include "{header}"\n' * 2
+        (tmp_path / f"{number}.cpp").write_text(twice, encoding="utf-8")
+    files = map(str, sorted(tmp_path.glob("*.cpp")))
+    done = subprocess.run(["g++", *STRICT, *files], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
 
 

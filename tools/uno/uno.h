@@ -3,8 +3,7 @@
 // libsimavr runs the instructions, timers, ADC and pins. The UART, the EEPROM, the watchdog and the
 // causes of a reset are here, because libsimavr 1.6 gives them other times than silicon.
 
-#ifndef TINISCRIPT_UNO_H_
-#define TINISCRIPT_UNO_H_
+#pragma once
 
 #include <simavr/sim_avr.h>
 #include <stdbool.h>
@@ -197,5 +196,3 @@ void masked_tell(void);
 
 // Does what is waiting on the standard input. False: it has been closed.
 bool commands_look(void);
-
-#endif  // TINISCRIPT_UNO_H_

@@ -3,8 +3,7 @@
 // Plain functions: each build links one definition of them (a board, a test, a simulation). None of
 // them blocks. Numbers are thousandths, TRUE is 1.
 
-#ifndef TINISCRIPT_ROBOT_H_
-#define TINISCRIPT_ROBOT_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -55,5 +54,3 @@ Going robot_going(int32_t* rest);
 uint16_t robot_device_hash(uint16_t device);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ROBOT_H_

@@ -1,7 +1,6 @@
 // What the machine must refuse and do: `cases.cpp`, made of `tests/cases`.
 
-#ifndef TINISCRIPT_TEST_CASES_H_
-#define TINISCRIPT_TEST_CASES_H_
+#pragma once
 
 #include <doctest.h>
 
@@ -16,5 +15,3 @@ void check(const std::string& request, const std::string& answer);
   TEST_CASE(title) { check(request, answer); }
 
 extern const char kRequest[];  // one of tinibot
-
-#endif  // TINISCRIPT_TEST_CASES_H_

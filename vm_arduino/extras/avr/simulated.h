@@ -5,8 +5,7 @@
 // the one file of a program that includes it. Ends by sleeping without interrupts: that ends the
 // simulator too.
 
-#ifndef TINISCRIPT_AVR_SIMULATED_H_
-#define TINISCRIPT_AVR_SIMULATED_H_
+#pragma once
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -62,5 +61,3 @@ void put(char letter) {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_AVR_SIMULATED_H_

@@ -3,8 +3,7 @@
 //
 // For the one file of a program that includes it.
 
-#ifndef TINISCRIPT_BENCH_COUNTER_H_
-#define TINISCRIPT_BENCH_COUNTER_H_
+#pragma once
 
 #include <avr/io.h>
 #include <stdint.h>
@@ -41,5 +40,3 @@ inline uint32_t begin() {
 }
 
 }  // namespace counter
-
-#endif  // TINISCRIPT_BENCH_COUNTER_H_

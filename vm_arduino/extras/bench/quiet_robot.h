@@ -2,8 +2,7 @@
 // after the last, and shown values are kept. It defines `robot.h` for the one file that includes
 // it.
 
-#ifndef TINISCRIPT_BENCH_QUIET_ROBOT_H_
-#define TINISCRIPT_BENCH_QUIET_ROBOT_H_
+#pragma once
 
 #include "../../src/robot.h"
 
@@ -39,5 +38,3 @@ int32_t robot_speed(bool, uint8_t) { return 0; }
 uint16_t robot_device_hash(uint16_t) { return 0; }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BENCH_QUIET_ROBOT_H_

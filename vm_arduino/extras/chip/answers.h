@@ -1,7 +1,6 @@
 // Answers of every machine but the smallest: fields in a row, numbers little-endian.
 
-#ifndef TINISCRIPT_CHIP_ANSWERS_H_
-#define TINISCRIPT_CHIP_ANSWERS_H_
+#pragma once
 
 #include "request.h"
 
@@ -13,5 +12,3 @@ namespace tiniscript {
 bool answer_any(Request request, size_t end);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_CHIP_ANSWERS_H_

@@ -3,8 +3,7 @@
 // Each chip defines these in a folder beside this one. The requests are those of
 // `tests/machines/host.py`.
 
-#ifndef TINISCRIPT_CHIP_PORT_H_
-#define TINISCRIPT_CHIP_PORT_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -22,5 +21,3 @@ const uint8_t* request_bytes(size_t place, size_t length, size_t zeros);
 void put(char letter);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_CHIP_PORT_H_

@@ -1,7 +1,6 @@
 // Reads a request from one place on: numbers are little-endian, texts have their length before.
 
-#ifndef TINISCRIPT_CHIP_REQUEST_H_
-#define TINISCRIPT_CHIP_REQUEST_H_
+#pragma once
 
 #include "port.h"
 
@@ -38,5 +37,3 @@ class Request {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_CHIP_REQUEST_H_

@@ -1,7 +1,6 @@
 // Runs one image on a chip and says what the robot did.
 
-#ifndef TINISCRIPT_CHIP_RUNNER_H_
-#define TINISCRIPT_CHIP_RUNNER_H_
+#pragma once
 
 #include "request.h"
 #include "traced_robot.h"
@@ -18,5 +17,3 @@ void answer_run(Request request, bool is_verified = true, const Pace& pace = kAt
 void answer_run_at_pace(Request request);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_CHIP_RUNNER_H_

@@ -1,7 +1,6 @@
 // Adds words and numbers to the answer, as `tsc run` prints them.
 
-#ifndef TINISCRIPT_CHIP_TEXT_H_
-#define TINISCRIPT_CHIP_TEXT_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -15,5 +14,3 @@ void put_number(int32_t value);
 void put_value(int32_t value, bool is_yes_no);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_CHIP_TEXT_H_

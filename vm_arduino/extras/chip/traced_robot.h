@@ -3,8 +3,7 @@
 // Defines what `robot.h` declares. Readings come from lists: each takes the next value, the last
 // one repeats, no list is 0. Names and readings stay in the request.
 
-#ifndef TINISCRIPT_CHIP_TRACED_ROBOT_H_
-#define TINISCRIPT_CHIP_TRACED_ROBOT_H_
+#pragma once
 
 #include "request.h"
 
@@ -78,5 +77,3 @@ struct TracedRobot {
 extern TracedRobot robot;
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_CHIP_TRACED_ROBOT_H_

@@ -3,8 +3,7 @@
 // Knows time, pins, the GPIO matrix, LEDC, timers, UART 0, NVS and the watchdog; no instructions.
 // `simulated_radio` has the radios, `simulated_counter` the pulse counter. What the real parts refuse ends the run.
 
-#ifndef TINISCRIPT_ESP32_SIMULATED_CHIP_H_
-#define TINISCRIPT_ESP32_SIMULATED_CHIP_H_
+#pragma once
 
 #include <Arduino.h>
 
@@ -116,5 +115,3 @@ extern "C" void simulated_panic();
 // The bytes that a reset leaves alone.
 std::string noinit();
 void set_noinit(const std::string& bytes);
-
-#endif  // TINISCRIPT_ESP32_SIMULATED_CHIP_H_

@@ -4,8 +4,7 @@
 // A client of Bluetooth LE or of a serial port is what a test does; one in a network is a real one,
 // on 127.0.0.1. Its functions may be called from any thread.
 
-#ifndef TINISCRIPT_ESP32_SIMULATED_RADIO_H_
-#define TINISCRIPT_ESP32_SIMULATED_RADIO_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -56,5 +55,3 @@ struct RadioSettings {
   uint32_t joins;  // how often it, or the core for it, has tried
 };
 RadioSettings radio_settings();
-
-#endif  // TINISCRIPT_ESP32_SIMULATED_RADIO_H_

@@ -1,12 +1,9 @@
 // The tasks of a simulated chip: in turn on one thread, or on threads of their own.
 
-#ifndef TINISCRIPT_ESP32_SIMULATED_TASKS_H_
-#define TINISCRIPT_ESP32_SIMULATED_TASKS_H_
+#pragma once
 
 #include <stdint.h>
 
 // When the next task goes on, in microseconds of the chip's time; and has those that are due go on.
 extern uint64_t (*next_task_us)();
 extern void (*run_tasks)();
-
-#endif  // TINISCRIPT_ESP32_SIMULATED_TASKS_H_

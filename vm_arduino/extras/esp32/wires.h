@@ -2,8 +2,7 @@
 //
 // Knows the pins and what drives them. Alone compiled for each robot, so that little is.
 
-#ifndef TINISCRIPT_ESP32_WIRES_H_
-#define TINISCRIPT_ESP32_WIRES_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -21,5 +20,3 @@ struct Wired {
 Wired wired_now();
 bool light_is_on();
 void push_button(bool is_down);
-
-#endif  // TINISCRIPT_ESP32_WIRES_H_

@@ -1,7 +1,6 @@
 // What a fuzzer has made, byte by byte; 0 behind its end.
 
-#ifndef TINISCRIPT_FUZZ_INPUT_H_
-#define TINISCRIPT_FUZZ_INPUT_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -37,5 +36,3 @@ class Input {
   } while (false)
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
-
-#endif  // TINISCRIPT_FUZZ_INPUT_H_

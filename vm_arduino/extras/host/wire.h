@@ -1,7 +1,6 @@
 // Numbers and bytes of requests and answers: little-endian, texts after their length.
 
-#ifndef TINISCRIPT_HOST_WIRE_H_
-#define TINISCRIPT_HOST_WIRE_H_
+#pragma once
 
 #include <stdint.h>
 #include <stdio.h>
@@ -125,5 +124,3 @@ inline bool all_answered(const Answers& answers) {
   }
   return true;
 }
-
-#endif  // TINISCRIPT_HOST_WIRE_H_

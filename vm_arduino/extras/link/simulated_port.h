@@ -1,7 +1,6 @@
 // A robot that writes down what the link asks of it. Defines what `port.h` declares.
 
-#ifndef TINISCRIPT_LINK_SIMULATED_PORT_H_
-#define TINISCRIPT_LINK_SIMULATED_PORT_H_
+#pragma once
 
 #include <memory>
 #include <string>
@@ -36,5 +35,3 @@ struct SimulatedPort {
 
 // The one robot of this program.
 extern SimulatedPort port;
-
-#endif  // TINISCRIPT_LINK_SIMULATED_PORT_H_

@@ -1,7 +1,6 @@
 // Images and records to keep, and chance.
 
-#ifndef TINISCRIPT_POWERCUT_CONTENTS_H_
-#define TINISCRIPT_POWERCUT_CONTENTS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -33,5 +32,3 @@ bool begin(Store* store, Area area, Content* content);
 Content read(const Store& store, Area area);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_POWERCUT_CONTENTS_H_

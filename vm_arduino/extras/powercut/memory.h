@@ -4,8 +4,7 @@
 // read it says what it said before or what was written, at random, until it is written again.
 // Ends the program where the store asks for something while the memory writes.
 
-#ifndef TINISCRIPT_POWERCUT_MEMORY_H_
-#define TINISCRIPT_POWERCUT_MEMORY_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -50,5 +49,3 @@ extern Memory memory;
 extern uint16_t erases[kMemoryBytes];
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_POWERCUT_MEMORY_H_

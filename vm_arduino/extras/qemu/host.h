@@ -2,8 +2,7 @@
 //
 // `xtensa.S` and `riscv.S` define these, beside what happens before `serve` and at a fault.
 
-#ifndef TINISCRIPT_QEMU_HOST_H_
-#define TINISCRIPT_QEMU_HOST_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -16,5 +15,3 @@ uint32_t host_write(const uint8_t* data, uint32_t length);
 // The program: answers requests until there are no more.
 void serve();
 }
-
-#endif  // TINISCRIPT_QEMU_HOST_H_

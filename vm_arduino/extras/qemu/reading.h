@@ -1,7 +1,6 @@
 // The reader of text on an emulated chip.
 
-#ifndef TINISCRIPT_QEMU_READING_H_
-#define TINISCRIPT_QEMU_READING_H_
+#pragma once
 
 #include "../chip/request.h"
 
@@ -14,5 +13,3 @@ namespace tiniscript {
 void answer_texts(Request request, size_t end);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_QEMU_READING_H_

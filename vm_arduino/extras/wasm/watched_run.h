@@ -1,7 +1,6 @@
 // Holds the program of a virtual robot, so that somebody can look at it.
 
-#ifndef TINISCRIPT_EXTRAS_WASM_WATCHED_RUN_H_
-#define TINISCRIPT_EXTRAS_WASM_WATCHED_RUN_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -31,5 +30,3 @@ const int32_t* watched_tasks();
 const int32_t* watched_variables();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_EXTRAS_WASM_WATCHED_RUN_H_

@@ -1,7 +1,6 @@
 // The analog converter: one call starts a measurement, a later call fetches it.
 
-#ifndef TINISCRIPT_BOARDS_ANALOG_H_
-#define TINISCRIPT_BOARDS_ANALOG_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -37,5 +36,3 @@ int32_t in_limits(int32_t value, int32_t low, int32_t high);
 uint16_t part_of_range(int32_t value, int32_t low, int32_t high, uint16_t first, uint16_t last);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BOARDS_ANALOG_H_

@@ -1,7 +1,6 @@
 // The sketch's view of the board beyond `firmware/board.h`: clock and button.
 
-#ifndef TINISCRIPT_BOARDS_BOARD_H_
-#define TINISCRIPT_BOARDS_BOARD_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -32,5 +31,3 @@ bool board_has_disconnected();
 Board board_told();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BOARDS_BOARD_H_

@@ -1,7 +1,6 @@
 // The start button with debounce.
 
-#ifndef TINISCRIPT_BOARDS_BUTTON_H_
-#define TINISCRIPT_BOARDS_BUTTON_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -24,5 +23,3 @@ bool button_has_moved(bool is_down);
 Press button_read(bool is_down, uint32_t now_ms);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BOARDS_BUTTON_H_

@@ -2,8 +2,7 @@
 //
 // Each family has its own folder, with the same names in it.
 
-#ifndef TINISCRIPT_BOARDS_CHIP_H_
-#define TINISCRIPT_BOARDS_CHIP_H_
+#pragma once
 
 #ifdef __AVR__
 #include "avr/attention.h"
@@ -21,5 +20,3 @@
 #else
 #error "There is no firmware for this chip."
 #endif
-
-#endif  // TINISCRIPT_BOARDS_CHIP_H_

@@ -1,7 +1,6 @@
 // The slotted discs on both wheels: counts their edges.
 
-#ifndef TINISCRIPT_BOARDS_DISCS_H_
-#define TINISCRIPT_BOARDS_DISCS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -23,5 +22,3 @@ void discs_begin();
 void discs_tick();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BOARDS_DISCS_H_

@@ -2,8 +2,7 @@
 // nano_liner` selects another one; in the Arduino IDE, write a line here such as #define
 // tiniscript_liner
 
-#ifndef TINISCRIPT_BOARDS_KIT_H_
-#define TINISCRIPT_BOARDS_KIT_H_
+#pragma once
 
 #include "../store/layout.h"
 #include "../vm/flash.h"
@@ -35,5 +34,3 @@
 #endif
 
 static_assert(tiniscript::kProgramBytes <= tiniscript::kStoredCodeBytes, "the store has less room");
-
-#endif  // TINISCRIPT_BOARDS_KIT_H_

@@ -3,8 +3,7 @@
 // Only `board_motors` turns a motor on, and only while the latch is open. The latch is closed after
 // a reset.
 
-#ifndef TINISCRIPT_BOARDS_MOTORS_H_
-#define TINISCRIPT_BOARDS_MOTORS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -41,5 +40,3 @@ void motors_release();
 bool motors_are_stopped();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BOARDS_MOTORS_H_

@@ -1,7 +1,6 @@
 // Motors behind an L298N, an L293D or a TB6612. Off: no PWM, both direction pins low.
 
-#ifndef TINISCRIPT_BOARDS_MOTORS_BRIDGE_H_
-#define TINISCRIPT_BOARDS_MOTORS_BRIDGE_H_
+#pragma once
 
 #include "kit.h"
 
@@ -51,5 +50,3 @@ tini_always_inline void begin_drive(bool is_on) {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BOARDS_MOTORS_BRIDGE_H_

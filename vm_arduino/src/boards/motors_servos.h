@@ -1,7 +1,6 @@
 // Motors that are continuous-rotation servos. Off: neutral pulses for a second, then none.
 
-#ifndef TINISCRIPT_BOARDS_MOTORS_SERVOS_H_
-#define TINISCRIPT_BOARDS_MOTORS_SERVOS_H_
+#pragma once
 
 #include "kit.h"
 #include "servo.h"
@@ -44,5 +43,3 @@ tini_always_inline void drive(TurningServo motor, bool is_backward, uint8_t leve
 tini_always_inline void begin_drive(bool) {}
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BOARDS_MOTORS_SERVOS_H_

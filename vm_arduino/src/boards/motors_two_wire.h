@@ -1,7 +1,6 @@
 // Motors behind a driver with two inputs each, such as a DRV8833 or an L9110. Off: both low.
 
-#ifndef TINISCRIPT_BOARDS_MOTORS_TWO_WIRE_H_
-#define TINISCRIPT_BOARDS_MOTORS_TWO_WIRE_H_
+#pragma once
 
 #include "kit.h"
 
@@ -39,5 +38,3 @@ tini_always_inline void drive(TwoWire motor, bool is_backward, uint8_t level) {
 tini_always_inline void begin_drive(bool) {}
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BOARDS_MOTORS_TWO_WIRE_H_

@@ -1,8 +1,7 @@
 // Servos: a pulse for each, 50 times a second. On an AVR timer 1 makes them one after the other, on
 // an ESP32 a channel of LEDC makes those of each.
 
-#ifndef TINISCRIPT_BOARDS_SERVO_H_
-#define TINISCRIPT_BOARDS_SERVO_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -30,5 +29,3 @@ void servo_tick(uint32_t now_ms);
 bool servo_is_held(uint8_t number);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BOARDS_SERVO_H_

@@ -1,7 +1,6 @@
 // The buzzer: a timer (timer 2, or a channel of LEDC) makes the tone, `sound_tick` ends it.
 
-#ifndef TINISCRIPT_BOARDS_SOUND_H_
-#define TINISCRIPT_BOARDS_SOUND_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -26,5 +25,3 @@ void sound_off();
 void sound_tick(uint32_t now_ms);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BOARDS_SOUND_H_

@@ -4,8 +4,7 @@
 // framing error counts as 0. If the line then stays low, each millisecond counts as another 0,
 // because the UART reports a break only once.
 
-#ifndef TINISCRIPT_BOARDS_UART_H_
-#define TINISCRIPT_BOARDS_UART_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -24,5 +23,3 @@ void uart_send();
 LineErrors uart_errors();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BOARDS_UART_H_

@@ -3,8 +3,7 @@
 // Pings of all sensors are at least 30 ms apart, so that a late echo is not taken for the next one.
 // A reading is valid for 60 ms from its ping on.
 
-#ifndef TINISCRIPT_BOARDS_ULTRASONIC_H_
-#define TINISCRIPT_BOARDS_ULTRASONIC_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -32,5 +31,3 @@ void ultrasonic_tick();
 void ultrasonic_forget();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_BOARDS_ULTRASONIC_H_

@@ -3,8 +3,7 @@
 // Plain functions: each build links one definition of them (a board, a test, a simulation). None of
 // them blocks.
 
-#ifndef TINISCRIPT_FIRMWARE_BOARD_H_
-#define TINISCRIPT_FIRMWARE_BOARD_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -94,5 +93,3 @@ void board_finished();
 void board_faulted();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_FIRMWARE_BOARD_H_

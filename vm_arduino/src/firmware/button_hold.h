@@ -3,8 +3,7 @@
 // 1 s or more starts nothing; 2 s confirm a claim, or let text drive a robot with an owner; 10 s
 // from the reset on take the robot's keys away. A spike on the wire is no press.
 
-#ifndef TINISCRIPT_FIRMWARE_BUTTON_HOLD_H_
-#define TINISCRIPT_FIRMWARE_BUTTON_HOLD_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -22,5 +21,3 @@ void end_press();
 bool is_long_press();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_FIRMWARE_BUTTON_HOLD_H_

@@ -4,8 +4,7 @@
 // are plain functions. Parts: `program` holds the images in memory, `run` runs one, `persistence`
 // saves, `identity` is id, name and trim, `port` answers the link, `state` is what they share.
 
-#ifndef TINISCRIPT_FIRMWARE_FIRMWARE_H_
-#define TINISCRIPT_FIRMWARE_FIRMWARE_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -93,5 +92,3 @@ bool firmware_next_tx_byte(uint8_t* byte);
 #endif
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_FIRMWARE_FIRMWARE_H_

@@ -6,8 +6,7 @@
 // from there. What a wheel shows that cannot turn is noise. Knows neither pins nor time but through
 // `board.h` and the firmware's clock.
 
-#ifndef TINISCRIPT_FIRMWARE_GUIDE_H_
-#define TINISCRIPT_FIRMWARE_GUIDE_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -31,5 +30,3 @@ inline void guide_tick() {}
 #endif
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_FIRMWARE_GUIDE_H_

@@ -2,8 +2,7 @@
 //
 // The buzzer is the program's while one runs: then the light blinks alone.
 
-#ifndef TINISCRIPT_FIRMWARE_IDENTIFY_H_
-#define TINISCRIPT_FIRMWARE_IDENTIFY_H_
+#pragma once
 
 namespace tiniscript {
 
@@ -11,5 +10,3 @@ namespace tiniscript {
 void tick_identify();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_FIRMWARE_IDENTIFY_H_

@@ -3,8 +3,7 @@
 // Knows the layout in a record, not when it is saved. `identity.cpp` also implements
 // `port_identity`, `port_device_info` and `port_tuning`.
 
-#ifndef TINISCRIPT_FIRMWARE_IDENTITY_H_
-#define TINISCRIPT_FIRMWARE_IDENTITY_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -30,5 +29,3 @@ bool change_name(const uint8_t* name, uint8_t length);
 bool change_tuning(const Tuning& wanted, bool has_pace);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_FIRMWARE_IDENTITY_H_

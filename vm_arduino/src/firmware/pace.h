@@ -2,8 +2,7 @@
 //
 // Does only arithmetic: no storage. `pace.cpp` implements `robot_speed`.
 
-#ifndef TINISCRIPT_FIRMWARE_PACE_H_
-#define TINISCRIPT_FIRMWARE_PACE_H_
+#pragma once
 
 #include "../link/port.h"
 #include "../vm/bytecode.h"
@@ -14,5 +13,3 @@ namespace tiniscript {
 bool is_sound(const Pace& pace);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_FIRMWARE_PACE_H_

@@ -3,8 +3,7 @@
 // Knows the order of program, fault and identity, and that a commit needs motors off and enough
 // voltage. The store knows how bytes are written.
 
-#ifndef TINISCRIPT_FIRMWARE_PERSISTENCE_H_
-#define TINISCRIPT_FIRMWARE_PERSISTENCE_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -47,5 +46,3 @@ Answer give_up_program();
 Answer not_now();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_FIRMWARE_PERSISTENCE_H_

@@ -2,8 +2,7 @@
 //
 // Loads the stored program into memory and knows which one the robot holds. Knows nothing of runs.
 
-#ifndef TINISCRIPT_FIRMWARE_PROGRAM_H_
-#define TINISCRIPT_FIRMWARE_PROGRAM_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -66,5 +65,3 @@ bool has_program();
 bool load_program();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_FIRMWARE_PROGRAM_H_

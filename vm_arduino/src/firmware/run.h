@@ -4,8 +4,7 @@
 // firmware (`firmware_on_pressed` ...) and the functions of `robot.h` that are the same on every
 // board.
 
-#ifndef TINISCRIPT_FIRMWARE_RUN_H_
-#define TINISCRIPT_FIRMWARE_RUN_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -36,5 +35,3 @@ bool is_image_running(const uint8_t* image);
 bool is_driving();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_FIRMWARE_RUN_H_

@@ -1,7 +1,6 @@
 // The shared state of the firmware's parts, defined in `firmware.cpp`.
 
-#ifndef TINISCRIPT_FIRMWARE_STATE_H_
-#define TINISCRIPT_FIRMWARE_STATE_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -33,5 +32,3 @@ inline bool holds_program() {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_FIRMWARE_STATE_H_

@@ -3,8 +3,7 @@
 // Two cheap motors always differ: one is stronger, both need some power before they move, and wires
 // may be crossed. Does only arithmetic: no storage, no pins.
 
-#ifndef TINISCRIPT_FIRMWARE_TRIM_H_
-#define TINISCRIPT_FIRMWARE_TRIM_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -26,5 +25,3 @@ bool is_sound(const Trim& trim);
 Levels trimmed(const Trim& trim, int8_t left, int8_t right);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_FIRMWARE_TRIM_H_

@@ -4,8 +4,7 @@
 // Knows how long a line may take, and which lines are ignored. What a line asks for is done by the
 // link. `docs/link.md` is the contract.
 
-#ifndef TINISCRIPT_LINK_CONSOLE_H_
-#define TINISCRIPT_LINK_CONSOLE_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -121,5 +120,3 @@ class Console {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_CONSOLE_H_

@@ -4,8 +4,7 @@
 // which exists only on the wire: type, sequence number, epoch, payload, checksum. A large frame has a
 // 0 before its payload.
 
-#ifndef TINISCRIPT_LINK_FRAMES_H_
-#define TINISCRIPT_LINK_FRAMES_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -72,5 +71,3 @@ class FrameCheck {
 uint8_t decode_frame(uint8_t* bytes, uint8_t length);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_FRAMES_H_

@@ -1,8 +1,7 @@
 // Whether this robot knows owners. The code that the Arduino IDE's own options make for an Uno or a Nano
 // is too long for that; platformio.ini has shorter ones, and says tiniscript_with_owners.
 
-#ifndef TINISCRIPT_LINK_HAS_OWNERS_H_
-#define TINISCRIPT_LINK_HAS_OWNERS_H_
+#pragma once
 
 namespace tiniscript {
 
@@ -14,5 +13,3 @@ constexpr bool kHasOwners = true;
 #endif
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_HAS_OWNERS_H_

@@ -1,8 +1,7 @@
 // Whether this robot seals frames. A Mega can, where it is built with tiniscript_with_seals; an Uno and a
 // Nano have no room. All other chips do, unless tiniscript_without_seals.
 
-#ifndef TINISCRIPT_LINK_HAS_SEALS_H_
-#define TINISCRIPT_LINK_HAS_SEALS_H_
+#pragma once
 
 #include "has_owners.h"
 
@@ -19,5 +18,3 @@ constexpr bool kHasSeals = false;
 #endif
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_HAS_SEALS_H_

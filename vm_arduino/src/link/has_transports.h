@@ -1,8 +1,7 @@
 // Whether this robot is reached over several transports at once: each has a link of its own then,
 // and one of them drives (`links.h`). An ESP32 is; all others have one.
 
-#ifndef TINISCRIPT_LINK_HAS_TRANSPORTS_H_
-#define TINISCRIPT_LINK_HAS_TRANSPORTS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -35,5 +34,3 @@ constexpr uint8_t kTransports = 6;
 inline bool is_network(Transport transport) { return transport >= Transport::kNetwork; }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_HAS_TRANSPORTS_H_

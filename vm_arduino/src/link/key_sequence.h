@@ -1,7 +1,6 @@
 // Finds the bytes that a terminal sends for a cursor key: `ESC [ A`, `ESC O A`, `ESC [ 1 ; 5 C`.
 
-#ifndef TINISCRIPT_LINK_KEY_SEQUENCE_H_
-#define TINISCRIPT_LINK_KEY_SEQUENCE_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -38,5 +37,3 @@ class KeySequence {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_KEY_SEQUENCE_H_

@@ -4,8 +4,7 @@
 // and go out through `next_tx_byte`; time comes in as `now_ms`. Nothing here blocks. A repeated
 // request is answered again but not executed again. `docs/link.md` is the contract.
 
-#ifndef TINISCRIPT_LINK_LINK_H_
-#define TINISCRIPT_LINK_LINK_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -356,5 +355,3 @@ class Link {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_LINK_H_

@@ -7,8 +7,7 @@
 // STATUS, STOP, IDENTIFY) is answered on each, and a stop on one is a stop. Knows no bytes of a
 // transport. All calls are the main loop's.
 
-#ifndef TINISCRIPT_LINK_LINKS_H_
-#define TINISCRIPT_LINK_LINKS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -94,5 +93,3 @@ class Links {
 }  // namespace tiniscript
 
 #endif  // tiniscript_transports
-
-#endif  // TINISCRIPT_LINK_LINKS_H_

@@ -3,8 +3,7 @@
 // The numbers of the link: messages, where the fields of their requests begin,
 // statuses, states, times. Knows no behaviour. `docs/link.md` says what they mean.
 
-#ifndef TINISCRIPT_LINK_MESSAGES_H_
-#define TINISCRIPT_LINK_MESSAGES_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -262,5 +261,3 @@ enum class LinkFault : uint8_t {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_MESSAGES_H_

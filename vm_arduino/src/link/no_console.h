@@ -1,7 +1,6 @@
 // In the place of the console, where a robot reads no text: nobody talks to it, and nothing is said.
 
-#ifndef TINISCRIPT_LINK_NO_CONSOLE_H_
-#define TINISCRIPT_LINK_NO_CONSOLE_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -25,5 +24,3 @@ class Console {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_NO_CONSOLE_H_

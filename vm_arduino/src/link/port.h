@@ -2,8 +2,7 @@
 //
 // Plain functions: each build links one definition of them (a board, a test). None of them blocks.
 
-#ifndef TINISCRIPT_LINK_PORT_H_
-#define TINISCRIPT_LINK_PORT_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -224,5 +223,3 @@ Answer port_rename(const uint8_t* name, uint8_t length);
 Answer port_tune(const Tuning& wanted, bool has_pace);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_PORT_H_

@@ -9,8 +9,7 @@
 // on as it arrives. Finds the same packets as `receiver.py`, in the same states. `put` may be called
 // from an interrupt, everything else from the main loop.
 
-#ifndef TINISCRIPT_LINK_RECEIVER_H_
-#define TINISCRIPT_LINK_RECEIVER_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -254,5 +253,3 @@ typedef Receiver* ReceiverOfLink;
 #endif
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_RECEIVER_H_

@@ -1,7 +1,6 @@
 // Times that are left, in milliseconds: they run down to 0.
 
-#ifndef TINISCRIPT_LINK_RUN_DOWN_H_
-#define TINISCRIPT_LINK_RUN_DOWN_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -18,5 +17,3 @@ tini_noinline inline void run_down(uint16_t* left_ms, uint8_t times, uint16_t pa
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_RUN_DOWN_H_

@@ -3,8 +3,7 @@
 // Knows the bytes of a sealed frame, as `seal.py` does. Knows no message. In a buffer the frame lies as
 // `frames.h` says: type, sequence number, epoch, 0, counter, payload, MAC.
 
-#ifndef TINISCRIPT_LINK_SEAL_H_
-#define TINISCRIPT_LINK_SEAL_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -66,5 +65,3 @@ class Seal {
 bool are_equal(const uint8_t* first, const uint8_t* second, uint8_t length);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_SEAL_H_

@@ -3,8 +3,7 @@
 // Works byte by byte: on the AVR that takes a quarter of the flash of 64-bit numbers. Jean-Philippe
 // Aumasson and Daniel J. Bernstein describe it in "SipHash: a fast short-input PRF".
 
-#ifndef TINISCRIPT_LINK_SIPHASH_H_
-#define TINISCRIPT_LINK_SIPHASH_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -17,5 +16,3 @@ constexpr uint8_t kHashBytes = 8;
 void siphash(const uint8_t* key, const uint8_t* message, uint8_t length, uint8_t* hash);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_SIPHASH_H_

@@ -4,8 +4,7 @@
 // An AVR has memory for one small frame. tiniscript_like_esp32 is for robots on a computer that have
 // the sizes of an ESP32.
 
-#ifndef TINISCRIPT_LINK_SIZES_H_
-#define TINISCRIPT_LINK_SIZES_H_
+#pragma once
 
 #include "messages.h"
 
@@ -38,5 +37,3 @@ constexpr uint8_t kSmallPacket = kSmallFrame + 1;
 constexpr uint8_t kLargeFirst = kHeadBytes + 1;
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_SIZES_H_

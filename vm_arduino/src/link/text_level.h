@@ -1,7 +1,6 @@
 // At which level this robot reads text, as `robots/text_levels.py` numbers them.
 
-#ifndef TINISCRIPT_LINK_TEXT_LEVEL_H_
-#define TINISCRIPT_LINK_TEXT_LEVEL_H_
+#pragma once
 
 #include "../vm/has_tasks.h"
 #include "messages.h"
@@ -19,5 +18,3 @@ constexpr TextLevel kRobotTextLevel = TextLevel::kUno;
 #endif
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_TEXT_LEVEL_H_

@@ -1,7 +1,6 @@
 // The text that waits for the main loop: an interrupt puts bytes in, the main loop takes them out.
 
-#ifndef TINISCRIPT_LINK_TEXT_RING_H_
-#define TINISCRIPT_LINK_TEXT_RING_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -49,5 +48,3 @@ class TextRing {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_TEXT_RING_H_

@@ -3,8 +3,7 @@
 // Only ASCII letters and digits count, in any case, and none behind `//`. Knows no packets and no time.
 // `docs/link.md` says which stop counts where.
 
-#ifndef TINISCRIPT_LINK_TYPED_STOP_H_
-#define TINISCRIPT_LINK_TYPED_STOP_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -56,5 +55,3 @@ class TypedStop {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_TYPED_STOP_H_

@@ -2,8 +2,7 @@
 //
 // A second of silence begins a new count. Knows the time of the last byte, and no packet.
 
-#ifndef TINISCRIPT_LINK_ZERO_RUN_H_
-#define TINISCRIPT_LINK_ZERO_RUN_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -57,5 +56,3 @@ class ZeroRun {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_LINK_ZERO_RUN_H_

@@ -3,8 +3,7 @@
 // The only definition of these numbers; `docs/store.md` draws them. Does not know how they are
 // written.
 
-#ifndef TINISCRIPT_STORE_LAYOUT_H_
-#define TINISCRIPT_STORE_LAYOUT_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -91,5 +90,3 @@ static_assert(kStoredCodeBytes <= kCodeBytes, "its length has room in the header
 static_assert(kHeaderBytes > kChecksumAt + kCheckBytes, "the check lies in the header");
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_STORE_LAYOUT_H_

@@ -4,8 +4,7 @@
 // a model in a test). A place is an address from 0. None of them blocks: a write continues on its
 // own, and no other call is allowed until the memory is ready again.
 
-#ifndef TINISCRIPT_STORE_NVM_H_
-#define TINISCRIPT_STORE_NVM_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -41,5 +40,3 @@ void nvm_write(uint16_t place, uint8_t value);
 void nvm_clear(uint16_t place);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_STORE_NVM_H_

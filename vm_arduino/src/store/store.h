@@ -6,8 +6,7 @@
 //
 // Knows checksums. The caller decides whether a robot may run a program (`refuse`).
 
-#ifndef TINISCRIPT_STORE_STORE_H_
-#define TINISCRIPT_STORE_STORE_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -102,5 +101,3 @@ class Store {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_STORE_STORE_H_

@@ -1,7 +1,6 @@
 // Decimal digits of a number, the last one first.
 
-#ifndef TINISCRIPT_TEXT_DIGITS_H_
-#define TINISCRIPT_TEXT_DIGITS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -24,5 +23,3 @@ inline uint8_t cut_digit(uint32_t* number) {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_TEXT_DIGITS_H_

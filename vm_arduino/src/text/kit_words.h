@@ -2,8 +2,7 @@
 //
 // Each build links one definition, as of `robot.h`.
 
-#ifndef TINISCRIPT_TEXT_KIT_WORDS_H_
-#define TINISCRIPT_TEXT_KIT_WORDS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -48,5 +47,3 @@ inline bool robot_has_way(bool is_turn) {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_TEXT_KIT_WORDS_H_

@@ -2,8 +2,7 @@
 //
 // What the reader of text says about a wrong line.
 
-#ifndef TINISCRIPT_TEXT_PROBLEMS_H_
-#define TINISCRIPT_TEXT_PROBLEMS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -49,5 +48,3 @@ enum class Problem : uint8_t {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_TEXT_PROBLEMS_H_

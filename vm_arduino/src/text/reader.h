@@ -6,8 +6,7 @@
 // the words of its kit. Accepts what the compiler accepts; its code is plain: nothing is folded,
 // and each operator is one instruction.
 
-#ifndef TINISCRIPT_TEXT_READER_H_
-#define TINISCRIPT_TEXT_READER_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -322,5 +321,3 @@ inline void Reader::resolve(uint8_t at) {
 #endif  // __AVR__
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_TEXT_READER_H_

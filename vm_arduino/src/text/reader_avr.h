@@ -1,7 +1,6 @@
 // The memory layout of a reader for `reader_avr.S`. `reader_code.cpp` asserts every number.
 
-#ifndef TINISCRIPT_TEXT_READER_AVR_H_
-#define TINISCRIPT_TEXT_READER_AVR_H_
+#pragma once
 
 // in a Reader
 #define tini_buffer_at 0
@@ -20,5 +19,3 @@
 #define tini_push_32 0x04
 #define tini_push_tenths 0x0c
 #define tini_push_milli 0x03
-
-#endif  // TINISCRIPT_TEXT_READER_AVR_H_

@@ -1,7 +1,6 @@
 // What the files of the reader share: tokens, states, and what lies in its buffer.
 
-#ifndef TINISCRIPT_TEXT_READER_PARTS_H_
-#define TINISCRIPT_TEXT_READER_PARTS_H_
+#pragma once
 
 #include "../vm/bytecode.h"
 #include "../vm/small.h"
@@ -86,5 +85,3 @@ constexpr uint8_t kNameDef = 0x80;
 constexpr uint8_t kNameYesNo = 0x40;
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_TEXT_READER_PARTS_H_

@@ -2,8 +2,7 @@
 //
 // What the robot says to a person beside what is wrong with a line.
 
-#ifndef TINISCRIPT_TEXT_REMARKS_H_
-#define TINISCRIPT_TEXT_REMARKS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -44,5 +43,3 @@ enum class Remark : uint8_t {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_TEXT_REMARKS_H_

@@ -2,8 +2,7 @@
 //
 // The texts of problems, remarks and faults: their numbers, and how they are packed.
 
-#ifndef TINISCRIPT_TEXT_TEXTS_H_
-#define TINISCRIPT_TEXT_TEXTS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -42,5 +41,3 @@ const uint8_t* packed_codes();
 const uint8_t* pair_of(uint8_t code);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_TEXT_TEXTS_H_

@@ -1,7 +1,6 @@
 // Unpacks the texts of `texts.h`, letter by letter. Knows nothing of where they go.
 
-#ifndef TINISCRIPT_TEXT_UNPACKED_H_
-#define TINISCRIPT_TEXT_UNPACKED_H_
+#pragma once
 
 #include "../vm/small.h"
 #include "texts.h"
@@ -46,5 +45,3 @@ tini_noinline void put_text(uint8_t number) {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_TEXT_UNPACKED_H_

@@ -2,8 +2,7 @@
 //
 // The words of the language as the reader of text knows them.
 
-#ifndef TINISCRIPT_TEXT_WORDS_H_
-#define TINISCRIPT_TEXT_WORDS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -100,5 +99,3 @@ extern const uint8_t kCommandRows[][2] tini_progmem;
 extern const uint8_t kArgumentRanges[][8] tini_progmem;
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_TEXT_WORDS_H_

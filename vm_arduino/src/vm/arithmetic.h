@@ -2,8 +2,7 @@
 //
 // For all chips but the AVR, whose `number_avr.S` has all of it.
 
-#ifndef TINISCRIPT_VM_ARITHMETIC_H_
-#define TINISCRIPT_VM_ARITHMETIC_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -46,5 +45,3 @@ tini_always_inline Fault difference(int32_t a, int32_t b, int32_t* result) {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_ARITHMETIC_H_

@@ -3,8 +3,7 @@
 // The numbers of the bytecode: instructions, refusals, faults, limits and the header of
 // an image. Knows no behaviour. `bytecode_spec.md` says what they mean.
 
-#ifndef TINISCRIPT_VM_BYTECODE_H_
-#define TINISCRIPT_VM_BYTECODE_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -418,5 +417,3 @@ extern const uint8_t kOperands[] tini_progmem;
 extern const uint8_t kRanges[][2] tini_progmem;
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_BYTECODE_H_

@@ -1,7 +1,6 @@
 // The checksum of images, frames and records: the CRC-32 of zlib.
 
-#ifndef TINISCRIPT_VM_CRC32_H_
-#define TINISCRIPT_VM_CRC32_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -11,5 +10,3 @@ namespace tiniscript {
 uint32_t crc32(uint32_t crc, const uint8_t* data, uint16_t length);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_CRC32_H_

@@ -2,8 +2,7 @@
 //
 // Knows how the rows of `bytecode.h` are packed, and where they lie.
 
-#ifndef TINISCRIPT_VM_DECODE_FORM_H_
-#define TINISCRIPT_VM_DECODE_FORM_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -29,5 +28,3 @@ struct DecodeForm {
 DecodeForm decode_form_of(uint8_t code);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_DECODE_FORM_H_

@@ -1,7 +1,6 @@
 // The memory layout of a machine for `execute_avr.S`. `vm_instructions.cpp` asserts every offset.
 
-#ifndef TINISCRIPT_VM_EXECUTE_AVR_H_
-#define TINISCRIPT_VM_EXECUTE_AVR_H_
+#pragma once
 
 #include "has_tasks.h"
 
@@ -78,5 +77,3 @@
 #define tini_call 0x7b
 #define tini_check_ms 20
 #define tini_late_ms 20
-
-#endif  // TINISCRIPT_VM_EXECUTE_AVR_H_

@@ -1,8 +1,7 @@
 // Finds a word in a table of words in flash: one behind the other, 0x80 in the last letter of each, and
 // a 0 behind them.
 
-#ifndef TINISCRIPT_VM_FIND_WORD_H_
-#define TINISCRIPT_VM_FIND_WORD_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -15,5 +14,3 @@ constexpr uint8_t kLastLetter = 0x80;
 uint8_t find_word(const uint8_t* table, const uint8_t* word, uint8_t length);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_FIND_WORD_H_

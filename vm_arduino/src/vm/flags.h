@@ -4,8 +4,7 @@
 // a byte takes half the flash that one in RAM does. Elsewhere they are variables. A restart by a
 // jump leaves them: `begin_flags` makes them 0.
 
-#ifndef TINISCRIPT_VM_FLAGS_H_
-#define TINISCRIPT_VM_FLAGS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -94,5 +93,3 @@ class Flag {
 #endif
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_FLAGS_H_

@@ -3,8 +3,7 @@
 // The AVR has a separate address space for flash: a table there is read with a special instruction,
 // and any other constant takes RAM. Other chips need nothing special.
 
-#ifndef TINISCRIPT_VM_FLASH_H_
-#define TINISCRIPT_VM_FLASH_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -34,5 +33,3 @@ inline uint16_t flash_word(const uint16_t* address) {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_FLASH_H_

@@ -10,8 +10,7 @@
 //
 // An ATmega328P has discs in the place of the reader of text (`tiniscript_with_discs`).
 
-#ifndef TINISCRIPT_VM_HAS_TASKS_H_
-#define TINISCRIPT_VM_HAS_TASKS_H_
+#pragma once
 
 #if defined(__AVR__) && !defined(tiniscript_portable)
 #define tiniscript_in_assembly
@@ -27,5 +26,3 @@
 #define tiniscript_has_discs
 #define tiniscript_without_text
 #endif
-
-#endif  // TINISCRIPT_VM_HAS_TASKS_H_

@@ -2,8 +2,7 @@
 //
 // Knows the header and the checksum; `verify` checks the code.
 
-#ifndef TINISCRIPT_VM_IMAGE_H_
-#define TINISCRIPT_VM_IMAGE_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -57,5 +56,3 @@ struct Admission {
 Admission admit(const uint8_t* data, uint8_t sensors, uint8_t actuators);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_IMAGE_H_

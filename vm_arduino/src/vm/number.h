@@ -4,8 +4,7 @@
 // argument and result is a count of thousandths unless a name says otherwise. Where a function
 // returns a fault, its result means nothing. `number_avr.S` is all of this for the AVR.
 
-#ifndef TINISCRIPT_VM_NUMBER_H_
-#define TINISCRIPT_VM_NUMBER_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -44,5 +43,3 @@ uint32_t scaled(uint32_t a, uint32_t b, uint32_t divisor);
 Fault random_between(int32_t* pair, uint32_t state);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_NUMBER_H_

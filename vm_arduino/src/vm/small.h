@@ -1,8 +1,7 @@
 // Attributes and helpers that keep the machine small and quick on the AVR. Elsewhere the attributes
 // have no effect.
 
-#ifndef TINISCRIPT_VM_SMALL_H_
-#define TINISCRIPT_VM_SMALL_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -65,5 +64,3 @@ tini_noinline inline void copy_bytes(const void* from, uint8_t* to, uint8_t leng
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_SMALL_H_

@@ -2,8 +2,7 @@
 //
 // Not for the AVR. Each function returns whether the next instruction may run now.
 
-#ifndef TINISCRIPT_VM_STEPS_H_
-#define TINISCRIPT_VM_STEPS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -173,5 +172,3 @@ tini_always_inline bool Machine::join(Running* run, bool decisive, uint16_t dist
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_STEPS_H_

@@ -3,8 +3,7 @@
 // Knows nothing of what instructions do. Times are milliseconds of a clock that may start
 // anywhere and wraps around after 2^32; a wait is at most 2^31 long.
 
-#ifndef TINISCRIPT_VM_TASK_H_
-#define TINISCRIPT_VM_TASK_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -131,5 +130,3 @@ struct Task {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_TASK_H_

@@ -6,8 +6,7 @@
 // `bytecode_spec.md` has the steps in words, `verify.py` in Python: same names, same order, same
 // verdict at the same offset. Change all three.
 
-#ifndef TINISCRIPT_VM_VERIFY_H_
-#define TINISCRIPT_VM_VERIFY_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -36,5 +35,3 @@ inline Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_VERIFY_H_

@@ -8,8 +8,7 @@
 // an instruction that should empty the stack empties it, and the target of a short jump back is
 // checked when the machine leaves.
 
-#ifndef TINISCRIPT_VM_VM_H_
-#define TINISCRIPT_VM_VM_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -208,5 +207,3 @@ inline bool Machine::is_below() const { return false; }
 #endif
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_VM_VM_H_

@@ -1,7 +1,6 @@
 // Names of registers, and the routines that the assembly of this folder shares.
 
-#ifndef TINISCRIPT_VM_WIDE_AVR_H_
-#define TINISCRIPT_VM_WIDE_AVR_H_
+#pragma once
 
 // two numbers
 #define a0 r22
@@ -37,5 +36,3 @@
 #define fixed_divide tiniscript_fixed_divide
 #define fixed_modulo tiniscript_fixed_modulo
 #define fixed_round tiniscript_fixed_round
-
-#endif  // TINISCRIPT_VM_WIDE_AVR_H_

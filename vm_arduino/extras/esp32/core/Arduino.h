@@ -4,8 +4,7 @@
 // Each row names the file of the core or of ESP-IDF that declares it. `../signatures.cpp` pins
 // them.
 
-#ifndef TINISCRIPT_CORE_ARDUINO_H_
-#define TINISCRIPT_CORE_ARDUINO_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -162,5 +161,3 @@ extern HWCDC Serial;
 #else
 extern HardwareSerial Serial;
 #endif
-
-#endif  // TINISCRIPT_CORE_ARDUINO_H_

@@ -1,8 +1,5 @@
 // Stands for libraries/BLE/src/BLE2902.h of the core.
 
-#ifndef TINISCRIPT_CORE_BLE2902_H_
-#define TINISCRIPT_CORE_BLE2902_H_
+#pragma once
 
 #include "BLEDevice.h"
-
-#endif  // TINISCRIPT_CORE_BLE2902_H_

@@ -1,8 +1,7 @@
 // Stands for libraries/BLE/src/ of the core: BLEDevice.h, BLEServer.h, BLE2902.h and what they
 // include.
 
-#ifndef TINISCRIPT_CORE_BLEDEVICE_H_
-#define TINISCRIPT_CORE_BLEDEVICE_H_
+#pragma once
 
 #include "Arduino.h"
 
@@ -107,5 +106,3 @@ class BLEDevice {
   static esp_err_t setMTU(uint16_t mtu);
   static void startAdvertising();
 };
-
-#endif  // TINISCRIPT_CORE_BLEDEVICE_H_

@@ -1,7 +1,6 @@
 // Stands for libraries/BluetoothSerial/src/BluetoothSerial.h of the core.
 
-#ifndef TINISCRIPT_CORE_BLUETOOTHSERIAL_H_
-#define TINISCRIPT_CORE_BLUETOOTHSERIAL_H_
+#pragma once
 
 #include "Arduino.h"
 
@@ -43,5 +42,3 @@ class BluetoothSerial {
   esp_err_t register_callback(esp_spp_cb_t callback);
   size_t write(const uint8_t* buffer, size_t size);
 };
-
-#endif  // TINISCRIPT_CORE_BLUETOOTHSERIAL_H_

@@ -1,7 +1,6 @@
 // Stands for libraries/ESPmDNS/src/ESPmDNS.h of the core.
 
-#ifndef TINISCRIPT_CORE_ESPMDNS_H_
-#define TINISCRIPT_CORE_ESPMDNS_H_
+#pragma once
 
 #include "Arduino.h"
 
@@ -19,5 +18,3 @@ class MDNSResponder {
 };
 
 extern MDNSResponder MDNS;
-
-#endif  // TINISCRIPT_CORE_ESPMDNS_H_

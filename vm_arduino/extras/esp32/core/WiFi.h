@@ -1,7 +1,6 @@
 // Stands for libraries/WiFi/src/WiFi.h of the core and what it includes.
 
-#ifndef TINISCRIPT_CORE_WIFI_H_
-#define TINISCRIPT_CORE_WIFI_H_
+#pragma once
 
 #include "Arduino.h"
 
@@ -73,5 +72,3 @@ class WiFiClass {
 };
 
 extern WiFiClass WiFi;
-
-#endif  // TINISCRIPT_CORE_WIFI_H_

@@ -1,12 +1,9 @@
 // Stands for components/esp_common/include/esp_err.h of ESP-IDF.
 
-#ifndef TINISCRIPT_CORE_ESP_ERR_H_
-#define TINISCRIPT_CORE_ESP_ERR_H_
+#pragma once
 
 typedef int esp_err_t;
 
 #define ESP_OK 0
 #define ESP_FAIL -1
 #define ESP_ERR_INVALID_STATE 0x103
-
-#endif  // TINISCRIPT_CORE_ESP_ERR_H_

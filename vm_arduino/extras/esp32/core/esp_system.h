@@ -1,7 +1,6 @@
 // Stands for components/esp_system/include/esp_system.h of ESP-IDF 4.4 and 5.1.
 
-#ifndef TINISCRIPT_CORE_ESP_SYSTEM_H_
-#define TINISCRIPT_CORE_ESP_SYSTEM_H_
+#pragma once
 
 #include "esp_err.h"
 
@@ -20,5 +19,3 @@ typedef enum {
 } esp_reset_reason_t;
 
 extern "C" esp_reset_reason_t esp_reset_reason(void);
-
-#endif  // TINISCRIPT_CORE_ESP_SYSTEM_H_

@@ -1,7 +1,6 @@
 // Stands for components/esp_system/include/esp_task_wdt.h of ESP-IDF 4.4 and 5.1.
 
-#ifndef TINISCRIPT_CORE_ESP_TASK_WDT_H_
-#define TINISCRIPT_CORE_ESP_TASK_WDT_H_
+#pragma once
 
 #include "Arduino.h"
 #include "esp_err.h"
@@ -24,5 +23,3 @@ esp_err_t esp_task_wdt_add(TaskHandle_t handle);
 esp_err_t esp_task_wdt_delete(TaskHandle_t handle);
 esp_err_t esp_task_wdt_reset(void);
 }
-
-#endif  // TINISCRIPT_CORE_ESP_TASK_WDT_H_

@@ -1,7 +1,6 @@
 // Stands for components/esp_timer/include/esp_timer.h of ESP-IDF.
 
-#ifndef TINISCRIPT_CORE_ESP_TIMER_H_
-#define TINISCRIPT_CORE_ESP_TIMER_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -24,5 +23,3 @@ esp_err_t esp_timer_create(const esp_timer_create_args_t* create_args,
                            esp_timer_handle_t* out_handle);
 esp_err_t esp_timer_start_periodic(esp_timer_handle_t timer, uint64_t period_us);
 }
-
-#endif  // TINISCRIPT_CORE_ESP_TIMER_H_

@@ -1,7 +1,6 @@
 // Stands for components/nvs_flash/include/nvs.h of ESP-IDF.
 
-#ifndef TINISCRIPT_CORE_NVS_H_
-#define TINISCRIPT_CORE_NVS_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -25,5 +24,3 @@ esp_err_t nvs_set_blob(nvs_handle_t handle, const char* key, const void* value, 
 esp_err_t nvs_commit(nvs_handle_t handle);
 void nvs_close(nvs_handle_t handle);
 }
-
-#endif  // TINISCRIPT_CORE_NVS_H_

@@ -1,7 +1,6 @@
 // Stands for the configuration of Espressif's core. A build for tests defines the chip.
 
-#ifndef TINISCRIPT_CORE_SDKCONFIG_H_
-#define TINISCRIPT_CORE_SDKCONFIG_H_
+#pragma once
 
 #if !defined(CONFIG_IDF_TARGET_ESP32) && !defined(CONFIG_IDF_TARGET_ESP32C3)
 #define CONFIG_IDF_TARGET_ESP32 1
@@ -10,5 +9,3 @@
 #ifdef CONFIG_IDF_TARGET_ESP32
 #define CONFIG_BT_SPP_ENABLED 1
 #endif
-
-#endif  // TINISCRIPT_CORE_SDKCONFIG_H_

@@ -1,8 +1,7 @@
 // A motor at two pins of a bridge such as an L298N or an L9110: one does PWM, the other says which
 // way. It is for sketches alone: nothing else of this library knows a pin.
 
-#ifndef TINISCRIPT_TINIMOTOR_H_
-#define TINISCRIPT_TINIMOTOR_H_
+#pragma once
 
 #include <Arduino.h>
 
@@ -24,5 +23,3 @@ struct TiniMotor {
     analogWrite(pwm, percent < 0 ? 255 + duty : duty);
   }
 };
-
-#endif  // TINISCRIPT_TINIMOTOR_H_

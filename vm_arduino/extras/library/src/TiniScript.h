@@ -3,8 +3,7 @@
 // A robot says what its motors and sensors do, a kit names its devices, a player loads an image and
 // runs it a little in each turn of loop(). Nothing here waits, and nothing knows a pin.
 
-#ifndef TINISCRIPT_TINISCRIPT_H_
-#define TINISCRIPT_TINISCRIPT_H_
+#pragma once
 
 #include "robot.h"
 #include "vm/image.h"
@@ -125,5 +124,3 @@ class TiniPlayer {
   bool is_running_;
   Show show_;
 };
-
-#endif  // TINISCRIPT_TINISCRIPT_H_

@@ -4,8 +4,7 @@
 // It keeps a program in RAM alone: what is sent is gone after power-off. It knows no owner, no trim
 // and no text. `tsc conform --port P` passes.
 
-#ifndef TINISCRIPT_TINISCRIPTLINK_H_
-#define TINISCRIPT_TINISCRIPTLINK_H_
+#pragma once
 
 #include "TiniScript.h"
 #include "link/link.h"
@@ -62,5 +61,3 @@ class TiniLink {
   uint32_t now_ms_;
   uint8_t live_[tiniscript::kHeaderBytes + tiniscript::kPayloadBytes + tiniscript::kEndBytes];
 };
-
-#endif  // TINISCRIPT_TINISCRIPTLINK_H_

@@ -3,8 +3,7 @@
 // The machine returns at the next jump back. So it may run as long as nothing happens, and the main
 // loop costs little. `vm/execute_avr.S` tests the bit.
 
-#ifndef TINISCRIPT_AVR_ATTENTION_H_
-#define TINISCRIPT_AVR_ATTENTION_H_
+#pragma once
 
 #include <avr/io.h>
 
@@ -19,5 +18,3 @@ inline void call_attention() { GPIOR0 |= 1 << tini_attention_bit; }
 inline void pay_attention() { GPIOR0 &= static_cast<uint8_t>(~(1 << tini_attention_bit)); }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_AVR_ATTENTION_H_

@@ -4,8 +4,7 @@
 // flash and with a shorter interrupt. So this folder has its own `main`, which calls `setup` and
 // `loop` as the core's does.
 
-#ifndef TINISCRIPT_AVR_CLOCK_H_
-#define TINISCRIPT_AVR_CLOCK_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -45,5 +44,3 @@ tini_always_inline uint16_t clock_us_inside() {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_AVR_CLOCK_H_

@@ -1,7 +1,6 @@
 // The interrupt for each change of an echo pin.
 
-#ifndef TINISCRIPT_AVR_ECHO_H_
-#define TINISCRIPT_AVR_ECHO_H_
+#pragma once
 
 #include <avr/io.h>
 
@@ -48,5 +47,3 @@ tini_always_inline void listen_inside(Echo echo, bool is_on) {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_AVR_ECHO_H_

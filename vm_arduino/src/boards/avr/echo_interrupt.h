@@ -6,8 +6,7 @@
 // keep them out for 9 us. A change that comes in between is another of these: the one outside then
 // finds the level that the line has since.
 
-#ifndef TINISCRIPT_AVR_ECHO_INTERRUPT_H_
-#define TINISCRIPT_AVR_ECHO_INTERRUPT_H_
+#pragma once
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -68,5 +67,3 @@ tini_always_inline void on_echo_edge(Record* record, Echo echo, uint8_t glitch_u
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_AVR_ECHO_INTERRUPT_H_

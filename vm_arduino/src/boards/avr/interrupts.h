@@ -3,8 +3,7 @@
 // A frame of its own takes about 60 bytes in each interrupt that calls something. The shared one
 // begins 12 cycles later.
 
-#ifndef TINISCRIPT_AVR_INTERRUPTS_H_
-#define TINISCRIPT_AVR_INTERRUPTS_H_
+#pragma once
 
 #include <avr/interrupt.h>
 
@@ -23,5 +22,3 @@ inline __attribute__((always_inline)) void call_in_frame(void (*function)()) {
 // Defines the handler of `vector`: it calls `function`, which takes and returns nothing.
 #define tiniscript_interrupt(vector, function) \
   ISR(vector, ISR_NAKED) { tiniscript::call_in_frame(function); }
-
-#endif  // TINISCRIPT_AVR_INTERRUPTS_H_

@@ -4,8 +4,7 @@
 // interrupt also changes runs with interrupts off: the interrupt that turns the motors off may come
 // at any time, and its write must not be undone.
 
-#ifndef TINISCRIPT_AVR_PINS_H_
-#define TINISCRIPT_AVR_PINS_H_
+#pragma once
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -176,5 +175,3 @@ tini_always_inline void disconnect(Pwm pwm) {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_AVR_PINS_H_

@@ -2,8 +2,7 @@
 //
 // The same pins as `motors_off` of the driver.
 
-#ifndef TINISCRIPT_AVR_QUICK_STOP_H_
-#define TINISCRIPT_AVR_QUICK_STOP_H_
+#pragma once
 
 #include "../../vm/flags.h"
 #include "../kit.h"
@@ -69,5 +68,3 @@ tini_always_inline void motors_stop_quickly() {
 }  // namespace tiniscript
 
 #endif
-
-#endif  // TINISCRIPT_AVR_QUICK_STOP_H_

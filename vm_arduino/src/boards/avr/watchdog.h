@@ -4,8 +4,7 @@
 // the chip after 0.125 s, or after 0.25 s if interrupts are off. The bootloader of an old Nano or
 // Mega would not come out of a watchdog reset, so the restart there is a jump.
 
-#ifndef TINISCRIPT_AVR_WATCHDOG_H_
-#define TINISCRIPT_AVR_WATCHDOG_H_
+#pragma once
 
 #include <avr/wdt.h>
 
@@ -41,5 +40,3 @@ Reset watchdog_reset_cause();
 uint32_t watchdog_seed();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_AVR_WATCHDOG_H_

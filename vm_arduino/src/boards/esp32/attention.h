@@ -1,12 +1,9 @@
 // The main loop looks at everything: on this chip it first takes what the link has received.
 
-#ifndef TINISCRIPT_ESP32_ATTENTION_H_
-#define TINISCRIPT_ESP32_ATTENTION_H_
+#pragma once
 
 namespace tiniscript {
 
 void pay_attention();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_ATTENTION_H_

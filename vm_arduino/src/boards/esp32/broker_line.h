@@ -2,8 +2,7 @@
 //
 // One at a time, of the broker's task. Looking the broker's name up is all that waits.
 
-#ifndef TINISCRIPT_ESP32_BROKER_LINE_H_
-#define TINISCRIPT_ESP32_BROKER_LINE_H_
+#pragma once
 
 #include "broker_settings.h"
 #include "tls.h"
@@ -25,5 +24,3 @@ int line_send(const uint8_t* bytes, size_t length);
 void line_end();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_BROKER_LINE_H_

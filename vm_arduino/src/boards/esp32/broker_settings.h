@@ -2,8 +2,7 @@
 //
 // The main loop sets it; the task of the broker uses it.
 
-#ifndef TINISCRIPT_ESP32_BROKER_SETTINGS_H_
-#define TINISCRIPT_ESP32_BROKER_SETTINGS_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -49,5 +48,3 @@ bool broker_changed(BrokerSettings* found);
 void broker_note(WifiState found);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_BROKER_SETTINGS_H_

@@ -1,7 +1,6 @@
 // The clock: that of the Arduino core.
 
-#ifndef TINISCRIPT_ESP32_CLOCK_H_
-#define TINISCRIPT_ESP32_CLOCK_H_
+#pragma once
 
 #include <Arduino.h>
 #include <stdint.h>
@@ -15,5 +14,3 @@ inline uint8_t clock_8_ms() { return static_cast<uint8_t>(millis()); }
 inline uint16_t clock_us() { return static_cast<uint16_t>(micros()); }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_CLOCK_H_

@@ -1,7 +1,6 @@
 // The interrupt for each change of an echo pin.
 
-#ifndef TINISCRIPT_ESP32_ECHO_H_
-#define TINISCRIPT_ESP32_ECHO_H_
+#pragma once
 
 #include "pins.h"
 
@@ -28,5 +27,3 @@ inline void listen_inside(Echo echo, bool is_on) {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_ECHO_H_

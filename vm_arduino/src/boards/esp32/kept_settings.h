@@ -3,8 +3,7 @@
 // The main loop keeps them; one task of a radio takes them after each change. `Settings` is plain
 // bytes, of which `kept_bytes()` are in NVS, and `is_sound()` says whether these may be used.
 
-#ifndef TINISCRIPT_ESP32_KEPT_SETTINGS_H_
-#define TINISCRIPT_ESP32_KEPT_SETTINGS_H_
+#pragma once
 
 #include <nvs.h>
 #include <stddef.h>
@@ -88,5 +87,3 @@ class KeptSettings {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_KEPT_SETTINGS_H_

@@ -3,8 +3,7 @@
 // All messages have QoS 0: the link repeats what is lost. Knows no sockets and no time. A message
 // that is longer than its room is skipped, whatever its length.
 
-#ifndef TINISCRIPT_ESP32_MQTT_H_
-#define TINISCRIPT_ESP32_MQTT_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -78,5 +77,3 @@ class MqttReader {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_MQTT_H_

@@ -3,8 +3,7 @@
 // LEDC makes the PWM, and the GPIO matrix joins it to a pin. Off means: the matrix joins the pin to
 // its GPIO register, which is low. So a stop asks nothing of LEDC, whatever that does.
 
-#ifndef TINISCRIPT_ESP32_PINS_H_
-#define TINISCRIPT_ESP32_PINS_H_
+#pragma once
 
 #include <Arduino.h>
 #include <driver/gpio.h>
@@ -143,5 +142,3 @@ inline void disconnect(Pwm pwm) {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_PINS_H_

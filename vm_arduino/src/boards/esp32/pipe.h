@@ -6,8 +6,7 @@
 // transport come from the heap with its first client, and stay. What finds no room is lost and
 // counted, but no stop is: it reaches the main loop beside the ring. So does one that waits in it.
 
-#ifndef TINISCRIPT_ESP32_PIPE_H_
-#define TINISCRIPT_ESP32_PIPE_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -208,5 +207,3 @@ class Pipe {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_PIPE_H_

@@ -1,8 +1,7 @@
 // Decides by the first bytes of a connection whether its client may be meant for a robot, as
 // `virtual/protocol_sniffer.py` does: what begins like HTTP, TLS or STUN may be a web page's.
 
-#ifndef TINISCRIPT_ESP32_PROTOCOL_SNIFFER_H_
-#define TINISCRIPT_ESP32_PROTOCOL_SNIFFER_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -16,5 +15,3 @@ constexpr size_t kFirstBytes = 512;  // of a first line that is still open, at m
 Protocol sniffed(const uint8_t* bytes, size_t length);
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_PROTOCOL_SNIFFER_H_

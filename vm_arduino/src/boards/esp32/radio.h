@@ -4,8 +4,7 @@
 // takes bytes from pipes. So what a radio waits for stops neither motors nor the other radios. An
 // ESP32-C3 has one core: there the tasks take turns with the main loop.
 
-#ifndef TINISCRIPT_ESP32_RADIO_H_
-#define TINISCRIPT_ESP32_RADIO_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -40,5 +39,3 @@ void network_turn();
 void broker_turn();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_RADIO_H_

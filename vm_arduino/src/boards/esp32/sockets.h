@@ -1,7 +1,6 @@
 // Sockets of lwIP that never wait, and what they say when there is nothing to do yet.
 
-#ifndef TINISCRIPT_ESP32_SOCKETS_H_
-#define TINISCRIPT_ESP32_SOCKETS_H_
+#pragma once
 
 #include <lwip/sockets.h>
 #if __has_include(<errno.h>)
@@ -16,5 +15,3 @@ constexpr int kNoSocket = -1;
 inline bool may_come_later() { return errno == EAGAIN || errno == EWOULDBLOCK; }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_SOCKETS_H_

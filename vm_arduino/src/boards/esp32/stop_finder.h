@@ -4,8 +4,7 @@
 // receiver's states and laws (`../../link/receiver.h`), and nothing of its packets. Knows neither
 // whether something runs nor whether a frame is whole.
 
-#ifndef TINISCRIPT_ESP32_STOP_FINDER_H_
-#define TINISCRIPT_ESP32_STOP_FINDER_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -131,5 +130,3 @@ class StopFinder {
 };
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_STOP_FINDER_H_

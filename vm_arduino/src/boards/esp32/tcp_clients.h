@@ -1,7 +1,6 @@
 // TCP: two clients at once.
 
-#ifndef TINISCRIPT_ESP32_TCP_CLIENTS_H_
-#define TINISCRIPT_ESP32_TCP_CLIENTS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -10,5 +9,3 @@ namespace tiniscript {
 constexpr uint16_t kNetworkPort = 8473;
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_TCP_CLIENTS_H_

@@ -3,8 +3,7 @@
 // One connection at a time. It takes memory from the heap while it lasts, as the radios do: without
 // enough of it there is no connection. What a handshake calculates keeps its task busy.
 
-#ifndef TINISCRIPT_ESP32_TLS_H_
-#define TINISCRIPT_ESP32_TLS_H_
+#pragma once
 
 #include "broker_settings.h"
 
@@ -29,5 +28,3 @@ int tls_send(const uint8_t* bytes, size_t length);
 void tls_end();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_TLS_H_

@@ -4,8 +4,7 @@
 // runs on the other core. The task watchdog restarts the chip after 1 s, and the core's interrupt
 // watchdog after 0.3 s if interrupts are off.
 
-#ifndef TINISCRIPT_ESP32_WATCHDOG_H_
-#define TINISCRIPT_ESP32_WATCHDOG_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -33,5 +32,3 @@ Reset watchdog_reset_cause();
 uint32_t watchdog_seed();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_WATCHDOG_H_

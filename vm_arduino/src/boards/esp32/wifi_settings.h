@@ -2,8 +2,7 @@
 //
 // The main loop sets it; the task of the network does what it says.
 
-#ifndef TINISCRIPT_ESP32_WIFI_SETTINGS_H_
-#define TINISCRIPT_ESP32_WIFI_SETTINGS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -20,5 +19,3 @@ bool wifi_turn();
 bool wifi_is_there();
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_WIFI_SETTINGS_H_

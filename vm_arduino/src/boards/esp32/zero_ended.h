@@ -1,7 +1,6 @@
 // Texts that end with a 0, without a library.
 
-#ifndef TINISCRIPT_ESP32_ZERO_ENDED_H_
-#define TINISCRIPT_ESP32_ZERO_ENDED_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -34,5 +33,3 @@ inline bool append(char* to, size_t most, const uint8_t* text, uint8_t length) {
 }
 
 }  // namespace tiniscript
-
-#endif  // TINISCRIPT_ESP32_ZERO_ENDED_H_

@@ -1,7 +1,6 @@
 // Stands for components/driver/include/driver/gpio.h of ESP-IDF 4.4; 5.1 has it in driver/gpio.
 
-#ifndef TINISCRIPT_DRIVER_GPIO_H_
-#define TINISCRIPT_DRIVER_GPIO_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -14,5 +13,3 @@ int gpio_get_level(gpio_num_t gpio_num);
 esp_err_t gpio_intr_enable(gpio_num_t gpio_num);
 esp_err_t gpio_intr_disable(gpio_num_t gpio_num);
 }
-
-#endif  // TINISCRIPT_DRIVER_GPIO_H_

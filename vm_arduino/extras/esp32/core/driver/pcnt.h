@@ -1,8 +1,7 @@
 // Stands for components/driver/include/driver/pcnt.h of ESP-IDF 4.4, as far as the discs use it; 5.1
 // has the same in components/driver/deprecated, and warns of it. An ESP32-C3 has no pulse counter.
 
-#ifndef TINISCRIPT_DRIVER_PCNT_H_
-#define TINISCRIPT_DRIVER_PCNT_H_
+#pragma once
 
 #ifndef CONFIG_IDF_TARGET_ESP32
 #error "This chip has no pulse counter."
@@ -40,5 +39,3 @@ esp_err_t pcnt_counter_resume(pcnt_unit_t pcnt_unit);
 esp_err_t pcnt_set_filter_value(pcnt_unit_t unit, uint16_t filter_val);
 esp_err_t pcnt_filter_enable(pcnt_unit_t unit);
 }
-
-#endif  // TINISCRIPT_DRIVER_PCNT_H_

@@ -1,7 +1,6 @@
 // Stands for components/driver/include/driver/uart.h of ESP-IDF 4.4; 5.1 has it in driver/uart.
 
-#ifndef TINISCRIPT_DRIVER_UART_H_
-#define TINISCRIPT_DRIVER_UART_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -13,5 +12,3 @@ typedef int uart_port_t;
 extern "C" {
 esp_err_t uart_enable_intr_mask(uart_port_t uart_num, uint32_t enable_mask);
 }
-
-#endif  // TINISCRIPT_DRIVER_UART_H_

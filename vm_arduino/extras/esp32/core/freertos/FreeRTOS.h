@@ -1,7 +1,6 @@
 // Stands for components/freertos/port/CHIP/include/freertos/portmacro.h of ESP-IDF.
 
-#ifndef TINISCRIPT_FREERTOS_FREERTOS_H_
-#define TINISCRIPT_FREERTOS_FREERTOS_H_
+#pragma once
 
 #include <stdint.h>
 
@@ -28,5 +27,3 @@ void simulated_exit_critical(portMUX_TYPE* mux);
 
 #define portENTER_CRITICAL_SAFE(mux) simulated_enter_critical(mux)
 #define portEXIT_CRITICAL_SAFE(mux) simulated_exit_critical(mux)
-
-#endif  // TINISCRIPT_FREERTOS_FREERTOS_H_

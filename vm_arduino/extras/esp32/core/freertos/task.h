@@ -1,7 +1,6 @@
 // Stands for components/freertos/include/freertos/task.h of ESP-IDF.
 
-#ifndef TINISCRIPT_FREERTOS_TASK_H_
-#define TINISCRIPT_FREERTOS_TASK_H_
+#pragma once
 
 #include <freertos/FreeRTOS.h>
 
@@ -21,5 +20,3 @@ BaseType_t xTaskCreatePinnedToCore(TaskFunction_t pvTaskCode, const char* const 
 TaskHandle_t xTaskGetIdleTaskHandleForCPU(UBaseType_t cpuid);
 void vTaskDelay(const TickType_t xTicksToDelay);
 }
-
-#endif  // TINISCRIPT_FREERTOS_TASK_H_

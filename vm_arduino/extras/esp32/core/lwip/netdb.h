@@ -1,7 +1,6 @@
 // Stands for components/lwip/lwip/src/include/lwip/netdb.h of ESP-IDF.
 
-#ifndef TINISCRIPT_LWIP_NETDB_H_
-#define TINISCRIPT_LWIP_NETDB_H_
+#pragma once
 
 #if __STDC_HOSTED__
 #include <netdb.h>
@@ -16,5 +15,3 @@ struct hostent {
 #endif
 
 extern "C" struct hostent* lwip_gethostbyname(const char* name);
-
-#endif  // TINISCRIPT_LWIP_NETDB_H_

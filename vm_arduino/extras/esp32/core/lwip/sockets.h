@@ -1,8 +1,7 @@
 // Stands for components/lwip/lwip/src/include/lwip/sockets.h of ESP-IDF: its functions, with their
 // own names, on the sockets of this computer.
 
-#ifndef TINISCRIPT_LWIP_SOCKETS_H_
-#define TINISCRIPT_LWIP_SOCKETS_H_
+#pragma once
 
 #if __STDC_HOSTED__
 #include <errno.h>
@@ -63,5 +62,3 @@ ssize_t lwip_send(int s, const void* dataptr, size_t size, int flags);
 int lwip_setsockopt(int s, int level, int optname, const void* optval, socklen_t optlen);
 int lwip_socket(int domain, int type, int protocol);
 }
-
-#endif  // TINISCRIPT_LWIP_SOCKETS_H_

@@ -1,8 +1,7 @@
 // Stands for components/mbedtls/mbedtls/include/mbedtls/ssl.h of ESP-IDF 4.4 (mbedTLS 2.28) and
 // 5.1 (3.5). Where this computer has mbedTLS itself, that is what compiles and runs.
 
-#ifndef TINISCRIPT_MBEDTLS_SSL_H_
-#define TINISCRIPT_MBEDTLS_SSL_H_
+#pragma once
 
 #if __STDC_HOSTED__ && __has_include_next(<mbedtls/ssl.h>)
 #include_next <mbedtls/ssl.h>
@@ -78,4 +77,3 @@ static inline int mbedtls_ssl_is_handshake_over(mbedtls_ssl_context* ssl) {
 #endif
 
 #endif
-#endif  // TINISCRIPT_MBEDTLS_SSL_H_

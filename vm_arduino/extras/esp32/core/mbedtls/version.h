@@ -1,7 +1,6 @@
 // Stands for components/mbedtls/mbedtls/include/mbedtls/version.h of ESP-IDF 4.4 and 5.1.
 
-#ifndef TINISCRIPT_MBEDTLS_VERSION_H_
-#define TINISCRIPT_MBEDTLS_VERSION_H_
+#pragma once
 
 #if __STDC_HOSTED__ && __has_include_next(<mbedtls/version.h>)
 #include_next <mbedtls/version.h>
@@ -10,5 +9,3 @@
 #else
 #define MBEDTLS_VERSION_NUMBER 0x021C0000
 #endif
-
-#endif  // TINISCRIPT_MBEDTLS_VERSION_H_

@@ -1,8 +1,7 @@
 // Stands for components/mbedtls/mbedtls/include/mbedtls/x509_crt.h of ESP-IDF, and x509.h beside
 // it.
 
-#ifndef TINISCRIPT_MBEDTLS_X509_CRT_H_
-#define TINISCRIPT_MBEDTLS_X509_CRT_H_
+#pragma once
 
 #if __STDC_HOSTED__ && __has_include_next(<mbedtls/x509_crt.h>)
 #include_next <mbedtls/x509_crt.h>
@@ -45,4 +44,3 @@ int mbedtls_x509_crt_parse_der(mbedtls_x509_crt* chain, const unsigned char* buf
 }
 
 #endif
-#endif  // TINISCRIPT_MBEDTLS_X509_CRT_H_

@@ -1,7 +1,6 @@
 // Stands for components/soc/CHIP/include/soc/gpio_reg.h of ESP-IDF.
 
-#ifndef TINISCRIPT_SOC_GPIO_REG_H_
-#define TINISCRIPT_SOC_GPIO_REG_H_
+#pragma once
 
 #include "../sdkconfig.h"
 
@@ -16,5 +15,3 @@
 #endif
 #define GPIO_OUT_W1TS_REG (DR_REG_GPIO_BASE + 0x8)
 #define GPIO_OUT_W1TC_REG (DR_REG_GPIO_BASE + 0xc)
-
-#endif  // TINISCRIPT_SOC_GPIO_REG_H_

@@ -1,7 +1,6 @@
 // Stands for components/soc/CHIP/include/soc/gpio_sig_map.h of ESP-IDF.
 
-#ifndef TINISCRIPT_SOC_GPIO_SIG_MAP_H_
-#define TINISCRIPT_SOC_GPIO_SIG_MAP_H_
+#pragma once
 
 #include "../sdkconfig.h"
 
@@ -13,5 +12,3 @@
 #define LEDC_LS_SIG_OUT0_IDX 45
 #define SIG_GPIO_OUT_IDX 128
 #endif
-
-#endif  // TINISCRIPT_SOC_GPIO_SIG_MAP_H_

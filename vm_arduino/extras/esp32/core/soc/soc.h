@@ -1,12 +1,9 @@
 // Stands for components/soc/CHIP/include/soc/soc.h of ESP-IDF.
 
-#ifndef TINISCRIPT_SOC_SOC_H_
-#define TINISCRIPT_SOC_SOC_H_
+#pragma once
 
 #include <stdint.h>
 
 extern "C" void simulated_register(uint32_t at, uint32_t value);
 
 #define REG_WRITE(_r, _v) simulated_register(_r, _v)
-
-#endif  // TINISCRIPT_SOC_SOC_H_
