@@ -14,7 +14,7 @@
 #include "robot.h"
 #include "vm/image.h"
 #include "vm/verify.h"
-#include "vm/vm.h"
+#include "vm/machine.h"
 
 using namespace tiniscript;
 

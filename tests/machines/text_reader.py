@@ -70,6 +70,5 @@ def built(flags: tuple[str, ...] = ()) -> Path:
     """Return the program made from the reader and `extras/text`."""
     inputs = files_in(SOURCES, "src/text", "extras/text")
     vm = SOURCES / "src" / "vm"
-    names = ("bytecode.h", "crc32.h", "find_word.h", "flash.h", "small.h")
-    inputs += [vm / name for name in (*names, "crc32.cpp", "find_word.cpp")]
+    inputs += [*sorted(vm.glob("*.h")), vm / "crc32.cpp", vm / "find_word.cpp"]
     return compiled(inputs, (*FLAGS, *flags))

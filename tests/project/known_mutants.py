@@ -156,7 +156,7 @@ KNOWN: tuple[Known, ...] = (
     Known("a look at an UNTIL goes on below who has the motors", "compiler/tiniscript/vm/tasks.py",
           "elif not task.has_begun and self", "elif task.has_set and self",
           "tests/vm/test_slow_readings.py::test_random_programs_with_slow_readings"),
-    Known("the same in C++", "vm_arduino/src/vm/vm_tasks.cpp",
+    Known("the same in C++", "vm_arduino/src/vm/turns.cpp",
           "  if (!me->is(kHasBegun) && blocks()) return false;\n", "",
           "tests/vm/test_slow_readings.py::test_a_look_that_waits_for_an_echo_is_over_when_the_motors_are_taken"),
 )

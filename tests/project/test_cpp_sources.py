@@ -87,7 +87,8 @@ def test_each_header_is_read_once(path: Path) -> None:
 @pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 def test_each_header_compiles_alone_without_a_warning(tmp_path: Path) -> None:
     """Twice in a file: the second time says nothing."""
-    for number, header in enumerate(path for path in PORTABLE if path.suffix == ".h"):
+    headers = [path for path in PORTABLE if path.suffix == ".h" and path.name != "cpu_avr.h"]
+    for number, header in enumerate(headers):
         twice = f'#include "{header}"\n' * 2
         (tmp_path / f"{number}.cpp").write_text(twice, encoding="utf-8")
     files = map(str, sorted(tmp_path.glob("*.cpp")))

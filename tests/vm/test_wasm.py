@@ -55,7 +55,7 @@ def test_another_machine_is_another_module(
         stale.parent.mkdir(parents=True, exist_ok=True)
         stale.write_bytes(b"\0asm")
     copy = Path(shutil.copytree(ROOT / "vm_arduino", tmp_path / "vm_arduino"))
-    source = copy / "src" / "vm" / "task.h"
+    source = copy / "src" / "vm" / "state.h"
     text = source.read_text(encoding="utf-8")
     source.write_text(text.replace("kLateMs = 20", "kLateMs = 21"), encoding="utf-8")
     shutil.copy(ROOT / "pyproject.toml", tmp_path)

@@ -35,7 +35,7 @@ MACHINE = """
 #include "store/store.h"
 #include "vm/image.h"
 #include "vm/verify.h"
-#include "vm/vm.h"
+#include "vm/machine.h"
 using namespace tiniscript;
 volatile uint8_t sink;
 namespace tiniscript {

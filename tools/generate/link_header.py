@@ -17,7 +17,6 @@ from tools.generate.cpp_header import (
     constants_of,
     cpp_file,
     enumeration,
-    only_with,
 )
 
 UNKNOWN_REQUEST = 255  # no payload is so long
@@ -74,7 +73,7 @@ def header(command: str) -> str:
         "The numbers of the link: messages, where the fields of their requests begin,",
         "statuses, states, times. Knows no behaviour. `docs/link.md` says what they mean.",
     )
-    return cpp_file(command, "link/messages.h", about, "\n".join(parts), "../vm/flash.h")
+    return cpp_file(command, "link/messages.h", about, "\n".join(parts), "../vm/cpu.h")
 
 
 def tables(command: str) -> str:
@@ -82,18 +81,18 @@ def tables(command: str) -> str:
     requests = {each.number: each for each in _requests()}
     rows = [_length_row(requests.get(number)) for number in range(1, max(requests) + 1)]
     table = f"const uint8_t kRequestBytes[][2] tini_progmem = {{\n{''.join(rows)}}};\n"
-    return cpp_file(command, "link/messages.cpp", (), table, "sizes.h")
+    return cpp_file(command, "link/messages.cpp", (), table, "has_transports.h", "sizes.h")
 
 
 def _length_row(request: Message | None) -> str:
     """Return the row of a number; None: it is retired."""
-    unknown = "    {kUnknownRequest, 0},"
     if request is None:
-        return f"{unknown}  // retired\n"
-    row = f"    {{{_length_range(request.request)}}},  // {request.name}\n"
+        return "    {kUnknownRequest, 0},  // retired\n"
+    lengths = _length_range(request.request)
     if request.name in messages.OF_RADIO:
-        return only_with("ARDUINO_ARCH_ESP32", row, f"{unknown}\n")
-    return row
+        least, most = lengths.split(", ")
+        lengths = f"kHasTransports ? {least} : kUnknownRequest, kHasTransports ? {most} : 0"
+    return f"    {{{lengths}}},  // {request.name}\n"
 
 
 def _length_range(fields: tuple[Field, ...]) -> str:

@@ -121,7 +121,7 @@ def texts(command: str) -> str:
             "",
             *_chosen("pair_of(uint8_t code)", "Pairs", "[code - 1]"),
         ],
-        "../vm/has_tasks.h",
+        "../vm/build.h",
         "kit_words.h",
         "reader.h",
     )

@@ -215,7 +215,7 @@ def bytes_of_table(data: Iterable[int]) -> str:
 
 def file_of(command: str, name: str, about: str, lines: Sequence[str], *includes: str) -> str:
     """Return a file of `vm_arduino/src/text/`; `includes` are more headers."""
-    first = ["../vm/flash.h"] if name.endswith(".h") else [f"{Path(name).stem}.h"]
+    first = ["../vm/cpu.h"] if name.endswith(".h") else [f"{Path(name).stem}.h"]
     if includes and not name.endswith(".h"):
         first.append("")
     rows = [about] if about else []

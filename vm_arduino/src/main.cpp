@@ -44,7 +44,7 @@ void attend() {
 }  // namespace
 
 void loop() {
-  pay_attention();
+  poll_events();
   if (!firmware_is_awaited() && board_has_news()) attend();
   firmware_turn();
   uart_send();

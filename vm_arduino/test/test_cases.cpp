@@ -8,7 +8,7 @@
 
 #include "../extras/chip/runner.h"
 #include "../extras/chip/traced_robot.h"
-#include "../src/vm/vm.h"
+#include "../src/vm/machine.h"
 #include "cases.h"
 
 using namespace tiniscript;

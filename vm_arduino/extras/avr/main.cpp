@@ -5,7 +5,7 @@
 // verified. The clock is simulated
 // as in `vm/runner.py`.
 
-#include "../../src/vm/vm.h"
+#include "../../src/vm/machine.h"
 #include "../chip/runner.h"
 #include "simulated.h"
 

@@ -11,7 +11,7 @@
 #include <avr/io.h>
 #include <avr/sleep.h>
 
-#include "../../src/vm/flash.h"
+#include "../../src/vm/cpu.h"
 #include "../chip/request.h"
 #include "../chip/text.h"
 

@@ -7,7 +7,7 @@
 
 #include "../../src/vm/crc32.h"
 #include "../../src/vm/number.h"
-#include "../../src/vm/vm.h"
+#include "../../src/vm/machine.h"
 #include "../avr/simulated.h"
 #include "quiet_robot.h"
 

@@ -3,7 +3,7 @@
 // Only what is inside `tick` is counted; time goes on where the program waits. The robot costs next
 // to nothing: readings are numbers in memory, and what is shown is told at the end.
 
-#include "../../src/vm/vm.h"
+#include "../../src/vm/machine.h"
 #include "../avr/simulated.h"
 #include "counter.h"
 #include "quiet_robot.h"

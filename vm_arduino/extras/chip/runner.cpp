@@ -2,7 +2,7 @@
 
 #include "../../src/vm/image.h"
 #include "../../src/vm/verify.h"
-#include "../../src/vm/vm.h"
+#include "../../src/vm/machine.h"
 #include "text.h"
 
 namespace tiniscript {

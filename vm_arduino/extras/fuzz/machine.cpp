@@ -10,7 +10,7 @@
 #include "../../src/robot.h"
 #include "../../src/vm/image.h"
 #include "../../src/vm/verify.h"
-#include "../../src/vm/vm.h"
+#include "../../src/vm/machine.h"
 #include "input.h"
 
 using namespace tiniscript;

@@ -11,7 +11,7 @@
 #include "../../src/vm/crc32.h"
 #include "../../src/vm/image.h"
 #include "../../src/vm/verify.h"
-#include "../../src/vm/vm.h"
+#include "../../src/vm/machine.h"
 #include "../chip/answers.h"
 #include "../chip/runner.h"
 #include "../chip/traced_robot.h"

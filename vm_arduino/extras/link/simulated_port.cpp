@@ -5,7 +5,7 @@
 #include "../../src/robot.h"
 #include "../../src/text/kit_words.h"
 #include "../../src/vm/image.h"
-#include "../../src/vm/vm.h"
+#include "../../src/vm/machine.h"
 
 using namespace tiniscript;
 

@@ -7,7 +7,7 @@
 #include "watched_run.h"
 
 #include "../../src/firmware/program.h"
-#include "../../src/vm/vm.h"
+#include "../../src/vm/machine.h"
 
 namespace tiniscript {
 
@@ -46,7 +46,7 @@ class HeldMachine : public Machine {
     if (wanted == 0) return Machine::tick(now_ms, budget);
     Status found;
     do {
-      if (has_tasks() && !arrive(now_ms)) return status();
+      if (has_tasks() && !reach_instruction(now_ms)) return status();
       if (is_marked(now_ms)) {
         is_held = true;
         has_held = true;

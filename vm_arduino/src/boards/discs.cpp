@@ -1,6 +1,6 @@
 #include "discs.h"
 
-#include "../vm/has_tasks.h"
+#include "../vm/build.h"
 #include "../vm/small.h"
 #include "kit.h"
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "../store/layout.h"
-#include "../vm/flash.h"
+#include "../vm/cpu.h"
 #include "analog.h"
 #include "chip.h"
 #include "discs.h"

@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 #include "../robot.h"
-#include "../vm/has_tasks.h"
+#include "../vm/build.h"
 
 namespace tiniscript {
 

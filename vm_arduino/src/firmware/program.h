@@ -9,7 +9,7 @@
 #include "../link/sizes.h"
 #include "../link/text_level.h"
 #include "../store/layout.h"
-#include "../vm/vm.h"
+#include "../vm/machine.h"
 
 namespace tiniscript {
 

@@ -5,7 +5,7 @@
 #include "../robot.h"
 #include "../vm/flags.h"
 #include "../vm/image.h"
-#include "../vm/vm.h"
+#include "../vm/machine.h"
 #include "button_hold.h"
 #include "firmware.h"
 #include "guide.h"

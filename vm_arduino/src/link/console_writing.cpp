@@ -6,7 +6,7 @@
 #include "../text/unpacked.h"
 #include "../text/words.h"
 #include "../vm/find_word.h"
-#include "../vm/has_tasks.h"
+#include "../vm/build.h"
 #include "../vm/small.h"
 #include "console.h"
 #include "frames.h"

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../vm/has_tasks.h"
+#include "../vm/build.h"
 #include "frames.h"
 #include "has_seals.h"
 #include "has_transports.h"

@@ -5,7 +5,7 @@
 #include "../vm/image.h"
 #include "../vm/small.h"
 #include "../vm/verify.h"
-#include "../vm/vm.h"
+#include "../vm/machine.h"
 #include "link.h"
 #include "port.h"
 

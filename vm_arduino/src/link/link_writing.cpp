@@ -1,7 +1,7 @@
 // Writes replies and events, field by field as in the table of messages.
 
 #include "../vm/bytecode.h"
-#include "../vm/flash.h"
+#include "../vm/cpu.h"
 #include "../vm/image.h"
 #include "../vm/small.h"
 #include "link.h"

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "../vm/has_tasks.h"
+#include "../vm/build.h"
 #include "has_transports.h"
 #include "messages.h"
 

@@ -1,6 +1,6 @@
 #include "siphash.h"
 
-#include "../vm/flash.h"
+#include "../vm/cpu.h"
 #include "../vm/small.h"
 
 namespace tiniscript {

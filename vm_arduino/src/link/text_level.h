@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "../vm/has_tasks.h"
+#include "../vm/build.h"
 #include "messages.h"
 
 namespace tiniscript {

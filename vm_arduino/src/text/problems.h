@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "../vm/flash.h"
+#include "../vm/cpu.h"
 
 // clang-format off
 

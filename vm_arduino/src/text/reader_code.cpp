@@ -1,5 +1,7 @@
 // The reader's memory: code that grows from the begin of its buffer, and what waits behind it.
 
+#include <stddef.h>
+
 #include "reader_avr.h"
 #include "reader_parts.h"
 

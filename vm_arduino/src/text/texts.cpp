@@ -2,7 +2,7 @@
 
 #include "texts.h"
 
-#include "../vm/has_tasks.h"
+#include "../vm/build.h"
 #include "kit_words.h"
 #include "reader.h"
 

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "../vm/flash.h"
+#include "../vm/cpu.h"
 #include "problems.h"
 #include "remarks.h"
 

@@ -7,8 +7,8 @@
 
 #include <stdint.h>
 
-#include "flash.h"
-#include "has_tasks.h"
+#include "cpu.h"
+#include "build.h"
 
 // clang-format off
 
@@ -52,11 +52,6 @@ constexpr uint8_t kStartPing = 2;
 // Bits of what an image needs, and what this machine has of it.
 constexpr uint8_t kNeedsTasks = 1;
 constexpr uint8_t kNeedsWays = 2;
-#ifdef tiniscript_has_tasks
-constexpr bool kHasTasks = true;
-#else
-constexpr bool kHasTasks = false;
-#endif
 constexpr uint8_t kNeeds = (kHasTasks ? kNeedsTasks : 0) | kNeedsWays;
 
 enum class Op : uint8_t {

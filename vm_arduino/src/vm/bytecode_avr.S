@@ -5,7 +5,7 @@
 #ifndef tini_bytecode_avr
 #define tini_bytecode_avr
 
-#include "has_tasks.h"
+#include "build.h"
 
 #define tini_fault_overflow 1
 #define tini_fault_divide_by_zero 2

@@ -1,6 +1,6 @@
 ; Machine::execute for the AVR: the inner loop of the machine.
 ;
-; Means the same as `execute` in `vm_instructions.cpp`, which is for all other chips. A byte of code
+; Means the same as `execute` in `inner_loop.cpp`, which is for all other chips. A byte of code
 ; is the place of a jump in a table, and where it leads is what an instruction does. What asks
 ; something of the robot or of the clock is `Machine::act`, in C++, for every chip.
 ;
@@ -11,7 +11,7 @@
 ;   r1     0
 ; A statement leaves the stack empty, so it may use a and b as it likes.
 
-#include "execute_avr.h"
+#include "layout_avr.h"
 
 #ifdef tiniscript_in_assembly
 

@@ -131,7 +131,7 @@ op_again:
     ld r18, X+
     dec budget
     breq 1f
-    sbic GPIOR0, tini_attention_bit
+    sbic GPIOR0, tini_event_bit
     rjmp 1f
     sub r26, r18
     sbc r27, r1
@@ -155,12 +155,12 @@ op_next_far:
 op_again_far:
     set
     rcall distance
-; Jumps back by r18 and r19. The machine leaves if the budget is used up, or if an interrupt has
-; called for attention.
+; Jumps back by r18 and r19. The machine leaves if the budget is used up, or if an interrupt has an
+; event.
 jump_back:
     dec budget
     breq leave_behind_jump
-    sbic GPIOR0, tini_attention_bit
+    sbic GPIOR0, tini_event_bit
     rjmp leave_behind_jump
     sub r26, r18
     sbc r27, r19
@@ -204,12 +204,12 @@ op_return:
     rcall pop_frame
     rjmp land_behind
 
-; uint32_t Machine::late_ms(const TaskRecord* task) const: how far its clock is behind now. The
+; uint32_t Drive::late_ms(const TaskRecord* task) const: how far its clock is behind now. The
 ; compiler takes 54 bytes for it.
-    .section .text._ZNK10tiniscript7Machine7late_msEPKNS_10TaskRecordE, "ax", @progbits
-    .global _ZNK10tiniscript7Machine7late_msEPKNS_10TaskRecordE
-    .type _ZNK10tiniscript7Machine7late_msEPKNS_10TaskRecordE, @function
-_ZNK10tiniscript7Machine7late_msEPKNS_10TaskRecordE:
+    .section .text._ZNK10tiniscript5Drive7late_msEPKNS_10TaskRecordE, "ax", @progbits
+    .global _ZNK10tiniscript5Drive7late_msEPKNS_10TaskRecordE
+    .type _ZNK10tiniscript5Drive7late_msEPKNS_10TaskRecordE, @function
+_ZNK10tiniscript5Drive7late_msEPKNS_10TaskRecordE:
     movw r26, r22
     adiw r26, tini_clock_at
     movw r30, r24

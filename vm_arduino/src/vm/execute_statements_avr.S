@@ -175,7 +175,7 @@ op_until8:
 7:  mov mode, r18
     rcall before_call
     mov r22, mode
-    call _ZN10tiniscript7Machine5untilEb
+    call _ZN10tiniscript5Drive5untilEb
     rcall after_call
     rjmp statement_end
 

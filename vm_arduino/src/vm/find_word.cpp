@@ -2,7 +2,7 @@
 
 #include "find_word.h"
 
-#include "flash.h"
+#include "cpu.h"
 
 namespace tiniscript {
 

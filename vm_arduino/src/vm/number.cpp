@@ -1,6 +1,6 @@
 // For all chips but an AVR whose machine is in assembly.
 
-#include "has_tasks.h"
+#include "build.h"
 
 #ifndef tiniscript_in_assembly
 

@@ -8,7 +8,7 @@
 ; r29 are saved by whoever uses them, and r1 is 0. Those functions bear the names that C++ gives
 ; them. What lies in `wide_avr.S` may be far: a linker that relaxes makes its calls short.
 
-#include "has_tasks.h"
+#include "build.h"
 
 #ifdef tiniscript_in_assembly
 

@@ -3,7 +3,7 @@
 ; a and b are numbers of 32 bits, high stands above b: 64 bits together. What a routine says nothing
 ; of, it leaves; all use r0. r1 is 0 before and after.
 
-#include "has_tasks.h"
+#include "build.h"
 
 #ifdef tiniscript_in_assembly
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "vm/crc32.h"
-#include "vm/flash.h"
+#include "vm/cpu.h"
 #include "vm/verify.h"
 
 using namespace tiniscript;

@@ -7,7 +7,7 @@
 
 #include "robot.h"
 #include "vm/image.h"
-#include "vm/vm.h"
+#include "vm/machine.h"
 
 // What programs do to a robot, and what they ask of it. Whatever is left out does nothing, and
 // reads 0. No function may wait. Numbers are thousandths; TRUE is 1.

@@ -4,7 +4,7 @@
 
 #include <avr/io.h>
 
-#include "../../vm/has_tasks.h"
+#include "../../vm/build.h"
 #include "../../vm/small.h"
 #include "../kit.h"
 

@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 #include "../../vm/flags.h"
-#include "attention.h"
+#include "events.h"
 #include "watchdog.h"
 
 namespace tiniscript {
@@ -64,7 +64,7 @@ ISR(TIMER0_OVF_vect, ISR_NAKED) {
       "push r24\n\tin r24, __SREG__\n\tpush r24\n\t"
       "lds r24, %[clock] + 4\n\tinc r24\n\tsts %[clock] + 4, r24\n\t"  // turns
       "sei\n\tpush r25\n\tpush r30\n\tcli\n\tpush r31\n\t"
-      "sbi %[flags], %[attention]\n\t"
+      "sbi %[flags], %[event]\n\t"
       "ldi r30, lo8(%[clock])\n\tldi r31, hi8(%[clock])\n\t"
       "ldi r25, 1\n\t"  // ms that have passed
       "ldd r24, Z+5\n\tsubi r24, %[parts] - %[more]\n\tbrcc 1f\n\t"
@@ -81,7 +81,7 @@ ISR(TIMER0_OVF_vect, ISR_NAKED) {
       "cli\n\tlds r24, %[mask]\n\tori r24, %[stalled]\n\tsts %[mask], r24\n"
       "3: pop r31\n\tpop r30\n\tpop r25\n\tpop r24\n\tout __SREG__, r24\n\tpop r24\n\treti"
       :
-      : [flags] "I"(kFlagsAt - 0x20), [attention] "I"(tini_attention_bit), [clock] "i"(&clock),
+      : [flags] "I"(kFlagsAt - 0x20), [event] "I"(tini_event_bit), [clock] "i"(&clock),
         [parts] "M"(kParts), [more] "M"(kTurnParts), [stall] "M"(kStallMs),
         [mask] "n"(_SFR_MEM_ADDR(TIMSK0)), [stalled] "M"(1 << OCIE0A));
 }

@@ -9,7 +9,7 @@
 #include "../../firmware/state.h"
 #include "../../link/messages.h"
 #include "../kit.h"
-#include "attention.h"
+#include "events.h"
 #include "clock.h"
 #include "interrupts.h"
 #include "quick_stop.h"
@@ -135,7 +135,7 @@ void receive(uint8_t byte, uint8_t status) {
       watch_line();
     }
   }
-  call_attention();
+  signal_event();
   take(byte);
 }
 

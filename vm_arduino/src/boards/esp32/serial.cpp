@@ -14,7 +14,7 @@
 #include "../../firmware/firmware.h"
 #include "../kit.h"
 #include "../uart.h"
-#include "attention.h"
+#include "events.h"
 #include "clock.h"
 #include "pins.h"
 #include "radio.h"
@@ -134,7 +134,7 @@ void uart_tick() {
   radio_tick();
 }
 
-void pay_attention() {
+void poll_events() {
   note_high();
   for (int left = Serial.available(); left > 0; left--) {
     const uint8_t byte = static_cast<uint8_t>(Serial.read());

@@ -1,85 +1,18 @@
-// Waits and moves, and who has the motors.
-//
-// Matches `tasks.py` method by method; `tasks_avr.S` is the same for an Uno. Where a machine has no tasks, nobody takes the motors away,
-// and much less is needed: see the end.
+// Waits and moves of tasks, and who has the motors. `tasks_avr.S` is the same for an Uno without discs.
+
+#include "build.h"
+
+#ifdef tiniscript_drives_in_turns
 
 #include "../robot.h"
-#include "small.h"
-#include "vm.h"
+#include "drive.h"
 
 namespace tiniscript {
 
-// Ends the turn, and in a program without tasks the tick.
-bool Machine::pause() {
-  status_ = Status::kWaiting;
-  return false;
-}
-
-#ifndef tiniscript_moves_in_assembly
-
 namespace {
 
-// The powers of a move. The last two bits of its code are the direction: F, B, L, R.
-Powers powers_of_move(const TaskRecord* task) {
-  int8_t left = task->power < 0 ? 0 : task->power;
-  if ((task->code & 1) != 0) left = static_cast<int8_t>(-left);
-  const int8_t right = left;
-  if ((task->code & 2) != 0) left = static_cast<int8_t>(-left);
-  return powers_of(left, right);
-}
-
-}  // namespace
-
-// Sets a task's clock to now.
-tini_noinline void Machine::set_clock(TaskRecord* task) const { task->clock_ms = now_ms_; }
-
-#ifndef tiniscript_in_assembly
-
-// How far the clock of a task is behind now.
-uint32_t Machine::late_ms(const TaskRecord* task) const { return now_ms_ - task->clock_ms; }
-
-#endif
-
-// Sets the clock to the begin of the next wait or move, or to now if that is too long ago.
-void Machine::begin(TaskRecord* me) const {
-  if (late_ms(me) > kLateMs) set_clock(me);
-}
-
-// Keeps the move or wait that an UNTIL watches; its check begins after this instruction.
-tini_noinline void Machine::keep_move(uint32_t move_ms) {
-  TaskRecord* const me = task_.me;
-  me->rest_ms = move_ms;
-  me->check = task_.pc;
-  me->state &= static_cast<uint8_t>(~kHasBegun);
-#ifdef tiniscript_has_discs
-  if (on_way_ == me) on_way_ = nullptr;
-#endif
-}
-
-// How long after its clock, where it last looked, its UNTIL looks again.
-inline uint32_t Machine::next_check_ms(const TaskRecord* me) const {
-  const uint32_t late = late_ms(me);
-  uint32_t next_ms = kCheckMs;
-  while (next_ms <= late) next_ms += kCheckMs;  // rarely even once
-  return next_ms;
-}
-
-#ifdef tiniscript_has_discs
-
-__attribute__((weak)) bool robot_measures() { return false; }
-__attribute__((weak)) void robot_go(int8_t, int8_t, int32_t) {}
-__attribute__((weak)) Going robot_going(int32_t*) { return Going::kThere; }
-__attribute__((weak)) void robot_go_on(int8_t left, int8_t right) {
-  int32_t rest = 0;
-  robot_going(&rest);
-  robot_go(left, right, rest);
-}
-
-#endif
-
-#ifdef tiniscript_has_tasks
-
-namespace {
+// Whose way the robot measures, or measured last, unless its move is over: the robot knows one way.
+TaskRecord* on_way;
 
 void forget_set(TaskRecord* task) { task->state &= static_cast<uint8_t>(~kHasSet); }
 
@@ -97,19 +30,31 @@ void end_move_of(TaskRecord* task) {
 
 }  // namespace
 
+// Keeps the move or wait that an UNTIL watches; its check begins after this instruction.
+tini_noinline void Drive::keep_move(uint32_t move_ms) {
+  TaskRecord* const me = task_.me;
+  me->rest_ms = move_ms;
+  me->check = task_.pc;
+  me->state &= static_cast<uint8_t>(~kHasBegun);
+  if (on_way == me) on_way = nullptr;
+}
+
+// Whether a higher task has the motors.
+inline bool Drive::is_below() const { return task_.holder < task_.me; }
+
+void Drive::forget_way() { on_way = nullptr; }
+
 // Ends a move that drives, of whatever task. It goes on behind the move, and behind its UNTIL.
-tini_noinline void Machine::leave_move(TaskRecord* task) {
+tini_noinline void Drive::leave_move(TaskRecord* task) {
   if (!task->is(kToItsEnd)) task->pc = task_.after;
   end_move_of(task);
 }
 
 // A move that drives loses the motors.
-inline void Machine::stand_still(TaskRecord* task) {
+inline void Drive::stand_still(TaskRecord* task) {
   if (task->measures()) {
-#ifdef tiniscript_has_discs
     int32_t rest;
     if (robot_going(&rest) == Going::kThere || rest <= 0) return leave_move(task);
-#endif
   } else if (!task->is_forever()) {
     const uint32_t left_ms = task->rest_ms - late_ms(task);
     if (static_cast<int32_t>(left_ms) <= 0) return leave_move(task);
@@ -120,25 +65,25 @@ inline void Machine::stand_still(TaskRecord* task) {
 }
 
 // A wait is a move that leaves the motors as they are. One of 0 ms ends no turn of a task.
-bool Machine::wait(uint32_t duration_ms) {
+bool Drive::wait(uint32_t duration_ms) {
   task_.me->code = static_cast<uint8_t>(Op::kWait);
   return drive(duration_ms);
 }
 
-tini_noinline bool Machine::drive(uint32_t move_ms) {
+tini_noinline bool Drive::drive(uint32_t move_ms) {
   keep_move(move_ms);
   return !blocks() && go_on();
 }
 
 // Begins to watch a move or a wait.
-bool Machine::watch(uint32_t move_ms) {
+bool Drive::watch(uint32_t move_ms) {
   keep_move(move_ms);
   task_.me->code |= TaskRecord::kWatches;
   return !blocks();
 }
 
 // Continues or ends the watched move, as its UNTIL says.
-bool Machine::until(bool stop) {
+bool Drive::until(bool stop) {
   TaskRecord* const me = task_.me;
   if (!stop) return go_on();
   if (me->is(kHasBegun)) set_clock(me);
@@ -149,7 +94,7 @@ bool Machine::until(bool stop) {
 
 // Begins a move where it has not begun, which it may now, and waits for its end, or for the next
 // check of its UNTIL. Returns whether the next instruction may run now.
-tini_noinline bool Machine::go_on() {
+tini_noinline bool Drive::go_on() {
   TaskRecord* const me = task_.me;
   const bool is_watched = me->is_watched();
   const bool measures = me->measures();
@@ -199,26 +144,23 @@ tini_noinline bool Machine::go_on() {
 
 // Lets the robot go a way that it measures, or go on with it. It knows one: before it goes
 // another, it is asked for the rest of that.
-void Machine::go_way() {
-#ifdef tiniscript_has_discs
+void Drive::go_way() {
   TaskRecord* const me = task_.me;
   const Powers powers = me->set = powers_of_move(me);
   const int8_t left = static_cast<int8_t>(powers);
   const int8_t right = static_cast<int8_t>(powers >> 8);
-  if (on_way_ == me) return robot_go_on(left, right);
-  if (on_way_ != nullptr && on_way_->is(kIsMoving)) {
+  if (on_way == me) return robot_go_on(left, right);
+  if (on_way != nullptr && on_way->is(kIsMoving)) {
     int32_t rest = 0;
     robot_going(&rest);
-    on_way_->rest_ms = static_cast<uint32_t>(rest);
+    on_way->rest_ms = static_cast<uint32_t>(rest);
   }
-  on_way_ = me;
+  on_way = me;
   robot_go(left, right, static_cast<int32_t>(me->rest_ms));
-#endif
 }
 
 // False: it is there, and its move is over, or a wheel does not turn.
-bool Machine::is_on_the_way() {
-#ifdef tiniscript_has_discs
+bool Drive::is_on_the_way() {
   constexpr uint8_t kGoBytes = 2;
   static_assert(static_cast<Fault>(Going::kStuckRight) == Fault::kStuckRight, "a Fault");
   int32_t rest;
@@ -230,13 +172,10 @@ bool Machine::is_on_the_way() {
   }
   at_ = static_cast<uint16_t>(task_.me->check - kGoBytes);  // an UNTIL sets its own behind
   return goes_on(static_cast<Fault>(going));
-#else
-  return false;
-#endif
 }
 
 // At the end of a move, or at a look at one that is measured. False: it goes on.
-tini_noclone bool Machine::comes_to_end() {
+tini_noclone bool Drive::comes_to_end() {
   if (task_.me->measures()) return go_on();
   end_move();
   return true;
@@ -244,7 +183,7 @@ tini_noclone bool Machine::comes_to_end() {
 
 // Ends the move of the task whose turn it is: it drives, or it waited for the motors or stood
 // still.
-tini_noinline void Machine::end_move() {
+tini_noinline void Drive::end_move() {
   TaskRecord* const me = task_.me;
   const bool drove = me->is(kDrives);
   end_move_of(me);
@@ -252,7 +191,7 @@ tini_noinline void Machine::end_move() {
 }
 
 // Waits for the motors where its move needs them and a higher task has them.
-tini_noinline bool Machine::blocks() {
+tini_noinline bool Drive::blocks() {
   TaskRecord* const me = task_.me;
   if (!me->is_move() || !is_below()) return false;
   want(me);
@@ -261,7 +200,7 @@ tini_noinline bool Machine::blocks() {
   return !pause();
 }
 
-void Machine::motors(Powers powers) {
+void Drive::motors(Powers powers) {
   if (is_below()) {
     want(task_.me);
   } else {
@@ -272,7 +211,7 @@ void Machine::motors(Powers powers) {
   task_.me->state |= kHasSet;
 }
 
-void Machine::stop_motors() {
+void Drive::stop_motors() {
   want(task_.me);
   if (is_below()) return;
   set_motors(kMotorsOff);
@@ -284,86 +223,23 @@ void Machine::stop_motors() {
 }
 
 // Gives the motors to the task whose turn it is; no higher one has them.
-tini_noinline void Machine::take() {
+tini_noinline void Drive::take() {
   want(task_.me);
   TaskRecord* const holder = task_.holder;
   task_.holder = task_.me;
   if (holder->is(kDrives)) stand_still(holder);
 }
 
-#else
-
-bool Machine::drive(uint32_t move_ms) {
-  TaskRecord* const me = task_.me;
-  if (me->is_move()) {
-    set_motors_of_move();
-    me->state = kToItsEnd;
-  }
-  begin(me);
-  me->clock_ms += move_ms;
-  return pause();
+// Of a robot without discs.
+__attribute__((weak)) bool robot_measures() { return false; }
+__attribute__((weak)) void robot_go(int8_t, int8_t, int32_t) {}
+__attribute__((weak)) Going robot_going(int32_t*) { return Going::kThere; }
+__attribute__((weak)) void robot_go_on(int8_t left, int8_t right) {
+  int32_t rest = 0;
+  robot_going(&rest);
+  robot_go(left, right, rest);
 }
-
-bool Machine::watch(uint32_t move_ms) {
-  keep_move(move_ms);
-  return true;
-}
-
-bool Machine::until(bool stop) {
-  TaskRecord* const me = task_.me;
-  const bool drives = me->is_move();
-  if (stop) {
-    if (!me->is(kHasBegun)) return true;
-    me->clock_ms = now_ms_;
-    if (drives) set_motors(kMotorsOff);
-    return true;
-  }
-  if (!me->is(kHasBegun)) {
-    me->state = kHasBegun;
-    begin(me);
-    if (drives) set_motors_of_move();
-  }
-  uint32_t next_ms = next_check_ms(me);
-  if (next_ms < me->rest_ms) {
-    task_.pc = me->check;
-    if (!me->is_forever()) me->rest_ms -= next_ms;
-  } else {
-    next_ms = me->rest_ms;
-    if (drives) me->state = kToItsEnd;
-  }
-  me->clock_ms += next_ms;
-  return pause();
-}
-
-void Machine::end_move() {
-  task_.me->state = 0;
-  set_motors(kMotorsOff);
-}
-
-bool Machine::comes_to_end() {
-  end_move();
-  return true;
-}
-
-tini_noinline void Machine::set_motors_of_move() { set_motors(powers_of_move(task_.me)); }
-void Machine::motors(Powers powers) { set_motors(powers); }
-void Machine::stop_motors() { set_motors(kMotorsOff); }
-
-void Machine::set_motors(Powers powers) {
-  robot_motors(static_cast<int8_t>(powers), static_cast<int8_t>(powers >> 8));
-}
-
-#endif
-
-#endif
-
-#ifdef tiniscript_has_tasks
-
-void Machine::set_motors(Powers powers) {
-  task_.holder->set = powers;
-  robot_motors(static_cast<int8_t>(powers), static_cast<int8_t>(powers >> 8));
-}
-
-#endif
 
 }  // namespace tiniscript
+
+#endif

@@ -1,16 +1,12 @@
-// The memory layout of a machine for `execute_avr.S`. `vm_instructions.cpp` asserts every offset.
+// Where a machine has what in memory, for assembly. `layout_avr.cpp` asserts each offset, and
+// `layout_tasks_avr.cpp` those of tasks.
 
 #pragma once
 
-#include "has_tasks.h"
+#include "build.h"
 
-// Moves that no discs measure.
-#if defined(tiniscript_in_assembly) && defined(tiniscript_has_tasks) && !defined(tiniscript_has_discs)
-#define tiniscript_moves_in_assembly
-#endif
-
-// The bit of GPIOR0 that interrupts set: `boards/avr/attention.h`.
-#define tini_attention_bit 0
+// The bit of GPIOR0 that interrupts set: `boards/avr/events.h`.
+#define tini_event_bit 0
 
 // in a Machine
 #define tini_fault_at 1

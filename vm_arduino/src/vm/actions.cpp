@@ -1,10 +1,10 @@
-// Instructions that use the robot, the clock or random numbers: the same on every chip.
+// What an instruction asks of the robot, of the clock or of chance: the same on every chip.
 
 #include "../robot.h"
 #include "decode_form.h"
+#include "machine.h"
 #include "number.h"
 #include "small.h"
-#include "vm.h"
 
 namespace tiniscript {
 
@@ -39,10 +39,9 @@ int8_t of_move(int8_t power) { return power < 0 ? 0 : power; }
 
 }  // namespace
 
-// Ends the tick before this instruction; the next tick begins with it.
-bool Machine::stay() {
-  task_.pc = at_;
-  return false;
+void Drive::set_motors(Powers powers) {
+  task_.note_powers(powers);
+  robot_motors(static_cast<int8_t>(powers), static_cast<int8_t>(powers >> 8));
 }
 
 // Takes a reading. Returns false if the robot is not ready or has no such sensor.
@@ -54,12 +53,9 @@ bool Machine::sense(uint8_t number) {
 // Shows a value. Where there is no room a task keeps it and ends its turn, so that nothing stays on
 // the stack; a program without tasks waits for room, and so does the main task before all others.
 inline bool Machine::show(int32_t value) {
-#ifdef tiniscript_has_tasks
+  if (!kHasTasks) return robot_show(value, task_.me->shows_yes_no()) || stay();
   task_.me->rest_ms = static_cast<uint32_t>(value);
   return sends() || (has_had_turn() ? pause() : stay());
-#else
-  return robot_show(value, task_.me->shows_yes_no()) || stay();
-#endif
 }
 
 // Lets the second value from the top be how long it takes to go or to turn so far. False: it never
@@ -69,9 +65,9 @@ inline bool Machine::go_ms(uint8_t code, int32_t* top) {
   int32_t* const way = top - 1;
   if (*way <= 0) return true;
   const uint8_t power = static_cast<uint8_t>(of_move(percent(*top)));
-#ifdef tiniscript_has_discs
-  if (robot_measures()) return goes_on(power == 0 ? Fault::kNoPower : Fault::kNone);
-#endif
+  if (kHasDiscs && robot_measures()) {
+    return goes_on(power == 0 ? Fault::kNoPower : Fault::kNone);
+  }
   const int32_t speed = power == 0 ? 0 : robot_speed((code & 2) != 0, power);
   if (speed <= 0) return goes_on(Fault::kNoPower);
   *way = static_cast<int32_t>(scaled(static_cast<uint32_t>(*way), 100000,
@@ -111,11 +107,9 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
   // of a move; what is neither move nor wait leaves them to the next one
   task_.me->code = code;
   task_.me->power = power;
-#ifdef tiniscript_has_discs
-  if (*bytes != code && time_ms != 0 && robot_measures()) {
+  if (kHasDiscs && *bytes != code && time_ms != 0 && robot_measures()) {
     task_.me->code |= TaskRecord::kMeasures;
   }
-#endif
   switch (family) {
     case Family::kShowYesNo:
       if (*top != 0) *top = 1;
@@ -155,7 +149,7 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
       return drive(time_ms);
     default:  // kEnd or kEndTask: the others are in the inner loop
       stay();  // behind the last END lies nothing
-      if (has_tasks() && !ends_program()) return false;
+      if (has_tasks() && !end_task()) return false;
       robot_off();
       status_ = Status::kDone;
       return false;

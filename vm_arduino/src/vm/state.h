@@ -1,14 +1,15 @@
-// The state of a running program: one small, plain record.
+// The state of a running program: small, plain records.
 //
-// Knows nothing of what instructions do. Times are milliseconds of a clock that may start
+// Knows nothing of what instructions do. Matches `state.py`. Times are milliseconds of a clock that may start
 // anywhere and wraps around after 2^32; a wait is at most 2^31 long.
 
 #pragma once
 
 #include <stdint.h>
 
+#include "build.h"
 #include "bytecode.h"
-#include "execute_avr.h"
+#include "layout_avr.h"
 
 namespace tiniscript {
 
@@ -59,7 +60,7 @@ struct TaskRecord {
   bool is_watched() const { return (code & kWatches) != 0; }
   bool has_unsent() const { return static_cast<uint8_t>(code - kFirstShow) < 2; }
   bool shows_yes_no() const { return code != kFirstShow; }
-  bool measures() const;
+  bool measures() const { return kHasDiscs && (code & kMeasures) != 0; }
   bool is_forever() const { return static_cast<int32_t>(rest_ms) < 0; }
 };
 
@@ -75,16 +76,6 @@ constexpr uint8_t kHasWaited = 128;  // since it last went back to the start of 
 constexpr uint8_t kWantsMotors = kIsMoving | kHasSet | kKeeps;
 constexpr uint8_t kAtFirst = kHasTime | kHasBegun;
 
-#ifdef tiniscript_has_discs
-constexpr bool kHasDiscs = true;
-#else
-constexpr bool kHasDiscs = false;
-#endif
-
-inline bool TaskRecord::measures() const {
-  return kHasDiscs && (code & kMeasures) != 0;
-}
-
 // Bits of `others`.
 constexpr uint8_t kIsFirstRound = 1;
 constexpr uint8_t kOneOther = 2;     // so much for each task that has not ended, beside one
@@ -94,39 +85,100 @@ constexpr uint8_t kHasOthers = 128;  // there are tasks beside the main one
 
 // Of a counted loop that is open: how often it still goes around. Of an open call: where it
 // continues. They lie in the order in which they were opened.
-#ifdef tiniscript_in_assembly
-struct Frame {
-  uint8_t bytes[tini_frame_bytes];  // as `execute_avr.S` knows them
+template <bool kInAssembly>
+struct FrameOf {
+  using Type = int32_t;
 };
-#else
-using Frame = int32_t;
-#endif
+
+template <>
+struct FrameOf<true> {
+  struct Type {
+    uint8_t bytes[tini_frame_bytes];  // as `execute_avr.S` knows them
+  };
+};
+
+using Frame = FrameOf<kInAssembly>::Type;
 
 constexpr uint8_t kFrames = kCounters + kCalls;
 
-struct Task {
+template <bool kHasTasks>
+struct TaskOf;
+
+// Of a program that may have tasks.
+template <>
+struct TaskOf<true> {
   uint16_t pc;
-  uint8_t depth;    // values on `stack`
-  uint8_t framed;   // of `frames`
+  uint8_t depth;   // values on `stack`
+  uint8_t framed;  // of `frames`
   uint32_t random;
   uint32_t started_ms;
-  bool is_late;       // 2^31 ms have passed since the start: TIME can no longer express it
-#ifdef tiniscript_has_tasks
-  uint8_t others;        // bits, see above
-  bool is_quiet;         // in this millisecond a round has gone by without a turn
-  TaskRecord* me;        // whose turn it is; null: a round is over
-  uint16_t after;        // behind the move that drives, where its UNTIL looks again before
-  TaskRecord* holder;    // who has the motors; where nobody wants them, the main task
-#else
-  TaskRecord me[1];
-#endif
+  bool is_late;        // 2^31 ms have passed since the start: TIME can no longer express it
+  uint8_t others;      // bits, see above
+  bool is_quiet;       // in this millisecond a round has gone by without a turn
+  TaskRecord* me;      // whose turn it is; null: a round is over
+  uint16_t after;      // behind the move that drives, where its UNTIL looks again before
+  TaskRecord* holder;  // who has the motors; where nobody wants them, the main task
   int32_t variables[kVariables];
-#ifdef tiniscript_has_tasks
   TaskRecord records[kTasks + 1];  // in the order of rank; the last one is the main task
-#endif
   // Everything from here on is written before it is read.
   int32_t stack[kStackValues + 1];  // the last one only lies after the values
   Frame frames[kFrames];
+
+  TaskRecord* main_task() { return records + kTasks; }
+  void end_quiet() { is_quiet = false; }
+  void note_powers(Powers powers) { holder->set = powers; }
+};
+
+// The same where there is no room for tasks: the main one alone.
+template <>
+struct TaskOf<false> {
+  uint16_t pc;
+  uint8_t depth;
+  uint8_t framed;
+  uint32_t random;
+  uint32_t started_ms;
+  bool is_late;
+  TaskRecord me[1];
+  int32_t variables[kVariables];
+  int32_t stack[kStackValues + 1];
+  Frame frames[kFrames];
+
+  static constexpr uint8_t others = 0;
+  static constexpr bool is_quiet = false;
+  static void end_quiet() {}
+  static void note_powers(Powers) {}
+};
+
+using Task = TaskOf<kHasTasks>;
+
+// A program that runs, as moves, turns and instructions share it. `layout_avr.h` knows where what
+// lies.
+class Execution {
+ protected:
+  bool has_tasks() const { return task_.others != 0; }
+
+  // Whether it goes on, without a fault.
+  bool goes_on(Fault fault);
+
+  // A run-time check has failed, which verified code never causes.
+  bool fail();
+
+  // Ends the turn, and in a program without tasks the tick.
+  bool pause();
+
+  // Ends the tick before this instruction; the next tick begins with it.
+  bool stay();
+
+  Status status_;
+  Fault fault_;
+  uint8_t sensors_;
+  uint16_t at_;
+  uint8_t left_;
+  uint16_t length_;
+  const uint8_t* code_;
+  int32_t* readings_;
+  uint32_t now_ms_;
+  Task task_;
 };
 
 }  // namespace tiniscript

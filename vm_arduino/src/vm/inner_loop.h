@@ -1,0 +1,251 @@
+// What instructions have in common, copied into the inner loop in `inner_loop.cpp`.
+//
+// Not for the AVR. Each function returns whether the next instruction may run now.
+
+#pragma once
+
+#include <stdint.h>
+
+#include "arithmetic.h"
+#include "decode_form.h"
+#include "machine.h"
+#include "number.h"
+#include "small.h"
+
+namespace tiniscript {
+
+// The position in the program while the inner loop runs. It is in the machine only between ticks and
+// during `act`: nothing that is called gets the address of an InnerLoop, so it stays in registers.
+class InnerLoop {
+ public:
+  InnerLoop(Machine* machine, uint8_t budget);
+
+  // Runs one instruction.
+  bool step();
+
+  // Whether the budget is used up.
+  bool is_over() const { return left_ == 0; }
+
+  // Leaves its position in the machine.
+  void end();
+
+ private:
+  // The next operand.
+  tini_always_inline uint8_t u8() { return *next_++; }
+  tini_always_inline int8_t i8() { return static_cast<int8_t>(u8()); }
+  tini_always_inline uint16_t u16() {
+    const uint8_t low = u8();
+    return static_cast<uint16_t>(low | u8() << 8);
+  }
+  tini_always_inline int16_t i16() { return static_cast<int16_t>(u16()); }
+
+  uint16_t offset(const uint8_t* at) const;
+  bool halt(Fault fault);
+  bool pop(uint8_t values);
+  bool push(int32_t value);
+  bool leave(Fault fault);
+  bool jump(uint16_t distance);
+  bool jump_back(uint16_t distance);
+  bool again(uint16_t distance);
+  bool unless(bool holds, uint16_t distance);
+  bool join(bool decisive, uint16_t distance);
+  bool stay();
+  bool act(uint8_t code);
+  bool way();
+  bool until(bool stop);
+  bool push_variable(uint8_t number);
+  bool push_sensor(uint8_t number);
+  bool push_read(uint8_t number);
+  bool set_variable(uint8_t number);
+  bool add_to(uint8_t number, int32_t more);
+  bool open(Frame frame);
+  bool loop(uint16_t distance);
+  bool next_round(uint16_t distance);
+  bool break_loop(uint16_t distance);
+  bool call(uint16_t distance);
+  bool read(uint8_t number);
+
+  Machine& machine_;
+  const uint8_t* at_;    // where the instruction begins
+  const uint8_t* next_;  // its next operand, then the next instruction
+  int32_t* top_;         // behind the topmost value of the stack
+  uint8_t left_;         // of the budget
+};
+
+tini_always_inline InnerLoop::InnerLoop(Machine* machine, uint8_t budget)
+    : machine_(*machine),
+      at_(machine->code_ + machine->task_.pc),
+      next_(at_),
+      top_(machine->task_.stack + machine->task_.depth),
+      left_(budget) {}
+
+tini_always_inline void InnerLoop::end() {
+  machine_.at_ = offset(at_);
+  machine_.left_ = left_;
+  machine_.task_.pc = offset(next_);
+  machine_.task_.depth = static_cast<uint8_t>(top_ - machine_.task_.stack);
+}
+
+// Ends the program.
+tini_always_inline bool InnerLoop::halt(Fault fault) {
+  machine_.fault_ = fault;
+  return false;
+}
+
+// What an instruction takes from the stack lies at `top_` then, the first value first.
+tini_always_inline bool InnerLoop::pop(uint8_t values) {
+  if (top_ < machine_.task_.stack + values) return halt(Fault::kBadCode);
+  top_ -= values;
+  return true;
+}
+
+// Pushes a value, if there is room.
+tini_always_inline bool InnerLoop::push(int32_t value) {
+  if (top_ == machine_.task_.stack + kStackValues) return halt(Fault::kBadCode);
+  *top_++ = value;
+  return true;
+}
+
+// Leaves what was calculated at `top_`.
+tini_always_inline bool InnerLoop::leave(Fault fault) {
+  top_++;
+  return fault == Fault::kNone || halt(fault);
+}
+
+// The place of a byte in the code.
+tini_always_inline uint16_t InnerLoop::offset(const uint8_t* at) const {
+  return static_cast<uint16_t>(at - machine_.code_);
+}
+
+// Jumps by this many bytes forward or back from the end of the instruction. Where that leads is
+// checked when the next instruction begins.
+tini_always_inline bool InnerLoop::jump(uint16_t distance) {
+  next_ += distance;
+  return true;
+}
+
+tini_always_inline bool InnerLoop::jump_back(uint16_t distance) {
+  if (!kCountsInstructions) left_--;
+  next_ -= distance;
+  return true;
+}
+
+// Goes back to the start of a loop.
+tini_always_inline bool InnerLoop::again(uint16_t distance) {
+  jump_back(distance);
+  return !machine_.has_tasks() || machine_.goes_back();
+}
+
+// Goes on with the next instruction if a condition holds, else jumps.
+tini_always_inline bool InnerLoop::unless(bool holds, uint16_t distance) {
+  return holds || jump(distance);
+}
+
+// Ends the tick before this instruction; the next tick begins with it.
+tini_always_inline bool InnerLoop::stay() {
+  next_ = at_;
+  return false;
+}
+
+// Lets `act` and `until` see where the program is, and go elsewhere.
+tini_always_inline bool InnerLoop::act(uint8_t code) {
+  const DecodeForm form = decode_form_of(code);
+  int32_t* const top = top_ - 1;
+  if (!pop(form.pops())) return false;
+  machine_.at_ = offset(at_);
+  machine_.task_.pc = static_cast<uint16_t>(machine_.at_ + form.size());
+  const bool goes_on = machine_.act(code, at_, top);
+  next_ = machine_.code_ + machine_.task_.pc;
+  return goes_on;
+}
+
+// GO or WATCH_GO, in two bytes.
+tini_always_inline bool InnerLoop::way() {
+  next_++;
+  int32_t* const top = top_ - 1;
+  if (!pop(2)) return false;
+  machine_.at_ = offset(at_);
+  machine_.task_.pc = offset(next_);
+  const bool goes_on = machine_.act(static_cast<uint8_t>(Op::kEscape), at_, top);
+  next_ = machine_.code_ + machine_.task_.pc;
+  return goes_on;
+}
+
+tini_always_inline bool InnerLoop::until(bool stop) {
+  machine_.task_.pc = offset(next_);
+  const bool goes_on = machine_.until(stop);
+  next_ = machine_.code_ + machine_.task_.pc;
+  return goes_on;
+}
+
+// Variables and sensors: their numbers are checked, as damaged code may have any.
+tini_always_inline bool InnerLoop::push_variable(uint8_t number) {
+  return number < kVariables ? push(machine_.task_.variables[number]) : halt(Fault::kBadCode);
+}
+
+tini_always_inline bool InnerLoop::push_sensor(uint8_t number) {
+  return number < machine_.sensors_ ? push(machine_.readings_[number]) : halt(Fault::kBadCode);
+}
+
+tini_always_inline bool InnerLoop::push_read(uint8_t number) {
+  return machine_.sense(number) ? push(machine_.readings_[number]) : stay();
+}
+
+// Takes a reading; the value stays with the robot.
+tini_always_inline bool InnerLoop::read(uint8_t number) {
+  return machine_.sense(number) || stay();
+}
+
+tini_always_inline bool InnerLoop::set_variable(uint8_t number) {
+  if (!pop(1)) return false;
+  if (number >= kVariables) return halt(Fault::kBadCode);
+  machine_.task_.variables[number] = *top_;
+  return true;
+}
+
+tini_always_inline bool InnerLoop::add_to(uint8_t number, int32_t more) {
+  if (number >= kVariables) return halt(Fault::kBadCode);
+  int32_t* const variable = machine_.task_.variables + number;
+  const Fault fault = sum(*variable, more, variable);
+  return fault == Fault::kNone || halt(fault);
+}
+
+// Loops and calls.
+tini_always_inline bool InnerLoop::open(Frame frame) {
+  if (machine_.task_.framed >= kFrames) return halt(Fault::kBadCode);
+  machine_.task_.frames[machine_.task_.framed++] = frame;
+  return true;
+}
+
+tini_always_inline bool InnerLoop::loop(uint16_t distance) {
+  if (!pop(1)) return false;
+  const int32_t times = whole(*top_);
+  return times < 1 ? jump(distance) : open(times);
+}
+
+tini_always_inline bool InnerLoop::next_round(uint16_t distance) {
+  if (machine_.task_.framed == 0) return halt(Fault::kBadCode);
+  if (--machine_.task_.frames[machine_.task_.framed - 1] != 0) return again(distance);
+  machine_.task_.framed--;
+  return true;
+}
+
+tini_always_inline bool InnerLoop::break_loop(uint16_t distance) {
+  if (machine_.task_.framed == 0) return halt(Fault::kBadCode);
+  machine_.task_.framed--;
+  return jump(distance);
+}
+
+tini_always_inline bool InnerLoop::call(uint16_t distance) {
+  return open(offset(next_)) && jump_back(distance);
+}
+
+// Leaves the value on the stack and jumps if it is `decisive`, else drops it.
+tini_always_inline bool InnerLoop::join(bool decisive, uint16_t distance) {
+  if (!pop(1)) return false;
+  if ((*top_ != 0) != decisive) return true;
+  top_++;
+  return jump(distance);
+}
+
+}  // namespace tiniscript

@@ -1,0 +1,91 @@
+// The machine.
+//
+// Runs verified code. Time comes in as `now_ms`; the world is behind `robot.h`. `tick` does a
+// little and returns: nothing here blocks. Matches `machine.py`. What it has of a program is in
+// `state.h`, how it moves in `drive.h`, the turns of tasks in `scheduler.h`; `inner_loop.cpp` does
+// an instruction at a time, `actions.cpp` what an instruction asks of the robot.
+//
+// Cheap checks guard against unverified code: stack, counters, calls, offsets, opcodes and the
+// numbers of variables and sensors. A violation is the fault kBadCode, not a wild write. On the AVR
+// an instruction that should empty the stack empties it, and the target of a short jump back is
+// checked when the machine leaves.
+
+#pragma once
+
+#include <stdint.h>
+
+#include "bytecode.h"
+#include "scheduler.h"
+#include "small.h"
+#include "state.h"
+
+namespace tiniscript {
+
+// The first kEnd ends the program. The others serve as operands if the last instruction of damaged
+// code is cut off.
+constexpr uint8_t kEndBytes = 4;
+
+class Machine : public Scheduler {
+ public:
+  // Begins a program. `code` is verified for a kit with so many sensors (0 to kDevices), and
+  // behind its `length` bytes lie kEndBytes of Op::kEnd: whoever loads it puts them there. The
+  // last reading of each sensor is kept in `readings`, which are 0. `seed` is not 0.
+  void start(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
+             uint32_t seed, uint32_t now_ms);
+
+  // The two halves of `start`: the first one takes longer and does not depend on the program.
+  void prepare();
+  void start_prepared(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
+                      uint32_t seed, uint32_t now_ms);
+
+  // Runs at the time `now_ms` until the program must wait or ends, or for a `budget` of jumps back and
+  // calls: code between two of them is short. In the assembly of an AVR a tick also ends there early
+  // if `boards/avr/events.h` requests it. With `tiniscript_counts_instructions` all count.
+  Status tick(uint32_t now_ms, uint8_t budget);
+
+  const Task& task() const { return task_; }
+  bool has_tasks() const { return Execution::has_tasks(); }
+  Status status() const { return status_; }
+  Fault fault() const { return fault_; }
+
+  // The begin of the instruction that runs or has faulted.
+  uint16_t at() const { return at_; }
+
+  // When the machine has work again, while the program waits; of tasks it may be at once, or was.
+  uint32_t wake_ms() const;
+
+  // Goes on to where the next instruction begins. False: none may run now. Not for an AVR.
+  bool reach_instruction(uint32_t now_ms);
+
+  // What is left of the last budget.
+  uint8_t left() const { return left_; }
+
+ private:
+  friend class InnerLoop;
+
+  // Passes the time. Returns whether the program may run: a wait is over, or it has none.
+  bool wake(uint32_t now_ms);
+  bool is_due() const;
+
+  // Whether a way that the robot measures has failed before an instruction runs.
+  bool is_stuck() const { return kHasDiscs && fault_ != Fault::kNone; }
+
+  // Runs turns until the round is over or the budget is used up: `inner_loop.cpp`, `tasks_avr.S`.
+  void run_round();
+
+  // Runs instructions: `inner_loop.cpp`, `execute_avr.S`. Returns whether the next one may run now,
+  // which the assembly lets its caller find out.
+  bool execute(uint8_t budget);
+
+  // What asks something of the robot, of the clock or of chance: `actions.cpp`.
+  bool act(uint8_t code, const uint8_t* bytes, int32_t* top) tini_called_by_assembly;
+  bool sense(uint8_t number) tini_called_by_assembly;
+  bool go_ms(uint8_t code, int32_t* top);
+  bool show(int32_t value);
+
+  // Nobody calls these: what they assert, the compiler checks.
+  static void check_layout();
+  static void check_layout_of_tasks();
+};
+
+}  // namespace tiniscript

@@ -1,0 +1,82 @@
+// What a task does in its turn beside moving: on every chip.
+
+#include "build.h"
+
+#ifdef tiniscript_has_tasks
+
+#include "../robot.h"
+#include "decode_form.h"
+#include "scheduler.h"
+
+namespace tiniscript {
+
+// Makes a record for each task in the order of rank; between them and the main task are those of
+// none. All of it is 0.
+void Scheduler::find_tasks() {
+  TaskRecord* me = task_.records;
+  ControlRole kind = ControlRole::kWhen;
+  for (;;) {
+    for (uint16_t at = 0; at < length_;) {
+      const DecodeForm form = decode_form_of(code_[at]);
+      at = static_cast<uint16_t>(at + form.size());
+      if (form.role() != kind || me == task_.main_task()) continue;
+      me->state = kAtFirst;
+      me->pc = at;
+      if (kind == ControlRole::kWhen) me->start = at;
+      me++;
+      task_.others = static_cast<uint8_t>((task_.others + kOneOther) | kHasOthers);
+    }
+    if (kind == ControlRole::kTask) break;
+    kind = ControlRole::kTask;
+  }
+  task_.me = task_.holder = task_.main_task();
+  task_.me->state = kAtFirst;
+}
+
+// Sends the value that a SHOW has kept. Returns whether there was room.
+bool Scheduler::sends() {
+  TaskRecord* const me = task_.me;
+  if (!robot_show(static_cast<int32_t>(me->rest_ms), me->shows_yes_no())) return false;
+  me->code = static_cast<uint8_t>(Op::kWait);
+  return true;
+}
+
+// Goes on in a WHEN, or looks once more.
+bool Scheduler::look(bool holds) {
+  if (holds) return true;
+  TaskRecord* const me = task_.me;
+  me->state &= static_cast<uint8_t>(~(kKeeps | kHasSet));
+  return look_again();
+}
+
+bool Scheduler::look_again() {
+  task_.pc = task_.me->start;
+  return wait(kCheckMs);
+}
+
+// Ends this task. Returns whether it was the last one.
+bool Scheduler::end_task() {
+  task_.me->state = 0;
+  if ((task_.others & kAllOthers) == 0) return true;
+  task_.others = static_cast<uint8_t>(task_.others - kOneOther);
+  return pause();
+}
+
+// Whether it waits for its clock, and not for the motors or for nothing any more.
+bool Scheduler::waits_for_clock(const TaskRecord* task) const {
+  return task->is(kHasTime) || (task_.holder == task && task->is(kIsMoving));
+}
+
+// When the next task is due.
+uint32_t Scheduler::wake_ms() const {
+  int32_t more_ms = 0x7fffffff;  // nothing happens by itself
+  for (const TaskRecord* task = task_.records; task <= task_.records + kTasks; task++) {
+    const int32_t its_ms = static_cast<int32_t>(task->clock_ms - now_ms_);
+    if (its_ms < more_ms && waits_for_clock(task)) more_ms = its_ms;
+  }
+  return now_ms_ + static_cast<uint32_t>(more_ms);
+}
+
+}  // namespace tiniscript
+
+#endif

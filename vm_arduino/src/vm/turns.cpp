@@ -1,0 +1,118 @@
+// The turns of tasks. `tasks_avr.S` is the same for the AVR.
+
+#include "build.h"
+
+#if defined(tiniscript_has_tasks) && !defined(tiniscript_in_assembly)
+
+#include "scheduler.h"
+
+namespace tiniscript {
+
+namespace {
+
+// Moves the first `count` of `all` frames behind the others.
+void to_the_end(Frame* frames, uint8_t count, uint8_t all) {
+  for (; count != 0; count--) {
+    Frame* at = frames;
+    const Frame first = *at;
+    for (uint8_t left = all; left > 1; left--, at++) *at = at[1];
+    *at = first;
+  }
+}
+
+}  // namespace
+
+bool Scheduler::finds_turn(bool is_over) {
+  if (!is_over && task_.me != nullptr) return true;
+  for (;;) {
+    if (is_over) end_turn();
+    if (kHasDiscs && fault_ != Fault::kNone) return false;
+    TaskRecord* task = task_.me;
+    if (task == task_.main_task()) {
+      if (has_had_turn()) {
+        end_round();
+        return pause();
+      }
+      begin_others();
+      task = nullptr;
+    }
+    if (task == nullptr) {
+      task_.is_quiet = true;
+      task = task_.records;
+    } else {
+      task++;
+    }
+    task_.me = task;
+    // The frames of the next one come to the end of those that all tasks share.
+    to_the_end(task_.frames, task->framed, task_.framed);
+    is_over = is_due(task);
+    if (is_over && begin_turn(task)) return true;
+  }
+}
+
+// The first turn is over.
+void Scheduler::begin_others() {
+  task_.others |= kHasHadTurn | kIsFirstRound;
+  for (TaskRecord* task = task_.records; task != task_.main_task(); task++) set_clock(task);
+}
+
+// A round is over.
+void Scheduler::end_round() {
+  task_.me = nullptr;
+  task_.others &= static_cast<uint8_t>(~kIsFirstRound);
+}
+
+bool Scheduler::is_due(const TaskRecord* task) const {
+  return waits_for_clock(task) && static_cast<int32_t>(late_ms(task)) >= 0;
+}
+
+// Returns whether it goes on.
+bool Scheduler::begin_turn(TaskRecord* me) {
+  me->framed = static_cast<uint8_t>(me->framed - task_.framed);  // `end_turn` adds what it is then
+  task_.pc = me->pc;
+  if (me->has_unsent() && !sends()) return false;
+  // the motors may have been taken since its check began
+  if (!me->is(kHasBegun) && blocks()) return false;
+  if (!me->is(kHasTime)) {
+    me->state |= kHasTime;
+    set_clock(me);
+    return me->is_watched() || go_on();
+  }
+  return !me->is(kToItsEnd) || comes_to_end();
+}
+
+void Scheduler::end_turn() {
+  TaskRecord* const me = task_.me;
+  me->pc = task_.pc;
+  me->framed = static_cast<uint8_t>(me->framed + task_.framed);
+  status_ = Status::kRunning;
+  task_.is_quiet = false;
+  pass_on();
+}
+
+// Goes back to the start of a loop, where a task that has not waited since it last did so waits.
+bool Scheduler::goes_back() {
+  TaskRecord* const me = task_.me;
+  const bool has_waited = me->is(kHasWaited);
+  if (!has_waited) wait(1);
+  me->state &= static_cast<uint8_t>(~kHasWaited);
+  return has_waited;
+}
+
+// Behind a turn: gives the motors to the highest task that wants them, if it is another.
+void Scheduler::pass_on() {
+  TaskRecord* highest = task_.records;
+  while (highest != task_.main_task() && !highest->is(kWantsMotors)) highest++;
+  if (highest->is(kDrives)) return;
+  if (highest != task_.holder && !highest->is(kHasTime)) {
+    highest->clock_ms = now_ms_ + (task_.others & kIsFirstRound);
+  }
+  const Powers before = task_.holder->set;
+  task_.holder = highest;
+  if (!highest->is(kHasSet)) highest->set = kMotorsOff;
+  if (highest->set != before) set_motors(highest->set);
+}
+
+}  // namespace tiniscript
+
+#endif
