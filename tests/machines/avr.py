@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from tests.machines import Senses
 
 UNO, NANO, MEGA = "uno", "nano", "mega"
-PORTABLE = "portable"  # a Mega with the machine of all other chips
+PORTABLE = "portable"  # an Uno with the machine of all other chips
 BUILT = {
     UNO: ("atmega328p", "-Dtiniscript_with_tasks"),
     NANO: ("atmega328p",),
-    PORTABLE: ("atmega2560", "-Dtiniscript_portable"),
+    PORTABLE: ("atmega328p", "-Dtiniscript_with_tasks", "-Dtiniscript_portable"),
     # some of the variables lie behind a border of 256 bytes
     MEGA: ("atmega2560", "-Wl,--section-start=.data=0x8002c0"),
 }

@@ -1,7 +1,7 @@
 """The cases, and samples of random programs, codes, images and numbers, on simulated chips.
 
-The ATmega328P (`uno`, and `nano` without tasks) and the ATmega2560 (`mega`, and `portable`, whose
-machine is the C++ of all other chips) are started for each image:
+The ATmega328P (`uno`, `nano` without tasks, and `portable`, whose machine is the C++ of all other
+chips) and the ATmega2560 (`mega`) are started for each image:
 with `--whole` each runs 400 programs, and the first one some 2,000 codes. The chips of ESP
 boards (`lx6`, `lx106`, `rv32imc`) run in emulators that answer nearly as quickly as the host's
 process: each also judges 16,000 codes and runs those that are accepted, judges 10,000 images, and
@@ -59,7 +59,7 @@ def some_chips(*names: str) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("chip", [pytest.param(n, marks=marks[n]) for n in names])
 
 
-VARIABLES_AT = 37  # bytes: where `execute_avr.h` says that the variables of a machine begin
+VARIABLES_AT = 37  # bytes: where `layout_avr.h` says that the variables of a machine begin
 SENSORS = 3  # of the kit of code that no verifier accepts: there is room for that many
 # What the AVR does not look at: a statement on an empty stack empties it, the second of two values
 # that is not there means nothing, and so does what NEXT counts without a loop.
@@ -232,6 +232,21 @@ def test_programs_with_tasks_on_an_avr(chip: str) -> None:
         same_on_the_chip(chip, image, cpp_checks.KIT, senses)
         ran = avr.ran_on(chip, image, cpp_checks.KIT, senses, 2 + number % 3)
         assert ran.trace == cpp_checks.slow_run(image, senses, 2 + number % 3), ran.trace
+
+
+@pytest.mark.sampled("first")
+@some_chips(avr.UNO)
+@pytest.mark.parametrize("first", range(5000, 5400, 100))
+def test_assembly_and_its_twin_do_the_same(chip: str, first: int) -> None:
+    """On one chip, instruction by instruction: turns, moves and the inner loop are there twice."""
+    for number, (image, senses) in enumerate(cpp_checks.some_task_programs(first, 100)):
+        not_ready, pace = (0, 2, 3)[number % 3], Pace(every_ms=(1, 8, 37, 2)[number % 4])
+        begin_ms = (0, 2**31 - 100, 2**32 - 100)[number // 3 % 3]
+        of_assembly, of_twin = (
+            avr.ran_on(each, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
+            for each in (chip, avr.PORTABLE)
+        )
+        assert of_assembly == of_twin, image.hex(" ")
 
 
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
