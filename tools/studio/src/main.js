@@ -12,7 +12,7 @@ import { Phone } from './page/phone.js';
 import { Programs } from './programs/programs.js';
 import { Python } from './python.js';
 import { pictured, robotPicture } from './page/pictures.js';
-import { so } from './page/so.js';
+import { pageState } from './page/page_state.js';
 import { bringsProgram } from './programs/links.js';
 import { called, currentLanguage, known, languageOf, LANGUAGES, setLanguage, text } from './page/texts.js';
 import { SimulatorPanel } from './virtual/simulator_panel.js';
@@ -59,25 +59,25 @@ const work = kept ?? {
 const python = new Python(work.language);
 languages.replaceChildren(...LANGUAGES.map(([code, name]) => Object.assign(new Option(name, code), { lang: code })));
 languages.value = work.language = await setLanguage(work.language);
-so.note.watch((said) => {
+pageState.note.subscribe((said) => {
   note.textContent = said;
 });
-so.areWordsShown.watch((areShown) => {
+pageState.areWordsShown.subscribe((areShown) => {
   work.words = areShown;
   words.setAttribute('aria-pressed', String(areShown));
   remember();
 });
-so.robot.watch((name) => {
+pageState.robotName.subscribe((name) => {
   work.robot = robots.value = name;
   remember();
 });
-so.text.watch((program) => {
+pageState.programText.subscribe((program) => {
   work.text = program;
   remember();
 });
-so.areWordsShown.say(work.words);
+pageState.areWordsShown.set(work.words);
 showRobots();
-so.robot.say(work.robot);
+pageState.robotName.set(work.robot);
 
 const editor = new Editor(element('editor', HTMLElement));
 const views = new Views({ python, editor, work, remember });
@@ -98,9 +98,9 @@ new Lessons({
   driving,
 });
 chooseSide();
-so.language.watch(() => {
+pageState.language.subscribe(() => {
   showRobots();
-  so.note.say('');
+  pageState.note.set('');
   if (!isReady) status.textContent = text('starting');
   remember();
 });
@@ -136,7 +136,7 @@ if ('class' in document.documentElement.dataset) {
 let isReady = false;
 let unchecked = 0; // while what is said may be of the text before
 
-so.checked.watch((answer) => {
+pageState.checked.subscribe((answer) => {
   if (!answer) {
     unchecked ||= window.setTimeout(() => {
       if (isReady) sayStatus('…', '');
@@ -147,15 +147,15 @@ so.checked.watch((answer) => {
   showMessages(list, answer.findings, (finding) => views.goTo(finding));
   sayStatus(summary(answer), answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong');
 });
-so.offered.watch((which) => {
-  const finding = so.checked.value?.findings[which];
+pageState.offeredFinding.subscribe((which) => {
+  const finding = pageState.checked.value?.findings[which];
   if (finding) showRepair(list, which, finding, repair);
 });
-if (whyOutside) so.note.say(text(known(`why_${whyOutside}`)));
+if (whyOutside) pageState.note.set(text(known(`why_${whyOutside}`)));
 editor.replace(work.text);
 status.textContent = text('starting');
 python.waits = () => {
-  if (isReady) so.note.say(text('starting_waits'));
+  if (isReady) pageState.note.set(text('starting_waits'));
   else status.textContent = text('starting_waits');
 };
 python.ready.then(
@@ -181,7 +181,7 @@ function sayStatus(said, look) {
 
 /** @param {Finding} finding */
 function repair(finding) {
-  if (so.checked.value && finding.repair) editor.change(finding.repair); // else its places are those of another text
+  if (pageState.checked.value && finding.repair) editor.change(finding.repair); // else its places are those of another text
 }
 
 function showRobots() {
@@ -192,25 +192,25 @@ function showRobots() {
 }
 
 function remember() {
-  if (!keep(work)) so.note.say(text(work.text.length > LONGEST ? 'kept_too_long' : 'not_kept'));
+  if (!keep(work)) pageState.note.set(text(work.text.length > LONGEST ? 'kept_too_long' : 'not_kept'));
 }
 
 robots.addEventListener('change', async () => {
   const robot = robots.value;
-  if (so.isRobotNamed.value) { // then the text changes its mind, too
-    const now = so.text.value;
+  if (pageState.isRobotNamed.value) { // then the text changes its mind, too
+    const now = pageState.programText.value;
     const answer = await python.ask({ do: 'rename', robot }, new TextEncoder().encode(now));
-    if (so.text.value === now) editor.replace(answer.text);
+    if (pageState.programText.value === now) editor.replace(answer.text);
   }
-  so.robot.say(robot);
+  pageState.robotName.set(robot);
 });
 
 /** @param {{text: string, robot: string, name: string}} program */
 function putProgram(program) {
-  so.note.say('');
+  pageState.note.set('');
   showScreen('program');
   phone.show('program');
-  if (program.robot !== work.robot) so.robot.say(program.robot);
+  if (program.robot !== work.robot) pageState.robotName.set(program.robot);
   work.name = program.name;
   views.begin();
   editor.replace(program.text);
@@ -224,7 +224,7 @@ languages.addEventListener('change', async () => {
   checking.again(); // what was said meanwhile is in English
 });
 
-words.addEventListener('click', () => so.areWordsShown.say(!work.words));
+words.addEventListener('click', () => pageState.areWordsShown.set(!work.words));
 
 element('open', HTMLButtonElement).addEventListener('click', () => file.click());
 
@@ -234,21 +234,21 @@ whenChosen('file', async (chosen) => {
     const data = await bytesOf(chosen);
     answer = await python.ask({ do: 'open', robot: work.robot, language: currentLanguage() }, data);
   } catch {
-    so.note.say(text('not_opened', { name: chosen.name, why: text('unreadable') }));
+    pageState.note.set(text('not_opened', { name: chosen.name, why: text('unreadable') }));
     return;
   }
   if (answer.text === undefined) {
-    so.note.say(text('not_opened', { name: chosen.name, why: whole(answer) }));
+    pageState.note.set(text('not_opened', { name: chosen.name, why: whole(answer) }));
     return;
   }
   programs.replace({ text: answer.text, robot: work.robot, name: chosen.name });
-  so.note.say(text('opened', { name: chosen.name }));
+  pageState.note.set(text('opened', { name: chosen.name }));
 });
 
 element('save', HTMLButtonElement).addEventListener('click', () => {
   const name = work.name || text('file_name');
   download(name, editor.text);
-  so.note.say(text('saved', { name }));
+  pageState.note.set(text('saved', { name }));
 });
 
 addEventListener('keydown', (event) => {

@@ -12,7 +12,7 @@ import { clock, Wall } from './wall.js';
 import { element, say } from '../page/elements.js';
 import { hostPorts, post } from '../robot/host.js';
 import { shown } from '../robot/plain_text.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { known, text } from '../page/texts.js';
 import { isSecond } from '../page/twice.js';
 
@@ -87,7 +87,7 @@ export class Teacher {
     const bar = made('div', '', this.#said, this.#chips, this.#giveBack, this.#anew, gear);
     bar.id = 'class_bar';
     element('class', HTMLElement).append(bar, this.#wall.element, this.#empty);
-    so.language.watch(() => this.#showWords());
+    pageState.language.subscribe(() => this.#showWords());
     this.#lookForPorts();
     this.#ask({ do: 'class' });
     side.click();

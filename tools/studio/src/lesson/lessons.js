@@ -9,7 +9,7 @@ import { bugSaid } from '../page/faults.js';
 import { elementOf, filled } from './page.js';
 import { keepDone, lessonsDone } from './progress.js';
 import { offer, pictured, worldPicture } from '../page/pictures.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { currentLanguage, text } from '../page/texts.js';
 import { isSecond } from '../page/twice.js';
 
@@ -85,10 +85,10 @@ export class Lessons {
       if (this.#step < this.#steps.length - 1) this.#go(this.#step + 1);
       else this.#choose(this.#number + 1).catch((why) => this.#fail(why));
     });
-    so.language.watch(() => {
+    pageState.language.subscribe(() => {
       if (this.#isShown) this.#fetch();
     });
-    so.text.watch(() => { // what was said of the one before is not of it
+    pageState.programText.subscribe(() => { // what was said of the one before is not of it
       if (this.#isShown) this.#forget();
     });
     this.#setReady(false);
@@ -162,7 +162,7 @@ export class Lessons {
     const { steps, taught } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
     if (asked !== this.#asked) return;
     this.#steps = steps;
-    so.taught.say(taught);
+    pageState.taughtBlocks.set(taught);
     if (isOther && !element('lessons', HTMLElement).hidden) await this.#seeWorld(1);
     this.#go(isOther ? 0 : this.#step);
     this.#setReady(true);
@@ -177,7 +177,7 @@ export class Lessons {
     element('lesson_name', HTMLElement).textContent = title;
     element('lesson_step', HTMLElement).replaceChildren(...blocks.map((block) => elementOf(block, (program) => {
       this.#page.put({ text: program, robot });
-      so.note.say(text('lesson_used'));
+      pageState.note.set(text('lesson_used'));
     })));
     place.dataset['lesson'] = String(this.#number);
     element('lesson_page', HTMLElement).scrollTop = 0;
@@ -211,7 +211,7 @@ export class Lessons {
   async #seeWorld(seed) {
     const { worlds, robot } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
     const values = { number: this.#number, seed };
-    if (robot !== so.robot.value && !so.isRobotNamed.value) so.robot.say(robot);
+    if (robot !== pageState.robotName.value && !pageState.isRobotNamed.value) pageState.robotName.set(robot);
     await this.#page.driving.showLesson(values.number, seed,
       () => text(worlds > 1 ? 'world_of_lessons' : 'world_of_lesson', values));
   }
@@ -220,7 +220,7 @@ export class Lessons {
     this.#forget();
     const check = this.#checks;
     const number = this.#number;
-    const program = new TextEncoder().encode(so.text.value);
+    const program = new TextEncoder().encode(pageState.programText.value);
     const { worlds } = /** @type {Lesson} */ (this.#lessons[number - 1]);
     this.#end.hidden = false;
     this.#lay();
@@ -285,7 +285,7 @@ export class Lessons {
     this.#findings.replaceChildren(...said.map((sentence) => made('li', '', sentence)));
     this.#hint.open = false;
     element('lesson_page', HTMLElement).scrollTop = 0;
-    if (!isKept) so.note.say(text('not_kept'));
+    if (!isKept) pageState.note.set(text('not_kept'));
     if (hadFocus) (this.#next.hidden ? this.#check : this.#next).focus();
   }
 }

@@ -3,7 +3,7 @@
 
 import { element } from './elements.js';
 import { showSide } from './sides.js';
-import { so } from './so.js';
+import { pageState } from './page_state.js';
 import { text } from './texts.js';
 
 /** @typedef {'program' | 'robot'} Half */
@@ -33,14 +33,14 @@ export class Phone {
         this.#runReal();
         return;
       }
-      const isWrong = so.checked.value?.image === '';
+      const isWrong = pageState.checked.value?.image === '';
       if (isWrong) this.#putAway(false);
       else if (dataset['side'] !== 'side_lessons') showSide('side_virtual');
       this.show(isWrong ? 'program' : 'robot');
     }, { capture: true });
     this.#sheet.addEventListener('click', () => this.#putAway(!this.#isAway));
-    so.language.watch(() => this.#name());
-    so.checked.watch((answer) => {
+    pageState.language.subscribe(() => this.#name());
+    pageState.checked.subscribe((answer) => {
       if (answer) this.#said(answer.findings.length);
     });
     this.show('program');

@@ -4,7 +4,7 @@
 
 import languages from '../../made/languages.json';
 import { needLanguage } from './offline.js';
-import { so } from './so.js';
+import { pageState } from './page_state.js';
 
 /** @typedef {Exclude<keyof typeof import('../../made/texts.en.json'), ''>} Key */
 
@@ -19,7 +19,7 @@ let texts = {};
 
 /** @returns {string} */
 export function currentLanguage() {
-  return so.language.value;
+  return pageState.language.value;
 }
 
 /** @param {unknown} locale such as `pt-BR` @returns {string} the language to begin with */
@@ -50,7 +50,7 @@ export async function setLanguage(chosen) {
     element.setAttribute('aria-label', label);
     if (element instanceof HTMLButtonElement) element.title = label;
   }
-  so.language.say(language);
+  pageState.language.set(language);
   return language;
 }
 

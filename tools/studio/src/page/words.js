@@ -3,7 +3,7 @@
 
 import blocks from '../../made/blocks.json';
 import description from '../../made/description.json';
-import { so } from './so.js';
+import { pageState } from './page_state.js';
 import { called, hasText, text } from './texts.js';
 
 /** @typedef {{text: string, role: string, example: string}} Word */
@@ -39,7 +39,7 @@ const WORDS = new Map(
 
 /** @param {string} label with a word of the text: of `{IF} if %1` the rest, or `IF %1` @returns {string} */
 export function labelled(label) {
-  return so.areWordsShown.value ? label.replace(/\{(\S+)\} (\1\b ?)?/i, '$1 ').trim() : label.replace(/\{\S+\} /, '');
+  return pageState.areWordsShown.value ? label.replace(/\{(\S+)\} (\1\b ?)?/i, '$1 ').trim() : label.replace(/\{\S+\} /, '');
 }
 
 /** @param {typeof ROBOTS[number]['devices'][number]} device @returns {string} */

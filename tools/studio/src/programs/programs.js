@@ -11,7 +11,7 @@ import { linkOf, sharedIn } from './links.js';
 import { isAddress, reachOf } from './reach.js';
 import { isGiven } from '../start/beginnings.js';
 import { showInstead } from '../start/screens.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { called, currentLanguage, text } from '../page/texts.js';
 import { beginOf, keepVersion, MOST_CHARACTERS, versions } from './versions.js';
 import { robotOf } from '../page/words.js';
@@ -79,7 +79,7 @@ export class Programs {
   /** Keeps what is in the editor among the earlier programs, unless the page has brought it. */
   keep() {
     if (isGiven(this.#page.work.text)) return;
-    if (!keepVersion(this.#page.work)) so.note.say(text(this.#page.work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
+    if (!keepVersion(this.#page.work)) pageState.note.set(text(this.#page.work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
   }
 
   /**
@@ -97,13 +97,13 @@ export class Programs {
     try {
       found = await sharedIn(location.hash);
     } catch {
-      so.note.say(text('link_wrong'));
+      pageState.note.set(text('link_wrong'));
     }
     if (found === null) return;
     showInstead();
     if (!found) return;
     this.replace({ ...found, name: '' });
-    so.note.say(text('link_opened'));
+    pageState.note.set(text('link_opened'));
   }
 
   #open() {
@@ -214,7 +214,7 @@ export class Programs {
       const open = button('open_again', () => {
         this.replace(version);
         this.#window.close();
-        so.note.say(text('opened_again', { time: said }));
+        pageState.note.set(text('opened_again', { time: said }));
       });
       open.setAttribute('aria-label', text('open_again_from', { time: said }));
       const what = (version.name ? `${version.name}: ` : '') + beginOf(version.text);

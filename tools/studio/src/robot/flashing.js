@@ -5,7 +5,7 @@ import { chosenPort, hasSerial } from './serial.js';
 import { shown } from './plain_text.js';
 import { Failed } from './transport.js';
 import { watched } from '../page/progress.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { currentLanguage } from '../page/texts.js';
 
 /**
@@ -59,7 +59,7 @@ export class Flashing {
   async #flash() {
     const { speech, port: known, isFree, setBusy, meet } = this.#panel;
     if (!isFree()) return;
-    const which = this.#file ?? { robot: so.robot.value, language: currentLanguage() };
+    const which = this.#file ?? { robot: pageState.robotName.value, language: currentLanguage() };
     const chosen = known() ? Promise.resolve(known()) : chosenPort();
     this.#cancelling = new AbortController();
     const board = element('flash_board', HTMLSelectElement).value;

@@ -17,7 +17,7 @@ import { Speech } from './speech.js';
 import { Failed } from './transport.js';
 import { keepAt, kept } from '../page/kept.js';
 import { drawnPicture, offer, pictured } from '../page/pictures.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { called, currentLanguage, text } from '../page/texts.js';
 import { LINK, robotOf } from '../page/words.js';
 import { whole } from '../writing/messages.js';
@@ -97,7 +97,7 @@ export class RobotPanel {
       if (document.visibilityState === 'hidden') this.#hide();
     });
     for (const name of ['pagehide', 'freeze']) addEventListener(name, () => this.#way?.leave());
-    so.language.watch(() => this.#show());
+    pageState.language.subscribe(() => this.#show());
     this.#show();
     this.#look();
   }
@@ -171,7 +171,7 @@ export class RobotPanel {
   byHost(port = 'turn') {
     return this.#connect(async (heard) => {
       const way = new HostRobot(heard);
-      return { way, met: way.connect(port, so.robot.value, currentLanguage()) };
+      return { way, met: way.connect(port, pageState.robotName.value, currentLanguage()) };
     });
   }
 
@@ -186,13 +186,13 @@ export class RobotPanel {
   }
 
   get #baud() {
-    return robotOf(so.robot.value)?.baud ?? 9600;
+    return robotOf(pageState.robotName.value)?.baud ?? 9600;
   }
 
   /** @param {import('./direct.js').Port} port @param {import('./transport.js').Heard} heard */
   #direct(port, heard) {
     const way = new DirectRobot(this.#page.python, port, heard, (keys) => keepAt(KEYS, keys));
-    return { way, met: way.connect(so.robot.value, currentLanguage(), kept(KEYS)) };
+    return { way, met: way.connect(pageState.robotName.value, currentLanguage(), kept(KEYS)) };
   }
 
   /** @param {(heard: import('./transport.js').Heard) => Promise<{way: Transport, met: Promise<About>}>} open */
@@ -227,8 +227,8 @@ export class RobotPanel {
   /** @param {About} about */
   #begin(about) {
     this.#speech.clear();
-    const isOther = about.robot !== null && about.robot !== so.robot.value;
-    if (about.robot !== null && isOther) so.robot.say(about.robot);
+    const isOther = about.robot !== null && about.robot !== pageState.robotName.value;
+    if (about.robot !== null && isOther) pageState.robotName.set(about.robot);
     if (about.owner === 'other') this.#speech.say('say_owned', { name: this.#name });
     else if (isOther) this.#speech.say('say_other_kit', { name: this.#name, robot: String(about.robot) });
     else this.#speech.say('say_connected', { name: this.#name });
@@ -272,14 +272,14 @@ export class RobotPanel {
 
   /** @param {boolean} runs */
   #upload(runs) {
-    const program = so.checked.value;
+    const program = pageState.checked.value;
     if (!program?.image) {
       this.#speech.say(program ? 'first_repair' : 'press_again'); // a robot does not start late by itself
       if (runs && program) this.#stop('say_broken'); // what runs is not what is seen
       return;
     }
     this.#speech.begin('say_sending');
-    this.#ask({ do: 'upload', image: program.image, robot: so.robot.value, runs }, (answer) => {
+    this.#ask({ do: 'upload', image: program.image, robot: pageState.robotName.value, runs }, (answer) => {
       const { program: sum = '', saved = 'MEMORY' } = answer;
       this.#sent = { program: sum, places: program.places, of: program };
       if (runs && program.start === 'SB') this.#page.recorder.wait(sum);
@@ -290,7 +290,7 @@ export class RobotPanel {
   /** Runs a line now. @param {string} line */
   async #live(line) {
     if (!line.trim() || !this.#about) return;
-    const robot = so.robot.value;
+    const robot = pageState.robotName.value;
     const data = new TextEncoder().encode(`SI|${line}`);
     /** @type {Checked} */
     const found = await this.#page.python.ask({ do: 'check', robot, language: currentLanguage() }, data);
@@ -377,7 +377,7 @@ export class RobotPanel {
     const [, line, column, end_line, end_column] = place;
     this.#speech.tell(text('say_fault', { line, what }));
     // else the places are those of another text
-    if (so.checked.value === sent?.of) this.#page.goTo({ line, column, end_line, end_column });
+    if (pageState.checked.value === sent?.of) this.#page.goTo({ line, column, end_line, end_column });
   }
 
   #show() {

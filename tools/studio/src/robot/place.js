@@ -1,6 +1,6 @@
 // The line that a real robot runs now, where it tells that and runs the program of the page.
 
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { rangeAt } from '../writing/parts.js';
 
 /** @typedef {import('./transport.js').RobotEvent} RobotEvent */
@@ -12,7 +12,7 @@ export class RobotPlace {
   #told = null;
 
   constructor() {
-    so.checked.watch(() => {
+    pageState.checked.subscribe(() => {
       if (this.#told) this.#show();
     });
   }
@@ -36,9 +36,9 @@ export class RobotPlace {
   }
 
   #show() {
-    const program = so.checked.value;
+    const program = pageState.checked.value;
     const at = Number(this.#told?.at ?? -1);
     const isHere = program?.image && program.program === this.#told?.program && at >= 0 && at < program.bytes;
-    so.runningThere.say(isHere ? rangeAt(program.places, at) : null);
+    pageState.robotRun.set(isHere ? rangeAt(program.places, at) : null);
   }
 }

@@ -5,7 +5,7 @@
 import { element } from '../page/elements.js';
 import { bugSaid } from '../page/faults.js';
 import { bytesOf, download, whenChosen } from '../page/files.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { currentLanguage, known, text } from '../page/texts.js';
 
 /** @typedef {import('./transport.js').RobotEvent} RobotEvent */
@@ -42,7 +42,7 @@ export class Recorder {
         this.#tell(() => text('unreadable'));
       }
     });
-    so.language.watch(() => this.#say());
+    pageState.language.subscribe(() => this.#say());
     this.#show();
   }
 
@@ -102,7 +102,7 @@ export class Recorder {
 
   /** The file; of a run that goes on, what there is. */
   #whole() {
-    const head = { tiniscript_recording: VERSION, program: this.#program, robot: so.robot.value };
+    const head = { tiniscript_recording: VERSION, program: this.#program, robot: pageState.robotName.value };
     const end = this.#isOver ? [] : [{ ms: Math.min(this.#ms, MOST_MS), event: 'STOPPED' }];
     return [head, ...this.#events, ...end].map((row) => `${JSON.stringify(row)}\n`).join('');
   }
@@ -116,7 +116,7 @@ export class Recorder {
     this.#tell(() => text('record_comparing'));
     const { python, world } = this.#page;
     try {
-      const request = { do: 'replay', robot: so.robot.value, world: world(), text: so.text.value, language: currentLanguage() };
+      const request = { do: 'replay', robot: pageState.robotName.value, world: world(), text: pageState.programText.value, language: currentLanguage() };
       const found = await python.ask(request, data);
       this.#tell(() => said(found));
     } catch (why) {

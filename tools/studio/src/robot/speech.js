@@ -2,7 +2,7 @@
 
 import { element } from '../page/elements.js';
 import { shown } from './plain_text.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { hasText, known, text } from '../page/texts.js';
 
 /** @typedef {import('./transport.js').Failed} Failed */
@@ -21,7 +21,7 @@ export class Speech {
   #list = element('link_shown', HTMLElement);
 
   constructor() {
-    so.language.watch(() => this.#say());
+    pageState.language.subscribe(() => this.#say());
   }
 
   #say() {

@@ -1,7 +1,7 @@
 // Which screen is seen: the start, or the program and its robot. The address of the latter ends with
 // `#editor`: a reload stays there, Back leads to the start, and a page can be opened there at once.
 
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 
 /** @typedef {'start' | 'program'} Screen */
 
@@ -15,19 +15,19 @@ function isScreen() {
 
 /** @param {Screen} screen */
 function put(screen) {
-  if (so.screen.value === screen) return;
+  if (pageState.screen.value === screen) return;
   root.dataset['screen'] = screen;
-  so.screen.say(screen);
+  pageState.screen.set(screen);
 }
 
 /** @returns {boolean} */
 export function isStart() {
-  return so.screen.value === 'start';
+  return pageState.screen.value === 'start';
 }
 
 /** @param {Screen} screen */
 export function show(screen) {
-  if (so.screen.value === screen) return;
+  if (pageState.screen.value === screen) return;
   history.pushState(null, '', location.pathname + location.search + (screen === 'start' ? '' : EDITOR));
   put(screen);
 }

@@ -2,7 +2,7 @@
 
 import { element } from '../page/elements.js';
 import { button, made } from '../page/made.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { currentLanguage, known, text } from '../page/texts.js';
 import { titleOf, versions } from '../programs/versions.js';
 import { BEGINNINGS } from './beginnings.js';
@@ -40,13 +40,13 @@ export class Start {
         element(place, HTMLElement).focus({ preventScroll: true });
       });
     }
-    so.screen.watch((screen) => {
+    pageState.screen.subscribe((screen) => {
       if (screen === 'start') this.#page.leave();
       else if (!this.#isBeginning) this.#page.see();
       this.#showPrograms();
       element(screen === 'start' ? 'start' : 'home', HTMLElement).focus({ preventScroll: true });
     });
-    so.language.watch(() => this.#showPrograms());
+    pageState.language.subscribe(() => this.#showPrograms());
     if (isStart()) this.#showPrograms();
     else page.see();
   }

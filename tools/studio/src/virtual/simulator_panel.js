@@ -10,7 +10,7 @@ import { made } from '../page/made.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { hasText, text } from '../page/texts.js';
 import { isSecond } from '../page/twice.js';
 import { devicesOf, nameOf, onBlock } from '../page/words.js';
@@ -150,11 +150,11 @@ export class SimulatorPanel {
       this.#arena.resize();
       this.#arena.draw(this.#simulator.state);
     }).observe(element('arena', HTMLCanvasElement));
-    so.language.watch(() => this.#show());
-    so.areWordsShown.watch(() => this.#show());
-    so.robot.watch(() => this.begin());
-    so.breakpoints.watch(() => this.#breakpointsChanged());
-    so.text.watch(() => { // what runs is no longer what is seen
+    pageState.language.subscribe(() => this.#show());
+    pageState.areWordsShown.subscribe(() => this.#show());
+    pageState.robotName.subscribe(() => this.begin());
+    pageState.breakpoints.subscribe(() => this.#breakpointsChanged());
+    pageState.programText.subscribe(() => { // what runs is no longer what is seen
       this.#places = [];
       this.#show();
     });
@@ -246,7 +246,7 @@ export class SimulatorPanel {
     this.#simulator.leave();
     this.#plot.begin();
     this.#variables = [];
-    this.#arena.begin(this.#shapes, so.robot.value, this.#world.goals);
+    this.#arena.begin(this.#shapes, pageState.robotName.value, this.#world.goals);
     this.#show();
   }
 
@@ -273,7 +273,7 @@ export class SimulatorPanel {
 
   /** After a change of the text those remain whose breakpoints are still there. */
   #findStops() {
-    this.#stops = new Map(so.breakpoints.value.map((each) => [
+    this.#stops = new Map(pageState.breakpoints.value.map((each) => [
       each.point, this.#places.length ? offsetsOf(this.#places, [each]) : this.#stops.get(each.point) ?? [],
     ]));
   }
@@ -291,7 +291,7 @@ export class SimulatorPanel {
     this.#seenRun();
     const start = ++this.#starts;
     this.#drawing.said = '';
-    let program = so.checked.value;
+    let program = pageState.checked.value;
     if (!program) {
       this.#isWaiting = true;
       this.#note = text('still_compiling');
@@ -308,14 +308,14 @@ export class SimulatorPanel {
     this.#sounds.begin();
     this.#wasStopped = false;
     this.#bumps = 0;
-    this.#arena.begin(this.#world.shapes, so.robot.value, this.#world.goals);
+    this.#arena.begin(this.#world.shapes, pageState.robotName.value, this.#world.goals);
     this.#plot.begin();
     this.#shown = '';
     this.#places = program.places;
     this.#variables = program.variables;
     this.#findStops();
     const world = judged ?? this.#world.request;
-    await this.#simulator.begin(program, so.robot.value, world, judged ? [] : this.#offsets, isPaused, least);
+    await this.#simulator.begin(program, pageState.robotName.value, world, judged ? [] : this.#offsets, isPaused, least);
   }
 
   stop() {
@@ -372,8 +372,8 @@ export class SimulatorPanel {
     const range = this.#place();
     const isAlone = !state || state.fault || state.is_held;
     const ranges = isAlone ? [range] : state.places.map((at) => rangeAt(this.#places, at));
-    so.running.say({ ranges: ranges.filter((each) => each !== null), isHeld: Boolean(state?.is_held) });
-    so.fault.say({ range: state?.fault ? range : null, said: state?.fault ? faultSaid(state.fault) : '' });
+    pageState.virtualRun.set({ ranges: ranges.filter((each) => each !== null), isHeld: Boolean(state?.is_held) });
+    pageState.fault.set({ range: state?.fault ? range : null, said: state?.fault ? faultSaid(state.fault) : '' });
   }
 
   /** What runs in the text that is seen, or what had a fault. */
@@ -403,7 +403,7 @@ export class SimulatorPanel {
       this.#arena.say(this.#shown, shown[0]);
     }
     this.#plot.add(state.now_ms - state.began_ms, [
-      ...devicesOf(so.robot.value, 'sensor').map((device, k) => ({ name: nameOf(device), value: numberOf(state.readings[k]?.text) })),
+      ...devicesOf(pageState.robotName.value, 'sensor').map((device, k) => ({ name: nameOf(device), value: numberOf(state.readings[k]?.text) })),
       ...this.#variables.map(({ name, is_yes_no }, k) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[k])) : state.variables[k] })),
       { name: 'SHOW', value: numberOf(this.#shown) },
     ]);
@@ -451,7 +451,7 @@ export class SimulatorPanel {
       [text('time'), state ? `${seconds} s` : '–'],
       [text('motors'), state ? state.motors.map((power) => `${power} %`).join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
-      ...devicesOf(so.robot.value, 'sensor').map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–', partOf(device, state?.readings[k]?.value)]),
+      ...devicesOf(pageState.robotName.value, 'sensor').map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–', partOf(device, state?.readings[k]?.value)]),
       ...this.#variables.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
       ...(this.#shown ? [['SHOW', this.#shown]] : []),
     ];

@@ -3,7 +3,7 @@
 
 import { element } from '../page/elements.js';
 import { pictured, worldPicture } from '../page/pictures.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { called, text } from '../page/texts.js';
 import { WORLDS } from '../page/words.js';
 import { OwnWorlds } from './own.js';
@@ -58,7 +58,7 @@ export class WorldChoice {
       }
       changed();
     });
-    so.language.watch(() => this.#show());
+    pageState.language.subscribe(() => this.#show());
     this.#show();
   }
 
@@ -110,12 +110,12 @@ export class WorldChoice {
 
   /** @param {World} world it is written as a file has it */
   write(world) {
-    return this.#own.write(world, so.robot.value);
+    return this.#own.write(world, pageState.robotName.value);
   }
 
   /** Keeps this person's worlds on this device. */
   keepOwn() {
-    return this.#own.keep(so.robot.value);
+    return this.#own.keep(pageState.robotName.value);
   }
 
   /** Brings this person's worlds back; returns whether the newest can still be read. */

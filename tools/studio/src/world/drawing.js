@@ -4,7 +4,7 @@
 import { element } from '../page/elements.js';
 import { bytesOf, download, whenChosen } from '../page/files.js';
 import { ownCopy } from './own.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { currentLanguage, known, text } from '../page/texts.js';
 import {
   FLOOR, handleOf, isSame, KINDS, moved, NUMBERS, onFloor, partAt, partsOf, pointAt, pointsOf, START, turnedBy, turnedPart,
@@ -92,7 +92,7 @@ export class WorldDrawing {
     this.#canvas.addEventListener('pointerup', () => this.#up());
     this.#canvas.addEventListener('pointercancel', () => this.#giveUp());
     this.#canvas.addEventListener('keydown', (event) => this.#key(event));
-    so.language.watch(() => {
+    pageState.language.subscribe(() => {
       if (!this.isOn) return;
       this.said = text('world_hint');
       this.#show();

@@ -1,6 +1,6 @@
 // Has the newest program compiled, one text at a time, and says what the compiler says of it.
 
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
 
@@ -28,16 +28,16 @@ export class Checking {
   constructor(python, fail) {
     this.#python = python;
     this.#fail = fail;
-    so.text.watch(() => {
+    pageState.programText.subscribe(() => {
       this.#forget();
       clearTimeout(this.#typing);
       this.#typing = window.setTimeout(() => this.#check(), TYPING_MS);
     });
-    so.robot.watch(() => {
+    pageState.robotName.subscribe(() => {
       this.#forget();
       this.#check();
     });
-    so.language.watch(() => this.#forget());
+    pageState.language.subscribe(() => this.#forget());
   }
 
   /** Python answers from now on. */
@@ -70,7 +70,7 @@ export class Checking {
 
   #forget() {
     if (dataset['state'] !== 'failed') dataset['state'] = 'changed';
-    so.checked.say(null);
+    pageState.checked.set(null);
   }
 
   async #check() {
@@ -81,12 +81,12 @@ export class Checking {
         const request = { do: 'check', robot: now.robot, language: now.language };
         const answer = /** @type {Checked} */ (await this.#python.ask(request, new TextEncoder().encode(now.text)));
         this.#newest = { key: JSON.stringify(now), answer };
-        so.isRobotNamed.say(answer.names_robot);
-        if (answer.robot !== now.robot && so.robot.value === now.robot) so.robot.say(answer.robot); // and once more
+        pageState.isRobotNamed.set(answer.names_robot);
+        if (answer.robot !== now.robot && pageState.robotName.value === now.robot) pageState.robotName.set(answer.robot); // and once more
       }
       const { answer } = this.#newest;
-      if (answer && so.checked.value !== answer) { // also where a text has come back
-        so.checked.say(answer);
+      if (answer && pageState.checked.value !== answer) { // also where a text has come back
+        pageState.checked.set(answer);
         clearTimeout(this.#pause);
         this.#turn += 1;
         this.#pause = window.setTimeout(() => this.#offer(answer, this.#turn), PAUSE_MS);
@@ -108,14 +108,14 @@ export class Checking {
    * @param {number} turn
    */
   async #offer(answer, turn) {
-    const isNewest = () => so.checked.value === answer && this.#turn === turn;
+    const isNewest = () => pageState.checked.value === answer && this.#turn === turn;
     try {
       for (const [which, finding] of answer.findings.entries()) {
         if (!isNewest()) return;
         if (!finding.may_repair) continue;
-        const request = { do: 'repair', robot: so.robot.value, which };
-        finding.repair ??= (await this.#python.ask(request, new TextEncoder().encode(so.text.value))).changes;
-        if (isNewest() && finding.repair?.length) so.offered.say(which);
+        const request = { do: 'repair', robot: pageState.robotName.value, which };
+        finding.repair ??= (await this.#python.ask(request, new TextEncoder().encode(pageState.programText.value))).changes;
+        if (isNewest() && finding.repair?.length) pageState.offeredFinding.set(which);
       }
     } catch (why) {
       this.#fail(why);
@@ -130,5 +130,5 @@ export class Checking {
 
 /** What the compiler is asked about now. */
 function asked() {
-  return { text: so.text.value, robot: so.robot.value, language: so.language.value };
+  return { text: pageState.programText.value, robot: pageState.robotName.value, language: pageState.language.value };
 }

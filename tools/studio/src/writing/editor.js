@@ -13,7 +13,7 @@ import { breakpoints, placesOf, pointsOf, pressed, setBreakpoints } from './brea
 import { colors, completionOf, languageOf } from './language.js';
 import { whole } from './messages.js';
 import { partAt } from './parts.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { text, textsOf } from '../page/texts.js';
 
 /** @import { Finding, Change } from '../python.js' */
@@ -84,9 +84,9 @@ export class Editor {
             if (!update.docChanged) return;
             this.#places = null;
             this.#marked = '';
-            so.text.say(this.text);
+            pageState.programText.set(this.text);
           }),
-          breakpoints(toggle, () => so.breakpoints.say(this.#breakpoints)),
+          breakpoints(toggle, () => pageState.breakpoints.set(this.#breakpoints)),
           lineNumbers({ domEventHandlers: { mousedown: (_, line, event) => pressed(line, event, toggle) } }),
           history(),
           // Tab leaves the editor: who has no mouse must get out.
@@ -103,9 +103,9 @@ export class Editor {
         ],
       }),
     });
-    so.robot.watch(() => this.#view.dispatch({ effects: this.#robot.reconfigure(forRobot()) }));
-    so.language.watch(() => this.#view.dispatch({ effects: this.#words.reconfigure(this.#inLanguage()) }));
-    so.checked.watch((answer) => {
+    pageState.robotName.subscribe(() => this.#view.dispatch({ effects: this.#robot.reconfigure(forRobot()) }));
+    pageState.language.subscribe(() => this.#view.dispatch({ effects: this.#words.reconfigure(this.#inLanguage()) }));
+    pageState.checked.subscribe((answer) => {
       if (answer) this.#places = answer.places.length ? answer.places : null;
     });
   }
@@ -186,7 +186,7 @@ export class Editor {
       return;
     }
     const begin = this.#partAt(at, isLine);
-    if (begin === null) so.note.say(text('no_breakpoint', { line: line.number }));
+    if (begin === null) pageState.note.set(text('no_breakpoint', { line: line.number }));
     else setBreakpoints(this.#view, [begin], !placesOf(this.#view.state).includes(begin));
   }
 
@@ -277,6 +277,6 @@ export class Editor {
 }
 
 function forRobot() {
-  const robot = so.robot.value;
+  const robot = pageState.robotName.value;
   return [languageOf(robot), autocompletion({ override: [completionOf(robot)], icons: false })];
 }

@@ -4,7 +4,7 @@
 import { element } from '../page/elements.js';
 import { bugSaid } from '../page/faults.js';
 import { blocksPicture, offer, pictured } from '../page/pictures.js';
-import { so } from '../page/so.js';
+import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 
 /** @typedef {import('../blocks/blocks.js').Blocks} Blocks */
@@ -71,18 +71,18 @@ export class Views {
       }, { capture: true });
     }
     new ResizeObserver(() => this.#blocks?.resize()).observe(this.#pane);
-    so.language.watch(() => this.#showWords());
-    so.areWordsShown.watch(() => this.#showWords());
-    so.robot.watch(() => this.#setRobot());
-    so.taught.watch((kinds) => this.#blocks?.setTaught(kinds));
-    so.text.watch(() => this.#textChanged());
-    so.checked.watch((answer) => {
+    pageState.language.subscribe(() => this.#showWords());
+    pageState.areWordsShown.subscribe(() => this.#showWords());
+    pageState.robotName.subscribe(() => this.#setRobot());
+    pageState.taughtBlocks.subscribe((kinds) => this.#blocks?.setTaught(kinds));
+    pageState.programText.subscribe(() => this.#textChanged());
+    pageState.checked.subscribe((answer) => {
       if (answer) this.#showFindings(answer.findings);
     });
-    so.breakpoints.watch(() => this.#showBreakpoints());
-    so.running.watch(() => this.#mark());
-    so.runningThere.watch(() => this.#mark());
-    so.fault.watch(({ range, said }) => {
+    pageState.breakpoints.subscribe(() => this.#showBreakpoints());
+    pageState.virtualRun.subscribe(() => this.#mark());
+    pageState.robotRun.subscribe(() => this.#mark());
+    pageState.fault.subscribe(({ range, said }) => {
       if (!range || !this.#isStale()) this.#blocks?.showFault(range, said);
     });
     this.#showWords();
@@ -119,7 +119,7 @@ export class Views {
   }
 
   #setRobot() {
-    this.#blocks?.setRobot(so.robot.value);
+    this.#blocks?.setRobot(pageState.robotName.value);
     this.#shown = null;
     if (this.#isOn) this.#refresh(true);
   }
@@ -145,13 +145,13 @@ export class Views {
   }
 
   #showBreakpoints() {
-    if (!this.#isStale()) this.#blocks?.showBreakpoints(so.breakpoints.value);
+    if (!this.#isStale()) this.#blocks?.showBreakpoints(pageState.breakpoints.value);
   }
 
   /** Where both robots run, the real one is seen, but where the virtual one is held. */
   #mark() {
-    const { ranges, isHeld } = so.running.value;
-    const there = so.runningThere.value;
+    const { ranges, isHeld } = pageState.virtualRun.value;
+    const there = pageState.robotRun.value;
     this.#running = isHeld || !there ? ranges : [there];
     this.#page.editor.showRunning(this.#running, isHeld);
     if (!this.#isStale()) this.#blocks?.showRunning(this.#running);
@@ -202,13 +202,13 @@ export class Views {
 
   async #fetch() {
     const { Blocks: Kind } = await import('../blocks/blocks.js');
-    this.#blocks = new Kind(this.#pane, so.robot.value, this.#page.work.level, {
+    this.#blocks = new Kind(this.#pane, pageState.robotName.value, this.#page.work.level, {
       changed: () => this.#blocksChanged(),
       toggle: (place) => {
         if (!this.#isStale()) this.#page.editor.toggleBreakpoint(place);
       },
     });
-    this.#blocks.setTaught(so.taught.value);
+    this.#blocks.setTaught(pageState.taughtBlocks.value);
     this.#pane.dataset['state'] = 'empty';
     if (this.#isReady) this.#refresh(true);
   }
@@ -280,7 +280,7 @@ export class Views {
       while (this.#isStale()) {
         const now = this.#page.editor.text;
         /** @type {Form & {size: number}} */
-        const form = await this.#page.python.ask({ do: 'blocks', robot: so.robot.value }, new TextEncoder().encode(now));
+        const form = await this.#page.python.ask({ do: 'blocks', robot: pageState.robotName.value }, new TextEncoder().encode(now));
         while (this.#blocks.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
         if (now !== this.#page.editor.text) continue;
         const isKept = !this.#isWanted && this.#page.editor.hasFocus && this.#shown !== null && hasGrey(form);
@@ -306,7 +306,7 @@ export class Views {
   /** Blocks that are new have nothing at them yet. */
   #showAll() {
     this.#blocks?.showFindings(this.#findings);
-    this.#blocks?.showFault(so.fault.value.range, so.fault.value.said);
+    this.#blocks?.showFault(pageState.fault.value.range, pageState.fault.value.said);
     this.#blocks?.showRunning(this.#running);
     this.#showBreakpoints();
   }

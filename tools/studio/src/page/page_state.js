@@ -1,0 +1,52 @@
+// The state that several parts of the page show: who changes it sets it here once, and who shows it
+// subscribes. So no two parts can show something else, and none has to know another one.
+
+/** @typedef {import('../writing/editor.js').Range} Range */
+/** @typedef {{line: number, column: number, point: object}} Breakpoint */
+
+/** @template T */
+class Observable {
+  #value;
+  /** @type {((value: T) => unknown)[]} */
+  #subscribers = [];
+
+  /** @param {T} value at the beginning */
+  constructor(value) {
+    this.#value = value;
+  }
+
+  get value() {
+    return this.#value;
+  }
+
+  /** @param {T} value from now on */
+  set(value) {
+    this.#value = value;
+    for (const each of this.#subscribers) each(value);
+  }
+
+  /** @param {(value: T) => unknown} act whenever it is set, in the order of those who subscribed */
+  subscribe(act) {
+    this.#subscribers.push(act);
+  }
+}
+
+export const pageState = {
+  screen: new Observable(/** @type {'' | 'start' | 'program'} */ ('')), // that is seen
+  language: new Observable(''),
+  areWordsShown: new Observable(false), // of the text, on blocks and at readings
+  robotName: new Observable(''),
+  taughtBlocks: new Observable(/** @type {string[]} */ ([])), // kinds of blocks that the open lesson speaks of
+  isRobotNamed: new Observable(false), // by the text: `// robot: liner`
+  programText: new Observable(''),
+  /** What the compiler says of the newest text; null while it is at work. */
+  checked: new Observable(/** @type {import('../python.js').Checked | null} */ (null)),
+  offeredFinding: new Observable(-1), // the number of one of its findings, which has a button from now on
+  note: new Observable(''), // a sentence about what has just been done
+  /** Where the program is to stop; a point stays the same while its text moves. */
+  breakpoints: new Observable(/** @type {Breakpoint[]} */ ([])),
+  /** What runs on the virtual robot, a range for each task; where it is held somebody wants to see it. */
+  virtualRun: new Observable({ ranges: /** @type {Range[]} */ ([]), isHeld: false }),
+  robotRun: new Observable(/** @type {Range | null} */ (null)), // on a real one
+  fault: new Observable({ range: /** @type {Range | null} */ (null), said: '' }), // of a run
+};
