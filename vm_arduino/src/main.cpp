@@ -20,7 +20,7 @@ using namespace tiniscript;
 
 void setup() {
   board_begin();
-  firmware_begin(board_told());
+  firmware_begin(board_boot_info());
   uart_begin(kBaud);
 }
 
@@ -28,7 +28,7 @@ namespace {
 
 // The work for each millisecond and each move of the button; skipping it makes other turns quicker.
 // What a LIVE cuts off comes a millisecond later.
-void attend() {
+void tick_board() {
   const uint32_t now_ms = board_now_ms();
   board_tick(now_ms);
   uart_tick();
@@ -36,7 +36,7 @@ void attend() {
   if (press == Press::kPressed) firmware_on_pressed();
   if (press == Press::kHeld) firmware_on_held();
   if (press == Press::kReleased) firmware_on_released();
-  if (firmware_is_awaited()) return;
+  if (firmware_has_due_live()) return;
   if (board_has_disconnected()) firmware_on_disconnect();
   firmware_on_time(now_ms);
 }
@@ -45,7 +45,7 @@ void attend() {
 
 void loop() {
   poll_events();
-  if (!firmware_is_awaited() && board_has_news()) attend();
+  if (!firmware_has_due_live() && board_has_news()) tick_board();
   firmware_turn();
   uart_send();
 }

@@ -123,9 +123,9 @@ void answer_begin(RequestReader* request, Writer*) {
   table.kit = request->u16();
   table.sensors = request->u8();
   table.actuators = request->u8();
-  Board board;
-  board.reset = static_cast<Reset>(request->u8());
-  board.seed = request->u32();
+  BootInfo boot_info;
+  boot_info.reset = static_cast<Reset>(request->u8());
+  boot_info.seed = request->u32();
   table.max_run_ms = request->u32();
   table.write_ticks = request->u8();
   table.hashes.resize(static_cast<size_t>(table.sensors + table.actuators));
@@ -135,7 +135,7 @@ void answer_begin(RequestReader* request, Writer*) {
   table.memory = request->text();
   table.words = request->text();
   table.language = request->u16();
-  firmware_begin(board);
+  firmware_begin(boot_info);
 }
 
 // Lets so many ticks of a millisecond pass, and as many more as bytes arrive, one in each tick.

@@ -269,10 +269,10 @@ tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_
   own.turn = turn;
   own.discs = {edge_cm, edge_degrees, has_two != 0};
   own.language = static_cast<uint16_t>(language);
-  Board board;
-  board.reset = static_cast<Reset>(reset);
-  board.seed = seed;
-  firmware_begin(board);
+  BootInfo boot_info;
+  boot_info.reset = static_cast<Reset>(reset);
+  boot_info.seed = seed;
+  firmware_begin(boot_info);
 }
 
 // So many bytes are in the inbox now, behind those that have been heard.

@@ -75,11 +75,11 @@ bool board_has_disconnected() {
   return !is_now;
 }
 
-Board board_told() {
-  Board told;
-  told.reset = watchdog_reset_cause();
-  told.seed = watchdog_seed() ^ clock_us();
-  return told;
+BootInfo board_boot_info() {
+  BootInfo info;
+  info.reset = watchdog_reset_cause();
+  info.seed = watchdog_seed() ^ clock_us();
+  return info;
 }
 
 uint16_t board_kit() { return kBoardKit; }

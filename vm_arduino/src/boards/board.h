@@ -27,7 +27,7 @@ Press board_button(uint32_t now_ms);
 // disconnected. Call it at least every 10 ms. An undriven pin stays high.
 bool board_has_disconnected();
 
-// What the board tells the firmware at the start.
-Board board_told();
+// What the firmware begins with.
+BootInfo board_boot_info();
 
 }  // namespace tiniscript

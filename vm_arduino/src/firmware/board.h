@@ -12,7 +12,7 @@
 namespace tiniscript {
 
 // The cause of the last reset, and a seed that rarely repeats.
-struct Board {
+struct BootInfo {
   Reset reset;
   uint32_t seed;
 };

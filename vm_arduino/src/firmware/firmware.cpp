@@ -19,14 +19,14 @@ Store store;
 Receiver receiver;
 #endif
 
-void firmware_begin(const Board& what) {
+void firmware_begin(const BootInfo& boot_info) {
   robot_status.slot = kNoSlot;
-  begin_identity(what);
+  begin_identity(boot_info);
   store.boot();
 #ifdef tiniscript_transports
-  link.begin(static_cast<uint8_t>(what.seed & 0xff));
+  link.begin(static_cast<uint8_t>(boot_info.seed & 0xff));
 #else
-  link.begin(&receiver, static_cast<uint8_t>(what.seed & 0xff));
+  link.begin(&receiver, static_cast<uint8_t>(boot_info.seed & 0xff));
 #endif
 }
 
@@ -44,7 +44,7 @@ void firmware_turn() {
   tick_persistence();
 }
 
-bool firmware_is_awaited() { return link.is_awaited(); }
+bool firmware_has_due_live() { return link.has_due_live(); }
 
 void firmware_tick(uint32_t time_ms) {
   firmware_on_time(time_ms);

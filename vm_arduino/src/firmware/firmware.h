@@ -15,7 +15,7 @@
 namespace tiniscript {
 
 // Call it once, after the board has begun. Nothing moves until the button or the link starts it.
-void firmware_begin(const Board& board);
+void firmware_begin(const BootInfo& boot_info);
 
 // Passes the time; call it at least once a millisecond.
 void firmware_on_time(uint32_t now_ms);
@@ -24,7 +24,7 @@ void firmware_on_time(uint32_t now_ms);
 void firmware_turn();
 
 // Whether `firmware_turn` would start a LIVE now, so that other work may wait for a turn.
-bool firmware_is_awaited();
+bool firmware_has_due_live();
 
 // Calls both.
 void firmware_tick(uint32_t now_ms);

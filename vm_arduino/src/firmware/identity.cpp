@@ -31,10 +31,10 @@ bool change(uint8_t* to, const uint8_t* from, uint8_t length) {
 
 }  // namespace
 
-void begin_identity(const Board& board) {
+void begin_identity(const BootInfo& boot_info) {
   identity.kit = board_kit();
-  identity.nonce = board.seed;
-  identity.reset = board.reset;
+  identity.nonce = boot_info.seed;
+  identity.reset = boot_info.reset;
   identity.features = static_cast<uint8_t>(kRobotTextLevel) | kPlaces;
   device_info.sensors = board_sensors();
   device_info.actuators = board_actuators();

@@ -12,7 +12,7 @@
 namespace tiniscript {
 
 // Takes over the board's data.
-void begin_identity(const Board& board);
+void begin_identity(const BootInfo& boot_info);
 
 // Makes an id if none is saved.
 void make_identity();

@@ -132,7 +132,7 @@ void keep_keys() {
 
 void tick_persistence() {
   if (boot == Boot::kOver && (to_keep | keeping) == 0) return;  // nothing to save
-  if (link.is_awaited()) return;
+  if (link.has_due_live()) return;
   store.tick(may_commit());
   const bool is_busy = store.is_busy();
   const bool is_kept = store.state() == StoreState::kSaved;

@@ -12,9 +12,11 @@
 namespace tiniscript {
 
 #ifdef tiniscript_seals
-constexpr bool kHasSeals = kHasOwners;
+constexpr bool kMaySeal = true;
 #else
-constexpr bool kHasSeals = false;
+constexpr bool kMaySeal = false;
 #endif
+
+constexpr bool kHasSeals = kMaySeal && kHasOwners;
 
 }  // namespace tiniscript

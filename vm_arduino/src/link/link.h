@@ -38,7 +38,7 @@ class Link {
   void tick();
 
   // Whether `tick` would start a LIVE now: everything else may wait for that.
-  bool is_awaited() const { return is_ready_ && receiver_->has_frame(); }
+  bool has_due_live() const { return is_ready_ && receiver_->has_frame(); }
 
   // The memory of the image that was made ahead goes to somebody else: it must not start.
   void drop_ahead() { is_ready_ = false; }
@@ -157,11 +157,8 @@ class Link {
   // Times that run down to 0: until a client without frames no longer counts as listening, until
   // STOPPED is sent again, until a second of silence has passed, until text may follow the last
   // frame; and, as `kListen`, since a sealed frame.
-#ifdef tiniscript_seals
-  enum Time : uint8_t { kListen, kAgain, kSilence, kFrameSent, kSealHeard, kTimes };
-#else
-  enum Time : uint8_t { kListen, kAgain, kSilence, kFrameSent, kTimes };
-#endif
+  enum Time : uint8_t { kListen, kAgain, kSilence, kFrameSent, kSealHeard };
+  static constexpr uint8_t kTimes = kMaySeal ? kSealHeard + 1 : kSealHeard;
 
   // Rights of the session, one bit each: it has a challenge, it has asked for a claim, the button
   // has confirmed that. And the robot was stopped with the teacher's key.

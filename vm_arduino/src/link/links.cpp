@@ -85,9 +85,9 @@ void Links::seal() {
   for (Link& link : links_) link.seal();
 }
 
-bool Links::is_awaited() const {
+bool Links::has_due_live() const {
   for (const Link& link : links_) {
-    if (link.is_awaited()) return true;
+    if (link.has_due_live()) return true;
   }
   return false;
 }

@@ -27,7 +27,7 @@ class Links {
   void tick();
   void tell();
   void seal();
-  bool is_awaited() const;
+  bool has_due_live() const;
   bool stop_is_due() const;
   void done();
   void faulted();

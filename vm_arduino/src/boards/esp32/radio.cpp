@@ -134,7 +134,7 @@ void stop(Transport transport) {
 
 // A stop that is not in the bytes comes before what still waits from before it. So does one that
 // waits: of what it belongs to, the receiver decides when it comes.
-void radio_attend() {
+void radio_poll() {
   for (uint8_t place = kFirst; place < kTransports; place++) {
     const Transport transport = static_cast<Transport>(place);
     Pipe& pipe = radio_pipe(transport);

@@ -20,7 +20,7 @@ constexpr uint32_t kPlaceMs = 10000;
 // What the main loop calls: begins the radios when the robot knows its name; takes what they have
 // received; gives them what is to be sent.
 void radio_tick();
-void radio_attend();
+void radio_poll();
 void radio_send();
 
 // Bytes that found no room. It wraps around to 0.

@@ -143,7 +143,7 @@ void poll_events() {
     if (byte == 0 && zeroed != spoiled) zeroed = static_cast<uint8_t>(zeroed + 1);  // it is one
     take_zeros();
   }
-  radio_attend();
+  radio_poll();
 }
 
 void uart_send() {
