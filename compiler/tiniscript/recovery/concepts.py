@@ -139,7 +139,7 @@ def _speller() -> Speller:
 
 
 @lru_cache(4000)
-def concepts(word: str) -> tuple[Meaning, ...]:
+def meanings(word: str) -> tuple[Meaning, ...]:
     """Return which words of the language a word may mean, the likeliest first."""
     if word == "SI":
         return (Meaning("IF", KNOWN),)
@@ -149,7 +149,7 @@ def concepts(word: str) -> tuple[Meaning, ...]:
         return ()
     less = re.sub(r"(.)\1\1+", r"\1\1", word)  # `BEEEEEP`
     if less != word:
-        return (Meaning(less, MISSPELT),) if less in WORDS else concepts(less)
+        return (Meaning(less, MISSPELT),) if less in WORDS else meanings(less)
     alike, near = _speller().alike(word), _speller().near(word)
     guesses = (
         (concept_of(alike or ""), KNOWN),
@@ -162,7 +162,7 @@ def concepts(word: str) -> tuple[Meaning, ...]:
 
 def meant_by(word: str) -> str | None:
     """Return the word of the language that a word of another one surely says, misspelt or not."""
-    return next((each.concept for each in concepts(word) if each.cost < NEAR), None)
+    return next((each.concept for each in meanings(word) if each.cost < NEAR), None)
 
 
 def _in_two_words(word: str) -> str | None:
@@ -307,7 +307,7 @@ class Names:
         end, _, block = word.partition("_")
         if said_of(end, "end") and block in (*WORDS, *self.defs):
             return (Meaning(SOME_END, KNOWN),)
-        found = concepts(word)
+        found = meanings(word)
         return tuple(each for each in found if each.concept in WORDS or self.has(each.concept))
 
     def meant(self, word: str, most: int = MISSPELT) -> str:
