@@ -52,7 +52,7 @@ KNOWN: tuple[Known, ...] = (
           "byte == kControlC && line_ != Line::kSkipped", "byte == kControlC",
           "tests/link/test_typed_stops.py::test_a_stop_is_seen_behind_any_prefix"),
     Known("silence in frames, for who looks on", "vm_arduino/src/boards/esp32/stop_finder.h",
-          "if (zeros_.take(byte, now_ms)) fall_silent();",
+          "if (zeros_.take(byte, now_ms)) end_silence();",
           "if (zeros_.take(byte, now_ms)) typed_.begin();",
           "tests/link/test_typed_stops.py::test_a_stop_is_seen_behind_any_prefix"),
     Known("mistakes that are forgotten", "vm_arduino/src/link/console.cpp",

@@ -6,7 +6,7 @@ are all 0x20 to 0x7e ends a line of text, and text goes on.
 
 Knows where a packet begins and ends; `frames` checks whether a frame is undamaged. Holds one packet
 until it is taken, or several frames; packets that find no place are dropped, a stop is not. The C++
-version is `vm_arduino/src/link/receiver.cpp`.
+version, with the same names, is `vm_arduino/src/link/receiver.cpp`.
 """
 
 from __future__ import annotations
@@ -49,12 +49,12 @@ class Receiver:
         self.dropped = 0  # packets that arrived while one was waiting
         self._state = State.TEXT
         self._zeros = ZeroRun()
-        self._key = KeySequence()
+        self._keys = KeySequence()
         self._data = bytearray()  # of the open packet, as many as fit
         self._length = 0  # of the open packet; 0 between two
         self._is_dropping = False  # the open packet has found no place, or is too long for a frame
         self._is_cut = False  # a 0x00 has cut a line: the rest of it is lost
-        self._most_bytes = most_bytes
+        self._frame_bytes = most_bytes
         self._window = window
         self._behind: deque[Packet] = deque()  # frames behind the packet that waits
         self._last_ms = 0
@@ -77,14 +77,14 @@ class Receiver:
         elif self._state in (State.TEXT, State.LOST):
             self._put_text(byte)
         else:
-            self._put_framed(byte)
+            self._put_packet(byte)
         return self._zeros.put(byte)
 
     def _end_silence(self) -> None:
         self._zeros.begin()
-        self._key.begin()
+        self._keys.begin()
         if self._state not in (State.TEXT, State.LOST):
-            self._lose()
+            self._cut_packet()
             self._state, self._is_cut = State.TEXT, False
 
     def _put_zero(self) -> None:
@@ -92,40 +92,40 @@ class Receiver:
             self._end_packet(is_text=False)
             self._is_cut = False
         elif self._length:  # a line, which no 0x00 ends
-            self._lose()
+            self._cut_packet()
             self._is_cut = True
         self._state = State.BEGIN
 
     def _put_text(self, byte: int) -> None:
         if byte in LINE_ENDS:
             self._end_line()
-        elif not self._key.put(byte) and (self._length or not _is_skipped(byte)):
+        elif not self._keys.put(byte) and (self._length or not _is_skipped(byte)):
             if not self._length:
-                self._begin()
+                self._begin_packet()
                 self._state = State.LOST if self._is_dropping else State.TEXT
             self._add(byte)
 
-    def _put_framed(self, byte: int) -> None:
+    def _put_packet(self, byte: int) -> None:
         if self._state is State.LINE and byte in LINE_ENDS:
             self._end_line()
             return
         if self._state is State.BEGIN:
-            self._begin()
+            self._begin_packet()
             self._state = State.LINE
         if not _is_printable(byte):
             self._state = State.FRAME
         self._add(byte)
-        if self._length > self._room() and not self._is_dropping:
+        if self._length > self._most_bytes() and not self._is_dropping:
             self._is_dropping = True
             self.damaged += 1
 
-    def _begin(self) -> None:
+    def _begin_packet(self) -> None:
         self._is_dropping = not self._has_place()
         self.dropped += self._is_dropping
         self._data.clear()
 
     def _add(self, byte: int) -> None:
-        if not self._data or len(self._data) < self._room():
+        if not self._data or len(self._data) < self._most_bytes():
             self._data.append(byte)
         self._length += 1
 
@@ -133,7 +133,7 @@ class Receiver:
         if self._length and not self._is_cut:
             self._end_packet(is_text=True)
         self._state, self._length, self._is_cut = State.TEXT, 0, False
-        self._key.begin()
+        self._keys.begin()
 
     def _end_packet(self, is_text: bool) -> None:
         packet = Packet(is_text, bytes(self._data), self._length)
@@ -147,7 +147,7 @@ class Receiver:
         else:
             self._behind.append(packet)
 
-    def _lose(self) -> None:
+    def _cut_packet(self) -> None:
         """End the open packet, if there is one, before its end."""
         self.damaged += self._length > 0
         self._length = 0
@@ -158,8 +158,8 @@ class Receiver:
             return True
         return not self.packet.is_text and len(self._behind) < self._window - 1
 
-    def _room(self) -> int:
-        return self._most_bytes if self._data[0] <= LARGE_FIRST else SMALL_PACKET
+    def _most_bytes(self) -> int:
+        return self._frame_bytes if self._data[0] <= LARGE_FIRST else SMALL_PACKET
 
 
 class ZeroRun:

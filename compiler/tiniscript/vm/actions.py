@@ -59,12 +59,12 @@ def _moves(direction: str, left: int, right: int) -> None:
     def watch(m: Execution, after: int) -> Step:
         def step() -> int:
             driven = popped(m)
-            return m.prepare(_duration(m.task.stack.pop()), driven, after)
+            return m.watch(_duration(m.task.stack.pop()), driven, after)
 
         return step
 
     def watch_forever(m: Execution, after: int) -> Step:
-        return lambda: m.prepare(FOREVER, popped(m), after)
+        return lambda: m.watch(FOREVER, popped(m), after)
 
     def way(m: Execution) -> tuple[int, Powers]:
         power = _percent(m.task.stack.pop(), 0)
@@ -74,7 +74,7 @@ def _moves(direction: str, left: int, right: int) -> None:
         return lambda: m.drive(*way(m), after)
 
     def watch_go(m: Execution, after: int) -> Step:
-        return lambda: m.prepare(*way(m), after)
+        return lambda: m.watch(*way(m), after)
 
     HANDLERS[f"GO_{direction}"] = go
     HANDLERS[f"WATCH_GO_{direction}"] = watch_go
@@ -102,12 +102,12 @@ def _wait8(m: Execution, after: int, time: int) -> Step:
 
 @does("WATCH_WAIT")
 def _watch_wait(m: Execution, after: int) -> Step:
-    return lambda: m.prepare(_duration(m.task.stack.pop()), None, after)
+    return lambda: m.watch(_duration(m.task.stack.pop()), None, after)
 
 
 @does("WATCH_FOREVER_WAIT")
 def _watch_forever_wait(m: Execution, after: int) -> Step:
-    return lambda: m.prepare(FOREVER, None, after)
+    return lambda: m.watch(FOREVER, None, after)
 
 
 @does("UNTIL")
@@ -129,7 +129,7 @@ for _name, _compare in COMPARE.items():
 @does("STOP")
 def _stop(m: Execution, after: int) -> Step:
     def step() -> int:
-        m.stop()
+        m.stop_motors()
         return after
 
     return step

@@ -1,8 +1,8 @@
 """The machine, in Python.
 
 Runs verified code. Time comes in as `now_ms`, which does not wrap around here; the world is behind
-`task.Robot`. `tick` does a little and returns: nothing here waits. The C++ machine
-has the same names and the same order.
+`state.Robot`. `tick` does a little and returns: nothing here waits. In C++ it is
+`vm_arduino/src/vm/machine.h`.
 
 `values`, `actions` and `control` have a handler for each row of the table in `bytecode`; importing
 this fails if one is missing. A short instruction shares the handler of its long form. Those of

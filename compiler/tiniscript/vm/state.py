@@ -98,7 +98,7 @@ class Execution:
         """Set the motors, and go on at once."""
         self.robot.motors(left, right)
 
-    def stop(self) -> None:
+    def stop_motors(self) -> None:
         self.robot.motors(0, 0)
 
     def drive(self, move_ms: int, powers: Powers, after: int) -> int:
@@ -106,7 +106,7 @@ class Execution:
         self.robot.motors(*powers)
         return self.wait(move_ms, MOVE, after)
 
-    def prepare(self, move_ms: int, powers: Powers | None, after: int) -> int:
+    def watch(self, move_ms: int, powers: Powers | None, after: int) -> int:
         """Keep the move or the wait that an UNTIL watches; its check begins at `after`."""
         task = self.task
         task.move_ms, task.powers, task.is_watching = move_ms, powers, False

@@ -1,7 +1,8 @@
 """The machine with a scheduler, for programs with TASK and WHEN.
 
 Knows when each task has its turn, and which one has the motors. What an instruction does is where
-it is for all programs: here is what it does in a task. `bytecode_spec.md` has the same in words.
+it is for all programs: here is what it does in a task. `bytecode_spec.md` has the same in words;
+`vm_arduino/src/vm/scheduler.h` and `drive.h` have the same names.
 """
 
 from __future__ import annotations
@@ -72,7 +73,7 @@ class TaskRecord:
     def wants_motors(self) -> bool:
         return self.is_moving or self.has_set or self.keeps
 
-    def end_move(self) -> None:
+    def leave_move(self) -> None:
         """Its move is over, and so is its M. It goes on behind the move."""
         self.is_moving = self.is_blocked = self.drives = self.to_its_end = False
         self.forget_set()
@@ -83,7 +84,7 @@ class TaskRecord:
         if self.move_ms != FOREVER:
             left_ms = self.clock_ms + self.move_ms - now_ms
             if left_ms <= 0:
-                self.end_move()
+                self.leave_move()
                 return
             self.move_ms = left_ms
         self.is_blocked = True
@@ -102,7 +103,7 @@ class TaskMachine(Machine):
     ) -> None:
         """`code` must be verified for a kit with so many sensors; `seed` is 1 to 4294967295."""
         super().__init__(code, robot, sensors, seed, now_ms)
-        starts = [*sorted(tasks_in(code), key=lambda task: not task.is_when), Start(0, False)]
+        starts = [*sorted(find_tasks(code), key=lambda task: not task.is_when), Start(0, False)]
         # in the order of rank, the main task last
         self.tasks = [TaskRecord(*start, rank, now_ms) for rank, start in enumerate(starts)]
         self.me = self.tasks[-1]  # whose turn it is, or was last
@@ -184,13 +185,13 @@ class TaskMachine(Machine):
             task.is_blocked = False
             task.clock_ms = self.now_ms
             if task.check == task.after:
-                self._go_on(self._begin_move())
+                self._go_to(self._begin_move())
         elif task.to_its_end:
             self._end_move()
         elif not task.has_begun and self._must_wait_for_motors():
-            self._go_on(self._block())  # they have been taken since its check began
+            self._go_to(self._block())  # they have been taken since its check began
 
-    def _go_on(self, pc: int) -> None:
+    def _go_to(self, pc: int) -> None:
         """Go on where a step says."""
         self.me.pc = stopped(pc) if pc < 0 else pc
         if pc < 0:
@@ -262,16 +263,16 @@ class TaskMachine(Machine):
     # -- moves --------------------------------------------------------------------------------
 
     def drive(self, move_ms: int, powers: Powers, after: int) -> int:
-        self._keep(move_ms, powers, after)
+        self._keep_move(move_ms, powers, after)
         self.me.after = after
         return self._block() if self._is_below() else self._begin_move()
 
-    def prepare(self, move_ms: int, powers: Powers | None, after: int) -> int:
-        self._keep(move_ms, powers, after)
+    def watch(self, move_ms: int, powers: Powers | None, after: int) -> int:
+        self._keep_move(move_ms, powers, after)
         self.me.after = -1  # behind its UNTIL
         return self._block() if self._must_wait_for_motors() else after
 
-    def _keep(self, move_ms: int, powers: Powers | None, check: int) -> None:
+    def _keep_move(self, move_ms: int, powers: Powers | None, check: int) -> None:
         me = self.me
         me.move_ms, me.powers, me.check, me.has_begun = move_ms, powers, check, False
 
@@ -284,7 +285,7 @@ class TaskMachine(Machine):
             if me.drives:
                 self._end_move()
             elif me.is_moving:  # it waited for the motors, or stood still
-                me.end_move()
+                me.leave_move()
             me.has_begun = True
             return after
         if not me.has_begun:
@@ -306,7 +307,7 @@ class TaskMachine(Machine):
             self._take()
             me.forget_set()
             me.is_moving = me.drives = True
-            self._set(me.powers)
+            self._set_motors(me.powers)
         me.has_begun = True
         self.begin()
 
@@ -325,8 +326,8 @@ class TaskMachine(Machine):
         return stopped(pc)
 
     def _end_move(self) -> None:
-        self.me.end_move()
-        self._set(OFF)
+        self.me.leave_move()
+        self._set_motors(OFF)
 
     def _block(self) -> int:
         """Wait for the motors."""
@@ -344,19 +345,19 @@ class TaskMachine(Machine):
         me.set_to, me.has_set, me.keeps = (left, right), True, me.is_when
         if not self._is_below():
             self._take()
-            self._set(me.set_to)
+            self._set_motors(me.set_to)
 
-    def stop(self) -> None:
+    def stop_motors(self) -> None:
         me, holder = self.me, self.holder
         me.forget_set()
         me.keeps = me.is_when
         if self._is_below():
             return
-        self._set(OFF)
+        self._set_motors(OFF)
         if holder is not None:
             holder.forget_set()
             if holder.drives:
-                holder.end_move()
+                holder.leave_move()
                 holder.clock_ms = self.now_ms
 
     def _is_below(self) -> bool:
@@ -383,9 +384,9 @@ class TaskMachine(Machine):
                 highest.clock_ms = self.now_ms + self.is_first_round
             powers = OFF if highest is None else highest.set_to
             if powers != self.powers:
-                self._set(powers)
+                self._set_motors(powers)
 
-    def _set(self, powers: Powers) -> None:
+    def _set_motors(self, powers: Powers) -> None:
         self.powers = powers
         self.robot.motors(*powers)
 
@@ -394,7 +395,7 @@ def machine_of(
     code: bytes, robot: Robot, sensors: int = 0, seed: int = 1, now_ms: int = 0
 ) -> Machine:
     """Return the machine for `code`, which is verified: one with a scheduler where it has tasks."""
-    machine = TaskMachine if tasks_in(code) else Machine
+    machine = TaskMachine if find_tasks(code) else Machine
     return machine(code, robot, sensors, seed, now_ms)
 
 
@@ -408,7 +409,7 @@ class Start(NamedTuple):
     is_when: bool
 
 
-def tasks_in(code: bytes) -> list[Start]:
+def find_tasks(code: bytes) -> list[Start]:
     """Return the tasks of verified code in their order, without the main one."""
     found = []
     at = 0

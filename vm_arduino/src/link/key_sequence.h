@@ -9,7 +9,7 @@ namespace tiniscript {
 class KeySequence {
  public:
   // Takes a byte that does not end a line. Returns whether it belongs to a key, or may.
-  bool takes(uint8_t byte) {
+  bool put(uint8_t byte) {
     const Place before = place_;
     place_ = kNone;
     if (byte == 0x1b) {

@@ -11,7 +11,7 @@ constexpr uint8_t kEscape = 0x1b;
 constexpr uint8_t kDelete = 0x7f;
 
 // What every byte of a line is that a frame never looks like.
-bool is_plain(uint8_t byte) { return byte >= ' ' && byte < kDelete; }
+bool is_printable(uint8_t byte) { return byte >= ' ' && byte < kDelete; }
 
 bool is_control(uint8_t byte) { return (byte < ' ' && byte != '\t') || byte == kDelete; }
 
@@ -19,13 +19,13 @@ bool is_control(uint8_t byte) { return (byte < ' ' && byte != '\t') || byte == k
 
 tini_noinline bool Receiver::take(uint8_t byte, uint16_t now_ms) {
   has_heard_ = true;
-  if (zeros_.take(byte, now_ms)) fall_silent();
-  if (byte == 0) return take_zero();
-  return state_ < State::kBegin ? take_text_byte(byte) : take_packet_byte(byte);
+  if (zeros_.take(byte, now_ms)) end_silence();
+  if (byte == 0) return put_zero();
+  return state_ < State::kBegin ? put_text(byte) : put_packet(byte);
 }
 
 // A second without a byte: text comes again. A typed stop begins here whatever was before.
-inline void Receiver::fall_silent() {
+inline void Receiver::end_silence() {
   if (state_ >= State::kBegin) {
     if (state_ > State::kBegin) count_damaged();
     state_ = State::kText;
@@ -38,14 +38,14 @@ inline void Receiver::fall_silent() {
 
 // Frames come from here on. What a 0x00 ends is a frame, or a line that is cut: a typed stop counts
 // all the same. In frames it waits, or comes a second time: it may be what is left of one.
-inline bool Receiver::take_zero() {
+inline bool Receiver::put_zero() {
   bool is_stop = false;
   Line next = Line::kNothing;
   if (state_ >= State::kFrame) {
     is_stop = !end_packet(Packet::kFrame) && state_ == State::kHeld;
     is_cut_ = false;
   } else if (state_ == State::kLine || line_ >= Line::kSome) {
-    is_stop = is_plain_ && typed_.found() != TypedStop::kNone;
+    is_stop = is_printable_ && typed_.found() != TypedStop::kNone;
     is_cut_ = true;
     if (!is_stop) cut_line();
     if (is_stop && state_ == State::kLine && line_ != Line::kHeld) {
@@ -63,8 +63,8 @@ inline bool Receiver::take_zero() {
 
 // -- text -------------------------------------------------------------------------------------------
 
-inline bool Receiver::take_text_byte(uint8_t byte) {
-  if ((byte == kEscape || keys_.is_active()) && keys_.takes(byte)) {
+inline bool Receiver::put_text(uint8_t byte) {
+  if ((byte == kEscape || keys_.is_active()) && keys_.put(byte)) {
     if (line_ < Line::kSome) line_ = Line::kSkipped;
     return false;
   }
@@ -84,9 +84,9 @@ inline bool Receiver::take_text_byte(uint8_t byte) {
       return false;
     }
     line_ = Line::kSome;
-    is_plain_ = true;
+    is_printable_ = true;
   }
-  if (!is_plain(byte)) is_plain_ = false;
+  if (!is_printable(byte)) is_printable_ = false;
   if (state_ == State::kText && !text_.put(byte)) {
     count_damaged();
     state_ = State::kLost;
@@ -119,23 +119,23 @@ bool Receiver::end_line(bool is_there) {
 
 // -- frames -----------------------------------------------------------------------------------------
 
-inline bool Receiver::take_packet_byte(uint8_t byte) {
+inline bool Receiver::put_packet(uint8_t byte) {
   if (state_ == State::kBegin) {
     begin_packet();
   } else if (state_ == State::kLine && ends_line(byte)) {
     return end_line(!is_cut_ && end_packet(Packet::kText));
   }
   add(byte);
-  if (state_ == State::kLine && !is_plain(byte)) {
+  if (state_ == State::kLine && !is_printable(byte)) {
     state_ = State::kFrame;
     line_ = Line::kNothing;
     may_be_line_ = false;
   }
-  return state_ == State::kLine ? watch(byte) : take_frame_byte(byte);
+  return state_ == State::kLine ? watch(byte) : put_frame(byte);
 }
 
 // Looks for a typed stop with a line of its own. It waits: the frame may be whole.
-inline bool Receiver::take_frame_byte(uint8_t byte) {
+inline bool Receiver::put_frame(uint8_t byte) {
   if (ends_line(byte)) {
     may_be_line_ = true;
     if (typed_.found() == TypedStop::kStrict) state_ = State::kHeld;
@@ -154,7 +154,7 @@ inline bool Receiver::take_frame_byte(uint8_t byte) {
 // Counts a packet that begins while all places are taken.
 void Receiver::begin_packet() {
   state_ = State::kLine;
-  is_plain_ = true;
+  is_printable_ = true;
   may_be_line_ = true;
   is_dropping_ = packet_[filled()] != Packet::kNone;
   if (is_dropping_) {

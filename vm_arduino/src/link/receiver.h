@@ -182,11 +182,11 @@ class Receiver : private PacketPlaces<kWindow> {
   State state() const { return *const_cast<const volatile State*>(&state_); }
   Line line() const { return *const_cast<const volatile Line*>(&line_); }
 
-  void fall_silent();
-  bool take_zero();
-  bool take_text_byte(uint8_t byte);
-  bool take_packet_byte(uint8_t byte);
-  bool take_frame_byte(uint8_t byte);
+  void end_silence();
+  bool put_zero();
+  bool put_text(uint8_t byte);
+  bool put_packet(uint8_t byte);
+  bool put_frame(uint8_t byte);
   bool watch(uint8_t byte);
   bool end_line(bool is_there);
   bool stop_at_mark(bool is_there);
@@ -213,7 +213,7 @@ class Receiver : private PacketPlaces<kWindow> {
   ZeroRun zeros_;
   State state_;
   Line line_;
-  bool is_plain_;     // all of the line is printable ASCII
+  bool is_printable_;  // all of the line is printable ASCII
   bool is_cut_;       // a 0x00 has cut a line: the rest of it is lost
   bool is_dropping_;  // the packet finds no place
   bool may_be_line_;  // the packet may be a person's

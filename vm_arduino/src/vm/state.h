@@ -1,6 +1,6 @@
 // The state of a running program: small, plain records.
 //
-// Knows nothing of what instructions do. Matches `state.py`. Times are milliseconds of a clock that may start
+// Knows nothing of what instructions do. Times are milliseconds of a clock that may start
 // anywhere and wraps around after 2^32; a wait is at most 2^31 long.
 
 #pragma once

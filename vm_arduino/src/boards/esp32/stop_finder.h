@@ -32,10 +32,10 @@ class StopFinder {
 
   Found put(uint8_t byte, uint16_t now_ms) {
     const bool are_zeros = zeros_.stops(byte, now_ms);
-    if (zeros_.take(byte, now_ms)) fall_silent();
+    if (zeros_.take(byte, now_ms)) end_silence();
     zeros_.is_whole();
-    if (byte == 0) return take_zero() || are_zeros ? Found::kStop : Found::kNothing;
-    return state_ == State::kText ? take_text_byte(byte) : take_packet_byte(byte);
+    if (byte == 0) return put_zero() || are_zeros ? Found::kStop : Found::kNothing;
+    return state_ == State::kText ? put_text(byte) : put_packet(byte);
   }
 
   // Whether what has come of a line stops what runs, if silence follows.
@@ -52,21 +52,21 @@ class StopFinder {
 
   void begin_line() {
     line_ = Line::kNothing;
-    is_plain_ = true;
+    is_printable_ = true;
     keys_.begin();
     typed_.begin();
   }
 
-  void fall_silent() {
+  void end_silence() {
     state_ = State::kText;
     if (line_ != Line::kSome) line_ = Line::kNothing;
     typed_.begin();
   }
 
   // Whether it ends a line that is a typed stop.
-  bool take_zero() {
+  bool put_zero() {
     const bool is_line = state_ == State::kLine || line_ == Line::kSome;
-    const bool is_stop = is_line && is_plain_ && is_typed();
+    const bool is_stop = is_line && is_printable_ && is_typed();
     begin_line();
     state_ = State::kBegin;
     return is_stop;
@@ -83,9 +83,9 @@ class StopFinder {
     return typed_.is_urgent() ? Found::kOfRun : Found::kNothing;
   }
 
-  Found take_text_byte(uint8_t byte) {
+  Found put_text(uint8_t byte) {
     if (ends_line(byte)) return end_line(line_ == Line::kControlC || is_typed());
-    if (keys_.takes(byte)) {
+    if (keys_.put(byte)) {
       if (line_ != Line::kSome) line_ = Line::kSkipped;
       return Found::kNothing;
     }
@@ -95,13 +95,13 @@ class StopFinder {
         return Found::kNothing;
       }
       line_ = Line::kSome;
-      is_plain_ = true;
+      is_printable_ = true;
     }
-    if (!is_printable(byte)) is_plain_ = false;
+    if (!is_printable(byte)) is_printable_ = false;
     return watch(byte);
   }
 
-  Found take_packet_byte(uint8_t byte) {
+  Found put_packet(uint8_t byte) {
     if (state_ == State::kLine && ends_line(byte)) return end_line(is_typed());
     if (state_ == State::kBegin) state_ = State::kLine;
     if (!is_printable(byte)) state_ = State::kFrame;
@@ -124,7 +124,7 @@ class StopFinder {
   ZeroRun zeros_;
   State state_;
   Line line_;
-  bool is_plain_;  // all of the line is printable ASCII
+  bool is_printable_;  // all of the line is printable ASCII
   TypedStop typed_;
   KeySequence keys_;
 };

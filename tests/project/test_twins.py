@@ -1,0 +1,132 @@
+"""Code that is there in C++ and in Python has the same names.
+
+Who has read one of the two finds the way in the other: a method of one is a method of the other, or a
+table here says by which names the other has it, or why it has none.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from tests.project.test_cpp_sources import code_of
+from tests.support.casefile import ROOT
+from tests.support.rows import each_row
+
+CPP = ROOT / "vm_arduino" / "src"
+PYTHON = ROOT / "compiler" / "tiniscript"
+# In the body of a class: `bool Name(…)`, with what may stand before it.
+METHOD = re.compile(r"^  (?:[\w:<>]+[ *&]+)+?(\w+)\([^()]*\)(?: const)?[ \w]*[;{]", re.M)
+
+
+class Twins(NamedTuple):
+    """Classes in both languages, and what the one and the other has alone: where, or why."""
+
+    cpp: tuple[tuple[str, str], ...]
+    python: tuple[tuple[str, str], ...]
+    in_cpp: dict[str, str]
+    in_python: dict[str, str]
+
+
+TASKS = Twins(
+    cpp=(("vm/drive.h", "Drive"), ("vm/scheduler.h", "Scheduler")),
+    python=(("vm/tasks.py", "TaskMachine"), ("vm/tasks.py", "TaskRecord"), ("vm/tasks.py", "")),
+    in_cpp={
+        "begin_others": "_end_turn",
+        "blocks": "_must_wait_for_motors, _block",
+        "comes_to_end": "_end_move",
+        "end_round": "_finds_turn",
+        "end_task": "end",
+        "go_on": "_begin_move, _begin_watched, _drive_on",
+        "goes_back": "back_to",
+        "has_had_turn": "_end_turn",
+        "late_ms": "begin, until",
+        "next_check_ms": "until",
+        "sends": "_begin_turn, show",
+        "set_clock": "begin",
+        "set_motors_of_move": "(without tasks)",
+        "forget_way": "(no discs measure a way there)",
+        "go_way": "(no discs)",
+        "is_on_the_way": "(no discs)",
+    },
+    in_python={
+        "back_to": "goes_back",
+        "begin_move": "go_on",
+        "begin_watched": "go_on",
+        "block": "blocks",
+        "drive_on": "go_on",
+        "end": "end_task",
+        "forget_set": "(beside `drive.cpp`'s class)",
+        "go_to": "begin_turn",
+        "must_wait_for_motors": "blocks",
+        "show": "sends",
+        "tick": "(of the class Machine)",
+        "wants_motors": "(kWantsMotors)",
+        "machine_of": "(one class has tasks or none)",
+    },
+)
+RECEIVERS = Twins(
+    cpp=(("link/receiver.h", "Receiver"), ("link/key_sequence.h", "KeySequence")),
+    python=(("link/receiver.py", "Receiver"), ("link/receiver.py", "KeySequence")),
+    in_cpp={
+        # bytes wait until the main loop looks at them, in the memory of the receiver
+        **dict.fromkeys(
+            ("bytes", "dropped", "has_begun", "has_frame", "has_heard", "has_room", "has_text",
+             "is_first", "length", "put_frame", "release", "take_lost", "take_text"), "take"),
+        "damaged": "(an attribute)",
+        "begin_line": "_end_line",
+        "count_damaged": "_cut_packet",
+        "cut_line": "_cut_packet",
+        "lose_line": "_put_text",
+        "disconnect": "(a transport makes a new receiver)",
+        "is_active": "put",
+        # the halves of `put`, between which an interrupt turns motors off
+        **dict.fromkeys(("stops", "take_last_zero"), "put"),
+        "zeros_at": "(of an AVR)",
+        "last_ms_at": "(of an AVR)",
+        "state": "(an attribute)",
+        "line": "(an attribute)",
+        # typed stops, which are `link/typed_stop.py` in Python
+        **dict.fromkeys(
+            ("due_stop", "frame_may_stop", "has_mark", "has_open_line", "is_at_stop", "is_held",
+             "let_frame", "put_mark", "stop", "stop_at_mark", "take_mark", "take_stop", "watch"),
+            "(typed stops)"),
+    },
+    in_python={"cut_packet": "cut_line, count_damaged", "has_place": "begin_packet"},
+)  # fmt: skip
+
+
+def methods_in_cpp(file: str, name: str) -> set[str]:
+    text = code_of(CPP / file)
+    body = text[text.index(f"class {name}") :]
+    body = body[: body.index("\n};")]
+    return set(METHOD.findall(body)) - {name}
+
+
+def methods_in_python(file: str, name: str) -> Iterator[str]:
+    """Yield names of methods, or with no class those of functions that no handler is."""
+    tree = ast.parse((PYTHON / file).read_text(encoding="utf-8"))
+    if name:
+        (tree,) = (  # type: ignore[assignment]
+            each for each in tree.body if isinstance(each, ast.ClassDef) and each.name == name
+        )
+    for each in tree.body:
+        if isinstance(each, ast.FunctionDef) and not each.name.startswith("__"):
+            if name or not each.decorator_list:
+                yield each.name.removeprefix("_")
+
+
+@each_row("twins", [TASKS, RECEIVERS])
+def test_twins_have_the_same_names(twins: Twins) -> None:
+    cpp = {each for row in twins.cpp for each in methods_in_cpp(*row)}
+    python = {each for row in twins.python for each in methods_in_python(*row)}
+    assert len(cpp & python) > 5
+    assert cpp - python == set(twins.in_cpp)
+    assert python - cpp == set(twins.in_python)
+    for said, there in ((twins.in_cpp, python), (twins.in_python, cpp)):
+        named = {
+            word.strip(" _") for each in said.values() if each[0] != "(" for word in each.split(",")
+        }
+        assert named <= there
