@@ -1,6 +1,6 @@
 #include "button_hold.h"
 
-#include "../link/has_owners.h"
+#include "../vm/build.h"
 #include "../robot.h"
 #include "../vm/small.h"
 #include "persistence.h"

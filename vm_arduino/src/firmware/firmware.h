@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-#include "../link/has_transports.h"
+#include "../link/transports.h"
 #include "../link/receiver.h"
 #include "board.h"
 

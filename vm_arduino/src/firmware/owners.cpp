@@ -1,7 +1,6 @@
 // The robot's keys: implements what `port.h` says of them.
 
-#include "../link/has_owners.h"
-#include "../link/has_seals.h"
+#include "../vm/build.h"
 #include "../link/port.h"
 #include "../store/layout.h"
 #include "../store/nvm.h"

@@ -21,17 +21,9 @@ constexpr uint16_t kTextRoom = kRobotTextLevel == TextLevel::kMega    ? 1900
                                                                       : kStoredCodeBytes;
 static_assert(kTextRoom <= kStoredCodeBytes, "an Uno reads it where its program is");
 
-// An ATmega328P reads a program where the one is that it holds; tiniscript_no_draft is for tests of
-// that. Others have room for both.
-#if (!defined(__AVR__) || defined(__AVR_ATmega2560__)) && !defined(tiniscript_no_draft)
-#define tiniscript_has_draft
-constexpr bool kTextIsInProgram = false;
-constexpr uint16_t kLiveImageBytes = kHeaderBytes + kTextCodeBytes;
-extern uint8_t draft[kHeaderBytes + kTextRoom];
-#else
-constexpr bool kTextIsInProgram = true;
-constexpr uint16_t kLiveImageBytes = kHeaderBytes + kPayloadBytes - kLiveCodeAt;
-#endif
+constexpr uint16_t kLiveImageBytes =
+    kHeaderBytes + (kTextIsInProgram ? kPayloadBytes - kLiveCodeAt : kTextCodeBytes);
+extern uint8_t draft[kHeaderBytes + kTextRoom];  // unless text is in the program
 
 extern uint8_t program[kImageBytes + kEndBytes];
 extern uint8_t live[kLiveImageBytes + kEndBytes];

@@ -3,7 +3,7 @@
 #include "../vm/bytecode.h"
 #include "../vm/image.h"
 #include "../vm/small.h"
-#include "has_owners.h"
+#include "../vm/build.h"
 #include "port.h"
 #include "run_down.h"
 

@@ -11,8 +11,7 @@
 
 #include "../vm/build.h"
 #include "frames.h"
-#include "has_seals.h"
-#include "has_transports.h"
+#include "transports.h"
 #include "messages.h"
 #include "receiver.h"
 #include "seal.h"

@@ -1,6 +1,6 @@
 // Sealed frames: which ones the robot takes, and which of its own it seals. `docs/link.md` says why.
 
-#include "has_seals.h"
+#include "../vm/build.h"
 #include "link.h"
 #include "port.h"
 

@@ -11,7 +11,7 @@
 
 #include <stdint.h>
 
-#include "has_transports.h"
+#include "transports.h"
 #include "link.h"
 #include "port.h"
 

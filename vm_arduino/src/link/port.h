@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "../vm/build.h"
-#include "has_transports.h"
+#include "transports.h"
 #include "messages.h"
 
 namespace tiniscript {

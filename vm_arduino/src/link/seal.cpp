@@ -1,7 +1,7 @@
 #include "seal.h"
 
 #include "../vm/small.h"
-#include "has_seals.h"
+#include "../vm/build.h"
 #include "siphash.h"
 
 namespace tiniscript {

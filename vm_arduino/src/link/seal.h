@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "frames.h"
-#include "has_transports.h"
+#include "transports.h"
 #include "messages.h"
 
 namespace tiniscript {

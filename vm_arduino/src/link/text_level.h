@@ -7,14 +7,9 @@
 
 namespace tiniscript {
 
-#ifdef tiniscript_without_text
-constexpr TextLevel kRobotTextLevel = TextLevel::kNone;
-#elif defined(__AVR_ATmega2560__) || defined(tiniscript_like_mega)
-constexpr TextLevel kRobotTextLevel = TextLevel::kMega;
-#elif defined(ARDUINO_ARCH_ESP32) || defined(tiniscript_like_esp32)
-constexpr TextLevel kRobotTextLevel = TextLevel::kEsp32;
-#else
-constexpr TextLevel kRobotTextLevel = TextLevel::kUno;
-#endif
+constexpr TextLevel kRobotTextLevel = !kHasText                    ? TextLevel::kNone
+                                      : kRobotSize == RobotSize::kMega  ? TextLevel::kMega
+                                      : kRobotSize == RobotSize::kEsp32 ? TextLevel::kEsp32
+                                                                  : TextLevel::kUno;
 
 }  // namespace tiniscript

@@ -13,13 +13,8 @@ namespace tiniscript {
 
 // The EEPROM size: Mega 2560; what an ESP32 has in its place, with room for 8,192 bytes of code;
 // Uno and Nano.
-#if defined(__AVR_ATmega2560__) || defined(tiniscript_like_mega)
-constexpr uint16_t kMemoryBytes = 4096;
-#elif defined(ARDUINO_ARCH_ESP32) || defined(tiniscript_like_esp32)
-constexpr uint16_t kMemoryBytes = 16640;
-#else
-constexpr uint16_t kMemoryBytes = 1024;
-#endif
+constexpr uint16_t kMemoryBytes =
+    kRobotSize == RobotSize::kMega ? 4096 : kRobotSize == RobotSize::kEsp32 ? 16640 : 1024;
 
 // Each kind of data has an area of A/B slots: one holds the current data, the other one is written.
 // Slots are numbered: those of programs are 0 and 1.

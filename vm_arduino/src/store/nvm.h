@@ -8,15 +8,9 @@
 
 #include <stdint.h>
 
-namespace tiniscript {
+#include "../vm/build.h"
 
-// Whether a write stops the chip for long, so that nothing may be written while motors are on; such
-// a memory may also refuse the last bytes of a save, as it is full.
-#ifdef ARDUINO_ARCH_ESP32
-constexpr bool kWritesStopTheChip = true;
-#else
-constexpr bool kWritesStopTheChip = false;
-#endif
+namespace tiniscript {
 
 // Whether a byte whose write was cut may read differently later, until it is written again.
 constexpr bool kCutBytesAreUnstable = !kWritesStopTheChip;

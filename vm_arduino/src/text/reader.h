@@ -10,33 +10,11 @@
 
 #include <stdint.h>
 
+#include "../vm/build.h"
 #include "../vm/small.h"
 #include "problems.h"
 
 namespace tiniscript {
-
-// A bit for each sensor. A board with an ATmega328P has pins for at most 16.
-#ifdef __AVR_ATmega328P__
-typedef uint16_t SensorBits;
-#else
-typedef uint32_t SensorBits;
-#endif
-
-// Whether this robot's reader has DEFs, and with them tasks and ways. An ATmega328P has no room for
-// them; tiniscript_no_defs is for tests of that.
-#if defined(__AVR_ATmega328P__) || defined(tiniscript_no_defs)
-constexpr bool kReadsDefs = false;
-#else
-#define tiniscript_reads_defs
-constexpr bool kReadsDefs = true;
-#endif
-
-// What only such a reader keeps takes no memory of any other, in which nothing uses or defines it.
-#ifdef tiniscript_reads_defs
-#define tini_with_defs
-#else
-#define tini_with_defs static
-#endif
 
 enum class Text : uint8_t {
   kGoesOn,   // the line has not ended

@@ -1,5 +1,6 @@
 // What this build has, in one place for C++ and assembly. All that is conditional in `vm/` is here, in
-// `cpu.h`, or encloses a whole file.
+// `cpu.h`, in `layout_avr.h`, or encloses a whole file; and most of what is in the other folders, but
+// for `boards/`.
 //
 // The machine of an AVR is in assembly. With `tiniscript_portable` it is the C++ of all other chips,
 // which tests compare with that.
@@ -30,6 +31,30 @@
 
 #if defined(__AVR_ATmega328P__) && defined(tiniscript_with_discs)
 #define tiniscript_without_text
+#endif
+
+// An ATmega328P's reader of text has no DEFs, and with them no tasks and ways; tiniscript_no_defs is for
+// tests of that.
+#if !defined(__AVR_ATmega328P__) && !defined(tiniscript_no_defs)
+#define tiniscript_reads_defs
+#endif
+
+// An ATmega328P reads a program where the one is that it holds; tiniscript_no_draft is for tests of
+// that. Others have room for both.
+#if (!defined(__AVR__) || defined(__AVR_ATmega2560__)) && !defined(tiniscript_no_draft)
+#define tiniscript_has_draft
+#endif
+
+// Seals of frames: a Mega can, where it is built with tiniscript_with_seals; an Uno and a Nano have no
+// room. All other chips do, unless tiniscript_without_seals.
+#if (defined(tiniscript_with_seals) || !defined(__AVR__)) && !defined(tiniscript_without_seals)
+#define tiniscript_seals
+#endif
+
+// An ESP32 is reached over several transports at once: each has a link of its own then, and one of them
+// drives (`link/links.h`). All others have one.
+#ifdef ARDUINO_ARCH_ESP32
+#define tiniscript_transports
 #endif
 
 // How it moves: one of three files.
@@ -67,6 +92,76 @@ constexpr bool kHasDiscs = true;
 constexpr bool kHasDiscs = false;
 #endif
 
+#ifdef tiniscript_without_text
+constexpr bool kHasText = false;
+#else
+constexpr bool kHasText = true;
+#endif
+
+// What only a reader with DEFs keeps takes no memory of any other, in which nothing uses or defines it.
+#ifdef tiniscript_reads_defs
+constexpr bool kReadsDefs = true;
+#define tini_with_defs
+#else
+constexpr bool kReadsDefs = false;
+#define tini_with_defs static
+#endif
+
+#ifdef tiniscript_has_draft
+constexpr bool kTextIsInProgram = false;
+#else
+constexpr bool kTextIsInProgram = true;
+#endif
+
+#ifdef tiniscript_transports
+constexpr bool kHasTransports = true;
+#else
+constexpr bool kHasTransports = false;
+#endif
+
+// Whether this robot knows owners. The code that the Arduino IDE's own options make for an Uno or a Nano
+// is too long for that; platformio.ini has shorter ones, and says tiniscript_with_owners.
+#if defined(tiniscript_without_owners) || \
+    (defined(__AVR_ATmega328P__) && !defined(tiniscript_with_owners))
+constexpr bool kHasOwners = false;
+#else
+constexpr bool kHasOwners = true;
+#endif
+
+#ifdef tiniscript_seals
+constexpr bool kMaySeal = true;
+#else
+constexpr bool kMaySeal = false;
+#endif
+
+constexpr bool kHasSeals = kMaySeal && kHasOwners;
+
+// As large as which board it is; tiniscript_like_mega and tiniscript_like_esp32 are for robots on a computer.
+enum class RobotSize : uint8_t { kUno, kMega, kEsp32 };
+
+#if defined(__AVR_ATmega2560__) || defined(tiniscript_like_mega)
+constexpr RobotSize kRobotSize = RobotSize::kMega;
+#elif defined(ARDUINO_ARCH_ESP32) || defined(tiniscript_like_esp32)
+constexpr RobotSize kRobotSize = RobotSize::kEsp32;
+#else
+constexpr RobotSize kRobotSize = RobotSize::kUno;
+#endif
+
+// Whether a write of what it stores stops the chip for long, so that nothing may be written while motors
+// are on; such a memory may also refuse the last bytes of a save, as it is full.
+#ifdef ARDUINO_ARCH_ESP32
+constexpr bool kWritesStopTheChip = true;
+#else
+constexpr bool kWritesStopTheChip = false;
+#endif
+
+// A bit for each sensor. A board with an ATmega328P has pins for at most 16.
+#ifdef __AVR_ATmega328P__
+typedef uint16_t SensorBits;
+#else
+typedef uint32_t SensorBits;
+#endif
+
 // Whether a budget counts all instructions, not only jumps back and calls.
 #ifdef tiniscript_counts_instructions
 constexpr bool kCountsInstructions = true;
@@ -79,6 +174,25 @@ constexpr bool kCountsInstructions = false;
 constexpr uint8_t kTickBudget = 255;
 #else
 constexpr uint8_t kTickBudget = 32;
+#endif
+
+// What the CPU calculates at once, where the arithmetic is in C++.
+#if defined(__x86_64__) || defined(__aarch64__) || defined(__wasm__)
+constexpr bool kHasQuotient64 = true;
+#else
+constexpr bool kHasQuotient64 = false;
+#endif
+
+#ifdef __riscv_mul
+constexpr bool kHasProduct64 = true;
+#else
+constexpr bool kHasProduct64 = false;
+#endif
+
+#ifdef __XTENSA_CALL0_ABI__
+constexpr bool kHasQuotient32 = false;  // an ESP8266
+#else
+constexpr bool kHasQuotient32 = true;
 #endif
 
 }  // namespace tiniscript

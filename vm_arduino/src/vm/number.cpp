@@ -25,9 +25,7 @@ uint32_t magnitude(int32_t value) {
 
 // Returns a * b / divisor, or 2^32 - 1 if the quotient is larger. It is copied to where it is used:
 // a divisor that is known there needs no division.
-#if defined __x86_64__ || defined __aarch64__ || defined __wasm__
-
-tini_always_inline Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
+tini_always_inline Division divided_at_once(uint32_t a, uint32_t b, uint32_t divisor) {
   const uint64_t product = static_cast<uint64_t>(a) * b;
   const uint32_t low = static_cast<uint32_t>(product);
   if (low == product) return {low / divisor, low % divisor};  // quicker if it fits
@@ -36,36 +34,29 @@ tini_always_inline Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
   return {static_cast<uint32_t>(quotient), static_cast<uint32_t>(product - quotient * divisor)};
 }
 
-#else  // a chip of 32 bits
-
-// It may have no product of 64 bits: then it is made of parts.
+// A chip of 32 bits may have no product of 64 bits: then it is made of parts.
 tini_always_inline uint64_t multiplied(uint32_t a, uint32_t b) {
-#ifdef __riscv_mul
-  return static_cast<uint64_t>(a) * b;
-#else
+  if (kHasProduct64) return static_cast<uint64_t>(a) * b;
   const uint32_t parts[] = {(a & 0xffff) * (b & 0xffff), (a >> 16) * (b & 0xffff),
                             (a & 0xffff) * (b >> 16), (a >> 16) * (b >> 16)};
   const uint32_t middle = (parts[0] >> 16) + (parts[1] & 0xffff) + (parts[2] & 0xffff);
   const uint32_t high = parts[3] + (parts[1] >> 16) + (parts[2] >> 16) + (middle >> 16);
   return static_cast<uint64_t>(high) << 32 | (middle << 16 | (parts[0] & 0xffff));
-#endif
 }
 
 // It has no quotient of 64 bits: that is made bit by bit, or 16 bits at a time if each rest has no
 // more than 16, and if the chip divides at all. An ESP8266 does not.
-tini_always_inline Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
+tini_always_inline Division divided_in_parts(uint32_t a, uint32_t b, uint32_t divisor) {
   const uint64_t product = multiplied(a, b);
   uint32_t low = static_cast<uint32_t>(product);
   uint32_t high = static_cast<uint32_t>(product >> 32);
   if (high == 0) return {low / divisor, low % divisor};
   if (high >= divisor) return {0xffffffff, 0};
-#ifndef __XTENSA_CALL0_ABI__
-  if (divisor <= 0xffff) {
+  if (kHasQuotient32 && divisor <= 0xffff) {
     const uint32_t upper = high << 16 | low >> 16;
     const uint32_t lower = upper % divisor << 16 | (low & 0xffff);
     return {upper / divisor << 16 | lower / divisor, lower % divisor};
   }
-#endif
   for (uint8_t bit = 32; bit != 0; bit--) {
     high = high << 1 | low >> 31;
     low <<= 1;
@@ -77,7 +68,9 @@ tini_always_inline Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
   return {low, high};
 }
 
-#endif
+tini_always_inline Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
+  return kHasQuotient64 ? divided_at_once(a, b, divisor) : divided_in_parts(a, b, divisor);
+}
 
 // Returns a * b / divisor rounded half up, or 2^32 - 1 if that is larger.
 tini_always_inline uint32_t rounded(uint32_t a, uint32_t b, uint32_t divisor) {

@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #include "../../firmware/firmware.h"
-#include "../../link/has_transports.h"
+#include "../../link/transports.h"
 #include "pipe.h"
 
 namespace tiniscript {

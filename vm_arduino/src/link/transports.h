@@ -1,21 +1,12 @@
-// Whether this robot is reached over several transports at once: each has a link of its own then,
-// and one of them drives (`links.h`). An ESP32 is; all others have one.
+// The ways to a robot that is reached over several at once.
 
 #pragma once
 
 #include <stdint.h>
 
-#ifdef ARDUINO_ARCH_ESP32
-#define tiniscript_transports
-#endif
+#include "../vm/build.h"
 
 namespace tiniscript {
-
-#ifdef tiniscript_transports
-constexpr bool kHasTransports = true;
-#else
-constexpr bool kHasTransports = false;
-#endif
 
 // The cable, Bluetooth with a serial port (an ESP32 alone, not its successors), Bluetooth LE, two
 // connections in a network, and one client of an MQTT broker.
