@@ -26,6 +26,9 @@ FILES = [
     *sorted((EXTRAS / "wasm").glob("*.cpp")),
     *sorted((EXTRAS / "library" / "src").glob("*.[ch]*")),
 ]
+VM = SOURCES / "src" / "vm"
+CHOOSING = {"build.h", "cpu.h", "layout_avr.h"}
+CONDITION = re.compile(r"#\s*(if|ifdef|ifndef|elif|else|endif)\b")
 KITS = SOURCES / "src" / "boards" / "kits"  # `boards/kit.h` chooses one of them
 HEADERS = sorted(path for part in ("src", "extras") for path in (SOURCES / part).rglob("*.h"))
 BOARDS = sorted(
@@ -68,6 +71,17 @@ def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
     assert set(included) <= ALLOWED
     words = set(re.findall(r"\w+", code_of(path)))
     assert not words & set(FORBIDDEN)
+
+
+@each_row("path", [path for path in PORTABLE if path.parent == VM and path.name not in CHOOSING])
+def test_what_the_machine_chooses_stands_in_few_headers(path: Path) -> None:
+    """Elsewhere a condition encloses all of a file: it is chosen, or it is not."""
+    rows = [row.strip() for row in code_of(path).splitlines() if row.strip()]
+    conditions = [k for k, row in enumerate(rows) if CONDITION.match(row)]
+    if conditions:
+        first, last = conditions[0], len(rows) - 1
+        assert conditions == [first, last], [rows[k] for k in conditions]
+        assert all(row.startswith("#include") for row in rows[:first])
 
 
 @each_row("path", BOARDS)

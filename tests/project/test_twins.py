@@ -1,7 +1,7 @@
 """Code that is there in C++ and in Python has the same names.
 
-Who has read one of the two finds the way in the other: a method of one is a method of the other, or a
-table here says by which names the other has it, or why it has none.
+Who has read one of the two finds the way in the other: a method of one is a method of the other, or
+a table here says by which names the other has it, or why it has none.
 """
 
 from __future__ import annotations
