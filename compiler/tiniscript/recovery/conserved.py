@@ -28,6 +28,7 @@ from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.concepts import (
     CALLED,
     ENDED,
+    LAP,
     NEAR,
     Lexeme,
     Names,
@@ -45,6 +46,7 @@ from tiniscript.syntax.operators import SUMS
 _SENSES = {"<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>": ">", "!=": "<>",
            "=!": "<>", "≤": "<", "≥": ">", "≠": "<>"}  # fmt: skip
 _UNITS = ("s", "cm", "°", "%", "Hz")
+_COUNTED_UNITS = (*_UNITS, "turns")  # with a number before them
 _ARMS = ("ELSE", "ELSEIF")
 _HEADS = frozenset((*BLOCK_ENDS, *_ARMS))
 _DRIVES = frozenset((*MOVES, "M", "W", "BEEP", "S"))
@@ -66,6 +68,7 @@ _FRAME = re.compile(
 )
 _NUMBERED = re.compile(r"(?m)^[ \t]*(\d{1,4})(?=[ \t]+[A-Za-z])")
 _ESCAPED = {"¡=": "!=", "&lt;": "<", "&gt;": ">", "&nbsp;": " ", "½": ".5", "¼": ".25", "¾": ".75"}
+_PARTS = {"1/2": ".5", "1/4": ".25", "3/4": ".75"}
 _GLUED = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
 # Digits, and letters that look like some; and what may stand between two parts of one number.
 _DIGITS = re.compile(r"[0-9oOlI]*[0-9][0-9oOlI]*|\b[oO](?=\.)")
@@ -171,8 +174,10 @@ class _Said:
 
     def _apart(self, line: str) -> str:
         """Return a line in which numbers stand alone, but for those of names: `F2,80`, `F_2_80`."""
-        line = re.sub(r"(?<!\d)(\d) 1/2(?!\d)", r"\1.5", line)
-        line = re.sub(r"(?<![\d)] )(?<!\d)1/2(?!\d)(?=\s*[a-z])", "0.5", line)
+        for part, decimals in _PARTS.items():
+            line = re.sub(rf"(?<!\d)(\d) {part}(?!\d)", rf"\1{decimals}", line)
+            alone = rf"(?i)(?<![\d)] )(?<!\d){part}(?!\d)(?=\s*[a-z])"
+            line = re.sub(alone, f"0{decimals}", line)
         return _GLUED.sub(
             lambda it: it[0] if it[0].upper() in self.others else f"{it[1]} {it[2]} ", line
         )
@@ -246,6 +251,7 @@ class _Said:
         is_again = (word == "IF" and before.text in ("AND", "OR")) or (
             word == "OR" and before.text in _SENSES
         )
+        is_again |= word in MOVES and after.kind is WORD and word == self._word(after)
         is_needless = (word == "TRUE" and "=" in around and is_in_brackets) or (
             word == "TIME" and not around & _SENSES.keys()
         )
@@ -319,7 +325,7 @@ class _Said:
         is_order = is_letter and token.source == token.text and token.space != ""
         if not said or (is_apart and is_order) or self.names.is_name(token.text):
             return None
-        return said[0] if said[0] in _UNITS else "", float(said[1])
+        return said[0] if said[0] in _COUNTED_UNITS else "", float(said[1])
 
     def _is_loose_unit(self, k: int) -> bool:
         """Whether a word says a unit and nothing else, of no number."""
@@ -477,6 +483,8 @@ def _all_in(parts: Sequence[float], amounts: Sequence[Amount]) -> list[Amount]:
 
 
 def _is_same(before: Amount, after: Amount) -> bool:
+    if (before.unit, after.unit) == ("turns", "°"):
+        return abs(before.value * LAP - after.value) < 0.001
     units = {*after.unit.split("/")} - {""}
     is_unit = not before.unit or units <= {*before.unit.split("/")}
     return is_unit and abs(before.value - after.value) < 0.001

@@ -174,6 +174,8 @@ class _Explainer:
         if own != old and not parts:
             place = Span(self.starts[change.first], self.starts[change.first] + len(old))
             edit = trimmed(place.start, old, own)
+            if ends and edit.span.start == place.end:
+                edit = Edit(place, own)  # the ends that are missing behind it come behind all of it
             part = _Change(place, edit, self.changes[k].steps, before, after)
             code, step = _code(part)
             is_brace = code is codes.BRACES and before[0].text in BRACES
@@ -220,6 +222,8 @@ class _Explainer:
             if text != new:
                 place = Span(first + start, first + end)
                 edit = trimmed(place.start, text, new)
+                if edit.span.start == place.end:
+                    edit = Edit(place, new)  # an end that is missing comes behind all of it
                 found.append(_Change(place, edit, steps.get(n, []), part, meant))
                 if not steps.get(n) and text.isascii():
                     return []
@@ -260,6 +264,8 @@ class _Explainer:
     def new(self, k: int, part: _Change, code: Code, step: Step | None) -> Explanation:
         place, edit, _, before, after = part
         values = _slip(code, step, before, after)
+        if code is codes.UNTIL_NOT_HERE:
+            values["example"] = values["fix"]
         if code is codes.OTHER_NOTE:
             values["right"] = self.changes[k].text.strip()
         if code is codes.EXTRA_WORD and not step:
@@ -348,8 +354,8 @@ def _code(part: _Change) -> tuple[Code, Step | None]:
     if steps:
         own = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
         own.sort(key=lambda it: (it.code is not codes.ASKED_BEHIND, it.code is codes.OTHER_SIGN))
-        if own and own[0].code is codes.ASKED_BEHIND:
-            return codes.ASKED_BEHIND, own[0]
+        if own and own[0].code in (codes.ASKED_BEHIND, codes.UNTIL_NOT_HERE):
+            return own[0].code, own[0]
         lost = (each.text for each in before if each.kind is WORD and each.text not in new)
         foreign = next((each for each in lost if meant_by(each) in more), "")
         translated = next((it for it in steps if it.code is codes.OTHER_LANGUAGE), None)

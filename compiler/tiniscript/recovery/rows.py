@@ -98,11 +98,13 @@ SIGNS = r"""
 (?i:\bFOREVER)\.(?=\d)  |  `FOREVER, `  |  TS017  |  applied  |  F(FOREVER.60) UNTIL(DISTANCE < 9) => F(FOREVER, 60) UNTIL(DISTANCE < 9)
 (?<=\d)\.\.(?=\d)  |  `, `  |  TS020  |  offered  |  X = RANDOM(1..6) => X = RANDOM(1, 6)
 ⟨≤¦¡=¦(?<= )><⟩  |  `⟨<=¦<>¦<>⟩`  |  TS010  |  applied  |  IF(DISTANCE ⟨≤¦¡=¦><⟩ 10);S;ENDIF => IF(DISTANCE ⟨<=¦<>¦<>⟩ 10);S;ENDIF
+(?<=\))\s*[↑↓⬅-⬇➡]\uFE0F?\s*(?=[A-Za-z]+\s*\()  |  `; `  |  TS061  |  applied  |  F(2, 80) ➡ R(1, 60) => F(2, 80); R(1, 60)
 [→➜⇒]|[–—]>  |  `;`  |  TS061  |  applied  |  →F(2, 80) => ;F(2, 80)
 </?[a-z]+/?>|\A\s*(?:[$>] tsc\b.*|```\w*\s*)\Z  |  ``  |  TS072  |  applied  |  <b>F(2, 80)</b> => F(2, 80)
 \A\s*tsc(?: \w+)? (?:(["'])(S[IB]\|.*)\1\Z|(?=S[IB]\|))  |  `\2`  |  TS044  |  applied  |  tsc live "SI|F(2, 80)" => SI|F(2, 80)
-^\s*(?:(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z])|-(?=[A-Z]\w*\()|[=-]?>+\s*|(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\())  |  ``  |  TS054  |  applied  |  ⟨*¦>¦=>¦->¦✅⟩ F(2,80) => F(2,80)
-(?<!\d)1/2(?!\d)(?=\s*(?:s|seg|min|h))  |  `0.5`  |  TS049  |  applied  |  F(1/2 minuto, 80) => F(30, 80)
+^\s*(?:(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z])|-(?=[A-Z]\w*\()|[=-]?>+\s*|(?:➤|[↑↓⏫⏬⬅-⬇\u2600-\u27A1\U0001F300-\U0001FAFF])\uFE0F?\s*(?=[A-Za-z]+\())  |  ``  |  TS054  |  applied  |  ⟨*¦>¦=>¦->¦✅⟩ F(2,80) => F(2,80)
+(?<![\d/*])(?<![\d)] )⟨1/2¦1/4¦3/4⟩(?!\d)(?=\s*[a-z])  |  `⟨0.5¦0.25¦0.75⟩`  |  TS049  |  applied  |  F(⟨1/2¦1/4¦3/4⟩ minuto, 80) => F(⟨30¦15¦45⟩, 80)
+(?<=\d) ⟨1/2¦1/4¦3/4⟩(?=\s*[,)a-z])  |  `⟨.5¦.25¦.75⟩`  |  TS008  |  applied  |  F(2 ⟨1/2¦1/4¦3/4⟩, 80) => F(⟨2.5¦2.25¦2.75⟩, 80)
 (?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))|(?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  TS005  |  applied  |  F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
 \bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$)))  |  `W(\1)`  |  TS015  |  applied  |  S; W2.5) => S; W(2.5)
 ^\s*(?:(?:paso|step|linea|line)\s*\d+\s*[.):-]*\s|\d+\s*(?:[.)]|[.):-]+\s))\s*(?=[A-Za-z])  |  ``  |  TS054  |  applied  |  1) F(2,80)⏎2) S => F(2,80)⏎S
@@ -162,6 +164,7 @@ a=@num|@val '|' b=@val | $a OR $b | 1 | TS010 | applied | IF(DISTANCE<10 | LIGHT
 a=@num b=0 | @cat:a:b | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
 a=@num c=, b=@num | @dec:a:c:b | 1 | TS012 | applied | W(2,5) => W(2.5)
 o=(|,|; a=@num % ) | $o $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
+o=+|-|=|, a=@num % ⟨e=;|,¦$⟩ | $o $a ⟨$e¦⟩ | 1 | TS049 | applied | X = 50⏎X = X + 10%⟨;¦⏎⟩F(2, X) => X = 50⏎X = X + 10⟨;¦⏎⟩F(2, X)
 a=@num by @hundred | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 50)
 a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
 ⟨s=<|>|<=|>=|=|<> n=@num u=M|MIN|S e=)¦^ s=@name = n=@num u=M|MIN $⟩ | $s ⟨¦=⟩ @own:n:u ⟨$e¦⟩ | 1 | TS049 | applied | ⟨IF(DISTANCE < 1 m);S;ENDIF¦D = 1 m⟩ => ⟨IF(DISTANCE < 100);S;ENDIF¦D = 100⟩
@@ -191,6 +194,7 @@ a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => 
 x=@callw [ | $x ( | 1 | TS010 | first | F[2,80] => F(2,80)
 x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => SI|F(2,80)
 RANDOM ( between|from? a=@num to|and|until|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 3)⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
+a=F|B|L|R|W ( RANDOM? b=@num to|and|until|- c=@num e=,|) | $a ( RANDOM ( $b , $c ) $e | 1 | TS076 | offered | F(1 a 3, 60) => F(RANDOM(1, 3), 60)
 c=@callw ( a=@noparen+ ; b=@noparen+ e=)|$ | $c ( $a , $b ) | 1 | TS019 | applied | F(2;80 => F(2, 80)
 a=@callw b=@num ,? c=@num ,|;|and? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied | F 2,80,R 1,50 => F(2, 80);R(1, 50)
 v=@val|@def|S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
@@ -208,7 +212,9 @@ a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@po
 @newname . c=F|B|L|R|W|BEEP ( | $c ( | 1 | TS102 | applied | bot.F(2, 80) => F(2, 80)
 # UNTIL
 a=F|B|L|R|W ( b=@noparen+ ) S|STOP ( c=@val s=<|<=|>|>= d=@num|@val ) $ | $a ( $b ) UNTIL ( $c $s $d ) | 2 | TS102 | offered | F(10, 60) STOP(DISTANCE < 12) => F(10, 60) UNTIL(DISTANCE < 12)
+^ a=S|STOP UNTIL that? ( c=@any+ ) e=;|$ | $a ; W ( FOREVER ) UNTIL ( $c ) $e | 1 | TS030 | offered | S HASTA(DISTANCE > 20) => S;W(FOREVER) UNTIL(DISTANCE > 20)
 a=@close ⟨'|'|,|.|; UNTIL¦UNTIL that?⟩ ( | $a UNTIL ( | 1 | ⟨TS029¦TS102⟩ | applied | F(2,80)⟨.UNTIL¦ HASTA⟩(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
+^ W ( c=@val s=<|<=|>|>=|= d=@num|@val ) $ | W ( FOREVER ) UNTIL ( $c $s $d ) | 1 | TS029 | offered | ESPERA(DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
 ^ W ⟨UNTIL that? c=@cond+¦( UNTIL (? c=@noparen+ )? )⟩ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | ⟨TS102¦TS029⟩ | ⟨applied¦offered⟩ | ⟨WAIT UNTIL DISTANCE < 10¦W(UNTIL DISTANCE < 10)⟩ => W(FOREVER) UNTIL(DISTANCE < 10)
 a=@close UNTIL that? ⟨c=@cond+ then+ ,? b=@start¦c=@noparen+ $⟩ | $a UNTIL ( $c ) ⟨; $b¦⟩ | 1 | TS015 | applied | F(2, 80) hasta DISTANCE < 10⟨ luego S¦⟩ => F(2, 80) UNTIL(DISTANCE < 10)⟨;S¦⟩
 ^^ ⟨UNTIL <question> ':'|'{'?¦LOOP ( FOREVER ) UNTIL <question>⟩ $ | WHILE ( @not:c ) | ⟨3¦1⟩ | ⟨TS029¦TS102⟩ | offered | ⟨¦LOOP(FOREVER) ⟩UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_⟨WHILE¦LOOP⟩ => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
@@ -254,7 +260,7 @@ m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c )
 LOOP ( @name = 1 to|until n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
 ^ a=L|R ⟨n=@angle¦( n=@angle )⟩ $ | $a ( $n DEG , 80 ) | 2 | ⟨TS015¦TS020⟩ | offered | L⟨ 90¦(90)⟩ => L(90 DEG, 80)
 ⟨a=F|B ( FOREVER¦a=RANDOM ( n=@whole¦a=ROUND ( n=@num|@val⟩ ) | $a ( ⟨FOREVER , 80¦1 , $n¦$n , 0⟩ ) | 2 | TS020 | offered | ⟨F(FOREVER) UNTIL(DISTANCE < 10)¦SHOW(RANDOM(6))¦SHOW(ROUND(3))⟩ => ⟨F(FOREVER, 80) UNTIL(DISTANCE < 10)¦SHOW(RANDOM(1, 6))¦SHOW(ROUND(3, 0))⟩
-^ M ( ⟨¦n=@time ,⟩ s='-'? a=@power , t='-'? b=@power ⟨, n=@time¦⟩ ) $ | M ( $s $a , $t $b ) ; W ( $n ) ; S | 2 | TS020 | offered | M(⟨¦2, ⟩50, -80⟨, 2¦⟩) => M(50, -80);W(2);S
+^ M ( ⟨¦n=@time @in_secs|S? ,⟩ s='-'? a=@power '%'? , t='-'? b=@power '%'? ⟨, n=@time @in_secs|S?¦⟩ ) $ | M ( $s $a , $t $b ) ; W ( $n ) ; S | 2 | TS020 | offered | M(⟨¦2, ⟩50, -80⟨, 2¦⟩) => M(50, -80);W(2);S
 ^ a=F|B|L|R ( b=@num⟨|FOREVER ,? c=@num ,? UNTIL (? q=@noparen+ )?¦ , c=@num , d=@val e=<|> f=@num⟩ ) $ | $a ( $b , $c ) UNTIL ( ⟨$q¦$d $e $f⟩ ) | 2 | ⟨TS029¦TS020⟩ | offered | F(5, 60, ⟨UNTIL ¦⟩DISTANCE < 10) => F(5, 60) UNTIL(DISTANCE < 10)
 h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num ) | &h ( $a $s $b AND $c $t $d ) | 2 | TS020 | offered | IF(DISTANCE < 10, LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
 ^ h=IF|WHILE ( c=@noparen+ , b=@start r=@noparen* ) $ | &h ( $c ) ; $b $r | 2 | TS080 | applied | IF(DISTANCE < 10, S)⏎ELSE⏎F(1,50)⏎ENDIF => IF(DISTANCE < 10);S⏎ELSE⏎F(1,50)⏎ENDIF

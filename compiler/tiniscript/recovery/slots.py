@@ -16,6 +16,7 @@ from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import (
     CALLED,
     DONE,
+    LAP,
     LONG_S,
     NEAR,
     Lexeme,
@@ -166,7 +167,8 @@ class _Reader:
         unit, thousandths = self.mark, 1000.0
         if said_of(self.text(k), "by") and said_of(self.text(k + 1), "number") == ("100",):
             unit, k = "%", k + 2
-        elif its := said_of(self.text(k), "unit"):
+        elif its := said_of(self.text(of := k + bool(said_of(self.text(k), "of"))), "unit"):
+            k = of  # `un cuarto de vuelta`
             unit, thousandths = its[0], float(its[1])
             is_stop = self.words[k].source == "S" and bool(self.words[k].space)
             if is_stop and self.values and k + 1 == len(self.words):
@@ -353,6 +355,9 @@ class _Reader:
             is_of_scratch = unit == "steps" and self.words[0].text not in WORDS
             if is_of_scratch and way == "CM" and value.number >= _STEPS_FROM:
                 unit, self.is_sure = WAYS[way].unit, False
+            if unit == "turns" and way == "DEG":
+                unit, self.is_sure = WAYS[way].unit, False
+                value = _Value(number_text(value.number * LAP), unit)
             if way and unit == WAYS[way].unit:
                 if slots[0] is not None or any(each.unit is None for each in values[:k]):
                     return None

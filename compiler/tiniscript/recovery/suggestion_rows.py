@@ -55,6 +55,7 @@ SUGGESTIONS = """
 ^ @unbegun when|at @word* flag @word* $ | TS102 | found={words}; right=SI|; usage=SI|; fix= | when green flag clicked => right=SI|
 ^ ⟨@unbegun¦@none⟩ when|at @word? @word? beginning :? $ | TS102 | found={words}; right=⟨SI|¦START⟩; usage=⟨SI|¦START⟩; fix=⟨¦START⟩ | ⟨¦SI|⟩on start => right=⟨SI|¦START⟩
 ^ @none @any* h=IF|ELSEIF|WHILE|UNTIL (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
+^ @none @any* <asks> (? '='|@word* s=unsensed @any* )? <body> $ | TS103 | found={s}; unsensed={s}; sensors={sensors}; near=; words= | IF(COLOR = RED)⏎S⏎ENDIF => unsensed=RED
 ^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
 ^ @none @any* <asks> ( v=@word s=@num ) <body> $ | TS048 | before={v}; found={s}; words= | IF(DISTANCE 10)⏎S⏎ENDIF => found=10
 ^ @none g=IF|WHILE ( s=@any+ , w=@start @any* ) $ | TS080 | word={block}; head={block}({s}); right={end} | IF(distancia < poca, S) => head=IF(distancia < poca)
@@ -102,6 +103,7 @@ SUGGESTIONS = """
 ^ c=@cmd s=IF (? q=@cond+ )? $ | TS071 | found={s}; fix=IF({question});{c};ENDIF | S IF(DISTANCE < 10) => fix=IF(DISTANCE < 10);S;ENDIF
 ^ c=@move s=WHILE @word* no @word* wall $ | TS071 | found={s}; fix={c} UNTIL({distance} < 10) | F(2, 80) mientras no haya pared => fix=F(2, 80) UNTIL(DISTANCE < 10)
 ^ c=@cmd s=when @word* no @word* wall $ | TS071 | found={s}; fix=IF({distance} > 10);{c};ENDIF | S cuando no hay pared => fix=IF(DISTANCE > 10);S;ENDIF
+^ c=@unasked s=UNTIL l=@word|@num|@unit+ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({measured}) | F(2, 80) hasta la pared a 30 cm => usage=F(2, 80) UNTIL(DISTANCE < 30)
 ^ c=@unasked s=UNTIL @word+ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < 10) | F(2, 80) hasta la pared => usage=F(2, 80) UNTIL(DISTANCE < 10)
 # which way, and what comes next
 ^ c=@cmd then|+|&|,|beside? <call> <moment> $ | TS061 | found={s} {k} {t}; together=TASK;{w}({v});END_TASK;{c} | F(2, 80) y BEEP(1, 440) al mismo tiempo => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
