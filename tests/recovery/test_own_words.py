@@ -18,8 +18,8 @@ from tiniscript.diagnostics.rendering import message
 
 OWN = "37"  # a number that is in no example
 CONDITIONS = (
-    "distancia < {}", "distance < {} cm", "a distância < {}", "LUZ > {}", "SOM > {}", "TEMPERATURA > {}",
-    "RANDOM(1, {0}) = {0}", "NO DISTANCE < {}", "DISTANCE es menor que {}",
+    "distancia < {}", "distance < {} cm", "a distância < {}", "LUZ > {}", "SOM > {}",
+    "TEMPERATURA > {}", "RANDOM(1, {0}) = {0}", "NO DISTANCE < {}", "DISTANCE es menor que {}",
 )  # fmt: skip
 HEADERS = (
     "{h} {c}\nS\n{e}", "{h}({c})\nS\n{e}", "{h} {c}:\n  forward\n{e}", "W(1);{h} {c};S;{e}",
@@ -157,3 +157,57 @@ def test_ends_of_several_blocks_come_one_after_the_other() -> None:
 def test_an_end_alone_is_that_of_its_block() -> None:
     text = "forever\nif distance < 20 then\nturn right 90 degrees\nelse\nforward\nend"
     assert (check(text)[-1].code.number, check(text)[-1].values["right"]) == ("TS023", "ENDIF")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ("F(5, 60) HASTA NEGRO", {"question": "LIGHT_L < 500", "another": "LIGHT_R < 500"}),
+        ("F(5, 60) hasta la pared", {"question": "DISTANCE < 10"}),
+        ("F(5, 60) hasta el final", {"question": "", "example": "DISTANCE < 10"}),
+        ("IF BRIGHT THEN STOP", {"question": "LIGHT_L > 500"}),
+        ("IF(pared a la derecha);S;ENDIF", {"question": "", "aside": "DISTANCE"}),
+        ("IF(COLOR = 37);S;ENDIF", {"question": None}),
+    ],
+)
+def test_words_are_asked_of_the_sensor_that_they_mean(wrong: str, told: dict[str, str]) -> None:
+    values = check(wrong)[0].values
+    assert {name: values.get(name) for name in told} == told
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        ("IF(SENSOR_LUZ_DERECHA > 37);S;ENDIF", "IF(LIGHT_R > 37);S;ENDIF"),
+        ("IF(DISTANCE IS 37);S;ENDIF", "IF(DISTANCE = 37);S;ENDIF"),
+        ("F(10, 60) STOP WHEN DISTANCE < 12", "F(10, 60) UNTIL(DISTANCE < 12)"),
+        ("REPITA 3x\nS\nFIM REPITA", "LOOP(3)\nS\nEND_LOOP"),
+        ("SHOW LIGHT_L + LIGHT_R", "SHOW(LIGHT_L + LIGHT_R)"),
+        ("CALL HOP\nDEF HOP\nS\nEND_DEF", "DEF HOP\nS\nEND_DEF\nHOP"),
+        ("⬆ F(2, 80) ➡ R(1, 60)", "F(2, 80); R(1, 60)"),
+        ("X = 50\nX = X + 10%\nF(1, X)", "X = 50\nX = X + 10\nF(1, X)"),
+    ],
+)
+def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
+    assert fixed(wrong, check).text == right
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ("SPIN 360", {"to_left": "L(360 DEG, 60)", "to_right": "R(360 DEG, 60)"}),
+        ("gira 2 vueltas", {"to_right": "R(720 DEG, 80)"}),
+        ("si luz mucha\nS\nfin mientras", {"right": "END_WHILE"}),
+        ("PARA I DE 1 ATE 5\nSHOW(I)\nFIM", {"right": "LOOP"}),
+        ("F(2,80) Y IF(DISTANCE<10) S", {"before": "IF(DISTANCE < 10)"}),
+        ("M(-50, 50) 2", {"waiting": "M(-50, 50);W(2);S"}),
+        ("F(1, 60) VEZES 3", {"fix": "LOOP(3);F(1, 60);END_LOOP"}),
+        ("F(SIEMPRE, 60)", {"endless": "F(FOREVER, 60) UNTIL(DISTANCE < 10)"}),
+        ("AVANZAR SIEMPRE\nTASK\nS\nEND_TASK", {"fix": "F(FOREVER, 80)"}),
+        ("PLAY C FOR 1 SECOND", {"fix": "BEEP(1, 262)"}),
+        ("F(1 a 3, 60)", {"fix": "F(RANDOM(1, 3), 60)"}),
+    ],
+)
+def test_no_number_or_word_is_told_that_was_not_meant(wrong: str, told: dict[str, str]) -> None:
+    found = check(wrong)
+    assert any({name: it.values.get(name) for name in told} == told for it in found), found

@@ -29,10 +29,11 @@ SEPARATORS = frozenset(";|{}")
 SOME_END = "FIN"  # of a block that its word does not name: what a row makes of each such end
 CALLED = frozenset(word.text for word in WORDS.values() if word.role.is_call)
 DONE = CALLED | {"S", "STOP", "BREAK"}
+ASKING = frozenset(("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL"))
 
 _TOKEN = re.compile(
     r"(\d+(?:\.\d+)?|(?<!\d)\.\d+)|([A-Za-zÀ-ÿ_][\wÀ-ÿ]*)"
-    r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|\+=|-=|\*=|\S\uFE0F?)"  # with what makes it a picture
+    r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|\+=|-=|\*=|\S\uFE0F?)"
 )
 _SIGNS = SIGNS | frozenset("(),;|")
 _LONGEST = 4  # words of a name
@@ -153,6 +154,12 @@ def concepts(word: str) -> tuple[Meaning, ...]:
     less = re.sub(r"(.)\1\1+", r"\1\1", word)  # `BEEEEEP`
     if less != word:
         return (Meaning(less, MISSPELT),) if less in WORDS else concepts(less)
+    parts = word.split("_")
+    if (
+        len(parts) > 1
+        and (bare := [each for each in parts if not said_of(each, "sensing")]) != parts
+    ):
+        return concepts("_".join(bare))  # `SENSOR_LUZ_DERECHA`
     alike, near = _speller().alike(word), _speller().near(word)
     guesses = (
         (concept_of(alike or ""), KNOWN),
@@ -250,7 +257,13 @@ def _alone_in(line: tuple[Lexeme, ...]) -> set[str]:
 def _compared_in(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that are compared with a number, as nothing but a value is."""
     behind = zip(line, line[1:], line[2:], line[3:], strict=False)
-    return {
+    alone = {
+        name.text
+        for head, before, name, after in zip(line, line[1:], line[2:], line[3:], strict=False)
+        if (before.text, after.text) == ("(", ")") and name.kind is head.kind is WORD
+        if name.text not in lexicon() and (concept_of(head.text) or head.text) in ASKING
+    }
+    return alone | {
         name.text
         for before, one, sign, other in behind
         for name, number in ((one, other), (other, one))

@@ -26,6 +26,7 @@ from tiniscript.base.words import (
 )
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.concepts import (
+    ASKING,
     CALLED,
     ENDED,
     LAP,
@@ -55,11 +56,10 @@ _COUNTED = frozenset((*_DRIVES, *_HEADS, *FUNCTIONS, "SHOW", "UNTIL", "BREAK", "
 # What says the same where a word is gone: `repeat until` is WHILE, `void loop` is FOREVER.
 _AS = {
     "LOOP": ("WHILE", "BREAK", "FOREVER"), "WHILE": ("BREAK", "UNTIL"), "UNTIL": ("WHILE", "BREAK"),
-    "FOREVER": ("TRUE", "LOOP", "WHILE"), "TRUE": ("FOREVER",), "S": ("BREAK",), "IF": ("WHEN",),
-    "WHEN": ("IF",), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
+    "FOREVER": ("TRUE", "LOOP", "WHILE"), "TRUE": ("FOREVER",), "S": ("BREAK", "UNTIL"),
+    "IF": ("WHEN",), "WHEN": ("IF", "UNTIL"), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
 }  # fmt: skip
 _TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
-_ASKING = frozenset(("IF", "ELSEIF", "WHILE", "UNTIL", "WHEN"))
 _NEGATES = ("no", "without", "unless", "different")
 # What frames a program and says nothing: its setup, the tags of a page, numbers that count lines.
 _FRAME = re.compile(
@@ -395,7 +395,7 @@ class _Said:
         """Return the words that turn a question round, as they are written."""
         found = []
         for k, token in enumerate(self.tokens):
-            is_asked = any(self._may_be(each) & _ASKING for each in self.tokens[max(0, k - 4) : k])
+            is_asked = any(self._may_be(each) & ASKING for each in self.tokens[max(0, k - 4) : k])
             is_no = token.text in ("NOT", "!") or bool(said_of(token.text, *_NEGATES))
             is_asked |= bool(said_of(token.text, "unless"))
             if is_no and is_asked and not self.names.is_name(token.text):

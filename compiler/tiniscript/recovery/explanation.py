@@ -264,6 +264,8 @@ class _Explainer:
     def new(self, k: int, part: _Change, code: Code, step: Step | None) -> Explanation:
         place, edit, _, before, after = part
         values = _slip(code, step, before, after)
+        if code is codes.BRACES and before and not after:
+            values["needless"] = values["found"]
         if code is codes.UNTIL_NOT_HERE:
             values["example"] = values["fix"]
         if code is codes.OTHER_NOTE:
@@ -431,7 +433,9 @@ def _slip(
         was = re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
     now = laid_out(right) or shown
     now = shown if now == SOME_END and shown in ENDED else now  # of a block, whose end is known
-    now = re.split("[()]", now, maxsplit=1)[0] if code is codes.OTHER_LANGUAGE else now
+    if code is codes.OTHER_LANGUAGE:  # `I = 0;LOOP(5)`: LOOP alone
+        heads = (part for part in now.split(";") if re.split(r"\W", part)[0] in _OF_BLOCKS)
+        now = re.split("[()]", next(heads, now), maxsplit=1)[0]
     now = f"{now} )" if now.endswith("(") else now
     word = _word(code, old, new, start, other)
     usage = WORDS[word].usage if word in WORDS else ""
@@ -439,8 +443,9 @@ def _slip(
     kept = _written(one[: _alike(texts(one), texts(other[:until]))[0]])
     if code in (codes.MISSING_VALUE, codes.MISSING_SIGN) and not found and start:
         was, kept = _written(old[start : start + 1]), _written(old[start - 1 : start])
-    if code is codes.HEADER_SEPARATOR and not kept:
-        kept = other[0].text  # `CADA VEZ QUE DISTANCE < 15 S`
+    if code is codes.HEADER_SEPARATOR and (not kept or lexemes(kept)[0].text not in _OF_BLOCKS):
+        begun = (part for part in fix if part[0].text in _OF_BLOCKS)  # `F(2, 80) Y IF(…) S`
+        kept = laid_out(next(begun)) if kept else other[0].text  # `CADA VEZ QUE DISTANCE < 15 S`
     letters = {each for each in was if each.isalpha()} - {*now} if len(was) == len(now) else set()
     letter = letters.pop() if len(letters) == 1 and code is codes.BAD_NUMBER else ""
     given, needed = (sum(each.kind is NUMBER for each in it) for it in (one, other))

@@ -141,6 +141,7 @@ o==|( a=@num|@val ,|then|or b=@num|@val the? largest e=)|,|$ | $o MAX ( $a , $b 
 # comparisons in words: a row for each sense, and a sign
 is? ⟨less than?¦more⟩ or? equal to|than? | ⟨<=¦>=⟩ | 1 | TS010 | first | IF(DISTANCE es ⟨menor¦mayor⟩ o igual que 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=⟩ 10);S;ENDIF
 is? ⟨one? less than?¦one? more than?¦extra than⟩ | ⟨<¦>¦>⟩ | 1 | TS010 | first | IF(DISTANCE ⟨menor¦mayor¦es mas de⟩ 10);S;ENDIF => IF(DISTANCE ⟨<¦>¦>⟩ 10);S;ENDIF
+o=(|AND|OR|NOT l=@val is|equal+ to|than? n=@num|@val | $o $l = $n | 1 | TS010 | applied | IF(DISTANCE es igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
 ⟨is? different than?¦no is|equal to|equal? one?⟩ | <> | 1 | TS010 | first | IF(DISTANCE ⟨distinto de¦NO ES⟩ 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
 = @word* RANDOM between|from? a=@num to|and|until|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS037 | offered | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
@@ -173,6 +174,7 @@ v=@val CM|in? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
+sensing of? the? v=@val|light | $v | 1 | TS044 | first | SHOW(sensor de distancia) => SHOW(DISTANCE)
 # variables
 v=@name = a=@num|@val b=@start | $v = $a ; $b | 1 | TS013 | applied | X = DISTANCE F(1, 50) => X = DISTANCE;F(1, 50)
 v=@name ++ | $v = $v + 1 | 1 | TS050 | applied | v = 0⏎v++ => v = 0⏎v = v + 1
@@ -204,6 +206,7 @@ c=@callw ( a=@noparen+ s=*|/|%|- b=@num|@val t=+|-|*|/|% d=@noparen+ ) ) e=;|$ |
 c=@callw ( a=@noparen+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2, 80)) => F(2, 80)
 c=@callw ( a=@num ⟨/|-¦_|.|;|&|<|'|'|and|>⟩ b=@num ) | $c ( $a , $b ) | ⟨2¦1⟩ | TS076 | ⟨offered¦applied⟩ | F(2⟨/¦|⟩80) => F(2, 80)
 SHOW ( a=@val ⟨,¦&|+|, " " &|+|,⟩ b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | ⟨2¦1⟩ | TS020 | offered | SHOW(DISTANCE⟨,¦ & " " &⟩ LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
+^ SHOW a=@val|@num s=+|-|*|/|% b=@val|@num $ | SHOW ( $a $s $b ) | 1 | TS015 | applied | SHOW LIGHT_L + LIGHT_R => SHOW(LIGHT_L + LIGHT_R)
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
 c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|UNTIL|@start¦⟩ | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80⟨¦) UNTIL(DISTANCE<10⟩ => F(2,80)⟨¦ UNTIL(DISTANCE<10)⟩
 ⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
@@ -211,6 +214,7 @@ a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@po
 ^ BEEP BEEP e=;|$ | BEEP ( 0.2 , 440 ) ; W ( 0.2 ) ; BEEP ( 0.2 , 440 ) $e | 1 | TS102 | offered | bip bip => BEEP(0.2, 440);W(0.2);BEEP(0.2, 440)
 @newname . c=F|B|L|R|W|BEEP ( | $c ( | 1 | TS102 | applied | bot.F(2, 80) => F(2, 80)
 # UNTIL
+a=F|B|L|R|W ( b=@noparen+ ) then? S|STOP WHEN c=@cond+ $ | $a ( $b ) UNTIL ( $c ) | .9 | TS102 | applied | F(10, 60) STOP WHEN DISTANCE < 12 => F(10, 60) UNTIL(DISTANCE < 12)
 a=F|B|L|R|W ( b=@noparen+ ) S|STOP ( c=@val s=<|<=|>|>= d=@num|@val ) $ | $a ( $b ) UNTIL ( $c $s $d ) | 2 | TS102 | offered | F(10, 60) STOP(DISTANCE < 12) => F(10, 60) UNTIL(DISTANCE < 12)
 ^ a=S|STOP UNTIL that? ( c=@any+ ) e=;|$ | $a ; W ( FOREVER ) UNTIL ( $c ) $e | 1 | TS030 | offered | S HASTA(DISTANCE > 20) => S;W(FOREVER) UNTIL(DISTANCE > 20)
 a=@close ⟨'|'|,|.|; UNTIL¦UNTIL that?⟩ ( | $a UNTIL ( | 1 | ⟨TS029¦TS102⟩ | applied | F(2,80)⟨.UNTIL¦ HASTA⟩(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
@@ -252,7 +256,7 @@ LOOP X|=|-|-> n=@num | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP x 3⏎F
 ^ LOOP <body> n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1.5 | TS102 | applied | repeat F(1,60) R(1,60) 4 times => LOOP(4);F(1, 60);R(1, 60);END_LOOP
 ⟨LOOP¦SHOW⟩ ( n=@num u=⟨¦M|⟩@unit ) | ⟨LOOP¦SHOW⟩ ( @own:n:u ) | 1 | TS049 | applied | ⟨LOOP(3 veces);F(1,50);END_LOOP¦SHOW(2 M)⟩ => ⟨LOOP(3);F(1,50);END_LOOP¦SHOW(200)⟩
 LOOP n=number times :|,|do|;? | LOOP ( &n ) ; | 1 | TS102 | applied | repite cuatro veces⏎F(1,60)⏎fin => LOOP(4)⏎F(1,60)⏎END_LOOP
-LOOP by? n=@num times? ⟨:|,|do|;¦b=@start|'{'¦$⟩ | LOOP ( $n ) ⟨;¦; $b¦⟩ | 1 | TS102 | applied | repite 4⟨:⏎¦ ¦⏎⟩F(1, 60)⟨¦¦⏎fin⟩ => LOOP(4)⟨⏎¦;¦⏎⟩F(1, 60)⟨⏎¦;¦⏎⟩END_LOOP
+LOOP by? n=@num times|X? ⟨:|,|do|;¦b=@start|'{'¦$⟩ | LOOP ( $n ) ⟨;¦; $b¦⟩ | 1 | TS102 | applied | repite 4⟨:⏎¦ ¦⏎⟩F(1, 60)⟨¦¦⏎fin⟩ => LOOP(4)⟨⏎¦;¦⏎⟩F(1, 60)⟨⏎¦;¦⏎⟩END_LOOP
 o=(|,|=|<|>|+|- '|' v=@num|@val c=@noparen* '|' | $o ABS ( $v $c ) | 1 | TS010 | offered | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
 h=UNTIL|IF|WHILE|WHEN|ELSEIF ( c=@any+ ) o=AND|OR (? d=@any+ )? e=;|$ | &h ( $c &o $d ) $e | 1 | TS015 | offered | F(5, 60) UNTIL(LIGHT_L > 9) OR (LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
 ^ a=F|B|L|R|M|W|BEEP ( c=@noparen+ ) WHEN (? q=@cond+ )? ;|:|,? <body> $ | WHEN ( $q ) ; $b $r ; END_WHEN ; $a ( $c ) | .9 | TS071 | offered | F(9, 50) WHEN(DISTANCE < 9) S => WHEN(DISTANCE < 9);S;END_WHEN;F(9, 50)

@@ -241,8 +241,14 @@ class _Reader:
                 self.mark = marked[0]
         elif word in names.known.values and self.command:
             self._take(word, marked[0] if marked else self.mark)
-        elif self.command == "BEEP" and said_of(word, "note"):
-            self.values.append(_Value(said_of(word, "note")[0], "Hz"))
+        elif self.command == "BEEP" and (
+            note := said_of(word, "note") or said_of(word + "4", "note")
+        ):
+            self.values.append(_Value(note[0], "Hz"))
+            self.is_sure = self.is_sure and len(word) > 1  # `C`
+        elif names.meant(word) == "FOREVER" and self.command in MOVES and self._is_said():
+            self._take("FOREVER", "s")
+            self.is_sure = False
         elif said_of(word, "power") and self.command:
             self._take(said_of(word, "power")[0], "%")
             self.is_sure = False
@@ -261,6 +267,10 @@ class _Reader:
                     return k + 1
             return None
         return k + 1
+
+    def _is_said(self) -> bool:
+        """Whether words say a move, without values and brackets: `avanzar siempre`."""
+        return not self.values and all(each.text != "(" for each in self.words)
 
     def _is_mark(self, word: str, marked: tuple[str, ...]) -> bool:
         if not marked or word in self.names.known.values or not (self.command or self.is_turn):

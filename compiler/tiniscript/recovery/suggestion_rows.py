@@ -33,7 +33,7 @@ PARTS = {
     "either": "(? l=light|ahead r=<|>|<=|>= n=@num )?",
     "asks": "h=@ask",
     "body": "do|:?",
-    "often": "*|LOOP|X|during? n=@often times?",
+    "often": "*|LOOP|X|times|during? n=@often times?",
     "call": "w=@call ( v=@noparen+ )",
     "moment": "s=@word+ k=same|the t=moment",
 }
@@ -85,6 +85,7 @@ SUGGESTIONS = """
 # how often
 ^ c=@more <lead> <often> <close> $ | TS062 | found={text}; last={loop}; all={all} | F(1, 60); L(1, 60) x4 => last=LOOP(4);L(1, 60);END_LOOP
 ^ <does> <lead> <often> <close> $ | TS062 | found={text}; fix={loop?}; once={once?} | F(2, 80) 3 veces => fix=LOOP(3);F(2, 80);END_LOOP
+^ c=M (? n=@time )? $ | TS085 | seconds={n}; waiting={c};W({n});S | M(50, 80) 2 => waiting=M(50, 80);W(2);S
 ^ c=@cmd (? n=@time )? $ | TS085 | times={n}; often={loop} | F(2,80)(3) => often=LOOP(3);F(2,80);END_LOOP
 ^ ⟨<does> one then anew times¦c=@cmd count? FOREVER⟩ $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) ⟨una y otra vez¦siempre⟩ => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ @none do|LOOP|make w=⟨@callw ( v=@noparen+ )¦@def⟩ @word* FOREVER|anew|over @word* $ | TS064 | fix=LOOP(FOREVER);{w}⟨({v})¦⟩;END_LOOP | ⟨repeat F(1, 80)¦DEF A1;S;END_DEF⏎do A1⟩ again and again => fix=LOOP(FOREVER);⟨F(1, 80)¦A1⟩;END_LOOP
@@ -104,7 +105,8 @@ SUGGESTIONS = """
 ^ c=@move s=WHILE @word* no @word* wall $ | TS071 | found={s}; fix={c} UNTIL({distance} < 10) | F(2, 80) mientras no haya pared => fix=F(2, 80) UNTIL(DISTANCE < 10)
 ^ c=@cmd s=when @word* no @word* wall $ | TS071 | found={s}; fix=IF({distance} > 10);{c};ENDIF | S cuando no hay pared => fix=IF(DISTANCE > 10);S;ENDIF
 ^ c=@unasked s=UNTIL l=@word|@num|@unit+ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({measured}) | F(2, 80) hasta la pared a 30 cm => usage=F(2, 80) UNTIL(DISTANCE < 30)
-^ c=@unasked s=UNTIL @word+ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < 10) | F(2, 80) hasta la pared => usage=F(2, 80) UNTIL(DISTANCE < 10)
+^ c=@unasked h=UNTIL s=@word+ $ | TS135 | word={head} | F(2, 80) hasta negro => question=LIGHT_L < 500
+^ c=@unasked s=UNTIL @word+ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL(c) | F(2, 80) hasta YA => usage=F(2, 80) UNTIL(c)
 # which way, and what comes next
 ^ c=@cmd then|+|&|,|beside? <call> <moment> $ | TS061 | found={s} {k} {t}; together=TASK;{w}({v});END_TASK;{c} | F(2, 80) y BEEP(1, 440) al mismo tiempo => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
 ^ c=@more|@later @word+ same|the moment $ | TS061 | found={words}; together=TASK;{c};END_TASK;{above} | F(2, 80); BEEP(1, 440) a la vez => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)

@@ -20,10 +20,20 @@ from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.recovery import lines, rewrites, suggestion_rows
-from tiniscript.recovery.concepts import ENDED, NEAR, Lexeme, Names, lexemes, made, plain, said_of
+from tiniscript.recovery.concepts import (
+    ASKING,
+    ENDED,
+    NEAR,
+    Lexeme,
+    Names,
+    lexemes,
+    made,
+    plain,
+    said_of,
+)
 from tiniscript.recovery.orders import Order, condition_in, made_up, orders, written
 from tiniscript.recovery.slots import filled
-from tiniscript.recovery.trailing_tokens import ASKING, Around, Trailing, whole, width
+from tiniscript.recovery.trailing_tokens import Around, Trailing, whole, width
 from tiniscript.recovery.worded import sensors_of, worded
 from tiniscript.recovery.writing import laid_out, shortened, without_note
 from tiniscript.syntax.free_names import for_a_number

@@ -13,12 +13,15 @@ from itertools import dropwhile, pairwise, takewhile
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.spelling import nearest
-from tiniscript.base.words import ALIASES, BLOCK_ENDS, QUESTION, SINCE, WORDS, said_instead
+from tiniscript.base.words import ALIASES, BLOCK_ENDS, MOVES, QUESTION, SINCE, WORDS, said_instead
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
 from tiniscript.recovery.concepts import (
+    ASKING,
+    DONE,
+    LONG_S,
     Lexeme,
     Names,
     closed,
@@ -29,7 +32,6 @@ from tiniscript.recovery.concepts import (
     words_of,
 )
 from tiniscript.recovery.orders import block, condition_in, made_up, orders, written
-from tiniscript.recovery.trailing_tokens import ASKING
 from tiniscript.recovery.worded import worded
 from tiniscript.recovery.writing import laid_out, shortened, tokens_of, without_note
 from tiniscript.syntax.free_names import in_place_of
@@ -59,6 +61,7 @@ _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing 
 _BEGINS = (";", "newline", "|")  # what an instruction begins behind
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _WANTED = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
+_MOST_OF_END = 4  # words: `fin del bucle`
 _NO_NAMES = ("leaves", "again", "filler", "same", "etc", "end")
 
 
@@ -211,9 +214,13 @@ class _Usage:
         if not self.is_first or self.found.values.get("near") or not self.tokens:
             return None
         first, sign = self.signs[0], "".join(self.signs[1:2])
-        if said_of(first, "end") and len(self.tokens) == 1:
-            end = self.text.end_at(self.piece.start)
-            return self.offers(codes.END_ALONE, end, found=first, right=end) if end else None
+        if said_of(first, "end") and len(self.words) == len(self.tokens) < _MOST_OF_END:
+            named = next(
+                (BLOCK_ENDS.get(self.names.meant(each), "") for each in self.words[1:]), ""
+            )
+            end = named or self.text.end_at(self.piece.start)
+            said = self.source[self.piece]
+            return self.offers(codes.END_ALONE, end, found=said, right=end) if end else None
         if parts := _MEMBER.match(self.source.text, self.found.span.start):  # `Serial.begin`
             right = self.names.meant(plain(parts[0].rpartition(".")[2]))
             values = {"right": right, "usage": _usage(right)} if self.names.takes(right) else {}
@@ -271,9 +278,13 @@ class _Usage:
         if others - {"L", "R", "B", "S"}:
             return Diagnostic(codes.SEVERAL_ORDERS, self.piece)  # a turn alone would lose them
         way = next((it for it in map(self.names.meant, self.words) if it in ("L", "R")), "")
-        degrees = {"half": 180, "whole": 360}
-        angle = next((degrees[it] for it in degrees if any(said_of(each, it) for each in said)), 0)
+        degrees = {"half": "180", "whole": "360"}
+        halves = (it for it in degrees if any(said_of(each, it) for each in said))
+        angle = degrees.get(next(halves, ""), "")
         is_timed = any(said_of(each, "unit")[:1] not in ((), ("turns",)) for each in self.words)
+        numbers = [each.text for each in self.tokens if each.kind is NUMBER]
+        if len(numbers) == 1 and float(numbers[0]) >= LONG_S and not is_timed:
+            angle = numbers[0]  # `SPIN 360`: no time, and no power
         turns = orders(self.tokens, self.names)
         if angle and not way and not is_timed:
             turned = f"({angle} DEG, 60)"
@@ -348,6 +359,8 @@ class _Usage:
             if said.code is codes.SEVERAL_ORDERS:
                 return said
             return self.adds(fix=said.values["fix"])._replace(place=self.piece, repair=said.repair)
+        if word in ASKING and (asked := self.asked_in_words(word)):
+            return asked
         is_alone = len(self.tokens) == 1 and word in WORDS and WORDS[word].arguments
         example = WORDS[word].example if is_alone else ""
         return self.adds(example=example, usage=self.usage(word))
@@ -369,6 +382,15 @@ class _Usage:
             return None
         return self.in_words(heads[-1])
 
+    def asked_in_words(self, word: str) -> Diagnostic | None:
+        """A question in words without brackets: `IF BRIGHT THEN STOP`."""
+        behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.tokens)][1:]
+        begun = DONE - {"L", "R"}  # `pared a la derecha`
+        meant = [_is_over(each) or self.names.meant(each.text) in begun for each in behind]
+        said = worded(behind[: [*meant, True].index(True)], self.names) or {}
+        is_told = said.get("asked") or said.get("question")
+        return self.says(codes.IN_WORDS, word=word, **said) if is_told else None
+
     def in_words(self, word: str) -> Diagnostic:
         """A question in words: what its words ask, else an example."""
         start = next(k for k, each in enumerate(self.tokens) if self.names.meant(each.text) == word)
@@ -380,7 +402,15 @@ class _Usage:
         """A name that nobody knows, which asks something in words: DARK of `X > 5 OR DARK`."""
         before = lexemes(self.source[Span(self.piece.start, self.found.span.start)])
         heads = [one.text for one, after in pairwise(before) if after.text == "("]
-        is_asked = bool(said_of(plain(self.source[self.found.span]), "light", "ahead"))
+        name = plain(self.source[self.found.span])
+        if self.names.meant(name) == "FOREVER" and self.signs[:1] and self.signs[0] in MOVES:
+            start, end = (place - self.piece.start for place in self.found.span)
+            said = self.source[self.piece]
+            endless = (
+                f"{said[:start]}FOREVER{said[end:]} UNTIL({WORDS['UNTIL'].arguments[0].sample})"
+            )
+            return self.adds(near="", meant="FOREVER", endless=endless)
+        is_asked = bool(said_of(name, "light", "ahead"))
         if not heads or heads[-1] not in ASKING or not is_asked or before[-1].text in COMPARISONS:
             return None
         told = self.in_words(heads[-1])
@@ -445,7 +475,7 @@ class _Usage:
         if text := self.block():
             return self.offers(codes.SPANISH_IF, text)._replace(span=self.found.span)
         if word == "SI" and not is_bar:
-            return self.says(codes.SPANISH_IF)
+            return self.asked_in_words("IF") or self.says(codes.SPANISH_IF)
         here = word + "|" * is_bar
         button = "SB" if word == "SB" else ""
         twice = here if word == self.text.begun == "SB" else ""
@@ -594,9 +624,8 @@ class _Usage:
         right = re.sub(r"^[^A-Za-z]+|\W", "", plain(word))
         concept = self.names.meant(right)
         if concept in WORDS:
-            return self.says(
-                codes.OTHER_LANGUAGE, found=right, right=concept, usage=_usage(concept)
-            )
+            usage = self.usage(concept)
+            return self.says(codes.OTHER_LANGUAGE, found=right, right=concept, usage=usage)
         if self.behind_it.lstrip(" ").startswith("("):
             return self.says(codes.UNKNOWN_WORD, found=word.upper(), near="")
         if self.is_first and (said_of(right, "filler") or self.is_button(right)):

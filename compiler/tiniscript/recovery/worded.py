@@ -27,7 +27,8 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     """Return what a condition in words asks, None where it is none or cannot be understood.
 
     It is `asked` where it has its number, a `question` where a word says what, and else an
-    `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several.
+    `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several,
+    and `aside` is what looks ahead alone.
     """
     is_compared = any(each.text == "=" for each in row)  # `DISTANCE = NEAR`
     row = [each for each in row if each.text != "="]
@@ -56,6 +57,8 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
         f"{name} {_sign(name, said)} {number or _example(names.asked.get(name), name)}"
         for name in _subjects(own, texts, said, names)
     ]
+    if "ahead" in said and said & {"left", "right"} and asked[0].startswith("DISTANCE"):
+        return {"question": "", "aside": "DISTANCE"}  # it looks ahead
     is_asking = bool(own or said & _ASKED)
     kinds = ("asked", "also") if number else ("question", "another") if is_asking else ("example",)
     return {"question": "", **dict(zip(kinds, asked, strict=False))}
