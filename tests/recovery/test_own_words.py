@@ -186,6 +186,9 @@ def test_words_are_asked_of_the_sensor_that_they_mean(wrong: str, told: dict[str
         ("CALL HOP\nDEF HOP\nS\nEND_DEF", "DEF HOP\nS\nEND_DEF\nHOP"),
         ("⬆ F(2, 80) ➡ R(1, 60)", "F(2, 80); R(1, 60)"),
         ("X = 50\nX = X + 10%\nF(1, X)", "X = 50\nX = X + 10\nF(1, X)"),
+        ("IF(DISTANCE < 37 Y/O LIGHT_L > 50);S;ENDIF", "IF(DISTANCE < 37 OR LIGHT_L > 50);S;ENDIF"),
+        ("SHOW(random.randint(1, 6))", "SHOW(RANDOM(1, 6))"),
+        ("ENQUANTO(1) { F(1, 50) }", "WHILE(TRUE);F(1, 50);END_WHILE;"),
     ],
 )
 def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
@@ -206,6 +209,14 @@ def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
         ("AVANZAR SIEMPRE\nTASK\nS\nEND_TASK", {"fix": "F(FOREVER, 80)"}),
         ("PLAY C FOR 1 SECOND", {"fix": "BEEP(1, 262)"}),
         ("F(1 a 3, 60)", {"fix": "F(RANDOM(1, 3), 60)"}),
+        ("toca 3 pitidos", {"fix": "LOOP(3);BEEP(1, 440);W(1);END_LOOP"}),
+        ("ande e pare quando DISTANCE < 37", {"fix": "F(FOREVER, 80) UNTIL(DISTANCE < 37)"}),
+        ("F(FOREVER, 60) UNTIL(5 SECONDS)", {"fix": "F(5, 60)"}),
+        ("PARAR DEPOIS DE 3 SEGUNDOS", {"fix": "W(3);S"}),
+        ("DISTANCE < 37 ? S", {"fix": "IF(DISTANCE < 37);S;ENDIF"}),
+        ("SPEED = 80;TIME = 2;F(TIME, SPEED)", {"right": "MY_TIME", "times": "2"}),
+        ("repetir 37\n  si toca borde rebotar\nfin", {"usage": "LOOP(37)"}),
+        ("servo.write(90)", {"right": None}),
     ],
 )
 def test_no_number_or_word_is_told_that_was_not_meant(wrong: str, told: dict[str, str]) -> None:

@@ -228,13 +228,19 @@ class _Said:
             elif token is _END:
                 depth = [False]
             if (value := self._number(token)) is not None:
-                is_said = said_of(before.text, "leaves", "by") and before.kind is WORD
-                k = k + 1 if is_said else self._take(k, value, slots[k])
+                is_said = bool(said_of(before.text, "leaves", "by")) and before.kind is WORD
+                k = k + 1 if is_said or self._is_yes(k) else self._take(k, value, slots[k])
                 continue
             if token.kind is WORD and not self._is_label(k):
                 self._take_word(k, len(depth) > 1)
             k += 1
         self.words["ELSE"] += self._arms_in_brackets()
+
+    def _is_yes(self, k: int) -> bool:
+        """Whether a 1 alone is asked for yes: `while (1)`."""
+        head, sign = self.tokens[max(0, k - 2)], self.tokens[k - 1]
+        is_alone = (sign.text, self.tokens[k].text, self._after(k).text) == ("(", "1", ")")
+        return is_alone and bool(self._may_be(head) & ASKING)
 
     def _take_word(self, k: int, is_in_brackets: bool) -> None:
         token, before, after = self.tokens[k], self.tokens[k - 1] if k else _END, self._after(k)
@@ -251,6 +257,7 @@ class _Said:
         is_again = (word == "IF" and before.text in ("AND", "OR")) or (
             word == "OR" and before.text in _SENSES
         )
+        is_again |= after.text == "." and self._after(k + 1).kind is WORD  # `random.randint`
         is_again |= word in MOVES and after.kind is WORD and word == self._word(after)
         is_needless = (word == "TRUE" and "=" in around and is_in_brackets) or (
             word == "TIME" and not around & _SENSES.keys()

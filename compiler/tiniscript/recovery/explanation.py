@@ -397,7 +397,9 @@ def _slip(
             for line in (old, new)
         )
     start, found, right = _first_difference(old, new)
-    if not right and code is codes.OTHER_LANGUAGE and start and old[start - 1].text != "|":
+    if code is codes.OTHER_LANGUAGE and texts(found[-1:]) == (".",) and not right:
+        found, right = old[start : start + len(found) + 1], new[start : start + 1]
+    elif not right and code is codes.OTHER_LANGUAGE and start and old[start - 1].text != "|":
         found, right = [old[start - 1], *found], [old[start - 1]]
     elif code is codes.OTHER_LANGUAGE and texts(found[-1:]) == (".",):  # `bot.forward`
         found = old[start : start + len(found) + 1]
@@ -436,6 +438,8 @@ def _slip(
     if code is codes.OTHER_LANGUAGE:  # `I = 0;LOOP(5)`: LOOP alone
         heads = (part for part in now.split(";") if re.split(r"\W", part)[0] in _OF_BLOCKS)
         now = re.split("[()]", next(heads, now), maxsplit=1)[0]
+        now = next((each for each in now.split() if each in WORDS), now)  # `va F`
+        now = now if now in WORDS else meant_by(now) or now  # of `bot.forward`
     now = f"{now} )" if now.endswith("(") else now
     word = _word(code, old, new, start, other)
     usage = WORDS[word].usage if word in WORDS else ""

@@ -156,8 +156,11 @@ l=@val = a=@num or b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTAN
 ( s=<|<= n=@num ) | ( DISTANCE $s $n ) | 1 | TS018 | offered | IF(< 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ c=@cond+ ? <body> : d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
+^ c=@cond+ ? b=@start r=@all* $ | IF ( $c ) ; $b $r ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S => IF(DISTANCE < 10);S;ENDIF
+h=WHILE ( 1 ) | &h ( TRUE ) | 1 | TS010 | first | ENQUANTO(1) { F(1, 50) } => WHILE(TRUE);F(1, 50);END_WHILE;
 o==|( a=@num|@val over by|over? b=@num|@val | $o $a / $b | 1 | TS010 | applied | SHOW(10 entre 2) => SHOW(10 / 2)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val ⟨then|&¦or|OR⟩ b=@val s=<|> n=@num ) | &h ( $a $s $n ⟨AND¦OR⟩ $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L ⟨y¦o⟩ LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 ⟨AND¦OR⟩ LIGHT_R > 500)⏎S⏎ENDIF
+then|and|AND / or|OR | OR | 1 | TS010 | first | IF(DISTANCE < 10 y/o LIGHT_L > 50);S;ENDIF => IF(DISTANCE < 10 OR LIGHT_L > 50);S;ENDIF
 a=@num|@val ⟨then|&¦or⟩ b=@val|less|more|NOT⟨|<¦⟩ | $a ⟨AND¦OR⟩ $b | 1 | TS010 | first | IF(DISTANCE < 10 ⟨y¦o⟩ LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 ⟨AND¦OR⟩ LIGHT_L > 100);S;ENDIF
 o=AND|OR IF | &o | 1 | TS010 | first | IF(DISTANCE > 5 AND IF DISTANCE < 9);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 9);S;ENDIF
 a=@num|@val '|' b=@val | $a OR $b | 1 | TS010 | applied | IF(DISTANCE<10 | LIGHT_R>50)⏎S⏎ENDIF => IF(DISTANCE<10 OR LIGHT_R>50)⏎S⏎ENDIF
@@ -223,6 +226,7 @@ a=@close ⟨'|'|,|.|; UNTIL¦UNTIL that?⟩ ( | $a UNTIL ( | 1 | ⟨TS029¦TS102
 a=@close UNTIL that? ⟨c=@cond+ then+ ,? b=@start¦c=@noparen+ $⟩ | $a UNTIL ( $c ) ⟨; $b¦⟩ | 1 | TS015 | applied | F(2, 80) hasta DISTANCE < 10⟨ luego S¦⟩ => F(2, 80) UNTIL(DISTANCE < 10)⟨;S¦⟩
 ^^ ⟨UNTIL <question> ':'|'{'?¦LOOP ( FOREVER ) UNTIL <question>⟩ $ | WHILE ( @not:c ) | ⟨3¦1⟩ | ⟨TS029¦TS102⟩ | offered | ⟨¦LOOP(FOREVER) ⟩UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_⟨WHILE¦LOOP⟩ => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
 ^ ⟨a=F|B|L|R ( UNTIL (? c=@cond+ )? , b=@num¦UNTIL (? c=@cond+ )? a=F|B|L|R|W ( b=@noparen+⟩ ) $ | $a ( ⟨FOREVER ,¦⟩ $b ) UNTIL ( $c ) | 2 | TS029 | offered | ⟨F(UNTIL(DISTANCE < 10),¦UNTIL DISTANCE < 10 F(2,⟩ 60) => F(⟨FOREVER¦2⟩, 60) UNTIL(DISTANCE < 10)
+a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num @in_secs|S ) $ | $a ( $n , $p ) | 1 | TS049 | offered | F(FOREVER, 60) UNTIL(5 SECONDS) => F(5, 60)
 # IF and WHILE
 ELSE ( a=@val s=<|<=|>|>= b=@num|@val ) | ELSEIF ( $a $s $b ) | 1 | TS039 | offered | IF(DISTANCE < 10)⏎S⏎ELSE(DISTANCE < 30)⏎B(1, 50)⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ELSEIF(DISTANCE < 30)⏎B(1, 50)⏎ENDIF
 c=IF|WHILE|ELSEIF|UNTIL ( ( a=@noparen* b=@num|@word ) e=;|$ | $c ( ( $a $b ) ) $e | 1 | TS016 | applied | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
@@ -292,6 +296,7 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:? | $v = 0 ; LOOP ( $n ) ; $
 ^ every n=@num seconds ,|:|do? <body> $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
 ^ do|make? b=@start r=@any* n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
 # words behind a call: shown, not made
+^ a=S|STOP after of? n=@num seconds? $ | W ( $n ) ; $a | 1 | TS013 | offered | STOP AFTER 3 SECONDS => W(3);STOP
 ^ a=S|STOP ⟨( n=@num seconds? )¦during? n=@num seconds?⟩ $ | $a ; W ( $n ) | 2 | ⟨TS039¦TS013⟩ | offered | S⟨(2)¦ 2 segundos⟩ => S;W(2)
 ^ b=F|B|L|R|S|STOP|BEEP|SHOW|W r=@any* IF c=@cond+ ELSE d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS071 | offered | F(2, 80) if DISTANCE > 10 else S => IF(DISTANCE > 10);F(2, 80);ELSE;S;ENDIF
 # what the devices of a kit are set to

@@ -183,12 +183,13 @@ class _Usage:
         """Return how an instruction is written: a block with its end, where the text has none."""
         if word in ASKING and (asked := self.question(word)):
             return asked
-        if word not in BLOCK_ENDS or _ENDS.search(plain(self.source.text)):
+        is_ended = _ENDS.search(plain(self.source.text)) is not None
+        if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
         found = lines.read(self.tokens, self.names) if word == "LOOP" else []  # else a guess
         is_head = bool(found) and [each.kind for each in found[0].items or ()] == ["open"]
         head = laid_out(found[0].tokens).strip("; ") if is_head else _usage(word)
-        return f"{head}; ...; {BLOCK_ENDS[word]}"
+        return head if is_ended else f"{head}; ...; {BLOCK_ENDS[word]}"
 
     def question(self, word: str) -> str:
         """Return a header with the question that was written, without numbers that were not.
@@ -222,10 +223,13 @@ class _Usage:
             said = self.source[self.piece]
             return self.offers(codes.END_ALONE, end, found=said, right=end) if end else None
         if parts := _MEMBER.match(self.source.text, self.found.span.start):  # `Serial.begin`
-            right = self.names.meant(plain(parts[0].rpartition(".")[2]))
+            thing, _, done = plain(parts[0]).rpartition(".")
+            right = "" if said_of(thing, "device") else self.names.meant(done)  # `servo.write`
             values = {"right": right, "usage": _usage(right)} if self.names.takes(right) else {}
             code = codes.OTHER_LANGUAGE if values else codes.UNKNOWN_WORD
             return Diagnostic(code, Span(*parts.span()), {"found": parts[0], **values})
+        if self.names.meant(first) == "SHOW" and {*self.signs} & {*QUOTES}:
+            return self.says(codes.WORDS_SHOWN)
         if instead := said_instead(first):
             return self.adds(**instead)
         if not (self.names.meant(first) or said_of(first, "turn", "end", "short")):
@@ -260,6 +264,8 @@ class _Usage:
         if is_order and concept != word and not is_among:
             if len(self.tokens) == 1 and not WORDS[concept].arguments:
                 return self.translated(word, concept)
+            if not WORDS[concept].arguments and any(it.kind is NUMBER for it in self.tokens):
+                return Diagnostic(codes.SEVERAL_ORDERS, self.piece)  # it alone would lose it
             return self.says(
                 codes.OTHER_LANGUAGE, found=word, right=concept, usage=self.usage(concept)
             )
@@ -561,7 +567,7 @@ class _Usage:
         is_taught = re.search(r"(?i)\bDEF\s+$", text[max(0, start - 9) : start])
         right = in_place_of(text, word) if is_set or is_taught else ""
         near = nearest(word, self.names.variables - {word}) if is_set else None
-        if right and (word in SINCE or not (near or (is_set and word == "TIME"))):
+        if right and (word in SINCE or not (near or (is_set and word == "TIME" and not is_set[1]))):
             return self.renamed(word, right, is_taught is not None)
         if is_set is None or word != "TIME":
             return self.adds(right=near or right)  # `ROUND = ROUNDS + 1`
