@@ -215,7 +215,7 @@ def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
         ("PARAR DEPOIS DE 3 SEGUNDOS", {"fix": "W(3);S"}),
         ("DISTANCE < 37 ? S", {"fix": "IF(DISTANCE < 37);S;ENDIF"}),
         ("SPEED = 80;TIME = 2;F(TIME, SPEED)", {"right": "MY_TIME", "times": "2"}),
-        ("repetir 37\n  si toca borde rebotar\nfin", {"usage": "LOOP(37)"}),
+        ("repetir 37\n  mover 10 pasos\n  si toca borde rebotar\nfin", {"usage": "LOOP(37)"}),
         ("servo.write(90)", {"right": None}),
     ],
 )

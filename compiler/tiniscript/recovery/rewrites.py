@@ -35,6 +35,7 @@ from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
 _ATOM = re.compile(r"'[^']*'|@\w+|[a-z]{2,}|[A-Z_0-9]+|\$|[^\w|'@\s$]+")
 _CAPTURE = re.compile(r"([a-z])=(?=.)")
 _PART = re.compile(r"<(\w+)>")
+_CONTINUED = re.compile(r"\n    ")
 # Where an instruction begins and ends, by the labels around it; and a line.
 _EDGES = {
     "^": rf"(?:\A|(?<=\x01\|{re.escape(SEPARATOR)}\|\x02)|(?<=\x01\|s[{{}}]\|\x02))",
@@ -76,8 +77,8 @@ class SignRow(NamedTuple):
 
 
 def cells(table: str) -> Iterator[list[str]]:
-    """Give the cells of each row; of one with choices, those of each."""
-    for row in table.strip("\n").split("\n"):
+    """Give the cells of each row, which indented lines go on with; of one with choices, of each."""
+    for row in _CONTINUED.sub(" ", table.strip("\n")).split("\n"):
         if row.strip() and not row.startswith("# "):
             parts = [each.split("¦") for each in re.split("[⟨⟩]", row)]
             assert len({*map(len, parts)} - {1}) < 2, row
