@@ -189,6 +189,10 @@ def test_words_are_asked_of_the_sensor_that_they_mean(wrong: str, told: dict[str
         ("IF(DISTANCE < 37 Y/O LIGHT_L > 50);S;ENDIF", "IF(DISTANCE < 37 OR LIGHT_L > 50);S;ENDIF"),
         ("SHOW(random.randint(1, 6))", "SHOW(RANDOM(1, 6))"),
         ("ENQUANTO(1) { F(1, 50) }", "WHILE(TRUE);F(1, 50);END_WHILE;"),
+        ("LOOP 3 VECES (BEEP(1, 440); W(1))", "LOOP(3);BEEP(1, 440);W(1);END_LOOP"),
+        ("repite mientras DISTANCE > 37\nS\nfin", "WHILE(DISTANCE > 37)\nS\nEND_WHILE"),
+        ("R(90 GRAUS À DIREITA, 60)", "R(90 DEG, 60)"),
+        ("VARIAVEL X = 5\nF(X, 50)", "X = 5\nF(X, 50)"),
     ],
 )
 def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
@@ -209,6 +213,10 @@ def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
         ("AVANZAR SIEMPRE\nTASK\nS\nEND_TASK", {"fix": "F(FOREVER, 80)"}),
         ("PLAY C FOR 1 SECOND", {"fix": "BEEP(1, 262)"}),
         ("F(1 a 3, 60)", {"fix": "F(RANDOM(1, 3), 60)"}),
+        ("LOOP 3 VUELTAS DE (BEEP(1, 440); W(1))", {"fix": None}),
+        ("F(1, 80) then wait 2 then B(1, 80)", {"fix": "F(1, 80);W(2);B(1, 80)"}),
+        ("R(90 GRAUS FOO, 60)", {"right": "90 DEG"}),
+        ("L(1, 50) 2X", {"fix": "LOOP(2);L(1, 50);END_LOOP"}),
         ("toca 3 pitidos", {"fix": "LOOP(3);BEEP(1, 440);W(1);END_LOOP"}),
         ("ande e pare quando DISTANCE < 37", {"fix": "F(FOREVER, 80) UNTIL(DISTANCE < 37)"}),
         ("F(FOREVER, 60) UNTIL(5 SECONDS)", {"fix": "F(5, 60)"}),

@@ -121,6 +121,12 @@ SIGNS = r"""
     | `⟨<¦ ⟩` | ⟨TS010¦TS072⟩ | applied
     | IF(DISTANCE⟨ &lt; 10¦&nbsp;< 10⟩);S;END IF => IF(DISTANCE < 10);S;END_IF
 (?<=\d) ?⟨½¦¾⟩ | `⟨.5¦.75⟩` | TS010 | applied | F(1 ⟨½¦¾⟩, 80) => F(⟨1.5¦1.75⟩, 80)
+⟨×¦÷¦∞⟩
+    | `⟨*¦/¦FOREVER⟩` | TS010 | applied
+    | ⟨W(2×3)¦W(6÷3)¦LOOP(∞);S;END_LOOP⟩ => ⟨W(2*3)¦W(6/3)¦LOOP(FOREVER);S;END_LOOP⟩
+\b([FBLRMW]|BEEP)(\([^()]*\))\s*(?:…|\.{2,3})\s*(?=[A-Za-z]+\s*\()
+    | `\1\2; ` | TS010 | applied
+    | F(2, 80)...R(1, 50) => F(2, 80); R(1, 50)
 ½ | `0.5` | TS010 | applied | W(½) => W(0.5)
 (?<=\d)(?:[´"`]|\)\s*,\s*\()(?=\d+\)) | `, ` | TS076 | applied | F(2´80) => F(2, 80)
 (?<=\))\s+(?:/\s*|-)(?=(?-i:[a-zñáéíóú]+)/?\s*$)
@@ -519,7 +525,7 @@ h=ELSE|TASK ⟨:|,|-|do|=|'|'¦b=@start|'{'⟩
 ^ ⟨LOOP FOREVER :|,?¦FOREVER :|;?⟩ b=@start|'{'
     | LOOP ( FOREVER ) ; $b | 1 | ⟨TS015¦TS032⟩ | applied
     | ⟨LOOP FOREVER¦forever:⟩ F(1,50) => LOOP(FOREVER);F(1, 50);END_LOOP
-^ LOOP n=@num ( <body> ) $
+^ LOOP n=@num times? ( <body> ) $
     | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied
     | repite 4 (F(1, 60) R(0.5, 60)) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
 ^ FOREVER ( ) '{'
@@ -627,6 +633,9 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
 ⟨^ TASK @num ':'? $¦TASK ( @num|@word? )⟩
     | TASK | 1 | ⟨TS044¦TS039⟩ | offered
     | TASK⟨ 1¦(1)⟩⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
+^ LOOP WHILE
+    | WHILE | 1 | TS102 | first
+    | repite mientras DISTANCE > 9⏎S⏎fin => WHILE(DISTANCE > 9)⏎S⏎END_WHILE
 ^ LOOP UNTIL c=@cond+ ':'|'{'? $
     | WHILE ( @not:c ) | 1 | TS102 | applied
     | repeat until DISTANCE < 10⏎F(1, 50)⏎end => WHILE(DISTANCE >= 10)⏎F(1, 50)⏎END_WHILE

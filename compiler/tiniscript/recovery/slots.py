@@ -253,7 +253,7 @@ class _Reader:
             self._take(said_of(word, "power")[0], "%")
             self.is_sure = False
         elif meant:
-            is_again = not after and meant == self.command == "F"  # `avanza 20 cm adelante`
+            is_again = after in ("", ",") and meant == self.command and meant in MOVES
             return k + 1 if is_again or self._take_command(word, meant) else None
         elif said_of(word, "filler"):
             is_in_place = self._is_number(k - 1) and after in ",)"

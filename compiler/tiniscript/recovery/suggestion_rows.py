@@ -33,7 +33,7 @@ PARTS = {
     "either": "(? l=light|ahead r=<|>|<=|>= n=@num )?",
     "asks": "h=@ask",
     "body": "do|:?",
-    "often": "*|LOOP|X|times|during? n=@often times?",
+    "often": "*|LOOP|X|times|during? n=@often times|X?",
     "call": "w=@call ( v=@noparen+ )",
     "moment": "s=@word+ k=same|the t=moment",
 }
@@ -224,6 +224,9 @@ SUGGESTIONS = """
 ^ c=@cmd then @word+ $
     | TS074 | fix={orders}; example={made_up?}
     | F(1, 80) y luego retrocede => fix=F(1, 80);B(2, 80)
+^ c=@cmd then @any+ $
+    | TS074 | fix={orders}; example={made_up?}
+    | F(1, 80) then wait 2 then B(1, 80) => fix=F(1, 80);W(2);B(1, 80)
 ^ c=@move ⟨to reversed¦<lead> @told* @other @told* <close>⟩ $
     | TS085 | other={other}
     | F(1, 80) ⟨al reves¦atras⟩ => other=B(1, 80)

@@ -159,7 +159,9 @@ class Trailing:
         token = self.row[k]
         text, before, after = token.text, self._text(k - 1), self._text(k + 1)
         is_number = self.number(k) is not None
-        is_counted = said_of(after, "times") or said_of(text, "often") or text[0] == "X"
+        is_counted = (
+            said_of(after, "times") or after == "X" or said_of(text, "often") or text[0] == "X"
+        )
         is_many = said_of(before, "multiplied", "times") or before in ("X", "*")
         is_many = is_many or self.means(before) == "LOOP"
         concept = concept_of(text) if token.kind is WORD and not self.names.is_name(text) else None

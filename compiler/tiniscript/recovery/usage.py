@@ -13,7 +13,17 @@ from itertools import dropwhile, pairwise, takewhile
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.spelling import nearest
-from tiniscript.base.words import ALIASES, BLOCK_ENDS, MOVES, QUESTION, SINCE, WORDS, said_instead
+from tiniscript.base.words import (
+    ALIASES,
+    BLOCK_ENDS,
+    MOVES,
+    QUESTION,
+    SINCE,
+    UNIT_OF,
+    WAYS,
+    WORDS,
+    said_instead,
+)
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
@@ -262,6 +272,8 @@ class _Usage:
         is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
         is_among = concept == "S" and {*ordered.values()} != {"S"}  # `ve para adelante`
         if is_order and concept != word and not is_among:
+            if concept in ASKING and (asked := self.asked_in_words(concept)):
+                return asked
             if len(self.tokens) == 1 and not WORDS[concept].arguments:
                 return self.translated(word, concept)
             if not WORDS[concept].arguments and any(it.kind is NUMBER for it in self.tokens):
@@ -449,9 +461,12 @@ class _Usage:
         if not (wanted := _WANTED.get(word.arguments[at].unit)):
             return None
         if unit := said_of(found, "unit"):
+            number, way = before[-1].text, UNIT_OF.get(word.text, "")
+            said = f"{number} {self.source[span]}"
             if unit[0] == word.arguments[at].unit:
-                number = before[-1].text
-                return self.says(codes.UNIT, found=f"{number} {self.source[span]}", fix="")
+                return self.says(codes.UNIT, found=said, fix="")
+            if way and unit == (WAYS[way].unit, "1000"):
+                return self.says(codes.UNIT, found=said, fix="", right=f"{number} {way}")
             name = word.arguments[at].name
             return self.says(codes.OTHER_UNIT, name=name, wanted=wanted, unit=found, **values)
         return self.says(codes.OTHER_CALL, fix="", extra=found, **values)
@@ -629,7 +644,7 @@ class _Usage:
         word = self.source[self.found.span]
         right = re.sub(r"^[^A-Za-z]+|\W", "", plain(word))
         concept = self.names.meant(right)
-        if concept in WORDS:
+        if concept in WORDS or self.names.has(concept):
             usage = self.usage(concept)
             return self.says(codes.OTHER_LANGUAGE, found=right, right=concept, usage=usage)
         if self.behind_it.lstrip(" ").startswith("("):
