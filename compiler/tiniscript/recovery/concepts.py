@@ -43,6 +43,7 @@ _CLASSES = {
     "unit ° 1000": "@in_deg", "unit steps 1000": "@in_steps", "value %": "@of_power",
     "value s": "@of_time", "value Hz": "@of_pitch", "number 1": "@one", "number 100": "@hundred",
 }  # fmt: skip
+NEAR_CM = "10"  # an example of what is near
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
 _MOST_POWER = 100
 _EIGHTH, LAP = 45, 360  # degrees: eighths of a turn, and what is no power, are rather an angle

@@ -31,6 +31,7 @@ from tiniscript.recovery.concepts import (
     ENDED,
     LAP,
     NEAR,
+    NEAR_CM,
     Lexeme,
     Names,
     closed,
@@ -76,6 +77,7 @@ _BETWEEN = re.compile(r"[.,:;'´`·_ ]*")
 _LETTERS = str.maketrans("oOlI", "0011")
 _LONGEST = 3  # parts of a number
 _END = lexemes(";")[0]
+_ASKS_NEAR = re.compile(rf"DISTANCE [<>]=? {NEAR_CM}(?![\d.])")
 
 
 class Amount(NamedTuple):
@@ -123,6 +125,20 @@ def conserving(found: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnos
     return [
         _shown(each, lost[id(each)].lost)
         if id(each) in lost and (is_joint or any(lost[id(each)]))
+        else each
+        for each in found
+    ]
+
+
+def with_sample(found: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
+    """Return diagnostics that say so where they ask for what is near, which has no number."""
+    guesses = [each for each in found if _ASKS_NEAR.search(each.values.get("fix", ""))]
+    if not guesses or any(it.value == float(NEAR_CM) for it in _Said(text, text, kit).amounts):
+        return [*found]
+    sample = {"sample": f"{NEAR_CM} cm"}
+    return [
+        each._replace(values={**each.values, **sample})
+        if each in guesses and not each.values.get("example")
         else each
         for each in found
     ]

@@ -11,7 +11,16 @@ from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS, MOVES, POWER
 from tiniscript.recovery import lines, rewrites
-from tiniscript.recovery.concepts import CALLED, ENDED, Lexeme, Names, closed, made, said_of
+from tiniscript.recovery.concepts import (
+    CALLED,
+    ENDED,
+    NEAR_CM,
+    Lexeme,
+    Names,
+    closed,
+    made,
+    said_of,
+)
 from tiniscript.recovery.slots import Filled, filled
 from tiniscript.recovery.worded import worded
 from tiniscript.recovery.writing import laid_out
@@ -19,7 +28,6 @@ from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
 
 LONGEST = 40  # words of a sentence
-_NEAR_CM = "10"
 _ASIDE = ("L", "R", "B")  # DISTANCE looks ahead
 _SIDES = _ASIDE[:2]
 
@@ -91,7 +99,7 @@ def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) ->
         return []
     header, stop, *rest = asked.split(";")
     number = any(each.kind is NUMBER for each in words)
-    samples = () if number else (f"{_NEAR_CM} cm",)
+    samples = () if number else (f"{NEAR_CM} cm",)
     if stop in ("S", "STOP") and first[-1].word in MOVES and "UNTIL" not in first[-1].text:
         move, made_of = first[-1], first[-1].samples + samples
         stopped = move._replace(text=f"{move.text} UNTIL{header[2:]}", samples=made_of)
@@ -183,7 +191,7 @@ def _asked(
     is_other = any(names.meant(it.text) in _ASIDE or it.text in COMPARISONS for it in words)
     if is_other or not condition.startswith("DISTANCE"):
         return "", ()
-    return condition, () if "asked" in said else (f"{_NEAR_CM} cm",)
+    return condition, () if "asked" in said else (f"{NEAR_CM} cm",)
 
 
 def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
