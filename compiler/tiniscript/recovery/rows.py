@@ -312,6 +312,7 @@ a=@num|@val '|' b=@val
 a=@num b=0 | @cat:a:b | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
 a=@num c=, b=@num | @dec:a:c:b | 1 | TS012 | applied | W(2,5) => W(2.5)
 o=(|,|; a=@num % ) | $o $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
+^ n=@num @in_secs|seconds $ | W ( $n ) | 1 | TS042 | offered | 2 segundos => W(2)
 o=+|-|=|, a=@num % ⟨e=;|,¦$⟩
     | $o $a ⟨$e¦⟩ | 1 | TS049 | applied
     | X = 50⏎X = X + 10%⟨;¦⏎⟩F(2, X) => X = 50⏎X = X + 10⟨;¦⏎⟩F(2, X)
@@ -329,6 +330,7 @@ h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val
     | &h $b &v | 1 | TS102 | first
     | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
+sensing ( v=@val ) | $v | 1 | TS044 | first | SHOW(SENSOR(DISTANCE)) => SHOW(DISTANCE)
 sensing of? the? v=@val|light | $v | 1 | TS044 | first | SHOW(sensor de distancia) => SHOW(DISTANCE)
 # variables
 v=@name = a=@num|@val b=@start
@@ -450,6 +452,10 @@ a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num @in_secs|S ) $
     | $a ( $n , $p ) | 1 | TS049 | offered
     | F(FOREVER, 60) UNTIL(5 SECONDS) => F(5, 60)
 # IF and WHILE
+ELSE a=@val s=<|<=|>|>= b=@num|@val do|:? $
+    | ELSEIF ( $a $s $b ) | .9 | TS015 | offered
+    | IF(DISTANCE < 10)⏎S⏎ELSE DISTANCE < 30⏎B(1, 50)⏎ENDIF =>
+    IF(DISTANCE < 10)⏎S⏎ELSEIF(DISTANCE < 30)⏎B(1, 50)⏎ENDIF
 ELSE ( a=@val s=<|<=|>|>= b=@num|@val )
     | ELSEIF ( $a $s $b ) | 1 | TS039 | offered
     | IF(DISTANCE < 10)⏎S⏎ELSE(DISTANCE < 30)⏎B(1, 50)⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ELSEIF(DISTANCE
@@ -668,7 +674,7 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
 # words behind a call: shown, not made
 ^ a=S|STOP after of? n=@num seconds? $
     | W ( $n ) ; $a | 1 | TS013 | offered
-    | STOP AFTER 3 SECONDS => W(3);STOP
+    | STOP AFTER 2 SECONDS => W(2);STOP
 ^ a=S|STOP ⟨( n=@num seconds? )¦during? n=@num seconds?⟩ $
     | $a ; W ( $n ) | 2 | ⟨TS039¦TS013⟩ | offered
     | S⟨(2)¦ 2 segundos⟩ => S;W(2)

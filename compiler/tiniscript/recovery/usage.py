@@ -206,12 +206,18 @@ class _Usage:
 
         Nothing where no number is asked for.
         """
-        behind = dropwhile(lambda it: self.names.meant(it.text) != word, self.tokens)
-        asked = [*takewhile(lambda it: not _is_over(it), [*behind][1:])]
+        asked = self.asked(word)
         if not any(each.kind is NUMBER for each in asked):
             return ""
         said = laid_out(condition_in(asked, self.names))
         return f"{word}({said})" if said else WORDS[word].usage
+
+    def asked(self, word: str) -> list[Lexeme]:
+        """Return what stands behind a header, up to what is done."""
+        behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.tokens)][1:]
+        begun = DONE - {"L", "R"}  # `pared a la derecha`
+        meant = [_is_over(each) or self.names.meant(each.text) in begun for each in behind]
+        return behind[: [*meant, True].index(True)]
 
     def block(self) -> str:
         below = self.source.text[self.piece.end :].lstrip("; \t\r\n").upper()
@@ -304,12 +310,19 @@ class _Usage:
         if len(numbers) == 1 and float(numbers[0]) >= LONG_S and not is_timed:
             angle = numbers[0]  # `SPIN 360`: no time, and no power
         turns = orders(self.tokens, self.names)
-        if angle and not way and not is_timed:
+        values = laid_out(self.tokens[1:])
+        is_call = all(float(each) <= 100 for each in numbers)  # no power is more
+        side = {"L": "left", "R": "right"}.get(way, "")
+        if angle and way and not is_timed:
+            right = f"{way}({angle} DEG, 60)"
+            return self.says(codes.WHICH_WAY, word=way, way=side, right=right)
+        if angle and not is_timed:
             turned = f"({angle} DEG, 60)"
         elif len(turns) == 1 and turns[0].is_side_free and len(turns[0].samples) < 2:
             turned = turns[0].text[1:]
+        elif not way and is_call and lines.is_right(lexemes(f"L{values}"), self.names):
+            turned = values  # `VOLTA(2, 80)`
         else:
-            side = "left" if way == "L" else "right"
             return self.says(codes.WHICH_WAY, word=way, way=side, usage=_usage(way))
         return self.says(codes.WHICH_WAY, to_left=f"L{turned}", to_right=f"R{turned}")
 
@@ -394,7 +407,7 @@ class _Usage:
         if self.words[1:] and self.names.meant(self.signs[0]) == "SHOW":
             return self.says(codes.WORDS_SHOWN)
         before = lexemes(self.source[Span(self.piece.start, self.found.span.start)])
-        heads = [one.text for one, after in pairwise(before) if after.text == "("]
+        heads = [self.names.meant(it.text) for it, sign in pairwise(before) if sign.text == "("]
         own = {*WORDS, *self.names.known.values} - {"SI"}
         if not heads or heads[-1] not in ASKING or {*self.words} <= own:
             return None
@@ -402,10 +415,7 @@ class _Usage:
 
     def asked_in_words(self, word: str) -> Diagnostic | None:
         """A question in words without brackets: `IF BRIGHT THEN STOP`."""
-        behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.tokens)][1:]
-        begun = DONE - {"L", "R"}  # `pared a la derecha`
-        meant = [_is_over(each) or self.names.meant(each.text) in begun for each in behind]
-        said = worded(behind[: [*meant, True].index(True)], self.names) or {}
+        said = worded(self.asked(word), self.names) or {}
         is_told = said.get("asked") or said.get("question")
         return self.says(codes.IN_WORDS, word=word, **said) if is_told else None
 
