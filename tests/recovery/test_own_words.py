@@ -10,7 +10,7 @@ import pytest
 from tests.pupils.corpus import check
 from tests.support.rows import each_row
 from tiniscript.base.languages import languages, table
-from tiniscript.base.source import Source, applied
+from tiniscript.base.source import Edit, Source, applied
 from tiniscript.base.words import SINCE, WORDS
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import fixed
@@ -83,22 +83,29 @@ RENAMED = [
 ]  # fmt: skip
 
 
+def renamed(text: str) -> tuple[str, tuple[Edit, ...]]:
+    """Return the name that is told in place of a word, and the changes for it."""
+    return next(
+        (each.values["right"], each.repair.edits)
+        for each in check(text)
+        if each.code.number == "TS105" and each.repair
+    )
+
+
 @each_row("word", RENAMED)
 def test_a_name_is_renamed_wherever_it_is_meant(word: str) -> None:
     """A DEF: its calls, and no move of its own; a variable: each use, and no instruction."""
     move = WORDS[word].example if WORDS[word].role.is_instruction else "S"
     text = f"DEF {word}\n{move}\nEND_DEF\n{word}\nF(1, 60)\n{word}"
-    renamed = next(each for each in check(text) if each.code.number == "TS105" and each.repair)
-    name = renamed.values["right"]
-    made = applied(text, renamed.repair.edits)
+    name, edits = renamed(text)
+    made = applied(text, edits)
     assert made == f"DEF {name}\n{move}\nEND_DEF\n{name}\nF(1, 60)\n{name}"
 
 
 @each_row("word", [word for word in RENAMED if word != "TIME"])
 def test_a_variable_is_renamed_in_its_uses(word: str) -> None:
     text = f"{word} = 2\nF({word}, 60)\nW(1 + {word})\nX = {word} + 1\nS\nF(X, 60)"
-    renamed = next(each for each in check(text) if each.code.number == "TS105" and each.repair)
-    made = applied(text, renamed.repair.edits)
+    made = applied(text, renamed(text)[1])
     assert made.split("\n")[4] == "S"
     assert not [each for each in check(made) if each.is_mistake]
 
