@@ -238,6 +238,9 @@ is? ⟨less than?¦more⟩ or? equal to|than?
 is? ⟨one? less than?¦one? more than?¦extra than⟩
     | ⟨<¦>¦>⟩ | 1 | TS010 | first
     | IF(DISTANCE ⟨menor¦mayor¦es mas de⟩ 10);S;ENDIF => IF(DISTANCE ⟨<¦>¦>⟩ 10);S;ENDIF
+o=(|AND|OR l=@val is NOT|no equal* to|than? n=@num|@val
+    | $o $l <> $n | 1 | TS010 | applied
+    | IF(DISTANCE is not 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
 o=(|AND|OR|NOT l=@val is|equal+ to|than? n=@num|@val
     | $o $l = $n | 1 | TS010 | applied
     | IF(DISTANCE es igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
