@@ -86,7 +86,7 @@ def test_each_repair_helps_and_keeps_the_numbers(entry: Entry) -> None:
         is_counted = fix.startswith(("LOOP(", "W(")) and diagnostic.code is codes.OTHER_LANGUAGE
         is_counted = is_counted or SHIFTED.search(source[diagnostic.span]) is not None
         is_counted = is_counted or CONVERTED.search(entry.program) is not None
-        is_always = diagnostic.code is codes.WANTS_CONDITION and fix == "TRUE"  # `WHILE(1)`
+        is_always = fix in ("TRUE", "WHILE(TRUE)")  # `WHILE(1)`
         is_always |= fix == "TASK"  # `TAREA 1`
         is_always |= "most" in diagnostic.values  # F(1, 800)
         stem = diagnostic.values.get("found", "").rstrip("0123456789")  # of `STOP2`

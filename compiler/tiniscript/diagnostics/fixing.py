@@ -153,6 +153,8 @@ def _told_as_well(
 ) -> set[str]:
     """Return codes and words of mistakes that may be in what the diagnostic `k` offers."""
     others = set() if offers[k] else {codes.NEVER_ENDS.number}  # a header is shown without its end
+    if told[k].code is codes.RESERVED:  # `S = S + 1`, by whatever name
+        others.add(codes.USED_BEFORE_SET.number)
     for it, edits in zip(told, offers, strict=True):
         if it is not told[k]:
             others |= {text[slice(*it.span)].upper()} - {""}

@@ -54,8 +54,8 @@ class Message(NamedTuple):
 
 
 # What else belongs to what is to be tried: what is written then where it is used, what may be meant
-# as well, and what it leaves out.
-_BESIDE = ("carried", "rival", "lost")
+# as well, what it leaves out, and what of it nobody said.
+_BESIDE = ("carried", "rival", "lost", "sample")
 
 
 def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:

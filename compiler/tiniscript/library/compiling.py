@@ -62,7 +62,7 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
 def _with_findings(found: Compiled, kit: Kit) -> Compiled:
     """Return a wrong program with what is told of it."""
     from tiniscript.diagnostics.fixing import without_wrong
-    from tiniscript.recovery.conserved import conserving
+    from tiniscript.recovery.conserved import conserving, with_sample
     from tiniscript.recovery.dedupe import dedupe
     from tiniscript.recovery.findings import findings, moved_back
     from tiniscript.recovery.pointing import pointed
@@ -85,7 +85,7 @@ def _with_findings(found: Compiled, kit: Kit) -> Compiled:
 
     told = told_of(found, ROUNDS)
     honest = without_wrong(told.diagnostics, told.source.text, lambda to: read(to).diagnostics)
-    kept = conserving(honest, told.source.text, kit)
+    kept = with_sample(conserving(honest, told.source.text, kit), told.source.text, kit)
     at = [pointed(each, found.source) for each in kept]
     return told._replace(diagnostics=codes.in_order(at))
 

@@ -40,7 +40,8 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
     place = call[2].count(",")
     values = f"{call[2]}{amount}{after[0][:-1]}".split(",")
     amount = values[place].strip()
-    if not any(is_amount(*each.split()) for each in values):
+    is_asked = any(sign in amount for sign in "<>=")  # a part of it is no number
+    if is_asked or not any(is_amount(*each.split()) for each in values):
         return {}
     for k, (value, its) in enumerate(zip(values, word.arguments, strict=False)):
         words = [each for each in plain(value).split() if each not in own]

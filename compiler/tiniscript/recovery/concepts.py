@@ -19,19 +19,21 @@ from tiniscript.base.words import concept_of as concept_of
 from tiniscript.base.words import said_of as said_of
 from tiniscript.syntax.blocks import ENDS
 from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
-from tiniscript.syntax.operators import SIGNS
+from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.outline import Known
 
 ENDED = ENDS
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
 STARTS = frozenset(BLOCK_ENDS) - {"DEF"}
+SEPARATORS = frozenset(";|{}")
 SOME_END = "FIN"  # of a block that its word does not name: what a row makes of each such end
 CALLED = frozenset(word.text for word in WORDS.values() if word.role.is_call)
 DONE = CALLED | {"S", "STOP", "BREAK"}
+ASKING = frozenset(("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL"))
 
 _TOKEN = re.compile(
     r"(\d+(?:\.\d+)?|(?<!\d)\.\d+)|([A-Za-zÀ-ÿ_][\wÀ-ÿ]*)"
-    r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|\+=|-=|\*=|\S)"
+    r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|\+=|-=|\*=|\S\uFE0F?)"
 )
 _SIGNS = SIGNS | frozenset("(),;|")
 _LONGEST = 4  # words of a name
@@ -41,14 +43,15 @@ _CLASSES = {
     "unit ° 1000": "@in_deg", "unit steps 1000": "@in_steps", "value %": "@of_power",
     "value s": "@of_time", "value Hz": "@of_pitch", "number 1": "@one", "number 100": "@hundred",
 }  # fmt: skip
+NEAR_CM = "10"  # an example of what is near
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
 _MOST_POWER = 100
-_EIGHTH, _LAP = 45, 360  # degrees: eighths of a turn, and what is no power, are rather an angle
+_EIGHTH, LAP = 45, 360  # degrees: eighths of a turn, and what is no power, are rather an angle
 # Classes of numbers by what they may be.
 _MAY_BE: dict[str, Callable[[float], bool]] = {
     "@whole": float.is_integer, "@time": lambda it: it < LONG_S,
     "@power": lambda it: LONG_S <= it <= _MOST_POWER,
-    "@angle": lambda it: _MOST_POWER < it <= _LAP or (it >= _EIGHTH and it % _EIGHTH == 0),
+    "@angle": lambda it: _MOST_POWER < it <= LAP or (it >= _EIGHTH and it % _EIGHTH == 0),
 }  # fmt: skip
 _YEAR = ("ANO", "ANOS")  # nobody writes AÑO so
 REMEMBERED = 500  # lines: each is asked for often while one program is read
@@ -88,6 +91,8 @@ def _lexemes(line: str) -> tuple[Lexeme, ...]:
                 text = other if lexicon().get(other) or text in _YEAR else text
         elif text in _SIGNS or text in DASHES:
             kind = text = "-" if text in DASHES else text
+        elif concept_of(text[0]):
+            kind, text = WORD, text[0]  # an arrow says a command
         found.append(Lexeme(kind, text, match[0], line[end : match.start()]))
         end = match.end()
     return tuple(found)
@@ -150,6 +155,12 @@ def meanings(word: str) -> tuple[Meaning, ...]:
     less = re.sub(r"(.)\1\1+", r"\1\1", word)  # `BEEEEEP`
     if less != word:
         return (Meaning(less, MISSPELT),) if less in WORDS else meanings(less)
+    parts = word.split("_")
+    if (
+        len(parts) > 1
+        and (bare := [each for each in parts if not said_of(each, "sensing")]) != parts
+    ):
+        return meanings("_".join(bare))  # `SENSOR_LUZ_DERECHA`
     alike, near = _speller().alike(word), _speller().near(word)
     guesses = (
         (concept_of(alike or ""), KNOWN),
@@ -196,6 +207,7 @@ class _OfLine(NamedTuple):
     parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets behind its own
     begun: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
     called: set[str]  # words that are an instruction alone
+    compared: set[str]  # words beside a sign that compares them with a number
     counted: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
     left: int  # headers that lack an end
 
@@ -203,7 +215,9 @@ class _OfLine(NamedTuple):
 @lru_cache(REMEMBERED)
 def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
     begun, counted, left = _begun_in(line)
-    found = _OfLine(set(), set(), set(), set(), {}, begun, _alone_in(line), counted, left)
+    found = _OfLine(
+        set(), set(), set(), set(), {}, begun, _alone_in(line), _compared_in(line), counted, left
+    )
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
     for at, (token, after) in enumerate(pairwise([*line, made(";")]), 2):
@@ -239,6 +253,24 @@ def _alone_in(line: tuple[Lexeme, ...]) -> set[str]:
     around = (";", *texts(line), ";")
     triples = zip(around, around[1:], around[2:], strict=False)
     return {word for before, word, after in triples if before in ";|" and after == ";"}
+
+
+def _compared_in(line: tuple[Lexeme, ...]) -> set[str]:
+    """Return words that are compared with a number, as nothing but a value is."""
+    behind = zip(line, line[1:], line[2:], line[3:], strict=False)
+    alone = {
+        name.text
+        for head, before, name, after in zip(line, line[1:], line[2:], line[3:], strict=False)
+        if (before.text, after.text) == ("(", ")") and name.kind is head.kind is WORD
+        if name.text not in lexicon() and (concept_of(head.text) or head.text) in ASKING
+    }
+    return alone | {
+        name.text
+        for before, one, sign, other in behind
+        for name, number in ((one, other), (other, one))
+        if sign.text in COMPARISONS - {"="} and name.kind is WORD and number.kind is NUMBER
+        if before.text not in SEPARATORS
+    }
 
 
 def _name_in_words(tokens: Sequence[Lexeme], after: str) -> tuple[str, ...]:
@@ -279,9 +311,14 @@ class Names:
         self.called = frozenset(self.defs & {word for each in told for word in each.called})
         values, instructions = self.sensors | self.variables, self.sensors | self.defs
         self.known = Known(values, instructions, frozenset(self.actuators))
+        # What nobody knows, and is compared, is no reason not to read what is around it.
+        compared = {name for each in told for name in each.compared if name not in WORDS}
+        meant = {name: self.meant(name, NEAR) for name in compared - values}
+        self.strange = {name for name, its in meant.items() if not its or its in CALLED}
+        self.read_as = self.known._replace(values=values | self.strange)
         words = (frozenset(each) for each in (self.defs, self.in_brackets, self.rows))
         self._content = (
-            self.known,
+            self.read_as,
             *words,
             self.called,
             frozenset(self.begun.items()),
@@ -359,7 +396,7 @@ class Names:
         is_name = self.is_name(text)
         found += meant
         found += [each for each in ANY if not said_of(text, "do") or each not in _NO_DO]
-        if text in self.known.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
+        if text in self.read_as.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
             found.append("@val")
         if text in self.defs:
             found += ["@def", "@start", "@startm", "@close"]

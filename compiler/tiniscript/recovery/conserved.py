@@ -26,9 +26,12 @@ from tiniscript.base.words import (
 )
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.concepts import (
+    ASKING,
     CALLED,
     ENDED,
+    LAP,
     NEAR,
+    NEAR_CM,
     Lexeme,
     Names,
     closed,
@@ -45,6 +48,7 @@ from tiniscript.syntax.operators import SUMS
 _SENSES = {"<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>": ">", "!=": "<>",
            "=!": "<>", "≤": "<", "≥": ">", "≠": "<>"}  # fmt: skip
 _UNITS = ("s", "cm", "°", "%", "Hz")
+_COUNTED_UNITS = (*_UNITS, "turns")  # with a number before them
 _ARMS = ("ELSE", "ELSEIF")
 _HEADS = frozenset((*BLOCK_ENDS, *_ARMS))
 _DRIVES = frozenset((*MOVES, "M", "W", "BEEP", "S"))
@@ -53,11 +57,10 @@ _COUNTED = frozenset((*_DRIVES, *_HEADS, *FUNCTIONS, "SHOW", "UNTIL", "BREAK", "
 # What says the same where a word is gone: `repeat until` is WHILE, `void loop` is FOREVER.
 _AS = {
     "LOOP": ("WHILE", "BREAK", "FOREVER"), "WHILE": ("BREAK", "UNTIL"), "UNTIL": ("WHILE", "BREAK"),
-    "FOREVER": ("TRUE", "LOOP", "WHILE"), "TRUE": ("FOREVER",), "S": ("BREAK",), "IF": ("WHEN",),
-    "WHEN": ("IF",), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
+    "FOREVER": ("TRUE", "LOOP", "WHILE"), "TRUE": ("FOREVER",), "S": ("BREAK", "UNTIL"),
+    "IF": ("WHEN",), "WHEN": ("IF", "UNTIL"), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
 }  # fmt: skip
 _TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
-_ASKING = frozenset(("IF", "ELSEIF", "WHILE", "UNTIL", "WHEN"))
 _NEGATES = ("no", "without", "unless", "different")
 # What frames a program and says nothing: its setup, the tags of a page, numbers that count lines.
 _FRAME = re.compile(
@@ -66,6 +69,7 @@ _FRAME = re.compile(
 )
 _NUMBERED = re.compile(r"(?m)^[ \t]*(\d{1,4})(?=[ \t]+[A-Za-z])")
 _ESCAPED = {"¡=": "!=", "&lt;": "<", "&gt;": ">", "&nbsp;": " ", "½": ".5", "¼": ".25", "¾": ".75"}
+_PARTS = {"1/2": ".5", "1/4": ".25", "3/4": ".75"}
 _GLUED = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
 # Digits, and letters that look like some; and what may stand between two parts of one number.
 _DIGITS = re.compile(r"[0-9oOlI]*[0-9][0-9oOlI]*|\b[oO](?=\.)")
@@ -73,6 +77,7 @@ _BETWEEN = re.compile(r"[.,:;'´`·_ ]*")
 _LETTERS = str.maketrans("oOlI", "0011")
 _LONGEST = 3  # parts of a number
 _END = lexemes(";")[0]
+_ASKS_NEAR = re.compile(rf"DISTANCE [<>]=? {NEAR_CM}(?![\d.])")
 
 
 class Amount(NamedTuple):
@@ -125,6 +130,20 @@ def conserving(found: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnos
     ]
 
 
+def with_sample(found: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
+    """Return diagnostics that say so where they ask for what is near, which has no number."""
+    guesses = [each for each in found if _ASKS_NEAR.search(each.values.get("fix", ""))]
+    if not guesses or any(it.value == float(NEAR_CM) for it in _Said(text, text, kit).amounts):
+        return [*found]
+    sample = {"sample": f"{NEAR_CM} cm"}
+    return [
+        each._replace(values={**each.values, **sample})
+        if each in guesses and not each.values.get("example")
+        else each
+        for each in found
+    ]
+
+
 def _shown(found: Diagnostic, lost: Sequence[str]) -> Diagnostic:
     edits = found.repair.edits if found.repair else ()
     values = {**found.values, "lost": ", ".join(lost)} if lost else found.values
@@ -171,8 +190,10 @@ class _Said:
 
     def _apart(self, line: str) -> str:
         """Return a line in which numbers stand alone, but for those of names: `F2,80`, `F_2_80`."""
-        line = re.sub(r"(?<!\d)(\d) 1/2(?!\d)", r"\1.5", line)
-        line = re.sub(r"(?<![\d)] )(?<!\d)1/2(?!\d)(?=\s*[a-z])", "0.5", line)
+        for part, decimals in _PARTS.items():
+            line = re.sub(rf"(?<!\d)(\d) {part}(?!\d)", rf"\1{decimals}", line)
+            alone = rf"(?i)(?<![\d)] )(?<!\d){part}(?!\d)(?=\s*[a-z])"
+            line = re.sub(alone, f"0{decimals}", line)
         return _GLUED.sub(
             lambda it: it[0] if it[0].upper() in self.others else f"{it[1]} {it[2]} ", line
         )
@@ -223,13 +244,19 @@ class _Said:
             elif token is _END:
                 depth = [False]
             if (value := self._number(token)) is not None:
-                is_said = said_of(before.text, "leaves", "by") and before.kind is WORD
-                k = k + 1 if is_said else self._take(k, value, slots[k])
+                is_said = bool(said_of(before.text, "leaves", "by")) and before.kind is WORD
+                k = k + 1 if is_said or self._is_yes(k) else self._take(k, value, slots[k])
                 continue
             if token.kind is WORD and not self._is_label(k):
                 self._take_word(k, len(depth) > 1)
             k += 1
         self.words["ELSE"] += self._arms_in_brackets()
+
+    def _is_yes(self, k: int) -> bool:
+        """Whether a 1 alone is asked for yes: `while (1)`."""
+        head, sign = self.tokens[max(0, k - 2)], self.tokens[k - 1]
+        is_alone = (sign.text, self.tokens[k].text, self._after(k).text) == ("(", "1", ")")
+        return is_alone and bool(self._may_be(head) & ASKING)
 
     def _take_word(self, k: int, is_in_brackets: bool) -> None:
         token, before, after = self.tokens[k], self.tokens[k - 1] if k else _END, self._after(k)
@@ -246,6 +273,8 @@ class _Said:
         is_again = (word == "IF" and before.text in ("AND", "OR")) or (
             word == "OR" and before.text in _SENSES
         )
+        is_again |= after.text == "." and self._after(k + 1).kind is WORD  # `random.randint`
+        is_again |= word in MOVES and after.kind is WORD and word == self._word(after)
         is_needless = (word == "TRUE" and "=" in around and is_in_brackets) or (
             word == "TIME" and not around & _SENSES.keys()
         )
@@ -319,7 +348,7 @@ class _Said:
         is_order = is_letter and token.source == token.text and token.space != ""
         if not said or (is_apart and is_order) or self.names.is_name(token.text):
             return None
-        return said[0] if said[0] in _UNITS else "", float(said[1])
+        return said[0] if said[0] in _COUNTED_UNITS else "", float(said[1])
 
     def _is_loose_unit(self, k: int) -> bool:
         """Whether a word says a unit and nothing else, of no number."""
@@ -389,7 +418,7 @@ class _Said:
         """Return the words that turn a question round, as they are written."""
         found = []
         for k, token in enumerate(self.tokens):
-            is_asked = any(self._may_be(each) & _ASKING for each in self.tokens[max(0, k - 4) : k])
+            is_asked = any(self._may_be(each) & ASKING for each in self.tokens[max(0, k - 4) : k])
             is_no = token.text in ("NOT", "!") or bool(said_of(token.text, *_NEGATES))
             is_asked |= bool(said_of(token.text, "unless"))
             if is_no and is_asked and not self.names.is_name(token.text):
@@ -477,6 +506,8 @@ def _all_in(parts: Sequence[float], amounts: Sequence[Amount]) -> list[Amount]:
 
 
 def _is_same(before: Amount, after: Amount) -> bool:
+    if (before.unit, after.unit) == ("turns", "°"):
+        return abs(before.value * LAP - after.value) < 0.001
     units = {*after.unit.split("/")} - {""}
     is_unit = not before.unit or units <= {*before.unit.split("/")}
     return is_unit and abs(before.value - after.value) < 0.001

@@ -174,6 +174,8 @@ class _Explainer:
         if own != old and not parts:
             place = Span(self.starts[change.first], self.starts[change.first] + len(old))
             edit = trimmed(place.start, old, own)
+            if ends and edit.span.start == place.end:
+                edit = Edit(place, own)  # the ends that are missing behind it come behind all of it
             part = _Change(place, edit, self.changes[k].steps, before, after)
             code, step = _code(part)
             is_brace = code is codes.BRACES and before[0].text in BRACES
@@ -220,6 +222,8 @@ class _Explainer:
             if text != new:
                 place = Span(first + start, first + end)
                 edit = trimmed(place.start, text, new)
+                if edit.span.start == place.end:
+                    edit = Edit(place, new)  # an end that is missing comes behind all of it
                 found.append(_Change(place, edit, steps.get(n, []), part, meant))
                 if not steps.get(n) and text.isascii():
                     return []
@@ -260,6 +264,10 @@ class _Explainer:
     def new(self, k: int, part: _Change, code: Code, step: Step | None) -> Explanation:
         place, edit, _, before, after = part
         values = _slip(code, step, before, after)
+        if code is codes.BRACES and before and not after:
+            values["needless"] = values["found"]
+        if code is codes.UNTIL_NOT_HERE:
+            values["example"] = values["fix"]
         if code is codes.OTHER_NOTE:
             values["right"] = self.changes[k].text.strip()
         if code is codes.EXTRA_WORD and not step:
@@ -348,8 +356,8 @@ def _code(part: _Change) -> tuple[Code, Step | None]:
     if steps:
         own = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
         own.sort(key=lambda it: (it.code is not codes.ASKED_BEHIND, it.code is codes.OTHER_SIGN))
-        if own and own[0].code is codes.ASKED_BEHIND:
-            return codes.ASKED_BEHIND, own[0]
+        if own and own[0].code in (codes.ASKED_BEHIND, codes.UNTIL_NOT_HERE):
+            return own[0].code, own[0]
         lost = (each.text for each in before if each.kind is WORD and each.text not in new)
         foreign = next((each for each in lost if meant_by(each) in more), "")
         translated = next((it for it in steps if it.code is codes.OTHER_LANGUAGE), None)
@@ -389,7 +397,9 @@ def _slip(
             for line in (old, new)
         )
     start, found, right = _first_difference(old, new)
-    if not right and code is codes.OTHER_LANGUAGE and start and old[start - 1].text != "|":
+    if code is codes.OTHER_LANGUAGE and texts(found[-1:]) == (".",) and not right:
+        found, right = old[start : start + len(found) + 1], new[start : start + 1]
+    elif not right and code is codes.OTHER_LANGUAGE and start and old[start - 1].text != "|":
         found, right = [old[start - 1], *found], [old[start - 1]]
     elif code is codes.OTHER_LANGUAGE and texts(found[-1:]) == (".",):  # `bot.forward`
         found = old[start : start + len(found) + 1]
@@ -425,7 +435,11 @@ def _slip(
         was = re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
     now = laid_out(right) or shown
     now = shown if now == SOME_END and shown in ENDED else now  # of a block, whose end is known
-    now = re.split("[()]", now, maxsplit=1)[0] if code is codes.OTHER_LANGUAGE else now
+    if code is codes.OTHER_LANGUAGE:  # `I = 0;LOOP(5)`: LOOP alone
+        heads = (part for part in now.split(";") if re.split(r"\W", part)[0] in _OF_BLOCKS)
+        now = re.split("[()]", next(heads, now), maxsplit=1)[0]
+        now = next((each for each in now.split() if each in WORDS), now)  # `va F`
+        now = now if now in WORDS else meant_by(now) or now  # of `bot.forward`
     now = f"{now} )" if now.endswith("(") else now
     word = _word(code, old, new, start, other)
     usage = WORDS[word].usage if word in WORDS else ""
@@ -433,8 +447,9 @@ def _slip(
     kept = _written(one[: _alike(texts(one), texts(other[:until]))[0]])
     if code in (codes.MISSING_VALUE, codes.MISSING_SIGN) and not found and start:
         was, kept = _written(old[start : start + 1]), _written(old[start - 1 : start])
-    if code is codes.HEADER_SEPARATOR and not kept:
-        kept = other[0].text  # `CADA VEZ QUE DISTANCE < 15 S`
+    if code is codes.HEADER_SEPARATOR and (not kept or lexemes(kept)[0].text not in _OF_BLOCKS):
+        begun = (part for part in fix if part[0].text in _OF_BLOCKS)  # `F(2, 80) Y IF(…) S`
+        kept = laid_out(next(begun)) if kept else other[0].text  # `CADA VEZ QUE DISTANCE < 15 S`
     letters = {each for each in was if each.isalpha()} - {*now} if len(was) == len(now) else set()
     letter = letters.pop() if len(letters) == 1 and code is codes.BAD_NUMBER else ""
     given, needed = (sum(each.kind is NUMBER for each in it) for it in (one, other))

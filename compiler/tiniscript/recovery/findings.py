@@ -206,6 +206,8 @@ def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
         values["swapped"] = found.values["right"]
     elif (move := meant.move) is not None:
         values |= {"name": move.name, "line": str(move.before), "last": str(move.last)}
+        if found.code is codes.UNKNOWN_WORD:  # `CALL SALTO`, before its DEF
+            found = found._replace(code=codes.CALL_BEFORE_DEF)
         is_one_line = move.first == move.last and not move.is_end
         values |= {"row": values.pop("last")} if is_one_line else {"first": str(move.first)}
         if move.is_end and move.last > len(text.splitlines()):

@@ -110,7 +110,7 @@ def _right(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] 
         is_end = is_apart and bool(said_of(text, "end")) and not names.is_name(text)
         if text not in BRACES and not is_end:
             continue
-        part = outline(tokens[start:k], names.known)
+        part = outline(tokens[start:k], names.read_as)
         if isinstance(part, Failure):
             return Failure(part.start + start, part.at + start)
         found += [item._replace(start=item.start + start, end=item.end + start) for item in part]

@@ -9,9 +9,18 @@ from collections.abc import Sequence
 from itertools import groupby, pairwise
 from typing import NamedTuple
 
-from tiniscript.base.words import BLOCK_ENDS, MOVES
+from tiniscript.base.words import BLOCK_ENDS, MOVES, POWER
 from tiniscript.recovery import lines, rewrites
-from tiniscript.recovery.concepts import CALLED, ENDED, Lexeme, Names, closed, made, said_of
+from tiniscript.recovery.concepts import (
+    CALLED,
+    ENDED,
+    NEAR_CM,
+    Lexeme,
+    Names,
+    closed,
+    made,
+    said_of,
+)
 from tiniscript.recovery.slots import Filled, filled
 from tiniscript.recovery.worded import worded
 from tiniscript.recovery.writing import laid_out
@@ -19,7 +28,6 @@ from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
 
 LONGEST = 40  # words of a sentence
-_NEAR_CM = "10"
 _ASIDE = ("L", "R", "B")  # DISTANCE looks ahead
 _SIDES = _ASIDE[:2]
 
@@ -58,7 +66,8 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
         or said_of(after.text, "the")
         or not said_of(after.text, "idle")
     ]  # `o robô` is no OR
-    asks = next((k for k, each in enumerate(words) if k and names.meant(each.text) == "IF"), 0)
+    meant = ["", *(names.meant(each.text) for each in words[1:])]
+    asks = next((k for k, each in enumerate(meant) if each in ("IF", "WHEN")), 0)
     if asks:
         return _asked_between(orders(words[:asks], names), words[asks:], names)
     joins = "" if any(each.text == "(" for each in words) else ",."  # `gira(2, 80)` is one
@@ -84,17 +93,31 @@ def _joined(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
 def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
     """Return orders and the condition behind them; a move that it stops is watched meanwhile."""
     asked = block(words, names, is_open=False)
+    if not asked and [each.word for each in first[-1:]] in (["S"], ["STOP"]):
+        return _stopped_when(first[:-1], words, names)
     if not first or not asked:
         return []
     header, stop, *rest = asked.split(";")
     number = any(each.kind is NUMBER for each in words)
-    samples = () if number else (f"{_NEAR_CM} cm",)
+    samples = () if number else (f"{NEAR_CM} cm",)
     if stop in ("S", "STOP") and first[-1].word in MOVES and "UNTIL" not in first[-1].text:
         move, made_of = first[-1], first[-1].samples + samples
         stopped = move._replace(text=f"{move.text} UNTIL{header[2:]}", samples=made_of)
         left = [Order("IF", ";".join((header, *rest)), ())] if len(rest) > 1 else []
         return [*first[:-1], stopped, *left]
     return [*first, Order("IF", asked, samples)]
+
+
+def _stopped_when(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
+    """Return orders of which a condition ends the last one: `anda y para cuando …`."""
+    condition, sample = _asked(words[1:], names)
+    if not first or not condition or first[-1].word not in MOVES or "UNTIL" in first[-1].text:
+        return []
+    move = first[-1]
+    made_of = tuple(each for each in move.samples if not each.endswith(" s"))
+    text = move.text if made_of == move.samples else f"{move.word}(FOREVER, {POWER.sample})"
+    stopped = move._replace(text=f"{text} UNTIL({condition})", samples=made_of + sample)
+    return [*first[:-1], stopped]
 
 
 def _orders(words: list[Lexeme], names: Names) -> list[Order]:
@@ -168,7 +191,7 @@ def _asked(
     is_other = any(names.meant(it.text) in _ASIDE or it.text in COMPARISONS for it in words)
     if is_other or not condition.startswith("DISTANCE"):
         return "", ()
-    return condition, () if "asked" in said else (f"{_NEAR_CM} cm",)
+    return condition, () if "asked" in said else (f"{NEAR_CM} cm",)
 
 
 def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:

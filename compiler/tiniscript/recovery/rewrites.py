@@ -35,6 +35,7 @@ from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
 _ATOM = re.compile(r"'[^']*'|@\w+|[a-z]{2,}|[A-Z_0-9]+|\$|[^\w|'@\s$]+")
 _CAPTURE = re.compile(r"([a-z])=(?=.)")
 _PART = re.compile(r"<(\w+)>")
+_CONTINUED = re.compile(r"\n    ")
 # Where an instruction begins and ends, by the labels around it; and a line.
 _EDGES = {
     "^": rf"(?:\A|(?<=\x01\|{re.escape(SEPARATOR)}\|\x02)|(?<=\x01\|s[{{}}]\|\x02))",
@@ -76,8 +77,8 @@ class SignRow(NamedTuple):
 
 
 def cells(table: str) -> Iterator[list[str]]:
-    """Give the cells of each row; of one with choices, those of each."""
-    for row in table.strip("\n").split("\n"):
+    """Give the cells of each row, which indented lines go on with; of one with choices, of each."""
+    for row in _CONTINUED.sub(" ", table.strip("\n")).split("\n"):
         if row.strip() and not row.startswith("# "):
             parts = [each.split("¦") for each in re.split("[⟨⟩]", row)]
             assert len({*map(len, parts)} - {1}) < 2, row
@@ -174,10 +175,11 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
         for each in found
         if each != "$"
     ]
-    if labels == ["@all"] and often:  # the brackets in a body are closed in it
-        body = _token(["@flat"])
-        for _ in range(_DEEPEST):
-            body = rf"(?:{_token(['@flat'])}|{_token(['s('])}{body}*{_token(['s)'])})"
+    if labels in (["@all"], ["@cond"]) and often:  # the brackets in it are closed in it
+        inner = body = _closing(["@flat"])
+        if labels == ["@cond"]:  # or stand alone
+            group = rf"{_token(['s('])}{inner}*?{_token(['s)'])}"
+            body = rf"(?:{group}|(?!{group}){_token(labels)})"
         body = f"(?:{body}{often}?)"
         return f"(?P<{name}>{body})" if name else body, frozenset()
     one = _token(labels)
@@ -185,6 +187,14 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
     body = f"(?:{'|'.join(choices)}){often}{'?' if often and often in '+*' else ''}"
     is_needed = often in ("", "+") and "$" not in found
     return f"(?P<{name}>{body})" if name else body, frozenset(labels if is_needed else ())
+
+
+def _closing(labels: Sequence[str]) -> str:
+    """Return the pattern of a token of these labels, or of brackets that such tokens are in."""
+    body = _token(labels)
+    for _ in range(_DEEPEST):
+        body = rf"(?:{_token(labels)}|{_token(['s('])}{body}*{_token(['s)'])})"
+    return body
 
 
 def _token(labels: Sequence[str]) -> str:
@@ -432,6 +442,8 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
         after = tokens[k + count].text if k + count < len(tokens) else ""
         if concept_of(text) == "ELSE" and (said_of(after, "is") or said_of(after, "there")):
             continue  # `si no hay pared`
+        if concept_of(text) == "ELSE" and after == "(" and tokens[k + count].space == "":
+            continue  # `SE NÃO(DISTANCE < 10)`
         if concept_of(text) or (text in WORDS and row[0] == "END"):
             meant = names.meanings(text)  # `END IF` ends any block
             word = made(meant[0].concept if meant else text)._replace(space=tokens[k].space)

@@ -22,7 +22,7 @@ functions: @not (the opposite question), @same (a number that is another one, to
 apart), @mmss, @own (a number with its unit, in the unit that values have), @xn (`x4`), @given (the
 name in the brackets of a DEF), @label (nothing, of a DEF that is called elsewhere). `how`: `first`
 is made before any other is tried, `applied` may be made without asking, `offered` is only shown, as
-is `first offered`. An example's lines are parted by ⏎.
+is `first offered`. An example's lines are parted by ⏎. A row goes on in lines that are indented.
 
 `⟨less¦more⟩` and, in the same row, `⟨<¦>⟩` make a row of each: one with `less` and `<`, and one
 with `more` and `>`. Each has its own example.
@@ -67,255 +67,701 @@ SETUP = (
 BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # signs that stand for the bar whatever follows
 
 SIGNS = r"""
-(?<!\) )(["'«»`])([A-Za-z0-9_.,()| <>=]*[A-Za-z0-9)][A-Za-z0-9_.,()| <>=]*)(?:\1|»)  |  `\2`  |  TS006  |  applied  |  F("2","80") => F(2,80)
-(?<=\([1-9])\. (?=\d\d\s*\))  |  `, `  |  TS017  |  applied  |  F(2. 80) => F(2, 80)
-⟨(?<=[( ])0?0:(\d\d)(?=\))¦(?<==)\s*(\d{1,3}),(?=000\b)⟩  |  `\1`  |  TS008  |  applied  |  ⟨W(0:30)¦X=1,000⟩ => ⟨W(30)¦X=1000⟩
-(?<=\))\s*[✓✔]\s*(?=\w)  |  `; `  |  TS005  |  applied  |  F(2, 80) ✓ R(1, 50) => F(2, 80); R(1, 50)
-\b([A-Za-z_]\w*)\s*=\+\s+(?=\d)  |  `\1 = \1 + `  |  TS050  |  applied  |  V = 5⏎V =+ 10⏎F(2, V) => V = 5⏎V = V + 10⏎F(2, V)
-(?<![^;])\s*([*/+=-]+)([A-Za-z](?:[^;]*[\w)])?)\1\s*(?![^;])  |  `\2`  |  TS054  |  applied  |  **F(2, 80)** => F(2, 80)
-^^\s*["'«`](S?[IB]?\|?[^"'«»`]*\([^"'«»`]*)["'»`]\s*$$  |  `\1`  |  TS006  |  applied  |  ⟨"SI|F(2,80);R(1,50)"¦“F(2,80);R(1,50)”⟩ => ⟨SI|¦⟩F(2,80);R(1,50)
-\b([FBLR])\((\d)\.([1-9]0|100)\)  |  `\1(\2, \3)`  |  TS020  |  offered  |  F(2.80) => F(2, 80)
-(?<=[(,\s])😎\s*$  |  `8)`  |  TS010  |  offered  |  W(😎 => W(8)
-(?<=\d)=(?=\s*\))|(?<=\()=(?=\.\d)  |  `0`  |  TS076  |  offered  |  F(2, 8=) => F(2, 80)
-((?<=[=,])\s*|(?<=SHOW\())(\w+(?= x )|\d+) ?x ?(\d+)\b  |  `\1\2 * \3`  |  TS010  |  applied  |  X = 3x2 => X = 3 * 2
-(?<=[(,])(\s*)!(?=\s*[,)])  |  `\g<1>1`  |  TS076  |  offered  |  F(!, 80) => F(1, 80)
-(?<=\()l(?=\s*,)  |  `1`  |  TS008  |  offered  |  F(l, 80) => F(1, 80)
-(?<=\d) (?=000\b)  |  ``  |  TS008  |  applied  |  F(2, 80); SHOW(1 000) => F(2, 80); SHOW(1000)
-\b([FBLR])(?:8(\d),\s*(\d\d)[9)]|9(\d),\s*(\d\d)[0)])\s*(?=;|$)  |  `\1(\2\4, \3\5)`  |  TS010  |  offered  |  F82, 809 => F(2, 80)
-\b(IF|WHILE|UNTIL)\s*¿\s*([^?()¿]+?)\s*\?  |  `\1(\2)`  |  TS015  |  applied  |  IF ¿DISTANCE < 10?⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-\b(\w+?)\s*(?:(?:\^|\*\*)\s*2\b|²)  |  `\1 * \1`  |  TS010  |  offered  |  X = 7^2⏎SHOW(X) => X = 7 * 7⏎SHOW(X)
-\(f"[^"{}]*\{(\w+)\}[^"{}]*"\)  |  `(\1)`  |  TS006  |  offered  |  print(f"{DISTANCE} cm") => SHOW(DISTANCE)
-\ASI barr?a? (?=\w)  |  `SI|`  |  TS010  |  offered  |  SI bar F(2, 80) => SI|F(2, 80)
-\b([a-z]+) (?:open |abre |abrir )?(?:bracket|parenthesis|par[eé]ntesis) ([\w.]+) comm?a (\w+)(?: (?:close|cierrar?) (?:bracket|parenthesis|par[eé]ntesis))?  |  `\1(\2, \3)`  |  TS015  |  offered  |  F paréntesis dos coma ochenta => F(2, 80)
-(?<=\d)\. (?=\d)  |  `.`  |  TS008  |  applied  |  F(1. 5, 80) => F(1.5, 80)
-^\s*(\d+) (?:loop|repe[a-z]+)\s*:?$  |  `LOOP(\1)`  |  TS015  |  applied  |  5 LOOP⏎F(1, 50)⏎END_LOOP => LOOP(5)⏎F(1, 50)⏎END_LOOP
-\bLOOP_?(\d+)(?=\s*(?:;|$))  |  `LOOP(\1)`  |  TS015  |  applied  |  LOOP4;F(2, 80);END_LOOP => LOOP(4);F(2, 80);END_LOOP
-&⟨lt¦nbsp⟩;  |  `⟨<¦ ⟩`  |  ⟨TS010¦TS072⟩  |  applied  |  IF(DISTANCE⟨ &lt; 10¦&nbsp;< 10⟩);S;END IF => IF(DISTANCE < 10);S;END_IF
-(?<=\d) ?⟨½¦¾⟩  |  `⟨.5¦.75⟩`  |  TS010  |  applied  |  F(1 ⟨½¦¾⟩, 80) => F(⟨1.5¦1.75⟩, 80)
-½  |  `0.5`  |  TS010  |  applied  |  W(½) => W(0.5)
-(?<=\d)(?:[´"`]|\)\s*,\s*\()(?=\d+\))  |  `, `  |  TS076  |  applied  |  F(2´80) => F(2, 80)
-(?<=\))\s+(?:/\s*|-)(?=(?-i:[a-zñáéíóú]+)/?\s*$)  |  ` // `  |  TS007  |  applied  |  F(1, 80) / adelante => F(1, 80) // adelante
-(?i:\bFOREVER)\.(?=\d)  |  `FOREVER, `  |  TS017  |  applied  |  F(FOREVER.60) UNTIL(DISTANCE < 9) => F(FOREVER, 60) UNTIL(DISTANCE < 9)
-(?<=\d)\.\.(?=\d)  |  `, `  |  TS020  |  offered  |  X = RANDOM(1..6) => X = RANDOM(1, 6)
-⟨≤¦¡=¦(?<= )><⟩  |  `⟨<=¦<>¦<>⟩`  |  TS010  |  applied  |  IF(DISTANCE ⟨≤¦¡=¦><⟩ 10);S;ENDIF => IF(DISTANCE ⟨<=¦<>¦<>⟩ 10);S;ENDIF
-[→➜⇒]|[–—]>  |  `;`  |  TS061  |  applied  |  →F(2, 80) => ;F(2, 80)
-</?[a-z]+/?>|\A\s*(?:[$>] tsc\b.*|```\w*\s*)\Z  |  ``  |  TS072  |  applied  |  <b>F(2, 80)</b> => F(2, 80)
-\A\s*tsc(?: \w+)? (?:(["'])(S[IB]\|.*)\1\Z|(?=S[IB]\|))  |  `\2`  |  TS044  |  applied  |  tsc live "SI|F(2, 80)" => SI|F(2, 80)
-^\s*(?:(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z])|-(?=[A-Z]\w*\()|[=-]?>+\s*|(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\())  |  ``  |  TS054  |  applied  |  ⟨*¦>¦=>¦->¦✅⟩ F(2,80) => F(2,80)
-(?<!\d)1/2(?!\d)(?=\s*(?:s|seg|min|h))  |  `0.5`  |  TS049  |  applied  |  F(1/2 minuto, 80) => F(30, 80)
-(?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))|(?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  TS005  |  applied  |  F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
-\bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$)))  |  `W(\1)`  |  TS015  |  applied  |  S; W2.5) => S; W(2.5)
-^\s*(?:(?:paso|step|linea|line)\s*\d+\s*[.):-]*\s|\d+\s*(?:[.)]|[.):-]+\s))\s*(?=[A-Za-z])  |  ``  |  TS054  |  applied  |  1) F(2,80)⏎2) S => F(2,80)⏎S
-(?<![\w.])([1-9])[oO]⟨[oO]¦⟩\b  |  `\g<1>0⟨0¦⟩`  |  TS008  |  applied  |  F(2,⟨1OO¦8O⟩) => F(2,⟨100¦80⟩)
-\b[oO]\.(\d+)  |  `0.\1`  |  TS008  |  applied  |  F(O.5, 60) => F(0.5, 60)
-(?<=\d)\.(?=\s*[,);])  |  ``  |  TS008  |  offered  |  F(2, 80.) => F(2, 80)
-(?<=\d)(?:'(?=\d+\s*(?:[,;]|$))|,(?=\d+\s*(?:s|segs?|segundos?|sec|seconds?|minutos?)\b))  |  `.`  |  TS012  |  applied  |  F(1'5, 80) => F(1.5, 80)
-(?<=[\w)])(?:\s*(?:[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)|\.{2,})\s*$  |  ``  |  TS005  |  applied  |  STOP! => STOP
-(?:(?<=\|)|(?<=;)|^)(\s*)([FBLR])(?!\s+-\d|\s+\.\d|\.\d+(?![\d.]))\s*[_.<=,;" -]?\s*([12]?\d(?:\.\d+)?)(?:[_,;<=-]+ ?| +|[ .]+(?=[1-9]0\b|100\b))(?:= ?)?(\d+)\s*[])>"]?\s*(?=;|$)  |  `\1\2(\3, \4)`  |  TS015  |  applied  |  F2,80 => F(2, 80)
-(?:^|(?<=[;|]))(\s*)M(-?\d+)[\s,;]+(-?\d+)\s*\)?\s*(?=;|$)  |  `\1M(\2, \3)`  |  TS015  |  applied  |  M50 -50 => M(50, -50)
-(?<=\d)(?:\)\((?=\d)|['·_=&<]\s*(?=\d+\)))  |  `,`  |  TS076  |  applied  |  F(3)(70) => F(3,70)
-(?<=\w)\.(?=\()  |  ``  |  TS005  |  applied  |  F.(2, 80) => F(2, 80)
-⟨(?<=[\w)])\s*\.\s*$¦(?<=\))\s*\.\s+(?=\w)⟩  |  `;⟨¦ ⟩`  |  TS010  |  applied  |  ⟨S.¦F(2,80). R(1,60). S.⟩ => ⟨S;¦F(2,80); R(1,60); S;⟩
-/\*\s*(.*?)\s*\*/\s*$  |  `// \1`  |  TS007  |  applied  |  F(2,80) /* hola */ => F(2,80) // hola
-⟨(?:^|(?<=\s))(?:#+|--+>?|<!--|^REM\b)\s*(?=[^\W\d])¦^\s*/\s*(?=(?-i:[a-z]+)(?! ?\())⟩  |  `// `  |  TS007  |  applied  |  SI|F(2, 60)⟨ # gira¦⏎/ gira⟩⏎R(1, 50) => SI|F(2, 60)⟨ // gira¦⏎// gira⟩⏎R(1, 50)
-\b([A-Za-z]+)\.read\(\)  |  `\1`  |  TS102  |  applied  |  IF(DISTANCE.read()<10);S;ENDIF => IF(DISTANCE<10);S;ENDIF
-\b(?:time|robot|console|serial|self|car|motor|System\.out|random|math)\.(?=[A-Za-z]+\s*\()  |  ``  |  TS102  |  applied  |  time.sleep(0.5) => W(0.5)
-\b(END|FIN)(?: _|[. -](?=(?:LOOP|IF|WHILE|DEF|TASK|WHEN)\b))  |  `END_`  |  TS022  |  applied  |  IF(DISTANCE < 10);S;END IF => IF(DISTANCE < 10);S;END_IF
-\b(LIGHT|LUZ)[ -](?=[LRID]\b)  |  `\1_`  |  TS056  |  applied  |  SHOW(LIGHT-R) => SHOW(LIGHT_R)
+(?<!\) )(["'«»`])([A-Za-z0-9_.,()| <>=]*[A-Za-z0-9)][A-Za-z0-9_.,()| <>=]*)(?:\1|»)
+    | `\2` | TS006 | applied
+    | F("2","80") => F(2,80)
+(?<=\([1-9])\. (?=\d\d\s*\)) | `, ` | TS017 | applied | F(2. 80) => F(2, 80)
+⟨(?<=[( ])0?0:(\d\d)(?=\))¦(?<==)\s*(\d{1,3}),(?=000\b)⟩
+    | `\1` | TS008 | applied
+    | ⟨W(0:30)¦X=1,000⟩ => ⟨W(30)¦X=1000⟩
+(?<=\))\s*[✓✔]\s*(?=\w) | `; ` | TS005 | applied | F(2, 80) ✓ R(1, 50) => F(2, 80); R(1, 50)
+\b([A-Za-z_]\w*)\s*=\+\s+(?=\d)
+    | `\1 = \1 + ` | TS050 | applied
+    | V = 5⏎V =+ 10⏎F(2, V) => V = 5⏎V = V + 10⏎F(2, V)
+(?<![^;])\s*([*/+=-]+)([A-Za-z](?:[^;]*[\w)])?)\1\s*(?![^;])
+    | `\2` | TS054 | applied
+    | **F(2, 80)** => F(2, 80)
+^^\s*["'«`](S?[IB]?\|?[^"'«»`]*\([^"'«»`]*)["'»`]\s*$$
+    | `\1` | TS006 | applied
+    | ⟨"SI|F(2,80);R(1,50)"¦“F(2,80);R(1,50)”⟩ => ⟨SI|¦⟩F(2,80);R(1,50)
+\b([FBLR])\((\d)\.([1-9]0|100)\) | `\1(\2, \3)` | TS020 | offered | F(2.80) => F(2, 80)
+(?<=[(,\s])😎\s*$ | `8)` | TS010 | offered | W(😎 => W(8)
+(?<=\d)=(?=\s*\))|(?<=\()=(?=\.\d) | `0` | TS076 | offered | F(2, 8=) => F(2, 80)
+((?<=[=,])\s*|(?<=SHOW\())(\w+(?= x )|\d+) ?x ?(\d+)\b
+    | `\1\2 * \3` | TS010 | applied
+    | X = 3x2 => X = 3 * 2
+(?<=[(,])(\s*)!(?=\s*[,)]) | `\g<1>1` | TS076 | offered | F(!, 80) => F(1, 80)
+(?<=\()l(?=\s*,) | `1` | TS008 | offered | F(l, 80) => F(1, 80)
+(?<=\d) (?=000\b) | `` | TS008 | applied | F(2, 80); SHOW(1 000) => F(2, 80); SHOW(1000)
+\b([FBLR])(?:8(\d),\s*(\d\d)[9)]|9(\d),\s*(\d\d)[0)])\s*(?=;|$)
+    | `\1(\2\4, \3\5)` | TS010 | offered
+    | F82, 809 => F(2, 80)
+\b(IF|WHILE|UNTIL)\s*¿\s*([^?()¿]+?)\s*\?
+    | `\1(\2)` | TS015 | applied
+    | IF ¿DISTANCE < 10?⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+\b(\w+?)\s*(?:(?:\^|\*\*)\s*2\b|²)
+    | `\1 * \1` | TS010 | offered
+    | X = 7^2⏎SHOW(X) => X = 7 * 7⏎SHOW(X)
+\(f"[^"{}]*\{(\w+)\}[^"{}]*"\)
+    | `(\1)` | TS006 | offered
+    | print(f"{DISTANCE} cm") => SHOW(DISTANCE)
+\ASI barr?a? (?=\w) | `SI|` | TS010 | offered | SI bar F(2, 80) => SI|F(2, 80)
+\b([a-z]+) (?:open |abre |abrir )?(?:bracket|parenthesis|par[eé]ntesis) ([\w.]+) comm?a (\w+)(?:
+    (?:close|cierrar?) (?:bracket|parenthesis|par[eé]ntesis))?
+    | `\1(\2, \3)` | TS015 | offered
+    | F paréntesis dos coma ochenta => F(2, 80)
+(?<=\d)\. (?=\d) | `.` | TS008 | applied | F(1. 5, 80) => F(1.5, 80)
+^\s*(\d+) (?:loop|repe[a-z]+)\s*:?$
+    | `LOOP(\1)` | TS015 | applied
+    | 5 LOOP⏎F(1, 50)⏎END_LOOP => LOOP(5)⏎F(1, 50)⏎END_LOOP
+\bLOOP_?(\d+)(?=\s*(?:;|$))
+    | `LOOP(\1)` | TS015 | applied
+    | LOOP4;F(2, 80);END_LOOP => LOOP(4);F(2, 80);END_LOOP
+&⟨lt¦nbsp⟩;
+    | `⟨<¦ ⟩` | ⟨TS010¦TS072⟩ | applied
+    | IF(DISTANCE⟨ &lt; 10¦&nbsp;< 10⟩);S;END IF => IF(DISTANCE < 10);S;END_IF
+(?<=\d) ?⟨½¦¾⟩ | `⟨.5¦.75⟩` | TS010 | applied | F(1 ⟨½¦¾⟩, 80) => F(⟨1.5¦1.75⟩, 80)
+⟨×¦÷¦∞⟩
+    | `⟨*¦/¦FOREVER⟩` | TS010 | applied
+    | ⟨W(2×3)¦W(6÷3)¦LOOP(∞);S;END_LOOP⟩ => ⟨W(2*3)¦W(6/3)¦LOOP(FOREVER);S;END_LOOP⟩
+\b([FBLRMW]|BEEP)(\([^()]*\))\s*(?:…|\.{2,3})\s*(?=[A-Za-z]+\s*\()
+    | `\1\2; ` | TS010 | applied
+    | F(2, 80)...R(1, 50) => F(2, 80); R(1, 50)
+½ | `0.5` | TS010 | applied | W(½) => W(0.5)
+(?<=\d)(?:[´"`]|\)\s*,\s*\()(?=\d+\)) | `, ` | TS076 | applied | F(2´80) => F(2, 80)
+(?<=\))\s+(?:/\s*|-)(?=(?-i:[a-zñáéíóú]+)/?\s*$)
+    | ` // ` | TS007 | applied
+    | F(1, 80) / adelante => F(1, 80) // adelante
+(?i:\bFOREVER)\.(?=\d)
+    | `FOREVER, ` | TS017 | applied
+    | F(FOREVER.60) UNTIL(DISTANCE < 9) => F(FOREVER, 60) UNTIL(DISTANCE < 9)
+(?<=\d)\.\.(?=\d) | `, ` | TS020 | offered | X = RANDOM(1..6) => X = RANDOM(1, 6)
+⟨≤¦¡=¦(?<= )><⟩
+    | `⟨<=¦<>¦<>⟩` | TS010 | applied
+    | IF(DISTANCE ⟨≤¦¡=¦><⟩ 10);S;ENDIF => IF(DISTANCE ⟨<=¦<>¦<>⟩ 10);S;ENDIF
+(?<=\))\s*[↑↓⬅-⬇➡]\uFE0F?\s*(?=[A-Za-z]+\s*\()
+    | `; ` | TS061 | applied
+    | F(2, 80) ➡ R(1, 60) => F(2, 80); R(1, 60)
+[→➜⇒]|[–—]> | `;` | TS061 | applied | →F(2, 80) => ;F(2, 80)
+</?[a-z]+/?>|\A\s*(?:[$>] tsc\b.*|```\w*\s*)\Z | `` | TS072 | applied | <b>F(2, 80)</b> => F(2, 80)
+\A\s*tsc(?: \w+)? (?:(["'])(S[IB]\|.*)\1\Z|(?=S[IB]\|))
+    | `\2` | TS044 | applied
+    | tsc live "SI|F(2, 80)" => SI|F(2, 80)
+^\s*(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z]) | `` | TS054 | applied | ⟨*¦•¦a)⟩ F(2,80) => F(2,80)
+^\s*(?:-(?=[A-Z]\w*\()|[=-]?>+\s*) | `` | TS054 | applied | ⟨> ¦=> ¦-> ¦-⟩F(2,80) => F(2,80)
+^\s*[➤↑↓⏫⏬⬅-⬇\u2600-\u27A1\U0001F300-\U0001FAFF]\uFE0F?\s*(?=[A-Za-z]+\s*\()
+    | `` | TS054 | applied
+    | ✅ F(2,80) => F(2,80)
+(?<![\d/*])(?<![\d)] )⟨1/2¦1/4¦3/4⟩(?!\d)(?=\s*[a-z])
+    | `⟨0.5¦0.25¦0.75⟩` | TS049 | applied
+    | F(⟨1/2¦1/4¦3/4⟩ minuto, 80) => F(⟨30¦15¦45⟩, 80)
+(?<=\d) ⟨1/2¦1/4¦3/4⟩(?=\s*[,)a-z])
+    | `⟨.5¦.25¦.75⟩` | TS008 | applied
+    | F(2 ⟨1/2¦1/4¦3/4⟩, 80) => F(⟨2.5¦2.25¦2.75⟩, 80)
+(?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))|(?<=\d)[|¿?!"]+(?=\s*\))
+    | `` | TS005 | applied
+    | F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
+\bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$))) | `W(\1)` | TS015 | applied | S; W2.5) => S; W(2.5)
+^\s*(?:(?:paso|step|linea|line)\s*\d+\s*[.):-]*\s|\d+\s*(?:[.)]|[.):-]+\s))\s*(?=[A-Za-z])
+    | `` | TS054 | applied
+    | 1) F(2,80)⏎2) S => F(2,80)⏎S
+(?<![\w.])([1-9])[oO]⟨[oO]¦⟩\b | `\g<1>0⟨0¦⟩` | TS008 | applied | F(2,⟨1OO¦8O⟩) => F(2,⟨100¦80⟩)
+\b[oO]\.(\d+) | `0.\1` | TS008 | applied | F(O.5, 60) => F(0.5, 60)
+(?<=\d)\.(?=\s*[,);]) | `` | TS008 | offered | F(2, 80.) => F(2, 80)
+(?<=\d)(?:'(?=\d+\s*(?:[,;]|$))|(?<!\d\d),(?=\d+\s*(?:s|segs?|segundos?|sec|seconds?|minutos?)\b))
+    | `.` | TS012 | applied
+    | F(1'5, 80) => F(1.5, 80)
+(?<=[\w)])(?:\s*(?:[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)|\.{2,})\s*$
+    | `` | TS005 | applied
+    | STOP! => STOP
+(?:(?<=\|)|(?<=;)|^)(\s*)([FBLR])(?!\s+-\d|\s+\.\d|\.\d+(?![\d.]))\s*[_.<=,;"
+    -]?\s*([12]?\d(?:\.\d+)?)(?:[_,;<=-]+ ?| +|[ .]+(?=[1-9]0\b|100\b))(?:=
+    ?)?(\d+)\s*[])>"]?\s*(?=;|$)
+    | `\1\2(\3, \4)` | TS015 | applied
+    | F2,80 => F(2, 80)
+(?:^|(?<=[;|]))(\s*)M(-?\d+)[\s,;]+(-?\d+)\s*\)?\s*(?=;|$)
+    | `\1M(\2, \3)` | TS015 | applied
+    | M50 -50 => M(50, -50)
+(?<=\d)(?:\)\((?=\d)|['·_=&<]\s*(?=\d+\))) | `,` | TS076 | applied | F(3)(70) => F(3,70)
+(?<=\w)\.(?=\() | `` | TS005 | applied | F.(2, 80) => F(2, 80)
+⟨(?<=[\w)])\s*\.\s*$¦(?<=\))\s*\.\s+(?=\w)⟩
+    | `;⟨¦ ⟩` | TS010 | applied
+    | ⟨S.¦F(2,80). R(1,60). S.⟩ => ⟨S;¦F(2,80); R(1,60); S;⟩
+/\*\s*(.*?)\s*\*/\s*$ | `// \1` | TS007 | applied | F(2,80) /* hola */ => F(2,80) // hola
+⟨(?:^|(?<=\s))(?:#+|--+>?|<!--|^REM\b)\s*(?=[^\W\d])¦^\s*/\s*(?=(?-i:[a-z]+)(?! ?\())⟩
+    | `// ` | TS007 | applied
+    | SI|F(2, 60)⟨ # gira¦⏎/ gira⟩⏎R(1, 50) => SI|F(2, 60)⟨ // gira¦⏎// gira⟩⏎R(1, 50)
+\b([A-Za-z]+)\.read\(\)
+    | `\1` | TS102 | applied
+    | IF(DISTANCE.read()<10);S;ENDIF => IF(DISTANCE<10);S;ENDIF
+\b(?:time|robot|console|serial|self|car|motor|System\.out|random|math)\.(?=[A-Za-z]+\s*\()
+    | `` | TS102 | applied
+    | time.sleep(0.5) => W(0.5)
+\b(END|FIN)(?: _|[. -](?=(?:LOOP|IF|WHILE|DEF|TASK|WHEN)\b))
+    | `END_` | TS022 | applied
+    | IF(DISTANCE < 10);S;END IF => IF(DISTANCE < 10);S;END_IF
+\b(LIGHT|LUZ)[ -](?=[LRID]\b) | `\1_` | TS056 | applied | SHOW(LIGHT-R) => SHOW(LIGHT_R)
 """
 
 TOKENS = r"""
 # signs that other languages have
-^ v=⟨@usedname¦@name⟩ == e=@any+ $ | $v = $e | ⟨0¦1⟩ | ⟨TS010¦TS050⟩ | ⟨first¦first offered⟩ | X == 5⟨⏎F(X, 80)¦⟩ => X = 5⟨⏎F(X, 80)¦⟩
-⟨==¦!=|=!¦=>¦=<¦< or? =¦> or? =¦!|no <¦!|no >⟩ | ⟨=¦<>¦>=¦<=¦<=¦>=¦>=¦<=⟩ | 0 | TS010 | first | IF(DISTANCE ⟨==¦!=¦=>¦=<¦< =¦> =¦!<¦!>⟩ 10);S;ENDIF => IF(DISTANCE ⟨=¦<>¦>=¦<=¦<=¦>=¦>=¦<=⟩ 10);S;ENDIF
-⟨&&¦:=⟩ | ⟨AND¦=⟩ | 0 | ⟨TS010¦TS050⟩ | first | ⟨SI|IF(DISTANCE<10 && LIGHT_L>50);S;ENDIF¦v := 50⏎F(2, v)⟩ => ⟨SI|IF(DISTANCE<10 AND LIGHT_L>50);S;ENDIF¦v = 50⏎F(2, v)⟩
+^ v=⟨@usedname¦@name⟩ == e=@any+ $
+    | $v = $e | ⟨0¦1⟩ | ⟨TS010¦TS050⟩ | ⟨first¦first offered⟩
+    | X == 5⟨⏎F(X, 80)¦⟩ => X = 5⟨⏎F(X, 80)¦⟩
+⟨==¦!=|=!¦=>¦=<¦< or? =¦> or? =¦!|no <¦!|no >⟩
+    | ⟨=¦<>¦>=¦<=¦<=¦>=¦>=¦<=⟩ | 0 | TS010 | first
+    | IF(DISTANCE ⟨==¦!=¦=>¦=<¦< =¦> =¦!<¦!>⟩ 10);S;ENDIF => IF(DISTANCE ⟨=¦<>¦>=¦<=¦<=¦>=¦>=¦<=⟩
+    10);S;ENDIF
+⟨&&¦:=⟩
+    | ⟨AND¦=⟩ | 0 | ⟨TS010¦TS050⟩ | first
+    | ⟨SI|IF(DISTANCE<10 && LIGHT_L>50);S;ENDIF¦v := 50⏎F(2, v)⟩ => ⟨SI|IF(DISTANCE<10 AND
+    LIGHT_L>50);S;ENDIF¦v = 50⏎F(2, v)⟩
 ] | ) | 1 | TS010 | applied | F(2, 80] => F(2, 80)
-v=@val [ n=@num ) | $v < $n ) | 1 | TS010 | offered | IF(DISTANCE[30)⏎S⏎ENDIF => IF(DISTANCE < 30)⏎S⏎ENDIF
+v=@val [ n=@num )
+    | $v < $n ) | 1 | TS010 | offered
+    | IF(DISTANCE[30)⏎S⏎ENDIF => IF(DISTANCE < 30)⏎S⏎ENDIF
 ! v=@val|( | NOT $v | 1 | TS010 | first | X = TRUE⏎IF(!X);S;ENDIF => X = TRUE⏎IF(NOT X);S;ENDIF
 # sums in words
-o==|(|, a=@num|@val minus b=@num|@val | $o $a - $b | 1 | TS010 | first | SHOW(8 minus 4) => SHOW(8 - 4)
-o==|( the? largest of|between? a=@num|@val ,|then b=@num|@val e=)|,|$ | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(el mayor de LIGHT_L y LIGHT_R) => SHOW(MAX(LIGHT_L, LIGHT_R))
-o==|( a=@num|@val ,|then|or b=@num|@val the? largest e=)|,|$ | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(LIGHT_L or LIGHT_R the bigger) => SHOW(MAX(LIGHT_L, LIGHT_R))
+o==|(|, a=@num|@val minus b=@num|@val
+    | $o $a - $b | 1 | TS010 | first
+    | SHOW(8 minus 4) => SHOW(8 - 4)
+o==|( the? largest of|between? a=@num|@val ,|then b=@num|@val e=)|,|$
+    | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered
+    | SHOW(el mayor de LIGHT_L y LIGHT_R) => SHOW(MAX(LIGHT_L, LIGHT_R))
+o==|( a=@num|@val ,|then|or b=@num|@val the? largest e=)|,|$
+    | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered
+    | SHOW(LIGHT_L or LIGHT_R the bigger) => SHOW(MAX(LIGHT_L, LIGHT_R))
 # comparisons in words: a row for each sense, and a sign
-is? ⟨less than?¦more⟩ or? equal to|than? | ⟨<=¦>=⟩ | 1 | TS010 | first | IF(DISTANCE es ⟨menor¦mayor⟩ o igual que 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=⟩ 10);S;ENDIF
-is? ⟨one? less than?¦one? more than?¦extra than⟩ | ⟨<¦>¦>⟩ | 1 | TS010 | first | IF(DISTANCE ⟨menor¦mayor¦es mas de⟩ 10);S;ENDIF => IF(DISTANCE ⟨<¦>¦>⟩ 10);S;ENDIF
-⟨is? different than?¦no is|equal to|equal? one?⟩ | <> | 1 | TS010 | first | IF(DISTANCE ⟨distinto de¦NO ES⟩ 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
-= @word* RANDOM between|from? a=@num to|and|until|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
-l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS037 | offered | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
+is? ⟨less than?¦more⟩ or? equal to|than?
+    | ⟨<=¦>=⟩ | 1 | TS010 | first
+    | IF(DISTANCE es ⟨menor¦mayor⟩ o igual que 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=⟩ 10);S;ENDIF
+is? ⟨one? less than?¦one? more than?¦extra than⟩
+    | ⟨<¦>¦>⟩ | 1 | TS010 | first
+    | IF(DISTANCE ⟨menor¦mayor¦es mas de⟩ 10);S;ENDIF => IF(DISTANCE ⟨<¦>¦>⟩ 10);S;ENDIF
+o=(|AND|OR l=@val is NOT|no equal* to|than? n=@num|@val
+    | $o $l <> $n | 1 | TS010 | applied
+    | IF(DISTANCE is not 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
+o=(|AND|OR|NOT l=@val is|equal+ to|than? n=@num|@val
+    | $o $l = $n | 1 | TS010 | applied
+    | IF(DISTANCE es igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
+⟨is? different than?¦no is|equal to|equal? one?⟩
+    | <> | 1 | TS010 | first
+    | IF(DISTANCE ⟨distinto de¦NO ES⟩ 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
+= @word* RANDOM between|from? a=@num to|and|until|-|, b=@num $
+    | = RANDOM ( $a , $b ) | 1 | TS102 | offered
+    | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
+l=@val is? between a=@num and b=@num
+    | $l > $a AND $l < $b | 1 | TS037 | offered
+    | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
 # questions and sums
-a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val | $a $s $b AND $b $t $c | 1 | TS037 | applied | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
-o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val ) | $o ( $a + $b ) / 2 | 1 | TS010 | offered | SHOW(AVERAGE(LIGHT_L, LIGHT_R)) => SHOW((LIGHT_L + LIGHT_R) / 2)
-a=@num|@val ⟨modulo¦plus⟩ b=@num|@val | $a ⟨%¦+⟩ $b | 1 | TS010 | first | X = 7⏎X = X ⟨MOD¦mas⟩ 2 => X = 7⏎X = X ⟨%¦+⟩ 2
-no l=@val|( | NOT $l | 1 | TS010 | applied | IF(NO⟨ DISTANCE < 10¦(DISTANCE < 10)⟩)⏎F(1,50)⏎ENDIF => IF(NOT⟨ DISTANCE < 10¦(DISTANCE < 10)⟩)⏎F(1,50)⏎ENDIF
-l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
-l=MIN|MAX ( c=@noparen+ ) s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l ( $c ) $s $a &o $l ( $c ) $t $b | 1 | TS018 | offered | IF(MIN(2, DISTANCE) < 10 OR < 5);S;ENDIF => IF(MIN(2, DISTANCE) < 10 OR MIN(2, DISTANCE) < 5);S;ENDIF
-l=@val = a=@num or b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
-( s=<|<= n=@num ) | ( DISTANCE $s $n ) | 1 | TS018 | offered | IF(< 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-^ c=@cond+ ? <body> : d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
-o==|( a=@num|@val over by|over? b=@num|@val | $o $a / $b | 1 | TS010 | applied | SHOW(10 entre 2) => SHOW(10 / 2)
-h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val ⟨then|&¦or|OR⟩ b=@val s=<|> n=@num ) | &h ( $a $s $n ⟨AND¦OR⟩ $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L ⟨y¦o⟩ LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 ⟨AND¦OR⟩ LIGHT_R > 500)⏎S⏎ENDIF
-a=@num|@val ⟨then|&¦or⟩ b=@val|less|more|NOT⟨|<¦⟩ | $a ⟨AND¦OR⟩ $b | 1 | TS010 | first | IF(DISTANCE < 10 ⟨y¦o⟩ LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 ⟨AND¦OR⟩ LIGHT_L > 100);S;ENDIF
-o=AND|OR IF | &o | 1 | TS010 | first | IF(DISTANCE > 5 AND IF DISTANCE < 9);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 9);S;ENDIF
-a=@num|@val '|' b=@val | $a OR $b | 1 | TS010 | applied | IF(DISTANCE<10 | LIGHT_R>50)⏎S⏎ENDIF => IF(DISTANCE<10 OR LIGHT_R>50)⏎S⏎ENDIF
+a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val
+    | $a $s $b AND $b $t $c | 1 | TS037 | applied
+    | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
+o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val )
+    | $o ( $a + $b ) / 2 | 1 | TS010 | offered
+    | SHOW(AVERAGE(LIGHT_L, LIGHT_R)) => SHOW((LIGHT_L + LIGHT_R) / 2)
+a=@num|@val ⟨modulo¦plus⟩ b=@num|@val
+    | $a ⟨%¦+⟩ $b | 1 | TS010 | first
+    | X = 7⏎X = X ⟨MOD¦mas⟩ 2 => X = 7⏎X = X ⟨%¦+⟩ 2
+no l=@val|(
+    | NOT $l | 1 | TS010 | applied
+    | IF(NO⟨ DISTANCE < 10¦(DISTANCE < 10)⟩)⏎F(1,50)⏎ENDIF => IF(NOT⟨ DISTANCE < 10¦(DISTANCE <
+    10)⟩)⏎F(1,50)⏎ENDIF
+l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num
+    | $l $s $a &o $l $t $b | 1 | TS018 | offered
+    | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
+l=MIN|MAX ( c=@noparen+ ) s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num
+    | $l ( $c ) $s $a &o $l ( $c ) $t $b | 1 | TS018 | offered
+    | IF(MIN(2, DISTANCE) < 10 OR < 5);S;ENDIF => IF(MIN(2, DISTANCE) < 10 OR MIN(2, DISTANCE) <
+    5);S;ENDIF
+l=@val = a=@num or b=@num
+    | $l = $a OR $l = $b | 1 | TS018 | offered
+    | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
+( s=<|<= n=@num )
+    | ( DISTANCE $s $n ) | 1 | TS018 | offered
+    | IF(< 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+h=IF|WHILE|ELSEIF v=@val ( n=@num )
+    | &h ( $v < $n ) | 1 | TS048 | offered
+    | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+^ c=@cond+ ? <body> : d=@start s=@all* $
+    | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered
+    | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
+^ c=@cond+ ? b=@start r=@all* $
+    | IF ( $c ) ; $b $r ; ENDIF | 1 | TS042 | offered
+    | DISTANCE < 10 ? S => IF(DISTANCE < 10);S;ENDIF
+h=WHILE ( 1 )
+    | &h ( TRUE ) | 1 | TS010 | first
+    | ENQUANTO(1) { F(1, 50) } => WHILE(TRUE);F(1, 50);END_WHILE;
+o==|( a=@num|@val over by|over? b=@num|@val
+    | $o $a / $b | 1 | TS010 | applied
+    | SHOW(10 entre 2) => SHOW(10 / 2)
+h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val ⟨then|&¦or|OR⟩ b=@val s=<|> n=@num )
+    | &h ( $a $s $n ⟨AND¦OR⟩ $b $s $n ) | 1 | TS010 | first offered
+    | IF(LIGHT_L ⟨y¦o⟩ LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 ⟨AND¦OR⟩ LIGHT_R > 500)⏎S⏎ENDIF
+then|and|AND / or|OR
+    | OR | 1 | TS010 | first
+    | IF(DISTANCE < 10 y/o LIGHT_L > 50);S;ENDIF => IF(DISTANCE < 10 OR LIGHT_L > 50);S;ENDIF
+a=@num|@val ⟨then|&¦or⟩ b=@val|less|more|NOT⟨|<¦⟩
+    | $a ⟨AND¦OR⟩ $b | 1 | TS010 | first
+    | IF(DISTANCE < 10 ⟨y¦o⟩ LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 ⟨AND¦OR⟩ LIGHT_L >
+    100);S;ENDIF
+o=AND|OR IF
+    | &o | 1 | TS010 | first
+    | IF(DISTANCE > 5 AND IF DISTANCE < 9);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 9);S;ENDIF
+a=@num|@val '|' b=@val
+    | $a OR $b | 1 | TS010 | applied
+    | IF(DISTANCE<10 | LIGHT_R>50)⏎S⏎ENDIF => IF(DISTANCE<10 OR LIGHT_R>50)⏎S⏎ENDIF
 # numbers, units, values
 a=@num b=0 | @cat:a:b | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
 a=@num c=, b=@num | @dec:a:c:b | 1 | TS012 | applied | W(2,5) => W(2.5)
 o=(|,|; a=@num % ) | $o $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
+^ n=@num @in_secs|seconds $ | W ( $n ) | 1 | TS042 | offered | 2 segundos => W(2)
+o=+|-|=|, a=@num % ⟨e=;|,¦$⟩
+    | $o $a ⟨$e¦⟩ | 1 | TS049 | applied
+    | X = 50⏎X = X + 10%⟨;¦⏎⟩F(2, X) => X = 50⏎X = X + 10⟨;¦⏎⟩F(2, X)
 a=@num by @hundred | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 50)
 a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
-⟨s=<|>|<=|>=|=|<> n=@num u=M|MIN|S e=)¦^ s=@name = n=@num u=M|MIN $⟩ | $s ⟨¦=⟩ @own:n:u ⟨$e¦⟩ | 1 | TS049 | applied | ⟨IF(DISTANCE < 1 m);S;ENDIF¦D = 1 m⟩ => ⟨IF(DISTANCE < 100);S;ENDIF¦D = 100⟩
-s=<|>|<=|>=|=|<> n=@num u=@unit | $s @own:n:u | 1 | TS049 | first | ⟨x = 5 cm¦T = 500 ms⏎W(T)⟩ => ⟨x = 5¦T = 0.5⏎W(T)⟩
+⟨s=<|>|<=|>=|=|<> n=@num u=M|MIN|S e=)¦^ s=@name = n=@num u=M|MIN $⟩
+    | $s ⟨¦=⟩ @own:n:u ⟨$e¦⟩ | 1 | TS049 | applied
+    | ⟨IF(DISTANCE < 1 m);S;ENDIF¦D = 1 m⟩ => ⟨IF(DISTANCE < 100);S;ENDIF¦D = 100⟩
+s=<|>|<=|>=|=|<> n=@num u=@unit
+    | $s @own:n:u | 1 | TS049 | first
+    | ⟨x = 5 cm¦T = 500 ms⏎W(T)⟩ => ⟨x = 5¦T = 0.5⏎W(T)⟩
 v=@val CM|in? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
-h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
+h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val
+    | &h $b &v | 1 | TS102 | first
+    | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
+sensing ( v=@val ) | $v | 1 | TS044 | first | SHOW(SENSOR(DISTANCE)) => SHOW(DISTANCE)
+sensing of? the? v=@val|light | $v | 1 | TS044 | first | SHOW(sensor de distancia) => SHOW(DISTANCE)
 # variables
-v=@name = a=@num|@val b=@start | $v = $a ; $b | 1 | TS013 | applied | X = DISTANCE F(1, 50) => X = DISTANCE;F(1, 50)
+v=@name = a=@num|@val b=@start
+    | $v = $a ; $b | 1 | TS013 | applied
+    | X = DISTANCE F(1, 50) => X = DISTANCE;F(1, 50)
 v=@name ++ | $v = $v + 1 | 1 | TS050 | applied | v = 0⏎v++ => v = 0⏎v = v + 1
 ^ v=@name = + e=@num $ | $v = $v + $e | 1 | TS050 | offered | X = 1⏎X = +1 => X = 1⏎X = X + 1
 v=@name += e=@any+ | $v = $v + $e | 1 | TS050 | applied | X = 1⏎X += 2 => X = 1⏎X = X + 2
 ^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
-^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
-^ v=@name = e=@num ,? w=@name = f=@num $ | $v = $e ; $w = $f | 1 | TS013 | applied | x = 5, y = 80⏎F(x, y) => X = 5;Y = 80⏎F(x, y)
-^ n=@newname = b=@callw|LOOP r=@any+ $ | DEF $n ; $b $r | 2 | TS051 | applied | BAILE = L(1,60)⏎BAILE => DEF BAILE;L(1, 60);END_DEF⏎BAILE
-^ declare ⟨v=@newname ;? $¦declare? v=@name =⟩ | $v = ⟨0¦⟩ | 1 | TS044 | ⟨offered¦applied⟩ | var vel⟨¦ = 50⟩⏎F(2, vel) => vel = ⟨0¦50⟩⏎F(2, vel)
-^ ⟨set|declare the? v=@word =|to|is?¦v=@newname is|equal|: to|equal? one?⟩ e=@num $ | $v = $e | ⟨1¦2⟩ | TS050 | applied | ⟨set x to 5¦velocidad es 60⏎F(2, velocidad)⟩ => ⟨x = 5¦velocidad = 60⏎F(2, velocidad)⟩
+^ v=@name , w=@name = e=@num , f=@num $
+    | $v = $e ; $w = $f | 1 | TS050 | applied
+    | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
+^ v=@name = e=@num ,? w=@name = f=@num $
+    | $v = $e ; $w = $f | 1 | TS013 | applied
+    | x = 5, y = 80⏎F(x, y) => X = 5;Y = 80⏎F(x, y)
+^ n=@newname = b=@callw|LOOP r=@any+ $
+    | DEF $n ; $b $r | 2 | TS051 | applied
+    | BAILE = L(1,60)⏎BAILE => DEF BAILE;L(1, 60);END_DEF⏎BAILE
+^ declare ⟨v=@newname ;? $¦declare? v=@name =⟩
+    | $v = ⟨0¦⟩ | 1 | TS044 | ⟨offered¦applied⟩
+    | var vel⟨¦ = 50⟩⏎F(2, vel) => vel = ⟨0¦50⟩⏎F(2, vel)
+^ ⟨set|declare the? v=@word =|to|is?¦v=@newname is|equal|: to|equal? one?⟩ e=@num $
+    | $v = $e | ⟨1¦2⟩ | TS050 | applied
+    | ⟨set x to 5¦velocidad es 60⏎F(2, velocidad)⟩ => ⟨x = 5¦velocidad = 60⏎F(2, velocidad)⟩
 = SI|TRUE $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
 a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
 ^ v=@usedname e=@num f=;|$ | $v = $e $f | 3 | TS050 | applied | X 17⏎SHOW(X) => X = 17⏎SHOW(X)
-^ ⟨add¦subtract⟩ n=@num|@val from|to the? v=@name $ | $v = $v ⟨+¦-⟩ $n | 1 | TS050 | offered | X = 40⏎⟨suma¦resta⟩ 5 a X⏎F(1, X) => X = 40⏎X = X ⟨+¦-⟩ 5⏎F(1, X)
-^ ⟨multiply¦divide¦increase¦decrease⟩ the? v=@name by|over n=@num|@val $ | $v = $v ⟨*¦/¦+¦-⟩ $n | 1 | TS050 | offered | X = 40⏎⟨multiply¦divide¦increase¦decrease⟩ X by 2 => X = 40⏎X = X ⟨*¦/¦+¦-⟩ 2
-^ keep the? e=@val|@num to v=@word $ | $v = $e | 1.5 | TS050 | applied | guardar 80 en potencia⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
+^ ⟨add¦subtract⟩ n=@num|@val from|to the? v=@name $
+    | $v = $v ⟨+¦-⟩ $n | 1 | TS050 | offered
+    | X = 40⏎⟨suma¦resta⟩ 5 a X⏎F(1, X) => X = 40⏎X = X ⟨+¦-⟩ 5⏎F(1, X)
+^ ⟨multiply¦divide¦increase¦decrease⟩ the? v=@name by|over n=@num|@val $
+    | $v = $v ⟨*¦/¦+¦-⟩ $n | 1 | TS050 | offered
+    | X = 40⏎⟨multiply¦divide¦increase¦decrease⟩ X by 2 => X = 40⏎X = X ⟨*¦/¦+¦-⟩ 2
+^ keep the? e=@val|@num to v=@word $
+    | $v = $e | 1.5 | TS050 | applied
+    | guardar 80 en potencia⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
 # calls and their brackets
 x=@callw [ | $x ( | 1 | TS010 | first | F[2,80] => F(2,80)
 x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => SI|F(2,80)
-RANDOM ( between|from? a=@num to|and|until|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 3)⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
-c=@callw ( a=@noparen+ ; b=@noparen+ e=)|$ | $c ( $a , $b ) | 1 | TS019 | applied | F(2;80 => F(2, 80)
-a=@callw b=@num ,? c=@num ,|;|and? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied | F 2,80,R 1,50 => F(2, 80);R(1, 50)
-v=@val|@def|S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
-^ c=@callw :? a='-'? b=@num ; d='-'? e=@num )|]|$ | $c ( $a $b , $d $e ) | 1 | TS015 | applied | R 0.5; 60 => R(0.5, 60)
+RANDOM ( between|from? a=@num to|and|until|- b=@num )
+    | RANDOM ( $a , $b ) | 1 | TS017 | applied
+    | X = RANDOM(1 al 3)⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
+a=F|B|L|R|W ( RANDOM? b=@num to|and|until|- c=@num e=,|)
+    | $a ( RANDOM ( $b , $c ) $e | 1 | TS076 | offered
+    | F(1 a 3, 60) => F(RANDOM(1, 3), 60)
+c=@callw ( a=@noparen+ ; b=@noparen+ e=)|$
+    | $c ( $a , $b ) | 1 | TS019 | applied
+    | F(2;80 => F(2, 80)
+a=@callw b=@num ,? c=@num ,|;|and? d=@callw
+    | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied
+    | F 2,80,R 1,50 => F(2, 80);R(1, 50)
+v=@val|@def|S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( )
+    | $v | 1 | TS028 | first
+    | LIGHT_L() => LIGHT_L
+^ c=@callw :? a='-'? b=@num ; d='-'? e=@num )|]|$
+    | $c ( $a $b , $d $e ) | 1 | TS015 | applied
+    | R 0.5; 60 => R(0.5, 60)
 SHOW ( TIME ) | SHOW ( TIME ) | 1 | TS102 | applied | mostrar(tiempo) => SHOW(TIME)
-c=@callw ( a=@noparen+ s=*|/|%|- b=@num|@val t=+|-|*|/|% d=@noparen+ ) ) e=;|$ | $c ( $a $s ( $b $t $d ) ) $e | 1 | TS041 | applied | SHOW(5 / 3 - 3)) => SHOW(5 /(3 - 3))
+c=@callw ( a=@noparen+ s=*|/|%|- b=@num|@val t=+|-|*|/|% d=@noparen+ ) ) e=;|$
+    | $c ( $a $s ( $b $t $d ) ) $e | 1 | TS041 | applied
+    | SHOW(5 / 3 - 3)) => SHOW(5 /(3 - 3))
 c=@callw ( a=@noparen+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2, 80)) => F(2, 80)
-c=@callw ( a=@num ⟨/|-¦_|.|;|&|<|'|'|and|>⟩ b=@num ) | $c ( $a , $b ) | ⟨2¦1⟩ | TS076 | ⟨offered¦applied⟩ | F(2⟨/¦|⟩80) => F(2, 80)
-SHOW ( a=@val ⟨,¦&|+|, " " &|+|,⟩ b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | ⟨2¦1⟩ | TS020 | offered | SHOW(DISTANCE⟨,¦ & " " &⟩ LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
-^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
-c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|UNTIL|@start¦⟩ | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80⟨¦) UNTIL(DISTANCE<10⟩ => F(2,80)⟨¦ UNTIL(DISTANCE<10)⟩
-⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
-a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@power , n=@num u=CM|DEG⟩ ) | $a ( $n $u , $p ) | ⟨1¦.9¦1⟩ | TS076 | offered | ⟨B(CM(20), 60)¦F(25, 60 CM)¦R(60, 120 DEG)⟩ => ⟨B(20 CM, 60)¦F(25 CM, 60)¦R(120 DEG, 60)⟩
-^ BEEP BEEP e=;|$ | BEEP ( 0.2 , 440 ) ; W ( 0.2 ) ; BEEP ( 0.2 , 440 ) $e | 1 | TS102 | offered | bip bip => BEEP(0.2, 440);W(0.2);BEEP(0.2, 440)
+c=@callw ( a=@num ⟨/|-¦_|.|;|&|<|'|'|and|>⟩ b=@num )
+    | $c ( $a , $b ) | ⟨2¦1⟩ | TS076 | ⟨offered¦applied⟩
+    | F(2⟨/¦|⟩80) => F(2, 80)
+SHOW ( a=@val ⟨,¦&|+|, " " &|+|,⟩ b=@val )
+    | SHOW ( $a ) ; SHOW ( $b ) | ⟨2¦1⟩ | TS020 | offered
+    | SHOW(DISTANCE⟨,¦ & " " &⟩ LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
+^ SHOW a=@val|@num s=+|-|*|/|% b=@val|@num $
+    | SHOW ( $a $s $b ) | 1 | TS015 | applied
+    | SHOW LIGHT_L + LIGHT_R => SHOW(LIGHT_L + LIGHT_R)
+^ SHOW a=@val ,? b=@val $
+    | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied
+    | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
+c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|UNTIL|@start¦⟩
+    | $c ( $a $b ) $e | 1 | TS016 | applied
+    | F(2,80⟨¦) UNTIL(DISTANCE<10⟩ => F(2,80)⟨¦ UNTIL(DISTANCE<10)⟩
+⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num )
+    | BEEP ( @ms:b , $a ) | 1 | TS102 | offered
+    | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
+a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@power , n=@num u=CM|DEG⟩ )
+    | $a ( $n $u , $p ) | ⟨1¦.9¦1⟩ | TS076 | offered
+    | ⟨B(CM(20), 60)¦F(25, 60 CM)¦R(60, 120 DEG)⟩ => ⟨B(20 CM, 60)¦F(25 CM, 60)¦R(120 DEG, 60)⟩
+^ BEEP BEEP e=;|$
+    | BEEP ( 0.2 , 440 ) ; W ( 0.2 ) ; BEEP ( 0.2 , 440 ) $e | 1 | TS102 | offered
+    | bip bip => BEEP(0.2, 440);W(0.2);BEEP(0.2, 440)
 @newname . c=F|B|L|R|W|BEEP ( | $c ( | 1 | TS102 | applied | bot.F(2, 80) => F(2, 80)
 # UNTIL
-a=F|B|L|R|W ( b=@noparen+ ) S|STOP ( c=@val s=<|<=|>|>= d=@num|@val ) $ | $a ( $b ) UNTIL ( $c $s $d ) | 2 | TS102 | offered | F(10, 60) STOP(DISTANCE < 12) => F(10, 60) UNTIL(DISTANCE < 12)
-a=@close ⟨'|'|,|.|; UNTIL¦UNTIL that?⟩ ( | $a UNTIL ( | 1 | ⟨TS029¦TS102⟩ | applied | F(2,80)⟨.UNTIL¦ HASTA⟩(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
-^ W ⟨UNTIL that? c=@cond+¦( UNTIL (? c=@noparen+ )? )⟩ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | ⟨TS102¦TS029⟩ | ⟨applied¦offered⟩ | ⟨WAIT UNTIL DISTANCE < 10¦W(UNTIL DISTANCE < 10)⟩ => W(FOREVER) UNTIL(DISTANCE < 10)
-a=@close UNTIL that? ⟨c=@cond+ then+ ,? b=@start¦c=@noparen+ $⟩ | $a UNTIL ( $c ) ⟨; $b¦⟩ | 1 | TS015 | applied | F(2, 80) hasta DISTANCE < 10⟨ luego S¦⟩ => F(2, 80) UNTIL(DISTANCE < 10)⟨;S¦⟩
-^^ ⟨UNTIL <question> ':'|'{'?¦LOOP ( FOREVER ) UNTIL <question>⟩ $ | WHILE ( @not:c ) | ⟨3¦1⟩ | ⟨TS029¦TS102⟩ | offered | ⟨¦LOOP(FOREVER) ⟩UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_⟨WHILE¦LOOP⟩ => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
-^ ⟨a=F|B|L|R ( UNTIL (? c=@cond+ )? , b=@num¦UNTIL (? c=@cond+ )? a=F|B|L|R|W ( b=@noparen+⟩ ) $ | $a ( ⟨FOREVER ,¦⟩ $b ) UNTIL ( $c ) | 2 | TS029 | offered | ⟨F(UNTIL(DISTANCE < 10),¦UNTIL DISTANCE < 10 F(2,⟩ 60) => F(⟨FOREVER¦2⟩, 60) UNTIL(DISTANCE < 10)
+a=F|B|L|R|W ( b=@noparen+ ) then? S|STOP WHEN c=@cond+ $
+    | $a ( $b ) UNTIL ( $c ) | .9 | TS102 | applied
+    | F(10, 60) STOP WHEN DISTANCE < 12 => F(10, 60) UNTIL(DISTANCE < 12)
+a=F|B|L|R|W ( b=@noparen+ ) S|STOP ( c=@val s=<|<=|>|>= d=@num|@val ) $
+    | $a ( $b ) UNTIL ( $c $s $d ) | 2 | TS102 | offered
+    | F(10, 60) STOP(DISTANCE < 12) => F(10, 60) UNTIL(DISTANCE < 12)
+^ a=S|STOP UNTIL that? ( c=@any+ ) e=;|$
+    | $a ; W ( FOREVER ) UNTIL ( $c ) $e | 1 | TS030 | offered
+    | S HASTA(DISTANCE > 20) => S;W(FOREVER) UNTIL(DISTANCE > 20)
+a=@close ⟨'|'|,|.|; UNTIL¦UNTIL that?⟩ (
+    | $a UNTIL ( | 1 | ⟨TS029¦TS102⟩ | applied
+    | F(2,80)⟨.UNTIL¦ HASTA⟩(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
+^ W ( c=@val s=<|<=|>|>=|= d=@num|@val ) $
+    | W ( FOREVER ) UNTIL ( $c $s $d ) | 1 | TS029 | offered
+    | ESPERA(DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
+^ W ⟨UNTIL that? c=@cond+¦( UNTIL (? c=@noparen+ )? )⟩ $
+    | W ( FOREVER ) UNTIL ( $c ) | 1 | ⟨TS102¦TS029⟩ | ⟨applied¦offered⟩
+    | ⟨WAIT UNTIL DISTANCE < 10¦W(UNTIL DISTANCE < 10)⟩ => W(FOREVER) UNTIL(DISTANCE < 10)
+a=@close UNTIL that? ⟨c=@cond+ then+ ,? b=@start¦c=@noparen+ $⟩
+    | $a UNTIL ( $c ) ⟨; $b¦⟩ | 1 | TS015 | applied
+    | F(2, 80) hasta DISTANCE < 10⟨ luego S¦⟩ => F(2, 80) UNTIL(DISTANCE < 10)⟨;S¦⟩
+^^ ⟨UNTIL <question> ':'|'{'?¦LOOP ( FOREVER ) UNTIL <question>⟩ $
+    | WHILE ( @not:c ) | ⟨3¦1⟩ | ⟨TS029¦TS102⟩ | offered
+    | ⟨¦LOOP(FOREVER) ⟩UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_⟨WHILE¦LOOP⟩ => WHILE(DISTANCE >= 10)⏎F(1,
+    60)⏎END_WHILE
+^ ⟨a=F|B|L|R ( UNTIL (? c=@cond+ )? , b=@num¦UNTIL (? c=@cond+ )? a=F|B|L|R|W ( b=@noparen+⟩ ) $
+    | $a ( ⟨FOREVER ,¦⟩ $b ) UNTIL ( $c ) | 2 | TS029 | offered
+    | ⟨F(UNTIL(DISTANCE < 10),¦UNTIL DISTANCE < 10 F(2,⟩ 60) => F(⟨FOREVER¦2⟩, 60) UNTIL(DISTANCE <
+    10)
+a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num @in_secs|S ) $
+    | $a ( $n , $p ) | 1 | TS049 | offered
+    | F(FOREVER, 60) UNTIL(5 SECONDS) => F(5, 60)
 # IF and WHILE
-ELSE ( a=@val s=<|<=|>|>= b=@num|@val ) | ELSEIF ( $a $s $b ) | 1 | TS039 | offered | IF(DISTANCE < 10)⏎S⏎ELSE(DISTANCE < 30)⏎B(1, 50)⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ELSEIF(DISTANCE < 30)⏎B(1, 50)⏎ENDIF
-c=IF|WHILE|ELSEIF|UNTIL ( ( a=@noparen* b=@num|@word ) e=;|$ | $c ( ( $a $b ) ) $e | 1 | TS016 | applied | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-<asks> ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ ) | &h ( ( $c ) ⟨AND¦OR⟩ ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) ⟨y¦o⟩ (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) ⟨AND¦OR⟩(LIGHT_R > 9));S;ENDIF
-h=IF|WHILE|LOOP|UNTIL|ELSEIF :|.|->|, ( | &h ( | 1 | TS015 | applied | IF:(DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-^ unless ⟨<question>¦that? c=@noparen+ :|,|;¦that? c=@noparen+ b=@start⟩ | IF ( @not:c ) ; ⟨¦¦$b⟩ | ⟨1¦1.2¦1.2⟩ | TS102 | applied | unless⟨(distance < 10)⏎¦ distance < 10:⏎¦ distance < 10 ⟩F(1,50)⟨⏎end¦⏎ENDIF¦⟩ => IF(DISTANCE >= 10)⟨⏎F(1,50)⏎¦⏎F(1,50)⏎¦;F(1, 50);⟩ENDIF
-<asks> ( c=@any+ ) and ( d=@any+ ) | &h ( ( $c ) AND ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) y (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) AND(LIGHT_R > 9));S;ENDIF
-h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@any+ '}' | &h ( $c ) | 1 | TS015 | applied | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-<asks> ( c=@noparen+ b=@start | &h ( $c ) ; $b | 1 | TS016 | offered | si DISTANCE < 10 S si DISTANCE > 10 F(1,50) => IF(DISTANCE < 10);S;IF(DISTANCE > 10);F(1, 50);ENDIF;ENDIF
-<asks> c=@cond+ ⟨'{'¦do|:|,|'|'|;|$⟩ | &h ( $c ) ; ⟨{¦⟩ | 1.3 | TS015 | applied | SI DISTANCE < 10⟨ {⏎S⏎}¦ | S⟩ => IF(DISTANCE < 10);⟨⏎S⏎END¦S;END⟩IF
-<asks> c=@cond+ b=@start | &h ( $c ) ; $b | 2 | TS014 | applied | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
-h=IF|WHILE|LOOP|WHEN ( c=@any+ , <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
-^ '='⟨?¦⟩ IF ( c=@any+ ⟨,¦;⟩ <body> ⟨,¦;⟩ d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | ⟨.9¦.8⟩ | TS080 | offered | ⟨IF(DISTANCE < 10, B(1, 60), ¦=SI(DISTANCE<10;B(1;60);⟩F(1, 60)) => IF(DISTANCE < 10);B(1, 60);ELSE;F(1, 60);ENDIF
-<block> <question> ⟨do|times¦:|,|=|?|'|'|-⟩ ':'? | &h ( $c ) ; | 1 | ⟨TS044¦TS014⟩ | applied | LOOP(3)⟨ TIMES¦:⟩⏎F(1,50)⏎END_LOOP => LOOP(3)⏎F(1,50)⏎END_LOOP
-<block> <question> b=@start|'{' | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(3) F(1,50) => LOOP(3);F(1, 50);END_LOOP
-<block> <question> ⟨;? (¦[⟩ <body> ⟨)¦]⟩ $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4) ⟨(¦[⟩F(1,60); R(1,50)⟨)¦]⟩ => LOOP(4);F(1, 60);R(1, 50);END_LOOP
+ELSE a=@val s=<|<=|>|>= b=@num|@val do|:? $
+    | ELSEIF ( $a $s $b ) | .9 | TS015 | offered
+    | IF(DISTANCE < 10)⏎S⏎ELSE DISTANCE < 30⏎B(1, 50)⏎ENDIF =>
+    IF(DISTANCE < 10)⏎S⏎ELSEIF(DISTANCE < 30)⏎B(1, 50)⏎ENDIF
+ELSE ( a=@val s=<|<=|>|>= b=@num|@val )
+    | ELSEIF ( $a $s $b ) | 1 | TS039 | offered
+    | IF(DISTANCE < 10)⏎S⏎ELSE(DISTANCE < 30)⏎B(1, 50)⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ELSEIF(DISTANCE
+    < 30)⏎B(1, 50)⏎ENDIF
+c=IF|WHILE|ELSEIF|UNTIL ( ( a=@noparen* b=@num|@word ) e=;|$
+    | $c ( ( $a $b ) ) $e | 1 | TS016 | applied
+    | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+<asks> ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ )
+    | &h ( ( $c ) ⟨AND¦OR⟩ ( $d ) ) | 1 | TS015 | applied
+    | IF(DISTANCE > 5) ⟨y¦o⟩ (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) ⟨AND¦OR⟩(LIGHT_R >
+    9));S;ENDIF
+h=IF|WHILE|LOOP|UNTIL|ELSEIF :|.|->|, (
+    | &h ( | 1 | TS015 | applied
+    | IF:(DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+^ unless ⟨<question>¦that? c=@noparen+ :|,|;¦that? c=@noparen+ b=@start⟩
+    | IF ( @not:c ) ; ⟨¦¦$b⟩ | ⟨1¦1.2¦1.2⟩ | TS102 | applied
+    | unless⟨(distance < 10)⏎¦ distance < 10:⏎¦ distance < 10 ⟩F(1,50)⟨⏎end¦⏎ENDIF¦⟩ => IF(DISTANCE
+    >= 10)⟨⏎F(1,50)⏎¦⏎F(1,50)⏎¦;F(1, 50);⟩ENDIF
+<asks> ( c=@any+ ) and ( d=@any+ )
+    | &h ( ( $c ) AND ( $d ) ) | 1 | TS015 | applied
+    | IF(DISTANCE > 5) y (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) AND(LIGHT_R > 9));S;ENDIF
+h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@any+ '}'
+    | &h ( $c ) | 1 | TS015 | applied
+    | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+<asks> ( c=@noparen+ b=@start
+    | &h ( $c ) ; $b | 1 | TS016 | offered
+    | si DISTANCE < 10 S si DISTANCE > 10 F(1,50) => IF(DISTANCE < 10);S;IF(DISTANCE > 10);F(1,
+    50);ENDIF;ENDIF
+<asks> c=@cond+ ⟨'{'¦do|:|,|'|'|;|$⟩
+    | &h ( $c ) ; ⟨{¦⟩ | 1.3 | TS015 | applied
+    | SI DISTANCE < 10⟨ {⏎S⏎}¦ | S⟩ => IF(DISTANCE < 10);⟨⏎S⏎END¦S;END⟩IF
+<asks> c=@cond+ b=@start
+    | &h ( $c ) ; $b | 2 | TS014 | applied
+    | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
+h=IF|WHILE|LOOP|WHEN ( c=@any+ , <body> ) $
+    | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied
+    | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
+^ '='⟨?¦⟩ IF ( c=@any+ ⟨,¦;⟩ <body> ⟨,¦;⟩ d=@start s=@all* ) $
+    | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | ⟨.9¦.8⟩ | TS080 | offered
+    | ⟨IF(DISTANCE < 10, B(1, 60), ¦=SI(DISTANCE<10;B(1;60);⟩F(1, 60)) => IF(DISTANCE < 10);B(1,
+    60);ELSE;F(1, 60);ENDIF
+<block> <question> ⟨do|times¦:|,|=|?|'|'|-⟩ ':'?
+    | &h ( $c ) ; | 1 | ⟨TS044¦TS014⟩ | applied
+    | LOOP(3)⟨ TIMES¦:⟩⏎F(1,50)⏎END_LOOP => LOOP(3)⏎F(1,50)⏎END_LOOP
+<block> <question> b=@start|'{'
+    | &h ( $c ) ; $b | 1 | TS014 | applied
+    | LOOP(3) F(1,50) => LOOP(3);F(1, 50);END_LOOP
+<block> <question> ⟨;? (¦[⟩ <body> ⟨)¦]⟩ $
+    | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied
+    | LOOP(4) ⟨(¦[⟩F(1,60); R(1,50)⟨)¦]⟩ => LOOP(4);F(1, 60);R(1, 50);END_LOOP
 # ELSE and ELSEIF
-h=IF|ELSEIF <question> ( <body> ) e=ELSEIF|ELSE | &h ( $c ) ; $b $r ; $e | .9 | TS080 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
-ELSE IF | ELSEIF | 1 | TS022 | first | IF(DISTANCE < 5);S;ELSE IF(DISTANCE < 9);F(1, 50);ENDIF => IF(DISTANCE < 5);S; ELSEIF(DISTANCE < 9);F(1, 50);ENDIF
-IF <question> ? a=@any+ : b=@any+ $ | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | TS014 | applied | IF(DISTANCE < 10) ? S : F(1,50) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
-ELSE ( <body> ) $ | ELSE ; $b $r | 1 | TS014 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
-h=ELSE|TASK ⟨:|,|-|do|=|'|'¦b=@start|'{'⟩ | &h ; ⟨¦$b⟩ | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE⟨:¦⟩ F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
-⟨a=@any|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF|END_WHEN|END_TASK¦a=@close h=end $⟩ | $a ; &h | 1 | TS013 | applied | LOOP(3); F(2,80) ⟨END_LOOP¦fin⟩ => LOOP(3);F(2, 80);END_LOOP
+h=IF|ELSEIF <question> ( <body> ) e=ELSEIF|ELSE
+    | &h ( $c ) ; $b $r ; $e | .9 | TS080 | applied
+    | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
+ELSE IF
+    | ELSEIF | 1 | TS022 | first
+    | IF(DISTANCE < 5);S;ELSE IF(DISTANCE < 9);F(1, 50);ENDIF => IF(DISTANCE < 5);S; ELSEIF(DISTANCE
+    < 9);F(1, 50);ENDIF
+IF <question> ? a=@any+ : b=@any+ $
+    | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | TS014 | applied
+    | IF(DISTANCE < 10) ? S : F(1,50) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
+ELSE ( <body> ) $
+    | ELSE ; $b $r | 1 | TS014 | applied
+    | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
+h=ELSE|TASK ⟨:|,|-|do|=|'|'¦b=@start|'{'⟩
+    | &h ; ⟨¦$b⟩ | 1 | TS014 | applied
+    | IF(DISTANCE<10);R(1,60);ELSE⟨:¦⟩ F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1,
+    80);ENDIF
+⟨a=@any|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF|END_WHEN|END_TASK¦a=@close h=end $⟩
+    | $a ; &h | 1 | TS013 | applied
+    | LOOP(3); F(2,80) ⟨END_LOOP¦fin⟩ => LOOP(3);F(2, 80);END_LOOP
 # LOOP
-^ ⟨LOOP FOREVER :|,?¦FOREVER :|;?⟩ b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | ⟨TS015¦TS032⟩ | applied | ⟨LOOP FOREVER¦forever:⟩ F(1,50) => LOOP(FOREVER);F(1, 50);END_LOOP
-^ LOOP n=@num ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | repite 4 (F(1, 60) R(0.5, 60)) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
-^ FOREVER ( ) '{' | LOOP ( FOREVER ) ; { | 1 | TS102 | applied | void loop() {⏎  F(1, 50);⏎} => LOOP(FOREVER);⏎  F(1, 50);⏎END_LOOP
-^ do n=@num times :? | LOOP ( $n ) ; | 1 | TS102 | applied | hacer 4 veces⏎F(1,50)⏎R(1,50)⏎fin => LOOP(4)⏎F(1,50)⏎R(1,50)⏎END_LOOP
-^ LOOP ':'|'{'? $ | LOOP ( FOREVER ) | 3 | TS064 | applied | repite⏎S⏎fin => LOOP(FOREVER)⏎S⏎END_LOOP
-LOOP X|=|-|-> n=@num | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP x 3⏎F(1,50)⏎END_LOOP => X4 = 3⏎LOOP(3)⏎F(1,50)⏎END_LOOP
-^ LOOP <body> n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1.5 | TS102 | applied | repeat F(1,60) R(1,60) 4 times => LOOP(4);F(1, 60);R(1, 60);END_LOOP
-⟨LOOP¦SHOW⟩ ( n=@num u=⟨¦M|⟩@unit ) | ⟨LOOP¦SHOW⟩ ( @own:n:u ) | 1 | TS049 | applied | ⟨LOOP(3 veces);F(1,50);END_LOOP¦SHOW(2 M)⟩ => ⟨LOOP(3);F(1,50);END_LOOP¦SHOW(200)⟩
-LOOP n=number times :|,|do|;? | LOOP ( &n ) ; | 1 | TS102 | applied | repite cuatro veces⏎F(1,60)⏎fin => LOOP(4)⏎F(1,60)⏎END_LOOP
-LOOP by? n=@num times? ⟨:|,|do|;¦b=@start|'{'¦$⟩ | LOOP ( $n ) ⟨;¦; $b¦⟩ | 1 | TS102 | applied | repite 4⟨:⏎¦ ¦⏎⟩F(1, 60)⟨¦¦⏎fin⟩ => LOOP(4)⟨⏎¦;¦⏎⟩F(1, 60)⟨⏎¦;¦⏎⟩END_LOOP
-o=(|,|=|<|>|+|- '|' v=@num|@val c=@noparen* '|' | $o ABS ( $v $c ) | 1 | TS010 | offered | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
-h=UNTIL|IF|WHILE|WHEN|ELSEIF ( c=@any+ ) o=AND|OR (? d=@any+ )? e=;|$ | &h ( $c &o $d ) $e | 1 | TS015 | offered | F(5, 60) UNTIL(LIGHT_L > 9) OR (LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
-^ a=F|B|L|R|M|W|BEEP ( c=@noparen+ ) WHEN (? q=@cond+ )? ;|:|,? <body> $ | WHEN ( $q ) ; $b $r ; END_WHEN ; $a ( $c ) | .9 | TS071 | offered | F(9, 50) WHEN(DISTANCE < 9) S => WHEN(DISTANCE < 9);S;END_WHEN;F(9, 50)
-m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
-LOOP ( @name = 1 to|until n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
-^ a=L|R ⟨n=@angle¦( n=@angle )⟩ $ | $a ( $n DEG , 80 ) | 2 | ⟨TS015¦TS020⟩ | offered | L⟨ 90¦(90)⟩ => L(90 DEG, 80)
-⟨a=F|B ( FOREVER¦a=RANDOM ( n=@whole¦a=ROUND ( n=@num|@val⟩ ) | $a ( ⟨FOREVER , 80¦1 , $n¦$n , 0⟩ ) | 2 | TS020 | offered | ⟨F(FOREVER) UNTIL(DISTANCE < 10)¦SHOW(RANDOM(6))¦SHOW(ROUND(3))⟩ => ⟨F(FOREVER, 80) UNTIL(DISTANCE < 10)¦SHOW(RANDOM(1, 6))¦SHOW(ROUND(3, 0))⟩
-^ M ( ⟨¦n=@time ,⟩ s='-'? a=@power , t='-'? b=@power ⟨, n=@time¦⟩ ) $ | M ( $s $a , $t $b ) ; W ( $n ) ; S | 2 | TS020 | offered | M(⟨¦2, ⟩50, -80⟨, 2¦⟩) => M(50, -80);W(2);S
-^ a=F|B|L|R ( b=@num⟨|FOREVER ,? c=@num ,? UNTIL (? q=@noparen+ )?¦ , c=@num , d=@val e=<|> f=@num⟩ ) $ | $a ( $b , $c ) UNTIL ( ⟨$q¦$d $e $f⟩ ) | 2 | ⟨TS029¦TS020⟩ | offered | F(5, 60, ⟨UNTIL ¦⟩DISTANCE < 10) => F(5, 60) UNTIL(DISTANCE < 10)
-h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num ) | &h ( $a $s $b AND $c $t $d ) | 2 | TS020 | offered | IF(DISTANCE < 10, LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
-^ h=IF|WHILE ( c=@noparen+ , b=@start r=@noparen* ) $ | &h ( $c ) ; $b $r | 2 | TS080 | applied | IF(DISTANCE < 10, S)⏎ELSE⏎F(1,50)⏎ENDIF => IF(DISTANCE < 10);S⏎ELSE⏎F(1,50)⏎ENDIF
-LOOP ( ⟨n=@num , <body> )¦n=@num <body> ) $⟩ | LOOP ( $n ) ; $b $r ⟨¦; END_LOOP⟩ | 2 | TS080 | applied | LOOP(⟨4, F(1,50))⏎END_LOOP¦4 F(1,50))⟩ => LOOP(4);F(1, 50)⟨⏎¦;⟩END_LOOP
-LOOP|count v=@usedname =|from 1 to|until n=@num do|:? | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | para n desde 1 hasta 4⏎F(n, 60)⏎fin para => N = 0;LOOP(4);N = N + 1;⏎F(n, 60)⏎END_LOOP
-<for> @name in range ( ⟨1 ,¦⟩ n=@num ) :? | LOOP ( $n ⟨- 1¦⟩ ) ; | 1 | TS102 | ⟨offered¦applied⟩ | for i in range(⟨1, 5¦4⟩): F(1,60) => LOOP(⟨5 - 1¦4⟩);F(1, 60);END_LOOP
-⟨LOOP|count @name =|from¦^ @name =⟩ 1 to|until n=@num do|:? ⟨¦$⟩ | LOOP ( $n ) ⟨;¦⟩ | 1 | TS102 | offered | ⟨para i de¦veces =⟩ 1 a 4⏎F(1,50)⏎fin ⟨para¦⟩ => LOOP(4)⏎F(1,50)⏎END_LOOP
-⟨LOOP¦<for>⟩ ( declare? @name = ⟨0¦1⟩ ; @name ⟨<¦<=⟩ n=@num ; @name ++ ) | LOOP ( $n ) ⟨¦;⟩ | 1 | ⟨TS063¦TS102⟩ | offered | ⟨LOOP(I = 0; I < 4¦for(I = 1; I <= 4⟩; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
-^ v=@name = c=@cond+ ? a=@num|@val : b=@num|@val $ | IF ( $c ) ; $v = $a ; ELSE ; $v = $b ; ENDIF | 1 | TS069 | applied | V = DISTANCE > 20 ? 80 : 30⏎F(1, V) => IF(DISTANCE > 20);V = 80;ELSE;V = 30;ENDIF⏎F(1, V)
-^ w=@callw ( a=@noparen+ , c=@val s=<|> n=@num ? x=@num : y=@num ) $ | IF ( $c $s $n ) ; $w ( $a , $x ) ; ELSE ; $w ( $a , $y ) ; ENDIF | 1 | TS069 | offered | F(1, DISTANCE > 20 ? 80 : 40) => IF(DISTANCE > 20);F(1, 80);ELSE;F(1, 40);ENDIF
-^ q=@val s=<|>|<=|>= n=@num|@val :|do|=|->|=>? b=@start r=@all* | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
-^ S|STOP LOOP $ | BREAK | 1 | TS102 | applied | LOOP(2)⏎F(1, 50)⏎STOP LOOP⏎END_LOOP => LOOP(2)⏎F(1, 50)⏎BREAK⏎END_LOOP
-^ ⟨FOREVER :¦FOREVER¦LOOP FOREVER :?⟩ $ | LOOP ( FOREVER ) ⟨;¦¦⟩ | 1 | ⟨TS032¦TS032¦TS102⟩ | applied | ⟨forever:¦forever¦repetir siempre⟩⏎  F(1,50)⟨¦⏎end¦⏎fin repetir⟩ => LOOP(FOREVER)⏎  F(1,50)⏎END_LOOP
-^ FOREVER ( <body> ) $ | LOOP ( FOREVER ) ; $b $r ; END_LOOP | 1 | TS080 | applied | FOREVER(F(1, 80)) => LOOP(FOREVER);F(1, 80);END_LOOP
-^ FOREVER that c=@cond+ ⟨':'? b=@start|'{'¦':'? $⟩ | WHEN ( $c ) ⟨; $b¦⟩ | 1 | TS102 | offered | siempre que DISTANCE > 10⟨: ¦⏎⟩F(1, 50)⟨¦⏎fin⟩ => WHEN(DISTANCE > 10)⟨;¦⏎⟩F(1, 50)⟨;¦⏎⟩END_WHEN
-^ @word+ same|the moment :|,? $ | TASK | 1 | TS102 | applied | ⟨al mismo tiempo¦a la vez:¦at the same time¦ao mesmo tempo⟩⏎BEEP(1, 440)⏎FIN⏎F(2, 80) => TASK⏎BEEP(1, 440)⏎END_TASK⏎F(2, 80)
-⟨^ TASK @num ':'? $¦TASK ( @num|@word? )⟩ | TASK | 1 | ⟨TS044¦TS039⟩ | offered | TASK⟨ 1¦(1)⟩⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
-^ LOOP UNTIL c=@cond+ ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | repeat until DISTANCE < 10⏎F(1, 50)⏎end => WHILE(DISTANCE >= 10)⏎F(1, 50)⏎END_WHILE
-⟨END_LOOP UNTIL ( c=@any+ )¦^ UNTIL c=@cond+⟩ $ | IF ( $c ) ; <end> | ⟨1¦2⟩ | TS064 | ⟨offered¦applied⟩ | LOOP⟨(FOREVER)¦⟩⏎F(1, 50)⏎⟨END_LOOP UNTIL(DISTANCE < 10)¦UNTIL DISTANCE < 10⟩ => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
-^ LOOP ( n=@num ) UNTIL ( c=@any+ ) $ | LOOP ( $n ) ; IF ( $c ) ; BREAK ; ENDIF | 1 | TS064 | offered | LOOP(3) UNTIL(DISTANCE < 10)⏎F(1, 40)⏎END_LOOP => LOOP(3);IF(DISTANCE < 10);BREAK;ENDIF⏎F(1, 40)⏎END_LOOP
-^ do '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
+^ ⟨LOOP FOREVER :|,?¦FOREVER :|;?⟩ b=@start|'{'
+    | LOOP ( FOREVER ) ; $b | 1 | ⟨TS015¦TS032⟩ | applied
+    | ⟨LOOP FOREVER¦forever:⟩ F(1,50) => LOOP(FOREVER);F(1, 50);END_LOOP
+^ LOOP n=@num times? ( <body> ) $
+    | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied
+    | repite 4 (F(1, 60) R(0.5, 60)) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
+^ FOREVER ( ) '{'
+    | LOOP ( FOREVER ) ; { | 1 | TS102 | applied
+    | void loop() {⏎  F(1, 50);⏎} => LOOP(FOREVER);⏎  F(1, 50);⏎END_LOOP
+^ do n=@num times :?
+    | LOOP ( $n ) ; | 1 | TS102 | applied
+    | hacer 4 veces⏎F(1,50)⏎R(1,50)⏎fin => LOOP(4)⏎F(1,50)⏎R(1,50)⏎END_LOOP
+^ LOOP ':'|'{'? $
+    | LOOP ( FOREVER ) | 3 | TS064 | applied
+    | repite⏎S⏎fin => LOOP(FOREVER)⏎S⏎END_LOOP
+LOOP X|=|-|-> n=@num
+    | LOOP ( $n ) | 1 | TS015 | applied
+    | X4 = 3⏎LOOP x 3⏎F(1,50)⏎END_LOOP => X4 = 3⏎LOOP(3)⏎F(1,50)⏎END_LOOP
+^ LOOP <body> n=@num times $
+    | LOOP ( $n ) ; $b $r ; END_LOOP | 1.5 | TS102 | applied
+    | repeat F(1,60) R(1,60) 4 times => LOOP(4);F(1, 60);R(1, 60);END_LOOP
+⟨LOOP¦SHOW⟩ ( n=@num u=⟨¦M|⟩@unit )
+    | ⟨LOOP¦SHOW⟩ ( @own:n:u ) | 1 | TS049 | applied
+    | ⟨LOOP(3 veces);F(1,50);END_LOOP¦SHOW(2 M)⟩ => ⟨LOOP(3);F(1,50);END_LOOP¦SHOW(200)⟩
+LOOP n=number times :|,|do|;?
+    | LOOP ( &n ) ; | 1 | TS102 | applied
+    | repite cuatro veces⏎F(1,60)⏎fin => LOOP(4)⏎F(1,60)⏎END_LOOP
+LOOP by? n=@num times|X? ⟨:|,|do|;¦b=@start|'{'¦$⟩
+    | LOOP ( $n ) ⟨;¦; $b¦⟩ | 1 | TS102 | applied
+    | repite 4⟨:⏎¦ ¦⏎⟩F(1, 60)⟨¦¦⏎fin⟩ => LOOP(4)⟨⏎¦;¦⏎⟩F(1, 60)⟨⏎¦;¦⏎⟩END_LOOP
+o=(|,|=|<|>|+|- '|' v=@num|@val c=@noparen* '|'
+    | $o ABS ( $v $c ) | 1 | TS010 | offered
+    | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
+h=UNTIL|IF|WHILE|WHEN|ELSEIF ( c=@any+ ) o=AND|OR (? d=@any+ )? e=;|$
+    | &h ( $c &o $d ) $e | 1 | TS015 | offered
+    | F(5, 60) UNTIL(LIGHT_L > 9) OR (LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
+^ a=F|B|L|R|M|W|BEEP ( c=@noparen+ ) WHEN (? q=@cond+ )? ;|:|,? <body> $
+    | WHEN ( $q ) ; $b $r ; END_WHEN ; $a ( $c ) | .9 | TS071 | offered
+    | F(9, 50) WHEN(DISTANCE < 9) S => WHEN(DISTANCE < 9);S;END_WHEN;F(9, 50)
+m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val )
+    | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered
+    | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
+LOOP ( @name = 1 to|until n=@num )
+    | LOOP ( $n ) | 1 | TS063 | offered
+    | LOOP(I = 1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
+^ a=L|R ⟨n=@angle¦( n=@angle )⟩ $
+    | $a ( $n DEG , 80 ) | 2 | ⟨TS015¦TS020⟩ | offered
+    | L⟨ 90¦(90)⟩ => L(90 DEG, 80)
+⟨a=F|B ( FOREVER¦a=RANDOM ( n=@whole¦a=ROUND ( n=@num|@val⟩ )
+    | $a ( ⟨FOREVER , 80¦1 , $n¦$n , 0⟩ ) | 2 | TS020 | offered
+    | ⟨F(FOREVER) UNTIL(DISTANCE < 10)¦SHOW(RANDOM(6))¦SHOW(ROUND(3))⟩ => ⟨F(FOREVER, 80)
+    UNTIL(DISTANCE < 10)¦SHOW(RANDOM(1, 6))¦SHOW(ROUND(3, 0))⟩
+^ M ( ⟨¦n=@time @in_secs|S? ,⟩ s='-'? a=@power '%'? , t='-'? b=@power '%'? ⟨, n=@time @in_secs|S?¦⟩
+    ) $
+    | M ( $s $a , $t $b ) ; W ( $n ) ; S | 2 | TS020 | offered
+    | M(⟨¦2, ⟩50, -80⟨, 2¦⟩) => M(50, -80);W(2);S
+^ a=F|B|L|R ( b=@num⟨|FOREVER ,? c=@num ,? UNTIL (? q=@noparen+ )?¦ , c=@num , d=@val e=<|> f=@num⟩
+    ) $
+    | $a ( $b , $c ) UNTIL ( ⟨$q¦$d $e $f⟩ ) | 2 | ⟨TS029¦TS020⟩ | offered
+    | F(5, 60, ⟨UNTIL ¦⟩DISTANCE < 10) => F(5, 60) UNTIL(DISTANCE < 10)
+h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num )
+    | &h ( $a $s $b AND $c $t $d ) | 2 | TS020 | offered
+    | IF(DISTANCE < 10, LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
+^ h=IF|WHILE ( c=@noparen+ , b=@start r=@noparen* ) $
+    | &h ( $c ) ; $b $r | 2 | TS080 | applied
+    | IF(DISTANCE < 10, S)⏎ELSE⏎F(1,50)⏎ENDIF => IF(DISTANCE < 10);S⏎ELSE⏎F(1,50)⏎ENDIF
+LOOP ( ⟨n=@num , <body> )¦n=@num <body> ) $⟩
+    | LOOP ( $n ) ; $b $r ⟨¦; END_LOOP⟩ | 2 | TS080 | applied
+    | LOOP(⟨4, F(1,50))⏎END_LOOP¦4 F(1,50))⟩ => LOOP(4);F(1, 50)⟨⏎¦;⟩END_LOOP
+LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
+    | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered
+    | para n desde 1 hasta 4⏎F(n, 60)⏎fin para => N = 0;LOOP(4);N = N + 1;⏎F(n, 60)⏎END_LOOP
+<for> @name in range ( ⟨1 ,¦⟩ n=@num ) :?
+    | LOOP ( $n ⟨- 1¦⟩ ) ; | 1 | TS102 | ⟨offered¦applied⟩
+    | for i in range(⟨1, 5¦4⟩): F(1,60) => LOOP(⟨5 - 1¦4⟩);F(1, 60);END_LOOP
+⟨LOOP|count @name =|from¦^ @name =⟩ 1 to|until n=@num do|:? ⟨¦$⟩
+    | LOOP ( $n ) ⟨;¦⟩ | 1 | TS102 | offered
+    | ⟨para i de¦veces =⟩ 1 a 4⏎F(1,50)⏎fin ⟨para¦⟩ => LOOP(4)⏎F(1,50)⏎END_LOOP
+⟨LOOP¦<for>⟩ ( declare? @name = ⟨0¦1⟩ ; @name ⟨<¦<=⟩ n=@num ; @name ++ )
+    | LOOP ( $n ) ⟨¦;⟩ | 1 | ⟨TS063¦TS102⟩ | offered
+    | ⟨LOOP(I = 0; I < 4¦for(I = 1; I <= 4⟩; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
+^ v=@name = c=@cond+ ? a=@num|@val : b=@num|@val $
+    | IF ( $c ) ; $v = $a ; ELSE ; $v = $b ; ENDIF | 1 | TS069 | applied
+    | V = DISTANCE > 20 ? 80 : 30⏎F(1, V) => IF(DISTANCE > 20);V = 80;ELSE;V = 30;ENDIF⏎F(1, V)
+^ w=@callw ( a=@noparen+ , c=@val s=<|> n=@num ? x=@num : y=@num ) $
+    | IF ( $c $s $n ) ; $w ( $a , $x ) ; ELSE ; $w ( $a , $y ) ; ENDIF | 1 | TS069 | offered
+    | F(1, DISTANCE > 20 ? 80 : 40) => IF(DISTANCE > 20);F(1, 80);ELSE;F(1, 40);ENDIF
+^ q=@val s=<|>|<=|>= n=@num|@val :|do|=|->|=>? b=@start r=@all*
+    | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered
+    | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
+^ S|STOP LOOP $
+    | BREAK | 1 | TS102 | applied
+    | LOOP(2)⏎F(1, 50)⏎STOP LOOP⏎END_LOOP => LOOP(2)⏎F(1, 50)⏎BREAK⏎END_LOOP
+^ ⟨FOREVER :¦FOREVER¦LOOP FOREVER :?⟩ $
+    | LOOP ( FOREVER ) ⟨;¦¦⟩ | 1 | ⟨TS032¦TS032¦TS102⟩ | applied
+    | ⟨forever:¦forever¦repetir siempre⟩⏎F(1,50)⟨¦⏎end¦⏎fin repetir⟩ =>
+    LOOP(FOREVER)⏎F(1,50)⏎END_LOOP
+^ FOREVER ( <body> ) $
+    | LOOP ( FOREVER ) ; $b $r ; END_LOOP | 1 | TS080 | applied
+    | FOREVER(F(1, 80)) => LOOP(FOREVER);F(1, 80);END_LOOP
+^ FOREVER that c=@cond+ ⟨':'? b=@start|'{'¦':'? $⟩
+    | WHEN ( $c ) ⟨; $b¦⟩ | 1 | TS102 | offered
+    | siempre que DISTANCE > 10⟨: ¦⏎⟩F(1, 50)⟨¦⏎fin⟩ => WHEN(DISTANCE > 10)⟨;¦⏎⟩F(1,
+    50)⟨;¦⏎⟩END_WHEN
+^ @word+ same|the moment :|,? $
+    | TASK | 1 | TS102 | applied
+    | ⟨al mismo tiempo¦a la vez:¦at the same time¦ao mesmo tempo⟩⏎BEEP(1, 440)⏎FIN⏎F(2, 80) =>
+    TASK⏎BEEP(1, 440)⏎END_TASK⏎F(2, 80)
+⟨^ TASK @num ':'? $¦TASK ( @num|@word? )⟩
+    | TASK | 1 | ⟨TS044¦TS039⟩ | offered
+    | TASK⟨ 1¦(1)⟩⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
+^ LOOP WHILE
+    | WHILE | 1 | TS102 | first
+    | repite mientras DISTANCE > 9⏎S⏎fin => WHILE(DISTANCE > 9)⏎S⏎END_WHILE
+^ LOOP UNTIL c=@cond+ ':'|'{'? $
+    | WHILE ( @not:c ) | 1 | TS102 | applied
+    | repeat until DISTANCE < 10⏎F(1, 50)⏎end => WHILE(DISTANCE >= 10)⏎F(1, 50)⏎END_WHILE
+⟨END_LOOP UNTIL ( c=@any+ )¦^ UNTIL c=@cond+⟩ $
+    | IF ( $c ) ; <end> | ⟨1¦2⟩ | TS064 | ⟨offered¦applied⟩
+    | LOOP⟨(FOREVER)¦⟩⏎F(1, 50)⏎⟨END_LOOP UNTIL(DISTANCE < 10)¦UNTIL DISTANCE < 10⟩ =>
+    LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
+^ LOOP ( n=@num ) UNTIL ( c=@any+ ) $
+    | LOOP ( $n ) ; IF ( $c ) ; BREAK ; ENDIF | 1 | TS064 | offered
+    | LOOP(3) UNTIL(DISTANCE < 10)⏎F(1, 40)⏎END_LOOP => LOOP(3);IF(DISTANCE < 10);BREAK;ENDIF⏎F(1,
+    40)⏎END_LOOP
+^ do '{' b=@start
+    | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied
+    | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <=
+    9);BREAK;ENDIF;END_LOOP
 # how often something is done, said behind it or before it
-⟨^ b=@def *|X? n=@num times? $¦call b=@def n=@num¦^ b=@def n=X2|X3|X4|X5|X6 $⟩ | LOOP ( ⟨$n¦$n¦@xn:n⟩ ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎⟨SALTO*3¦CALL SALTO 3¦SALTO x3⟩ => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
-^ ⟨n=@num times|X|* :|,|of? <body>¦n=@num *|X|times|LOOP? ( <body> )⟩ $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | ⟨TS062¦TS080⟩ | applied | ⟨3 * F(1,50)¦SI|3*(F(1,50))⟩ => ⟨¦SI|⟩LOOP(3);F(1, 50);END_LOOP
-^ every n=@num seconds ,|:|do? <body> $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
-^ do|make? b=@start r=@any* n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
+⟨^ b=@def *|X? n=@num times? $¦call b=@def n=@num¦^ b=@def n=X2|X3|X4|X5|X6 $⟩
+    | LOOP ( ⟨$n¦$n¦@xn:n⟩ ) ; $b ; END_LOOP | 1 | TS062 | applied
+    | DEF SALTO;F(0.2, 60);END_DEF⏎⟨SALTO*3¦CALL SALTO 3¦SALTO x3⟩ => DEF SALTO;F(0.2,
+    60);END_DEF⏎LOOP(3);SALTO;END_LOOP
+^ ⟨n=@num times|X|* :|,|of? <body>¦n=@num *|X|times|LOOP? ( <body> )⟩ $
+    | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | ⟨TS062¦TS080⟩ | applied
+    | ⟨3 * F(1,50)¦SI|3*(F(1,50))⟩ => ⟨¦SI|⟩LOOP(3);F(1, 50);END_LOOP
+^ every n=@num seconds ,|:|do? <body> $
+    | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered
+    | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
+^ do|make? b=@start r=@any* n=@num times $
+    | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered
+    | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
 # words behind a call: shown, not made
-^ a=S|STOP ⟨( n=@num seconds? )¦during? n=@num seconds?⟩ $ | $a ; W ( $n ) | 2 | ⟨TS039¦TS013⟩ | offered | S⟨(2)¦ 2 segundos⟩ => S;W(2)
-^ b=F|B|L|R|S|STOP|BEEP|SHOW|W r=@any* IF c=@cond+ ELSE d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS071 | offered | F(2, 80) if DISTANCE > 10 else S => IF(DISTANCE > 10);F(2, 80);ELSE;S;ENDIF
+^ a=S|STOP after of? n=@num seconds? $
+    | W ( $n ) ; $a | 1 | TS013 | offered
+    | STOP AFTER 2 SECONDS => W(2);STOP
+^ a=S|STOP ⟨( n=@num seconds? )¦during? n=@num seconds?⟩ $
+    | $a ; W ( $n ) | 2 | ⟨TS039¦TS013⟩ | offered
+    | S⟨(2)¦ 2 segundos⟩ => S;W(2)
+^ b=F|B|L|R|S|STOP|BEEP|SHOW|W r=@any* IF c=@cond+ ELSE d=@start s=@all* $
+    | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS071 | offered
+    | F(2, 80) if DISTANCE > 10 else S => IF(DISTANCE > 10);F(2, 80);ELSE;S;ENDIF
 # what the devices of a kit are set to
-d=@device v=⟨lit|on¦dark|off⟩ e=;|$ | &d ( ⟨TRUE¦FALSE⟩ ) $e | 1 | TS015 | applied | LED ⟨ON¦OFF⟩ => LED(⟨TRUE¦FALSE⟩)
-d=@device ( ⟨lit¦dark¦most¦least⟩ ) | &d ( ⟨TRUE¦FALSE¦@most:d¦@least:d⟩ ) | 1 | TS102 | applied | ⟨LED(PRENDIDO)¦LED(LOW)¦PINZA(ABIERTA)¦GRIPPER(CLOSED)⟩ => ⟨LED(TRUE)¦LED(FALSE)¦GRIPPER(180)¦GRIPPER(0)⟩
-^ ⟨most¦least¦on|lit¦off|dark⟩ the|one? d=@device $ | &d ( ⟨@most:d¦@least:d¦TRUE¦FALSE⟩ ) | 1 | TS102 | applied | ⟨ABRIR PINZA¦cerrar la garra¦prende el LED¦apagar el foco⟩ => ⟨GRIPPER(180)¦GRIPPER(0)¦LED(TRUE)¦LED(FALSE)⟩
+d=@device v=⟨lit|on¦dark|off⟩ e=;|$
+    | &d ( ⟨TRUE¦FALSE⟩ ) $e | 1 | TS015 | applied
+    | LED ⟨ON¦OFF⟩ => LED(⟨TRUE¦FALSE⟩)
+d=@device ( ⟨lit¦dark¦most¦least⟩ )
+    | &d ( ⟨TRUE¦FALSE¦@most:d¦@least:d⟩ ) | 1 | TS102 | applied
+    | ⟨LED(PRENDIDO)¦LED(LOW)¦PINZA(ABIERTA)¦GRIPPER(CLOSED)⟩ =>
+    ⟨LED(TRUE)¦LED(FALSE)¦GRIPPER(180)¦GRIPPER(0)⟩
+^ ⟨most¦least¦on|lit¦off|dark⟩ the|one? d=@device $
+    | &d ( ⟨@most:d¦@least:d¦TRUE¦FALSE⟩ ) | 1 | TS102 | applied
+    | ⟨ABRIR PINZA¦cerrar la garra¦prende el LED¦apagar el foco⟩ =>
+    ⟨GRIPPER(180)¦GRIPPER(0)¦LED(TRUE)¦LED(FALSE)⟩
 # DEF and its calls
-^ DEF n=@word ( v=@name ) ':'? | $v = 0 ; DEF $n ; | .5 | TS039 | offered | DEF IR(T)⏎F(T, 80)⏎END_DEF⏎IR(2) => T = 0;DEF IR;⏎F(T, 80)⏎END_DEF⏎T = 2;IR
-^ n=@def ( a=@num|@val ) $ | @given:n = $a ; $n | .5 | TS039 | offered | DEF IR(T)⏎F(T, 80)⏎END_DEF⏎IR(2) => T = 0;DEF IR;⏎F(T, 80)⏎END_DEF⏎T = 2;IR
-^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
-DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩ | DEF $n ; ⟨¦$b⟩ | 1 | TS014 | applied | DEF SALUDO⟨ = ¦ ⟩BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
-^ call|do|make|the the|one? b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
+^ DEF n=@word ( v=@name ) ':'?
+    | $v = 0 ; DEF $n ; | .5 | TS039 | offered
+    | DEF IR(T)⏎F(T, 80)⏎END_DEF⏎IR(2) => T = 0;DEF IR;⏎F(T, 80)⏎END_DEF⏎T = 2;IR
+^ n=@def ( a=@num|@val ) $
+    | @given:n = $a ; $n | .5 | TS039 | offered
+    | DEF IR(T)⏎F(T, 80)⏎END_DEF⏎IR(2) => T = 0;DEF IR;⏎F(T, 80)⏎END_DEF⏎T = 2;IR
+^ DEF ( n=@word )
+    | DEF $n | 1 | TS039 | offered
+    | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
+DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩
+    | DEF $n ; ⟨¦$b⟩ | 1 | TS014 | applied
+    | DEF SALUDO⟨ = ¦ ⟩BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
+^ call|do|make|the the|one? b=@def
+    | $b | 1 | TS044 | applied
+    | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
 # ends of blocks
-^ ⟨end¦END_DEF⟩ n=@def $ | END_DEF @label:n | 1 | ⟨TS022¦TS044⟩ | ⟨applied¦first⟩ | DEF SALTO⏎F(1, 50)⏎⟨FIN¦END_DEF⟩ SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
-h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS039 | first offered | LOOP(3)⏎F(2, 80)⏎END_LOOP(3) => LOOP(3)⏎F(2, 80)⏎END_LOOP
+^ ⟨end¦END_DEF⟩ n=@def $
+    | END_DEF @label:n | 1 | ⟨TS022¦TS044⟩ | ⟨applied¦first⟩
+    | DEF SALTO⏎F(1, 50)⏎⟨FIN¦END_DEF⟩ SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
+h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ )
+    | &h | 1 | TS039 | first offered
+    | LOOP(3)⏎F(2, 80)⏎END_LOOP(3) => LOOP(3)⏎F(2, 80)⏎END_LOOP
 ^ ⟨program @word¦then ,?⟩ $ | | 1 | TS044 | applied | ⟨programa baile¦luego,⟩⏎F(1, 50) => ⏎F(1, 50)
-^ ⟨leaves 0¦import @any+⟩ ;? $ | | 1 | ⟨TS065¦TS072⟩ | applied | ⟨return 0;¦import robot⟩⏎F(1, 50) => ⏎F(1, 50)
+^ ⟨leaves 0¦import @any+⟩ ;? $
+    | | 1 | ⟨TS065¦TS072⟩ | applied
+    | ⟨return 0;¦import robot⟩⏎F(1, 50) => ⏎F(1, 50)
 ^ idles $ | | 1 | TS044 | offered | NADA⏎F(1, 50) => ⏎F(1, 50)
 ^ end program? $$ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
-end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
+end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$
+    | @endof:k | 1 | TS022 | first
+    | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
-⟨^ by? please|first ,?¦; first+ ,?⟩ b=@start | ⟨¦;⟩ $b | 1 | TS044 | applied | ⟨please¦F(2, 80); y despues⟩ R(1, 50) => ⟨¦F(2, 80);⟩R(1, 50)
+⟨^ by? please|first ,?¦; first+ ,?⟩ b=@start
+    | ⟨¦;⟩ $b | 1 | TS044 | applied
+    | ⟨please¦F(2, 80); y despues⟩ R(1, 50) => ⟨¦F(2, 80);⟩R(1, 50)
 ^ ( <body> ) $ | $b $r | 1 | TS080 | applied | (F(2,80), R(1,60)) => F(2, 80);R(1, 60)
-a=@close ⟨by? please+¦CM|@in_cm|@in_secs+⟩ $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) ⟨por favor¦cm⟩ => SHOW(DISTANCE)
-^ a=F|B ( n=@num , p=@num ) CM|@in_cm $ | $a ( $n CM , $p ) | .5 | TS076 | offered | F(20, 60) CM => F(20 CM, 60)
-( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
-a=@close ⟨,? then|soon+ ,? b=@start¦,|.|:? b=@start¦&|+|AND b=@startm¦->|=>|/|>|>>|_|*|'|' b=@start⟩ | $a ; $b | 1 | ⟨TS044¦TS013¦TS061¦TS061⟩ | applied | F(1, 75)⟨ y¦,¦&¦->⟩ R(1, 75) => F(1, 75);R(1, 75)
-a=@close ⟨+|&|AND|->|'|'¦,⟩ $ | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | applied | F(2, 80)⟨ +¦,⟩⏎R(1, 50) => F(2, 80)⏎R(1, 50)
+a=@close ⟨by? please+¦CM|@in_cm|@in_secs+⟩ $
+    | $a | 1 | TS044 | applied
+    | SHOW(DISTANCE) ⟨por favor¦cm⟩ => SHOW(DISTANCE)
+^ a=F|B ( n=@num , p=@num ) CM|@in_cm $
+    | $a ( $n CM , $p ) | .5 | TS076 | offered
+    | F(20, 60) CM => F(20 CM, 60)
+( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num
+    | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered
+    | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
+a=@close ⟨,? then|soon+ ,? b=@start¦,|.|:? b=@start¦&|+|AND b=@startm¦->|=>|/|>|>>|_|*|'|' b=@start⟩
+    | $a ; $b | 1 | ⟨TS044¦TS013¦TS061¦TS061⟩ | applied
+    | F(1, 75)⟨ y¦,¦&¦->⟩ R(1, 75) => F(1, 75);R(1, 75)
+a=@close ⟨+|&|AND|->|'|'¦,⟩ $
+    | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | applied
+    | F(2, 80)⟨ +¦,⟩⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 a=@close , $ | $a ; | .8 | TS013 | applied | F(2, 80),⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 # words of other languages around a program
 brake | BREAK | 1 | TS102 | offered | LOOP(3)⏎S⏎BRAKE⏎END_LOOP => LOOP(3)⏎S⏎BREAK⏎END_LOOP
-⟨read ( v=@val )¦^ read the? v=@val $⟩ | $v | 1 | TS102 | applied | ⟨X = leer(DISTANCE)¦leer DISTANCE⟩ => ⟨X =DISTANCE¦DISTANCE⟩
-^ ⟨no F|B|L|R|M extra?¦cease of F⟩ $ | S | .5 | TS102 | first | ⟨no avanzar mas¦para de avanzar⟩ => S
+⟨read ( v=@val )¦^ read the? v=@val $⟩
+    | $v | 1 | TS102 | applied
+    | ⟨X = leer(DISTANCE)¦leer DISTANCE⟩ => ⟨X =DISTANCE¦DISTANCE⟩
+^ ⟨no F|B|L|R|M extra?¦cease of F⟩ $
+    | S | .5 | TS102 | first
+    | ⟨no avanzar mas¦para de avanzar⟩ => S
 ^ off|S the? engine $ | S | 1 | TS102 | applied | apaga motores => S
-IF <question> BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS014 | applied | LOOP(3)⏎S⏎IF(DISTANCE < 10) BREAK⏎END_LOOP => LOOP(3)⏎S⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
-^^ declare|DEF? main ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
+IF <question> BREAK ;|$
+    | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS014 | applied
+    | LOOP(3)⏎S⏎IF(DISTANCE < 10) BREAK⏎END_LOOP => LOOP(3)⏎S⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
+^^ declare|DEF? main ( ) '{'
+    | START ; { | 1 | TS065 | applied
+    | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
 """

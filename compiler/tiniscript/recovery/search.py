@@ -13,12 +13,24 @@ from itertools import chain, pairwise
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
+from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matching
-from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, texts, words_of
-from tiniscript.recovery.lines import MARGIN, Reading, Step, is_right
+from tiniscript.recovery.concepts import (
+    ENDED,
+    NEAR,
+    Lexeme,
+    Names,
+    lexemes,
+    made,
+    plain,
+    said_of,
+    texts,
+    words_of,
+)
+from tiniscript.recovery.lines import BRACES, MARGIN, Reading, Step, is_right
 from tiniscript.recovery.moved import Moved, ordered
 from tiniscript.recovery.writing import PLAIN_SIGNS, as_written, laid_out, without_note
 from tiniscript.syntax.outline import Failure
@@ -30,6 +42,10 @@ _DO_ALONE = re.compile(rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make
 _END_UNTIL = re.compile(rf"\b{words_of('end')}[ _]?{words_of('until')}\b")
 _SETUP = re.compile(r"^\s*SI\s*\|\s*(?=\w)", re.IGNORECASE)
 _WHEN = re.compile(rf"\s*(S[IB]\s*\|)?\s*{words_of('whenever')}\b")
+
+# What begins a block or ends one, as far as a word says it.
+_OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", "FOREVER", "UNTIL"))
+_BEGIN = ("count", "each", "every", "unless", "when", "end", "repeat", "main")
 
 Mistakes = Callable[[str], Sequence[Code]]  # the codes of a program's mistakes
 
@@ -125,7 +141,11 @@ class Recovery:
                     self.read_line(line)
 
     def read_signs(self) -> None:
-        """Make the rewrites of signs, in the lines that have them, but none that loses a DEF."""
+        """Make the rewrites of signs, in the lines that have them.
+
+        But none that loses a DEF, or opens a bracket that was closed: `F(2;80) R(1;50)` has no list
+        of `80)`.
+        """
         names = Names([lexemes(each.body) for each in self.lines], self.kit)
         for line in self.lines:
             body = line.body.translate(PLAIN_SIGNS)
@@ -135,7 +155,8 @@ class Recovery:
                 for _ in row.pattern.findall(body):  # a step each, which is told at its place
                     new = row.pattern.sub(row.becomes, body, count=1)
                     before, after = lexemes(body), lexemes(new)
-                    if new != body and not names.defs & ({*texts(before)} - {*texts(after)}):
+                    is_lost = names.defs & ({*texts(before)} - {*texts(after)})
+                    if new != body and not is_lost and _left_open(after) <= _left_open(before):
                         line.steps.append(Step(row.code, before, after))
                         line.is_sure = line.is_sure and not row.is_offered
                         body = new
@@ -200,6 +221,8 @@ class Recovery:
         """Read each instruction of a line alone, where one cannot be read, if it is sure."""
         steps: list[Step] = []
         ends = [k for k, each in enumerate([*tokens, made(";")]) if each.text == ";"]
+        if any(_left_open(tokens[:k]) for k in ends[:-1]):
+            return _UNREAD  # what is in brackets is not alone
         for start, end in [*pairwise((-1, *ends))][::-1]:
             head, part, tail = tokens[: start + 1], tokens[start + 1 : end], tokens[end:]
             found = lines.read(part, names, is_quick=True)[:1]
@@ -273,11 +296,21 @@ class Recovery:
         for _, k, rival in self.rivals()[:ALTERNATIVES]:
             yield [*cheapest[:k], rival, *cheapest[k + 1 :]], True
         sure = [each if each.is_sure else _UNREAD for each in cheapest]
+        unread = (one for one, each in zip(self.lines, sure, strict=True) if each.items is None)
+        if not any(map(self.may_be_of_block, unread)):  # they are instructions in their blocks
+            yield sure, True
         yield sure, False
         has_blocks = [any(it.kind != "do" for it in each.items or ()) for each in sure]
         alone = [_UNREAD if has else each for each, has in zip(sure, has_blocks, strict=True)]
         if alone != sure:
             yield alone, False
+
+    def may_be_of_block(self, line: _Text) -> bool:
+        """Whether a line that nobody can read may begin a block, or end one."""
+        return any(
+            word in BRACES or said_of(word, *_BEGIN) or self.names.meant(word, NEAR) in _OF_BLOCKS
+            for word in texts(lexemes(line.body))
+        )
 
     def matched(self, readings: Sequence[Reading]) -> Matching | None:
         """Return what all blocks of the lines need, or None where they fit in no way."""
@@ -308,6 +341,14 @@ def _is_key(old: Sequence[Lexeme], new: Sequence[Lexeme]) -> bool:
         sign.text == ")" and sign.source is None and re.fullmatch(f".+{rows.CLOSE_KEY}", one.text)
         for one, sign in pairwise(new)
     )
+
+
+def _left_open(tokens: Sequence[Lexeme]) -> int:
+    """Return how many brackets are not closed."""
+    depth = 0
+    for sign in texts(tokens):
+        depth = depth + 1 if sign == "(" else max(0, depth - (sign == ")"))
+    return depth
 
 
 def _ends(text: str) -> int:

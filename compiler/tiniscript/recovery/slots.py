@@ -16,6 +16,7 @@ from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import (
     CALLED,
     DONE,
+    LAP,
     LONG_S,
     NEAR,
     Lexeme,
@@ -166,7 +167,8 @@ class _Reader:
         unit, thousandths = self.mark, 1000.0
         if said_of(self.text(k), "by") and said_of(self.text(k + 1), "number") == ("100",):
             unit, k = "%", k + 2
-        elif its := said_of(self.text(k), "unit"):
+        elif its := said_of(self.text(of := k + bool(said_of(self.text(k), "of"))), "unit"):
+            k = of  # `un cuarto de vuelta`
             unit, thousandths = its[0], float(its[1])
             is_stop = self.words[k].source == "S" and bool(self.words[k].space)
             if is_stop and self.values and k + 1 == len(self.words):
@@ -239,13 +241,19 @@ class _Reader:
                 self.mark = marked[0]
         elif word in names.known.values and self.command:
             self._take(word, marked[0] if marked else self.mark)
-        elif self.command == "BEEP" and said_of(word, "note"):
-            self.values.append(_Value(said_of(word, "note")[0], "Hz"))
+        elif self.command == "BEEP" and (
+            note := said_of(word, "note") or said_of(word + "4", "note")
+        ):
+            self.values.append(_Value(note[0], "Hz"))
+            self.is_sure = self.is_sure and len(word) > 1  # `C`
+        elif names.meant(word) == "FOREVER" and self.command in MOVES and self._is_said():
+            self._take("FOREVER", "s")
+            self.is_sure = False
         elif said_of(word, "power") and self.command:
             self._take(said_of(word, "power")[0], "%")
             self.is_sure = False
         elif meant:
-            is_again = not after and meant == self.command == "F"  # `avanza 20 cm adelante`
+            is_again = after in ("", ",") and meant == self.command and meant in MOVES
             return k + 1 if is_again or self._take_command(word, meant) else None
         elif said_of(word, "filler"):
             is_in_place = self._is_number(k - 1) and after in ",)"
@@ -259,6 +267,10 @@ class _Reader:
                     return k + 1
             return None
         return k + 1
+
+    def _is_said(self) -> bool:
+        """Whether words say a move, without values and brackets: `avanzar siempre`."""
+        return not self.values and all(each.text != "(" for each in self.words)
 
     def _is_mark(self, word: str, marked: tuple[str, ...]) -> bool:
         if not marked or word in self.names.known.values or not (self.command or self.is_turn):
@@ -353,6 +365,9 @@ class _Reader:
             is_of_scratch = unit == "steps" and self.words[0].text not in WORDS
             if is_of_scratch and way == "CM" and value.number >= _STEPS_FROM:
                 unit, self.is_sure = WAYS[way].unit, False
+            if unit == "turns" and way == "DEG":
+                unit, self.is_sure = WAYS[way].unit, False
+                value = _Value(number_text(value.number * LAP), unit)
             if way and unit == WAYS[way].unit:
                 if slots[0] is not None or any(each.unit is None for each in values[:k]):
                     return None

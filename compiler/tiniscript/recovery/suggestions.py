@@ -20,10 +20,20 @@ from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.recovery import lines, rewrites, suggestion_rows
-from tiniscript.recovery.concepts import ENDED, NEAR, Lexeme, Names, lexemes, made, plain, said_of
+from tiniscript.recovery.concepts import (
+    ASKING,
+    ENDED,
+    NEAR,
+    Lexeme,
+    Names,
+    lexemes,
+    made,
+    plain,
+    said_of,
+)
 from tiniscript.recovery.orders import Order, condition_in, made_up, orders, written
 from tiniscript.recovery.slots import filled
-from tiniscript.recovery.trailing_tokens import ASKING, Around, Trailing, whole, width
+from tiniscript.recovery.trailing_tokens import Around, Trailing, whole, width
 from tiniscript.recovery.worded import sensors_of, worded
 from tiniscript.recovery.writing import laid_out, shortened, without_note
 from tiniscript.syntax.free_names import for_a_number
@@ -286,6 +296,13 @@ def _sensor(gaps: _Gaps, k: int) -> str:
     return "".join(sensors_of(plain(gaps["l"]), gaps.part.names)[k : k + 1])
 
 
+def _measured(gaps: _Gaps) -> str:
+    """What words ask with a number of their own: `la pared a 30 cm`."""
+    words = gaps.tokens("l")
+    is_said = any(each.kind is WORD and not said_of(each.text, "unit", "in") for each in words)
+    return (worded(words, gaps.part.names) or {}).get("asked", "") if is_said else ""
+
+
 def _alone(gaps: _Gaps) -> str:
     """A condition that stands alone, and sets nothing."""
     signs = {each.text for each in gaps.tokens("s")}
@@ -395,7 +412,7 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
     "next": lambda gaps: WORDS[plain(gaps["s"])].example,
     "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),
-    "alone": _alone, "then": _then, "free": _free, "loop": _loop,
+    "measured": _measured, "alone": _alone, "then": _then, "free": _free, "loop": _loop,
     "by_way": lambda gaps: _with(gaps, gaps.part.time, rf"\1 {UNIT_OF[gaps.part.own]}"),
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
@@ -409,5 +426,6 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "made_up": lambda gaps: made_up(_calls(gaps.part)),
     "until": lambda gaps: f" {_rest(gaps, 't')}".rstrip(),
     "behind": lambda gaps: _rest(gaps, "w"), "orders": _orders,
+    "sensors": lambda gaps: ", ".join(sorted(gaps.part.names.sensors)),
     "distance": lambda gaps: "DISTANCE" if "DISTANCE" in gaps.part.names.sensors else "",
 }  # fmt: skip

@@ -15,13 +15,12 @@ from tiniscript.base.source import Span
 from tiniscript.base.spelling import nearest
 from tiniscript.base.words import MOVES, OTHER_WAY, WAYS, WORDS, concept_of, said_of
 from tiniscript.recovery import lines
-from tiniscript.recovery.concepts import ENDED, NEAR, Lexeme, Names, closed, lexemes
+from tiniscript.recovery.concepts import ASKING, ENDED, NEAR, Lexeme, Names, closed, lexemes
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
 DOTS = ".…"
-ASKING = ("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL")
 _NOTHING = re.compile(r"\s*\Z")
 _BEGUN = re.compile(r"(?i)\s*(?:S[IB]|PING)\s*\|")
 MARKS = f"{QUOTES}-–—_,"  # below a line that is meant again
@@ -160,8 +159,10 @@ class Trailing:
         token = self.row[k]
         text, before, after = token.text, self._text(k - 1), self._text(k + 1)
         is_number = self.number(k) is not None
-        is_counted = said_of(after, "times") or said_of(text, "often") or text[0] == "X"
-        is_many = said_of(before, "multiplied") or before in ("X", "*")
+        is_counted = (
+            said_of(after, "times") or after == "X" or said_of(text, "often") or text[0] == "X"
+        )
+        is_many = said_of(before, "multiplied", "times") or before in ("X", "*")
         is_many = is_many or self.means(before) == "LOOP"
         concept = concept_of(text) if token.kind is WORD and not self.names.is_name(text) else None
         is_of_kit = concept is None or concept in WORDS or self.names.has(concept)

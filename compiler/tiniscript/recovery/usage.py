@@ -7,23 +7,45 @@ of them means, a sentence, a condition in words. A function for each code. Knows
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
-from itertools import pairwise, takewhile
+from collections.abc import Callable, Iterator, Sequence
+from itertools import dropwhile, pairwise, takewhile
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.spelling import nearest
-from tiniscript.base.words import ALIASES, BLOCK_ENDS, QUESTION, SINCE, WORDS, said_instead
+from tiniscript.base.words import (
+    ALIASES,
+    BLOCK_ENDS,
+    MOVES,
+    QUESTION,
+    SINCE,
+    UNIT_OF,
+    WAYS,
+    WORDS,
+    said_instead,
+)
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
-from tiniscript.recovery.concepts import Names, concept_of, lexemes, plain, said_of, words_of
-from tiniscript.recovery.orders import block, made_up, orders, written
-from tiniscript.recovery.trailing_tokens import ASKING
+from tiniscript.recovery.concepts import (
+    ASKING,
+    DONE,
+    LONG_S,
+    Lexeme,
+    Names,
+    closed,
+    concept_of,
+    lexemes,
+    plain,
+    said_of,
+    words_of,
+)
+from tiniscript.recovery.orders import block, condition_in, made_up, orders, written
+from tiniscript.recovery.worded import worded
 from tiniscript.recovery.writing import laid_out, shortened, tokens_of, without_note
 from tiniscript.syntax.free_names import in_place_of
-from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD, scan
+from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD, Token, scan
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
@@ -46,6 +68,10 @@ _MANY = 30  # diagnostics of which more is said
 _OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
 _NOT_TOP = (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP)
 _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
+_BEGINS = (";", "newline", "|")  # what an instruction begins behind
+_DEF_ENDS = ("END_DEF", "ENDDEF")
+_WANTED = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
+_MOST_OF_END = 4  # words: `fin del bucle`
 _NO_NAMES = ("leaves", "again", "filler", "same", "etc", "end")
 
 
@@ -94,6 +120,19 @@ class _Text:
         own = next(it for it in _PIECE.finditer(body) if it.end() >= min(column - 1, len(body)))
         begin = span.start - column + 1 + own.end() - len(own[0].lstrip())
         return Span(begin, begin + len(own[0].strip()))
+
+    def end_at(self, place: int) -> str:
+        """Return the end of the innermost block that is open at a place, "" for none."""
+        ends: list[str] = []
+        for line in self.source.text[:place].split("\n"):
+            for part in without_note(line)[0].split(";"):
+                first = next((it.text for it in lexemes(part.rpartition("|")[2])), "")
+                meant = {"FOREVER": "LOOP"}.get(self.names.meant(first), self.names.meant(first))
+                if meant in BLOCK_ENDS:
+                    ends.append(BLOCK_ENDS[meant])
+                elif ends and (meant in BLOCK_ENDS.values() or said_of(first, "end")):
+                    ends.pop()
+        return "".join(ends[-1:])
 
     def with_name(self, found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
         """Return diagnostics in which the one DEF without a name has that of an unknown call."""
@@ -152,12 +191,33 @@ class _Usage:
 
     def usage(self, word: str) -> str:
         """Return how an instruction is written: a block with its end, where the text has none."""
-        if word not in BLOCK_ENDS or _ENDS.search(plain(self.source.text)):
+        if word in ASKING and (asked := self.question(word)):
+            return asked
+        is_ended = _ENDS.search(plain(self.source.text)) is not None
+        if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
         found = lines.read(self.tokens, self.names) if word == "LOOP" else []  # else a guess
         is_head = bool(found) and [each.kind for each in found[0].items or ()] == ["open"]
         head = laid_out(found[0].tokens).strip("; ") if is_head else _usage(word)
-        return f"{head}; ...; {BLOCK_ENDS[word]}"
+        return head if is_ended else f"{head}; ...; {BLOCK_ENDS[word]}"
+
+    def question(self, word: str) -> str:
+        """Return a header with the question that was written, without numbers that were not.
+
+        Nothing where no number is asked for.
+        """
+        asked = self.asked(word)
+        if not any(each.kind is NUMBER for each in asked):
+            return ""
+        said = laid_out(condition_in(asked, self.names))
+        return f"{word}({said})" if said else WORDS[word].usage
+
+    def asked(self, word: str) -> list[Lexeme]:
+        """Return what stands behind a header, up to what is done."""
+        behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.tokens)][1:]
+        begun = DONE - {"L", "R"}  # `pared a la derecha`
+        meant = [_is_over(each) or self.names.meant(each.text) in begun for each in behind]
+        return behind[: [*meant, True].index(True)]
 
     def block(self) -> str:
         below = self.source.text[self.piece.end :].lstrip("; \t\r\n").upper()
@@ -171,11 +231,21 @@ class _Usage:
         if not self.is_first or self.found.values.get("near") or not self.tokens:
             return None
         first, sign = self.signs[0], "".join(self.signs[1:2])
+        if said_of(first, "end") and len(self.words) == len(self.tokens) < _MOST_OF_END:
+            named = next(
+                (BLOCK_ENDS.get(self.names.meant(each), "") for each in self.words[1:]), ""
+            )
+            end = named or self.text.end_at(self.piece.start)
+            said = self.source[self.piece]
+            return self.offers(codes.END_ALONE, end, found=said, right=end) if end else None
         if parts := _MEMBER.match(self.source.text, self.found.span.start):  # `Serial.begin`
-            right = self.names.meant(plain(parts[0].rpartition(".")[2]))
+            thing, _, done = plain(parts[0]).rpartition(".")
+            right = "" if said_of(thing, "device") else self.names.meant(done)  # `servo.write`
             values = {"right": right, "usage": _usage(right)} if self.names.takes(right) else {}
             code = codes.OTHER_LANGUAGE if values else codes.UNKNOWN_WORD
             return Diagnostic(code, Span(*parts.span()), {"found": parts[0], **values})
+        if self.names.meant(first) == "SHOW" and {*self.signs} & {*QUOTES}:
+            return self.says(codes.WORDS_SHOWN)
         if instead := said_instead(first):
             return self.adds(**instead)
         if not (self.names.meant(first) or said_of(first, "turn", "end", "short")):
@@ -208,8 +278,12 @@ class _Usage:
         is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
         is_among = concept == "S" and {*ordered.values()} != {"S"}  # `ve para adelante`
         if is_order and concept != word and not is_among:
+            if concept in ASKING and (asked := self.asked_in_words(concept)):
+                return asked
             if len(self.tokens) == 1 and not WORDS[concept].arguments:
                 return self.translated(word, concept)
+            if not WORDS[concept].arguments and any(it.kind is NUMBER for it in self.tokens):
+                return Diagnostic(codes.SEVERAL_ORDERS, self.piece)  # it alone would lose it
             return self.says(
                 codes.OTHER_LANGUAGE, found=word, right=concept, usage=self.usage(concept)
             )
@@ -228,16 +302,27 @@ class _Usage:
         if others - {"L", "R", "B", "S"}:
             return Diagnostic(codes.SEVERAL_ORDERS, self.piece)  # a turn alone would lose them
         way = next((it for it in map(self.names.meant, self.words) if it in ("L", "R")), "")
-        degrees = {"half": 180, "whole": 360}
-        angle = next((degrees[it] for it in degrees if any(said_of(each, it) for each in said)), 0)
-        is_timed = any(said_of(each, "unit") for each in self.words)
+        degrees = {"half": "180", "whole": "360"}
+        halves = (it for it in degrees if any(said_of(each, it) for each in said))
+        angle = degrees.get(next(halves, ""), "")
+        is_timed = any(said_of(each, "unit")[:1] not in ((), ("turns",)) for each in self.words)
+        numbers = [each.text for each in self.tokens if each.kind is NUMBER]
+        if len(numbers) == 1 and float(numbers[0]) >= LONG_S and not is_timed:
+            angle = numbers[0]  # `SPIN 360`: no time, and no power
         turns = orders(self.tokens, self.names)
-        if angle and not way and not is_timed:
+        values = laid_out(self.tokens[1:])
+        is_call = all(float(each) <= 100 for each in numbers)  # no power is more
+        side = {"L": "left", "R": "right"}.get(way, "")
+        if angle and way and not is_timed:
+            right = f"{way}({angle} DEG, 60)"
+            return self.says(codes.WHICH_WAY, word=way, way=side, right=right)
+        if angle and not is_timed:
             turned = f"({angle} DEG, 60)"
         elif len(turns) == 1 and turns[0].is_side_free and len(turns[0].samples) < 2:
             turned = turns[0].text[1:]
+        elif not way and is_call and lines.is_right(lexemes(f"L{values}"), self.names):
+            turned = values  # `VOLTA(2, 80)`
         else:
-            side = "left" if way == "L" else "right"
             return self.says(codes.WHICH_WAY, word=way, way=side, usage=_usage(way))
         return self.says(codes.WHICH_WAY, to_left=f"L{turned}", to_right=f"R{turned}")
 
@@ -305,13 +390,15 @@ class _Usage:
             if said.code is codes.SEVERAL_ORDERS:
                 return said
             return self.adds(fix=said.values["fix"])._replace(place=self.piece, repair=said.repair)
+        if word in ASKING and (asked := self.asked_in_words(word)):
+            return asked
         is_alone = len(self.tokens) == 1 and word in WORDS and WORDS[word].arguments
         example = WORDS[word].example if is_alone else ""
         return self.adds(example=example, usage=self.usage(word))
 
     def condition(self) -> Diagnostic | None:
         """A condition in words, in the brackets of a header; or nothing in brackets."""
-        if self.found.code is codes.MISSING_COMMA and (said := self.unit()) is not None:
+        if self.found.code is codes.MISSING_COMMA and (said := self.unit() or self.no_value()):
             return said
         if self.signs[1:] == ["("] and self.signs[0] in WORDS:
             return self.adds(usage=self.usage(self.signs[0]))
@@ -320,12 +407,42 @@ class _Usage:
         if self.words[1:] and self.names.meant(self.signs[0]) == "SHOW":
             return self.says(codes.WORDS_SHOWN)
         before = lexemes(self.source[Span(self.piece.start, self.found.span.start)])
-        heads = [one.text for one, after in pairwise(before) if after.text == "("]
+        heads = [self.names.meant(it.text) for it, sign in pairwise(before) if sign.text == "("]
         own = {*WORDS, *self.names.known.values} - {"SI"}
         if not heads or heads[-1] not in ASKING or {*self.words} <= own:
             return None
-        sample = WORDS[heads[-1]].arguments[0].sample
-        return self.says(codes.IN_WORDS, word=heads[-1], question=sample)
+        return self.in_words(heads[-1])
+
+    def asked_in_words(self, word: str) -> Diagnostic | None:
+        """A question in words without brackets: `IF BRIGHT THEN STOP`."""
+        said = worded(self.asked(word), self.names) or {}
+        is_told = said.get("asked") or said.get("question")
+        return self.says(codes.IN_WORDS, word=word, **said) if is_told else None
+
+    def in_words(self, word: str) -> Diagnostic:
+        """A question in words: what its words ask, else an example."""
+        start = next(k for k, each in enumerate(self.tokens) if self.names.meant(each.text) == word)
+        asked = self.tokens[start + 2 : closed(self.tokens, start + 1) - 1]
+        sample = {"example": WORDS[word].arguments[0].sample, "question": ""}
+        return self.says(codes.IN_WORDS, word=word, **(worded(asked, self.names) or sample))
+
+    def name_in_words(self) -> Diagnostic | None:
+        """A name that nobody knows, which asks something in words: DARK of `X > 5 OR DARK`."""
+        before = lexemes(self.source[Span(self.piece.start, self.found.span.start)])
+        heads = [one.text for one, after in pairwise(before) if after.text == "("]
+        name = plain(self.source[self.found.span])
+        if self.names.meant(name) == "FOREVER" and self.signs[:1] and self.signs[0] in MOVES:
+            start, end = (place - self.piece.start for place in self.found.span)
+            said = self.source[self.piece]
+            endless = (
+                f"{said[:start]}FOREVER{said[end:]} UNTIL({WORDS['UNTIL'].arguments[0].sample})"
+            )
+            return self.adds(near="", meant="FOREVER", endless=endless)
+        is_asked = bool(said_of(name, "light", "ahead"))
+        if not heads or heads[-1] not in ASKING or not is_asked or before[-1].text in COMPARISONS:
+            return None
+        told = self.in_words(heads[-1])
+        return told if told.values.get("question") else None
 
     def unit(self) -> Diagnostic | None:
         """A unit behind a calculation: `F(RANDOM(1, 3) sec, 50)`."""
@@ -339,6 +456,30 @@ class _Usage:
             codes.UNIT, fix if unit == ("s", "1000") else "", found=self.source[span]
         )
         return told._replace(span=span, repair=told.repair if unit == ("s", "1000") else None)
+
+    def no_value(self) -> Diagnostic | None:
+        """A word behind a number, which is no value: a unit of something else, or nothing."""
+        span = self.found.span
+        before = lexemes(self.source[Span(self.piece.start, span.start)])
+        calls = [one.text for one, after in pairwise(before) if after.text == "("]
+        word, found = WORDS.get("".join(calls[-1:])), plain(self.source[span])
+        is_word = found.isidentifier() and found not in WORDS and not self.names.is_name(found)
+        if word is None or not word.arguments or before[-1].kind is not NUMBER or not is_word:
+            return None
+        values = {"word": word.text, "usage": word.usage}
+        at = min(sum(each.text == "," for each in before), len(word.arguments) - 1)
+        if not (wanted := _WANTED.get(word.arguments[at].unit)):
+            return None
+        if unit := said_of(found, "unit"):
+            number, way = before[-1].text, UNIT_OF.get(word.text, "")
+            said = f"{number} {self.source[span]}"
+            if unit[0] == word.arguments[at].unit:
+                return self.says(codes.UNIT, found=said, fix="")
+            if way and unit == (WAYS[way].unit, "1000"):
+                return self.says(codes.UNIT, found=said, fix="", right=f"{number} {way}")
+            name = word.arguments[at].name
+            return self.says(codes.OTHER_UNIT, name=name, wanted=wanted, unit=found, **values)
+        return self.says(codes.OTHER_CALL, fix="", extra=found, **values)
 
     def foreign(self) -> Diagnostic | None:
         """The values of a word that this robot does not have: whoever writes it wants the word."""
@@ -365,7 +506,7 @@ class _Usage:
         if text := self.block():
             return self.offers(codes.SPANISH_IF, text)._replace(span=self.found.span)
         if word == "SI" and not is_bar:
-            return self.says(codes.SPANISH_IF)
+            return self.asked_in_words("IF") or self.says(codes.SPANISH_IF)
         here = word + "|" * is_bar
         button = "SB" if word == "SB" else ""
         twice = here if word == self.text.begun == "SB" else ""
@@ -412,6 +553,8 @@ class _Usage:
         sign = text[start:end]
         if sign in "\u00a1\u00bf" and len(self.words) > 1:
             return self.offers(codes.PROSE, f"// {self.source[self.piece]}")
+        if right := concept_of(sign):
+            return self.says(codes.OTHER_LANGUAGE, found=sign, right=right, usage=_usage(right))
         if sign in ".\u2026" and (said := self.dots()) is not None:
             return said
         if sign == "!" and text[end : end + 1] not in ("", "\n", " "):
@@ -448,28 +591,29 @@ class _Usage:
         is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
         is_taught = re.search(r"(?i)\bDEF\s+$", text[max(0, start - 9) : start])
         right = in_place_of(text, word) if is_set or is_taught else ""
-        if right and word in SINCE:
-            return self.renamed(word, right)
+        near = nearest(word, self.names.variables - {word}) if is_set else None
+        if right and (word in SINCE or not (near or (is_set and word == "TIME" and not is_set[1]))):
+            return self.renamed(word, right, is_taught is not None)
         if is_set is None or word != "TIME":
-            near = nearest(word, self.names.variables - {word}) if is_set else None
             return self.adds(right=near or right)  # `ROUND = ROUNDS + 1`
         places = [each.start() for each in re.finditer(r"(?i)\bTIME\b", text)][1:]
         used = [str(self.source.position(place)[0]) for place in places]
         values = {"line" if len(used) == 1 else "lines": ", ".join(used)}
         return self.adds(**{"right" if is_set[1] else "clock": right}, **values)
 
-    def renamed(self, word: str, right: str) -> Diagnostic:
-        """A name that has become a word: the other one in each place where it was no unit."""
+    def renamed(self, word: str, right: str, is_def: bool) -> Diagnostic:
+        """Another name in each place where a word is meant as one: S of `F(S, 80)`, not S alone."""
         tokens = scan(self.source.text).tokens
+        places = range(len(tokens)) if word in SINCE else _meant_as_name(tokens, word, is_def)
         spans = [
-            token.span for k, token in enumerate(tokens)
-            if token.text == word and (k == 0 or tokens[k - 1].kind not in (NUMBER, ")"))
+            tokens[k].span for k in places
+            if tokens[k].text == word and (k == 0 or tokens[k - 1].kind not in (NUMBER, ")"))
         ]  # fmt: skip
         rows = [str(self.source.position(each.start)[0]) for each in spans]
         others = list(dict.fromkeys(rows))[1:]
         repair = Repair(tuple(Edit(span, right) for span in spans), False)
         values = {
-            "word": word, "since": SINCE[word], "right": right, "line": "".join(others[:1]),
+            "word": word, "since": SINCE.get(word, ""), "right": right, "line": "".join(others[:1]),
             "lines": ", ".join(others) if len(others) > 1 else "",
             "times": str(len(rows)) if len(rows) > 1 and not others else "",
         }  # fmt: skip
@@ -510,15 +654,47 @@ class _Usage:
         word = self.source[self.found.span]
         right = re.sub(r"^[^A-Za-z]+|\W", "", plain(word))
         concept = self.names.meant(right)
-        if concept in WORDS:
-            return self.says(
-                codes.OTHER_LANGUAGE, found=right, right=concept, usage=_usage(concept)
-            )
+        if concept in WORDS or self.names.has(concept):
+            usage = self.usage(concept)
+            return self.says(codes.OTHER_LANGUAGE, found=right, right=concept, usage=usage)
         if self.behind_it.lstrip(" ").startswith("("):
             return self.says(codes.UNKNOWN_WORD, found=word.upper(), near="")
         if self.is_first and (said_of(right, "filler") or self.is_button(right)):
             return _Usage(self.text, self.says(codes.UNKNOWN_WORD, found=right)).unknown()
         return self.adds(right=right if word.isupper() else right.capitalize()) if right else None
+
+
+def _meant_as_name(tokens: Sequence[Token], word: str, is_def: bool) -> Iterator[int]:
+    """Give the places where a word of the language is meant as the name of a DEF, or a variable.
+
+    A DEF is called where its name stands alone, but not in its own body.
+    """
+    depth = 0
+    is_inside = is_value = False
+    for k, (before, token, after) in enumerate(
+        zip([None, *tokens], tokens, tokens[1:], strict=False)
+    ):
+        depth += (token.kind == "(") - (token.kind == ")")
+        is_begun = before is None or (not depth and before.kind in _BEGINS)
+        is_value = not is_begun and (is_value or (token.kind == "=" and not depth))
+        is_inside = (is_inside or token.text == "DEF") and token.text not in _DEF_ENDS
+        if token.text != word:
+            continue
+        if not is_def:
+            is_set = is_begun and after.kind == "="
+            if is_set or ((depth or is_value) and after.kind != "("):
+                yield k
+        elif before is not None and before.text == "DEF":
+            yield k
+        elif is_begun and not is_inside:
+            has_values = after.kind == "(" and not WORDS[word].arguments
+            if has_values or after.kind in (*_BEGINS, "end"):
+                yield k
+
+
+def _is_over(token: Lexeme) -> bool:
+    """Whether a question ends before a token."""
+    return token.text in (":", "{", ",") or bool(said_of(token.text, "do"))
 
 
 def _row(text: str) -> list[str]:
@@ -554,4 +730,5 @@ _SAYS: dict[Code, Callable[[_Usage], Diagnostic | None]] = {
     codes.NO_BUTTON: _Usage.no_button,
     codes.UNTIL_ALONE: _Usage.until,
     codes.BAD_NAME: _Usage.letters,
+    codes.UNKNOWN_NAME: _Usage.name_in_words,
 }

@@ -11,9 +11,11 @@ from itertools import pairwise
 
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import Device
-from tiniscript.recovery.concepts import NEAR, Lexeme, Names, concept_of, said_of
+from tiniscript.recovery.concepts import NEAR, Lexeme, Names, concept_of, made, said_of
 from tiniscript.syntax.lexer import NUMBER
+from tiniscript.syntax.operators import COMPARISONS
 
+_NOTHING = made("THE")  # a word that asks nothing: one alone may be a name
 _KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
 _ASKED = frozenset(("little", "much", "light", "ahead", "none"))
 _FAR = 10  # centimetres, as in every example
@@ -25,13 +27,17 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     """Return what a condition in words asks, None where it is none or cannot be understood.
 
     It is `asked` where it has its number, a `question` where a word says what, and else an
-    `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several.
+    `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several,
+    and `aside` is what looks ahead alone.
     """
     is_compared = any(each.text == "=" for each in row)  # `DISTANCE = NEAR`
     row = [each for each in row if each.text != "="]
     texts = [each.text for each in row]
+    if both := _compared(row, names):
+        return both
     is_condition = any(text in ("AND", "OR") for text in texts)  # of the language itself
-    if is_condition or (is_compared and not _said(texts, names) & _ASKED):
+    has_number = any(each.kind is NUMBER for each in row)  # `COLOR = 3` is no `> 3`
+    if is_condition or (is_compared and (has_number or not _said(texts, names) & _ASKED)):
         return None
     if joint := _joint(texts, names):
         return {"question": "", "joint": joint}
@@ -51,6 +57,8 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
         f"{name} {_sign(name, said)} {number or _example(names.asked.get(name), name)}"
         for name in _subjects(own, texts, said, names)
     ]
+    if "ahead" in said and said & {"left", "right"} and asked[0].startswith("DISTANCE"):
+        return {"question": "", "aside": "DISTANCE"}  # it looks ahead
     is_asking = bool(own or said & _ASKED)
     kinds = ("asked", "also") if number else ("question", "another") if is_asking else ("example",)
     return {"question": "", **dict(zip(kinds, asked, strict=False))}
@@ -74,6 +82,30 @@ def _joint(texts: Sequence[str], names: Names) -> str:
     pieces = [texts[a + 1 : b] for a, b in pairwise((-1, *places, len(texts)))]
     are_asking = all(_said(piece, names) & {"ahead", "light", "none"} for piece in pieces)
     return joints[places[0]][0].upper() if places and are_asking else ""
+
+
+def _compared(row: Sequence[Lexeme], names: Names) -> dict[str, str]:
+    """Return what is asked where words are joined with a comparison: `DISTANCE < 10 o hay luz`."""
+    places = [k for k, each in enumerate(row) if _joint_of(each.text, names)]
+    pieces = [row[a + 1 : b] for a, b in pairwise((-1, *places, len(row)))]
+    compared = [any(each.text in COMPARISONS for each in piece) for piece in pieces]
+    if not any(compared) or all(compared):
+        return {}
+    joint = _joint_of(row[places[0]].text, names)
+    told = []
+    for piece, is_compared in zip(pieces, compared, strict=True):
+        said = " ".join(names.meant(each.text) or each.text for each in piece)
+        found = {"asked": said} if is_compared else worded([_NOTHING, *piece], names) or {}
+        told.append(found.get("asked") or found.get("question", ""))
+    if not all(told):
+        return {"question": "", "joint": joint}
+    return {"question": f" {joint} ".join(told)}
+
+
+def _joint_of(text: str, names: Names) -> str:
+    """Return AND or OR, where a word joins two questions."""
+    said = said_of(text, "and") or said_of(text, "or")
+    return "" if not said or names.is_name(text) else said[0].upper()
 
 
 def _measured(row: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:

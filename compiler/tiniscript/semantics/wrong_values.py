@@ -83,6 +83,9 @@ class WrongValues:
                 said = {"way": meant, "call": WORDS[meant].example}
             elif is_said and said_of(name + "4", "note") and _TONE_BEFORE.search(before):
                 said = {"pitch": said_of(name + "4", "note")[0]}
+            elif not which and not is_variable and said_of(name, "unsensed"):
+                its_own = ", ".join(each.name for each in scope.kit.sensors)
+                said, near = {"unsensed": name, "sensors": its_own}, ""
             elif is_said and said_of(name, "colour"):
                 said = {"colour": name}
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near,

@@ -1,0 +1,251 @@
+"""What a message shows is what a pupil wrote: own numbers, own names, and no sensor for another."""
+
+from __future__ import annotations
+
+import re
+from itertools import product
+
+import pytest
+
+from tests.pupils.corpus import check
+from tests.support.rows import each_row
+from tiniscript.base.languages import languages, table
+from tiniscript.base.source import Edit, Source, applied
+from tiniscript.base.words import SINCE, WORDS
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.rendering import message
+
+OWN = "37"  # a number that is in no example
+CONDITIONS = (
+    "distancia < {}", "distance < {} cm", "a distância < {}", "LUZ > {}", "SOM > {}",
+    "TEMPERATURA > {}", "RANDOM(1, {0}) = {0}", "NO DISTANCE < {}", "DISTANCE es menor que {}",
+)  # fmt: skip
+HEADERS = (
+    "{h} {c}\nS\n{e}", "{h}({c})\nS\n{e}", "{h} {c}:\n  forward\n{e}", "W(1);{h} {c};S;{e}",
+    "siempre\n{h} {c}\ngira derecha\n{e}", "F(1, 60\n{h} {c}\nS",
+)  # fmt: skip
+COMPARED = re.compile(r"(?:[<>]=?|=)\s*(\d+)")
+
+
+def words(meaning: str) -> list[str]:
+    """Return the words of all lexicons with a meaning."""
+    rows = (row for language in languages() for row in table(language, "lexicon.txt").split("\n"))
+    told = (row.partition("|") for row in rows if not row.startswith("#"))
+    return [each for what, _, said in told if what.strip() == meaning for each in said.split()]
+
+
+def shown(found: Diagnostic, text: str) -> str:
+    told = message(found, Source(text, ""), "en")
+    return " ".join(map(str, told))
+
+
+@each_row("header", HEADERS)
+@pytest.mark.parametrize("condition", CONDITIONS)
+def test_a_question_is_shown_with_the_number_that_was_written(header: str, condition: str) -> None:
+    for head, end in (("si", "fin"), ("SE", "FIM"), ("while", "end"), ("MIENTRAS", "FIN MIENTRAS")):
+        text = header.format(h=head, c=condition.format(OWN), e=end)
+        for found in check(text):
+            said = shown(found, text)
+            others = {*COMPARED.findall(said)} - {OWN, "1"}
+            assert not others or "as in" in said or "with the number that you want" in said, said
+
+
+def test_a_word_behind_a_number_lacks_no_comma() -> None:
+    for unit, word in product(words("unit turns 1000"), ("R", "L", "F", "W")):
+        text = f"{word}(3 {unit}, 60)" if word != "W" else f"W(3 {unit})"
+        (found,) = check(text)
+        assert found.code.number != "TS017", text
+        assert fixed(text, check).text == text
+        is_turn = word in "LR"
+        assert (found.values.get("fix") == f"{word}(1080 DEG, 60)") is is_turn, text
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        ("R(HALF TURN, 60)", "R(180 DEG, 60)"),
+        ("SI|W(1); L(UNA VUELTA, 60)", "L(360 DEG, 60)"),
+        ("R(MEIA VOLTA, 60)", "R(180 DEG, 60)"),
+        ("R(un cuarto de vuelta, 60)", "R(90 DEG, 60)"),
+        ("R(3/4 vuelta, 60)", "R(270 DEG, 60)"),
+    ],
+)
+def test_a_part_of_a_turn_is_degrees(wrong: str, right: str) -> None:
+    (found,) = check(wrong)
+    assert found.values["fix"] == right
+    assert fixed(wrong, check).text == wrong
+
+
+RENAMED = [
+    word for word, its in WORDS.items()
+    if word not in SINCE and its.role.name != "setup" and not its.role.is_of_blocks
+]  # fmt: skip
+
+
+def renamed(text: str) -> tuple[str, tuple[Edit, ...]]:
+    """Return the name that is told in place of a word, and the changes for it."""
+    return next(
+        (each.values["right"], each.repair.edits)
+        for each in check(text)
+        if each.code.number == "TS105" and each.repair
+    )
+
+
+@each_row("word", RENAMED)
+def test_a_name_is_renamed_wherever_it_is_meant(word: str) -> None:
+    """A DEF: its calls, and no move of its own; a variable: each use, and no instruction."""
+    move = WORDS[word].example if WORDS[word].role.is_instruction else "S"
+    text = f"DEF {word}\n{move}\nEND_DEF\n{word}\nF(1, 60)\n{word}"
+    name, edits = renamed(text)
+    made = applied(text, edits)
+    assert made == f"DEF {name}\n{move}\nEND_DEF\n{name}\nF(1, 60)\n{name}"
+
+
+@each_row("word", [word for word in RENAMED if word != "TIME"])
+def test_a_variable_is_renamed_in_its_uses(word: str) -> None:
+    text = f"{word} = 2\nF({word}, 60)\nW(1 + {word})\nX = {word} + 1\nS\nF(X, 60)"
+    made = applied(text, renamed(text)[1])
+    assert made.split("\n")[4] == "S"
+    assert not [each for each in check(made) if each.is_mistake]
+
+
+@each_row("word", sorted({*words("unsensed")}))
+def test_no_sensor_is_asked_for_one_that_no_kit_has(word: str) -> None:
+    for text in (f"IF({word} > {OWN});S;ENDIF", f"WHEN({word} = 1)\nS\nEND_WHEN"):
+        (found,) = check(text)
+        assert found.values.get("unsensed", "").upper() == word, text
+        assert "DISTANCE" in found.values["sensors"]
+        assert found.repair is None and not found.values.get("fix")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ("F(2;80) R(1;50)", "F(2, 80);R(1, 50)"),  # `80)` is no number of a list
+        ("IF RANDOM(1,2) = 1\nS\nENDIF", "IF(RANDOM(1, 2) = 1)"),
+        ("SE NÃO(DISTANCE < 10)\nS\nFIM", "IF(NOT (DISTANCE < 10))"),
+        ("ESPERA(LIGHT_L > 500)", "W(FOREVER) UNTIL(LIGHT_L > 500)"),
+        ("S HASTA(DISTANCE > 20)", "S;W(FOREVER) UNTIL(DISTANCE > 20)"),
+        ("⬆️ 2 80", "F(2, 80)"),
+        ("➡️ 90 grados", "R(90 DEG, 80)"),
+        ("M(50, 80, 2 seg)", "M(50, 80);W(2);S"),
+    ],
+)
+def test_what_is_told_keeps_all_that_was_written(wrong: str, told: str) -> None:
+    assert check(wrong)[0].values["fix"] == told
+
+
+@pytest.mark.parametrize(
+    ("wrong", "question"),
+    [
+        ("IF(DISTANCE < 37 OR DARK);S;ENDIF", "DISTANCE < 37 OR LIGHT_L < 500"),
+        ("IF(hay luz y DISTANCE < 37);S;ENDIF", "LIGHT_L > 500 AND DISTANCE < 37"),
+        ("F(5, 60) UNTIL(DISTANCE < 37 o mucha luz)", "DISTANCE < 37 OR LIGHT_L > 500"),
+    ],
+)
+def test_words_beside_a_comparison_are_asked_beside_it(wrong: str, question: str) -> None:
+    (found,) = check(wrong)
+    assert (found.code.number, found.values["question"]) == ("TS135", question)
+
+
+def test_lines_that_nobody_reads_are_instructions_of_their_blocks() -> None:
+    text = "if distance < 20 then\nturn right 90 degrees\nelse\nforward\nend"
+    assert fixed(text, check).text == (
+        "IF(DISTANCE < 20)\nturn right 90 degrees\nelse\nforward\nENDIF"
+    )
+
+
+def test_ends_of_several_blocks_come_one_after_the_other() -> None:
+    text = "LOOP(siempre)\n  IF DISTANCE < 15 cm\n    R(1, 60)\n  ELSE\n    F(1, 80)\nEND"
+    assert "END_LOOPIF" not in {each.values.get("found") for each in check(text)}
+
+
+def test_an_end_alone_is_that_of_its_block() -> None:
+    text = "forever\nif distance < 20 then\nturn right 90 degrees\nelse\nforward\nend"
+    assert (check(text)[-1].code.number, check(text)[-1].values["right"]) == ("TS023", "ENDIF")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ("F(5, 60) HASTA NEGRO", {"question": "LIGHT_L < 500", "another": "LIGHT_R < 500"}),
+        ("F(5, 60) hasta la pared", {"question": "DISTANCE < 10"}),
+        ("F(5, 60) hasta el final", {"question": "", "example": "DISTANCE < 10"}),
+        ("IF BRIGHT THEN STOP", {"question": "LIGHT_L > 500"}),
+        ("IF(pared a la derecha);S;ENDIF", {"question": "", "aside": "DISTANCE"}),
+        ("IF(COLOR = 37);S;ENDIF", {"question": None}),
+    ],
+)
+def test_words_are_asked_of_the_sensor_that_they_mean(wrong: str, told: dict[str, str]) -> None:
+    values = check(wrong)[0].values
+    assert {name: values.get(name) for name in told} == told
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        ("IF(SENSOR_LUZ_DERECHA > 37);S;ENDIF", "IF(LIGHT_R > 37);S;ENDIF"),
+        ("IF(DISTANCE IS 37);S;ENDIF", "IF(DISTANCE = 37);S;ENDIF"),
+        ("F(10, 60) STOP WHEN DISTANCE < 12", "F(10, 60) UNTIL(DISTANCE < 12)"),
+        ("REPITA 3x\nS\nFIM REPITA", "LOOP(3)\nS\nEND_LOOP"),
+        ("SHOW LIGHT_L + LIGHT_R", "SHOW(LIGHT_L + LIGHT_R)"),
+        ("CALL HOP\nDEF HOP\nS\nEND_DEF", "DEF HOP\nS\nEND_DEF\nHOP"),
+        ("⬆ F(2, 80) ➡ R(1, 60)", "F(2, 80); R(1, 60)"),
+        ("X = 50\nX = X + 10%\nF(1, X)", "X = 50\nX = X + 10\nF(1, X)"),
+        ("IF(DISTANCE < 37 Y/O LIGHT_L > 50);S;ENDIF", "IF(DISTANCE < 37 OR LIGHT_L > 50);S;ENDIF"),
+        ("SHOW(random.randint(1, 6))", "SHOW(RANDOM(1, 6))"),
+        ("ENQUANTO(1) { F(1, 50) }", "WHILE(TRUE);F(1, 50);END_WHILE;"),
+        ("LOOP 3 VECES (BEEP(1, 440); W(1))", "LOOP(3);BEEP(1, 440);W(1);END_LOOP"),
+        ("repite mientras DISTANCE > 37\nS\nfin", "WHILE(DISTANCE > 37)\nS\nEND_WHILE"),
+        ("R(90 GRAUS À DIREITA, 60)", "R(90 DEG, 60)"),
+        ("VARIAVEL X = 5\nF(X, 50)", "X = 5\nF(X, 50)"),
+    ],
+)
+def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
+    assert fixed(wrong, check).text == right
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ("SPIN 360", {"to_left": "L(360 DEG, 60)", "to_right": "R(360 DEG, 60)"}),
+        ("gira 2 vueltas", {"to_right": "R(720 DEG, 80)"}),
+        ("si luz mucha\nS\nfin mientras", {"right": "END_WHILE"}),
+        ("PARA I DE 1 ATE 5\nSHOW(I)\nFIM", {"right": "LOOP"}),
+        ("F(2,80) Y IF(DISTANCE<10) S", {"before": "IF(DISTANCE < 10)"}),
+        ("M(-50, 50) 2", {"waiting": "M(-50, 50);W(2);S"}),
+        ("F(1, 60) VEZES 3", {"fix": "LOOP(3);F(1, 60);END_LOOP"}),
+        ("F(SIEMPRE, 60)", {"endless": "F(FOREVER, 60) UNTIL(DISTANCE < 10)"}),
+        ("AVANZAR SIEMPRE\nTASK\nS\nEND_TASK", {"fix": "F(FOREVER, 80)"}),
+        ("PLAY C FOR 1 SECOND", {"fix": "BEEP(1, 262)"}),
+        ("F(1 a 3, 60)", {"fix": "F(RANDOM(1, 3), 60)"}),
+        ("LOOP 3 VUELTAS DE (BEEP(1, 440); W(1))", {"fix": None}),
+        ("F(1, 80) then wait 2 then B(1, 80)", {"fix": "F(1, 80);W(2);B(1, 80)"}),
+        ("R(90 GRAUS FOO, 60)", {"right": "90 DEG"}),
+        ("L(1, 50) 2X", {"fix": "LOOP(2);L(1, 50);END_LOOP"}),
+        ("turn(right, 45)", {"right": "R(45 DEG, 60)"}),
+        ("VOLTA(2, 80)", {"to_left": "L(2, 80)", "to_right": "R(2, 80)"}),
+        ("WHEN DISTANCE < 37 BEEP", {"usage": "WHEN(DISTANCE < 37)"}),
+        ("M(50, -50); 2 SEGUNDOS; S", {"fix": "W(2)"}),
+        ("SE(DISTANCE < 37 E NÃO ESCURO)", {"question": "DISTANCE < 37 AND LIGHT_L > 500"}),
+        (
+            "IF(DISTANCE < 9)\nS\nELSE DISTANCE < 37\nF(1, 30)\nENDIF",
+            {"fix": "ELSEIF(DISTANCE < 37)"},
+        ),
+        ("si hay un obstaculo para", {"sample": "10 cm"}),
+        ("si hay un obstaculo a 37 cm para", {"sample": None}),
+        ("F(80,2s)", {"fix": "F(2, 80)"}),
+        ("toca 3 pitidos", {"fix": "LOOP(3);BEEP(1, 440);W(1);END_LOOP"}),
+        ("ande e pare quando DISTANCE < 37", {"fix": "F(FOREVER, 80) UNTIL(DISTANCE < 37)"}),
+        ("F(FOREVER, 60) UNTIL(5 SECONDS)", {"fix": "F(5, 60)"}),
+        ("PARAR DEPOIS DE 3 SEGUNDOS", {"fix": "W(3);S"}),
+        ("DISTANCE < 37 ? S", {"fix": "IF(DISTANCE < 37);S;ENDIF"}),
+        ("SPEED = 80;TIME = 2;F(TIME, SPEED)", {"right": "MY_TIME", "times": "2"}),
+        ("repetir 37\n  mover 10 pasos\n  si toca borde rebotar\nfin", {"usage": "LOOP(37)"}),
+        ("servo.write(90)", {"right": None}),
+    ],
+)
+def test_no_number_or_word_is_told_that_was_not_meant(wrong: str, told: dict[str, str]) -> None:
+    found = check(wrong)
+    assert any({name: it.values.get(name) for name in told} == told for it in found), found
