@@ -10,7 +10,17 @@ from tiniscript.base.source import Span
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
 from tiniscript.base.words import TASKS as TASK_WORDS
 from tiniscript.diagnostics import codes
-from tiniscript.syntax.ast import Argument, Arm, Def, If, Instruction, Loop, Task, While
+from tiniscript.syntax.ast import (
+    Argument,
+    Arm,
+    Def,
+    If,
+    Instruction,
+    Loop,
+    Parameter,
+    Task,
+    While,
+)
 from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.reporter import Reporter
 
@@ -22,13 +32,14 @@ ENDS |= {alias: ENDS[end] for alias, end in ALIASES.items()}
 class Block:
     """A block whose end has not come yet."""
 
-    __slots__ = ("arms", "body", "head", "name", "otherwise", "span", "word")
+    __slots__ = ("arms", "body", "head", "name", "otherwise", "parameters", "span", "word")
 
     def __init__(self, word: str, span: Span, head: Argument | None, name: Token | None) -> None:
         self.word = word  # IF, LOOP, WHILE, DEF, TASK or WHEN
         self.span = span  # of the header: where a block that never ends is reported
         self.head = head  # the condition or the count of the arm that is being read
         self.name = name  # of a DEF
+        self.parameters: list[Parameter] = []  # of a DEF
         self.body: list[Instruction] = []
         self.arms: list[Arm] = []
         self.otherwise: list[Instruction] | None = None  # what follows ELSE, once it has come
@@ -96,7 +107,8 @@ class Blocks:
         span, body = Span(block.span.start, end.end), tuple(block.body)
         if block.word == "DEF":
             if block.name is not None and not self.open:
-                self.program.append(Def(block.name.text, block.name.span, body, span))
+                parameters = tuple(block.parameters)
+                self.program.append(Def(block.name.text, block.name.span, parameters, body, span))
         elif block.word in TASK_WORDS:
             if not self.open:
                 self.program.append(Task(block.word == "WHEN", block.head, body, span))
