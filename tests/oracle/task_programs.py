@@ -19,17 +19,21 @@ class TaskAuthor:
         self.rng = rng
         self.ways = ways  # some moves go by centimetres or degrees
         self.lines: list[str] = ["A = 0;N = 0"]
-        self.defs: list[str] = []
+        self.defs: dict[str, int] = {}  # how many values each has
+        self.own: list[str] = []  # the values of the DEF that is being written
         self.loops = 0
 
     def program(self) -> str:
         """The main task, with DEFs and 1 to 4 tasks among its instructions."""
         rng = self.rng
         for number in range(rng.choice((0, 0, 1, 2))):
-            self.lines.append(f"DEF D{number}")
+            self.own = ["V", "U"][: rng.choice((0, 1, 1, 2))]
+            brackets = f"({', '.join(self.own)})" if self.own else ""
+            self.lines.append(f"DEF D{number}{brackets}")
             self.body(rng.randint(1, 2), DEPTH - 1)
             self.lines.append("END_DEF")
-            self.defs.append(f"D{number}")
+            self.defs[f"D{number}"] = len(self.own)
+        self.own = []
         tasks = rng.randint(1, MOST_TASKS)
         before = sorted(rng.randint(0, 3) for _ in range(tasks))
         for place in range(4):
@@ -69,11 +73,13 @@ class TaskAuthor:
         elif kind < 0.74:
             self.lines.append(f"SHOW({self.number()})")
         elif kind < 0.80:
-            self.lines.append(f"{rng.choice(VARIABLES)} = {self.number()}")
+            self.lines.append(f"{rng.choice((*VARIABLES, *self.own))} = {self.number()}")
         elif kind < 0.83:
             self.lines.append(rng.choice(SENSORS))
         elif kind < 0.86 and self.defs:
-            self.lines.append(rng.choice(self.defs))
+            name = rng.choice(list(self.defs))
+            values = ", ".join(self.number() for _ in range(self.defs[name]))
+            self.lines.append(f"{name}({values})" if values else name)
         elif kind < 0.88 and self.loops:
             self.lines.append("BREAK")
         elif depth < DEPTH:
@@ -116,6 +122,8 @@ class TaskAuthor:
 
     def number(self) -> str:
         rng = self.rng
+        if self.own and rng.random() < 0.5:
+            return rng.choice(self.own)
         return rng.choice(
             ("TIME", "A", "N", "A + 1", "N - 1", "DISTANCE", "RANDOM(0, 3)", str(rng.randint(0, 9)))
         )

@@ -66,7 +66,7 @@ class _Alone(Blocks):
 
     @property
     def innermost(self) -> Block:
-        return Block("IF", Span(0, 0), None, None)
+        return Block("IF", Span(0, 0), None, None, ())
 
     def begin(self, *header: object, **name: object) -> None:
         pass

@@ -222,12 +222,16 @@ class Parser:
             self.blocks.begin("DEF", word.span)
             self.reporter.fail(codes.DEF_NEEDS_NAME, word.span)
         cursor.i += 1
-        self.blocks.begin("DEF", Span(word.start, name.end), name=name)
         self.defs.add(name.text)
-        if name.text in WORDS:
-            self.reporter.fail(codes.RESERVED, name.span, word=name.text)
-        if cursor.token.kind == "(":
-            self.parameters(name, self.blocks.open[-1].parameters)
+        parameters: list[Parameter] = []
+        try:
+            if name.text in WORDS:
+                self.reporter.fail(codes.RESERVED, name.span, word=name.text)
+            if cursor.token.kind == "(":
+                self.parameters(name, parameters)
+        finally:
+            span = Span(word.start, name.end)
+            self.blocks.begin("DEF", span, name=name, parameters=parameters)
 
     def parameters(self, of: Token, found: list[Parameter]) -> None:
         """Read the `(NAME, NAME)` of a DEF; what was read stays, even if the rest is wrong."""
