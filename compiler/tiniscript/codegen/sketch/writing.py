@@ -156,6 +156,10 @@ class _Sketch:
         name = self.named.procedures[self.program.procedures.index(procedure)]
         head, rows.lines = rows.lines, []
         rows.given = self.arguments - {*procedure.values}  # those of this DEF it sets itself
+        read = ir.named("VARIABLE", ir.walk(procedure.body))
+        for k in procedure.values:
+            if k not in read:  # or a compiler warns
+                rows.line(f"(void){self.named.variables[k]};")
         rows.body(procedure.body)
         body, rows.lines = rows.lines, []
         types = ("bool" if self.yes_no[k] else "$N" for k in procedure.values)
