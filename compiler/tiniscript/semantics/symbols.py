@@ -102,7 +102,7 @@ class Scope:
         return last.op in YES_NO_OPS or is_sensor
 
     def is_yes_no_sensor(self, name: str) -> bool:
-        return name in self._yes_no_sensors
+        return name in self.yes_no_sensors
 
     def near(self, word: str, known: Iterable[str]) -> str:
         """Return the nearest known word for a message, for the first ENOUGH mistakes.
