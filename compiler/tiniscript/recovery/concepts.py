@@ -277,8 +277,11 @@ class Names:
         self.variables = {name for each in told for name in each.variables}
         self.defs = {name for each in told for name in each.defs} - {row[0] for row in self.rows}
         self.called = frozenset(self.defs & {word for each in told for word in each.called})
-        values, instructions = self.sensors | self.variables, self.sensors | self.defs
-        self.known = Known(values, instructions, frozenset(self.actuators))
+        counts = {name: len(self.parameters.get(name, ())) for name in self.defs}
+        alone = {name for name, count in counts.items() if not count}
+        calls = {*counts.items(), *((name, 1) for name in self.actuators)}
+        values, instructions = self.sensors | self.variables, self.sensors | alone
+        self.known = Known(frozenset(values), instructions, frozenset(calls))
         words = (frozenset(each) for each in (self.defs, self.in_brackets, self.rows))
         self._content = (
             self.known,

@@ -289,8 +289,6 @@ d=@device v=⟨lit|on¦dark|off⟩ e=;|$ | &d ( ⟨TRUE¦FALSE⟩ ) $e | 1 | TS0
 d=@device ( ⟨lit¦dark¦most¦least⟩ ) | &d ( ⟨TRUE¦FALSE¦@most:d¦@least:d⟩ ) | 1 | TS102 | applied | ⟨LED(PRENDIDO)¦LED(LOW)¦PINZA(ABIERTA)¦GRIPPER(CLOSED)⟩ => ⟨LED(TRUE)¦LED(FALSE)¦GRIPPER(180)¦GRIPPER(0)⟩
 ^ ⟨most¦least¦on|lit¦off|dark⟩ the|one? d=@device $ | &d ( ⟨@most:d¦@least:d¦TRUE¦FALSE⟩ ) | 1 | TS102 | applied | ⟨ABRIR PINZA¦cerrar la garra¦prende el LED¦apagar el foco⟩ => ⟨GRIPPER(180)¦GRIPPER(0)¦LED(TRUE)¦LED(FALSE)⟩
 # DEF and its calls
-^ DEF n=@word ( v=@name ) ':'? | $v = 0 ; DEF $n ; | .5 | TS039 | offered | DEF IR(T)⏎F(T, 80)⏎END_DEF⏎IR(2) => T = 0;DEF IR;⏎F(T, 80)⏎END_DEF⏎T = 2;IR
-^ n=@def ( a=@num|@val ) $ | @given:n = $a ; $n | .5 | TS039 | offered | DEF IR(T)⏎F(T, 80)⏎END_DEF⏎IR(2) => T = 0;DEF IR;⏎F(T, 80)⏎END_DEF⏎T = 2;IR
 ^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
 DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩ | DEF $n ; ⟨¦$b⟩ | 1 | TS014 | applied | DEF SALUDO⟨ = ¦ ⟩BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ call|do|make|the the|one? b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
