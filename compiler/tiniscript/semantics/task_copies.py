@@ -22,16 +22,16 @@ def separated(program: ir.Program) -> ir.Program:
     variables = list(program.variables)
     maps = [_Numbers({}, {}) for _ in reached]
     for k, procedure in enumerate(program.procedures):
-        users = [task for task, found in enumerate(reached) if k in found]
-        if not owns[k] or len(users) < 2:
+        tasks = [task for task, found in enumerate(reached) if k in found]
+        if not owns[k] or len(tasks) < 2:
             for its in maps:
                 its.calls[k] = len(procedures)
             # one that no task shares keeps its variables, and calls what its task calls
-            procedures.append(_copied(procedure, maps[users[0] if users else 0]))
+            procedures.append(_copied(procedure, maps[tasks[0] if tasks else 0]))
             continue
-        for task in users:
+        for task in tasks:
             its = maps[task]
-            if task != users[0]:
+            if task != tasks[0]:
                 for variable in procedure.values:
                     its.variables[variable] = len(variables)
                     variables.append(program.variables[variable])
@@ -60,18 +60,23 @@ class Excess(NamedTuple):
 
 def excess(program: ir.Program) -> Excess | None:
     """Return the DEF whose copies a machine has no room for, if there is one."""
-    reached, owns = _reached(program), _owning(program)
+    owns, counts = _owning(program), users(program)
     variables, defs = len(program.variables), len(program.procedures)
-    for k, procedure in enumerate(program.procedures):
-        users = sum(k in found for found in reached)
-        if owns[k] and users > 1:
-            variables += (users - 1) * len(procedure.values)
-            defs += users - 1
+    for k, (procedure, count) in enumerate(zip(program.procedures, counts, strict=True)):
+        if owns[k] and count > 1:
+            variables += (count - 1) * len(procedure.values)
+            defs += count - 1
             if variables > VARIABLES:
-                return Excess(k, users, "variables", variables, VARIABLES)
+                return Excess(k, count, "variables", variables, VARIABLES)
             if defs > DEFS:
-                return Excess(k, users, "defs", defs, DEFS)
+                return Excess(k, count, "defs", defs, DEFS)
     return None
+
+
+def users(program: ir.Program) -> list[int]:
+    """Return how many tasks reach each DEF."""
+    reached = _reached(program)
+    return [sum(k in found for found in reached) for k in range(len(program.procedures))]
 
 
 class _Numbers(NamedTuple):
