@@ -196,7 +196,8 @@ def soup(seed: int) -> tuple[Kit, bytes]:
                         "LOOP(2);{};END_LOOP", "DEF GO;{};END_DEF;GO", "LED({})", "GRIPPER({})",
                         "F(1,{})UNTIL(TOUCH)", "BEEP({})", "M({},{})", "F({} CM,60)", "R({}°,60)",
                         "DEF GO(X);{};END_DEF;GO({})", "DEF GO({});END_DEF",
-                        "DEF GO(X,Y);F(X,Y);END_DEF;GO({},{})", "DEF A(X);END_DEF;DEF GO(Y,X);{};END_DEF",
+                        "DEF GO(X,Y);F(X,Y);END_DEF;GO({},{})",
+                        "DEF A(X);END_DEF;DEF GO(Y,X);{};END_DEF",
                         "TASK;{};END_TASK", "WHEN({});S;ENDWHEN", "TASK;ENDTASK;{}"))  # fmt: skip
     text = frame.format(*(["".join(t + " " * rng.randint(0, 1) for t in tokens)] * 2))
     return KITS[1][1], text.encode()
