@@ -10,7 +10,8 @@ sign that would be one of the signs here, `?`, `*` and `+` stand behind what may
 more often. `^` is where an instruction begins: a line, or what follows `SI|`, a `;` or a brace; `$`
 is where one ends. A row of a whole line says `^^` and `$$`. `c=` captures, and `<part>` is a piece
 of PARTS. The cheapest reading is told; 1 is usual.
-Classes: @num @word @val (a value with a name) @name @newname @usedname @def @callw (takes values)
+Classes: @num @word @val (a value with a name) @name @newname @usedname @def, of which a @defw takes
+values and a @step does not, @callw (takes values)
 @device (an actuator) @start (begins an instruction) @close (ends one) @unit; a number that is
 @whole, or may be a @time, a @power or an @angle; any token but separators and braces: @any, nor `:`
 and `?`: @cond, nor brackets: @noparen; but braces: @all, which closes the brackets that it opens;
@@ -19,8 +20,8 @@ but braces, brackets and `<`: @nobrace.
 `becomes` is tokens: `$c` what was captured, `&c` that in words of the language or in digits, and
 functions: @not (the opposite question), @same (a number that is another one, too), @most and @least
 (the range of an actuator), @endof (the end of a header), @dec (a decimal comma), @cat (a zero
-apart), @mmss, @own (a number with its unit, in the unit that values have), @xn (`x4`), @given (the
-name in the brackets of a DEF), @label (nothing, of a DEF that is called elsewhere). `how`: `first`
+apart), @mmss, @own (a number with its unit, in the unit that values have), @xn (`x4`), @label
+(nothing, of a DEF that is called elsewhere). `how`: `first`
 is made before any other is tried, `applied` may be made without asking, `offered` is only shown, as
 is `first offered`. An example's lines are parted by ⏎.
 
@@ -277,7 +278,7 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:? | $v = 0 ; LOOP ( $n ) ; $
 ^ LOOP ( n=@num ) UNTIL ( c=@any+ ) $ | LOOP ( $n ) ; IF ( $c ) ; BREAK ; ENDIF | 1 | TS064 | offered | LOOP(3) UNTIL(DISTANCE < 10)⏎F(1, 40)⏎END_LOOP => LOOP(3);IF(DISTANCE < 10);BREAK;ENDIF⏎F(1, 40)⏎END_LOOP
 ^ do '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
 # how often something is done, said behind it or before it
-⟨^ b=@def *|X? n=@num times? $¦call b=@def n=@num¦^ b=@def n=X2|X3|X4|X5|X6 $⟩ | LOOP ( ⟨$n¦$n¦@xn:n⟩ ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎⟨SALTO*3¦CALL SALTO 3¦SALTO x3⟩ => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
+⟨^ b=@step *|X? n=@num times? $¦call b=@step n=@num¦^ b=@step n=X2|X3|X4|X5|X6 $⟩ | LOOP ( ⟨$n¦$n¦@xn:n⟩ ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎⟨SALTO*3¦CALL SALTO 3¦SALTO x3⟩ => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ ⟨n=@num times|X|* :|,|of? <body>¦n=@num *|X|times|LOOP? ( <body> )⟩ $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | ⟨TS062¦TS080⟩ | applied | ⟨3 * F(1,50)¦SI|3*(F(1,50))⟩ => ⟨¦SI|⟩LOOP(3);F(1, 50);END_LOOP
 ^ every n=@num seconds ,|:|do? <body> $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
 ^ do|make? b=@start r=@any* n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
@@ -289,8 +290,12 @@ d=@device v=⟨lit|on¦dark|off⟩ e=;|$ | &d ( ⟨TRUE¦FALSE⟩ ) $e | 1 | TS0
 d=@device ( ⟨lit¦dark¦most¦least⟩ ) | &d ( ⟨TRUE¦FALSE¦@most:d¦@least:d⟩ ) | 1 | TS102 | applied | ⟨LED(PRENDIDO)¦LED(LOW)¦PINZA(ABIERTA)¦GRIPPER(CLOSED)⟩ => ⟨LED(TRUE)¦LED(FALSE)¦GRIPPER(180)¦GRIPPER(0)⟩
 ^ ⟨most¦least¦on|lit¦off|dark⟩ the|one? d=@device $ | &d ( ⟨@most:d¦@least:d¦TRUE¦FALSE⟩ ) | 1 | TS102 | applied | ⟨ABRIR PINZA¦cerrar la garra¦prende el LED¦apagar el foco⟩ => ⟨GRIPPER(180)¦GRIPPER(0)¦LED(TRUE)¦LED(FALSE)⟩
 # DEF and its calls
+^ DEF n=@word v=@usedname $ | DEF $n ( $v ) | 1 | TS015 | applied | DEF LADO X⏎F(X, 50)⏎END_DEF⏎LADO(3) => DEF LADO(X)⏎F(X, 50)⏎END_DEF⏎LADO(3)
+^ TO n=@word ':' v=@name ⟨¦':' u=@name⟩ $ | DEF $n ( $v ⟨¦, $u⟩ ) | 1 | TS102 | applied | TO SQUARE :SIZE⟨¦ :SPEED⟩⏎F(SIZE, ⟨50¦SPEED⟩)⏎END⏎SQUARE(⟨3¦3, 60⟩) => DEF SQUARE(SIZE⟨¦, SPEED⟩)⏎F(SIZE, ⟨50¦SPEED⟩)⏎END_DEF⏎SQUARE(⟨3¦3, 60⟩)
+n=@defw a=@num|@val ⟨¦,? b=@num|@val⟩ e=;|$ | $n ( $a ⟨¦, $b⟩ ) $e | 1 | TS015 | applied | DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO ⟨3¦3 60⟩ => DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO(⟨3¦3, 60⟩)
 ^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
 DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩ | DEF $n ; ⟨¦$b⟩ | 1 | TS014 | applied | DEF SALUDO⟨ = ¦ ⟩BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
+DEF n=@word ( v=@noparen+ ) ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩ | DEF $n ( $v ) ; ⟨¦$b⟩ | 1 | TS014 | applied | DEF LADO(X)⟨: ¦ ⟩F(X, 50)⏎LADO(3) => DEF LADO(X);F(X, 50);END_DEF⏎LADO(3)
 ^ call|do|make|the the|one? b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
 # ends of blocks
 ^ ⟨end¦END_DEF⟩ n=@def $ | END_DEF @label:n | 1 | ⟨TS022¦TS044⟩ | ⟨applied¦first⟩ | DEF SALTO⏎F(1, 50)⏎⟨FIN¦END_DEF⟩ SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO

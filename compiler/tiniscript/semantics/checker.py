@@ -423,9 +423,11 @@ class _Checker(Scope):
             known = self.names.get(each.name)
             is_free = known is None and each.name not in self.taken_names
             found.append(self.new_variable(each.name, each.span, kind if is_free else ANY))
-            if is_free:
+            if known is None:  # even if it is taken below: that is said once
                 self.names[each.name] = Name("variable", found[-1])
-            elif known is not None and known.what == "variable" and known.number in found:
+            if is_free:
+                continue
+            if known is not None and known.what == "variable" and known.number in found:
                 self.report(codes.PARAMETER_TWICE, each.span, name=each.name)
             else:
                 other = self.wrong.free_name(each.name, self.procedures)

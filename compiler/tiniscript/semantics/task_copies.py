@@ -22,16 +22,16 @@ def separated(program: ir.Program) -> ir.Program:
     variables = list(program.variables)
     maps = [_Numbers({}, {}) for _ in reached]
     for k, procedure in enumerate(program.procedures):
-        tasks = [task for task, found in enumerate(reached) if k in found]
-        if not owns[k] or len(tasks) < 2:
+        its_tasks = [task for task, found in enumerate(reached) if k in found]
+        if not owns[k] or len(its_tasks) < 2:
             for its in maps:
                 its.calls[k] = len(procedures)
             # one that no task shares keeps its variables, and calls what its task calls
-            procedures.append(_copied(procedure, maps[tasks[0] if tasks else 0]))
+            procedures.append(_copied(procedure, maps[its_tasks[0] if its_tasks else 0]))
             continue
-        for task in tasks:
+        for task in its_tasks:
             its = maps[task]
-            if task != tasks[0]:
+            if task != its_tasks[0]:
                 for variable in procedure.values:
                     its.variables[variable] = len(variables)
                     variables.append(program.variables[variable])
