@@ -50,6 +50,7 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
     "TS309": LEVEL,
     "TS310": LEVEL,
     "TS311": LEVEL,
+    "TS318": {**LEVEL, "name": "SIDE", "count": "2"},
     "TS313": {"robot": "tinibot"},
     "TS314": {"unit": "CM", "line": "speed = 45"},
     "TS315": {"robot": "tinibot"},

@@ -16,9 +16,9 @@ Value = int | bool
 class Expression:
     """An operator, a function or a leaf.
 
-    `operator` is NUMBER, TRUTH, VARIABLE, SENSOR, TIME, MINUS, NOT, or the word or sign of the
-    language. `plain` marks a number that stands alone: with or without one minus, and without
-    parentheses.
+    `operator` is NUMBER, TRUTH, VARIABLE, OWN, SENSOR, TIME, MINUS, NOT, or the word or sign of
+    the language. OWN is a value of the DEF around it; its name has both names: `SIDE.SIZE`.
+    `plain` marks a number that stands alone: with or without one minus, and without parentheses.
     """
 
     operator: str
@@ -99,6 +99,7 @@ class Program:
     main: list[Statement]
     defs: dict[str, list[Statement]]
     variables: dict[str, bool]  # name: is it a yes/no value
+    values: dict[str, tuple[str, ...]] = field(default_factory=dict)  # the names of a DEF's values
     tasks: list[Task] = field(default_factory=list)
 
 

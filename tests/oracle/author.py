@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tests.oracle.author_values import LONG, SMALL, WIDE, Tokens, ValueAuthor, plain
+from tests.oracle.author_values import LONG, SMALL, VALUES, WIDE, Tokens, ValueAuthor, plain
 from tests.oracle.words import MAX_CALLS, MAX_DEFS, MAX_NESTING, MAX_STACK, MAX_VARIABLES
 
 
@@ -55,7 +55,7 @@ class Author(ValueAuthor):
 
     def assign(self) -> None:
         targets = [name for name in self.variables if name not in self.counters]
-        if self.names and len(self.variables) < MAX_VARIABLES and self.chance(0.5):
+        if self.names and self.has_room and self.chance(0.5):
             name = self.names.pop(self.rng.randrange(len(self.names)))
             kind = self.chance(0.3)
         elif targets:
@@ -101,11 +101,18 @@ class Author(ValueAuthor):
             if self.depth + blocks <= MAX_NESTING and 1 + calls <= MAX_CALLS - self.in_def
         ]
         if fits:
-            name = self.rng.choice(fits)
-            blocks, calls = self.defs[name]
-            self.deepest = max(self.deepest, self.depth + blocks)
-            self.called = max(self.called, 1 + calls)
-            self.say(name)
+            self.say_call(self.rng.choice(fits))
+
+    def say_call(self, name: str) -> None:
+        blocks, calls = self.defs[name]
+        self.deepest = max(self.deepest, self.depth + blocks)
+        self.called = max(self.called, 1 + calls)
+        values: Tokens = []
+        for kind in self.kinds[name]:
+            size = self.rng.choice((0, 1, 2))
+            values += [",", *(self.yes_no(size) if kind else self.number(size))]
+        empty = ["(", ")"] if self.chance(0.1) else []
+        self.say(name, *(["(", *values[1:], ")"] if values else empty))
 
     def leave(self) -> None:
         """BREAK, mostly inside an IF."""
@@ -181,7 +188,7 @@ class Author(ValueAuthor):
 
     def repeat(self) -> None:
         """WHILE: with a counter, with a wait, or with a BREAK at its end."""
-        counted = self.chance(0.5) and len(self.variables) < MAX_VARIABLES
+        counted = self.chance(0.5) and self.has_room
         counter = f"N{len(self.variables)}"
         if counted and counter not in self.taken:
             self.say(counter, "=", "0")
@@ -247,14 +254,39 @@ class Author(ValueAuthor):
         if not free or len(self.defs) == MAX_DEFS:
             return
         name = free.pop(self.rng.randrange(len(free)))
-        self.say("DEF", name)
+        values = self.own_values()
+        brackets = ["(", *values[1:], ")"] if values or self.chance(0.1) else []
+        self.say("DEF", name, *brackets)
+        names = values[1::2]
+        kinds = {each: self.chance(0.3) for each in names}
+        self.kinds[name] = tuple(kinds.values())
+        self.given += len(names)
         deepest, called = self.deepest, self.called
         self.deepest, self.called, self.in_def = 0, 0, True
+        self.variables |= kinds
         for _ in range(self.rng.randint(0, 4)):
             self.statement()
+        for each in names:
+            del self.variables[each]
         self.defs[name] = (self.deepest, self.called)
         self.deepest, self.called, self.in_def = deepest, called, False
         self.say(self.rng.choice(("END_DEF", "ENDDEF")))
+        if any(kinds.values()):  # the first call decides; its values come from nothing inside
+            self.constant = True
+            self.say_call(name)
+            self.constant = False
+
+    def own_values(self) -> Tokens:
+        """The names in the brackets of a DEF, with a comma before each."""
+        count = self.rng.choice((0, 0, 0, 1, 1, 2, 3, 4))
+        if len(self.variables) + self.given + count > MAX_VARIABLES:
+            return []
+        return [each for name in self.rng.sample(VALUES, count) for each in (",", name)]
+
+    @property
+    def has_room(self) -> bool:
+        """Whether there may be one variable more."""
+        return len(self.variables) + self.given < MAX_VARIABLES
 
     def chain(self) -> None:
         """DEFs that call each other, as deep as they may."""
@@ -264,13 +296,13 @@ class Author(ValueAuthor):
             self.say("DEF", name)
             self.say(before) if before else self.show()
             self.say("END_DEF")
-            self.defs[name] = (0, number)
+            self.defs[name], self.kinds[name] = (0, number), ()
             before = name
         self.say(before)
 
     def crowd(self) -> None:
         """As many variables as there may be."""
-        for number in range(MAX_VARIABLES - len(self.variables)):
+        for number in range(MAX_VARIABLES - len(self.variables) - self.given):
             name = f"MANY{number}"
             self.say(name, "=", str(number))
             self.variables[name] = False

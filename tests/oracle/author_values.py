@@ -10,6 +10,7 @@ from tests.oracle.words import Kit
 Tokens = list[str]
 
 VARIABLES = ("X", "Y", "Z", "COUNT", "SPEED", "D", "A1", "T_2", "NEAR", "FOUND", "I", "OLD__D_")
+VALUES = ("SIZE", "POWER", "K", "ON", "HOW_OFTEN", "W1")  # of DEFs
 PROCEDURES = ("TURN", "LOOK", "DANCE", "SQUARE", "P1", "GO_ON", "BACK_OFF", "TELL", "Q")
 
 TIMES = ("0", "0.02", "0.05", ".1", "0.25", "0.033", "0.5", "1", "1.5", "0.001", "2.0")
@@ -43,6 +44,8 @@ class ValueAuthor:
         self.variables: dict[str, bool] = {}
         self.counters: set[str] = set()
         self.defs: dict[str, tuple[int, int]] = {}  # blocks and DEFs open in it at once
+        self.kinds: dict[str, tuple[bool, ...]] = {}  # the values of each: is it a yes/no value
+        self.given = 0  # values of all DEFs
         self.depth = 0  # blocks open here
         self.deepest = 0
         self.called = 0

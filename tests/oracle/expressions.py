@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import NoReturn
 
 from tests.oracle.ast import Expression, Statement, Task, stack_need
+from tests.oracle.kinds import Text
 from tests.oracle.lexer import Token, thousandths, tokens_of
 from tests.oracle.words import COMPARATORS, FUNCTIONS, HIGHEST, LOWEST, MAX_STACK, Kit, Mistake
 
@@ -21,7 +22,9 @@ class ExpressionParser:
         self.actuators = {device.name: device for device in kit.actuators}
         self.variables: dict[str, bool] = {}
         self.defs: dict[str, list[Statement]] = {}
+        self.text = Text(self.tokens, {each.name for each in kit.sensors if each.is_yes_no})
         self.open_def = ""  # the DEF that is being read
+        self.own: dict[str, bool] = {}  # its values: is it a yes/no value
         self.in_task = False  # a TASK or WHEN is being read
         self.tasks: list[Task] = []
         self.loops = 0  # loops open here, in this DEF or in the program
@@ -204,6 +207,8 @@ class ExpressionParser:
             return Expression("TIME", False)
         if word in self.sensors:
             return Expression("SENSOR", self.sensors[word].is_yes_no, name=word)
+        if word in self.own:
+            return Expression("OWN", self.own[word], name=f"{self.open_def}.{word}")
         if word in self.variables:
             return Expression("VARIABLE", self.variables[word], name=word)
         self.fail(f"{word} has no value here")

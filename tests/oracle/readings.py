@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
-from tests.oracle.ast import Do, Expression, Facts, If, Loop, Statement, sensors_in
+from tests.oracle.ast import Do, Expression, Facts, If, Loop, Program, Statement, sensors_in
+from tests.oracle.words import MAX_DEFS, MAX_VARIABLES
 
 
 def inner_blocks(statement: Statement) -> list[list[Statement]]:
@@ -25,6 +26,36 @@ def depths(body: list[Statement], defs: Mapping[str, Facts]) -> tuple[int, int]:
             facts = defs[statement.name]
             nesting, calling = max(nesting, facts.nesting), max(calling, 1 + facts.calling)
     return nesting, calling
+
+
+def fit(program: Program) -> bool:
+    """Whether a machine has room for the values that each task has of its own."""
+    calls = {name: set(called(body)) for name, body in program.defs.items()}
+    bodies = [program.main, *(task.body for task in program.tasks)]
+    reached = [set(called(body)) for body in bodies]
+    owning: set[str] = set()
+    for name in program.defs:  # calls only look back
+        if program.values[name] or calls[name] & owning:
+            owning.add(name)
+    for names in reached:
+        for name in reversed(program.defs):
+            if name in names:
+                names |= calls[name]
+    variables, defs = len(program.variables), 0
+    for name in program.defs:
+        users = sum(name in names for names in reached) if name in owning else 1
+        variables += max(1, users) * len(program.values[name])
+        defs += max(1, users)
+    return variables <= MAX_VARIABLES and defs <= MAX_DEFS
+
+
+def called(body: list[Statement]) -> Iterator[str]:
+    """The DEFs that a body calls itself."""
+    for statement in body:
+        if isinstance(statement, Do) and statement.word == "CALL":
+            yield statement.name
+        for inner in inner_blocks(statement):
+            yield from called(inner)
 
 
 def settle_readings(

@@ -75,6 +75,11 @@ class Robot:
         except Ending as ending:
             self.note(str(ending))
 
+    @property
+    def own(self) -> dict[str, Value]:
+        """The values of DEFs in the task whose turn it is."""
+        raise NotImplementedError
+
     def play(self) -> None:
         """Does what the program says, to its end."""
         raise NotImplementedError
@@ -112,7 +117,7 @@ class Robot:
             (value,) = values
             assert value is not None
             if word == "=":
-                self.variables[statement.name] = value
+                (self.own if "." in statement.name else self.variables)[statement.name] = value
             elif word == "SHOW":
                 self.note(f"SHOW {written(value)}")
             else:
@@ -145,6 +150,8 @@ class Robot:
             return expression.value
         if operator == "VARIABLE":
             return self.variables[expression.name]
+        if operator == "OWN":
+            return self.own[expression.name]
         if operator == "SENSOR":
             return self.kept[expression.name]
         if operator == "TIME":

@@ -10,6 +10,7 @@ POWERS = ("0", "10", "20", "50", "60", "100")
 SIDES = ("-50", "0", "20", "40")
 SENSORS = ("DISTANCE", "LIGHT_L")
 VARIABLES = ("A", "N")
+YES_NO = "Q"  # a value of a DEF
 MOST_TASKS = 4
 DEPTH = 3  # blocks of one task
 
@@ -19,17 +20,22 @@ class TaskAuthor:
         self.rng = rng
         self.ways = ways  # some moves go by centimetres or degrees
         self.lines: list[str] = ["A = 0;N = 0"]
-        self.defs: list[str] = []
+        self.defs: dict[str, list[str]] = {}  # the names of the values of each
+        self.own: list[str] = []  # those of the DEF that is being written
         self.loops = 0
 
     def program(self) -> str:
         """The main task, with DEFs and 1 to 4 tasks among its instructions."""
         rng = self.rng
-        for number in range(rng.choice((0, 0, 1, 2))):
-            self.lines.append(f"DEF D{number}")
+        for number in range(rng.choice((0, 0, 1, 2, 2))):
+            name, self.own = f"D{number}", rng.sample(("V", "U", YES_NO), rng.choice((0, 1, 1, 2)))
+            brackets = f"({', '.join(self.own)})" if self.own else ""
+            self.lines.append(f"DEF {name}{brackets}")
             self.body(rng.randint(1, 2), DEPTH - 1)
             self.lines.append("END_DEF")
-            self.defs.append(f"D{number}")
+            self.defs[name], self.own = self.own, []
+            if YES_NO in self.defs[name]:  # the first call says what it is
+                self.lines += ["IF(FALSE)", self.call(name), "ENDIF"]
         tasks = rng.randint(1, MOST_TASKS)
         before = sorted(rng.randint(0, 3) for _ in range(tasks))
         for place in range(4):
@@ -69,12 +75,13 @@ class TaskAuthor:
         elif kind < 0.74:
             self.lines.append(f"SHOW({self.number()})")
         elif kind < 0.80:
-            self.lines.append(f"{rng.choice(VARIABLES)} = {self.number()}")
+            name = rng.choice((*VARIABLES, *self.own))
+            self.lines.append(f"{name} = {self.value(name)}")
         elif kind < 0.83:
             self.lines.append(rng.choice(SENSORS))
-        elif kind < 0.86 and self.defs:
-            self.lines.append(rng.choice(self.defs))
-        elif kind < 0.88 and self.loops:
+        elif kind < 0.88 and self.defs:
+            self.lines.append(self.call(rng.choice(list(self.defs))))
+        elif kind < 0.90 and self.loops:
             self.lines.append("BREAK")
         elif depth < DEPTH:
             self.block(depth)
@@ -114,14 +121,26 @@ class TaskAuthor:
         self.loops -= 1
         self.lines.append(f"END_{word}")
 
+    def call(self, name: str) -> str:
+        values = ", ".join(map(self.value, self.defs[name]))
+        return f"{name}({values})" if values else name
+
+    def value(self, name: str) -> str:
+        return self.condition() if name == YES_NO else self.number()
+
     def number(self) -> str:
         rng = self.rng
+        numbers = [name for name in self.own if name != YES_NO]
+        if numbers and rng.random() < 0.5:
+            return rng.choice(numbers)
         return rng.choice(
             ("TIME", "A", "N", "A + 1", "N - 1", "DISTANCE", "RANDOM(0, 3)", str(rng.randint(0, 9)))
         )
 
     def condition(self) -> str:
         rng = self.rng
+        if YES_NO in self.own and rng.random() < 0.5:
+            return rng.choice((YES_NO, f"NOT {YES_NO}"))
         begin = rng.choice((0, 0.02, 0.05, 0.1, 0.2))
         return rng.choice(
             (

@@ -46,6 +46,7 @@ class Runner:
     insists: bool = False  # a WHEN, until a look finds FALSE
     robbed_at: int | None = None  # a higher task has taken the motors then
     was_stopped: bool = False  # an S has ended its move
+    own: dict[str, Value] = field(default_factory=dict)  # the values of DEFs, `SIDE.SIZE`
 
     @property
     def wants(self) -> bool:
@@ -75,6 +76,10 @@ class TaskRobot(Robot):
     is_slow: IsSlow = always_ready
     every_ms: int = 1  # it goes on at multiples of this
     was_slow: bool = False  # a reading was not ready in this round
+
+    @property
+    def own(self) -> dict[str, Value]:
+        return self.who.own
 
     def play(self) -> None:
         whens = [task for task in self.program.tasks if task.condition is not None]
@@ -273,10 +278,15 @@ class TaskRobot(Robot):
 
     def doing(self, statement: Do) -> Turns:
         word, me = statement.word, self.who
-        if word == "CALL":
-            yield from self.body(self.program.defs[statement.name])
-            return
         yield from self.reading(statement.reads)
+        if word == "CALL":
+            name = statement.name
+            values = self.values(statement)
+            for its, value in zip(self.program.values[name], values, strict=True):
+                assert value is not None
+                me.own[f"{name}.{its}"] = value
+            yield from self.body(self.program.defs[name])
+            return
         if word == "READ":
             yield from self.reading((statement.name,))
         elif word in (*MOVES, "W", "BEEP", "M", "S"):

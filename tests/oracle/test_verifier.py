@@ -145,7 +145,7 @@ def test_no_device_has_a_number_above_31() -> None:
             assert said == {0 if number == 31 else RULES["BAD_OPERAND"][0]}
 
 
-READS = ("words", "lexer", "ast", "readings", "expressions", "text", "robot", "tasks",
+READS = ("words", "lexer", "kinds", "ast", "readings", "expressions", "text", "robot", "tasks",
          "interpreter")  # fmt: skip
 CHECKS = ("spec_tables", "verifier", "arithmetic", "machine")
 

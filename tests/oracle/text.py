@@ -22,7 +22,7 @@ from tests.oracle.ast import (
     sensors_in,
 )
 from tests.oracle.expressions import ExpressionParser
-from tests.oracle.readings import depths, settle_readings
+from tests.oracle.readings import depths, fit, settle_readings
 from tests.oracle.words import (
     ALIASES,
     BLOCK_WORDS,
@@ -30,6 +30,7 @@ from tests.oracle.words import (
     MAX_DEFS,
     MAX_NESTING,
     MAX_TASKS,
+    MAX_VALUES,
     MAX_VARIABLES,
     MOVES,
     RANGES,
@@ -69,7 +70,11 @@ class Parser(ExpressionParser):
             self.fail("blocks nested too deep in all tasks together")
         if sum(each.calling for each in together) > MAX_CALLS:
             self.fail("DEFs called too deep in all tasks together")
-        return Program(main, self.defs, self.variables, self.tasks)
+        values = {name: its.values for name, its in self.text.defs.items()}
+        program = Program(main, self.defs, self.variables, values, self.tasks)
+        if not fit(program):
+            self.fail("no room for what each task has of its own")
+        return program
 
     def settle(self, body: list[Statement], defs: Mapping[str, Facts]) -> Facts:
         """Settles the readings of the program or of a DEF and checks its depths."""
@@ -160,11 +165,31 @@ class Parser(ExpressionParser):
         if len(self.defs) == MAX_DEFS:
             self.fail("too many DEFs")
         self.at += 1
+        if self.accept("("):
+            self.names(name)
         self.open_def = name
         body = self.inner_block("END_DEF")
         self.at += 1
         self.open_def = ""
+        self.own = {}
         self.defs[name] = body
+
+    def names(self, of: str) -> None:
+        """The names in the brackets of a DEF."""
+        while not self.next_is(")"):
+            if self.own:
+                self.expect(",")
+            name = self.token.text
+            if self.token.kind != "word" or name in RESERVED:
+                self.fail("a value of a DEF needs a name")
+            devices = (*self.sensors, *self.actuators)
+            if name in (*self.own, *devices, *self.text.defs) or self.text.assigned_outside(name):
+                self.fail(f"the name {name} is taken")
+            self.own[name] = self.text.is_yes_no(name, self.text.defs[of])
+            self.at += 1
+        self.expect(")")
+        if len(self.own) > MAX_VALUES:
+            self.fail("too many values of a DEF")
 
     def task(self, word: str) -> None:
         """TASK … END_TASK and WHEN(c) … END_WHEN: at the top level only."""
@@ -237,6 +262,10 @@ class Parser(ExpressionParser):
                 self.fail(f"{name} is not a variable")
             # The expression comes first: it may not use the variable that begins here.
             value = self.expression()
+            if name in self.own:
+                if self.own[name] != value.is_yes_no:
+                    self.fail(f"{name} has the other kind")
+                return self.checked(Do("=", f"{self.open_def}.{name}", (value,)))
             if self.variables.setdefault(name, value.is_yes_no) != value.is_yes_no:
                 self.fail(f"{name} has the other kind")
             if len(self.variables) > MAX_VARIABLES:
@@ -254,8 +283,20 @@ class Parser(ExpressionParser):
         if name in self.sensors:
             return Do("READ", name)
         if name in self.defs:
-            return Do("CALL", name)
+            return self.call(name)
         self.fail(f"{name} is not an instruction here")
+
+    def call(self, name: str) -> Do:
+        """A call, with a value for each name in the brackets of the DEF."""
+        its = self.text.defs[name]
+        if not its.values and not self.next_is("("):
+            return Do("CALL", name)
+        arguments = self.arguments(len(its.values))
+        for value, argument in zip(its.values, arguments, strict=True):
+            assert argument is not None
+            if argument.is_yes_no != self.text.is_yes_no(value, its):
+                self.fail(f"{value} has the other kind")
+        return self.checked(Do("CALL", name, arguments))
 
     def checked(self, statement: Do) -> Do:
         """The same instruction, if the stack holds its values."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 
 import pytest
 
@@ -95,7 +96,7 @@ def test_nothing_of_a_broken_text_is_lost(first: int) -> None:
         rng = random.Random(seed)
         theirs, kit = KITS[seed % len(KITS)]
         text = oracle_programs.broken(rng, oracle_programs.program(rng, theirs))
-        if "~" in text or "." in text:  # checksums are made anew, and numbers are written shorter
+        if re.search(r"[~.]|\b0\d", text):  # checksums are made anew, and numbers are shorter
             print_blocks(read(text, kit))
         else:
             assert words(print_blocks(read(text, kit)).text) == words(text), text

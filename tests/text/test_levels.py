@@ -84,6 +84,24 @@ def test_an_uno_lacks_tasks_and_ways() -> None:
         assert told(text, LEVELS[level]) == []
 
 
+VALUES = "DEF A(X); SHOW(X); END_DEF; DEF C; A({}); END_DEF; {}"
+
+
+@pytest.mark.parametrize("level", ["mega", "esp32"])
+def test_which_values_of_defs_a_reader_takes(level: str) -> None:
+    both = "TASK; C; END_TASK; C; A({})"
+    said = {"name": "A"}
+    assert told(VALUES.format(1, "C; A(2); TASK; S; END_TASK"), LEVELS[level]) == []
+    assert told(VALUES.format(1, "C; A(2)"), UNO) == [
+        ("TS308", word, {"word": word}) for word in ("DEF", "END_DEF") * 2
+    ]
+    several, yes_no = {**said, "count": "2"}, {**said, "yes_no": "X"}
+    assert told(VALUES.format(1, both.format(2)), LEVELS[level]) == [("TS318", "DEF", several)]
+    assert told(VALUES.format("TRUE", "C"), LEVELS[level]) == [("TS318", "DEF", yes_no)]
+    assert told(VALUES.format("X1 > 2", both.format("TRUE")).replace("DEF", "X1 = 1; DEF", 1),
+                LEVELS[level]) == [("TS318", "DEF", yes_no), ("TS318", "DEF", several)]  # fmt: skip
+
+
 def test_code_may_have_255_bytes() -> None:
     fits = "S;" * CODE_BYTES
     assert told(fits) == []
@@ -130,7 +148,8 @@ def most(text: str, level: Level = UNO) -> int:
         ("IF(TRUE);ENDIF", 12 + 5),
         ("IF(TRUE);S;ENDIF;IF(TRUE);S;ENDIF", 8 + 9 + 5),
         ("LOOP(2);S;END_LOOP", 4 + 9 + 8),
-        ("DEF AB;END_DEF", 2 + 8 + 9 + 7),
+        ("DEF AB;END_DEF", 2 + 11 + 9 + 7),
+        ("DEF AB(XY);END_DEF", 2 + 11 + 9 + 3 + 7),
         ("SHOW(TRUE AND TRUE)", 3 + 3 + 4),
         ("TASK;END_TASK", 3 + 9 + 8),
         ("WHEN(TRUE);END_WHEN", 5 + 9 + 8),
@@ -160,7 +179,9 @@ def test_the_reader_and_the_compiler_count_the_same_code(first: int) -> None:
         reader.program()
         assert found.program is not None
         assert reader.length == plain_code(found.program).length, found.source.text
-        names = [*reader.variables, *(name + 5 * "?" for name in reader.defs)]
+        own = (name for each in found.program.procedures for name in each.values)
+        names = [*reader.variables, *(name + 8 * "?" for name in reader.defs)]
+        names += (found.program.variables[k] for k in own)
         assert reader.used == sum(1 + len(name) for name in names), found.source.text
 
 

@@ -179,7 +179,20 @@ WRONG = {
     "F(1°,60)": ("RESERVED", 4), "F(-1 CM,60)": ("RANGE", 4), "X=1cm": ("RESERVED", 4),
     "F(1,60 CM)": ("RESERVED", 8), "F(1 CM)": ("COUNT", 5), "F(1 CM+1,60)": ("CLOSE", 7),
     "F((1 CM),60)": ("CLOSE", 6), "F(TRUE CM,60)": ("WANTS_NUMBER", 3), "W(1 CM)": ("RESERVED", 5),
-    "F(5X,60)": ("NUMBER", 3),
+    "F(5X,60)": ("NUMBER", 3), "DEF A(X);END_DEF;A": ("OPEN", 19), "DEF A(5)": ("RESERVED", 7),
+    "DEF A(X;END_DEF": ("CLOSE", 7), "DEF A(X P)": ("COMMA", 9), "DEF A(X,)": ("VALUE", 7),
+    "DEF A(X,X)": ("TAKEN", 9), "DEF A(A)": ("TAKEN", 7), "X=1;DEF A(X)": ("TAKEN", 11),
+    "DEF A(X);END_DEF;X=1": ("TAKEN", 18), "DEF A(X);END_DEF;DEF X": ("TAKEN", 22),
+    "DEF A(X);END_DEF;SHOW(X)": ("UNKNOWN_VALUE", 23), "DEF A(X);END_DEF;X": ("UNKNOWN_WORD", 18),
+    "DEF A(X);END_DEF;A(TRUE)": ("WANTS_NUMBER", 20), "DEF A(X);A(1)": ("UNKNOWN_WORD", 10),
+    "DEF A(X);END_DEF;A(1 CM)": ("RESERVED", 22), "DEF A(X);END_DEF;A(1,2)": ("COUNT", 20),
+    "DEF A(X,P);END_DEF;A(1)": ("COUNT", 22), "DEF A;END_DEF;A(1)": ("COUNT", 17),
+    "DEF A(X);END_DEF;A()": ("VALUE", 19), "DEF A(P,Q,T,U,V)": ("LIMIT", 15),
+    "DEF A(X);X=TRUE": ("KIND", 12), "DEF A(X,S)": ("RESERVED", 9),
+    "DEF A(X,DISTANCE)": ("TAKEN", 9),
+    "DEF A(X);END_DEF;TASK;A(1);END_TASK;A(2)": ("ONE_TASK", 37),
+    "DEF A(X);END_DEF;A(1);WHEN(TRUE);A(2)": ("ONE_TASK", 34),
+    "DEF A(X);END_DEF;DEF C;A(1);END_DEF;TASK;C;END_TASK;TASK;A(2)": ("ONE_TASK", 58),
     "ROUND(1)": ("RESERVED", 1), "SI|F": ("OPEN", 5), "SI|F // note": ("OPEN", 6),
     "X = 1 <=": ("VALUE", 9), "SB": ("SETUP", 3), "FO\b": ("OPEN", 2),
 }  # fmt: skip
@@ -199,6 +212,8 @@ RIGHT = (
     "X = TRUE; Y = NOT X <> FALSE",
     "DEF TURN; R(90 DEG, 60); END_DEF; LOOP(2); TURN; END_LOOP",
     "TASK; F(20cm, 60); END_TASK; WHEN(DISTANCE < 9); S; END_WHEN",
+    "DEF GO(X, Y); F(X CM, Y); X = X + Y; END_DEF; GO(DISTANCE, 2); GO(-(1 + 2), 5)",
+    "DEF NO(); END_DEF; NO(); NO",
     "DISTANCE; SHOW(ROUND(DISTANCE, 0))",
     "IF(LIGHT_R > 5); S; ELSEIF(TRUE); M(1, 2); ELSE; BEEP(1, 440); ENDIF",
     "WHILE(RANDOM(1, 6) <= 3); BREAK; END_WHILE; W(FOREVER) UNTIL(TIME % 2 = 1 AND FALSE)",
@@ -308,6 +323,10 @@ def chain(calls: int) -> str:
         (chain(5) + ";TASK;A2;END_TASK", chain(5) + ";TASK;A3;END_TASK"),
         ("".join(f"DEF A{k};END_DEF;" for k in range(16)),
          "".join(f"DEF A{k};END_DEF;" for k in range(17))),
+        ("".join(f"DEF A{k}(X,P);END_DEF;" for k in range(15)) + "X1=1;X2=2",
+         "".join(f"DEF A{k}(X,P);END_DEF;" for k in range(15)) + "X1=1;X2=2;X3=3"),
+        ("DEF A(P,Q,T,U);END_DEF;A(1,2,3," + "(1+" * 11 + "1" + ")" * 11 + ")",
+         "DEF A(P,Q,T,U);END_DEF;A(1,2,3," + "(1+" * 13 + "1" + ")" * 13 + ")"),
     ],
 )  # fmt: skip
 def test_limits_of_the_language(right: str, wrong: str) -> None:
@@ -425,6 +444,28 @@ def test_an_if_makes_surely_read_what_all_of_its_arms_do() -> None:
     assert readings_of(both.replace("ELSE;", "")) == ["READ_2"] * 3
     assert readings_of("IF(TRUE);DISTANCE;ELSE;S;ENDIF;X=DISTANCE") == ["READ_2"] * 2
     assert readings_of("IF(TRUE);S;ELSE;DISTANCE;ENDIF;X=DISTANCE") == ["READ_2"] * 2
+
+
+def test_the_values_of_a_call_are_set_one_after_the_other() -> None:
+    code = code_of("DEF A(X,P);X=P;SHOW(X);END_DEF;DEF C(X);A(X,LIGHT_L);END_DEF;"
+                   "C(DISTANCE)")  # fmt: skip
+    assert [" ".join(row.split()) for row in code] == [
+        "DEF -> 0007", "PUSH_VAR_1", "SET_VAR_0", "PUSH_VAR_0", "SHOW", "RETURN",
+        "DEF -> 0011", "READ_1", "PUSH_VAR_2", "SET_VAR_0", "PUSH_SENSOR_1", "SET_VAR_1",
+        "CALL -> 0002", "RETURN", "READ_2", "PUSH_SENSOR_2", "SET_VAR_2", "CALL -> 0009",
+    ]  # fmt: skip
+
+
+def test_tasks_may_have_different_defs_with_values() -> None:
+    begin = "DEF A(X);END_DEF;DEF C(X);A(X);END_DEF;DEF G(X);END_DEF;"
+    assert one(begin + "A(1);C(2);TASK;G(1);END_TASK;A(3)").is_program
+    assert one(begin + "TASK;G(1);G(2);END_TASK;WHEN(TRUE);C(1);END_WHEN").is_program
+    assert one(begin + "TASK;C(1);END_TASK;WHEN(TRUE);G(1);END_WHEN;G(3)").problem == "ONE_TASK"
+
+
+def test_a_call_goes_on_in_the_next_line() -> None:
+    found = read_lines(KIT, b"DEF A(X,\nP)\nF(X,P)\nEND_DEF;A(1\n+1,\n50)\n")
+    assert found[-1] == one("DEF A(X,P);F(X,P);END_DEF;A(1+1,50)")
 
 
 # -- backspace ----------------------------------------------------------------------------------

@@ -29,7 +29,9 @@ from tiniscript.base.words import WORDS
 from tiniscript.bytecode.verify import verify
 from tiniscript.codegen.text.line import plain_code
 from tiniscript.codegen.text.memory import Reader as Model
+from tiniscript.diagnostics.codes import LEVEL_VALUES
 from tiniscript.library.compiling import analyzed
+from tiniscript.library.text_fitting import misfits
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS, LONGEST_WORD, UNREAD
 from tiniscript.syntax.lexer import scan
 from tiniscript.vm.runner import run
@@ -63,6 +65,8 @@ def is_right(data: bytes, kit: Kit) -> bool:
         return False
 
 
+# What a robot says of a right text whose DEFs have yes/no values, or values for several tasks.
+NO_VALUES = ("ONE_TASK", "WANTS_NUMBER", "WANTS_YES_NO", "KIND", "COMPARE", "FULL")
 CONTROL = re.compile(rb"[\x01-\x07\x0b\x0c\x0e-\x1f]")
 
 
@@ -77,6 +81,9 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
         # a word with fixed values is right where `line_of` writes it out
         assert answer.problem in ("FULL", "RESERVED"), f"{answer}\n{data!r}"
         return None
+    if right and lacks_values(data, kit):
+        assert answer.problem in NO_VALUES, f"{answer}\n{data!r}"
+        return None
     if right:
         check_code(data, kit, answer, room)
     if answer.problem == "FULL":
@@ -86,6 +93,14 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
     if answer.is_program:
         verify(answer.code, len(kit.sensors), len(kit.actuators))
     return answer
+
+
+def lacks_values(data: bytes, kit: Kit) -> bool:
+    """Whether `--text-level` says of a right text that its DEFs have values no robot reads."""
+    found = compile_text(decode(data), kit)
+    assert found.program is not None
+    said = misfits(found.source, found.program, kit, LEVELS["mega"])
+    return any(each.code is LEVEL_VALUES for each in said)
 
 
 def check_code(data: bytes, kit: Kit, answer: Answer, room: int) -> None:
@@ -180,6 +195,9 @@ def soup(seed: int) -> tuple[Kit, bytes]:
     frame = rng.choice(("{}", "X=1;{}", "IF({});ENDIF", "F({})", "X={}", "SHOW({})",
                         "LOOP(2);{};END_LOOP", "DEF GO;{};END_DEF;GO", "LED({})", "GRIPPER({})",
                         "F(1,{})UNTIL(TOUCH)", "BEEP({})", "M({},{})", "F({} CM,60)", "R({}°,60)",
+                        "DEF GO(X);{};END_DEF;GO({})", "DEF GO({});END_DEF",
+                        "DEF GO(X,Y);F(X,Y);END_DEF;GO({},{})",
+                        "DEF A(X);END_DEF;DEF GO(Y,X);{};END_DEF",
                         "TASK;{};END_TASK", "WHEN({});S;ENDWHEN", "TASK;ENDTASK;{}"))  # fmt: skip
     text = frame.format(*(["".join(t + " " * rng.randint(0, 1) for t in tokens)] * 2))
     return KITS[1][1], text.encode()

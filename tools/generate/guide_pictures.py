@@ -48,7 +48,7 @@ DRIVES: dict[str, tuple[str, str, Drives]] = {  # the guide, how its program beg
     "faster.svg": ("language.en.md", "SPEED = 40", ((LANE, 1000), (LANE, 2000), (LANE, 3000))),
     "if.svg": ("language.en.md", "SI|IF(DISTANCE < 10)",
                ((before(8), 2000), (before(20), 2000), (before(60), 2000))),
-    "def.svg": ("language.en.md", "SIZE = 0", ((floor(75, 85, 18, 68, 0), 5000),)),
+    "def.svg": ("language.en.md", "DEF SIDE(SIZE)", ((floor(75, 85, 18, 68, 0), 5000),)),
     "dice.svg": ("language.en.md", "SB|LOOP(FOREVER)\n  F(FOREVER, 70)", ((OBSTACLES, 20_000),)),
     "course.svg": ("monday.en.md", "SB|LOOP(FOREVER)", ((OBSTACLES, 20_000),)),
 }  # fmt: skip

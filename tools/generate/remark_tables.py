@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.codegen.text.problems import PROBLEMS, REMARKS, said
+from tiniscript.codegen.text.problems import OF_DEFS, PROBLEMS, REMARKS, said
 from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answered, language_number
 from tiniscript.robots.text_levels import LEVELS
@@ -84,7 +84,8 @@ def _unsaid() -> set[tuple[str, str]]:
     on its wheels it reads no text.
     """
     levels = {("remark", f"LEVEL_{name.upper()}") for name in LEVELS if name != SMALLEST}
-    words = {("problem", name) for name in PROBLEMS if name in LEVELS[SMALLEST].lacks}
+    assert "DEF" in LEVELS[SMALLEST].lacks
+    words = {("problem", name) for name in OF_DEFS}
     faults = {("fault", name) for _, name, _ in FAULTS if name.startswith("STUCK")}
     return levels | words | faults
 

@@ -7,6 +7,7 @@ VARIABLES = 32
 COUNTERS = 16  # counted loops open at once, those around a call included
 CALLS = 8
 DEFS = 16
+PARAMETERS = 4  # of a DEF
 TASKS = 4  # beside the main one
 NEST_WORDS = 32  # what a verifier remembers of open blocks: a word for an IF, two for a loop
 JOINS = 16  # AND_THEN and OR_ELSE open at once

@@ -8,7 +8,6 @@ Plain code is what one pass over the text can emit, as a robot does that reads t
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import limited, whole
@@ -47,18 +46,21 @@ def lower(program: ir.Program, plain: bool = False) -> Lowered:
 
     `plain` code is made from a program as it is written, not from an optimised one.
     """
-    lowering = _Lowering(plain, [each.name for each in program.procedures])
-    called = (each for each in program.procedures if each.is_called)
-    waiting: list[ir.Procedure | ir.Task] = [*called, *program.tasks]
+    lowering = _Lowering(plain, len(program.procedures))
+    called = (k for k, each in enumerate(program.procedures) if each.is_called)
+    waiting: list[tuple[ir.Procedure | ir.Task, int | None]] = [
+        *((program.procedures[k], k) for k in called),
+        *((task, None) for task in program.tasks),
+    ]
     if plain:
-        waiting.sort(key=lambda each: each.span)
+        waiting.sort(key=lambda each: each[0].span)
     waiting.reverse()
     for statement in program.body:
-        while waiting and (not plain or waiting[-1].span < statement.span):
-            lowering.routine(waiting.pop())
+        while waiting and (not plain or waiting[-1][0].span < statement.span):
+            lowering.routine(*waiting.pop())
         lowering.statement(statement)
     while waiting:
-        lowering.routine(waiting.pop())
+        lowering.routine(*waiting.pop())
     return _assembled(lowering.out)
 
 
@@ -68,20 +70,22 @@ class _LoopEnd(NamedTuple):
 
 
 class _Lowering:
-    def __init__(self, plain: bool, procedures: Sequence[str]) -> None:
+    def __init__(self, plain: bool, procedures: int) -> None:
         self.plain = plain
-        self.procedures = procedures
         self.out = Emitter(plain)
-        self.entries: dict[str, int] = {}  # the label of each DEF's first instruction
+        # the label of each DEF's first instruction
+        self.entries = [self.out.new_label() for _ in range(procedures)]
         self.loops: list[_LoopEnd] = []
 
-    def routine(self, routine: ir.Procedure | ir.Task) -> None:
+    def routine(self, routine: ir.Procedure | ir.Task, number: int | None) -> None:
+        """Add a task, or the DEF of this number."""
         out = self.out
         out.span = routine.span
         end = out.new_label()
         if isinstance(routine, ir.Procedure):
+            assert number is not None
             out.add("DEF", to=end)
-            self.entries[routine.name] = out.mark_here()
+            out.mark(self.entries[number])
             last = "RETURN"
         elif routine.look is None:
             out.add("TASK", to=end)
@@ -125,7 +129,7 @@ class _Lowering:
             loop = self.loops[-1]
             out.add("BREAK_LOOP" if loop.counts else "BREAK", to=loop.label)
         elif isinstance(statement, ir.Call):
-            out.add("CALL", to=self.entries[self.procedures[statement.procedure]])
+            out.add("CALL", to=self.entries[statement.procedure])
         elif isinstance(statement, ir.Motors):
             self.motors(statement)
         elif isinstance(statement, ir.Beep):

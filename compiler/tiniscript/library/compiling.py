@@ -165,6 +165,10 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
     program = compiled.program
     if program is None or not compiled.is_right:
         return compiled
+    if program.tasks and any(each.values for each in program.procedures):
+        from tiniscript.semantics.task_copies import separated
+
+        program = separated(program)
     program = optimized(program) if optimize else program
     lowered = lower(program)
     if len(lowered.code) > CODE_BYTES:

@@ -13,7 +13,7 @@ from tiniscript.codegen.text.memory import MOST_BRACKETS, Reader
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.robots.text_levels import CODE_BYTES, LONGEST_WORD, Level
-from tiniscript.semantics.ir import Program
+from tiniscript.semantics.ir import Program, are_yes_no
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse
 
@@ -27,6 +27,8 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
         for token in tokens
         if token.kind is WORD and (token.text in level.lacks or len(token.text) > LONGEST_WORD)
     ]
+    if "DEF" not in level.lacks and any(each.values for each in program.procedures):
+        found += _values(program, kit, level)
     plain = plain_code(program)
     limit = min(CODE_BYTES, level.room)
     if plain.length > limit:
@@ -42,6 +44,21 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
         if need.bytes > level.room:
             found.append(_too_many(codes.LEVEL_ROOM, need.span, level, reader.most, level.room))
             break
+    return found
+
+
+def _values(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
+    """Return each DEF that has a value other than a number, or values for several tasks."""
+    from tiniscript.semantics.task_copies import users
+
+    found, yes_no = [], are_yes_no(program, kit)
+    for procedure, tasks in zip(program.procedures, users(program), strict=True):
+        said = {"level": level.name, "name": procedure.name}
+        place = Span(procedure.span.start, procedure.span.start + len("DEF"))
+        for name in (program.variables[k] for k in procedure.values if yes_no[k]):
+            found.append(Diagnostic(codes.LEVEL_VALUES, place, {**said, "yes_no": name}))
+        if procedure.values and tasks > 1:
+            found.append(Diagnostic(codes.LEVEL_VALUES, place, {**said, "count": str(tasks)}))
     return found
 
 

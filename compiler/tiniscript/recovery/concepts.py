@@ -9,7 +9,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, lru_cache
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
@@ -205,6 +205,7 @@ class _OfLine(NamedTuple):
     in_brackets: set[str]
     rows: set[tuple[str, ...]]
     parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets behind its own
+    pairs: set[tuple[str, str]]  # the name of a DEF, or one and that of a value
     begun: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
     called: set[str]  # words that are an instruction alone
     compared: set[str]  # words beside a sign that compares them with a number
@@ -216,8 +217,9 @@ class _OfLine(NamedTuple):
 def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
     begun, counted, left = _begun_in(line)
     found = _OfLine(
-        set(), set(), set(), set(), {}, begun, _alone_in(line), _compared_in(line), counted, left
-    )
+        set(), set(), set(), set(), {}, set(), begun, _alone_in(line), _compared_in(line), counted,
+        left,
+    )  # fmt: skip
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
     for at, (token, after) in enumerate(pairwise([*line, made(";")]), 2):
@@ -230,22 +232,30 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
             found.variables.add(token.text)
         is_def = "DEF" in (token.text, concept_of(token.text))
         is_def = is_def or (token.text == "TASK" and at == len(line))  # a name that it needs not
+        is_def = is_def or (token.text == "TO" and at == 2 and bool(_of_logo(line[at:])))
         if is_def and after.kind is WORD and after.text not in WORDS:
             if not said_of(after.text, "main") and concept_of(after.text) != "START":
                 found.defs.add(after.text)
                 end = closed(line, at)
-                given = texts(line[at + 1 : end - 1 : 2]) if end else ()
+                given = texts(line[at + 1 : end - 1 : 2]) if end else _of_logo(line[at:])
                 if all(each.isidentifier() and each not in WORDS for each in given):
                     found.parameters[after.text] = given
-                    found.variables.update(given)
     if len(head) > 2 and "DEF" in (head[0].text, concept_of(head[0].text)):
         row, names = _name_in_words(head[1:], ";"), found.defs
+        if len(row) == 2:
+            found.pairs.add((row[0], row[1]))
     else:
         row, names = _name_in_words(head, "="), found.variables
     if row:
         found.rows.add(row)
         names.add(joined(row))
     return found
+
+
+def _of_logo(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
+    """Return the names of `:SIZE :SPEED`, none where anything else is there."""
+    signs, names = texts(tokens[::2]), texts(tokens[1::2])
+    return names if {*signs} == {":"} and len(signs) == len(names) else ()
 
 
 def _alone_in(line: tuple[Lexeme, ...]) -> set[str]:
@@ -303,19 +313,27 @@ class Names:
         self.in_brackets = {name for each in told for name in each.in_brackets}
         self.rows = {row for each in told for row in each.rows}
         self.parameters = {k: its for each in told for k, its in each.parameters.items()}
+        for name, value in {pair for each in told for pair in each.pairs}:
+            if value in self.in_brackets:  # `DEF LADO X`, and `F(X, 50)` below
+                self.parameters[name] = (value,)
+                self.rows.discard((name, value))
         self.begun = {word: block for each in told for word, block in each.begun.items()}
         if sum(each.left for each in told) < 0:
             self.begun |= {word: "LOOP" for each in told for word in each.counted}
         self.variables = {name for each in told for name in each.variables}
+        self.variables.update(chain.from_iterable(self.parameters.values()))
         self.defs = {name for each in told for name in each.defs} - {row[0] for row in self.rows}
         self.called = frozenset(self.defs & {word for each in told for word in each.called})
-        values, instructions = self.sensors | self.variables, self.sensors | self.defs
-        self.known = Known(values, instructions, frozenset(self.actuators))
+        counts = {name: len(self.parameters.get(name, ())) for name in self.defs}
+        alone = {name for name, count in counts.items() if not count}
+        calls = {*counts.items(), *((name, 1) for name in self.actuators)}
+        values, instructions = self.sensors | self.variables, self.sensors | alone
+        self.known = Known(frozenset(values), instructions, frozenset(calls))
         # What nobody knows, and is compared, is no reason not to read what is around it.
         compared = {name for each in told for name in each.compared if name not in WORDS}
         meant = {name: self.meant(name, NEAR) for name in compared - values}
         self.strange = {name for name, its in meant.items() if not its or its in CALLED}
-        self.read_as = self.known._replace(values=values | self.strange)
+        self.read_as = self.known._replace(values=frozenset(values | self.strange))
         words = (frozenset(each) for each in (self.defs, self.in_brackets, self.rows))
         self._content = (
             self.read_as,
@@ -360,7 +378,7 @@ class Names:
 
     def takes(self, word: str) -> bool:
         """Whether a word is an instruction with values in brackets."""
-        return word in CALLED or word in self.actuators
+        return word in CALLED or word in self.actuators or bool(self.parameters.get(word))
 
     def label(self, token: Lexeme) -> str:
         """Return all classes of a token, as one text that a pattern finds them in."""
@@ -399,7 +417,8 @@ class Names:
         if text in self.read_as.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
             found.append("@val")
         if text in self.defs:
-            found += ["@def", "@start", "@startm", "@close"]
+            own = ["@defw", "@callw"] if self.takes(text) else ["@step", "@close"]
+            found += ["@def", "@start", "@startm", *own]
         is_device = word in self.actuators or text in self.actuators
         if (word in DONE or is_device) and (not is_name or is_device):
             found += ["@start", *(["@startm"] if word != "BEEP" else [])]

@@ -10,7 +10,8 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import names_found
 from tiniscript.recovery.concepts import plain
 
-_COUNTED = (codes.ARGUMENT_COUNT, codes.OUT_OF_RANGE)  # what they found is a calculated number
+# what they found is a calculated number
+_COUNTED = (codes.ARGUMENT_COUNT, codes.CALL_VALUES, codes.OUT_OF_RANGE)
 _WAYS = (codes.QUESTION_BEHIND, codes.NOT_CALLABLE)  # without a place they ask for no change
 
 

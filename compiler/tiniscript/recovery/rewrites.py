@@ -374,12 +374,6 @@ def _label(place: _Place) -> _Made:
     return [] if place.captured[0][0].text in place.line.names.called else None
 
 
-def _given(place: _Place) -> _Made:
-    """The name in the brackets of the DEF that is called."""
-    names = place.line.names.parameters.get(place.captured[0][0].text, ())
-    return [made(names[0])] if names else None
-
-
 def _limit(is_high: bool, place: _Place) -> _Made:
     """The end of what an actuator takes."""
     (device,) = place.captured[0]
@@ -408,7 +402,6 @@ _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "cat": _zero_behind, "mmss": _minutes, "same": _same, "label": _label,
     "ms": _seconds, "own": _own,
     "most": partial(_limit, True), "least": partial(_limit, False),
-    "given": _given,
 }  # fmt: skip
 
 

@@ -10,7 +10,8 @@ sign that would be one of the signs here, `?`, `*` and `+` stand behind what may
 more often. `^` is where an instruction begins: a line, or what follows `SI|`, a `;` or a brace; `$`
 is where one ends. A row of a whole line says `^^` and `$$`. `c=` captures, and `<part>` is a piece
 of PARTS. The cheapest reading is told; 1 is usual.
-Classes: @num @word @val (a value with a name) @name @newname @usedname @def @callw (takes values)
+Classes: @num @word @val (a value with a name) @name @newname @usedname @def, of which a @defw takes
+values and a @step does not, @callw (takes values)
 @device (an actuator) @start (begins an instruction) @close (ends one) @unit; a number that is
 @whole, or may be a @time, a @power or an @angle; any token but separators and braces: @any, nor `:`
 and `?`: @cond, nor brackets: @noparen; but braces: @all, which closes the brackets that it opens;
@@ -19,8 +20,8 @@ but braces, brackets and `<`: @nobrace.
 `becomes` is tokens: `$c` what was captured, `&c` that in words of the language or in digits, and
 functions: @not (the opposite question), @same (a number that is another one, too), @most and @least
 (the range of an actuator), @endof (the end of a header), @dec (a decimal comma), @cat (a zero
-apart), @mmss, @own (a number with its unit, in the unit that values have), @xn (`x4`), @given (the
-name in the brackets of a DEF), @label (nothing, of a DEF that is called elsewhere). `how`: `first`
+apart), @mmss, @own (a number with its unit, in the unit that values have), @xn (`x4`), @label
+(nothing, of a DEF that is called elsewhere). `how`: `first`
 is made before any other is tried, `applied` may be made without asking, `offered` is only shown, as
 is `first offered`. An example's lines are parted by ⏎. A row goes on in lines that are indented.
 
@@ -661,7 +662,7 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
     | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <=
     9);BREAK;ENDIF;END_LOOP
 # how often something is done, said behind it or before it
-⟨^ b=@def *|X? n=@num times? $¦call b=@def n=@num¦^ b=@def n=X2|X3|X4|X5|X6 $⟩
+⟨^ b=@step *|X? n=@num times? $¦call b=@step n=@num¦^ b=@step n=X2|X3|X4|X5|X6 $⟩
     | LOOP ( ⟨$n¦$n¦@xn:n⟩ ) ; $b ; END_LOOP | 1 | TS062 | applied
     | DEF SALTO;F(0.2, 60);END_DEF⏎⟨SALTO*3¦CALL SALTO 3¦SALTO x3⟩ => DEF SALTO;F(0.2,
     60);END_DEF⏎LOOP(3);SALTO;END_LOOP
@@ -697,18 +698,26 @@ d=@device ( ⟨lit¦dark¦most¦least⟩ )
     | ⟨ABRIR PINZA¦cerrar la garra¦prende el LED¦apagar el foco⟩ =>
     ⟨GRIPPER(180)¦GRIPPER(0)¦LED(TRUE)¦LED(FALSE)⟩
 # DEF and its calls
-^ DEF n=@word ( v=@name ) ':'?
-    | $v = 0 ; DEF $n ; | .5 | TS039 | offered
-    | DEF IR(T)⏎F(T, 80)⏎END_DEF⏎IR(2) => T = 0;DEF IR;⏎F(T, 80)⏎END_DEF⏎T = 2;IR
-^ n=@def ( a=@num|@val ) $
-    | @given:n = $a ; $n | .5 | TS039 | offered
-    | DEF IR(T)⏎F(T, 80)⏎END_DEF⏎IR(2) => T = 0;DEF IR;⏎F(T, 80)⏎END_DEF⏎T = 2;IR
+^ DEF n=@word v=@usedname $
+    | DEF $n ( $v ) | 1 | TS015 | applied
+    | DEF LADO X⏎F(X, 50)⏎END_DEF⏎LADO(3) => DEF LADO(X)⏎F(X, 50)⏎END_DEF⏎LADO(3)
+^ TO n=@word ':' v=@name ⟨¦':' u=@name⟩ $
+    | DEF $n ( $v ⟨¦, $u⟩ ) | 1 | TS102 | applied
+    | TO SQUARE :SIZE⟨¦ :SPEED⟩⏎F(SIZE, ⟨50¦SPEED⟩)⏎END⏎SQUARE(⟨3¦3, 60⟩) =>
+    DEF SQUARE(SIZE⟨¦, SPEED⟩)⏎F(SIZE, ⟨50¦SPEED⟩)⏎END_DEF⏎SQUARE(⟨3¦3, 60⟩)
+n=@defw a=@num|@val ⟨¦,? b=@num|@val⟩ e=;|$
+    | $n ( $a ⟨¦, $b⟩ ) $e | 1 | TS015 | applied
+    | DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO ⟨3¦3 60⟩ =>
+    DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO(⟨3¦3, 60⟩)
 ^ DEF ( n=@word )
     | DEF $n | 1 | TS039 | offered
     | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
 DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩
     | DEF $n ; ⟨¦$b⟩ | 1 | TS014 | applied
     | DEF SALUDO⟨ = ¦ ⟩BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
+DEF n=@word ( v=@noparen+ ) ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩
+    | DEF $n ( $v ) ; ⟨¦$b⟩ | 1 | TS014 | applied
+    | DEF LADO(X)⟨: ¦ ⟩F(X, 50)⏎LADO(3) => DEF LADO(X);F(X, 50);END_DEF⏎LADO(3)
 ^ call|do|make|the the|one? b=@def
     | $b | 1 | TS044 | applied
     | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO

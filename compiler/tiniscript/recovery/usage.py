@@ -61,6 +61,7 @@ _TOP = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
 _PIECE = re.compile(r"[^;|{}]*")
+_CALL = re.compile(r"(\w+)\s*\([^()]*\w[^()]*\)")
 _OWN = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
 _MOST_TIMES = 20  # that a DEF is done
 _LONGEST = 120  # characters of a sentence that a message shows
@@ -343,23 +344,31 @@ class _Usage:
 
     def own_word(self) -> Diagnostic | None:
         """A word of the program's own that nothing teaches."""
-        match = _OWN.fullmatch(plain(self.source[self.piece]))
+        piece = plain(self.source[self.piece])
+        match = _OWN.fullmatch(piece)
         if match is None:
-            return None
+            return self.with_values(piece)
         name, is_call, number = match.groups()
         if number and self.text.lacks_loop:
             return self.adds(near="LOOP")
-        if self.names.meant(name) or (number and not 1 < int(number) <= _MOST_TIMES):
-            return None  # a function of another language
         given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.source.text)
-        if len({*given}) > 1:
-            return None  # its value is no count
+        if len({*given}) > 1 or (number and not 1 < int(number) <= _MOST_TIMES):
+            return self.with_values(piece)  # its value is no count
+        if self.names.meant(name):
+            return None  # a function of another language
         lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.source.text)
         times = int(number or len(lone))
         if is_call or len(lone) > 1 or self.names.defs or said_of(name, "taught"):
             often = f"LOOP({times});{name};END_LOOP" if times > 1 else ""
             return self.says(codes.UNTAUGHT, name=name, often=often)
         return self.adds(own="" if said_of(name, *_NO_NAMES) else name)
+
+    def with_values(self, piece: str) -> Diagnostic | None:
+        """`SIDE(30, 60)`, where no DEF has this name."""
+        match = _CALL.fullmatch(piece)
+        if match is None or self.names.meant(match[1]) or said_of(match[1], *_NO_NAMES):
+            return None
+        return self.adds(taught=match[1])
 
     def until(self) -> Diagnostic:
         asked = re.match(r"\s*(\([^()\n]+\))", self.source.text[self.found.span.start + 5 :])

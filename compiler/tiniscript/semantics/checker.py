@@ -11,7 +11,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.limits import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
+from tiniscript.base.limits import (
+    BLOCKS,
+    CALLS,
+    DEFS,
+    PARAMETERS,
+    STACK_VALUES,
+    VARIABLES,
+)
 from tiniscript.base.source import Source, Span
 from tiniscript.base.words import UNIT_OF, VALUE, WAYS, WORDS, Argument, Word
 from tiniscript.diagnostics import codes
@@ -24,6 +31,7 @@ from tiniscript.syntax import ast
 from tiniscript.syntax.parser import parse
 
 if TYPE_CHECKING:
+    from tiniscript.semantics.parameters import Kinds
     from tiniscript.semantics.wrong_calls import WrongCalls
 
 
@@ -40,6 +48,8 @@ def check(source: Source, parsed: ast.Program, kit: Kit) -> Checked:
     body = checker.body(parsed.body)
     variables, procedures = tuple(checker.variables), tuple(checker.procedures)
     meaning = ir.Program(parsed.start, variables, procedures, body, tuple(checker.tasks))
+    if meaning.tasks and any(each.values for each in procedures) and not checker.diagnostics:
+        checker.copies_fit(meaning)
     return Checked(meaning, checker.diagnostics)
 
 
@@ -68,6 +78,17 @@ class _Checker(Scope):
         self.depth = 0
         self.deepest = 0  # blocks open at once in the routine that is being checked
         self.calls = 0  # calls open at once in it
+
+    @cached_property
+    def kinds(self) -> Kinds:
+        from tiniscript.semantics.parameters import Kinds
+
+        return Kinds(self.parsed, self.yes_no_sensors)
+
+    @cached_property
+    def taken_names(self) -> frozenset[str]:
+        """The names that a program gives to anything but the values of its DEFs."""
+        return frozenset((*self.set_somewhere, *self.def_names))
 
     @cached_property
     def wrong(self) -> WrongCalls:
@@ -131,12 +152,16 @@ class _Checker(Scope):
 
     def variable(self, node: ast.Assign, value: Value) -> int:
         """Make a new variable; its type is that of its first assignment."""
+        number = self.new_variable(node.name, node.name_span, value.type)
+        self.names[node.name] = Name("variable", number)
+        return number
+
+    def new_variable(self, name: str, span: Span, kind: str) -> int:
         number = len(self.variables)
         if number == VARIABLES:
-            self.report(codes.TOO_MANY_VARIABLES, node.name_span, limit=str(VARIABLES))
-        self.names[node.name] = Name("variable", number)
-        self.variables.append(node.name)
-        self.types.of_variables.append(value.type)
+            self.report(codes.TOO_MANY_VARIABLES, span, limit=str(VARIABLES))
+        self.variables.append(name)
+        self.types.of_variables.append(kind)
         return number
 
     def command(self, node: ast.Command, made: list[Statement]) -> None:
@@ -240,13 +265,13 @@ class _Checker(Scope):
             self.wrong.unknown(node, self.inside)
         elif name.what == "actuator":
             self.actuator(node, name.number, made)
+        elif name.what == "def":
+            self.call(node, name.number, made)
         elif node.arguments is not None:
             self.wrong.not_callable(node)
         elif name.what == "sensor":
             made.append(ir.Read(name.number, node.span))
             self.surely_read |= 1 << name.number
-        elif name.what == "def":
-            self.call(node, name.number, made)
         else:
             self.report(codes.VARIABLE_ALONE, node.span, name=node.word)
 
@@ -280,8 +305,26 @@ class _Checker(Scope):
         if depth + self.beside_blocks > BLOCKS:
             self.report(codes.BLOCKS_TOO_DEEP, node.span, limit=str(BLOCKS))
         self.deepest = max(self.deepest, depth)
+        self.give(node, self.procedures[number], made)
         self.surely_read |= facts.surely_read
         made.append(ir.Call(number, node.span))
+
+    def give(self, node: ast.Command, procedure: ir.Procedure, made: list[Statement]) -> None:
+        """Add what sets the values of a DEF before it is called."""
+        arguments = node.arguments or ()
+        if len(arguments) != len(procedure.values):
+            self.wrong.call_values(node, procedure, [self.variables[k] for k in procedure.values])
+            return
+        values = [self.types.value(each) for each in arguments]
+        for argument, value, number in zip(arguments, values, procedure.values, strict=True):
+            wanted = self.types.of_variables[number]
+            if ANY not in (wanted, value.type) and wanted != value.type:
+                self.report(codes.CALL_KIND, argument.span, name=self.variables[number],
+                            word=node.word, old="@" + wanted, new="@" + value.type)  # fmt: skip
+        self.stack_fits(values, node.span)
+        self.take(values, node.span, made)
+        for value, number in zip(values, procedure.values, strict=True):
+            made.append(ir.Assign(number, value.terms, node.span))
 
     # -- blocks -------------------------------------------------------------------------------
 
@@ -357,13 +400,39 @@ class _Checker(Scope):
         outside = self.apart()
         self.beside_blocks = self.beside_calls = 0
         self.inside = node.name
+        values = self.parameters(node) if node.parameters else []
         body = self.body(node.body)
+        for number in values:
+            if self.names.get(self.variables[number]) == Name("variable", number):
+                del self.names[self.variables[number]]
         self.inside = None
         self.facts.append(_Procedure(self.surely_read, self.deepest, self.calls))
         self.back_in(outside)
         if known is None:
             self.names[node.name] = Name("def", len(self.procedures))
-        self.procedures.append(ir.Procedure(node.name, body, node.span))
+        procedure = ir.Procedure(node.name, body, node.span, values=tuple(values))
+        self.procedures.append(procedure)
+
+    def parameters(self, node: ast.Def) -> list[int]:
+        """Return the variables of a DEF's values. Their names are known from here on."""
+        if len(node.parameters) > PARAMETERS:
+            self.report(codes.TOO_MANY_PARAMETERS, node.parameters[PARAMETERS].span,
+                        name=node.name, limit=str(PARAMETERS))  # fmt: skip
+        found: list[int] = []
+        for each, kind in zip(node.parameters, self.kinds.of(node), strict=True):
+            known = self.names.get(each.name)
+            is_free = known is None and each.name not in self.taken_names
+            found.append(self.new_variable(each.name, each.span, kind if is_free else ANY))
+            if known is None:  # even if it is taken below: that is said once
+                self.names[each.name] = Name("variable", found[-1])
+            if is_free:
+                continue
+            if known is not None and known.what == "variable" and known.number in found:
+                self.report(codes.PARAMETER_TWICE, each.span, name=each.name)
+            else:
+                other = self.wrong.free_name(each.name, self.procedures)
+                self.report(codes.PARAMETER_TAKEN, each.span, name=each.name, other=other)
+        return found
 
     def task(self, node: ast.Task, made: list[Statement]) -> None:
         outside = self.apart()
@@ -380,6 +449,14 @@ class _Checker(Scope):
         self.beside_blocks += blocks
         self.beside_calls += calls
         self.tasks.append(ir.Task(look, body, node.span))
+
+    def copies_fit(self, program: ir.Program) -> None:
+        """Check that a machine has room for what each task has of its own."""
+        from tiniscript.semantics.task_copies import excess
+
+        found = excess(program)
+        if found is not None:
+            self.wrong.too_many_copies(program, found)
 
     def apart(self) -> tuple[int, ...]:
         """Begin a DEF or a task, in which nothing is surely read or open; return what was."""

@@ -132,12 +132,16 @@ Body = tuple[Statement, ...]
 
 
 class Procedure(NamedTuple):
-    """A DEF that is not `is_called` becomes no code."""
+    """A DEF that is not `is_called` becomes no code.
+
+    `values` are the variables of the names in its brackets: right before a call each is assigned.
+    """
 
     name: str
     body: Body
     span: Span
     is_called: bool = True
+    values: tuple[int, ...] = ()
 
 
 class Task(NamedTuple):

@@ -152,19 +152,26 @@ def _unused(
     program: ir.Program, kit: Kit, statements: Sequence[ir.Statement | ir.Task]
 ) -> Iterator[Diagnostic]:
     used = ir.named("VARIABLE", statements)
+    owners = {k: procedure for procedure in program.procedures for k in procedure.values}
     for statement in statements:
         if isinstance(statement, ir.Assign) and statement.variable not in used:
             used.add(statement.variable)  # said once
             name = program.variables[statement.variable]
             device = name if said_of(name, "device") else ""
             values = {"name": name, "device": device, "example": use_of(name)}
+            if statement.variable in owners:
+                values["own"] = owners[statement.variable].name
             yield Diagnostic(codes.UNUSED_VARIABLE, statement.span, values)
     yield from _unused_readings(kit, statements)
     called = {each.procedure for each in statements if isinstance(each, ir.Call)}
     for number, procedure in enumerate(program.procedures):
         if number not in called:
             span = Span(procedure.span.start, procedure.span.start + len("DEF"))
-            yield Diagnostic(codes.UNUSED_DEF, span, {"name": procedure.name})
+            values = {"name": procedure.name}
+            if procedure.values:
+                names = ", ".join(program.variables[k] for k in procedure.values)
+                values["usage"] = f"{procedure.name}({names})"
+            yield Diagnostic(codes.UNUSED_DEF, span, values)
 
 
 def _unused_readings(

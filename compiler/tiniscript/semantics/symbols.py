@@ -17,7 +17,7 @@ from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.syntax import ast
 
 NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there
-_YES_NO = frozenset(("TRUE", "FALSE", "NOT", "AND", "OR", *(name for name, _ in COMPARATORS)))
+YES_NO_OPS = frozenset(("TRUE", "FALSE", "NOT", "AND", "OR", *(name for name, _ in COMPARATORS)))
 ENOUGH = 100  # mistakes after which a suggestion helps nobody
 
 
@@ -43,7 +43,7 @@ class Scope:
         self.kit = kit
         self.diagnostics: list[Diagnostic] = []
         self.names = {device.name: Name("sensor", i) for i, device in enumerate(kit.sensors)}
-        self._yes_no_sensors = {device.name for device in kit.sensors if device.is_yes_no}
+        self.yes_no_sensors = frozenset(each.name for each in kit.sensors if each.is_yes_no)
         for i, device in enumerate(kit.actuators):
             self.names[device.name] = Name("actuator", i)
         self._first = {each.name: each for each in reversed(_assignments(parsed.body))}
@@ -98,11 +98,11 @@ class Scope:
         if node is None or node.value is None or not node.value.expression:
             return False
         last = node.value.expression[-1]
-        is_sensor = last.op == "NAME" and last.value in self._yes_no_sensors
-        return last.op in _YES_NO or is_sensor
+        is_sensor = last.op == "NAME" and last.value in self.yes_no_sensors
+        return last.op in YES_NO_OPS or is_sensor
 
     def is_yes_no_sensor(self, name: str) -> bool:
-        return name in self._yes_no_sensors
+        return name in self.yes_no_sensors
 
     def near(self, word: str, known: Iterable[str]) -> str:
         """Return the nearest known word for a message, for the first ENOUGH mistakes.
@@ -117,7 +117,7 @@ class Scope:
 
 
 def _assignments(body: Sequence[ast.Instruction]) -> list[ast.Assign]:
-    """Return all that set a variable, in the order of the text."""
+    """Return all that set a variable of the whole program, in the order of the text."""
     found: list[ast.Assign] = []
     for node in body:
         if isinstance(node, ast.Assign):
@@ -126,6 +126,9 @@ def _assignments(body: Sequence[ast.Instruction]) -> list[ast.Assign]:
             for arm in node.arms:
                 found += _assignments(arm.body)
             found += _assignments(node.otherwise)
-        elif isinstance(node, (ast.Loop, ast.While, ast.Def, ast.Task)):
+        elif isinstance(node, ast.Def):
+            own = {each.name for each in node.parameters}
+            found += (each for each in _assignments(node.body) if each.name not in own)
+        elif isinstance(node, (ast.Loop, ast.While, ast.Task)):
             found += _assignments(node.body)
     return found

@@ -98,19 +98,15 @@ def _wanted(scope: Scope, name: str) -> list[str]:
 
 
 def report_not_callable(scope: Scope, node: ast.Command) -> None:
-    """`SQUARE(3)`, where there is a `DEF SQUARE(SIDE)`: a variable brings the value."""
+    """`SQUARE(3)`, where SQUARE has no values: its DEF may name one, or it is done 3 times."""
+    if re.search(rf"(?i)\bDEF\s+{node.word}[ \t]*\([^)\n]*\w", scope.source.text):
+        return  # what is wrong in the brackets of the DEF has been said
     texts = [scope.source[each.span] for each in node.arguments or ()]
-    head = rf"(?i)\bDEF\s+{node.word}[ \t]*\(([ \t,A-Z0-9_]{{1,200}})\)"
-    found = re.search(head, scope.source.text)
-    names = [each.strip().upper() for each in found[1].split(",")] if found else []
-    if found is None:
-        names = _wanted(scope, node.word)
-    fix = ""
-    if texts and len(names) == len(texts):
-        pairs = zip(names, texts, strict=True)
-        fix = ";".join((*(f"{name} = {text}" for name, text in pairs), node.word))
-    said = {"named": node.word} if node.word in scope.def_names and not fix else {}
-    if said and len(texts) == 1 and texts[0].isdecimal() and 1 < int(texts[0][:9]) <= MANY_TIMES:
+    said = {"named": node.word} if node.word in scope.def_names else {}
+    fix, names = "", _wanted(scope, node.word)
+    if said and texts and len(names) == len(texts):
+        said["head"] = f"DEF {node.word}({', '.join(names)})"
+    elif said and len(texts) == 1 and texts[0].isdecimal() and 1 < int(texts[0][:9]) <= MANY_TIMES:
         said["times"] = texts[0]
         fix = f"LOOP({texts[0]});{node.word};{BLOCK_ENDS['LOOP']}"
     place = node.span if "times" in said else None

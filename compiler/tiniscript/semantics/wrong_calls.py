@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from itertools import islice
+from typing import TYPE_CHECKING
 
 from tiniscript.base.fixed_point import HIGHEST, as_text
 from tiniscript.base.source import Source, Span
@@ -26,6 +27,9 @@ from tiniscript.semantics.unknown_words import (
 )
 from tiniscript.syntax import ast
 from tiniscript.syntax.free_names import numbered
+
+if TYPE_CHECKING:
+    from tiniscript.semantics.task_copies import Excess
 
 _PAIR = re.compile(r"(?i)\b([FBLR])[ \t]*\([ \t]*(\w+)[ \t]*(CM|DEG)\b")  # `F(20 DEG`
 # How an instruction is ended by a condition, by the role of its word.
@@ -52,6 +56,26 @@ class WrongCalls:
 
     def not_callable(self, node: ast.Command) -> None:
         report_not_callable(self.scope, node)
+
+    def call_values(self, node: ast.Command, procedure: ir.Procedure, names: Sequence[str]) -> None:
+        """Another count of values than the DEF has names."""
+        if not names:
+            report_not_callable(self.scope, node)
+            return
+        usage = f"{node.word}({', '.join(names)})"
+        self.scope.report(codes.CALL_VALUES, node.span, name=node.word, usage=usage,
+                          wanted=str(len(names)), found=str(len(node.arguments or ())))  # fmt: skip
+
+    def too_many_copies(self, program: ir.Program, found: Excess) -> None:
+        """A DEF with values is compiled once for each task that reaches it."""
+        procedure = program.procedures[found.procedure]
+        span = Span(procedure.span.start, procedure.span.start + len("DEF"))
+        values = {
+            "count": str(found.tasks),
+            found.what: str(found.total),
+            "limit": str(found.limit),
+        }
+        self.scope.report(codes.TOO_MANY_COPIES, span, None, name=procedure.name, **values)
 
     def until_not_here(self, node: ast.Command, until: ast.Argument, word: Word | None) -> None:
         source = self.scope.source

@@ -21,8 +21,8 @@ class Block(NamedTuple):
     """`word` is the word or name that it has, or the text of a comment and of a grey block;
     where a unit is behind the first value, that one too: `F CM`.
 
-    `if` has a value and a body for each arm, and one body more for ELSE. `note` is the comment
-    behind it; `is_apart`: an empty line stands before it.
+    `if` has a value and a body for each arm, and one body more for ELSE; `def` has the names in its
+    brackets as values. `note` is the comment behind it; `is_apart`: an empty line stands before it.
     """
 
     kind: str

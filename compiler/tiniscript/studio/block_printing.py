@@ -95,7 +95,8 @@ def _add_bodies(
     heads = [(word, f"{word}({value})") for value in values[:1]]
     heads += [("ELSEIF", f"ELSEIF({value})") for value in values[1:]]
     if word == "DEF":
-        heads = [(word, f"DEF {_one_line(block.word)}")]
+        names = f"({', '.join(values)})" if values else ""
+        heads = [(word, f"DEF {_one_line(block.word)}{names}")]
     elif word == "TASK":
         heads = [(word, word)]
     elif block.kind == "forever":

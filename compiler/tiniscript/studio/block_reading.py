@@ -77,6 +77,7 @@ class _Reader:
         self._next = 0
         self._kit = kit
         self._sensors = frozenset(device.name for device in kit.sensors)
+        self._defs = {each.name for each in parsed.program.body if isinstance(each, Def)}
         self._grey = grey
 
     def form(self) -> Form:
@@ -129,7 +130,10 @@ class _Reader:
             kind = "forever" if isinstance(node, Loop) and not values else type(node).__name__
             if isinstance(node, Task) and node.is_when:
                 kind = "when"
-            word = node.name if isinstance(node, Def) else ""
+            word = ""
+            if isinstance(node, Def):
+                word = node.name
+                values = tuple((("NAME", each.name),) for each in node.parameters)
             block = Block(kind.lower(), word, values, bodies)
         last = self._pieces[self._next - 1]
         block = block._replace(
@@ -167,7 +171,7 @@ class _Reader:
         if known is not None:
             kind = known.role.name
         elif node.arguments is not None:
-            kind = "set"
+            kind = "call" if node.word in self._defs else "set"
         else:
             kind = "read" if node.word in self._sensors else "call"
         word = node.word
@@ -177,7 +181,10 @@ class _Reader:
         if node.until is not None:
             kind += "_until"
             arguments = (*arguments, node.until)
-        is_known = kind in KINDS and len(KINDS[kind].values) == len(arguments)
+        count = (
+            len(arguments) if kind == "call" else len(KINDS[kind].values if kind in KINDS else ())
+        )
+        is_known = kind in KINDS and count == len(arguments)
         if not is_known or (unit is not None and KINDS[kind].units.get(node.word) != unit.op):
             return Block("grey", instruction_text(piece.tokens))
         return Block(kind, word, tuple(self._value(each) for each in arguments))

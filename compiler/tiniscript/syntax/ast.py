@@ -89,9 +89,17 @@ class Break(NamedTuple):
     span: Span
 
 
+class Parameter(NamedTuple):
+    """A name in the brackets of a DEF."""
+
+    name: str
+    span: Span
+
+
 class Def(NamedTuple):
     name: str
     name_span: Span
+    parameters: tuple[Parameter, ...]
     body: "tuple[Instruction, ...]"
     span: Span
 

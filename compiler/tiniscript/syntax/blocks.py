@@ -5,12 +5,24 @@ Knows which instructions belong to which block. Knows no tokens but the names of
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from tiniscript.base.limits import BLOCKS, TASKS
 from tiniscript.base.source import Span
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
 from tiniscript.base.words import TASKS as TASK_WORDS
 from tiniscript.diagnostics import codes
-from tiniscript.syntax.ast import Argument, Arm, Def, If, Instruction, Loop, Task, While
+from tiniscript.syntax.ast import (
+    Argument,
+    Arm,
+    Def,
+    If,
+    Instruction,
+    Loop,
+    Parameter,
+    Task,
+    While,
+)
 from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.reporter import Reporter
 
@@ -22,13 +34,21 @@ ENDS |= {alias: ENDS[end] for alias, end in ALIASES.items()}
 class Block:
     """A block whose end has not come yet."""
 
-    __slots__ = ("arms", "body", "head", "name", "otherwise", "span", "word")
+    __slots__ = ("arms", "body", "head", "name", "otherwise", "parameters", "span", "word")
 
-    def __init__(self, word: str, span: Span, head: Argument | None, name: Token | None) -> None:
+    def __init__(
+        self,
+        word: str,
+        span: Span,
+        head: Argument | None,
+        name: Token | None,
+        parameters: Sequence[Parameter],
+    ) -> None:
         self.word = word  # IF, LOOP, WHILE, DEF, TASK or WHEN
         self.span = span  # of the header: where a block that never ends is reported
         self.head = head  # the condition or the count of the arm that is being read
         self.name = name  # of a DEF
+        self.parameters = parameters  # of a DEF
         self.body: list[Instruction] = []
         self.arms: list[Arm] = []
         self.otherwise: list[Instruction] | None = None  # what follows ELSE, once it has come
@@ -68,7 +88,12 @@ class Blocks:
         return self.open[-1].here if self.open else self.program
 
     def begin(
-        self, word: str, span: Span, head: Argument | None = None, name: Token | None = None
+        self,
+        word: str,
+        span: Span,
+        head: Argument | None = None,
+        name: Token | None = None,
+        parameters: Sequence[Parameter] = (),
     ) -> None:
         if word in TASK_WORDS and self.open:
             around = self.open[-1].word
@@ -84,7 +109,7 @@ class Blocks:
             self._depth += 1
             if self._depth == BLOCKS + 1:
                 self._reporter.report(codes.BLOCKS_TOO_DEEP, span, limit=str(BLOCKS))
-        self.open.append(Block(word, span, head, name))
+        self.open.append(Block(word, span, head, name, parameters))
 
     def end(self, end: Span) -> None:
         """Close the innermost block. It becomes an instruction of the one around it.
@@ -96,7 +121,8 @@ class Blocks:
         span, body = Span(block.span.start, end.end), tuple(block.body)
         if block.word == "DEF":
             if block.name is not None and not self.open:
-                self.program.append(Def(block.name.text, block.name.span, body, span))
+                parameters = tuple(block.parameters)
+                self.program.append(Def(block.name.text, block.name.span, parameters, body, span))
         elif block.word in TASK_WORDS:
             if not self.open:
                 self.program.append(Task(block.word == "WHEN", block.head, body, span))

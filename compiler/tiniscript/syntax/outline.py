@@ -22,11 +22,11 @@ from tiniscript.syntax.reporter import Failed, Reporter
 
 
 class Known(NamedTuple):
-    """The names of a program: what may stand as a value, as an instruction, and with one value."""
+    """The names of a program: what may be a value, an instruction, and one with so many values."""
 
     values: frozenset[str]
     instructions: frozenset[str]
-    actuators: frozenset[str]
+    called: frozenset[tuple[str, int]]
 
 
 class Item(NamedTuple):
@@ -66,7 +66,7 @@ class _Alone(Blocks):
 
     @property
     def innermost(self) -> Block:
-        return Block("IF", Span(0, 0), None, None)
+        return Block("IF", Span(0, 0), None, None, ())
 
     def begin(self, *header: object, **name: object) -> None:
         pass
@@ -88,7 +88,7 @@ class _Line(Parser):
         self.blocks = _Alone(self.reporter)
         self.expressions = self._own = _Expressions(self.cursor, self.reporter)
         self._own.values = known.values
-        self._known = known
+        self._known, self._called = known, known.called
         self._found: list[Item] = []
 
     def items(self) -> list[Item] | Failure:
@@ -126,8 +126,9 @@ class _Line(Parser):
 
     def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
         found = super().arguments_of(word, known)
-        count = len(known.arguments) if known else word.text in self._known.actuators
-        if count != len(found or ()):
+        count = len(found or ())
+        is_right = len(known.arguments) == count if known else (word.text, count) in self._called
+        if not is_right:
             raise Failed
         return found
 
@@ -138,7 +139,8 @@ class _Line(Parser):
         return found
 
     def own_name(self, word: Token, following: Token) -> None:
-        names = self._known.actuators if following.kind == "(" else self._known.instructions
+        is_called = following.kind == "("  # with how many values is looked at later
+        names = {name for name, _ in self._called} if is_called else self._known.instructions
         if word.text not in names:
             raise Failed
 

@@ -7,7 +7,7 @@
     assignment  = NAME "=" expression
     command     = (WORD | NAME) [ arguments ] [ until ]
     until       = "UNTIL" "(" argument ")"
-    definition  = "DEF" NAME
+    definition  = "DEF" NAME [ "(" [ NAME { "," NAME } ] ")" ]
     header      = ("IF" | "LOOP" | "WHILE" | "WHEN") "(" argument ")"
     arm         = "ELSEIF" "(" argument ")" | "ELSE"
     block end   = "ENDIF" | "END_LOOP" | "END_WHILE" | "END_DEF" | "END_TASK" | "END_WHEN"
@@ -33,7 +33,7 @@ from typing import NamedTuple
 from tiniscript.base.source import Source, Span
 from tiniscript.base.words import BLOCK_ENDS, WORDS, Word
 from tiniscript.diagnostics import codes
-from tiniscript.syntax.ast import Argument, Assign, Break, Command, Program
+from tiniscript.syntax.ast import Argument, Assign, Break, Command, Parameter, Program
 from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.expressions import ExpressionParser
@@ -73,6 +73,7 @@ class Parser:
         self.blocks = Blocks(self.reporter)
         self.expressions = ExpressionParser(self.cursor, self.reporter)
         self.variables: set[str] = set()  # those that have been set so far
+        self.defs: set[str] = set()  # the names of the DEFs that have begun
 
     # -- the program ------------------------------------------------------------------------
 
@@ -186,7 +187,10 @@ class Parser:
         if known is not None and not known.arguments:
             self.no_arguments(word)
         arguments = self.expressions.arguments()
-        self.no_units(arguments[known is not None and known.role.is_move :])
+        if word.text in self.defs:
+            self.no_units_in_call(arguments, word)
+        else:
+            self.no_units(arguments[known is not None and known.role.is_move :])
         return arguments
 
     def until(self) -> Argument | None:
@@ -218,10 +222,36 @@ class Parser:
             self.blocks.begin("DEF", word.span)
             self.reporter.fail(codes.DEF_NEEDS_NAME, word.span)
         cursor.i += 1
-        self.blocks.begin("DEF", Span(word.start, name.end), name=name)
-        if name.text in WORDS:
-            self.reporter.fail(codes.RESERVED, name.span, word=name.text)
-        self.no_arguments(name, "DEF ")
+        self.defs.add(name.text)
+        parameters: list[Parameter] = []
+        try:
+            if name.text in WORDS:
+                self.reporter.fail(codes.RESERVED, name.span, word=name.text)
+            if cursor.token.kind == "(":
+                self.parameters(name, parameters)
+        finally:
+            span = Span(word.start, name.end)
+            self.blocks.begin("DEF", span, name=name, parameters=parameters)
+
+    def parameters(self, of: Token, found: list[Parameter]) -> None:
+        """Read the `(NAME, NAME)` of a DEF; what was read stays, even if the rest is wrong."""
+        cursor = self.cursor
+        bracket = cursor.i
+        cursor.i += 1
+        if cursor.take_inner(")"):
+            return
+        while True:
+            name = cursor.inner()
+            if name.kind is not WORD:
+                self.reporter.fail(codes.PARAMETER_NEEDS_NAME, name.span, name=of.text)
+            cursor.take_inner(WORD)
+            if name.text in WORDS:
+                self.reporter.fail(codes.RESERVED, name.span, word=name.text)
+            found.append(Parameter(name.text, name.span))
+            if not cursor.take_inner(","):
+                break
+        if not cursor.take_inner(")"):
+            self.expressions.no_close(bracket)
 
     def task(self, word: Token) -> None:
         cursor = self.cursor
@@ -289,6 +319,14 @@ class Parser:
         """CM and DEG stand behind the way of a move alone."""
         for unit in (each.unit for each in arguments if each.unit is not None):
             self.expressions.wrong_unit(unit.op, Span(unit.start, unit.end))
+
+    def no_units_in_call(self, arguments: Sequence[Argument], word: Token) -> None:
+        """The unit of a value of a DEF stands in its body."""
+        texts = (self.cursor.source[each.span] for each in arguments)
+        fix = f"{word.text}({', '.join(texts)})"
+        for unit in (each.unit for each in arguments if each.unit is not None):
+            self.reporter.report(codes.UNIT_IN_CALL, Span(unit.start, unit.end),
+                                 name=word.text, found=unit.op, right=fix)  # fmt: skip
 
     def no_arguments(self, word: Token, before: str = "") -> None:
         bracket = self.cursor.token

@@ -45,6 +45,7 @@ enum class Problem : uint8_t {
   kFull = 29,  // Too long. Make it shorter
   kLacks = 30,  // Needs tsc, or a Mega or ESP32
   kComma = 31,  // Put , before this
+  kOneTask = 32,  // Only one task may call this DEF
 };
 
 }  // namespace tiniscript

@@ -130,8 +130,13 @@ class Reader {
   void open_routine(uint8_t type, uint8_t ends);
   void close_routine(Block* block);
   Problem define(uint8_t token);
+  Problem name_value_of_def(uint8_t token);
   Problem begin_task(bool is_when);
-  Problem call();
+  bool reach(uint16_t defs);
+  Problem begin_call(uint8_t token);
+  bool is_call() const { return kReadsDefs && callee_ != 0; }
+  void give();
+  void call();
 
   // expressions, in reader_values.cpp
   tini_noinline void begin_value();
@@ -217,6 +222,12 @@ class Reader {
   tini_with_defs uint8_t beside_blocks_;  // both in the other tasks, all of them together
   tini_with_defs uint8_t beside_calls_;
   tini_with_defs Def* def_;                // the DEF that is open, or null
+  tini_with_defs uint16_t callee_;         // the DEF that is called, from the end of the buffer, or 0
+  tini_with_defs uint8_t wanted_;          // values that this call still wants
+  tini_with_defs bool in_task_;            // whether a task is open
+  tini_with_defs uint16_t in_main_;        // DEFs with values that the main task reaches,
+  tini_with_defs uint16_t in_this_task_;   // this task,
+  tini_with_defs uint16_t in_ended_tasks_; // and those that have ended: a bit for each
   tini_with_defs uint8_t lasting_column_;  // of a FOREVER that wants tasks, or 0
   tini_with_defs bool is_way_;             // whether this move goes one
 };

@@ -115,11 +115,14 @@ void Reader::close_routine(Block* block) {
   const bool is_def = block->type == kDefBlock;
   if (is_def) {
     emit(byte_of(Op::kReturn));
-    *def_ = {def_->at, deepest_, calls_, read_};
+    *def_ = {def_->at, deepest_, calls_, def_->values, def_->reaches, read_};
     def_ = nullptr;
   } else {
     emit(byte_of(block->type == kTaskBlock ? Op::kEndTask : Op::kEndWhen));
     buffer_[block->to - 2] = static_cast<uint8_t>(length_ - block->to);
+    in_ended_tasks_ = static_cast<uint16_t>(in_ended_tasks_ | in_this_task_);
+    in_this_task_ = 0;
+    in_task_ = false;
   }
   const uint8_t blocks = is_def ? uint8_t{0} : deepest_;
   const uint8_t calls = is_def ? uint8_t{0} : calls_;
@@ -131,7 +134,7 @@ void Reader::close_routine(Block* block) {
 
 // The token behind DEF.
 Problem Reader::define(uint8_t token) {
-  state_ = kSeparator;
+  state_ = kAfterDefName;
   if (token != kNameToken) return Problem::kReserved;
   if (found_ != 0) return Problem::kTaken;
   if (stack_ != names_) return Problem::kDef;
@@ -144,6 +147,34 @@ Problem Reader::define(uint8_t token) {
   emit(0);
   open_routine(kDefBlock, static_cast<uint8_t>(length_ - 1));
   def_->at = length_;
+  def_->values = variables_ % kVariables;
+  def_->reaches = 0;
+  return Problem::kNone;
+}
+
+// What stands in the brackets of a DEF: the names of its values.
+Problem Reader::name_value_of_def(uint8_t token) {
+  const uint8_t state = state_;
+  if (token == ')' && state != kNextOfDef) {
+    brackets_ = 0;
+    state_ = kSeparator;
+    return Problem::kNone;
+  }
+  if (token == ';') return Problem::kClose;
+  if (state == kAfterOfDef) {
+    state_ = kNextOfDef;
+    return token == ',' ? Problem::kNone : Problem::kComma;
+  }
+  if (token != kNameToken) {
+    return token == ',' || token == ')' ? Problem::kValue : Problem::kReserved;
+  }
+  if (found_ != 0 && found_ != kIsGone) return Problem::kTaken;
+  if (def_->values >= kMostValues * kOneValue || variables_ == kVariables) return Problem::kLimit;
+  add_name(static_cast<uint8_t>(kNameOfDef | variables_), 0);
+  variables_++;
+  def_->values = static_cast<uint8_t>(def_->values + kOneValue);
+  def_->reaches = static_cast<uint16_t>(1 << (defs_ - 1));
+  state_ = kAfterOfDef;
   return Problem::kNone;
 }
 
@@ -156,6 +187,7 @@ Problem Reader::begin_task(bool is_when) {
   emit(0);
   emit(0);
   open_routine(is_when ? kWhenBlock : kTaskBlock, 0);
+  in_task_ = true;
   if (!is_when) return Problem::kNone;
   first_ = length_;
   op_ = byte_of(Op::kLook);
@@ -165,8 +197,21 @@ Problem Reader::begin_task(bool is_when) {
   return Problem::kNone;
 }
 
-// The name of a DEF alone calls it.
-Problem Reader::call() {
+// Notes that what is open reaches these DEFs with values; returns whether no other task does.
+bool Reader::reach(uint16_t defs) {
+  if (def_ != nullptr) {
+    def_->reaches = static_cast<uint16_t>(def_->reaches | defs);
+    return true;
+  }
+  uint16_t others = in_ended_tasks_;
+  if (in_task_) others = static_cast<uint16_t>(others | in_main_);
+  uint16_t* const mine = in_task_ ? &in_this_task_ : &in_main_;
+  *mine = static_cast<uint16_t>(*mine | defs);
+  return (defs & others) == 0;
+}
+
+// What follows the name of a DEF: its values, or the end of a call without any.
+Problem Reader::begin_call(uint8_t token) {
   const Def* const def = reinterpret_cast<const Def*>(entry_);
   if (def == def_) return before(Problem::kUnknownWord);
   const uint8_t calls = static_cast<uint8_t>(def->calls + 1);
@@ -176,10 +221,37 @@ Problem Reader::call() {
   }
   if (calls_ < calls) calls_ = calls;
   if (deepest_ < blocks) deepest_ = blocks;
+  if (!reach(def->reaches)) return before(Problem::kOneTask);
+  callee_ = static_cast<uint16_t>(end_ - entry_);
+  wanted_ = def->values / kOneValue;
+  if (token != '(') {
+    if (wanted_ != 0) return Problem::kOpen;
+    if (!ends(token)) return Problem::kSeparator;
+    call();
+    return Problem::kNone;
+  }
+  brackets_ = 1;
+  state_ = kNoValues;
+  if (wanted_ == 0) return Problem::kNone;
+  target_ = def->values % kOneValue;
+  kinds_ = wanted_ > 1 ? kNumberKind * 17 : kNumberKind;
+  begin_value();
+  return Problem::kNone;
+}
+
+// A value of a call has ended.
+void Reader::give() {
+  emit_numbered(byte_of(Op::kSetVar), byte_of(Op::kSetVar0), target_);
+  target_++;
+  wanted_--;
+  kinds_ = wanted_ > 1 ? kNumberKind * 17 : wanted_ != 0 ? kNumberKind : uint8_t{0};
+}
+
+void Reader::call() {
+  const Def* const def = reinterpret_cast<const Def*>(end_ - callee_);
   read_ |= def->read;
   emit(byte_of(Op::kCall));
   emit(static_cast<uint8_t>(length_ + 1 - def->at));
-  return Problem::kNone;
 }
 
 #endif

@@ -100,6 +100,10 @@ void Reader::find_name() {
     found_ = kIsVariable;
     if ((info & kNameYesNo) != 0) found_ = kIsVariable | kIsYesNo;
     if (is_def) found_ = kIsDef;
+    // the values of the DEF that is open lie below it
+    if (kReadsDefs && (info & kNameOfDef) != 0 && facts > reinterpret_cast<uint8_t*>(def_)) {
+      found_ = kIsGone;
+    }
     return;
   }
 }

@@ -6,8 +6,6 @@ namespace tiniscript {
 
 namespace {
 
-bool ends(uint8_t token) { return token == ';'; }
-
 // From a move or a wait to the one with a check, and half as far from there to the endless one.
 constexpr uint8_t kWatchMove = byte_of(Op::kWatchF) - byte_of(Op::kMoveF);
 constexpr uint8_t kWatchWait = byte_of(Op::kWatchWait) - byte_of(Op::kWait);
@@ -78,6 +76,24 @@ Problem Reader::parse(uint8_t token) {
       // fall through
     case kAfterMove:
       return end_move(token);
+#ifdef tiniscript_reads_defs
+    case kAfterDefName:
+      if (token == '(') {
+        brackets_ = 1;
+        state_ = kFirstOfDef;
+        return Problem::kNone;
+      }
+      state_ = kInstruction;
+      return no_end(token);
+    case kFirstOfDef:
+    case kNextOfDef:
+    case kAfterOfDef:
+      return name_value_of_def(token);
+    case kNoValues:
+      if (token != ')') return Problem::kCount;
+      end_arguments();
+      return Problem::kNone;
+#endif
     case kSeparator:
       state_ = kInstruction;
       return no_end(token);
@@ -96,6 +112,7 @@ Problem Reader::instruction(uint8_t token) {
   known_ = read_;
   depth_ = 0;
   what_ = token;
+  if (kReadsDefs) callee_ = 0;
   if (token == kNameToken) {
     state_ = kAfterName;
     return Problem::kNone;
@@ -157,7 +174,7 @@ Problem Reader::after_name(uint8_t token) {
     state_ = kOperand;
     return Problem::kNone;
   }
-  if (found == 0) return before(Problem::kUnknownWord);
+  if (found == 0 || (kReadsDefs && found == kIsGone)) return before(Problem::kUnknownWord);
   if ((found & kIsActuator) != 0) {
     if (token != '(') return Problem::kOpen;
     kinds_ = (found & kIsYesNo) != 0 ? kYesNoKind : kDeviceRange;
@@ -166,8 +183,8 @@ Problem Reader::after_name(uint8_t token) {
     return Problem::kNone;
   }
   if ((found & kIsVariable) != 0) return before(Problem::kInstruction);
+  if (kReadsDefs && found == kIsDef) return begin_call(token);
   if (!ends(token)) return Problem::kSeparator;
-  if (kReadsDefs && found == kIsDef) return call();
   emit_numbered(byte_of(Op::kRead), byte_of(Op::kRead0), number_);
   read_ |= static_cast<SensorBits>(SensorBits{1} << number_);
   return Problem::kNone;
@@ -178,6 +195,7 @@ void Reader::end_arguments() {
   brackets_ = 0;
   state_ = kSeparator;
   const uint8_t what = what_;
+  if (is_call()) return call();
   if (what == kNameToken) {
     emit_numbered(byte_of(Op::kSet), byte_of(Op::kSet0), target_);
     return;

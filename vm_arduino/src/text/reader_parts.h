@@ -15,6 +15,8 @@ constexpr uint8_t kNumberToken = '0';
 constexpr uint8_t kNameToken = 'z';
 constexpr uint8_t kBinary = 0x80;  // with the opcode below
 
+inline bool ends(uint8_t token) { return token == ';'; }
+
 constexpr uint8_t byte_of(Op op) { return static_cast<uint8_t>(op); }
 constexpr uint8_t token_of(Op op) { return static_cast<uint8_t>(kBinary | byte_of(op)); }
 
@@ -31,6 +33,13 @@ enum Wanted : uint8_t {
   kAfterName,  // =, ( or the end of the instruction
   kArguments,  // the ( of a command
   kDefName,
+#ifdef tiniscript_reads_defs
+  kAfterDefName,  // the ( of a DEF or its end
+  kFirstOfDef,    // the name of its first value, or )
+  kNextOfDef,     // that of another one
+  kAfterOfDef,    // , or )
+  kNoValues,      // the ) of a call without values
+#endif
   kSeparator,
   kAfterMove,  // UNTIL or the end of the instruction
   kFunction,   // the ( of a function
@@ -50,6 +59,7 @@ constexpr uint8_t kIsSensor = 2;
 constexpr uint8_t kIsActuator = 4;
 constexpr uint8_t kIsVariable = 8;
 constexpr uint8_t kIsDef = 16;
+constexpr uint8_t kIsGone = 32;  // a value of another DEF
 
 // Among the operators that wait: open brackets, with the opcode of their function. The second
 // argument of a function has kSecond, and kBase is behind all.
@@ -73,15 +83,20 @@ struct __attribute__((packed)) Reader::Block {
   SensorBits taken;   // the readings of its conditions, and those before
 };
 
-// In front of the letters of each name stands the number of its variable, with kNameYesNo, or
-// kNameDef and then this.
+// In front of the letters of each name stands the number of its variable, with kNameYesNo or
+// kNameOfDef, or kNameDef and then this.
 struct __attribute__((packed)) Reader::Def {
   uint8_t at;
   uint8_t blocks;
   uint8_t calls;
+  uint8_t values;    // the variable of the first one, and kOneValue for each
+  uint16_t reaches;  // DEFs with values: a bit for each that this one is or calls
   SensorBits read;
 };
+constexpr uint8_t kOneValue = kVariables;
+constexpr uint8_t kMostValues = 4;
 constexpr uint8_t kNameDef = 0x80;
 constexpr uint8_t kNameYesNo = 0x40;
+constexpr uint8_t kNameOfDef = 0x20;  // a value of a DEF: known while that is open
 
 }  // namespace tiniscript

@@ -155,7 +155,11 @@ Problem Reader::operators(uint8_t token) {
   } else {
     pop();  // FOREVER leaves no value
   }
-  kinds_ = static_cast<uint8_t>(kinds_ / 16);
+  if (is_call()) {
+    give();
+  } else {
+    kinds_ = static_cast<uint8_t>(kinds_ / 16);
+  }
   if (!is_comma && token != ')') return Problem::kClose;
   if (is_comma == (kinds_ == 0)) return Problem::kCount;
   if (is_comma) {

@@ -19,12 +19,12 @@ constexpr uint8_t text_of(Problem problem) {
   return static_cast<uint8_t>(static_cast<uint8_t>(problem) - 1);
 }
 constexpr uint8_t text_of(Remark remark) {
-  return static_cast<uint8_t>(static_cast<uint8_t>(remark) + 30);
+  return static_cast<uint8_t>(static_cast<uint8_t>(remark) + 31);
 }
 constexpr uint8_t name_of_fault(uint8_t fault) {
   return static_cast<uint8_t>(
-      fault > 66 ? 66 : fault < 64 ? fault + 56
-                             : fault - 1);
+      fault > 66 ? 67 : fault < 64 ? fault + 57
+                             : fault - 0);
 }
 
 // A code is the end of a text, a pair, or a letter from kFirstLetter on, in ASCII.

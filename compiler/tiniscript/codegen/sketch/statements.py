@@ -66,10 +66,18 @@ class Statements:
         self.set_actuators: set[int] = set()
         self.depth = 1
         self.loops = 0
+        self.given: frozenset[int] = frozenset()  # the variables that calls set: arguments
 
     def body(self, body: ir.Body) -> None:
+        arguments: list[ir.Expression] = []
         for statement in body:
-            self.statement(statement)
+            if isinstance(statement, ir.Assign) and statement.variable in self.given:
+                arguments.append(statement.value)
+            elif isinstance(statement, ir.Call):
+                self.call_def(statement, arguments)
+                arguments = []
+            else:
+                self.statement(statement)
 
     # -- lines
 
@@ -149,8 +157,17 @@ class Statements:
             self.while_(statement, said)
         elif isinstance(statement, ir.Break):
             self.line("break;", said)
-        elif isinstance(statement, ir.Call):
-            self.line(f"{self.names.procedures[statement.procedure]}();", said)
+
+    def call_def(self, call: ir.Call, arguments: Sequence[ir.Expression]) -> None:
+        """Call a function; of its arguments with a RANDOM all but the last come before."""
+        self.remarks(call.span.start)
+        texts = [self.write.text(each) for each in arguments]
+        for k in [k for k, each in enumerate(arguments) if has_random(each)][:-1]:
+            first = self.write.keep()
+            self.line(f"{first} = {texts[k]};")
+            texts[k] = first
+        name = self.names.procedures[call.procedure]
+        self.line(f"{name}({', '.join(texts)});", self.said(call.span.start))
 
     def reading(self, sensor: int) -> str:
         self.read_sensors.add(sensor)

@@ -77,16 +77,20 @@ class _Sketch:
     def __init__(self, source: Source, program: ir.Program, robot: Robot, language: str) -> None:
         self.source, self.program, self.robot, self.language = source, program, robot, language
         self.is_exact = needs_numbers(program, robot)
+        self.yes_no = ir.are_yes_no(program, robot.kit)  # of each variable
+        self.arguments = frozenset(k for each in program.procedures for k in each.values)
         self.needed: dict[str, None] = {}  # helpers, in the order in which they are met
         names = Names(language)
         kit = robot.kit
-        self.named = Named(
+        devices = (
             [names.of(each.name) for each in kit.sensors],
             [names.of(each.name, called("read", language)) for each in kit.sensors],
             [names.of(each.name, called("set", language)) for each in kit.actuators],
-            [names.of(each.name) for each in program.procedures],
-            [names.of(each) for each in program.variables],
         )
+        procedures = [names.of(each.name) for each in program.procedures]
+        variables = {each: names.of(each) for each in dict.fromkeys(program.variables)}
+        # values of two DEFs may have one name
+        self.named = Named(*devices, procedures, [variables[each] for each in program.variables])
         self.write = Expressions(self.use, self.is_exact, self.named.variables, self.named.sensors)
         self.plan = SketchPlan(robot, self.label, self.is_exact)
         self.functions = {**helpers.HELPERS, **numbers.NUMBERS}
@@ -118,6 +122,7 @@ class _Sketch:
         if isinstance(last, ir.Loop) and last.times is None and not ir.loops_end(last.body):
             body, loop = body[:-1], last.body
         procedures = [self.procedure(rows, each) for each in program.procedures]
+        rows.given = self.arguments
         rows.body(body)
         if isinstance(last, ir.Loop) and loop:
             start = last.span.start
@@ -150,9 +155,16 @@ class _Sketch:
         rows.depth = 1
         name = self.named.procedures[self.program.procedures.index(procedure)]
         head, rows.lines = rows.lines, []
+        rows.given = self.arguments - {*procedure.values}  # those of this DEF it sets itself
+        read = ir.named("VARIABLE", ir.walk(procedure.body))
+        for k in procedure.values:
+            if k not in read:  # or a compiler warns
+                rows.line(f"(void){self.named.variables[k]};")
         rows.body(procedure.body)
         body, rows.lines = rows.lines, []
-        header = f"void {name}() {{"
+        types = ("bool" if self.yes_no[k] else "$N" for k in procedure.values)
+        names = (self.named.variables[k] for k in procedure.values)
+        header = f"void {name}({', '.join(map(' '.join, zip(types, names, strict=True)))}) {{"
         beside = f"{header:<38}  // {rows.said(procedure.span.start)}"
         return "\n".join([*head, beside, *body, "}"])
 
@@ -296,11 +308,9 @@ class _Sketch:
     def kept(self, rows: Statements) -> str:
         """Return the variables of the program, of the readings, and those that functions share."""
         lines = []
-        kinds = ir.are_yes_no(self.program, self.robot.kit)
-        for name, is_yes_no in zip(self.named.variables, kinds, strict=True):
-            lines.append(
-                f"{'bool' if is_yes_no else '$N'} {name} = {'false' if is_yes_no else '0'};"
-            )
+        for k, name in enumerate(self.named.variables):
+            if k not in self.arguments:
+                lines.append(f"bool {name} = false;" if self.yes_no[k] else f"$N {name} = 0;")
         named = ir.named("SENSOR", ir.every(self.program))  # read or not
         for k in sorted(rows.read_sensors | named):
             kind = self.plan.kind(k)

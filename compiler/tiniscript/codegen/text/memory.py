@@ -8,6 +8,7 @@ no mistake.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import read_literal
@@ -23,7 +24,7 @@ from tiniscript.syntax.operators import AND, BINARY, MINUS, NOT, OPEN
 
 MOST_BRACKETS = 254  # open at once
 _BLOCK_BYTES = 3  # and three sets of sensors
-_DEF_BYTES = 3  # in front of the name of a DEF, and a set of sensors
+_DEF_BYTES = 6  # in front of the name of a DEF, and a set of sensors
 _JUMP = 2  # bytes of an instruction with a short jump
 _TASK = 3  # of one that begins a task
 
@@ -33,6 +34,13 @@ class Need(NamedTuple):
 
     bytes: int
     span: Span
+
+
+class _Def(NamedTuple):
+    """The sensors that are surely read behind it, and the variables of its values."""
+
+    read: int
+    values: tuple[int, ...]
 
 
 class _Block:
@@ -70,7 +78,9 @@ class Reader:
         self.sensors = {each.name: k for k, each in enumerate(kit.sensors)}
         self.actuators = {each.name: k for k, each in enumerate(kit.actuators)}
         self.variables: dict[str, int] = {}
-        self.defs: dict[str, int] = {}  # what each surely reads
+        self.own: dict[str, int] = {}  # the values of the DEF that is open
+        self.count = 0  # of variables so far, with the values of DEFs
+        self.defs: dict[str, _Def] = {}
         self.blocks: list[_Block] = []
         self.read = 0  # sensors that are surely read
         self.known = 0  # those, and what this instruction has read
@@ -153,6 +163,7 @@ class Reader:
             self.add_name(name, self.def_bytes)
             self.emit(_JUMP)
             self.open("DEF", name)
+            self.names()
         elif token.text in TASKS:
             self.emit(_TASK)
             self.open(token.text)
@@ -176,21 +187,62 @@ class Reader:
             self.numbered(self.sensors[name])
             self.read |= 1 << self.sensors[name]
         elif name in self.defs:
-            self.read |= self.defs[name]
+            self.give(self.defs[name].values)
+            self.read |= self.defs[name].read
             self.emit(_JUMP)
         else:
             self.arguments()
             self.numbered(self.actuators[name])
 
     def assignment(self, name: str) -> None:
-        number = self.variables.get(name, len(self.variables))
-        if name not in self.variables:
+        number = self.number_of(name, self.count)
+        if number == self.count:
             self.add_name(name, 0)
         self.i += 1
         self.push()
         self.value()
-        self.variables[name] = number
+        if number == self.count:
+            self.variables[name] = number
+            self.count += 1
         self.numbered(number)
+
+    def number_of(self, name: str, other: int) -> int:
+        """Return the number of a variable, and `other` where there is none."""
+        return self.own.get(name, self.variables.get(name, other))
+
+    def names(self) -> None:
+        """Read the names in the brackets of a DEF, where it has any."""
+        if self.token.kind != "(":
+            return
+        self.open_bracket()
+        kind = ""
+        while kind != ")":
+            name = self.take_inner()
+            kind = name.kind
+            if kind is WORD:
+                self.add_name(name.text, 0)
+                self.own[name.text] = self.count
+                self.count += 1
+
+    def give(self, values: Sequence[int]) -> None:
+        """Read the brackets of a call, where it has any: each value is set behind its code."""
+        if self.token.kind != "(":
+            return
+        self.open_bracket()
+        for number in values:
+            self.push()
+            self.value()
+            self.numbered(number)
+            self.take_inner()
+        if not values:
+            self.take_inner()
+
+    def take_inner(self) -> Token:
+        """Go past the next token in brackets, which it may close."""
+        self.skip_newlines()
+        token = self.take()
+        self.brackets -= token.kind == ")"
+        return token
 
     def command(self, its: Word) -> None:
         word = its.text
@@ -244,7 +296,8 @@ class Reader:
         else:
             self.emit(1 if word in ("DEF", *TASKS) else _JUMP)
             if word == "DEF":
-                self.defs[block.name] = self.read
+                self.defs[block.name] = _Def(self.read, tuple(self.own.values()))
+                self.own = {}
             self.read = block.before
         self.used -= self.block_bytes
 
@@ -264,9 +317,7 @@ class Reader:
                 self.pop()
             else:
                 self.value()
-                self.skip_newlines()
-            if self.take().kind == ")":
-                self.brackets -= 1
+            if self.take_inner().kind == ")":
                 return is_forever
 
     def value(self) -> None:
@@ -308,7 +359,7 @@ class Reader:
                 self.numbered(number)
             self.numbered(number)
         else:
-            self.numbered(self.variables.get(token.text, 0))
+            self.numbered(self.number_of(token.text, 0))  # TRUE and its kin are one byte, too
         return True
 
     def number(self, token: Token) -> None:

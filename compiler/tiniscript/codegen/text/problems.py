@@ -18,7 +18,9 @@ PROBLEMS = (
     "UNKNOWN_VALUE", "RESERVED", "SEPARATOR", "OPEN", "CLOSE", "VALUE", "COUNT", "RANGE",
     "WANTS_NUMBER", "WANTS_YES_NO", "COMPARE", "NOT", "KIND", "FOREVER_HERE", "UNTIL", "BLOCK",
     "BREAK", "DEF", "TAKEN", "LIMIT", "FULL", "LACKS", "COMMA",
+    "ONE_TASK",
 )
+OF_DEFS = frozenset(("DEF", "ONE_TASK"))  # only a robot whose reader has DEFs says these
 # Of MISTAKE and HELP the firmware makes the text.
 REMARKS = (
     "OK", "OK_BUTTON", "LOST", "WAITING", "GIVEN_UP", "STOPPED", "LATCHED", "SAVING",

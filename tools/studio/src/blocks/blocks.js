@@ -4,6 +4,7 @@
 
 import * as Blockly from 'blockly/core';
 import { clear, drawForm, formOf, keepPlaces, showForm } from './form.js';
+import { follow, labelCalls } from './own_words.js';
 import { setActuators } from './places.js';
 import { Checker, defineBlocks, setRobot } from './shapes.js';
 import { pictureOf } from './picture.js';
@@ -33,7 +34,7 @@ export class Blocks {
   #workspace;
   /** @type {Level} */
   #level = 'few';
-  /** @type {{names: string[], words: string[]}} */
+  /** @type {import('./toolbox.js').Used} */
   #used = { names: [], words: [] };
   /** @type {string[]} */
   #taught = [];
@@ -126,6 +127,7 @@ export class Blocks {
     workspace.addChangeListener((event) => {
       if (event instanceof Blockly.Events.BubbleOpen && !event.isOpen) this.#closed = this.#saidAt(event.blockId);
       if (event.isUiEvent || event.type === Blockly.Events.FINISHED_LOADING) return;
+      follow(workspace, event);
       this.#told.changed();
     });
     return workspace;
@@ -223,6 +225,7 @@ export class Blocks {
     this.#marked = {};
     this.#fault = { id: '', said: '' };
     const ids = showForm(this.#workspace, form, this.#stood);
+    labelCalls(this.#workspace);
     this.placed(ids, inOrder(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
     this.#use(form);
     this.#greyLoose();
@@ -274,7 +277,8 @@ export class Blocks {
   #use(form) {
     const blocks = inOrder([...form.body, ...form.loose.flatMap((stack) => stack.body)]);
     const of = (/** @type {string} */ kind) => [...new Set(blocks.filter((block) => block.kind === kind).map((block) => block.word))].sort();
-    const used = { names: of('assign'), words: of('def') };
+    const counts = new Map(blocks.filter((block) => block.kind === 'def').map((block) => [block.word, block.values.length]));
+    const used = { names: of('assign'), words: [...counts].sort() };
     if (JSON.stringify(used) === JSON.stringify(this.#used)) return;
     this.#used = used;
     if (!this.#workspace.isDragging()) this.#offer();

@@ -94,7 +94,7 @@ function bodyOf(first, ids) {
     found.push({
       kind: block.type,
       word: String(wordOn(block) ?? kept.word ?? wordOf(block.type)),
-      values: block.inputList.filter((input) => /^V\d/.test(input.name)).map((input) => valueOf(input.connection?.targetBlock() ?? null)),
+      values: valuesOf(block),
       bodies: block.inputList.filter((input) => /^B\d|^OTHERWISE/.test(input.name))
         .map((input) => bodyOf(input.connection?.targetBlock() ?? null, ids)),
       note: block.getCommentText() ?? '',
@@ -102,6 +102,13 @@ function bodyOf(first, ids) {
     });
   }
   return found;
+}
+
+/** @param {Blockly.Block} block @returns {Value[]} what is in its places; of a DEF the names of its values */
+function valuesOf(block) {
+  if (block.type === 'def') return /** @type {any} */ (block).names().map((/** @type {string} */ name) => [['NAME', name]]);
+  const places = block.inputList.filter((input) => /^V\d/.test(input.name));
+  return places.map((input) => valueOf(input.connection?.targetBlock() ?? null));
 }
 
 /**
@@ -267,6 +274,8 @@ function* hang(blocks, place, make, ids) {
     if (each.kind === 'if') {
       /** @type {any} */ (block).setArms(each.values.length, each.bodies.length > each.values.length);
     }
+    if (each.kind === 'def') /** @type {any} */ (block).setNames(each.values.map((value) => value[0]?.[1] ?? ''));
+    if (each.kind === 'call') /** @type {any} */ (block).setCount(each.values.length);
     const [word, unit] = block.getField('UNIT') ? each.word.split(' ') : [each.word];
     if (block.getField('WORD')) block.setFieldValue(word, 'WORD');
     if (unit) block.setFieldValue(WAY, 'UNIT');

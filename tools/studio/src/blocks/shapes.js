@@ -3,6 +3,7 @@
 
 import * as Blockly from 'blockly/core';
 import { LineField, NameField, NumberField, UnitField } from './fields.js';
+import { CALL, DEF } from './own_words.js';
 import { rangeOf } from './places.js';
 import { called } from '../page/texts.js';
 import { devicesOf, KINDS, nameOf, onBlock, tipOf } from '../page/words.js';
@@ -276,10 +277,13 @@ export function defineBlocks() {
     },
   };
   for (const [kind, shape] of Object.entries(KINDS)) {
+    const more = { def: DEF, call: CALL }[kind] ?? {};
     Blockly.Blocks[kind] = kind === 'if' ? IF : {
+      ...more,
       /** @this {Blockly.Block} */
       init() {
         build(this, kind, shape);
+        if (kind === 'def') /** @type {any} */ (this).addNames();
         this.setTooltip(tipOf(kind));
         if (shape.field === 'sensor' || shape.field === 'actuator') this.setTooltip(() => deviceTip(this));
       },

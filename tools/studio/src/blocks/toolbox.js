@@ -7,6 +7,7 @@ import { known, text } from '../page/texts.js';
 import { FIXED } from '../page/words.js';
 
 /** @typedef {'few' | 'usual' | 'all'} Level */
+/** @typedef {{names: string[], words: [string, number][]}} Used names of variables, and own words with the count of their values */
 /** @typedef {{kind: 'block', type: string, fields?: object, inputs?: object, extraState?: object}} Item */
 
 export const LEVELS = /** @type {Level[]} */ (['few', 'usual', 'all']);
@@ -28,6 +29,11 @@ function number(value) {
 function item(type, values = [], word = '') {
   const inputs = Object.fromEntries(values.map((value, k) => [`V${k}`, number(value)]));
   return { kind: 'block', type, inputs, ...(word ? { fields: { WORD: word } } : {}) };
+}
+
+/** @param {string} name of a word of one's own @param {number} count of its values @returns {Item} */
+function call(name, count) {
+  return { ...item('call', Array(count).fill(1), name), ...(count ? { extraState: { count } } : {}) };
 }
 
 /** What a question asks: what is ahead of the robot, where it can tell. */
@@ -63,7 +69,7 @@ function until(type, values, word = '') {
 }
 
 /**
- * @param {{names: string[], words: string[]}} used names of variables and of own words
+ * @param {Used} used
  * @returns {[string, [Level, Item][]][]} each group, and from which level on each block is in it
  */
 function groups(used) {
@@ -108,7 +114,7 @@ function groups(used) {
     ]],
     ['words', [
       ['usual', item('def', [], 'HOP')],
-      ...used.words.slice(0, MOST_NAMES).map((name) => /** @type {[Level, Item]} */ (['usual', item('call', [], name)])),
+      ...used.words.slice(0, MOST_NAMES).map(([name, count]) => /** @type {[Level, Item]} */ (['usual', call(name, count)])),
     ]],
     ['others', [['usual', item('comment')], ['all', item('start')]]],
   ];
@@ -116,7 +122,7 @@ function groups(used) {
 
 /**
  * @param {Level} level
- * @param {{names: string[], words: string[]}} used
+ * @param {Used} used
  * @param {string[]} taught kinds of blocks that the open lesson speaks of
  * @returns {any}
  */

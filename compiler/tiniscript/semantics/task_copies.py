@@ -1,0 +1,147 @@
+"""Gives each task that reaches a DEF with values a copy of it, with values of its own.
+
+Two tasks may be in the same DEF at the same time: in one copy each would change the other's
+values. A DEF without values that calls one with values is copied as well. Only programs that have
+both tasks and such a DEF load this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from tiniscript.base.limits import DEFS, VARIABLES
+from tiniscript.semantics import ir
+
+
+def separated(program: ir.Program) -> ir.Program:
+    """Return a program that does the same, in which no two tasks share a DEF's values."""
+    reached = _reached(program)
+    owns = _owning(program)
+    procedures: list[ir.Procedure] = []
+    variables = list(program.variables)
+    maps = [_Numbers({}, {}) for _ in reached]
+    for k, procedure in enumerate(program.procedures):
+        its_tasks = [task for task, found in enumerate(reached) if k in found]
+        if not owns[k] or len(its_tasks) < 2:
+            for its in maps:
+                its.calls[k] = len(procedures)
+            # one that no task shares keeps its variables, and calls what its task calls
+            procedures.append(_copied(procedure, maps[its_tasks[0] if its_tasks else 0]))
+            continue
+        for task in its_tasks:
+            its = maps[task]
+            if task != its_tasks[0]:
+                for variable in procedure.values:
+                    its.variables[variable] = len(variables)
+                    variables.append(program.variables[variable])
+            its.calls[k] = len(procedures)
+            procedures.append(_copied(procedure, its))
+    main, *others = maps
+    tasks = tuple(
+        task._replace(body=_body(task.body, its))
+        for task, its in zip(program.tasks, others, strict=True)
+    )
+    return program._replace(
+        variables=tuple(variables), procedures=tuple(procedures),
+        body=_body(program.body, main), tasks=tasks,
+    )  # fmt: skip
+
+
+class Excess(NamedTuple):
+    """More copies than a machine takes, of this DEF, for so many tasks."""
+
+    procedure: int
+    tasks: int
+    what: str  # "variables" or "defs"
+    total: int  # with all copies
+    limit: int
+
+
+def excess(program: ir.Program) -> Excess | None:
+    """Return the DEF whose copies a machine has no room for, if there is one."""
+    owns, counts = _owning(program), users(program)
+    variables, defs = len(program.variables), len(program.procedures)
+    for k, (procedure, count) in enumerate(zip(program.procedures, counts, strict=True)):
+        if owns[k] and count > 1:
+            variables += (count - 1) * len(procedure.values)
+            defs += count - 1
+            if variables > VARIABLES:
+                return Excess(k, count, "variables", variables, VARIABLES)
+            if defs > DEFS:
+                return Excess(k, count, "defs", defs, DEFS)
+    return None
+
+
+def users(program: ir.Program) -> list[int]:
+    """Return how many tasks reach each DEF."""
+    reached = _reached(program)
+    return [sum(k in found for found in reached) for k in range(len(program.procedures))]
+
+
+class _Numbers(NamedTuple):
+    """What a task calls, and which variables it uses, in the place of what the text names."""
+
+    calls: dict[int, int]
+    variables: dict[int, int]
+
+
+def _reached(program: ir.Program) -> list[set[int]]:
+    """Return the DEFs that each task reaches, the main task first."""
+    found = []
+    for body in (program.body, *(task.body for task in program.tasks)):
+        called: set[int] = set()
+        for _ in ir.with_calls(body, program.procedures, called):
+            pass
+        found.append(called)
+    return found
+
+
+def _owning(program: ir.Program) -> list[bool]:
+    """Return for each DEF whether it has values, or calls one that has."""
+    found: list[bool] = []
+    for procedure in program.procedures:
+        calls = [each.procedure for each in ir.walk(procedure.body) if isinstance(each, ir.Call)]
+        found.append(bool(procedure.values) or any(found[k] for k in calls))
+    return found
+
+
+def _copied(procedure: ir.Procedure, its: _Numbers) -> ir.Procedure:
+    values = tuple(its.variables.get(each, each) for each in procedure.values)
+    return procedure._replace(body=_body(procedure.body, its), values=values)
+
+
+def _body(body: ir.Body, its: _Numbers) -> ir.Body:
+    return tuple(_statement(each, its) for each in body)
+
+
+def _statement(statement: ir.Statement, its: _Numbers) -> ir.Statement:
+    new: dict[str, Any] = {
+        name: _expression(value, its.variables) for name, value in ir.values_of(statement).items()
+    }
+    if isinstance(statement, ir.Call):
+        new["procedure"] = its.calls[statement.procedure]
+    elif isinstance(statement, ir.Assign):
+        new["variable"] = its.variables.get(statement.variable, statement.variable)
+    elif isinstance(statement, ir.If):
+        new["arms"] = tuple(
+            arm._replace(
+                condition=_expression(arm.condition, its.variables), body=_body(arm.body, its)
+            )
+            for arm in statement.arms
+        )
+        new["otherwise"] = _body(statement.otherwise, its)
+    elif isinstance(statement, (ir.Loop, ir.While)):
+        new["body"] = _body(statement.body, its)
+    elif isinstance(statement, ir.Move) and statement.until is not None:
+        condition = _expression(statement.until.condition, its.variables)
+        new["until"] = statement.until._replace(condition=condition)
+    return statement._replace(**new)
+
+
+def _expression(terms: ir.Expression, variables: Mapping[int, int]) -> ir.Expression:
+    return tuple(
+        each._replace(value=variables.get(each.value, each.value))
+        if each.op == "VARIABLE" else each
+        for each in terms
+    )  # fmt: skip

@@ -1,0 +1,119 @@
+"""Which kind each value of a DEF has: that of its first call, by a look at the tokens."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tests.oracle.lexer import Token
+from tests.oracle.words import COMPARATORS
+
+_YES_NO = {*COMPARATORS, "AND", "OR", "NOT", "TRUE", "FALSE"}
+
+
+class Def(NamedTuple):
+    """The name of a DEF, and the names in its brackets."""
+
+    name: str
+    values: tuple[str, ...]
+
+
+NOWHERE = Def("", ())
+
+
+class Text:
+    """The tokens of a program, and the DEF that each stands in."""
+
+    def __init__(self, tokens: list[Token], yes_no_sensors: set[str]) -> None:
+        self.tokens = tokens
+        self.sensors = yes_no_sensors
+        self.around: list[Def] = []
+        self.defs: dict[str, Def] = {}
+        now = NOWHERE
+        for at, token in enumerate(tokens):
+            if token.text == "DEF" and at + 1 < len(tokens):
+                now = Def(tokens[at + 1].text, self.names_behind(at + 2))
+                self.defs.setdefault(now.name, now)
+            self.around.append(now)
+            if token.text in ("END_DEF", "ENDDEF"):
+                now = NOWHERE
+
+    def names_behind(self, at: int) -> tuple[str, ...]:
+        """The names in the brackets that begin here, none where there are none."""
+        found = []
+        if self.tokens[at].text == "(":
+            while self.tokens[at].text not in (")", "") and self.tokens[at].kind != "newline":
+                if self.tokens[at].kind == "word":
+                    found.append(self.tokens[at].text)
+                at += 1
+        return tuple(found)
+
+    def begins(self, at: int) -> bool:
+        """Whether an instruction begins with this token."""
+        return at == 0 or self.tokens[at - 1].kind == "newline" or self.tokens[at - 1].text in ";|"
+
+    def assigned_outside(self, name: str) -> bool:
+        """Whether a variable of the whole program has this name."""
+        return any(
+            token.text == name and self.tokens[at + 1].text == "=" and self.begins(at)
+            and name not in self.around[at].values
+            for at, token in enumerate(self.tokens[:-1])
+        )  # fmt: skip
+
+    def is_yes_no(self, name: str, around: Def, seen: tuple[tuple[str, str], ...] = ()) -> bool:
+        """Whether a name is a yes/no value, inside this DEF."""
+        own = name in around.values
+        key = (name, around.name if own else "")
+        if key in seen:
+            return False
+        for at, token in enumerate(self.tokens[:-1]):
+            if not self.begins(at):
+                continue
+            behind = self.tokens[at + 1].text
+            if own and token.text == around.name and behind == "(":
+                places = self.arguments(at + 1)
+                k = around.values.index(name)
+                return k < len(places) and self.answers(*places[k], (*seen, key))
+            is_set = token.text == name and behind == "="
+            if not own and is_set and name not in self.around[at].values:
+                return self.answers(at + 2, self.end(at + 2), (*seen, key))
+        return name in self.sensors
+
+    def answers(self, start: int, end: int, seen: tuple[tuple[str, str], ...]) -> bool:
+        """Whether the expression from `start` to before `end` is a yes/no value."""
+        depth = 0
+        while end - start > 2 and self.tokens[start].text == "(" and self.closes(start) == end - 1:
+            start, end = start + 1, end - 1
+        for at in range(start, end):
+            text = self.tokens[at].text
+            depth += {"(": 1, ")": -1}.get(text, 0)
+            if depth == 0 and text in _YES_NO:
+                return True
+        is_name = end - start == 1 and self.tokens[start].kind == "word"
+        return is_name and self.is_yes_no(self.tokens[start].text, self.around[start], seen)
+
+    def closes(self, at: int) -> int:
+        """Where the bracket that is opened here is closed."""
+        depth = 0
+        for place in range(at, len(self.tokens)):
+            depth += {"(": 1, ")": -1}.get(self.tokens[place].text, 0)
+            if depth == 0:
+                return place
+        return len(self.tokens) - 1
+
+    def end(self, at: int) -> int:
+        """Where the instruction around this token ends."""
+        while self.tokens[at].kind not in ("newline", "end") and self.tokens[at].text != ";":
+            at += 1
+        return at
+
+    def arguments(self, at: int) -> list[tuple[int, int]]:
+        """Where each value of the brackets that begin here begins and ends."""
+        last, found, depth = self.closes(at), [], 0
+        begun = at + 1
+        for place in range(at + 1, last):
+            text = self.tokens[place].text
+            depth += {"(": 1, ")": -1}.get(text, 0)
+            if text == "," and depth == 0:
+                found.append((begun, place))
+                begun = place + 1
+        return [*found, (begun, last)] if begun < last else found
