@@ -20,7 +20,8 @@ VALUES = {
     "bootloader_only": {"board"}, "garbled": {"n"}, "firmware_older": {"theirs", "ours"},
     "firmware_newer": {"theirs", "ours"}, "wrong_kit": {"kit", "robot", "expected"},
     "unknown_kit": {"kit"}, "restarts": {"count", "reset"}, "motors_restart": {"count", "reset"},
-    "lossy": {"missed", "n", "damaged"}, "fine": {"name", "kit", "id", "n"},
+    "lossy": {"missed", "n", "damaged"}, "other_robot": {"id"}, "unproven": {"id"},
+    "fine": {"name", "kit", "id", "n"},
 }  # fmt: skip
 
 

@@ -21,7 +21,8 @@ WRONG = (
     "other_sketch", "bootloader_only", "garbled", "silent",
     # the robot
     "firmware_older", "firmware_newer", "wrong_kit", "unknown_kit", "restarts", "motors_restart",
-    "brown_out", "hung", "low_supply", "wifi_rests", "lossy", "falls_silent",
+    "brown_out", "hung", "low_supply", "wifi_rests", "lossy", "falls_silent", "other_robot",
+    "unproven",
 )
 # fmt: on
 NOTES = ("of_another_owner", "stopped", "not_saved_yet", "other_program")  # nothing is wrong then

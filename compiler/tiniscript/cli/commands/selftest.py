@@ -1,4 +1,4 @@
-"""`tsc selftest`: whether a robot is ready for a lesson, as far as a computer can check that."""
+"""`tsc doctor --selftest`: whether a robot is ready for a lesson, as far as a computer can see."""
 
 from __future__ import annotations
 
