@@ -39,7 +39,7 @@ from tiniscript.doctor.examination import PINGS, Expected, Heard
 from tiniscript.doctor.findings import NOTES, Finding
 from tiniscript.doctor.system import System
 from tiniscript.library import opening
-from tiniscript.library.known_kits import of_kit, shipped_of_kit
+from tiniscript.library.known_kits import name_of
 from tiniscript.link import ports
 from tiniscript.link.authority import has_to_seal, is_other, whose
 from tiniscript.link.connection import LinkConnection
@@ -124,18 +124,11 @@ def _question(
         port,
         opening.last_port(),
         baud_of(options, robot, language),
-        Expected(
-            kit, robot.name, _name_of_kit, _has_key, _doubt, "", told.update, heard.append, count
-        ),
+        Expected(kit, robot.name, name_of, _has_key, _doubt, "", told.update, heard.append, count),
         int.from_bytes(os.urandom(4), "little"),
         watch_s * 1000,
         tuple(each.address for each in directory.for_all()),
     )
-
-
-def _name_of_kit(kit: int) -> str | None:
-    found = of_kit(kit)
-    return shipped_of_kit(kit) or (None if found is None else found.name)
 
 
 def _has_key(robot: int) -> bool:
