@@ -1,8 +1,8 @@
 """What `pyproject.toml` cannot say.
 
 A wheel brings the firmware's sources and the texts of each language, and nothing stale. One without
-the studio's page, firmware that is ready or the cases of `tsc conform` says so; in a clone, at a
-terminal, the page is built if somebody wants it.
+the studio's page, firmware that is ready or the cases of `tsc doctor --conform` says so; in a
+clone, at a terminal, the page is built if somebody wants it.
 The links of its description lead to the project's address, where `pyproject.toml` has one. With
 SOURCE_DATE_EPOCH a source package has the same bytes whenever and wherever it is made, as
 setuptools does that for a wheel.
@@ -31,7 +31,10 @@ INSIDE = Path("tiniscript") / "flash" / "vm_arduino"  # where tsc firmware looks
 MADE = {
     "the studio's page": ("tiniscript/studio/page/index.html", "tools.builds.studio"),
     "firmware that is ready": ("tiniscript/flash/ready/*.hex", "tools.builds.firmware_files"),
-    "the cases of tsc conform": ("tiniscript/conformance/*.json", "tools.builds.conformance"),
+    "the cases of tsc doctor --conform": (
+        "tiniscript/conformance/*.json",
+        "tools.builds.conformance",
+    ),
 }
 PYTHON = ROOT / ".venv" / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 

@@ -167,8 +167,8 @@ def pty_robot() -> Iterator[PtyRobot]:
 
 @pytest.fixture
 def link(pty_robot: PtyRobot) -> Iterator[Command]:
-    """`tsc link` on the robot's port."""
-    command = Command("link", "--port", pty_robot.port)
+    """`tsc monitor --hold` on the robot's port."""
+    command = Command("monitor", "--hold", "--port", pty_robot.port)
     command.until("share this port")
     yield command
     command.kill()

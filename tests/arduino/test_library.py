@@ -145,7 +145,7 @@ def test_the_link_of_an_example_conforms(
     program = elf(made, "Link", "uno", shared(tmp_path_factory))
     with Uno(program, baud=115_200, tells_sleep=False) as uno:
         uno.go()
-        done = process("conform", "--port", uno.pty, "--baud", "115200")
+        done = process("doctor", "--conform", "--port", uno.pty, "--baud", "115200")
         assert done.code == 0, done.out + done.err
         done = process("upload", "-e", "SI|SHOW(1 + 1)", "--port", uno.pty, "--baud", "115200",
                        "--no-save")  # fmt: skip

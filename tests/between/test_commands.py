@@ -61,19 +61,17 @@ COMMANDS = (
     Words("live, Ctrl-C", ("live", "M(80, 80); W(9); M(0, 0)"), stays=True),
     Words("stop", ("stop",)),
     Words("monitor, Ctrl-C", ("monitor",), stays=True),
-    Words("link, Ctrl-C", ("link",), stays=True),
-    Words("undo", ("undo",), may_fail=True),
-    Words("info", ("info",)),
-    Words("ping", ("ping",)),
-    Words("identify", ("identify",)),
-    Words("fetch", ("fetch",)),
-    Words("name", ("name", "TINI")),
-    Words("trim --show", ("trim", "--show")),
-    Words("trim --balance", ("trim", "--balance", "3")),
-    Words("text", ("text", "on")),
-    Words("claim", ("claim",), takes_s=30.0, may_fail=True),
-    Words("disown", ("disown",)),
-    Words("selftest --yes", ("selftest", "--yes"), may_fail=True),
+    Words("monitor --hold, Ctrl-C", ("monitor", "--hold"), stays=True),
+    Words("start --previous", ("start", "--previous"), may_fail=True),
+    Words("doctor --identify", ("doctor", "--identify")),
+    Words("show --port", ("show",)),
+    Words("set name", ("set", "name", "TINI")),
+    Words("set trim --show", ("set", "trim", "--show")),
+    Words("set trim --balance", ("set", "trim", "--balance", "3")),
+    Words("set text", ("set", "text", "on")),
+    Words("set owner", ("set", "owner"), takes_s=30.0, may_fail=True),
+    Words("set owner --give-up", ("set", "owner", "--give-up")),
+    Words("doctor --selftest --yes", ("doctor", "--selftest", "--yes"), may_fail=True),
     Words("doctor --yes", ("doctor", "--yes"), may_fail=True),
 )
 
@@ -97,7 +95,7 @@ def with_program() -> bytes:
             patch.setenv(name, value)
         with PtyRobot(KIT) as robot:
             on(robot, "upload", "--detach", "-e", SHORT).gives(0)
-            on(robot, "ping").gives(0)
+            on(robot, "doctor", "--identify").gives(0)
             robot.switch_off()
             return robot._memory
 

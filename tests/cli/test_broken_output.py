@@ -91,7 +91,7 @@ def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
     code, said = after_lines(1, *words)
     assert code == CLOSED and said.count("\n") == 1 and "stopped the robot" in said
     pty_robot.switch_off_and_on()
-    on(pty_robot, "fetch").gives(0, out="SHOW")
+    on(pty_robot, "show").gives(0, out="SHOW")
 
 
 def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
@@ -110,7 +110,7 @@ def test_what_goes_on_alone_goes_on(pty_robot: PtyRobot) -> None:
     code, said = after_lines(0, "upload", "-e", SHOWS, "--detach", *port)
     assert (code, said) == (CLOSED, "")
     assert pty_robot.moves
-    code, said = after_lines(0, "info", *port)
+    code, said = after_lines(0, "doctor", *port)
     assert (code, said) == (CLOSED, "")
     assert pty_robot.moves
     code, said = after_lines(2, "monitor", *port)
@@ -131,13 +131,12 @@ def test_many_robots_are_stopped() -> None:
 
 
 @pytest.mark.parametrize(("verb", "is_detached", "is_stopped"), [
-    ("upload", False, True), ("upload", True, False), ("info", False, False),
-    ("ping", False, False),
+    ("upload", False, True), ("upload", True, False), ("doctor", False, False),
 ])  # fmt: skip
 def test_only_robots_that_a_command_drives_are_stopped(
     monkeypatch: pytest.MonkeyPatch, verb: str, is_detached: bool, is_stopped: bool
 ) -> None:
-    """`tsc info --all | head` leaves running robots alone."""
+    """`tsc doctor --all | head` leaves running robots alone."""
     stopped: list[str] = []
 
     def broken(self: fleet.Fleet, table: object) -> None:
@@ -166,8 +165,8 @@ def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
 
 @pytest.mark.parametrize(
     "words",
-    [["explain"], ["--help"], ["compile", "-e", PROGRAM, "-o", "-"], ["check", "-e", "F(1"],
-     ["complie"]],
+    [["check", "--explain"], ["--help"], ["compile", "-e", PROGRAM, "-o", "-"],
+     ["check", "-e", "F(1"], ["complie"]],
 )  # fmt: skip
 def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
     """Nothing is read of what it prints: text, bytes, not even what is wrong."""
@@ -184,7 +183,9 @@ def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
 # -- a port that vanishes -----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("words", "which"), [(["name", "TINI"], 1), (["trim", "--reset"], 2)])
+@pytest.mark.parametrize(
+    ("words", "which"), [(["set", "name", "TINI"], 1), (["set", "trim", "--reset"], 2)]
+)
 def test_a_port_that_vanishes_is_no_bug(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], which: int
 ) -> None:

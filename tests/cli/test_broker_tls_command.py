@@ -1,4 +1,4 @@
-"""`tsc wifi --broker --tls`: a robot with an ESP32 at Mosquitto with certificates."""
+"""`tsc set wifi --broker --tls`: a robot with an ESP32 at Mosquitto with certificates."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def school(tmp_path: Path) -> Iterator[School]:
     try:
         near(robot)
         assert claimed(robot).code == 0
-        assert on(robot, "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
+        assert on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
         yield School(robot, broker, authority)
     finally:
         robot.clear_away()
@@ -50,7 +50,7 @@ def school(tmp_path: Path) -> Iterator[School]:
 
 def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) -> None:
     def used(*words: str) -> str:
-        done = on(school.robot, "wifi", *words, "--user", "robots", data=b"a secret\n")
+        done = on(school.robot, "set", "wifi", *words, "--user", "robots", data=b"a secret\n")
         assert done.code == 0 and "a secret" not in done.out + done.err, done.err
         return done.out
 
@@ -58,7 +58,7 @@ def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) 
     assert "does not trust its certificate" in used(*school.place(stranger.file))
     said = used(*school.place())
     assert "is at the broker localhost, in the class 3b" in said
-    later = on(school.robot, "wifi").out
+    later = on(school.robot, "set", "wifi").out
     assert "is at the broker" in later and "tsc class" not in later, "it knows no port"
     _, *next_command = shlex.split(said.partition("To see all of them:  ")[2])
     assert "no program; nothing runs; yours" in inside(*next_command, data=b"a secret\n").out
@@ -76,13 +76,13 @@ def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path
     }  # fmt: skip
     for name, data in files.items():
         (tmp_path / name).write_bytes(data)
-        words = ("wifi", "--broker", NAME, "--tls", "--trust", str(tmp_path / name))
+        words = ("set", "wifi", "--broker", NAME, "--tls", "--trust", str(tmp_path / name))
         for language, said in (("en", "is not a file with one"), ("es", "no es un archivo con un")):
             done = inside(*words, "--port", "/none", "--lang", language)
             assert done.code == 2 and said in done.err and done.err.count("\n") == 1, name
     for form in (authority.der, b"Certificate:\n  x\n" + text):
         (tmp_path / "good").write_bytes(form)
-        words = ("wifi", "--broker", NAME, "--tls", "--trust", str(tmp_path / "good"))
+        words = ("set", "wifi", "--broker", NAME, "--tls", "--trust", str(tmp_path / "good"))
         assert inside(*words, "--port", "/none").code == 3, "there is no such port"
 
 
@@ -125,7 +125,7 @@ def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_pat
 def test_options_that_make_no_sense(words: list[str], said: str, tmp_path: Path) -> None:
     file = str(Authority(tmp_path).file)
     words = [file if word == "CA" else word for word in words]
-    inside("wifi", *words, "--port", "/none").gives(2, said, out="")
+    inside("set", "wifi", *words, "--port", "/none").gives(2, said, out="")
 
 
 def test_every_state_of_a_broker_has_a_sentence() -> None:

@@ -49,8 +49,10 @@ class Class(list[Esp32PtyRobot]):
         for robot in self:
             near(robot)
             assert claimed(robot).code == 0
-            assert on(robot, "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
-            done = on(robot, "wifi", *self.place, "--user", "robots", data=SECRET + b"\n").gives(0)
+            assert on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
+            done = on(
+                robot, "set", "wifi", *self.place, "--user", "robots", data=SECRET + b"\n"
+            ).gives(0)
             assert "in the class 3b" in done.out and SECRET.decode() not in done.out + done.err
 
     @property
@@ -264,7 +266,7 @@ def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: lis
     ["--user", "x"], ["--class", "x"], ["--broker", "no.such.host.invalid"],
 ])  # fmt: skip
 def test_a_robots_broker_is_told_in_words_that_make_sense(words: list[str]) -> None:
-    done = inside("wifi", *words, "--port", "/none", data=PASSWORD)
+    done = inside("set", "wifi", *words, "--port", "/none", data=PASSWORD)
     assert done.code == 2 and done.err.startswith("tsc: ")
 
 

@@ -283,10 +283,10 @@ def test_fmt_leaves_what_is_wrong_and_what_it_would_make_too_large(
 
 
 def test_explain(tsc: Tsc) -> None:
-    done = tsc("explain", "TS012").gives(0, out="TS012")
-    assert tsc("explain", "ts012", "--lang", "es").out != done.out
-    assert tsc("explain").out.count("\nTS") > 50
+    done = tsc("check", "--explain", "TS012").gives(0, out="TS012")
+    assert tsc("check", "--explain", "ts012", "--lang", "es").out != done.out
+    assert tsc("check", "--explain").out.count("\nTS") > 50
     for language, vague in (("en", "another way"), ("es", "otra forma"), ("pt", "outro jeito")):
         # a title says what is wrong, not that it is said otherwise
-        assert vague not in tsc("explain", "--lang", language).gives(0, out="TS076").out
-    assert tsc("explain", "TS999").code == 2
+        assert vague not in tsc("check", "--explain", "--lang", language).gives(0, out="TS076").out
+    assert tsc("check", "--explain", "TS999").code == 2

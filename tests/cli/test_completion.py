@@ -13,11 +13,12 @@ import pytest
 
 from tests.support.command import Tsc
 from tests.support.terminal import Terminal
-from tests.support.verbs import parsers
+from tests.support.verbs import parsers, words_of
 from tiniscript import robots
 from tiniscript.base.languages import languages
 from tiniscript.cli.commands import completion
-from tiniscript.cli.texts.verbs import VERBS
+from tiniscript.cli.texts.options import choosers_of
+from tiniscript.cli.texts.verbs import VERBS, typed
 from tiniscript.diagnostics.codes import CODES
 
 BASH = shutil.which("bash") or ""
@@ -26,7 +27,7 @@ ZSH = shutil.which("zsh") or ""
 
 def offered(tsc: Tsc, *words: str) -> set[str]:
     """Return what is offered for the last of these words."""
-    done = tsc("completion", "bash", "--", *words[:-1], f".{words[-1]}").gives(0, "")
+    done = tsc("help", "--completion", "bash", "--", *words[:-1], f".{words[-1]}").gives(0, "")
     return {line.partition("\t")[0] for line in done.out.splitlines()[1:]}
 
 
@@ -44,21 +45,29 @@ def test_verbs_options_and_values(tsc: Tsc) -> None:
     assert offered(tsc, "check", "--robot", "=", "lin") == {"liner"}
     assert offered(tsc, "check", "--robot=lin") == {"--robot=liner"}
     assert offered(tsc, "run", "--machine", "") == {"python", "cpp"}
-    assert offered(tsc, "trim", "--exchange", "") == {"yes", "no"}
-    assert offered(tsc, "firmware", "--board", "nano") == {"nano", "nano-old"}
-    assert offered(tsc, "explain", "TS") == set(CODES)
-    assert offered(tsc, "help", "fe") == offered(tsc, "ayuda", "fe") == {"fetch"}
-    assert offered(tsc, "completion", "") == {"bash", "zsh", "powershell"}
+    assert offered(tsc, "set", "") == {"owner", "name", "trim", "text", "wifi"}
+    assert offered(tsc, "set", "trim", "--exchange", "") == {"yes", "no"}
+    assert offered(tsc, "set", "--port", "trim", "owner", "--") >= {"--give-up", "--list"}
+    assert offered(tsc, "doctor", "--se") == {"--selftest"}
+    assert offered(tsc, "doctor", "--module", "--p") == {"--port", "--pin"}
+    assert offered(tsc, "firmware", "--chip", "nano") == {"nano", "nano-old"}
+    assert offered(tsc, "firmware", "--board", "lin") == {"liner"}
+    assert offered(tsc, "check", "--explain", "TS") == set(CODES)
+    assert offered(tsc, "help", "fm") == offered(tsc, "ayuda", "fm") == {"fmt"}
+    assert offered(tsc, "help", "--completion", "") == {"bash", "zsh", "powershell"}
     assert offered(tsc, "stop", "") >= {"--port", "--all"}  # it has no argument
     assert offered(tsc, "compile", "-o", "") == set()  # a file, which bash itself finds
-    assert offered(tsc, "ping", "--count", "") == set()
+    assert offered(tsc, "doctor", "--count", "") == set()
     assert offered(tsc, "nonsense", "") == set()
 
 
 def test_every_option_of_every_verb(tsc: Tsc) -> None:
-    for verb, parser in parsers().items():
+    for command, parser in parsers().items():
         flags = {flag for each in parser._actions for flag in each.option_strings}
-        assert offered(tsc, verb, "-") == flags, verb
+        flags |= {flag for each in choosers_of(command) for flag in each.flags.split()}
+        words = typed(command).split()
+        valued = [] if words[-1] in words_of(command) else ["x"]
+        assert offered(tsc, *words, *valued, "-") == flags, command
 
 
 def words(tmp_path: Path) -> dict[str, str]:
@@ -75,7 +84,7 @@ def words(tmp_path: Path) -> dict[str, str]:
 def test_tab_in_bash(tmp_path: Path) -> None:
     (tmp_path / "my program.ts").write_text("S")
     (tmp_path / "rc").write_text(f'PS1="> "; cd {shlex.quote(str(tmp_path))}\n'
-                                 'eval "$(tsc completion bash)"\n')  # fmt: skip
+                                 'eval "$(tsc help --completion bash)"\n')  # fmt: skip
     command = [BASH, "--noprofile", "--rcfile", str(tmp_path / "rc"), "-i"]
     shell = Terminal(command=command, env=words(tmp_path))
     shell.until(">")
@@ -85,7 +94,7 @@ def test_tab_in_bash(tmp_path: Path) -> None:
     shell.until(r"my\\ program\.ts")
     shell.type("\n")
     shell.until("my program.ts: no mistakes")
-    shell.type("tsc explain TS01\t\t")
+    shell.type("tsc check --explain TS01\t\t")
     shell.until("TS011(.|\n)*TS012")
     shell.type("\x15exit\n")
     assert shell.end() == 0
@@ -95,7 +104,7 @@ def test_tab_in_bash(tmp_path: Path) -> None:
 def test_tab_in_zsh(tmp_path: Path) -> None:
     (tmp_path / ".zshrc").write_text(
         'PS1="> "; unsetopt zle_bracketed_paste; autoload -Uz compinit && compinit -u -D\n'
-        f'cd {shlex.quote(str(tmp_path))}; eval "$(tsc completion zsh --lang es)"\n'
+        f'cd {shlex.quote(str(tmp_path))}; eval "$(tsc help --completion zsh --lang es)"\n'
     )
     (tmp_path / "course.ts").write_text("S")
     environ = {**words(tmp_path), "ZDOTDIR": str(tmp_path), "TERM": "vt100"}
@@ -104,12 +113,12 @@ def test_tab_in_zsh(tmp_path: Path) -> None:
     shell.type("tsc st\t\t")
     shell.until("inicia el programa que tiene el robot")
     shell.until("detiene el robot ahora")
-    for typed, seen in (
+    for keys, seen in (
         ("\x15tsc upload --w\t", "tsc upload --world"), ("ob\t", "--world obstacles"),
         ("\x15tsc check cou\t", "tsc check course.ts"),
-        ("\x15tsc trim --exch\t", "tsc trim --exchange"), ("y\t", "--exchange yes"),
+        ("\x15tsc set trim --exch\t", "tsc set trim --exchange"), ("y\t", "--exchange yes"),
     ):  # fmt: skip
-        shell.type(typed)
+        shell.type(keys)
         shell.until(seen)
     shell.type("\x15exit\r")
     assert shell.end() == 0
@@ -132,5 +141,7 @@ def test_brackets_and_quotes_of_powershell_close() -> None:
 
 
 def test_a_shell_that_is_not_known(tsc: Tsc) -> None:
-    tsc("completion", "fish").gives(2, "SHELL takes bash, zsh or powershell, not fish")
-    tsc("completion", "--lang", "es").gives(2, "falta shell")
+    tsc("help", "--completion", "fish").gives(
+        2, "--completion takes bash, zsh or powershell, not fish"
+    )
+    tsc("help", "--completion", "--lang", "es").gives(2, "a --completion le falta su valor")

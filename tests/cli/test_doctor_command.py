@@ -37,12 +37,16 @@ def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
     pty_robot.until(lambda: pty_robot.robot_ms > 500, "a new robot has kept its id")
     pty_robot.ask(lambda robot: before.append(robot.memory()))
     done = on(pty_robot, "doctor").gives(0, "")
-    assert done.out.splitlines() == [
+    found, robot, ports = (part.splitlines() for part in done.out.split("\n\n"))
+    assert found == [
         f"Port {pty_robot.port}",
         "1. tinibot is fine (sure)",
         "   seen: kit tinibot, id 12345678; it answered 20 questions, and was not restarted",
         "   next: Nothing to do. If it restarts when it drives:  tsc doctor --watch 20",
     ]
+    assert robot[0] == f"tinibot on {pty_robot.port}, id 12345678, free"
+    assert "no program" in robot and robot[-1].startswith("20 round trips: ")
+    assert ports[0] == "Ports of this computer:" and f"{pty_robot.port}   last used" in ports
     assert pty_robot.did == []
     pty_robot.ask(lambda robot: before.append(robot.memory()))
     assert before[0] == before[1]
@@ -66,7 +70,7 @@ def test_a_run_goes_on(pty_robot: PtyRobot, is_others: bool) -> None:
 
 def test_through_the_command_that_has_the_port(link: Command, pty_robot: PtyRobot) -> None:
     on(pty_robot, "doctor", "--lang", "es").gives(0, out="1. tinibot está bien (seguro)")
-    assert on(pty_robot, "ping").code == 0
+    assert on(pty_robot, "doctor", "--identify").code == 0
 
 
 def test_what_is_wrong_with_a_robot_is_said(pty_robot: PtyRobot) -> None:
@@ -131,7 +135,7 @@ def test_what_is_no_robot_and_what_others_have_written(tsc: Tsc) -> None:
         done = tsc("doctor", "--port", pty_end.port)
     assert done.code == 0
     assert "\x1b" not in done.out, "it cannot move the cursor"
-    assert len(done.out.splitlines()) == 4
+    assert len(done.out.split("\n\n")[0].splitlines()) == 4
 
 
 def test_wrong_use_and_no_such_port(tsc: Tsc) -> None:

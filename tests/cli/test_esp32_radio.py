@@ -54,7 +54,7 @@ def joined(robot: Esp32PtyRobot) -> Esp32PtyRobot:
     """A robot with an owner, in a network."""
     near(robot)
     assert claimed(robot).code == 0
-    done = on(robot, "wifi", NETWORK, data=PASSWORD + b"\n")
+    done = on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n")
     assert done.code == 0, done.err
     assert f"in the network {NETWORK}" in done.out and "tcp://tini-5678.local" in done.out
     return robot
@@ -79,53 +79,53 @@ def files_with(folder: Path, words: bytes) -> list[str]:
 
 
 def test_a_robot_without_an_owner_says_what_comes_first(robot: Esp32PtyRobot) -> None:
-    for words in (("wifi", NETWORK), ("wifi",), ("wifi", "--forget")):
-        on(robot, *words, data=PASSWORD + b"\n").gives(3, "tsc claim", out="")
-    assert "Primero hazlo tuyo" in on(robot, "wifi", NETWORK, "--lang", "es").err
+    for words in (("set", "wifi", NETWORK), ("set", "wifi"), ("set", "wifi", "--forget")):
+        on(robot, *words, data=PASSWORD + b"\n").gives(3, "tsc set owner", out="")
+    assert "Primero hazlo tuyo" in on(robot, "set", "wifi", NETWORK, "--lang", "es").err
     assert asked(robot, "joins") == "0"
 
 
 def test_a_network_is_set_told_and_forgotten(joined: Esp32PtyRobot, tmp_path: Path) -> None:
     assert asked(joined, "password").encode() == PASSWORD
-    said = on(joined, "wifi")
+    said = on(joined, "set", "wifi")
     assert said.code == 0 and NETWORK in said.out and PASSWORD.decode() not in said.out + said.err
     assert files_with(tmp_path, PASSWORD) == []
     near(joined, b"another password")
-    joined.until(lambda: "password may be" in on(joined, "wifi").out, "it is refused")
-    assert "la contraseña es otra" in on(joined, "wifi", "--lang", "es").out
-    assert on(joined, "wifi", "--forget").code == 0
-    assert "uses no WiFi" in on(joined, "wifi").out
+    joined.until(lambda: "password may be" in on(joined, "set", "wifi").out, "it is refused")
+    assert "la contraseña es otra" in on(joined, "set", "wifi", "--lang", "es").out
+    assert on(joined, "set", "wifi", "--forget").code == 0
+    assert "uses no WiFi" in on(joined, "set", "wifi").out
     assert asked(joined, "network") == ""
 
 
 def test_a_network_of_its_own_is_said_to_be_unstable_beside_bluetooth(robot: Esp32PtyRobot) -> None:
     """By the table of Espressif's page on coexistence; Bluetooth is always on."""
     assert claimed(robot).code == 0
-    done = on(robot, "wifi", "Tini", "--access-point", data=PASSWORD + b"\n")
+    done = on(robot, "set", "wifi", "Tini", "--access-point", data=PASSWORD + b"\n")
     assert done.code == 0 and "192.168.4.1" in done.out and "unstable" in done.out
-    assert "inestable" in on(robot, "wifi", "--lang", "es").out
-    assert "instável" in on(robot, "wifi", "--lang", "pt").out
-    assert on(robot, "wifi", "--forget").code == 0
-    assert "unstable" not in on(robot, "wifi").out
+    assert "inestable" in on(robot, "set", "wifi", "--lang", "es").out
+    assert "instável" in on(robot, "set", "wifi", "--lang", "pt").out
+    assert on(robot, "set", "wifi", "--forget").code == 0
+    assert "unstable" not in on(robot, "set", "wifi").out
 
 
 def test_what_is_no_password_changes_nothing(joined: Esp32PtyRobot) -> None:
     for data in (b"", b"\n", b"short\n", b"x" * 64 + b"\n", b"12345678\0\n",
                  b"1234567\x1b[2J\n", b"x" * 5000):  # fmt: skip
-        done = on(joined, "wifi", "Other", data=data)
+        done = on(joined, "set", "wifi", "Other", data=data)
         assert done.code == 2 and "8 to 63" in done.err and "\x1b" not in done.err, data
         assert asked(joined, "network") == NETWORK
 
 
 @pytest.mark.parametrize("words", [
-    ("wifi", "x" * 33), ("wifi", ""), ("wifi", "a\tb"), ("wifi", "X", "--forget"),
-    ("wifi", "--access-point"), ("wifi", "--access-point", "--forget"),
+    ("x" * 33,), ("",), ("a\tb",), ("X", "--forget"),
+    ("--access-point",), ("--access-point", "--forget"),
 ])  # fmt: skip
 def test_words_that_make_no_sense_are_said_before_any_port_is_opened(
     words: tuple[str, ...],
 ) -> None:
     for language in ("en", "es"):
-        done = inside(*words, "--port", "/none", "--lang", language, data=PASSWORD)
+        done = inside("set", "wifi", *words, "--port", "/none", "--lang", language, data=PASSWORD)
         assert done.code == 2 and done.err.startswith("tsc: ")
 
 
@@ -133,16 +133,16 @@ def test_two_computers_at_once_over_cable_and_network(
     joined: Esp32PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     place = f"socket://127.0.0.1:{asked(joined, 'port')}"
-    for words in (("wifi", "Other"), ("wifi", "--forget")):
+    for words in (("set", "wifi", "Other"), ("set", "wifi", "--forget")):
         inside(*words, "--port", place, data=PASSWORD).gives(2, "Bluetooth")
-    assert NETWORK in inside("wifi", "--port", place).out
+    assert NETWORK in inside("set", "wifi", "--port", place).out
     assert inside("upload", "-e", DRIVES, "--port", place).code == 0
     assert drove(joined)[-2:] == DROVE
     command = driving(joined, place)
     on(joined, "upload", "-e", DRIVES).gives(3, "another connection")
     assert "otra conexión" in on(joined, "live", "F(1, 20)", "--lang", "es").err
     as_another(monkeypatch, tmp_path)
-    assert on(joined, "info").code == 0
+    assert on(joined, "doctor").code == 0
     assert joined.moves
     assert on(joined, "stop").code == 0
     assert not joined.moves
@@ -157,7 +157,7 @@ def test_over_a_bad_network(joined: Esp32PtyRobot, tmp_path: Path) -> None:
         inside("upload", "-e", LONG, "--no-run", "--port", place).gives(0)
     ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
     assert inside("compile", "-e", LONG, "-o", ours).code == 0
-    assert inside("fetch", "-o", theirs, "--port", place).code == 0
+    assert inside("show", "-o", theirs, "--port", place).code == 0
     assert ours.read_bytes() == theirs.read_bytes()
     command = driving(joined, place)
     assert process("stop", "--port", place).code == 0
@@ -177,7 +177,9 @@ PLACE = "tcp://tini-5678"
 
 
 def is_listed() -> bool:
-    rows = [row for row in inside("ports", "--ask").out.split("\n") if row.startswith(PLACE)]
+    rows = [
+        row for row in inside("doctor", "--ports", "--ask").out.split("\n") if row.startswith(PLACE)
+    ]
     return any("announced in the network" in row and "robot tinibot (yours)" in row for row in rows)
 
 
@@ -187,14 +189,15 @@ def test_a_robot_is_found_and_driven_by_its_name(
     monkeypatch.setattr("serial.tools.list_ports.comports", list)  # to ask one takes ten seconds
     with Announced(joined):
         for place in (f"{PLACE}.local", PLACE):  # the last one is remembered
-            assert process("ping", "--port", place, "--count", "1").code == 0
+            assert process("doctor", "--identify", "--port", place).code == 0
         joined.until(is_listed, "it is listed")  # a busy computer misses what comes after 2 s
         command = driving(joined, PLACE)
         assert process("stop", "--port", PLACE).code == 0
         assert not joined.moves
         command.ended()
-        assert on(joined, "wifi", "--forget").code == 0
+        assert on(joined, "set", "wifi", "--forget").code == 0
         assert asked(joined, "service") == ""
         joined.until(
-            lambda: "announces itself" in inside("ping", "--port", PLACE).err, "it is silent"
+            lambda: "announces itself" in inside("doctor", "--identify", "--port", PLACE).err,
+            "it is silent",
         )

@@ -267,7 +267,7 @@ def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
     assert registry.claimed("socket://x:1") is None
     command.kill()
     assert len(names()) == 2
-    assert json.loads(inside("ports", "--json").out) is not None
+    assert json.loads(inside("doctor", "--ports", "--json").out) is not None
     assert names() == set()
 
 

@@ -126,7 +126,7 @@ def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     # a command that brings a robot along does not take that of another one
     other = inside("upload", "--virtual", "-e", "SI|SHOW(1)")
     assert "SHOW 1" in other.out and upload.port not in other.out
-    assert inside("info", "--virtual").code == 0
+    assert inside("doctor", "--virtual").code == 0
     done = inside("stop", *options)
     assert (done.code, done.out) == (
         0, f"Stopped: the robot on {upload.port} has confirmed it.\n",
@@ -167,19 +167,19 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
 def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "listed", list)
     with robot("--name", "KAT") as found:
-        assert inside("ports", "--ask").code == 0
-        assert inside("ping", "--all", "--count", "1").code == 0
+        assert inside("doctor", "--ports", "--ask").code == 0
+        assert inside("doctor", "--identify", "--all").code == 0
         local = found.port.replace("127.0.0.1", "localhost")
-        assert inside("ping", "--port", local, "--count", "1").code == 0
-        assert found.port in inside("ports").out
+        assert inside("doctor", "--identify", "--port", local).code == 0
+        assert found.port in inside("doctor", "--ports").out
         done = inside("live", "-", "--port", found.port, data=b"X = 5;SHOW(X)\nS\n")
         assert (done.code, done.out) == (0, "SHOW 5\n")
         lines = found.until("DONE") + found.until("DONE")
         assert sum("SHOW" in line for line in lines) == 1, "what live keeps is not printed"
-    assert "socket" not in inside("ports").out
+    assert "socket" not in inside("doctor", "--ports").out
     known_ports.remember(found.port, "KAT")  # by a tsc that did
-    assert "socket" not in inside("ports").out
-    inside("ping").gives(3, "is not there")
+    assert "socket" not in inside("doctor", "--ports").out
+    inside("start").gives(3, "is not there")
 
 
 # -- a run without a robot ------------------------------------------------------------------------
@@ -293,7 +293,7 @@ def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
     with robot("--robot", profile):
         text = "SI|SHOW(SIREN)"
         assert "TS103" in inside("upload", "-e", text).err  # nobody knows it yet
-        assert inside("info", "--robot", profile).code == 0
+        assert inside("doctor", "--robot", profile).code == 0
         done = inside("upload", "-e", text)
         assert (done.code, done.err) == (0, "The robot here: own. tsc compiles for it.\n")
     [(path, found)] = given.profiles()
@@ -415,15 +415,18 @@ def test_board_says_where_the_build_looks(
     home = here / "vm_arduino" / "src" / "boards" / "kits"
     home.mkdir(parents=True)
     (here / "vm_arduino" / "platformio.ini").touch()
-    done = tsc("board", "liner", "-o", "own.h")
-    assert "tsc board liner -o vm_arduino/src/boards/kits/own.h   Then:  pio run -d vm_arduino -e" \
-        in done.out  # fmt: skip
-    assert "Ponlo ahí:" in tsc("board", "liner", "-o", "own.h", "--lang", "es").out
-    done = tsc("board", "liner", "-o", "vm_arduino/src/boards/kits/own.h")
+    done = tsc("firmware", "--board", "liner", "-o", "own.h")
+    home_of_it = "vm_arduino/src/boards/kits/own.h"
+    then = "Then:  pio run -d vm_arduino -e"
+    assert f"tsc firmware --board liner -o {home_of_it}   {then}" in done.out
+    assert "Ponlo ahí:" in tsc("firmware", "--board", "liner", "-o", "own.h", "--lang", "es").out
+    done = tsc("firmware", "--board", "liner", "-o", "vm_arduino/src/boards/kits/own.h")
     assert done.out.endswith("Now:  pio run -d vm_arduino -e nano\n")
     monkeypatch.chdir(home)
     up = str(Path("../../.."))
-    assert tsc("board", "liner", "-o", "own.h").out.endswith(f"Now:  pio run -d {up} -e nano\n")
+    assert tsc("firmware", "--board", "liner", "-o", "own.h").out.endswith(
+        f"Now:  pio run -d {up} -e nano\n"
+    )
 
 
 def test_the_first_program_is_one_without_a_warning(tsc: Tsc) -> None:

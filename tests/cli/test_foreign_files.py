@@ -29,8 +29,8 @@ WRITERS = [
     (("compile", "-e", PROGRAM, "-o"), "-o"),
     (("compile", "-e", PROGRAM, "--text", "-o"), "-o"),
     (("compile", "-e", PROGRAM, "-o", "a.bin", "--map"), "--map"),
-    (("wiring", "-o"), "-o"),
-    (("board", "tinibot", "-o"), "-o"),
+    (("firmware", "--wiring", "-o"), "-o"),
+    (("firmware", "--board", "tinibot", "-o"), "-o"),
     (("show", "--arduino", "-e", PROGRAM, "-o"), "-o"),
 ]
 

@@ -16,12 +16,12 @@ from tests.support.rows import each_row
 from tests.support.terminal import Terminal
 from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
-from tests.support.verbs import parsers
+from tests.support.verbs import parsers, words_of
 from tiniscript import robots
 from tiniscript.cli import help, main
 from tiniscript.cli.texts.options import OPTIONS, Option, of_verb, shown_of
 from tiniscript.cli.texts.options import PROGRAM as A_PROGRAM
-from tiniscript.cli.texts.verbs import FIRST, NOTES, VERBS
+from tiniscript.cli.texts.verbs import COMMANDS, FIRST, NOTES, VERBS, steps_of, typed
 from tiniscript.cli.texts.verbs import of_verb as of_verb_text
 from tiniscript.cli.texts.verbs import said as said_in
 from tiniscript.flash.bootloaders import BOARDS
@@ -34,7 +34,7 @@ PARSERS = parsers()
 FLAG = r"(?<![\w-])--?[a-zA-Z][a-z0-9-]*"
 
 in_both = pytest.mark.parametrize("language", LANGUAGES)
-of_each = each_row("verb", VERBS)
+of_each = each_row("verb", COMMANDS)
 
 
 def rows_of(said: str) -> list[str]:
@@ -57,8 +57,10 @@ def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
     tsc: Tsc, verb: str, language: str
 ) -> None:
     """And whether it takes a value."""
-    done = tsc(verb, "--help", "--lang", language).gives(0)
-    rows = rows_of(done.out)
+    words = typed(verb).split()
+    valued = [] if words[-1] in words_of(verb) else ["x"]
+    done = tsc(*words, *valued, "--help", "--lang", language).gives(0)
+    rows = [row for row in rows_of(done.out) if not row.startswith("tsc ")]
     said = [flag for row in rows for flag in re.findall(FLAG, row)]
     assert sorted(said) == flags_in_help(verb)
     arguments = [row for row in rows if not row.startswith("-")]
@@ -81,7 +83,7 @@ def test_help_fits_a_terminal(language: str, columns: int) -> None:
     for said in (
         help.overview(language, columns),
         help.everything(language, columns),
-        *(help.of(v, language, columns) for v in VERBS),
+        *(help.of(command, language, columns) for command in COMMANDS),
     ):
         too_long = [line for line in said.splitlines() if len(line) > columns]
         # a word is not broken: a name of a file, or of many fields
@@ -94,18 +96,19 @@ def test_no_backticks_are_printed_and_no_texts_are_lost(language: str) -> None:
     def words(text: str) -> str:
         return " ".join(text.replace("`", "").split())
 
-    for verb, group in VERBS.items():
-        said = help.of(verb, language)
+    everything = help.everything(language)
+    for command in COMMANDS:
+        said = help.of(command, language)
         assert "`" not in said
         assert all(
-            words(of_verb_text(verb, each, language)) in words(said) for each in ("says", "ends")
+            words(of_verb_text(command, each, language)) in words(said) for each in ("says", "ends")
         )
-        for option in shown_of(verb):
+        for option in shown_of(command):
             assert words(option.help(language)) in words(said), option
-        everything = help.everything(language)
-        assert words(of_verb_text(verb, "summary", language)) in words(everything)
-        if group in VERBS:
-            assert re.search(rf"tsc {group}\b.*, {verb}\b", everything)
+        for step in steps_of(command):
+            assert words(of_verb_text(step, "summary", language)) in words(said)
+        if command != "set":
+            assert words(of_verb_text(command, "summary", language)) in words(everything)
     for note in NOTES:
         assert words(said_in(note, language)) in words(help.everything(language))
 
@@ -118,18 +121,19 @@ def test_the_first_help_has_the_ten_that_most_people_need(language: str) -> None
 
 
 @each_row("asked, verb", [
-    ("put firmware on", "firmware"), ("rename robot", "name"), ("list serial ports", "ports"),
-    ("make it drive straight", "trim"), ("read my program back", "fetch"),
-    ("bluetooth pin", "module"), ("dibujar conexiones", "wiring"),
-    ("conectar a la red wifi", "wifi"), ("ir en línea recta", "trim"),
-    ("poner firmware", "firmware"), ("which port", "ports"), ("give it a name", "name"),
-    ("print a worksheet", "lesson"), ("lock the robot", "claim"), ("use blocks", "studio"),
+    ("put firmware on", "firmware"), ("rename robot", "set name"),
+    ("list serial ports", "doctor --ports"), ("make it drive straight", "set trim"),
+    ("read my program back", "show --port"), ("bluetooth pin", "doctor --module"),
+    ("dibujar conexiones", "firmware --wiring"), ("conectar a la red wifi", "set wifi"),
+    ("ir en línea recta", "set trim"), ("poner firmware", "firmware"),
+    ("which port", "doctor --ports"), ("give it a name", "set name"),
+    ("print a worksheet", "lesson"), ("lock the robot", "set owner"), ("use blocks", "studio"),
     ("robot does not answer", "doctor"), ("no responde", "doctor"),
     ("ver los sensores", "live"), ("programar con bloques", "studio"),
 ])  # fmt: skip
 def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked: str, verb: str) -> None:
     done = tsc("help", asked).gives(0)
-    assert rows_of(done.out)[0].split()[1] == verb
+    assert re.match(rf"tsc {verb}\b", rows_of(done.out)[0])
     assert tsc("help", *asked.split()).out == done.out
 
 
@@ -140,20 +144,23 @@ def test_a_question_that_no_command_answers(tsc: Tsc) -> None:
 
 def test_an_option_that_help_does_not_show_works(tsc: Tsc) -> None:
     assert "--baud" not in help.of("name", "en")
-    done = tsc("name", "ANA", "--port", "no_port_here", "--baud", "9600", "--robot", "tinibot")
+    done = tsc(
+        "set", "name", "ANA", "--port", "no_port_here", "--baud", "9600", "--robot", "tinibot"
+    )
     assert "no_port_here" in done.err and done.code == 3
     for option in OPTIONS:
         assert set(option.silent.split()) <= set(option.verbs.split()), option
 
 
-def test_every_verb_is_a_module_and_every_module_a_verb() -> None:
+def test_every_command_is_a_module_and_every_module_a_command() -> None:
     folder = Path(help.__file__ or "").parent / "commands"
-    assert {path.stem for path in folder.glob("*.py")} - {"__init__"} == set(VERBS)
+    assert {path.stem for path in folder.glob("*.py")} - {"__init__"} == set(COMMANDS)
+    assert len(VERBS) == 18 and len({typed(command) for command in COMMANDS}) == len(COMMANDS)
 
 
 @each_row("option", OPTIONS)
 def test_every_row_of_the_table_is_for_a_verb_and_says_something_in_both(option: Option) -> None:
-    assert option.verbs in ("*", "tsc") or set(option.verbs.split()) <= set(VERBS)
+    assert option.verbs in ("*", "tsc") or set(option.verbs.split()) <= set(COMMANDS)
     english, spanish = (option.help(language) for language in ("en", "es"))
     assert english and spanish and english != spanish
     assert (option.kind is None) == (option.value == "")
@@ -169,11 +176,11 @@ def test_every_text_of_help_is_shown() -> None:
     known |= {f"value/{each.value}" for each in OPTIONS} | {
         f"group/{each}" for each in VERBS.values()
     }
-    known |= {f"verb/{verb}/{each}" for verb in (*VERBS, "--version")
+    known |= {f"verb/{verb}/{each}" for verb in (*COMMANDS, "--version")
               for each in ("example", "summary", "says", "usage", "ends", "words")}  # fmt: skip
     left = set(all_said("en", "help")) - known - set(NOTES)
     assert {each.partition("/")[0] for each in left} == {
-        "title", "more", "usage", "virtual", "all", "idle", "wrong",
+        "title", "more", "usage", "virtual", "steps", "all", "idle", "wrong",
     }  # fmt: skip
 
 
@@ -186,7 +193,7 @@ WRITTEN = [name for name in robots.names() if robots.load(name).board.chip in AV
     ("verb", "flag", "names"),
     [
         ("robot", "--world", worlds.names()),
-        ("firmware", "--board", BOARDS),
+        ("firmware", "--chip", BOARDS),
         ("firmware", "--robot", WRITTEN),
     ],
 )
@@ -217,9 +224,10 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
 def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) -> None:
     page = (ROOT / name_in(language, "docs/command.en.md")).read_text(encoding="utf-8")
     common, *sections = page.split("\n## ")
-    (section,) = (each for each in sections if each.startswith(f"`tsc {verb}`\n"))
-    typed = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)
-    said = [flag for each in typed for flag in re.findall(FLAG, each)]
+    sections = [each for part in sections for each in part.split("\n### ")]
+    (section,) = (each for each in sections if each.startswith(f"`tsc {typed(verb)}`\n"))
+    found = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)
+    said = [flag for each in found for flag in re.findall(FLAG, each)]
     assert sorted(said) == flags_in_help(verb)
 
 
@@ -323,9 +331,9 @@ def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
 
 
 @each_row("words, english, spanish", [
-    (["ping", "--port"], "--port needs a value", "a --port le falta su valor"),
-    (["ping", "--json=3"], "--json takes no value: '3'", "--json no lleva valor: '3'"),
-    (["ping", "x"], "x means nothing here", "no conozco x"),
+    (["doctor", "--port"], "--port needs a value", "a --port le falta su valor"),
+    (["doctor", "--json=3"], "--json takes no value: '3'", "--json no lleva valor: '3'"),
+    (["doctor", "x"], "x means nothing here", "no conozco x"),
 ])  # fmt: skip
 def test_what_argparse_says_is_said_in_plain_words(
     tsc: Tsc, words: list[str], english: str, spanish: str
@@ -336,8 +344,10 @@ def test_what_argparse_says_is_said_in_plain_words(
 
 
 @each_row("words, meant", [
-    (["wiring", "Grabber"], "--robot grabber"), (["upload", "x.ts", "--prot", "C"], "--port"),
-    (["info", "--al"], "--all"), (["nmae", "ANA"], "name"),
+    (["firmware", "--wiring", "Grabber"], "--robot grabber"),
+    (["upload", "x.ts", "--prot", "C"], "--port"), (["doctor", "--al"], "--all"),
+    (["nmae", "ANA"], "set name"), (["idetify"], "doctor --identify"),
+    (["doctor", "--selftset"], "--selftest"), (["doctor", "--ports", "--aks"], "--ask"),
     (["flash"], "firmware"), (["serial"], "monitor"), (["simulate", "x"], "robot"),
     (["repl"], "live"), (["version"], "--version"),
 ])  # fmt: skip

@@ -13,11 +13,12 @@ from tests.support.pty_robot import PtyRobot, on
 from tiniscript.link.keys import KeyFile
 
 VERBS = (
-    ("info",), ("info", "--json"), ("ping", "--count", "1", "--json"), ("ports", "--ask", "--json"),
-    ("doctor",), ("doctor", "--json"), ("upload", "-e", "SI|F(0.1, 80)", "--json"),
-    ("live", "SHOW(1)"), ("live", "SHOW(1 / 0 * X)"), ("start", "--json"), ("undo", "--json"),
-    ("name", "TINI"), ("text", "on"), ("identify",), ("stop", "--teacher"), ("stop", "--json"),
-    ("selftest", "--yes"), ("disown", "--teacher"),
+    ("doctor", "--ports", "--ask", "--json"), ("doctor", "--count", "1"), ("doctor", "--json"),
+    ("upload", "-e", "SI|F(0.1, 80)", "--json"), ("live", "SHOW(1)"),
+    ("live", "SHOW(1 / 0 * X)"), ("start", "--json"), ("start", "--previous", "--json"),
+    ("set", "name", "TINI"), ("set", "text", "on"), ("doctor", "--identify"),
+    ("stop", "--teacher"), ("stop", "--json"), ("doctor", "--selftest", "--yes"),
+    ("set", "owner", "--give-up", "--teacher"),
 )  # fmt: skip
 
 
@@ -42,15 +43,15 @@ def test_a_key_is_in_its_file_alone(
     assert len(secrets) == 12 and has_one(secrets, KeyFile().path.read_bytes())
     said = ""
     for verb in (*VERBS, ("doctor", "--report", str(tmp_path / "report.txt"))):
-        done = inside(*verb) if verb[0] == "ports" else on(pty_robot, *verb)
+        done = inside(*verb) if "--ports" in verb else on(pty_robot, *verb)
         assert done.code != 2, done.err
         said += done.out + done.err
     with monkeypatch.context() as debugging:
         debugging.setenv("TINISCRIPT_DEBUG", "1")
-        done = on(pty_robot, "info", "--json")
+        done = on(pty_robot, "doctor", "--json")
         said += done.out + done.err
-    said += inside("keys").out + inside("keys", "--json").out
-    link = Command("link", "--port", pty_robot.port)
+    said += inside("set", "owner", "--list").out + inside("set", "owner", "--list", "--json").out
+    link = Command("monitor", "--hold", "--port", pty_robot.port)
     link.until("Ctrl-C")
     said += on(pty_robot, "upload", "-e", "SI|F(0.1, 80)").out
     for name in ("cmdline", "environ"):

@@ -1,4 +1,4 @@
-"""The file with a person's keys, and `tsc keys`."""
+"""The file with a person's keys, and `tsc set owner --list`."""
 
 from __future__ import annotations
 
@@ -73,14 +73,14 @@ def test_the_keys_of_one_robot_are_forgotten(tsc: Tsc) -> None:
     teacher = ONE._replace(which=KEY_TEACHER)
     ring.add([ONE, teacher, ONE._replace(id=7, name="A"), ONE._replace(id=8, name="A")])
     for robot in ("tini", "A", "", "00000009"):  # two are called A
-        assert tsc("keys", "--forget", robot).code == 2
+        assert tsc("set", "owner", "--forget", robot).code == 2
         assert len(ring.all()) == 4
     for robot in ("TINI", "12345678"):
         ring.add([ONE, teacher])
-        tsc("keys", "--forget", robot).gives(0, out=robot)
+        tsc("set", "owner", "--forget", robot).gives(0, out=robot)
         assert {key.id for key in ring.all()} == {7, 8}
-    assert tsc("keys", "--forget", "12345678").code == 2
-    assert tsc("keys", "--forget", "7", "--export", "f").code == 2
+    assert tsc("set", "owner", "--forget", "12345678").code == 2
+    assert tsc("set", "owner", "--forget", "7", "--export", "f").code == 2
 
 
 CLAIMS = """
@@ -99,7 +99,7 @@ for robot in range(first, first + 25):
 
 
 def test_many_claims_at_once_lose_no_key(own: KeyFile) -> None:
-    """Each is a process of its own, as each `tsc claim` is."""
+    """Each is a process of its own, as each `tsc set owner` is."""
     commands = [[sys.executable, "-c", CLAIMS, str(own.path), str(100 * k)] for k in range(4)]
     running = [subprocess.Popen(command) for command in commands]
     assert [each.wait() for each in running] == [0] * 4
@@ -128,12 +128,14 @@ def test_no_text_of_a_key_has_its_bytes() -> None:
 
 
 def test_the_command_lists_names_and_no_key(tsc: Tsc) -> None:
-    assert "tsc claim" in tsc("keys").out
+    assert "tsc set owner" in tsc("set", "owner", "--list").out
     KeyFile().add([ONE, ONE._replace(which=KEY_TEACHER, key=b"\1" * 16)])
     for language, word in (("en", "teacher"), ("es", "docente")):
-        listed = tsc("keys", "--lang", language).gives(0, out=(word, "12345678", "TINI"))
+        listed = tsc("set", "owner", "--list", "--lang", language).gives(
+            0, out=(word, "12345678", "TINI")
+        )
         assert SECRET not in listed.out
-    rows = json.loads(tsc("keys", "--json").out)
+    rows = json.loads(tsc("set", "owner", "--list", "--json").out)
     assert [row["kind"] for row in rows] == ["owner", "teacher"]
     assert SECRET not in json.dumps(rows)
 
@@ -145,17 +147,22 @@ def test_a_class_list_goes_out_and_in(
     KeyFile().add([ONE])
     KeyFile().made(7, KEY_OWNER, "not confirmed")
     listed = tmp_path / "class.json"
-    said = tsc("keys", "--export", str(listed)).out
-    assert "class.json: 1." in said and f"tsc keys --import {listed}" in said
+    said = tsc("set", "owner", "--export", str(listed)).out
+    assert "class.json: 1." in said and f"tsc set owner --import {listed}" in said
     assert stat.S_IMODE(listed.stat().st_mode) == 0o600
-    tsc("keys", "--export", str(listed)).gives(2, "is there already. Take another name")
+    tsc("set", "owner", "--export", str(listed)).gives(2, "is there already. Take another name")
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "two"))
-    assert "class.json: 1. New here, or changed: 1." in tsc("keys", "--import", str(listed)).out
+    assert (
+        "class.json: 1. New here, or changed: 1."
+        in tsc("set", "owner", "--import", str(listed)).out
+    )
     assert KeyFile().all() == [ONE]
     listed.write_text("nothing")
-    tsc("keys", "--import", str(listed)).gives(2, "--export")
-    assert tsc("keys", "--import", str(tmp_path / "none")).code == 2
-    tsc("keys", "--import", str(listed), "--export", str(tmp_path / "x")).gives(2, "one at a time")
+    tsc("set", "owner", "--import", str(listed)).gives(2, "--export")
+    assert tsc("set", "owner", "--import", str(tmp_path / "none")).code == 2
+    tsc("set", "owner", "--import", str(listed), "--export", str(tmp_path / "x")).gives(
+        2, "one at a time"
+    )
 
 
 def test_keys_that_do_not_fit_leave_those_that_are_there(tsc: Tsc, tmp_path: Path) -> None:
@@ -165,7 +172,7 @@ def test_keys_that_do_not_fit_leave_those_that_are_there(tsc: Tsc, tmp_path: Pat
     others = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST)]
     many.write_bytes(written(others))
     for language, words in (("en", "2000 keys"), ("es", "2000 llaves")):
-        tsc("keys", "--import", str(many), "--lang", language).gives(2, words, out="")
+        tsc("set", "owner", "--import", str(many), "--lang", language).gives(2, words, out="")
     assert own.all() == [ONE]
     assert own.add(others[1:]) == MOST - 1
     assert own.made(5_000, KEY_OWNER, "A") is None, "no key is dropped for a new one"
@@ -176,9 +183,9 @@ def test_a_broken_file_and_one_that_others_may_read_are_told(tsc: Tsc) -> None:
     path = KeyFile().path
     KeyFile().add([ONE])
     path.chmod(0o644)
-    assert "chmod 600" in tsc("keys").err
+    assert "chmod 600" in tsc("set", "owner", "--list").err
     path.write_text("broken")
-    tsc("keys").gives(2, "--import")
+    tsc("set", "owner", "--list").gives(2, "--import")
     assert path.read_text() == "broken"
 
 
@@ -252,4 +259,4 @@ def test_no_more_places_are_kept_than_a_file_holds(
 
 @pytest.mark.parametrize("robot", ["", "7", "ANA", "1234567g", "123456789", "-1234567"])
 def test_only_an_id_is_accepted(tsc: Tsc, robot: str) -> None:
-    tsc("keys", f"--accept={robot}").gives(2, "is no id")
+    tsc("set", "owner", f"--accept={robot}").gives(2, "is no id")

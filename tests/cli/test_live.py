@@ -20,7 +20,7 @@ def test_a_line_is_done_at_once_and_the_program_stays(pty_robot: PtyRobot) -> No
     done = on(pty_robot, "live", "F(0.2, 80);SHOW(1.5)")
     assert (done.code, done.out) == (0, "SHOW 1.5\nDone.\n")
     assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
-    assert "SB" in on(pty_robot, "fetch").out
+    assert "SB" in on(pty_robot, "show").out
     assert on(pty_robot, "live", "F(2 80)").code == 1
     assert on(pty_robot, "live", "SB|F(2, 80)").code == 1
     on(pty_robot, "live", "SHOW(TIME * 1.234);" * 12).gives(1, "room for 55")

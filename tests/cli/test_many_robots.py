@@ -150,21 +150,23 @@ def test_each_robot_has_a_row(class_: RobotFleet) -> None:
     assert inside("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
     assert inside("upload", "-e", "SB|S", "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
-    done = inside("info", "--all").gives(0)
+    done = inside("doctor", "--all").gives(0)
     rows = [line.split("(")[1].split(")")[0] for line in done.out.splitlines()]
     assert sorted(rows) == sorted(names)
     assert done.out.count("nothing runs") == len(names)
     ports_of = ("--port", names[0], "--port", names[2])
-    found = results(inside("ping", "--count", "3", "--json", *ports_of))
+    found = results(inside("doctor", "--count", "3", "--json", *ports_of))
     assert set(found) == {names[0], names[2]}
     assert all(row["round_trips"] == 3 for row in found.values())
     done = inside("upload", "-e", "SI|X = DISTANCE;SHOW(1 / X)", "--all", "--no-save").gives(3)
     assert done.out.count("DIVIDE_BY_ZERO") == 4
     assert done.out.count("line 1") == 4
-    done = inside("ping", "--port", names[0], "--port", "/dev/no-such", "--lang", "es")
+    done = inside(
+        "doctor", "--identify", "--port", names[0], "--port", "/dev/no-such", "--lang", "es"
+    )
     assert done.code == 3
     assert "no existe el puerto /dev/no-such" in done.out
-    assert "3" in inside("ping", "--count", "3", "--port", names[0], "--port", names[0]).out
+    assert "3" in inside("doctor", "--count", "3", "--port", names[0], "--port", names[0]).out
 
 
 def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
@@ -172,13 +174,15 @@ def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
     assert inside("upload", "-e", first, "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
     assert inside("upload", "-e", second, "--port", names[1], "--port", names[2]).code == 0
-    done = inside("undo", "--all", "--json").gives(3)
+    done = inside("start", "--previous", "--all", "--json").gives(3)
     rows = results(done)
     assert {port for port in names if rows[port]["is_done"]} == {names[1], names[2]}
     assert "no program from before" in str(rows[names[0]]["said"])
     checksums = {rows[names[1]]["checksum"], rows[names[2]]["checksum"]}
     assert len(checksums) == 1
-    done = inside("undo", "--port", names[1], "--port", names[2], "--lang", "es").gives(0)
+    done = inside(
+        "start", "--previous", "--port", names[1], "--port", names[2], "--lang", "es"
+    ).gives(0)
     assert done.out.count("vuelve a tener el programa anterior") == 2
     assert str(checksums.pop()) not in done.out
 
@@ -192,13 +196,13 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
     monkeypatch.setattr(ports, "listed", lambda: [ports.Found(port, "")])
     monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_S", 1.0)
-    done = inside("ping", "--all", "--count", "1").gives(0)
+    done = inside("doctor", "--identify", "--all").gives(0)
     assert len(done.out.splitlines()) == 4
     assert done.err == f"Done: 4 of 4.\nNo robot answers on {port}.\n"
     monkeypatch.setattr(ports, "listed", list)
     monkeypatch.setattr(opening, "ANSWER_MS", 1000)
     known_ports.remember(known, "R9", is_used=False)
-    inside("ping", "--all", "--count", "1").gives(
+    inside("doctor", "--identify", "--all").gives(
         3, "Done: 4 of 5.", out=f"R9 ({known}): nothing answers"
     )
     for end in ends:
@@ -210,7 +214,7 @@ def test_nobody_and_wrong_use(monkeypatch: pytest.MonkeyPatch) -> None:
     for language, words in (("en", "no robot answers"), ("es", "ningún robot responde")):
         inside("stop", "--all", "--lang", language).gives(3, words)
         assert inside("stop", "--all", "--port", "x", "--lang", language).code == 2
-        assert inside("info", "--port", "a\0b", "--port", "x", "--lang", language).code == 2
+        assert inside("doctor", "--port", "a\0b", "--port", "x", "--lang", language).code == 2
 
 
 def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -> None:

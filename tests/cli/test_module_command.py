@@ -1,4 +1,4 @@
-"""`tsc module` and a module behind a port: what is printed is what the module has then."""
+"""`tsc doctor --module` and a module behind a port: what is printed is what the module has then."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def port_of(module: Simulated) -> str:
 
 
 def test_a_module_gets_name_pin_and_speed(tsc: Tsc, module: Simulated) -> None:
-    done = tsc("module", "--port", port_of(module), "--name", "ANA", "--pin", "4711",
+    done = tsc("doctor", "--module", "--port", port_of(module), "--name", "ANA", "--pin", "4711",
                "--baud", "57600").gives(0, "")  # fmt: skip
     assert (module.name, module.pin, module.baud) == ("ANA", "4711", 57600)
     assert done.out.splitlines() == [
@@ -46,7 +46,7 @@ def test_quick_and_slow_ones_behind_a_real_port(tsc: Tsc, end: Simulated) -> Non
     """So that a port waits long enough for an answer. All kinds are in `tests/modules/`."""
     pin = "471123"[: len(end.pin)]
     with PtyEnd(end) as pty_end:
-        done = tsc("module", "--port", pty_end.port, "--id", "12347f3a", "--pin", pin,
+        done = tsc("doctor", "--module", "--port", pty_end.port, "--id", "12347f3a", "--pin", pin,
                    "--baud", "19200", "--lang", "es")  # fmt: skip
     assert (done.code, done.err) == (0, "")
     assert (end.name, end.pin, end.data_baud) == ("Tini-7F3A", pin, 19200)
@@ -54,7 +54,7 @@ def test_quick_and_slow_ones_behind_a_real_port(tsc: Tsc, end: Simulated) -> Non
 
 
 def test_a_dry_run_shows_the_commands_and_changes_nothing(tsc: Tsc, module: Simulated) -> None:
-    done = tsc("module", "--port", port_of(module), "--name", "ANA", "--baud", "115200",
+    done = tsc("doctor", "--module", "--port", port_of(module), "--name", "ANA", "--baud", "115200",
                "--dry-run")  # fmt: skip
     assert done.code == 0
     assert "would be sent:  AT+NAME:ANA, or else AT+NAME=ANA\n" in done.out
@@ -65,7 +65,7 @@ def test_a_dry_run_shows_the_commands_and_changes_nothing(tsc: Tsc, module: Simu
 
 def test_without_a_wish_it_says_what_it_has_found(tsc: Tsc) -> None:
     with PtyEnd(Bt05(38400)) as pty_end:
-        done = tsc("module", "--port", pty_end.port)
+        done = tsc("doctor", "--module", "--port", pty_end.port)
     assert done.code == 0
     assert "MLT-BT05 on" in done.out and "listens at 38400 baud" in done.out
     assert "It has: name BT05, 38400 baud." in done.out
@@ -78,7 +78,7 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     end = Hc06New()
     end.is_on = False
     with PtyEnd(end) as pty_end:
-        done = tsc("module", "--port", pty_end.port, "--name", "ANA")
+        done = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA")
     assert done.code == 3
     assert "no module answers" in done.err and "held in reset" in done.err
 
@@ -99,29 +99,29 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_no_module_can_have_is_refused_before_anything_is_opened(
     tsc: Tsc, words: list[str], said: str
 ) -> None:
-    tsc("module", "--port", "/dev/not-there", *words).gives(2, said)
+    tsc("doctor", "--module", "--port", "/dev/not-there", *words).gives(2, said)
 
 
 def test_what_this_module_cannot_have_is_refused_before_anything_is_changed(tsc: Tsc) -> None:
     end = Bt05()
     with PtyEnd(end) as pty_end:
-        done = tsc("module", "--port", pty_end.port, "--name", "ANA", "--pin", "1234")
+        done = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA", "--pin", "1234")
     assert done.code == 2
     assert "6 digits (MLT-BT05)" in done.err
     assert end.name == "BT05"
 
 
 def test_ports_that_are_none(tsc: Tsc) -> None:
-    assert "tsc module --port P" in tsc("module").err
-    assert tsc("module", "--port", "").code == 2
-    assert tsc("module", "--port", "/dev/not-there").code == 3
+    assert "tsc doctor --module --port P" in tsc("doctor", "--module").err
+    assert tsc("doctor", "--module", "--port", "").code == 2
+    assert tsc("doctor", "--module", "--port", "/dev/not-there").code == 3
     for port in ("/dev/rfcomm7", "socket://127.0.0.1:9"):
-        tsc("module", "--port", port).gives(2, "only by wire")
+        tsc("doctor", "--module", "--port", port).gives(2, "only by wire")
 
 
 def test_a_module_that_does_not_do_it_is_an_exit_code(tsc: Tsc, module: Simulated) -> None:
     module.breaks_after = 4
-    done = tsc("module", "--port", port_of(module), "--name", "ANA", "--baud", "115200")
+    done = tsc("doctor", "--module", "--port", port_of(module), "--name", "ANA", "--baud", "115200")
     assert done.code == 3
     assert "try again" in done.err
 
@@ -137,7 +137,7 @@ def test_a_pulled_cable_and_ctrl_c_say_at_which_speeds_the_module_may_be(
     end = Hm10()
     end.is_on = is_on
     with PtyEnd(end) as pty_end:
-        command = Command("module", "--port", pty_end.port, "--baud", "115200")
+        command = Command("doctor", "--module", "--port", pty_end.port, "--baud", "115200")
         until(lambda: (b"AT+BAUD4" if is_on else b"AT") in pty_end.heard, "it is asked")
         if is_pulled:
             pty_end.pull()

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import PROGRAM, TSC, Done, Tsc
-from tests.support.verbs import parsers, values_of
+from tests.support.verbs import parsers, values_of, words_of
 from tests.support.waiting import HANGS_S
 from tiniscript.cli import paths
 from tiniscript.cli.texts.options import of_verb
@@ -38,7 +38,7 @@ ACTIONS = {"lesson": ("check", "1"), "class": ("upload",)}
 def arguments(verb: str, files: dict[str, Path]) -> list[str]:
     """Return the words of a command with these files for its options."""
     known = values_of(PARSERS[verb])
-    words = [verb, *ACTIONS.get(verb, ())]
+    words = [*words_of(verb), *ACTIONS.get(verb, ())]
     if "program" in known and "program" not in files:
         words += ["-e", PROGRAM]
     for dest, path in files.items():
@@ -180,7 +180,7 @@ def test_devices_and_pipes_may_be_written(tsc: Tsc, tmp_path: Path) -> None:
 
 def test_a_file_called_as_a_shipped_robot_is_no_input(tsc: Tsc, here: Path) -> None:
     for _ in range(2):
-        assert tsc("board", "tinibot", "-o", "tinibot").code == 0
+        assert tsc("firmware", "--board", "tinibot", "-o", "tinibot").code == 0
 
 
 OUTPUTS = [

@@ -37,7 +37,7 @@ def claimed(pty_robot: PtyRobot, *options: str) -> Done:
             pty_robot.hold(after_ms=1000, times=8)
 
     with mock.patch.object(claim, "print", said, create=True):
-        done = on(pty_robot, "claim", *options)
+        done = on(pty_robot, "set", "owner", *options)
     pty_robot.let_go()
     secrets = [key.key.hex() for key in KeyFile().all()]
     assert not [secret for secret in secrets if secret in done.out + done.err]
@@ -62,29 +62,29 @@ def test_a_slow_computer_has_asked_the_robot_when_it_says_hold(
         pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 2400, "the press is over")
 
     monkeypatch.setattr(claim, "print", slowly, raising=False)
-    assert main(["claim", "--port", pty_robot.port]) == 0
+    assert main(["set", "owner", "--port", pty_robot.port]) == 0
 
 
 def test_who_claims_a_robot_drives_it_and_nobody_else(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    assert json.loads(on(pty_robot, "info", "--json").out)["owner"] == "free"
+    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["owner"] == "free"
     claimed(pty_robot).gives(0, out="yours")
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
-    assert ", yours" in on(pty_robot, "info").out
-    assert ", yours" in on(pty_robot, "ping", "--count", "1").out
-    assert "(yours)" in on(pty_robot, "ports", "--ask").out
+    assert ", yours" in on(pty_robot, "doctor").out
+    assert ", yours" in on(pty_robot, "doctor", "--count", "1").out
+    assert "(yours)" in on(pty_robot, "doctor", "--ports", "--ask").out
     assert "The robot has an owner" not in on(pty_robot, "doctor").out
     as_another(monkeypatch, tmp_path)
-    assert ", owned by somebody else" in on(pty_robot, "info").out
-    assert "(de otro dueño)" in on(pty_robot, "ports", "--ask", "--lang", "es").out
+    assert ", owned by somebody else" in on(pty_robot, "doctor").out
+    assert "(de otro dueño)" in on(pty_robot, "doctor", "--ports", "--ask", "--lang", "es").out
     on(pty_robot, "upload", "-e", DRIVES).gives(3, "10 s")
     assert "dueño" in on(pty_robot, "live", "F(1, 80)", "--lang", "es").err
-    refused = on(pty_robot, "claim")
+    refused = on(pty_robot, "set", "owner")
     assert refused.code == 3 and "10 s" in refused.err and "2 s" not in refused.err
-    assert on(pty_robot, "disown").code == 3
+    assert on(pty_robot, "set", "owner", "--give-up").code == 3
     on(pty_robot, "doctor").gives(0, out="The robot has an owner")
-    assert on(pty_robot, "identify").code == 0
+    assert on(pty_robot, "doctor", "--identify").code == 0
     pty_robot.until(lambda: any("BEEP" in line for line in pty_robot.did), "its tune")
     assert on(pty_robot, "stop").code == 0
 
@@ -94,14 +94,14 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
 ) -> None:
     assert claimed(pty_robot).code == 0
     before = KeyFile().all()
-    assert on(pty_robot, "disown").code == 0
+    assert on(pty_robot, "set", "owner", "--give-up").code == 0
     KeyFile().add(before)  # as on a computer that was not there
     as_another(monkeypatch, tmp_path)
     assert claimed(pty_robot).code == 0
     as_another(monkeypatch, tmp_path, "settings")
     for _ in range(7):  # more often than wrong keys are listened to
-        on(pty_robot, "info").gives(0, "claimed it again", "10 s")
-    assert "lo hizo suyo" in on(pty_robot, "ping", "--count", "1", "--lang", "es").err
+        on(pty_robot, "doctor").gives(0, "claimed it again", "10 s")
+    assert "lo hizo suyo" in on(pty_robot, "doctor", "--identify", "--lang", "es").err
     assert [key.is_stale for key in KeyFile().all()] == [True]
     on(pty_robot, "upload", "-e", DRIVES).gives(3, "another key")
     as_another(monkeypatch, tmp_path)
@@ -111,17 +111,17 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
 
 def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
     """A robot with an owner takes text only while it is told to."""
-    assert "nothing to give up" in on(pty_robot, "disown").out
-    assert "no owner" in on(pty_robot, "text", "off").out
+    assert "nothing to give up" in on(pty_robot, "set", "owner", "--give-up").out
+    assert "no owner" in on(pty_robot, "set", "text", "off").out
     assert claimed(pty_robot).code == 0
     assert len(KeyFile().all()) == 1
-    assert "until it is switched off" in on(pty_robot, "text", "on").out
-    assert "except S" in on(pty_robot, "text", "off").out
-    assert on(pty_robot, "text").code == 2
-    assert on(pty_robot, "text", "perhaps").code == 2
-    assert on(pty_robot, "disown").code == 0
+    assert "until it is switched off" in on(pty_robot, "set", "text", "on").out
+    assert "except S" in on(pty_robot, "set", "text", "off").out
+    assert on(pty_robot, "set", "text").code == 2
+    assert on(pty_robot, "set", "text", "perhaps").code == 2
+    assert on(pty_robot, "set", "owner", "--give-up").code == 0
     assert KeyFile().all() == []
-    assert ", free" in on(pty_robot, "info").out
+    assert ", free" in on(pty_robot, "doctor").out
 
 
 def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -> None:
@@ -141,14 +141,14 @@ def test_a_claim_without_the_button_says_what_to_do(
 ) -> None:
     """And where the key could not be kept the robot gives none."""
     monkeypatch.setattr(authority, "HOLD_TRIES", 3)
-    on(pty_robot, "claim").gives(3, "2 s")
+    on(pty_robot, "set", "owner").gives(3, "2 s")
     assert KeyFile().all() == []
     path = KeyFile().path
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("broken")
-    on(pty_robot, "claim").gives(2, str(path))
+    on(pty_robot, "set", "owner").gives(2, str(path))
     path.unlink()
-    assert ", free" in on(pty_robot, "info").out
+    assert ", free" in on(pty_robot, "doctor").out
 
 
 def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
@@ -171,13 +171,13 @@ def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
 def test_a_shared_port_has_the_authority_and_its_messages_no_key(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    link = Command("link", "--port", pty_robot.port)
+    link = Command("monitor", "--hold", "--port", pty_robot.port)
     link.until("share this port")
     assert claimed(pty_robot).code == 0  # the key is made by the command that holds the port
     assert [key.which for key in KeyFile().all()] == [KEY_OWNER]
     as_another(monkeypatch, tmp_path)  # so that this command has no key
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
-    assert ", yours" in on(pty_robot, "info").out
+    assert ", yours" in on(pty_robot, "doctor").out
     driving = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
     driving.until("running")
     assert on(pty_robot, "stop").code == 0
@@ -198,16 +198,21 @@ def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
     pty_robot._memory = EMPTY
     pty_robot.switch_on()  # another one, with an id of its own
     refused = on(pty_robot, "upload", "-e", FOREVER, "--detach")
-    refused.gives(3, "another robot answers", "tsc keys --accept")
-    for words in (["upload", "-e", DRIVES], ["live", "F(0.2, 80)"], ["info"], ["name", "ANA"]):
+    refused.gives(3, "another robot answers", "tsc set owner --accept")
+    for words in (
+        ["upload", "-e", DRIVES],
+        ["live", "F(0.2, 80)"],
+        ["show"],
+        ["set", "name", "ANA"],
+    ):
         on(pty_robot, *words).gives(3, "another robot answers")
     on(pty_robot, "stop").gives(3, "has not confirmed the stop")
-    on(pty_robot, "info", "--lang", "es").gives(3, "responde otro robot")
-    on(pty_robot, "info", "--lang", "pt").gives(3, "responde outro robô")
+    on(pty_robot, "doctor", "--lang", "es").gives(3, out="responde otro robot")
+    on(pty_robot, "doctor", "--lang", "pt").gives(3, out="responde outro robô")
     driven = [line for line in pty_robot.did if line.startswith("MOTORS")]
     assert set(driven) <= {"MOTORS 0 0"}
     [robot] = re.findall("--accept ([0-9a-f]{8})", refused.err)
-    inside("keys", "--accept", robot.upper()).gives(0, "", out=robot)
+    inside("set", "owner", "--accept", robot.upper()).gives(0, "", out=robot)
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
     assert on(pty_robot, "stop").code == 0
 

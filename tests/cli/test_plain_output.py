@@ -16,7 +16,7 @@ from tests.link.test_session import DESCRIPTION
 from tests.support.command import PROGRAM, Tsc
 from tests.support.rows import each_row
 from tests.support.sampling import some_of
-from tests.support.verbs import parsers, values_of
+from tests.support.verbs import parsers, values_of, words_of
 from tiniscript.base.source import printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.event_printer import EventPrinter
@@ -34,12 +34,14 @@ BAD = re.compile(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2028\u
 PARSERS = parsers()
 ENDS = {  # what keeps a verb from waiting for something
     "robot": ["--for", "0.1", "--hurry", "max"],
-    "link": ["--port", "/none"], "start": ["--port", "/none"], "trim": ["--port", "/none"],
+    "hold": ["--port", "/none"], "start": ["--port", "/none"], "trim": ["--port", "/none"],
     "monitor": ["--port", "/none"], "fetch": ["--port", "/none"], "name": ["X", "--port", "/none"],
-    "ping": ["--port", "/none"], "info": ["--port", "/none"], "stop": ["--port", "/none"],
+    "doctor": ["--port", "/none"], "stop": ["--port", "/none"],
     "upload": ["-e", PROGRAM, "--port", "/none"], "live": ["F(1, 80)", "--port", "/none"],
     "firmware": ["--port", "/none"], "studio": ["--listen", "none"],
     "wifi": ["--port", "/none"], "class": ["--broker", "127.0.0.1:1"],
+    "explain": ["--explain", "TS012"], "board": ["--board", "tinibot"],
+    "completion": ["--completion", "bash"],
 }  # fmt: skip
 LANGUAGES = ("en", "es")  # a commit draws one for each row
 CASES = [(verb, dest) for verb, parser in PARSERS.items() for dest in values_of(parser)]
@@ -71,7 +73,7 @@ def test_no_argument_of_any_verb_reaches_the_terminal_raw(
     for language in some_of(pytestconfig, f"{verb} {dest}", LANGUAGES):
         for evil in (EVIL, f"DISTANCE={EVIL}", f"{EVIL}.toml", f"/{EVIL}/x"):
             words = [option, evil] if option else [evil]
-            done = tsc(verb, *words, *ends, "--lang", language)
+            done = tsc(*words_of(verb), *words, *ends, "--lang", language)
             assert_plain(done.out, done.err)
 
 
@@ -224,9 +226,9 @@ def test_a_port_without_a_robot_says_what_it_is(
 
     Port.device, Port.description = device, description  # type: ignore[attr-defined]
     monkeypatch.setattr("serial.tools.list_ports.comports", lambda: [Port()])
-    (row,) = [each for each in tsc("ports").out.splitlines() if device in each]
+    (row,) = [each for each in tsc("doctor", "--ports").out.splitlines() if device in each]
     assert (said in row) if said else row == device
-    (found,) = json.loads(tsc("ports", "--json").out)
+    (found,) = json.loads(tsc("doctor", "--ports", "--json").out)
     assert found["description"].startswith(said)
 
 

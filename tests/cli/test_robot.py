@@ -63,7 +63,7 @@ def test_however_a_command_ends_its_robot_stops(pty_robot: PtyRobot) -> None:
     command = uploading(pty_robot)
     command.kill()
     pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
-    assert "LINK_LOST" in on(pty_robot, "info").out
+    assert "LINK_LOST" in on(pty_robot, "doctor").out
     command = uploading(pty_robot)
     pty_robot.pull()
     command.ended().gives(3, "is gone")
@@ -77,7 +77,7 @@ def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: 
         assert done.code == 3
         assert "lost the connection to the robot" in done.err
         pty_robot.switch_on()
-        assert on(pty_robot, "fetch", "-o", tmp_path / "new.bin").code == 0
+        assert on(pty_robot, "show", "-o", tmp_path / "new.bin").code == 0
     old = compile_text("SB|F(0.1, 40)", KIT).image
     assert (tmp_path / "new.bin").read_bytes() == old
 
@@ -86,16 +86,16 @@ def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: 
 
 
 def test_a_robot_describes_itself_and_its_port_is_remembered(pty_robot: PtyRobot) -> None:
-    assert inside("info").code == 3  # which port?
-    done = on(pty_robot, "ping", "--count", "3").gives(0, out="3 round trips")
-    known = json.loads(inside("info", "--json").out)
+    assert inside("doctor", "--identify").code == 3  # which port?
+    done = on(pty_robot, "doctor", "--count", "3").gives(0, out="3 round trips")
+    known = json.loads(inside("doctor", "--json").out)["robot"]
     assert (known["port"], known["kit"], known["robot"]) == (
         pty_robot.port, f"{KIT.fingerprint:04x}", "tinibot",
     )  # fmt: skip
     assert known["program"] is None
     assert known["text_level"] == "uno"
     assert "reads text, level uno" in done.out
-    assert json.loads(inside("ping", "--json").out)["round_trips"] == 10
+    assert json.loads(inside("doctor", "--json").out)["robot"]["round_trips"] == 20
     assert "10 round trips" in inside("upload", "-e", "PING|check_connection").out
 
 
@@ -113,9 +113,9 @@ def test_the_level_of_text_is_that_of_two_bits(
         def with_features(values: HelloReply, features: int = features) -> DeviceInfo:
             return described(values._replace(features=features))
 
-        monkeypatch.setattr(requests, "described", with_features)
-        assert json.loads(on(pty_robot, "info", "--json").out)["text_level"] == level
-        assert said in on(pty_robot, "info", "--lang", "es").out
+        monkeypatch.setattr("tiniscript.cli.commands.doctor.described", with_features)
+        assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["text_level"] == level
+        assert said in on(pty_robot, "doctor", "--lang", "es").out
 
 
 def test_a_board_that_has_just_been_reset_is_waited_for(pty_robot: PtyRobot) -> None:
@@ -127,25 +127,25 @@ def test_a_board_that_has_just_been_reset_is_waited_for(pty_robot: PtyRobot) -> 
 
 
 def test_a_name_survives_power_off(pty_robot: PtyRobot) -> None:
-    done = on(pty_robot, "name", "Ñandú")
+    done = on(pty_robot, "set", "name", "Ñandú")
     assert (done.code, done.out) == (0, f"{pty_robot.port}: the robot is called Ñandú now.\n")
     pty_robot.switch_off_and_on()
-    assert json.loads(on(pty_robot, "info", "--json").out)["name"] == "Ñandú"
+    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["name"] == "Ñandú"
     for name in ("", " ", "a" * 17, "ñ" * 9, "a\nb"):
-        assert on(pty_robot, "name", name).code == 2
-    assert "Ñandú, remembered   last used" in inside("ports").out
+        assert on(pty_robot, "set", "name", name).code == 2
+    assert "Ñandú, remembered   last used" in inside("doctor", "--ports").out
 
 
 def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, pty_robot: PtyRobot, hasty: None) -> None:
     known_ports.remember(pty_robot.port, "TINI")
-    rows = json.loads(tsc("ports", "--json").out)
+    rows = json.loads(tsc("doctor", "--ports", "--json").out)
     row = next(row for row in rows if row["port"] == pty_robot.port)
     assert (row["remembered"], row["is_last_used"]) == ("TINI", True)
     assert pty_robot.heard == b""
-    assert "robot tinibot" in tsc("ports", "--ask", "--port", pty_robot.port).out
+    assert "robot tinibot" in tsc("doctor", "--ports", "--ask", "--port", pty_robot.port).out
     pty_robot.switch_off()
-    assert "nothing answers" in tsc("ports", "--ask", "--port", pty_robot.port).out
-    assert "there is no port" in tsc("ports", "--ask", "--port", "/dev/no-such").out
+    assert "nothing answers" in tsc("doctor", "--ports", "--ask", "--port", pty_robot.port).out
+    assert "there is no port" in tsc("doctor", "--ports", "--ask", "--port", "/dev/no-such").out
 
 
 def test_a_person_without_a_port_is_asked_for_one(
@@ -157,9 +157,9 @@ def test_a_person_without_a_port_is_asked_for_one(
     monkeypatch.setattr("sys.stdin.isatty", lambda: True)
     monkeypatch.setattr("sys.stdin.readline", lambda: next(answers))
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
-    done = tsc("ping").gives(0, f"  2  {pty_robot.port}   a robot\n")
+    done = tsc("doctor", "--identify").gives(0, f"  2  {pty_robot.port}   a robot\n")
     assert done.err.count("Its number: ") == 3
-    assert tsc("info").err == ""  # it is remembered
+    assert tsc("doctor", "--identify").err == ""  # it is remembered
 
 
 def test_nobody_something_else_and_another_version(
@@ -167,28 +167,30 @@ def test_nobody_something_else_and_another_version(
 ) -> None:
     with monkeypatch.context() as newer:
         newer.setattr("tiniscript.link.handshake.MAJOR", MAJOR + 1)
-        tsc("ping", "--port", pty_robot.port).gives(3, f"speaks version {MAJOR} of the link")
+        tsc("doctor", "--identify", "--port", pty_robot.port).gives(
+            3, f"speaks version {MAJOR} of the link"
+        )
     pty_robot.switch_off()
-    tsc("ping", "--port", pty_robot.port).gives(3, "nothing answers")
+    tsc("doctor", "--identify", "--port", pty_robot.port).gives(3, "nothing answers")
     for said in (b"Hello from another sketch\r\n", bytes(range(1, 256)) * 3, b"\xff" * 99):
         timer = threading.Timer(0.3, pty_robot.say, [said])
         timer.start()
-        tsc("ping", "--port", pty_robot.port).gives(3, "not TiniScript")
+        tsc("doctor", "--identify", "--port", pty_robot.port).gives(3, "not TiniScript")
         timer.join()
-    tsc("ping", "--port", "loop://").gives(3, "is sent to loop:// comes back")
+    tsc("doctor", "--identify", "--port", "loop://").gives(3, "is sent to loop:// comes back")
 
 
-@pytest.mark.parametrize("verb", ["ping", "stop", "start", "info", "fetch", "monitor", "live"])
+@pytest.mark.parametrize("verb", ["doctor --identify", "stop", "start", "show", "monitor", "live"])
 def test_ports_that_are_none(tsc: Tsc, verb: str, tmp_path: Path) -> None:
     for language in ("en", "es"):
         for port in ("/dev/no-such-port", str(tmp_path), os.devnull, "nix://a", "socket://a",
                      "socket://127.0.0.1:1", "a" * 5000):  # fmt: skip
-            done = tsc(verb, "--port", port, "--lang", language).gives(3, out="")
+            done = tsc(*verb.split(), "--port", port, "--lang", language).gives(3, out="")
             assert done.err.startswith("tsc: ")
         for port in ("", "a\0b"):
-            assert tsc(verb, "--port", port, "--lang", language).code == 2
-        assert tsc(verb, "--lang", language).code == 3
-        assert tsc(verb, "--port", "x", "--baud", "fast", "--lang", language).code == 2
+            assert tsc(*verb.split(), "--port", port, "--lang", language).code == 2
+        assert tsc(*verb.split(), "--lang", language).code == (2 if verb == "show" else 3)
+        assert tsc(*verb.split(), "--port", "x", "--baud", "fast", "--lang", language).code == 2
 
 
 def test_every_reason_has_a_sentence_with_a_next_step(
@@ -211,7 +213,7 @@ def test_every_reason_has_a_sentence_with_a_next_step(
             raise failure
 
         monkeypatch.setattr("serial.serial_for_url", refuse)
-        tsc("ping", "--port", "COM5").gives(3, word)
+        tsc("doctor", "--identify", "--port", "COM5").gives(3, word)
 
 
 def test_a_port_that_never_opens_is_given_up(

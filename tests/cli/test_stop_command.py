@@ -40,7 +40,7 @@ def test_a_second_stop_is_confirmed_like_the_first(
     for _ in range(3):
         assert at_once(pty_robot, "stop")
         assert not pty_robot.moves
-    assert on(pty_robot, "info").code == 0
+    assert on(pty_robot, "doctor").code == 0
 
 
 def test_a_robot_that_its_button_has_started_again_is_stopped(pty_robot: PtyRobot) -> None:
@@ -71,11 +71,11 @@ def test_a_stop_that_nobody_confirms_holds_up_nobody_for_long(
     on(pty_robot, "stop").gives(3, "has not confirmed")
     pty_robot.switch_on()
     link.until("is back")
-    assert at_once(pty_robot, "info")
+    assert at_once(pty_robot, "doctor")
     assert on(pty_robot, "stop").code == 0
 
 
-@pytest.mark.parametrize(("verb", "is_patient"), [("stop", True), ("info", False)])
+@pytest.mark.parametrize(("verb", "is_patient"), [("stop", True), ("start", False)])
 def test_a_stop_waits_for_a_port_longer_than_others(
     verb: str, is_patient: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -105,11 +105,11 @@ def test_nobody_is_told_to_push_the_button_of_a_robot_that_may_stand(language: s
     assert re.search(r"batter|pilas", said)
 
 
-def test_info_tells_what_the_uart_has_noticed(pty_robot: PtyRobot) -> None:
-    fields = json.loads(on(pty_robot, "info", "--json").out)
+def test_the_doctor_tells_what_the_uart_has_noticed(pty_robot: PtyRobot) -> None:
+    fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
     assert (fields["framing"], fields["overrun"]) == (0, 0)
-    assert "framing" not in on(pty_robot, "info").out
-    fields = json.loads(on(pty_robot, "ping", "--json", "--count", "1").out)
+    assert "framing" not in on(pty_robot, "doctor").out
+    fields = json.loads(on(pty_robot, "doctor", "--json", "--count", "1").out)["robot"]
     assert (fields["framing"], fields["overrun"]) == (0, 0)
 
 
@@ -123,10 +123,10 @@ def suspended(command: Command) -> Command:
     return command
 
 
-@pytest.mark.parametrize("verb", ["monitor", "link"])
+@pytest.mark.parametrize("verb", ["monitor", "monitor --hold"])
 def test_a_stop_gets_through_beside_a_suspended_tsc(pty_robot: PtyRobot, verb: str) -> None:
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
-    holder = Command(verb, "--port", pty_robot.port)
+    holder = Command(*verb.split(), "--port", pty_robot.port)
     until(lambda: registry.found(pty_robot.port) is not None, "it shares its port")
     pty_robot.until(lambda: b"\x04" in pty_robot.heard, "it talks to the robot")
     suspended(holder)
@@ -161,7 +161,7 @@ def test_a_stop_gets_past_the_lock_of_another_suspended_program(pty_robot: PtyRo
         on(pty_robot, "stop").gives(3, f"(process {holder.process.pid})", "lift it")
     assert pty_robot.heard == heard and pty_robot.moves
     suspended(holder)
-    on(pty_robot, "info").gives(3, "another program is using")
+    on(pty_robot, "start").gives(3, "another program is using")
     on(pty_robot, "stop").gives(0, "", out="has confirmed it")
     assert not pty_robot.moves
     holder.kill()

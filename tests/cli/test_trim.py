@@ -1,4 +1,4 @@
-"""`tsc trim`: what a robot keeps of its motors, asked of a person or set at once."""
+"""`tsc set trim`: what a robot keeps of its motors, asked of a person or set at once."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ KIT = robots.load("tinibot").kit
 
 
 def on(pty_robot: PtyRobot, *arguments: str, data: str = "") -> Done:
-    return pty_robots.on(pty_robot, "trim", *arguments, data=data.encode())
+    return pty_robots.on(pty_robot, "set", "trim", *arguments, data=data.encode())
 
 
 def keeps(pty_robot: PtyRobot) -> Trim:
@@ -114,7 +114,7 @@ def test_what_cannot_be_set_is_said_without_a_robot() -> None:
         ("--balance", "41"), ("--least", "-1"), ("--exchange", "maybe"), ("--least", "x"),
         ("--speed-80", "-1"), ("--turn-80", "656"), ("--turn-40", "fast"),
     ):  # fmt: skip
-        done = inside("trim", option, value, "--port", "/nowhere")
+        done = inside("set", "trim", option, value, "--port", "/nowhere")
         assert done.code == 2 and option in done.err, option
 
 
@@ -184,7 +184,7 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
 
 def test_ctrl_c_stops_the_robot_and_it_keeps_what_it_had(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "--balance", "7").code == 0
-    command = Command("trim", "--port", pty_robot.port, data=b"\n")
+    command = Command("set", "trim", "--port", pty_robot.port, data=b"\n")
     pty_robot.until(lambda: pty_robot.moves, "a motor turns")
     command.signal(signal.SIGINT)
     assert command.ended().code == 2
@@ -274,7 +274,7 @@ def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None
     assert keeps(pty_robot).pace == Pace(16.5, 33.25, 144, 288)
     assert done.err.count("18 in") == 5
     assert "goes 16.5 cm in a second at 40 % and 33.25 at 80 %" in done.out
-    told_by_info = pty_robots.on(pty_robot, "info").out
+    told_by_info = pty_robots.on(pty_robot, "doctor").out
     assert "turns 144 degrees in a second at 40 % and 288 at 80 %" in told_by_info
 
 

@@ -1,4 +1,4 @@
-"""`tsc upload`, what a robot keeps, and `tsc undo`: a real port, the whole firmware behind it."""
+"""`tsc upload`, what a robot keeps, `tsc start --previous`: a real port, the whole firmware."""
 
 from __future__ import annotations
 
@@ -75,11 +75,11 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
         done = on(pty_robot, "upload", ours, "--no-run", "--no-save")
         assert (done.code, pty_robot.did) == (0, [])
         assert "in RAM only   SI: waits" in done.out
-        assert on(pty_robot, "fetch", "-o", theirs).code == 0
+        assert on(pty_robot, "show", "-o", theirs).code == 0
         assert theirs.read_bytes() == ours.read_bytes(), damages
-        fields = json.loads(on(pty_robot, "info", "--json").out)
+        fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
         assert bool(fields["damaged"]) == bool(damages)
-    listing = on(pty_robot, "fetch").out
+    listing = on(pty_robot, "show").out
     assert listing.split("\n", 1)[1] == inside("show", ours).out.split("\n", 1)[1]
 
 
@@ -102,7 +102,7 @@ def test_a_fault_names_its_line(pty_robot: PtyRobot, tmp_path: Path) -> None:
         1, "falla DIVIDE_BY_ZERO", "línea 3:  SHOW(1 / X)"
     )
     assert not pty_robot.moves
-    done = on(pty_robot, "info")  # the text is in the cache
+    done = on(pty_robot, "doctor")  # the text is in the cache
     assert "divide.ts, line 3:  SHOW(1 / X)" in done.out
     assert on(pty_robot, "start").code == 1
 
@@ -159,7 +159,7 @@ def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyR
     command.until("Saved. It starts with the button.")
     pty_robot.switch_off_and_on()
     command.kill()
-    assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
+    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
 
 
 def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
@@ -167,12 +167,12 @@ def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
         2, "the robot has confirmed it", out="Saved. It starts with the button."
     )
     pty_robot.switch_off_and_on()
-    assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
+    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
 
 
 def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: PtyRobot) -> None:
     command = uploading(pty_robot)
-    naming, trimming = ("name", "ANA"), ("trim", "--balance", "5")
+    naming, trimming = ("set", "name", "ANA"), ("set", "trim", "--balance", "5")
     for words in (naming, trimming):
         done = on(pty_robot, *words)
         assert done.code == 3 and not done.out, words
@@ -183,7 +183,7 @@ def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: 
     for words in (naming, trimming):
         assert on(pty_robot, *words).code == 0, words
     pty_robot.switch_off_and_on()
-    assert json.loads(on(pty_robot, "info", "--json").out)["name"] == "ANA"
+    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["name"] == "ANA"
 
 
 def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
@@ -195,15 +195,15 @@ def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
     assert done.code == 3 and "Change the batteries and send it again" in done.err
     done = on(pty_robot, "upload", "-e", "SB|SHOW(8)", "--lang", "es")
     assert done.code == 3 and "Cambia las pilas y envíalo otra vez" in done.err
-    assert "its batteries are too weak to save it" in on(pty_robot, "info").out
-    fields = json.loads(on(pty_robot, "info", "--json").out)
+    assert "its batteries are too weak to save it" in on(pty_robot, "doctor").out
+    fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
     assert (fields["saved"], fields["slot"]) == ("LOW_SUPPLY", None)
-    for words in (("name", "ANA"), ("trim", "--balance", "5")):
+    for words in (("set", "name", "ANA"), ("set", "trim", "--balance", "5")):
         on(pty_robot, *words).gives(3, "Change the batteries")
         assert "Cambia las pilas" in on(pty_robot, *words, "--lang", "es").err
     pty_robot.ask(lambda robot: robot.supply(is_low=False))
-    assert on(pty_robot, "name", "ANA").code == 0
-    assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
+    assert on(pty_robot, "set", "name", "ANA").code == 0
+    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
 
 
 def test_a_supply_that_is_enough_again_saves_what_runs(pty_robot: PtyRobot) -> None:
@@ -235,13 +235,13 @@ def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRob
         ("en", first, "it holds the previous program again, checksum", "Saved. It starts"),
         ("es", second, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
     ):
-        done = on(pty_robot, "undo", "--lang", language).gives(0, "")
+        done = on(pty_robot, "start", "--previous", "--lang", language).gives(0, "")
         lines = done.out.splitlines()
-        assert f"{said} {checksum}" in lines[0] and "tsc undo" in lines[0]
+        assert f"{said} {checksum}" in lines[0] and "tsc start --previous" in lines[0]
         assert len(lines) == 2 and lines[1].startswith(saved)
         pty_robot.switch_off_and_on()
-        assert json.loads(on(pty_robot, "info", "--json").out)["program"] == checksum
-    receipt, kept = map(json.loads, on(pty_robot, "undo", "--json").out.splitlines())
+        assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"] == checksum
+    receipt, kept = map(json.loads, on(pty_robot, "start", "--previous", "--json").out.splitlines())
     assert receipt["event"] == "RECEIPT" and receipt["checksum"] == first
     assert receipt["saved"] == "SAVING" and receipt["slot"] is None
     assert kept["event"] == "SAVED" and kept["slot"] == 0
@@ -254,7 +254,7 @@ def test_the_file_of_the_program_is_named_where_it_is_known(
     name.write_text(FIRST + "\n", encoding="utf-8")
     assert on(pty_robot, "upload", name).code == 0
     assert on(pty_robot, "upload", "-e", SECOND).code == 0
-    assert "square.ts)" in on(pty_robot, "undo").out
+    assert "square.ts)" in on(pty_robot, "start", "--previous").out
 
 
 def test_where_there_is_none_before_the_next_step_is_said(pty_robot: PtyRobot) -> None:
@@ -263,14 +263,14 @@ def test_where_there_is_none_before_the_next_step_is_said(pty_robot: PtyRobot) -
         ("en", "no program from before that it can run", "Send the program that you want"),
         ("es", "ningún programa anterior que pueda", "Envía el programa que quieras"),
     ):
-        on(pty_robot, "undo", "--lang", language).gives(3, said, advice, out="")
-    assert json.loads(on(pty_robot, "info", "--json").out)["saved"] == "STORED"
+        on(pty_robot, "start", "--previous", "--lang", language).gives(3, said, advice, out="")
+    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
 
 
 def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> None:
     with_two(pty_robot)
     command = uploading(pty_robot)
-    done = on(pty_robot, "undo").gives(0)
+    done = on(pty_robot, "start", "--previous").gives(0)
     assert done.out.splitlines()[-1].startswith("Saved.")
     assert not pty_robot.moves
     assert command.ended().code in (0, 3)
@@ -280,17 +280,17 @@ def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot
     first, second = with_two(pty_robot)
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
     for language, said in (("en", "Nothing is lost"), ("es", "No se pierde nada")):
-        on(pty_robot, "undo", "--lang", language).gives(3, said, out=first)
-        assert on(pty_robot, "undo").code == 0, "the second one is saved already"
-    on(pty_robot, "undo")
+        on(pty_robot, "start", "--previous", "--lang", language).gives(3, said, out=first)
+        assert on(pty_robot, "start", "--previous").code == 0, "the second one is saved already"
+    on(pty_robot, "start", "--previous")
     pty_robot.ask(lambda robot: robot.supply(is_low=False))
     pty_robot.switch_off_and_on()
-    assert json.loads(on(pty_robot, "info", "--json").out)["program"] in (first, second)
+    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"] in (first, second)
 
 
 def test_ports_and_options_are_those_of_the_other_verbs() -> None:
     for words in (("--port", "/dev/no-such-port"), ("--virtual",)):
-        done = inside("undo", *words)
+        done = inside("start", "--previous", *words)
         assert done.code == 3 and done.err.startswith("tsc: ") and not done.out
-    assert inside("undo", "--all", "--port", "X").code == 2
-    assert inside("undo", "what").code == 2
+    assert inside("start", "--previous", "--all", "--port", "X").code == 2
+    assert inside("start", "--previous", "what").code == 2

@@ -73,12 +73,12 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
     picture = tmp_path / "way.png"
     with robot("--name", "KAT", "--world", "light", "--plot", picture) as found:
         assert found.port.startswith("socket://127.0.0.1:")
-        listed = json.loads(inside("ports", "--json").out)
+        listed = json.loads(inside("doctor", "--ports", "--json").out)
         [row] = [each for each in listed if each["port"] == found.port]
         assert row["is_virtual"]
         assert row["description"] == 'KAT: virtual robot tinibot, world "lamps in the dark"'
         in_spanish = 'KAT: robot virtual tinibot, mundo "lámparas en la oscuridad"'
-        assert f"{found.port}   {in_spanish}" in inside("ports", "--lang", "es").out
+        assert f"{found.port}   {in_spanish}" in inside("doctor", "--ports", "--lang", "es").out
         done = inside("upload", "--virtual", "-e", "SI|F(0.2, 50);SHOW(1.5);BEEP(0.1, 440)")
         assert (done.code, done.err) == (0, "")
         receipt, *rest = done.out.splitlines()
@@ -90,13 +90,13 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
                          "DONE"]  # fmt: skip
         # where nothing is said it is found, too; and it is no port for another day
         assert inside("start").out.startswith("KAT: started")
-        assert json.loads(inside("info", "--virtual", "--json").out)["name"] == "KAT"
+        assert json.loads(inside("doctor", "--virtual", "--json").out)["robot"]["name"] == "KAT"
         for _ in range(3):
             assert inside("stop", "--virtual").code == 0
         found.end().gives(0, "The virtual robot drove 9 cm")
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert directory.running() == []
-    inside("info").gives(3, "which port?")
+    inside("start").gives(3, "which port?")
 
 
 @pytest.mark.parametrize("hurry", ["1", "50"])
@@ -131,7 +131,7 @@ def test_a_second_computer_is_told_that_the_port_is_taken() -> None:
         with visitor(found.port) as first:
             first.sendall(b"SHOW(1)\n")
             assert first.recv(1000)  # it is heard
-            done = inside("info", "--port", found.port)
+            done = inside("doctor", "--identify", "--port", found.port)
             assert done.code == 3
             assert f"another program is using the port {found.port}" in done.err
             with visitor(found.port) as third:
@@ -147,7 +147,7 @@ def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
     text = OBSTACLE.replace("SI|", "SB|")
     with robot("--memory", memory) as found:
         assert inside("upload", "--virtual", "-e", text).code == 0
-        assert inside("name", "INTI", "--virtual").code == 0
+        assert inside("set", "name", "INTI", "--virtual").code == 0
         found.end(signal.SIGTERM)
     assert len(memory.read_bytes()) == 1024
     options = ("--button-at", "1", "--for", "20", "--hurry", "max", "--noise", "5", "--lang", "es")
@@ -160,7 +160,7 @@ def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
     found_cm = re.search(r"El robot virtual recorrió (\d+) cm en 20.0 s", first.err)
     assert found_cm and int(found_cm[1]) > 50, "what it drives when its time is over counts"
     with robot("--memory", memory):
-        assert json.loads(inside("info", "--virtual", "--json").out)["name"] == "INTI"
+        assert json.loads(inside("doctor", "--virtual", "--json").out)["robot"]["name"] == "INTI"
 
 
 @pytest.mark.parametrize(
@@ -204,20 +204,20 @@ def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
 def test_of_several_robots_one_is_named(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "listed", list)
     with robot() as first, robot("--world", "line") as second:
-        done = tsc("info", "--virtual").gives(3, second.port)
-        asked = tsc("info")  # without --virtual and without a terminal
+        done = tsc("doctor", "--identify", "--virtual").gives(3, second.port)
+        asked = tsc("doctor", "--identify")  # without --virtual and without a terminal
         assert (asked.code, asked.err) == (3, done.err)
         places = sorted([(first.port, "obstacles"), (second.port, "a line to follow")])
         with monkeypatch.context() as person:
             person.setattr("sys.stdin.isatty", lambda: True)
             person.setattr("sys.stdin.readline", lambda: "2\n")
             person.setattr("sys.stderr.isatty", lambda: True)
-            done = tsc("info")
+            done = tsc("doctor", "--identify")
         assert done.code == 0
         for number, (port, world) in enumerate(places, 1):
             assert f'  {number}  {port}   virtual robot tinibot, world "{world}"\n' in done.err
         assert places[1][0] in done.out
-        assert tsc("info", "--port", second.port).code == 0
+        assert tsc("doctor", "--port", second.port).code == 0
 
 
 # -- a robot for one command ----------------------------------------------------------------------
@@ -292,15 +292,15 @@ def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path)
 
 def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
     """The one of `tsc robot`; without one they say how to have one."""
-    for verb in ("ping", "info", "trim", "monitor", "doctor", "selftest"):
-        done = inside(verb, "--virtual")
-        assert done.code == 3, verb
-        assert "Start one in another terminal:  tsc robot" in done.err, verb
-        assert "--virtual" in inside(verb, "--help").out, verb
+    for command in ("doctor", "doctor --selftest", "set trim", "monitor"):
+        done = inside(*command.split(), "--virtual")
+        assert done.code == 3, command
+        assert "Start one in another terminal:  tsc robot" in done.err, command
+        assert "--virtual" in inside(*command.split(), "--help").out, command
     assert "Without a robot:  --virtual" in inside("upload", "-e", "SI|S").err
     with robot() as running:
-        for verb in ("ping", "doctor"):
-            inside(verb, "--virtual").gives(0, out=running.port)
+        for words in ((), ("--virtual",), ("--identify", "--virtual")):
+            inside("doctor", *words).gives(0, out=running.port)
         inside("doctor", "--virtual", "--port", running.port).gives(2, "--virtual")
 
 

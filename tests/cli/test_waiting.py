@@ -51,13 +51,13 @@ def test_who_waits_for_a_robot_is_told(
 ) -> None:
     """Not for a moment, and no program that reads is."""
     looks_on(monkeypatch)
-    done = tsc("ping", "--port", silent, "--lang", "es").gives(3)
+    done = tsc("doctor", "--identify", "--port", silent, "--lang", "es").gives(3)
     assert done.err.startswith(f"Esperando al robot en {silent} …\n")
     monkeypatch.setattr(progress, "MOMENT_S", HANGS_S)
-    assert "Waiting" not in tsc("ping", "--port", silent).err
+    assert "Waiting" not in tsc("doctor", "--identify", "--port", silent).err
     monkeypatch.setattr(progress, "MOMENT_S", 0.0)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: False)
-    assert "Waiting" not in tsc("ping", "--port", silent).err
+    assert "Waiting" not in tsc("doctor", "--identify", "--port", silent).err
 
 
 def test_who_waits_for_a_board_is_told_until_it_is_written(
@@ -81,12 +81,13 @@ def test_who_waits_for_a_board_is_told_until_it_is_written(
 
 
 SILENT_VERBS = [
-    ["info"], ["ping"], ["fetch"], ["name", "TINI"], ["trim"], ["start"], ["live", "F(1, 80)"],
-    ["upload", "-e", "SI|F(1, 80)"], ["selftest", "--yes"], ["undo"],
+    ["doctor", "--identify"], ["show"], ["set", "name", "TINI"], ["set", "trim"], ["start"],
+    ["live", "F(1, 80)"], ["upload", "-e", "SI|F(1, 80)"], ["doctor", "--selftest", "--yes"],
+    ["start", "--previous"],
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("words", SILENT_VERBS, ids=lambda words: words[0])
+@pytest.mark.parametrize("words", SILENT_VERBS, ids=lambda words: " ".join(words))
 def test_a_robot_that_is_silent_behind_hello_is_said_to_be_waited_for_once(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str]
 ) -> None:
@@ -160,8 +161,8 @@ def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.Monk
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     for late_ms in (990, 1300):  # who is silent for 3 s is lost
         with BadLine(Fault("late", late_ms=late_ms), Random(1), 0) as line:
-            on(line, "ping", "--count", "1").gives(0)
-            on(line, "claim").gives(3, "hold its start button down", "waits for its button")
+            on(line, "doctor", "--identify").gives(0)
+            on(line, "set", "owner").gives(3, "hold its start button down", "waits for its button")
 
 
 def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
@@ -184,12 +185,12 @@ def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
         return reply
 
     monkeypatch.setattr(Client, "wait", wait)
-    done = tsc("info", "--port", pty_robot.port).gives(0)
-    assert len(waits) > 2
+    done = tsc("set", "trim", "--show", "--port", pty_robot.port).gives(0)
+    assert len(waits) >= 2
     assert done.err.count("Waiting for the robot") == 1  # nobody has seen 3 s of silence
     monkeypatch.setattr(progress, "MOMENT_S", 0.0)
     now_s += 100
-    done = tsc("info", "--port", pty_robot.port).gives(0)
+    done = tsc("set", "trim", "--show", "--port", pty_robot.port).gives(0)
     assert done.err.count("Waiting for the robot") == 1  # of HELLO, and of the request
 
 

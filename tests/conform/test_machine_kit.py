@@ -79,7 +79,7 @@ def machine(tmp_path: Path, source: str) -> str:
 
 
 def conform(tsc: Tsc, command: str, *more: str) -> Done:
-    return tsc("conform", "--machine", command, *more)
+    return tsc("doctor", "--conform", "--machine", command, *more)
 
 
 def found_by(tsc: Tsc, command: str, *more: str) -> list[dict[str, object]]:
@@ -363,10 +363,13 @@ def test_without_its_file_the_command_that_makes_it_is_named(
 ) -> None:
     monkeypatch.setattr(kit_files, "FOLDER", tmp_path)
     for words in (("--machine", "x"), ("--port", "P")):
-        said = tsc("conform", *words).gives(2).err
+        said = tsc("doctor", "--conform", *words).gives(2).err
         assert f"{sys.executable} -m tools.builds.conformance" in said
         for language in ("es", "pt"):
-            assert "tools.builds.conformance" in tsc("conform", *words, "--lang", language).err
+            assert (
+                "tools.builds.conformance"
+                in tsc("doctor", "--conform", *words, "--lang", language).err
+            )
     conformance.main([str(tmp_path)])
     conform(tsc, FROM_SPEC, "--only", "images: no code").gives(0)
     assert conformance.main([str(tmp_path / "nowhere")]) == 1
@@ -393,10 +396,10 @@ def test_cases_are_made_without_the_tools_of_tests_and_are_the_same(
 
 
 def test_wrong_use(tsc: Tsc) -> None:
-    assert "--port" in tsc("conform").err
-    assert tsc("conform").code == 2
-    assert tsc("conform", "--machine", "x", "--only", "no such case").code == 2
-    assert tsc("conform", "--machine", "x", "--timeout", "0").code == 2
+    assert "--port" in tsc("doctor", "--conform").err
+    assert tsc("doctor", "--conform").code == 2
+    assert tsc("doctor", "--conform", "--machine", "x", "--only", "no such case").code == 2
+    assert tsc("doctor", "--conform", "--machine", "x", "--timeout", "0").code == 2
 
 
 # -- the page -----------------------------------------------------------------------------------

@@ -59,7 +59,7 @@ def of(name: str) -> int:
 
 
 def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
-    done = tsc("conform", "--port", pty_robot.port).gives(0)
+    done = tsc("doctor", "--conform", "--port", pty_robot.port).gives(0)
     count = len(all_checks(link_kit()))
     assert count > 200
     assert done.out == f"{count} of {count} checks agree. Kit 1, link 2.0, bytecode 2.1.\n"
@@ -71,7 +71,7 @@ def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
 def test_an_uno_passes(group: str, sketch: Path, tmp_path: Path, tsc: Tsc) -> None:
     with Uno(sketch, names=NAMES, eeprom=tmp_path / "eeprom", baud=BAUD, tells_sleep=False) as uno:
         uno.go()
-        done = tsc("conform", "--port", uno.pty, "--only", group)
+        done = tsc("doctor", "--conform", "--port", uno.pty, "--only", group)
     assert done.code == 0, done.out
 
 
@@ -154,7 +154,7 @@ def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
 
 
 def test_json_names_the_checks(pty_robot: PtyRobot) -> None:
-    done = on(pty_robot, "conform", "--only", "link: PING", "--json")
+    done = on(pty_robot, "doctor", "--conform", "--only", "link: PING", "--json")
     assert json.loads(done.out) == {
         "version": "1", "link": "2.0", "isa": "2.1",
         "cases": 1, "agree": 1, "differ": 0, "found": [],
@@ -199,7 +199,7 @@ def test_somebody_else_on_the_port(serve: Callable[[socket.socket], None], said:
 
     monkeypatch.setattr(conform, "RADIO_MS", 50)
     with server(serve) as port:
-        done = tsc("conform", "--port", port)
+        done = tsc("doctor", "--conform", "--port", port)
     assert done.code == 3
     assert said in done.err
 
@@ -207,15 +207,15 @@ def test_somebody_else_on_the_port(serve: Callable[[socket.socket], None], said:
 def test_a_cable_that_is_pulled(pty_robot: PtyRobot, tsc: Tsc) -> None:
     pulled = threading.Timer(3.0, pty_robot.pull)
     pulled.start()
-    done = tsc("conform", "--port", pty_robot.port)
+    done = tsc("doctor", "--conform", "--port", pty_robot.port)
     pulled.join()
     assert done.code == 3
     assert "is gone after" in done.err
 
 
 def test_a_port_that_is_not_there(tsc: Tsc) -> None:
-    assert tsc("conform", "--port", "/dev/ttyNO").code == 3
-    assert tsc("conform", "--port", " ").code == 2
+    assert tsc("doctor", "--conform", "--port", "/dev/ttyNO").code == 3
+    assert tsc("doctor", "--conform", "--port", " ").code == 2
 
 
 def test_a_robot_with_an_owner_is_not_tried(pty_robot: PtyRobot, tsc: Tsc,
@@ -225,11 +225,11 @@ def test_a_robot_with_an_owner_is_not_tried(pty_robot: PtyRobot, tsc: Tsc,
     from tiniscript.link.messages import OWNED
 
     monkeypatch.setattr(port_checks, "met", lambda robot: Answer(0, 0, {"features": OWNED}, b""))
-    tsc("conform", "--port", pty_robot.port).gives(3, "tsc disown")
+    tsc("doctor", "--conform", "--port", pty_robot.port).gives(3, "tsc set owner --give-up")
 
 
 def test_wrong_use_of_a_port(tsc: Tsc) -> None:
-    assert tsc("conform", "--port", "P", "--machine", "x").code == 2
-    assert tsc("conform", "--port", "P", "--timeout", "3").code == 2
-    assert tsc("conform", "--port", "P", "--only", "no such check").code == 2
-    assert tsc("conform", "--machine", "x", "--baud", "9600").code == 2
+    assert tsc("doctor", "--conform", "--port", "P", "--machine", "x").code == 2
+    assert tsc("doctor", "--conform", "--port", "P", "--timeout", "3").code == 2
+    assert tsc("doctor", "--conform", "--port", "P", "--only", "no such check").code == 2
+    assert tsc("doctor", "--conform", "--machine", "x", "--baud", "9600").code == 2

@@ -22,14 +22,22 @@ from tiniscript.doctor.findings import CAUSES
 from tiniscript.link import errors
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
-from tiniscript.link.messages import STATUSES
-from tiniscript.link.outcomes import CANCELLED, LOST, ConnectionLost
-from tiniscript.link.requests import Reply
+from tiniscript.link.messages import BY_NAME, OWNED, STATUSES, YOURS
+from tiniscript.link.outcomes import (
+    CANCELLED,
+    LOST,
+    OTHER_ROBOT,
+    UNPROVEN,
+    ConnectionLost,
+)
+from tiniscript.link.payloads import HelloReply
+from tiniscript.link.requests import OK, Reply
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.shared_connection import OtherVersion
 from tiniscript.link.wire import Wire
 
 CABLE, RADIO = "/dev/ttyUSB0", "/dev/rfcomm0"
+HELLO = HelloReply(**Firmware().hello)  # type: ignore[arg-type]
 
 
 class Shared:
@@ -47,7 +55,7 @@ class Shared:
         return make(Session())
 
     def wait(self, request: Namespace) -> Reply[Any]:
-        assert request.name in ("hello", "status", "ping") and request.limit_ms > 0
+        assert request.name in ("hello", "status", "ping", "trim") and request.limit_ms > 0
         if not self.replies:
             raise ConnectionLost("")
         return self.replies.pop(0)
@@ -76,6 +84,7 @@ class Case:
         self.watched = Shared(Reply(LOST))
         self.watch_ms = 0
         self.virtual: tuple[str, ...] = ()
+        self.expected = Expected(None, "tinibot", {KIT: "tinibot"}.get)
 
     def with_bluetooth(self, *paired: str, is_off: bool = False) -> Case:
         self.system.write("/sys/class/bluetooth/hci0/address", "0")
@@ -116,9 +125,8 @@ class Case:
         def share(name: str) -> AbstractContextManager[LinkConnection]:
             return nullcontext(cast(LinkConnection, self.watched))
 
-        expected = Expected(None, "tinibot", {KIT: "tinibot"}.get)
         doors = Doors(self.system, open_wire, join, may_open, lambda name: "rfcomm" in name, share)
-        asked = Question(port, self.last, 9600, expected, 7, self.watch_ms, self.virtual)
+        asked = Question(port, self.last, 9600, self.expected, 7, self.watch_ms, self.virtual)
         return diagnosed(doors, asked)
 
     def cause(self, port: str | None = CABLE) -> tuple[str, bool]:
@@ -240,18 +248,26 @@ def test_a_port_of_a_cable_is_opened_after_a_yes_alone_and_a_radio_without(case:
 
 
 def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
-    """`tsc ports` lists them: the doctor does not say that there are none."""
-    case.virtual = ("socket://127.0.0.1:7007",)
+    """`tsc doctor --ports` lists them: the doctor does not say that there are none."""
+    case.virtual = ("socket://127.0.0.1:7007", "socket://127.0.0.1:7008")
     (finding,) = case.diagnosis(None).findings
-    assert (finding.cause, finding.values) == ("no_port", {"ports": case.virtual[0]})
+    assert (finding.cause, finding.values) == ("no_port", {"ports": ", ".join(case.virtual)})
     case.with_port("/dev/ttyS0")
     (finding,) = case.diagnosis(None).findings
     assert finding.cause == "charging_cable"
-    assert finding.values == {"ports": f"/dev/ttyS0, {case.virtual[0]}"}
+    assert finding.values == {"ports": f"/dev/ttyS0, {', '.join(case.virtual)}"}
     for language in ("en", "es"):
         _, seen, then = _said(finding, finding.values, language)
         assert finding.values["ports"] in seen
         assert "tsc doctor --port" in then
+
+
+def test_the_only_virtual_robot_is_looked_at_where_no_cable_is(case: Case) -> None:
+    case.says_yes = True
+    case.virtual = ("socket://127.0.0.1:7007",)
+    assert case.diagnosis(None).port == case.virtual[0]
+    case.with_port(CABLE)
+    assert case.diagnosis(None).port == CABLE
 
 
 @pytest.mark.parametrize("make", [_stranger, _member, _used("minicom"), _other_tsc])
@@ -303,6 +319,8 @@ def test_a_port_that_vanishes(case: Case, port: str, cause: str, is_sure: bool) 
         ([Reply(LOST)], "falls_silent"),
         ([Reply(CANCELLED)], "falls_silent"),
         ([Reply(STATUSES["OTHER_LINK"], 2)], "firmware_newer"),
+        ([Reply(OTHER_ROBOT, 7)], "other_robot"),
+        ([Reply(UNPROVEN)], "unproven"),
     ],
 )
 def test_through_another_tsc(case: Case, replies: list[Reply[Any]], cause: str) -> None:
@@ -319,6 +337,41 @@ def test_a_robot_is_watched_where_nothing_else_is_wrong_and_its_port_is_shared(c
     assert case.wire is not None and case.wire.is_gone
     case.end = Nobody()
     assert case.cause(RADIO) == ("crossed", False)
+
+
+@pytest.mark.parametrize("cause", ["other_robot", "unproven"])
+def test_a_robot_that_may_be_another_one_is_asked_nothing_more(case: Case, cause: str) -> None:
+    places = []
+
+    def doubts(port: str, hello: HelloReply) -> str:
+        places.append(port)
+        return cause
+
+    case.expected = case.expected._replace(doubts=doubts)
+    (finding,) = case.diagnosis(RADIO).findings
+    assert (finding.cause, finding.values) == (cause, {"id": "12347f3a"})
+    assert places == [RADIO] and finding.is_wrong
+    assert isinstance(case.end, Firmware) and set(case.end.requests) == {BY_NAME["HELLO"].number}
+
+
+@pytest.mark.parametrize(("features", "has_key", "cause"), [
+    (OWNED, True, "falls_silent"), (OWNED, False, "of_another_owner"), (0, True, "fine"),
+])  # fmt: skip
+def test_the_key_of_a_robot_with_an_owner_is_shown_by_the_connection(
+    case: Case, features: int, has_key: bool, cause: str
+) -> None:
+    """What it says of its owner without that is not so."""
+    case.end = Firmware(features=features)
+    case.expected = case.expected._replace(has_key=lambda robot: has_key)
+    assert case.diagnosis(RADIO).findings[0].cause == cause
+
+
+def test_whose_a_robot_is_says_what_it_says_behind_a_key(case: Case) -> None:
+    case.expected = case.expected._replace(has_key=lambda robot: True)
+    case.shared = Shared(Reply(OK, 0, HELLO._replace(features=OWNED)), Reply(LOST))
+    assert "of_another_owner" in [each.cause for each in case.diagnosis().findings]
+    case.shared = Shared(Reply(OK, 0, HELLO._replace(features=OWNED | YOURS)), Reply(LOST))
+    assert "of_another_owner" not in [each.cause for each in case.diagnosis().findings]
 
 
 def test_what_was_not_opened_is_not_said_to_have_been(case: Case) -> None:

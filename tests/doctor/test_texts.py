@@ -8,7 +8,7 @@ from tests.support.rows import each_row
 from tests.support.texts import in_all
 from tests.support.texts import said as all_said
 from tiniscript.cli.commands.doctor import _said
-from tiniscript.doctor.findings import CAUSES, Finding
+from tiniscript.doctor.findings import CAUSES, PARTS, WRONG, Finding
 
 # The values of each cause that has some; the sentences may use no others.
 VALUES = {
@@ -20,7 +20,8 @@ VALUES = {
     "bootloader_only": {"board"}, "garbled": {"n"}, "firmware_older": {"theirs", "ours"},
     "firmware_newer": {"theirs", "ours"}, "wrong_kit": {"kit", "robot", "expected"},
     "unknown_kit": {"kit"}, "restarts": {"count", "reset"}, "motors_restart": {"count", "reset"},
-    "lossy": {"missed", "n", "damaged"}, "fine": {"name", "kit", "id", "n"},
+    "lossy": {"missed", "n", "damaged"}, "other_robot": {"id"}, "unproven": {"id"},
+    "fine": {"name", "kit", "id", "n"},
 }  # fmt: skip
 
 
@@ -41,6 +42,14 @@ def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
     known |= {"seen_no_port_others", "next_no_port_others"}
     named = {key for key in all_said("en") if key.startswith(("seen_", "next_"))}
     assert named == known
+
+
+def test_each_part_of_a_robot_has_its_causes() -> None:
+    """What an examination finds wrong is about one of them, or may be no robot of ours."""
+    about = [cause for causes in PARTS.values() for cause in causes]
+    assert len(about) == len({*about}) and {*about} <= {*CAUSES}
+    first = WRONG.index("firmware_older")
+    assert {*WRONG[first:]} - {*about} == {"other_robot", "unproven"}
 
 
 def test_one_restart_is_said_as_one() -> None:

@@ -73,7 +73,7 @@ def test_a_chip_whose_own_usb_is_the_port(major: int) -> None:
 @pytest.mark.parametrize("pin", [18, 19])
 @pytest.mark.parametrize("part", ["Pwm kBuzzer = {{7", "Pin kStartButton = {8"])
 def test_a_header_that_takes_the_port_away_is_refused(part: str, pin: int, tmp_path: Path) -> None:
-    """One that was made before `tsc board` refused these pins."""
+    """One that was made before `tsc firmware --board` refused these pins."""
     header = firmware.header([robots.load("tinibotc3")], "a test.")
     assert part in header
     own = tmp_path / "own.h"

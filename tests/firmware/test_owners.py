@@ -265,10 +265,10 @@ def test_text_drives_an_owned_robot_only_where_it_may() -> None:
         table.pass_time(None, 5000)
         return table.robot.wait(200, line)
 
-    assert b"tsc text on" in answer()
+    assert b"tsc set text on" in answer()
     for is_allowed in (True, False):
         assert table.outcome(session, session.allow_text(is_allowed)) == "OK"
-        assert (b"OK" if is_allowed else b"tsc text on") in answer()
+        assert (b"OK" if is_allowed else b"tsc set text on") in answer()
         assert ("MOTORS 80 80" in "".join(table.robot.did)) == is_allowed
         table.robot.did.clear()
     assert table.outcome(session, session.upload(image_of(FOREVER), is_detached=True)) == "OK"
@@ -278,7 +278,7 @@ def test_text_drives_an_owned_robot_only_where_it_may() -> None:
     table.hold(None, 2100)
     assert b"OK" in answer()
     table = Owned(table.robot.memory())
-    assert b"tsc text on" in answer()
+    assert b"tsc set text on" in answer()
 
 
 def test_a_robot_makes_itself_known_and_leaves_the_buzzer_to_a_program() -> None:

@@ -82,7 +82,7 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
     ) as uno:
         uno.go()
         assert "bytes of flash verified" in avrdude(uno, of, sketch)
-        pong = process("ping", "--port", uno.pty).gives(0)
+        pong = process("doctor", "--identify", "--port", uno.pty).gives(0)
         assert pong.out.startswith(f"tinibot on {uno.pty}")
         assert states(uno) == OFF
         process("upload", program, "--port", uno.pty).gives(0)
@@ -174,7 +174,7 @@ def test_a_mega_that_was_reset_is_waited_for(
     file = bootloader("mega").file
     with Uno(elf, board="mega", bootloader=file, baud=BAUD, tells_sleep=False) as mega:
         mega.go(speed=3.0)
-        for words in (["ping"], ["ports", "--ask"]):
+        for words in (["doctor", "--identify"], ["doctor", "--ports", "--ask"]):
             for _ in range(TRIES):  # on a busy computer it is late; each try resets it
                 done = process(*words, "--port", mega.pty)
                 if "tinibot" in done.out:

@@ -63,7 +63,7 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
         assert "PlatformIO builds the firmware of mine for the uno" in done.err
         first = done.out.splitlines()[0]
         assert first.startswith("mine on the uno: ") and "read back and compared" in first
-        info = process("info", "--json", "--port", uno.pty)
+        info = process("doctor", "--json", "--port", uno.pty)
         assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in info.out, info.err
     kept = ready.files(ready.cache())
     assert [(each.title, each.board) for each in kept] == [("mine", "uno")]

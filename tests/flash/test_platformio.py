@@ -191,12 +191,12 @@ def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
 
 @pytest.mark.sampled(of="builds of PlatformIO", keep=2)
 def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:
-    """`tsc board` writes its header, and from then on the sketch is for it."""
+    """`tsc firmware --board` writes its header, and from then on the sketch is for it."""
     own = project / "src" / "boards" / "kits" / "own.h"
     pio(project, "run", "-e", "uno").gives(0)
     profile = Path(robots.__file__).parent / "tinibot.toml"
     try:
-        assert main(["board", str(profile), "-o", str(own)]) == 0
+        assert main(["firmware", "--board", str(profile), "-o", str(own)]) == 0
         log = pio(project, "run", "-e", "uno").gives(0).out
         assert re.search(r"(Compiling |Retrieved `)\S+/boards/motors.cpp.o", log)
         with changed(own, ("kBuzzer", "kNothingLikeIt")):

@@ -92,8 +92,8 @@ def test_a_language_that_is_deleted_is_missed_by_no_other(language: str, tmp_pat
         [*words, "--lang", other]
         for other in others
         for words in (
-            ("check", "-e", "F(2 80)"), ("explain", "TS017"), ("lesson",), ("complie",),
-            ("lesson", "show", "1", "--teacher"), ("wiring", "--robot", "liner"),
+            ("check", "-e", "F(2 80)"), ("check", "--explain", "TS017"), ("lesson",), ("complie",),
+            ("lesson", "show", "1", "--teacher"), ("firmware", "--wiring", "--robot", "liner"),
             ("show", "-e", "SI|F(2, 80)", "--arduino"), ("run", "-e", "SI|F(2, 80)"),
         )
     ]  # fmt: skip
@@ -182,7 +182,7 @@ class Terminal(io.StringIO):
 SAID = (
     ("check", "-e", "F(2 80)\nAVANZA 20\n\nF(60, 80) UNTIL(DISTANCE < 10) AND LATER THAN EVER"),
     ("check", "no_such_file.ts"), ("complie",), ("robot", "--world", "no_such_world"),
-    ("explain", "TS017"), ("upload", "-e", "S", "--port", "/dev/no_such_port"),
+    ("check", "--explain", "TS017"), ("upload", "-e", "S", "--port", "/dev/no_such_port"),
 )  # fmt: skip
 
 

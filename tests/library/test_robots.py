@@ -428,7 +428,7 @@ def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
         again.stop()
     assert other.ended().code == 3
     until(lambda: not any(each.name == "holder" for each in threading.enumerate()), "it lets go")
-    process("ping", "--port", pty_robot.port).gives(0)
+    process("doctor", "--identify", "--port", pty_robot.port).gives(0)
 
 
 def test_ctrl_c_stops_what_another_command_has_started_through_it(pty_robot: PtyRobot) -> None:

@@ -52,7 +52,7 @@ def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot
         assert (done.code, done.err) == (0, ""), port
         assert done.out.splitlines()[-2:] == ["Done.", "Saved. It starts with the button."]
         assert (ble.robot.did, ble.connections) == (DROVE * count, 2 * count - 1)
-        assert inside("info").code == 0  # the port is remembered
+        assert inside("doctor").code == 0  # the port is remembered
     assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
     assert max(len(data) for _, data in ble.written) == 20
     inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\nR(0.1, 40)\n").gives(0, "")
@@ -73,7 +73,7 @@ def test_a_long_program_arrives_whole(
     ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
     inside("compile", "-e", LONG, "-o", ours)
     assert inside("upload", ours, "--no-run", "--port", PLACE).code == 0
-    assert inside("fetch", "-o", theirs, "--port", PLACE).code == 0
+    assert inside("show", "-o", theirs, "--port", PLACE).code == 0
     assert theirs.read_bytes() == ours.read_bytes()
     longest = max(len(data) for _, data in ble.written)
     assert longest == (20 if service == HM10 else min(mtu - 3, LARGEST))
@@ -97,7 +97,7 @@ def test_where_a_module_answers_each_write_it_is_waited_for(
 @pytest.mark.parametrize("port", [NAME, PLACE, ""])
 def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: str) -> None:
     command = uploading(ble, NAME)
-    rows = [row for row in json.loads(inside("ports", "--json").out) if row["held_by"]]
+    rows = [row for row in json.loads(inside("doctor", "--ports", "--json").out) if row["held_by"]]
     assert [row["port"] for row in rows] == [NAME]
     done = inside("stop", *(("--port", port) if port else ()))
     assert (done.code, done.out.count("Stopped")) == (0, 1)
@@ -107,7 +107,7 @@ def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: 
 
 
 def test_two_at_once_take_turns(ble: BleRobot) -> None:
-    both = [Command("ping", "--port", port) for port in (NAME, PLACE)]
+    both = [Command("doctor", "--identify", "--port", port) for port in (NAME, PLACE)]
     done = [each.ended() for each in both]
     assert 0 in [each.code for each in done]
     for each in done:
@@ -120,7 +120,7 @@ def test_ctrl_c_stops_the_robot_and_frees_it(ble: BleRobot, bluez: FakeBluez) ->
     assert command.ended().code == 2
     assert not ble.robot.moves
     ble.robot.until(lambda: not bluez.devices[ADDRESS].is_connected, "BlueZ has heard it")
-    assert inside("ping", "--port", NAME).code == 0
+    assert inside("doctor", "--identify", "--port", NAME).code == 0
 
 
 def test_ctrl_c_ends_a_search(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -130,7 +130,7 @@ def test_ctrl_c_ends_a_search(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch)
 
     with monkeypatch.context() as patch:
         patch.setattr(event_loop, "wait", interrupted)
-        assert inside("ping", "--port", "ble://nobody").code == 2
+        assert inside("doctor", "--identify", "--port", "ble://nobody").code == 2
     until(lambda: not bluez.adapter.is_scanning, "BlueZ has heard it")
 
 
@@ -173,13 +173,13 @@ def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, lat
 ])  # fmt: skip
 def test_names_are_text(bluez: FakeBluez, pty_robot: PtyRobot, said: str, typed: str) -> None:
     bluez.add(BleRobot(pty_robot, said))
-    assert inside("ping", "--port", f"ble://{typed}").code == 0
+    assert inside("doctor", "--identify", "--port", f"ble://{typed}").code == 0
 
 
 def test_a_name_that_looks_like_an_address_is_none(bluez: FakeBluez, ble: BleRobot) -> None:
     fake = Peripheral(ADDRESS, OTHER)
     bluez.add(fake)
-    assert inside("ping", "--port", PLACE).code == 0
+    assert inside("doctor", "--identify", "--port", PLACE).code == 0
     assert (ble.connections, fake.connections) == (1, 0)
 
 
@@ -187,14 +187,17 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
     hostile = "\x1b[31mNo\r\ntsc: \u202ename"
     bluez.add(Echo(hostile, OTHER))
     bluez.add(Peripheral("lamp", "AA:BB:CC:DD:EE:03", LAMP))
-    done = inside("ports", "--ask").gives(0)
+    done = inside("doctor", "--ports", "--ask").gives(0)
     rows = {line.split("   ")[0]: line.split("   ")[1:] for line in done.out.splitlines()}
     assert rows[PLACE] == ["Tini 1, Bluetooth LE", "robot tinibot (free)"]
     assert [port for port in rows if port.startswith("ble")] == [f"ble://{OTHER}", PLACE]
     assert not any(sign in done.out for sign in "\x1b\r\u202e")
-    assert inside("ping", "--port", NAME).code == 0  # from now on it has this name
+    assert inside("doctor", "--identify", "--port", NAME).code == 0  # from now on it has this name
     known_ports.remember("ble://yesterday", "Yesterday")
-    said = {row["port"]: row["said"] for row in json.loads(inside("ports", "--ask", "--json").out)}
+    said = {
+        row["port"]: row["said"]
+        for row in json.loads(inside("doctor", "--ports", "--ask", "--json").out)
+    }
     assert (said[NAME], said["ble://yesterday"]) == ("robot tinibot (free)", "out of reach now")
     assert PLACE not in said
 
@@ -209,7 +212,7 @@ def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
 
 
 def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:
-    assert inside("ping", "--port", NAME).code == 0
+    assert inside("doctor", "--identify", "--port", NAME).code == 0
     for words in (("stop",), ("upload", "-e", DRIVE)):
         inside(*words, "--all").gives(0, "Done: 1 of 1.")
 
@@ -217,18 +220,20 @@ def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:
 def test_what_is_no_robot_is_said(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_MS", 1500)
     bluez.add(Peripheral("lamp", OTHER, LAMP))
-    inside("ping", "--port", "ble://lamp").gives(3, "does not offer what tsc needs")
+    inside("doctor", "--identify", "--port", "ble://lamp").gives(3, "does not offer what tsc needs")
     bluez.add(Echo("echo", ADDRESS))
-    inside("ping", "--port", "ble://echo").gives(3, "comes back")
+    inside("doctor", "--identify", "--port", "ble://echo").gives(3, "comes back")
 
 
 def test_nobody_is_in_reach(ble: BleRobot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.SEARCH_S", 3.0)
-    inside("ping", "--port", "ble://nobody").gives(
+    inside("doctor", "--identify", "--port", "ble://nobody").gives(
         3, "no ble://nobody is in reach", "In reach: Tini 1"
     )
     ble.is_on = False
-    inside("ping", "--port", NAME, "--lang", "es").gives(3, "ni otro robot con Bluetooth LE")
+    inside("doctor", "--identify", "--port", NAME, "--lang", "es").gives(
+        3, "ni otro robot con Bluetooth LE"
+    )
 
 
 def test_a_connection_that_is_closed_is_free_while_its_process_goes_on(

@@ -55,7 +55,7 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     """The connection ends within HELLO, or a frame of the program, or before the last answer."""
     before, after = tmp_path / "before.bin", tmp_path / "after.bin"
     assert inside("upload", "-e", "SB|F(1, 10)", "--port", PLACE).code == 0
-    assert inside("fetch", "-o", before).code == 0
+    assert inside("show", "-o", before).code == 0
     ble.parts_after = len(ble.heard) + heard
     done = inside("upload", "-e", LONG, "--port", PLACE)
     assert done.code == 3
@@ -64,7 +64,7 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     stops_by_itself(ble)
     ours = tmp_path / "ours.bin"
     inside("compile", "-e", LONG, "-o", ours)
-    assert inside("fetch", "-o", after, "--port", PLACE).code == 0
+    assert inside("show", "-o", after, "--port", PLACE).code == 0
     assert after.read_bytes() in (before.read_bytes(), ours.read_bytes())
     assert inside("upload", "-e", LONG, "--no-run", "--port", PLACE).code == 0
 
@@ -125,7 +125,7 @@ def test_a_flood_is_no_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) 
                 self.loop.call_soon(self.flood, left - 1)
 
     bluez.add(Flood("flood"))
-    inside("ping", "--port", PLACE).gives(3, "not TiniScript")
+    inside("doctor", "--identify", "--port", PLACE).gives(3, "not TiniScript")
 
 
 # -- before it begins ---------------------------------------------------------------------------
@@ -145,8 +145,8 @@ def test_a_computer_without_bluetooth(
         monkeypatch.setattr(ports, "listed", list)
         monkeypatch.setattr(ports, "announced", list)
         for language, words in zip(("en", "es"), said, strict=True):
-            inside("ping", "--port", NAME, "--lang", language).gives(3, words)
-        inside("ports", "--ask").gives(0, said[0])
+            inside("doctor", "--identify", "--port", NAME, "--lang", language).gives(3, words)
+        inside("doctor", "--ports", "--ask").gives(0, said[0])
 
 
 def test_a_bus_that_lets_nobody_in(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -184,7 +184,7 @@ def test_without_its_package_the_next_step_is_said(
     monkeypatch.setitem(sys.modules, package, None)
     port = {"bleak": "ble://Tini", "zeroconf": "tcp://tini"}[package]
     for language in ("en", "es"):
-        tsc("ping", "--port", port, "--lang", language).gives(3, package, "[radio]")
+        tsc("doctor", "--identify", "--port", port, "--lang", language).gives(3, package, "[radio]")
         if package == "zeroconf":
             tsc("robot", "--announce", "--for", "0.1", "--lang", language).gives(2, "[radio]")
 

@@ -144,7 +144,7 @@ def test_a_robot_is_reached_by_its_name(tini: Robot) -> None:
         done = run("upload", "-e", "SI|F(0.2, 50)", "--port", port)
         assert (done.code, done.err) == (0, ""), port
         assert known_ports.known().last == port
-    assert inside("ping", "--count", "1").code == 0  # it is remembered
+    assert inside("doctor", "--identify").code == 0  # it is remembered
 
 
 def test_a_name_and_an_address_share_a_connection(tini: Robot) -> None:
@@ -161,7 +161,7 @@ def test_a_robot_announces_itself_only_when_asked(
     with robot("--name", "quiet") as found, robot("--announce") as other:
         name = other.line()
         assert name == f"tcp://tinibot-{number_of(other.port)}"
-        rows = inside("ports", "--ask").out.splitlines()
+        rows = inside("doctor", "--ports", "--ask").out.splitlines()
         assert any(row.startswith(f"{name} ") for row in rows)
         assert [row.split("   ")[0] for row in rows if "quiet" in row] == [found.port]
 
@@ -171,9 +171,9 @@ def test_the_announcement_ends_with_the_robot(
 ) -> None:
     name = f"short-{HERE}"
     with robot("--announce", "--name", name):
-        assert inside("ping", "--port", f"tcp://{name}", "--count", "1").code == 0
+        assert inside("doctor", "--identify", "--port", f"tcp://{name}").code == 0
     monkeypatch.setattr(network, "SEARCH_S", 1.0)
-    done = inside("ping", "--port", f"tcp://{name}", "--lang", "es")
+    done = inside("doctor", "--identify", "--port", f"tcp://{name}", "--lang", "es")
     assert done.code == 3
     assert f"ningún robot de esta red se anuncia como tcp://{name}" in done.err
 
@@ -183,7 +183,7 @@ def test_names_that_nobody_has(
 ) -> None:
     monkeypatch.setattr(network, "SEARCH_S", 0.2)
     for name in ("x" * 64, "Ñ" * 40, "_tcp", ".", "..", "a.b", "a..b", " "):
-        done = tsc("ping", "--port", f"tcp://{name}")
+        done = tsc("doctor", "--identify", "--port", f"tcp://{name}")
         assert (done.code, "announces itself" in done.err) == (3, True), name
 
 
@@ -196,7 +196,7 @@ def test_two_robots_of_one_name_are_not_announced(tini: Robot) -> None:
 @pytest.mark.parametrize("address", ["8.8.8.8", "0.0.0.0"])
 def test_an_address_outside_is_not_called(address: str) -> None:
     with announced(f"bait-{HERE}", address, 7007):
-        done = inside("ping", "--port", f"tcp://bait-{HERE}")
+        done = inside("doctor", "--identify", "--port", f"tcp://bait-{HERE}")
         said = f"an address that is not in this network ({address})"
         assert (done.code, said in done.err) == (3, True)
 
@@ -241,7 +241,7 @@ def test_a_hostile_name_is_shown_without_what_a_terminal_obeys(
 ) -> None:
     monkeypatch.setattr(ports, "listed", list)
     with robot("--listen", "0") as found, announced("\u202ex", "127.0.0.1", number_of(found.port)):
-        done = inside("ports", "--ask").gives(0, out=found.port)
+        done = inside("doctor", "--ports", "--ask").gives(0, out=found.port)
         assert "\u202e" not in done.out
 
 
@@ -256,7 +256,7 @@ def test_whatever_answers_a_name_has_to_be_a_robot() -> None:
 
         threading.Thread(target=serve, daemon=True).start()
         with announced(f"web-{HERE}", "127.0.0.1", number):
-            assert inside("ping", "--port", f"tcp://web-{HERE}").code == 3
+            assert inside("doctor", "--identify", "--port", f"tcp://web-{HERE}").code == 3
 
 
 def test_without_multicast_the_address_is_the_next_step(
@@ -268,7 +268,9 @@ def test_without_multicast_the_address_is_the_next_step(
     monkeypatch.setattr(network, "Zeroconf", fail)
     for language, said in (("en", "reaches no network with multicast"),
                            ("es", "no llega a ninguna red con multicast")):  # fmt: skip
-        tsc("ping", "--port", "tcp://tini", "--lang", language).gives(3, said, "socket://HOST")
+        tsc("doctor", "--identify", "--port", "tcp://tini", "--lang", language).gives(
+            3, said, "socket://HOST"
+        )
 
 
 def test_a_bad_network_costs_time_and_nothing_else() -> None:
@@ -281,7 +283,7 @@ def test_a_bad_network_costs_time_and_nothing_else() -> None:
     ):
         done = inside("upload", "-e", f"SB|{LONG}", "--port", port).gives(0, "")
         checksum = done.out.partition("checksum ")[2][:8]
-        assert f"program {checksum}" in inside("info", "--port", port).out
+        assert f"program {checksum}" in inside("doctor", "--port", port).out
         command = Command("upload", "-e", FOREVER, "--port", port)
         command.until("running")
         assert inside("stop", "--port", port).code == 0

@@ -65,7 +65,7 @@ def test_a_robot_is_reached_over_a_network(protocol: str) -> None:
         assert done.out.splitlines()[1:3] == ["SHOW 1.5", "Done."]
         assert pty_robot.did == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
         server.join(10)
-        assert process("ports").out.count(address) == 1
+        assert process("doctor", "--ports").out.count(address) == 1
 
 
 @pytest.mark.parametrize(("system", "port", "is_radio"), [

@@ -109,7 +109,7 @@ def test_what_a_guide_types_prints_what_it_shows(
             Path(step.name).write_text(step.text, encoding="utf-8")
             continue
         name = next((word for word in step.words if word in PORTS), name)
-        if step.words == ["claim"]:
+        if step.words == ["set", "owner"]:
             pty_robot.hold(after_ms=HAND_MS, times=3)  # a hand that tries again
         with redirect_stderr(sys.stdout):  # a terminal shows both in the order of their writing
             main([pty_robot.port if word in PORTS else word for word in step.words])

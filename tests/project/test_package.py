@@ -246,8 +246,9 @@ def test_an_installation_without_cases_names_the_command_that_makes_them(
     shutil.copytree(unpacked, sources)
     package = tmp_path / "an installation" / "tiniscript"
     shutil.copytree(sources / "compiler" / "tiniscript", package)
-    words = ("-m", "tiniscript", "conform", "--lang", "en", "--only", "images: no code", "--json",
-             "--machine", f"{sys.executable} -m tests.conform.spec_machine")  # fmt: skip
+    words = ("-m", "tiniscript", "doctor", "--conform", "--lang", "en", "--only",
+             "images: no code", "--json", "--machine",
+             f"{sys.executable} -m tests.conform.spec_machine")  # fmt: skip
     tsc = partial(python, *words, folder=sources, PYTHONPATH=str(package.parent))
     lacks = tsc()
     assert lacks.returncode == 2 and not lacks.stdout

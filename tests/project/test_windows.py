@@ -154,7 +154,7 @@ def test_signs_without_a_code_become_plain_ones() -> None:
 def test_a_wiring_list_goes_through_a_pipe_of_windows() -> None:
     environment = {"PYTHONPATH": str(ROOT / "compiler"), "PYTHONIOENCODING": "cp850"}
     done = subprocess.run(
-        [sys.executable, "-m", "tiniscript", "wiring", "--lang", "es"],
+        [sys.executable, "-m", "tiniscript", "firmware", "--wiring", "--lang", "es"],
         capture_output=True, env=environment,
     )  # fmt: skip
     assert done.returncode == 0
@@ -197,8 +197,9 @@ assert count > 200, count
 from tiniscript.cli import main
 commands = [
     ["check", "prog.ts"], ["compile", "prog.ts", "-o", "prog.bin"], ["show", "prog.bin"],
-    ["run", "prog.ts"], ["fmt", "--check", "prog.ts"], ["explain", "TS012"],
-    ["wiring", "-o", "wiring.html"], ["board", "tinibot", "-o", "own.h"], ["help"],
+    ["run", "prog.ts"], ["fmt", "--check", "prog.ts"], ["check", "--explain", "TS012"],
+    ["firmware", "--wiring", "-o", "wiring.html"],
+    ["firmware", "--board", "tinibot", "-o", "own.h"], ["help"],
     ["lesson", "sheet", "1", "-o", "sheet.html"],
 ]
 for words in commands:

@@ -55,5 +55,5 @@ def test_no_table_has_a_board_without_firmware() -> None:
 
 
 def test_every_chip_has_firmware() -> None:
-    """Where one has none, `tsc board` and `tsc wiring` say so."""
+    """Where one has none, `tsc firmware --board` and `tsc firmware --wiring` say so."""
     assert set(CHIPS) == set(firmware.BOARDS)

@@ -190,25 +190,34 @@ def test_two_echoes_have_their_vectors_once() -> None:
 
 def test_board_writes_the_header(tsc: Tsc, tmp_path: Path) -> None:
     target = tmp_path / "own.h"
-    done = tsc("board", "liner", "-o", target)
+    done = tsc("firmware", "--board", "liner", "-o", target)
     assert done.code == 0 and "pio run -d vm_arduino -e nano" in done.out
     header = target.read_text(encoding="utf-8")
-    assert header == tsc("board", "liner").out == tsc("board", "liner", "-o", "-").out
-    assert header == firmware.header([robots.load("liner")], "tsc board, from a robot profile.")
+    assert (
+        header
+        == tsc("firmware", "--board", "liner").out
+        == tsc("firmware", "--board", "liner", "-o", "-").out
+    )
+    assert header == firmware.header(
+        [robots.load("liner")], "tsc firmware --board, from a robot profile."
+    )
 
 
 def test_board_speaks_the_language_of_the_command(tsc: Tsc) -> None:
-    assert "#define tiniscript_language 0x6573\n" in tsc("board", "liner", "--lang", "es").out
-    assert "tiniscript_language" not in tsc("board", "liner", "--lang", "en").out
+    assert (
+        "#define tiniscript_language 0x6573\n"
+        in tsc("firmware", "--board", "liner", "--lang", "es").out
+    )
+    assert "tiniscript_language" not in tsc("firmware", "--board", "liner", "--lang", "en").out
 
 
 def test_board_refuses_what_it_cannot_read(tsc: Tsc) -> None:
-    assert tsc("board").code == 2
-    assert tsc("board", "nobody").code == 2
+    assert tsc("firmware", "--board").code == 2
+    assert tsc("firmware", "--board", "nobody").code == 2
 
 
 def test_the_header_of_an_esp32(tsc: Tsc) -> None:
-    said = tsc("board", "tinibotc3").out
+    said = tsc("firmware", "--board", "tinibotc3").out
     for line in (
         "#if defined(CONFIG_IDF_TARGET_ESP32C3)  // esp32c3",
         "#define tiniscript_motors_two_wire",

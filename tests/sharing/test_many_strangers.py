@@ -119,7 +119,9 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
             before = had(pid)
             with visitors(number, kind, count):
                 meanwhile = had(pid)
-                state = json.loads(process("info", "--port", port, "--json").out)["state"]
+                state = json.loads(process("doctor", "--port", port, "--json").out)["robot"][
+                    "state"
+                ]
                 assert state == "RUNNING"
             found.append((name, before, meanwhile, settled(pid, before.files + 3)))
         with visitors(places[0][2], kind, count), visitors(places[1][2], kind, count):

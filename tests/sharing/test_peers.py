@@ -172,7 +172,7 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
         monkeypatch.setattr(peers, "is_of_another", lambda port: port == number)
         for _ in range(2):
             assert directory.running() == []
-            for words in (["info"], ["upload", "-e", "SI|S"], ["stop"], ["live", "S"]):
+            for words in (["show"], ["upload", "-e", "SI|S"], ["stop"], ["live", "S"]):
                 for port in (address, address.replace("127.0.0.1", "localhost")):
                     done = inside(*words, "--port", port)
                     done.gives(3, "another user of this computer listens")
@@ -181,7 +181,7 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
         with peer:
             peer.settimeout(HANGS_S)
             assert peer.recv(1000) == b""  # nothing was sent
-        inside("info", "--port", address, "--lang", "es").gives(3, "escucha otro usuario")
+        inside("start", "--port", address, "--lang", "es").gives(3, "escucha otro usuario")
         monkeypatch.setattr(peers, "is_of_another", lambda port: False)
         assert directory.is_virtual(address)
     assert directory.running() == []
@@ -196,7 +196,7 @@ def test_the_port_of_a_robot_that_was_killed_is_asked_whose_it_is() -> None:
     listener = Command(found.port.rpartition(":")[2], code=LISTENER)
     listener.until("listens")
     process("upload", "-e", "SI|S", "--port", found.port).gives(3, "another user")
-    process("info", "--virtual").gives(3)
+    process("start", "--virtual").gives(3)
     listener.process.kill()
     assert listener.process.stdout
     assert set(listener.process.stdout.read().split()) <= {b"b''"}
@@ -228,7 +228,7 @@ def test_the_token_is_in_one_private_file() -> None:
     with driven() as (virtual, port, command, receipt):
         registration = registration_of(port)
         secrets = [each.encode() for each in (registration.token, registration.answer)]
-        assert process("info", "--port", port).code == 0
+        assert process("doctor", "--port", port).code == 0
         seen = [receipt]
         for pid in (virtual.pid, command.pid):
             seen += [Path(f"/proc/{pid}/{name}").read_bytes() for name in ("cmdline", "environ")]

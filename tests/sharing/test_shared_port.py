@@ -59,15 +59,17 @@ def test_commands_share_a_session_that_is_begun_once(
     assert done.out.splitlines()[1:] == ["SHOW 1.5", "Done.", "Saved. It starts with the button."]
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     assert on(pty_robot, "live", "X = 1 / 0").code == 1
-    assert "3 round trips" in on(pty_robot, "ping", "--count", "3").out
+    assert "3 round trips" in on(pty_robot, "doctor", "--count", "3").out
     ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
     process("compile", "-e", LONG, "-o", ours)
     assert on(pty_robot, "upload", ours, "--no-run", "--no-save").code == 0
-    assert on(pty_robot, "fetch", "-o", theirs).code == 0
+    assert on(pty_robot, "show", "-o", theirs).code == 0
     assert theirs.read_bytes() == ours.read_bytes()
-    assert json.loads(on(pty_robot, "undo", "--json").out)["saved"] == "STORED"  # it was not saved
-    assert on(pty_robot, "name", "Ñandú").code == 0
-    assert json.loads(on(pty_robot, "info", "--json").out)["name"] == "Ñandú"
+    assert (
+        json.loads(on(pty_robot, "start", "--previous", "--json").out)["saved"] == "STORED"
+    )  # it was not saved
+    assert on(pty_robot, "set", "name", "Ñandú").code == 0
+    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["name"] == "Ñandú"
     assert on(pty_robot, "start").out.endswith("Done.\n")
     assert hellos(pty_robot) == 1
     link.signal(signal.SIGINT)
@@ -82,12 +84,14 @@ def test_all_names_of_a_port_lead_to_its_server(
     assert process("stop", "--port", name).code == 0
     assert "SHOW 2" in process("live", "SHOW(2)", "--port", name).out
     assert hellos(pty_robot) == 1
-    rows = json.loads(process("ports", "--json").out)
-    assert {row["port"]: row["held_by"] for row in rows}[pty_robot.port] == "link"
-    done = process("ports", "--ask", "--port", name)
-    assert "robot" in done.out and "held by tsc link" in done.out
-    process("info", "--port", name, "--baud", "115200").gives(3, "held by tsc link, at 9600 baud")
-    process("link", "--port", name).gives(3, "shared already, by tsc link")
+    rows = json.loads(process("doctor", "--ports", "--json").out)
+    assert {row["port"]: row["held_by"] for row in rows}[pty_robot.port] == "monitor --hold"
+    done = process("doctor", "--ports", "--ask", "--port", name)
+    assert "robot" in done.out and "held by tsc monitor --hold" in done.out
+    process("show", "--port", name, "--baud", "115200").gives(
+        3, "held by tsc monitor --hold, at 9600 baud"
+    )
+    process("monitor", "--hold", "--port", name).gives(3, "shared already, by tsc monitor --hold")
 
 
 BRIDGE = """
@@ -284,7 +288,7 @@ def test_a_server_that_leaves_stops_the_run_of_its_client(
     link.signal(signal.SIGINT)
     assert link.ended().code == 0
     assert not pty_robot.moves
-    command.ended().gives(3, "has ended (tsc link)")
+    command.ended().gives(3, "has ended (tsc monitor --hold)")
     assert registry.found(pty_robot.port) is None
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     assert hellos(pty_robot) == 2
@@ -293,12 +297,12 @@ def test_a_server_that_leaves_stops_the_run_of_its_client(
 def test_a_server_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Command) -> None:
     command = uploading(pty_robot)
     link.process.kill()
-    command.ended().gives(3, "has ended (tsc link)")
+    command.ended().gives(3, "has ended (tsc monitor --hold)")
     pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
     assert registry.found(pty_robot.port) is not None
-    assert pty_robot.port not in [row["port"] for row in json.loads(process("ports", "--json").out)
-                             if row["held_by"]]  # fmt: skip
-    on(pty_robot, "info").gives(0, "", out="LINK_LOST")
+    rows = json.loads(process("doctor", "--ports", "--json").out)
+    assert pty_robot.port not in [row["port"] for row in rows if row["held_by"]]
+    on(pty_robot, "doctor").gives(0, "", out="LINK_LOST")
     assert registry.found(pty_robot.port) is None
 
 
@@ -346,7 +350,7 @@ def test_of_three_who_want_a_place_one_gets_it(
     pty_robot: PtyRobot, place: str, request: pytest.FixtureRequest
 ) -> None:
     wanted = pty_robot.port if place == "port" else request.getfixturevalue("address")
-    commands = [Command("link", "--port", wanted) for _ in range(3)]
+    commands = [Command("monitor", "--hold", "--port", wanted) for _ in range(3)]
     pty_robot.until(
         lambda: sum(each.process.poll() is not None for each in commands) == 2, "one stays"
     )
@@ -366,7 +370,7 @@ def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
     def begun(*words: str) -> Command:
         return Command(*words, "--port", pty_robot.port, code=PATIENT)
 
-    asked = [["info"], ["info"], ["info"], ["upload", "-e", "SB|S"]]
+    asked = [["doctor", "--identify"]] * 3 + [["upload", "-e", "SB|S"]]
     commands = [begun(*words) for words in asked]
     for words, command in zip(asked, commands, strict=True):
         done = command.ended()
@@ -383,7 +387,7 @@ def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
     command = Command("upload", "-e", FOREVER, "--port", pty_robot.port, code=newer)
     command.until("running")
     for language, words in (("en", "another version, 9.1"), ("es", "otra versión, 9.1")):
-        on(pty_robot, "info", "--lang", language).gives(3, words)
+        on(pty_robot, "show", "--lang", language).gives(3, words)
     assert on(pty_robot, "stop").code == 0
     assert command.ended().code == 3
 
@@ -391,7 +395,7 @@ def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
 def test_a_run_that_begins_after_its_client_has_left_ends_and_nobody_else_is_refused() -> None:
     """The frame that starts it was under way."""
     with Shared() as (robot, _), ExitStack() as stack:
-        other = joined(robot.port, "info")
+        other = joined(robot.port, "show --port")
         assert other is not None
         stack.callback(other.close)
         kit = robots.load("tinibot").kit

@@ -122,7 +122,7 @@ def test_nothing_is_shared_where_nothing_can_be_written(
     blocked.write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
     assert tsc("upload", "-e", "SI|F(0.1, 30)", "--port", pty_robot.port).code == 0
-    tsc("link", "--port", pty_robot.port).gives(3, "cannot be shared")
+    tsc("monitor", "--hold", "--port", pty_robot.port).gives(3, "cannot be shared")
 
 
 def test_a_file_that_says_nothing_is_no_server(pty_robot: PtyRobot) -> None:
@@ -139,8 +139,8 @@ def test_a_file_that_says_nothing_is_no_server(pty_robot: PtyRobot) -> None:
 def test_somebody_else_at_the_number_of_a_crashed_server_is_no_server(pty_robot: PtyRobot) -> None:
     with socket.create_server((protocol.HOST, 0)) as stranger:
         number = stranger.getsockname()[1]
-        registry.write(Registration(pty_robot.port, number, "a", "b", "link", 9600, 1))
-        command = Command("info", "--port", pty_robot.port)
+        registry.write(Registration(pty_robot.port, number, "a", "b", "monitor", 9600, 1))
+        command = Command("doctor", "--identify", "--port", pty_robot.port)
         peer, _ = stranger.accept()
         with peer:
             peer.recv(1000)

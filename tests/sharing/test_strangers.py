@@ -98,7 +98,7 @@ def test_no_bytes_of_a_stranger_end_a_run_or_its_server(pty_robot: PtyRobot, lin
     say_all(pty_robot.port, 14, 1500)
     assert pty_robot.moves
     assert not [line for line in pty_robot.did if "FAULT" in line or "STOP" in line]
-    assert json.loads(on(pty_robot, "info", "--json").out)["state"] == "RUNNING"
+    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["state"] == "RUNNING"
     assert on(pty_robot, "stop").code == 0
     assert command.ended().code == 3
     link.signal(signal.SIGINT)

@@ -71,7 +71,7 @@ def test_a_new_board_becomes_a_robot(
         if board == "uno":
             assert flashed(uno.pty, board, tmp_path / "firmware.hex", "0.25") == "flash_cancelled"
         assert flashed(uno.pty, board, tmp_path / "firmware.hex") == "done"
-        pong = process("ping", "--port", uno.pty)
+        pong = process("doctor", "--identify", "--port", uno.pty)
         assert pong.code == 0, pong.err
         assert pong.out.startswith(f"tinibot on {uno.pty}")
 
@@ -86,7 +86,7 @@ def test_a_board_with_a_sketch_and_no_bootloader_stays_as_it_is(
     with Uno(elf, tells_sleep=False) as uno:
         uno.go()
         assert flashed(uno.pty, "uno", hex_file(tmp_path, b"x" * 500)) == "flash_nobody"
-        assert process("ping", "--port", uno.pty).code == 0
+        assert process("doctor", "--identify", "--port", uno.pty).code == 0
 
 
 # -- onto boards that a test plays

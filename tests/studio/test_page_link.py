@@ -219,12 +219,12 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     page.click("#trim_set")
     said(page, "The robot keeps it.")
     pace = page.locator("#trim_pace")
-    assert pace.inner_text() == "Its pace is that of its kit: tsc trim measures it."
+    assert pace.inner_text() == "Its pace is that of its kit: tsc set trim measures it."
     page.click("#link_leave")
     said(page, "Disconnected.")
     time.sleep(0.3)
     measured = ("--speed-40", "20", "--speed-80", "45", "--turn-40", "100", "--turn-80", "212.5")
-    assert pty_robots.on(robot, "trim", *measured).code == 0
+    assert pty_robots.on(robot, "set", "trim", *measured).code == 0
     time.sleep(0.3)
     page.click("#link_connect")
     said(page, "Connected: Ñandú.")

@@ -170,4 +170,4 @@ class Firmware(Nobody):
         return b"\0" + encoded(Frame(frame.number, frame.seq, 7, payload, is_reply=True))
 
 
-QUESTIONS = {BY_NAME[name].number for name in ("HELLO", "STATUS", "PING")}
+QUESTIONS = {BY_NAME[name].number for name in ("HELLO", "STATUS", "PING", "TRIM")}

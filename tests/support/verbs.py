@@ -1,18 +1,25 @@
-"""The verbs of `tsc` and their options, as the code has them: so that no test forgets one."""
+"""The commands of `tsc` and their options, as the code has them: so that no test forgets one."""
 
 from __future__ import annotations
 
 from tiniscript.cli import options
-from tiniscript.cli.texts.verbs import VERBS
+from tiniscript.cli.texts.options import of_verb
+from tiniscript.cli.texts.verbs import COMMANDS, typed
 
 
 def parsers() -> dict[str, options.Options]:
-    """Return the options of every verb."""
-    return {verb: options.Options(verb, "en") for verb in VERBS}
+    """Return the options of every command."""
+    return {command: options.Options(command, "en") for command in COMMANDS}
+
+
+def words_of(command: str) -> list[str]:
+    """Return what is typed for a command; one that a value chooses has that still to come."""
+    flags = {flag for each in of_verb(command) if each.kind for flag in each.flags.split()}
+    return [word for word in typed(command).split() if word not in flags]
 
 
 def values_of(parser: options.Options) -> dict[str, str]:
-    """Return the options of a verb that take a value: how each is called, by its name there."""
+    """Return the options of a command that take a value: how each is called, by its name there."""
     return {
         each.dest: (each.option_strings or [""])[0]
         for each in parser._actions

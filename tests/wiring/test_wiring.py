@@ -180,7 +180,7 @@ def test_every_pin_is_in_the_table_and_in_the_drawing_and_every_wire_has_a_row(
                 assert (end.rail, f"{part.title}: {end.name}") in {(r[0], r[2]) for r in rails}
     assert html_of(plan).count('<td data-head="') == sum(len(row) for row in (*wires, *rails))
     (checks,) = (block for block in page if block.kind == "checks")
-    assert "tsc trim" in checks.rows[-1][0], "it mends a wheel that turns the wrong way"
+    assert "tsc set trim" in checks.rows[-1][0], "it mends a wheel that turns the wrong way"
 
 
 @each_robot
@@ -217,8 +217,8 @@ def test_what_a_robot_does_not_have_is_not_said() -> None:
     assert "jumpers at ENA" not in said["liner"]
     assert "S+" not in said["tinibot"]
     assert "S+" in said["grabber"]
-    assert "tsc module --port P --baud 57600" in said["grabber"]
-    assert "tsc module" not in said["tinibot"]
+    assert "tsc doctor --module --port P --baud 57600" in said["grabber"]
+    assert "tsc doctor --module" not in said["tinibot"]
     assert "STATE tells" in said["tinibot"]
     assert "STATE stays free" in said["liner"]
     assert "resistors of 10 kΩ at STBY" in said["liner"]
@@ -371,12 +371,12 @@ def test_a_profile_full_of_devices_is_drawn() -> None:
 
 
 def test_the_command_lists_the_wires(tsc: Tsc) -> None:
-    done = tsc("wiring", "--robot", "liner", "--lang", "es")
+    done = tsc("firmware", "--wiring", "--robot", "liner", "--lang", "es")
     assert (done.code, done.err) == (0, "")
     rows = done.out.splitlines()
     assert " ".join(rows[0].split()) == "cable pin de la placa pieza su terminal en el camino"
     assert " ".join(rows[4].split()) == "4 violeta 4 TB6612 STBY 10 kΩ del terminal a GND"
-    assert rows[-1] == "Como página con un dibujo:  tsc wiring -o conexiones.html"
+    assert rows[-1] == "Como página con un dibujo:  tsc firmware --wiring -o conexiones.html"
     (ground,) = [row for row in rows if row.startswith("GND ")]
     for end in ("placa: GND", "TB6612: GND", "botón de inicio: pata 2", "HC-05: GND"):
         assert end in ground
@@ -385,10 +385,10 @@ def test_the_command_lists_the_wires(tsc: Tsc) -> None:
 def test_on_a_narrow_terminal_the_last_column_is_broken(
     tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole = tsc("wiring").out
+    whole = tsc("firmware", "--wiring").out
     monkeypatch.setattr("sys.stdout.isatty", lambda: True)
     monkeypatch.setattr(wiring, "get_terminal_size", lambda: os.terminal_size((80, 24)))
-    narrow = tsc("wiring").out
+    narrow = tsc("firmware", "--wiring").out
     assert max(len(row) for row in whole.splitlines()) > 80
     assert max(len(row) for row in narrow.splitlines()) < 80
     assert sorted(narrow.split()) == sorted(whole.split())
@@ -396,11 +396,11 @@ def test_on_a_narrow_terminal_the_last_column_is_broken(
 
 def test_the_command_writes_a_page(tsc: Tsc, tmp_path: Path) -> None:
     page = tmp_path / "page.html"
-    done = tsc("wiring", "-o", page)
+    done = tsc("firmware", "--wiring", "-o", page)
     assert (done.code, done.err) == (0, "")
     assert done.out == f"{page}: how TiniBot is wired. Open it in a browser, or print it.\n"
     assert page.read_text(encoding="utf-8") == html_of(plan_of(robots.load("tinibot"), "en"))
-    assert tsc("wiring", "-o", "-").out == page.read_text(encoding="utf-8")
+    assert tsc("firmware", "--wiring", "-o", "-").out == page.read_text(encoding="utf-8")
 
 
 def test_what_cannot_be_written_is_said(tsc: Tsc, tmp_path: Path) -> None:
@@ -409,7 +409,7 @@ def test_what_cannot_be_written_is_said(tsc: Tsc, tmp_path: Path) -> None:
         (("--robot", "tinybot"), "Did you mean tinibot?"),
         (("--robot", tmp_path / "missing.toml"), "There is no file"),
     ):
-        done = tsc("wiring", *arguments)
+        done = tsc("firmware", "--wiring", *arguments)
         assert done.code == 2
         assert sentence in done.err
 

@@ -3,8 +3,9 @@
     python -m tools.bench.upload [runs]
 
 The paper's obstacle program, from the start of the process to the first motor command in the robot:
-where the command opens the port itself, and where `tsc link` holds it; beside a process that does
-nothing, in turn. The robot is the whole firmware on this computer, behind a pseudo-terminal.
+where the command opens the port itself, and where `tsc monitor --hold` holds it; beside a process
+that does nothing, in turn. The robot is the whole firmware on this computer, behind a
+pseudo-terminal.
 
 Then thirty robots, against one: until the last of them moves, and until the last has stopped.
 """
@@ -124,8 +125,8 @@ def main() -> int:
         PtyRobot(kit, bytes_per_ms=BYTES_PER_MS) as pty_robot,
     ):
         bench = Bench(pty_robot, folder)
-        for name in ("tsc upload, opens the port", "tsc upload, tsc link holds it"):
-            link = bench.start("link") if "link" in name else None
+        for name in ("tsc upload, opens the port", "tsc upload, tsc monitor --hold holds it"):
+            link = bench.start("monitor", "--hold") if "link" in name else None
             if link is not None:
                 assert link.stdout
                 link.stdout.readline()
@@ -134,7 +135,7 @@ def main() -> int:
             if link is not None:
                 link.terminate()
                 link.wait()
-    rows.append((f"  must {MUST}x and the wire, with tsc link", "", "", ""))
+    rows.append((f"  must {MUST}x and the wire, with tsc monitor --hold", "", "", ""))
     rows.append(("python -c pass", f"{nothing_ms:.0f} ms", "1x", ""))
     head = ("to the first motor command", "median", "against pass", "")
     table(f"A new process, obstacle program, {runs} runs", head, rows)

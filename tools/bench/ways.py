@@ -70,7 +70,7 @@ class Robot(Talk):
         return ahead, aside, pose.heading - before.heading
 
     def calibrate(self, seed: int) -> None:
-        """Do what `tsc trim` does: make it straight, and measure at two powers."""
+        """Do what `tsc set trim` does: make it straight, and measure at two powers."""
         weaker = round(100 * (1 - SLOW / FAST))
         trim = Trim(balance=weaker if seed % 2 else -weaker)
         self.until(self.session.trim(trim.data()))

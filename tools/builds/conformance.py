@@ -1,9 +1,9 @@
-"""Makes the cases of `tsc conform` in a few seconds: git does not keep them, a release brings them.
+"""Makes the cases of `tsc doctor --conform` in seconds: git keeps none, a release brings them.
 
     python -m tools.builds.conformance [FOLDER]
 
 writes `machine.json` and `link.json` into the clone's package, or into the folder of another
-installation, which `tsc conform` names where it has none. Needs what `tsc` needs, and no more.
+installation, which `tsc doctor --conform` names where it has none. Needs what `tsc` needs.
 """
 
 from __future__ import annotations

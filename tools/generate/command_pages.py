@@ -1,4 +1,4 @@
-"""The pages of `docs/` that list the verbs of `tsc` and their options.
+"""The pages of `docs/` that list the commands of `tsc` and their options.
 
 Knows Markdown. What is said of each, the tables in `cli/texts/` know.
 """
@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from tiniscript.base.languages import text, told_in
 from tiniscript.cli import help
 from tiniscript.cli.texts.options import Option, shown_of
-from tiniscript.cli.texts.verbs import NOTES, VERBS, of_verb, said
+from tiniscript.cli.texts.verbs import NOTES, VERBS, of_verb, said, steps_of, typed
 from tools.site.documents import links
 
 Table = Callable[[Sequence[str], Sequence[Sequence[object]]], str]
@@ -29,7 +29,8 @@ def page(language: str, command: str, table: Table) -> str:
         *_overview(language, table),
     ]
     for verb in VERBS:
-        parts += _verb(verb, language, table)
+        for command in (verb, *steps_of(verb)):
+            parts += _command(command, language, table)
     return "\n\n".join(part.rstrip("\n") for part in parts if part) + "\n"
 
 
@@ -47,18 +48,18 @@ def _overview(language: str, table: Table) -> Iterator[str]:
     yield _options([option for option in shown_of("tsc") if option.verbs == "*"], language, table)
 
 
-def _verb(verb: str, language: str, table: Table) -> Iterator[str]:
-    yield f"## `tsc {verb}`"
-    yield "\\\n".join(f"`{way}`" for way in help.usage(verb, language))
-    yield of_verb(verb, "says", language)
-    own = [option for option in shown_of(verb) if option.verbs != "*"]
+def _command(command: str, language: str, table: Table) -> Iterator[str]:
+    yield f"{'##' if command in VERBS else '###'} `tsc {typed(command)}`"
+    yield "\\\n".join(f"`{way}`" for way in help.usage(command, language))
+    yield of_verb(command, "says", language)
+    own = [option for option in shown_of(command) if option.verbs != "*"]
     is_apart = any(option.name == "virtual" for option in own)
     yield _options([each for each in own if not (is_apart and each.virtual)], language, table)
     virtual = [each for each in own if is_apart and each.virtual]
     if virtual:
         yield said("virtual", language)
         yield _options(virtual, language, table)
-    yield of_verb(verb, "ends", language).replace("\n", "\\\n")
+    yield of_verb(command, "ends", language).replace("\n", "\\\n")
 
 
 def _options(options: list[Option], language: str, table: Table) -> str:

@@ -3,8 +3,8 @@
     python -m tools.release FOLDER
 
 takes the commit that is checked out into two clean folders, makes firmware, studio, the cases of
-tsc conform, wheel, source package, library, site and USB stick in both, and says what is not the
-same byte for byte; looks at the packages as a registry does. FOLDER then has the files and
+tsc doctor --conform, wheel, source package, library, site and USB stick in both, and says what is
+not the same byte for byte; looks at the packages as a registry does. FOLDER then has the files and
 SHA256SUMS. Nothing is uploaded. It takes twenty minutes. That what is made installs and works is
 tested with each commit.
 

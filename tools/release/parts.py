@@ -147,8 +147,8 @@ class Part(NamedTuple):
     needs: tuple[str, ...] = ()  # parts that are made before
 
 
-# In the order in which they are made: a wheel brings firmware, page and the cases of tsc conform, a
-# stick brings the wheel.
+# In the order in which they are made: a wheel brings firmware, page and the cases of
+# tsc doctor --conform, a stick brings the wheel.
 PARTS = {
     "firmware": Part(firmware),
     "studio": Part(studio),

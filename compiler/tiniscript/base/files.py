@@ -218,7 +218,7 @@ def remove_abandoned(folder: Path, names: list[str], kept: tuple[str, ...] = (".
 def is_pipe(name: str) -> bool:
     """Whether a name is that of a pipe in a folder, whose reader may wait for ever.
 
-    What a shell has opened, `<(tsc fetch)` and `/dev/stdin`, is in /dev, and has a writer.
+    What a shell has opened, `<(tsc show --port P)` and `/dev/stdin`, is in /dev, and has a writer.
     """
     try:
         return not name.startswith("/dev/") and stat.S_ISFIFO(os.stat(name).st_mode)  # noqa: PTH116

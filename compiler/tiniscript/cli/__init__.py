@@ -18,7 +18,7 @@ from tiniscript.base.languages import WrongTexts
 from tiniscript.cli import streams
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import language_of, say, say_aside, text
-from tiniscript.cli.texts.options import LANGUAGE
+from tiniscript.cli.texts.options import LANGUAGE, chosen
 from tiniscript.cli.texts.verbs import VERBS
 
 CLOSED = 141  # 128 and the number of SIGPIPE
@@ -142,11 +142,12 @@ def _verb(arguments: list[str], language: str) -> int:
         if name not in VERBS:
             from tiniscript.cli.verbless import is_help, refuse
 
-            name = "help" if is_help(name) else refuse(name)
-        options = Options(name, language).read(arguments[1:])
+            name = "help" if is_help(name) else refuse(name, arguments[1:], language)
+        command, words = chosen(name, arguments[1:])
+        options = Options(command, language).read(words)
         if options is None:
             return 0
-        return int(import_module(f"tiniscript.cli.commands.{name}").run(options, language))
+        return int(import_module(f"tiniscript.cli.commands.{command}").run(options, language))
     except CommandError as failure:
         print(failure.sentence(language), file=sys.stderr)
         return failure.exit_code

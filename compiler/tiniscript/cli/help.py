@@ -1,6 +1,6 @@
 """The text of `tsc --help` and `tsc help`, made from the tables of verbs and options.
 
-Lays the text out, and finds a verb by what it does; `terminal/pager.py` shows it.
+Lays the text out; `terminal/pager.py` shows it.
 """
 
 from __future__ import annotations
@@ -13,10 +13,20 @@ from textwrap import wrap
 
 from tiniscript.cli.terminal import pager
 from tiniscript.cli.texts.options import PROGRAM, Option, shown_of
-from tiniscript.cli.texts.verbs import FIRST, NOTES, VERBS, of_verb, said
+from tiniscript.cli.texts.verbs import (
+    FIRST,
+    NOTES,
+    STEPS,
+    VERBS,
+    of_verb,
+    said,
+    steps_of,
+    typed,
+)
 
 WIDTH = 80  # columns, where the terminal has as many
 NARROWEST = 40
+SET = "set"
 
 Row = tuple[str, str]  # the command, and its description
 
@@ -25,22 +35,29 @@ def show(page: Callable[[str, int], str], language: str) -> None:
     pager.show(page(language, _width()), language)
 
 
-def listed(verbs: Iterable[str], language: str, width: int = WIDTH) -> str:
-    """Return what verbs do, as a list."""
-    rows = [_row(verb, language) for verb in verbs]
+def listed(commands: Iterable[str], language: str, width: int = WIDTH) -> str:
+    """Return what commands do, as a list."""
+    rows = [_row(command, language) for command in commands]
     return "\n".join(_columns(rows, _left(rows, width * 4 // 10), width)) + "\n"
 
 
-def of(verb: str, language: str, width: int = WIDTH) -> str:
-    """Return the help of a verb."""
-    table = shown_of(verb)
+def of(command: str, language: str, width: int = WIDTH) -> str:
+    """Return the help of a command; that of a verb names its steps, which have their own."""
+    table = shown_of(command)
+    steps = steps_of(command)
     parts = [
-        _paragraphs("\n".join(usage(verb, language)), width),
-        _paragraphs(of_verb(verb, "says", language), width),
+        _paragraphs("\n".join(usage(command, language)), width),
+        _paragraphs(of_verb(command, "says", language), width),
         "\n".join(_options(table, language, width)),
-        _paragraphs(of_verb(verb, "ends", language), width),
+        "\n".join(_steps(steps, language, width)) if steps else "",
+        _paragraphs(of_verb(command, "ends", language), width),
     ]
     return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def _steps(steps: list[str], language: str, width: int) -> Iterator[str]:
+    yield _paragraphs(said("steps", language), width)
+    yield listed(steps, language, width).rstrip("\n")
 
 
 def overview(language: str, width: int = WIDTH) -> str:
@@ -71,38 +88,50 @@ def groups(language: str) -> list[tuple[str, list[Row]]]:
     """Return the headings of all verbs with the commands below each, and what these do."""
     found: dict[str, list[Row]] = {}
     for verb, group in VERBS.items():
-        if group not in VERBS:
-            beside = [name for name, other in VERBS.items() if other == verb]
-            does = "; ".join(_row(name, language)[1] for name in (verb, *beside))
-            typed = ", ".join([_row(verb, language)[0], *beside])
-            found.setdefault(said(f"group/{group}", language), []).append((typed, does))
+        own = [] if verb == SET else [verb]  # which does nothing without a word behind it
+        rows = [_row(command, language) for command in (*own, *steps_of(verb))]
+        found.setdefault(said(f"group/{group}", language), []).extend(rows)
     return list(found.items())
 
 
-def _row(verb: str, language: str) -> Row:
-    summary = of_verb(verb, "summary", language).replace("`", "")
-    return f"tsc {of_verb(verb, 'example', language)}", summary
+def _row(command: str, language: str) -> Row:
+    summary = of_verb(command, "summary", language).replace("`", "")
+    return f"tsc {of_verb(command, 'example', language)}", summary
 
 
-def usage(verb: str, language: str) -> list[str]:
-    """Return how a verb is used: a line for each way."""
-    if ways := of_verb(verb, "usage", language):
-        return [f"tsc {verb} {way}" for way in ways.split("\n")]
-    words = [f"tsc {verb}"]
-    for option in shown_of(verb):
+def usage(command: str, language: str) -> list[str]:
+    """Return how a command is used: a line for each way."""
+    if ways := of_verb(command, "usage", language):
+        head = STEPS[command].head if command in STEPS else command
+        return [f"tsc {head} {way}" for way in ways.split("\n")]
+    words = [f"tsc {begins(command, language)}"]
+    for option in shown_of(command):
         if option.is_argument:
-            is_there = option.is_needed or option.kind == PROGRAM  # in whose place -e may stand
             label = option.shown_value(language) + (" ..." if option.repeats else "")
+            is_there = option.kind == PROGRAM  # in whose place -e may stand
             words.append(label if is_there else f"[{label}]")
     return [" ".join([*words, said("usage", language)])]
 
 
+def begins(command: str, language: str) -> str:
+    """Return how a command begins: `doctor --ports`; `firmware --board NAME|FILE`."""
+    words = typed(command)
+    last = words.split()[-1]
+    options = [option for option in shown_of(command) if option.flags == last]
+    return " ".join([words, *(_value(option, language) for option in options)]).rstrip()
+
+
 def signature(option: Option, language: str) -> str:
     """Return an option as help shows it: `-o FILE`."""
-    value = option.shown_value(language)
+    value = _value(option, language)
     if option.is_argument:
         return value
     return f"{', '.join(option.flags.split())} {value}".rstrip()
+
+
+def _value(option: Option, language: str) -> str:
+    value = option.shown_value(language)
+    return f"[{value}]" if option.may_be_alone else value
 
 
 def _options(table: Iterable[Option], language: str, width: int) -> Iterator[str]:
@@ -129,18 +158,18 @@ def _options(table: Iterable[Option], language: str, width: int) -> Iterator[str
 
 def _left(rows: Iterable[Row], most: int) -> int:
     """Return the width of the left column, at most `most`."""
-    return max((len(typed) for typed, _ in rows if len(typed) <= most), default=most)
+    return max((len(row[0]) for row in rows if len(row[0]) <= most), default=most)
 
 
 def _columns(rows: Iterable[Row], left: int, width: int) -> Iterator[str]:
     """Yield two columns; what is too long for the first one has a line of its own."""
     indent = " " * (left + 4)
-    for typed, does in rows:
+    for command, does in rows:
         lines = _wrapped(does, width - len(indent))
-        if len(typed) > left:
-            yield f"  {typed}"
+        if len(command) > left:
+            yield f"  {command}"
         else:
-            yield f"  {typed:{left}}  {lines.pop(0)}"
+            yield f"  {command:{left}}  {lines.pop(0)}"
         for line in lines:
             yield indent + line
 

@@ -1,4 +1,4 @@
-"""The options of a verb: reads them with argparse, and reports mistakes."""
+"""The options of a command: reads them with argparse, and reports mistakes."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from tiniscript.cli import paths
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts import text
-from tiniscript.cli.texts.options import Option, of_verb
-from tiniscript.cli.texts.verbs import said
+from tiniscript.cli.texts.options import Option, choosers_of, of_verb
+from tiniscript.cli.texts.verbs import STEPS, said, steps_of, typed
 from tiniscript.robots.profile import Robot
 
 # The messages of argparse, and what is said instead.
@@ -33,26 +33,29 @@ OTHER_RUN = {"run": "upload", "upload": "run"}  # a program without a robot, and
 
 
 class Options(ArgumentParser):
-    """The options of a verb, as the table of options has them."""
+    """The options of a command, as the table of options has them."""
 
-    def __init__(self, verb: str, language: str) -> None:
+    def __init__(self, command: str, language: str) -> None:
         # argparse always needs a formatter, and with a width it starts faster
         plain = partial(HelpFormatter, width=80)
-        super().__init__(f"tsc {verb}", add_help=False, allow_abbrev=False, formatter_class=plain)
-        self.verb = verb
+        self.command, self.verb = command, typed(command)
+        super().__init__(
+            f"tsc {self.verb}", add_help=False, allow_abbrev=False, formatter_class=plain
+        )
         self.language = language
-        self.table = of_verb(verb)
+        self.table = of_verb(command)
         for option in self.table:
             self._take(option)
 
     def _take(self, option: Option) -> None:
         if option.is_argument:
-            count = "*" if option.repeats else None if option.is_needed else "?"
-            self.add_argument(option.name, nargs=count)
+            self.add_argument(option.name, nargs="*" if option.repeats else "?")
         elif option.kind is None:
             self.add_argument(*option.flags.split(), dest=option.name, action="store_true")
         elif option.repeats:
             self.add_argument(option.flags, dest=option.name, action="append", default=[])
+        elif option.may_be_alone:
+            self.add_argument(option.flags, dest=option.name, nargs="?", const="")
         else:
             self.add_argument(option.flags, dest=option.name)
 
@@ -62,7 +65,7 @@ class Options(ArgumentParser):
         if "-h" in own or "--help" in own:
             from tiniscript.cli.help import of, show
 
-            show(partial(of, self.verb), self.language)
+            show(partial(of, self.command), self.language)
             return None
         options = self.parse_args(arguments, Namespace(verb=self.verb, language=self.language))
         for option in self.table:
@@ -76,6 +79,14 @@ class Options(ArgumentParser):
         paths.check(options, self.language)
         return options
 
+    def fits(self, words: list[str]) -> bool:
+        """Whether these words may stand behind the command, as far as the table of options says."""
+        try:
+            self.parse_args(words)
+        except CommandError:
+            return False
+        return True
+
     def _refuse_other(self, option: Option, found: str | None) -> None:
         """Refuse a value that is not among the option's choices."""
         known = option.kind.choices if option.kind is not None else ()
@@ -86,21 +97,41 @@ class Options(ArgumentParser):
     def error(self, message: str) -> NoReturn:
         unknown = message.partition("unrecognized arguments: ")[2].partition(" ")[0]
         other = OTHER_RUN.get(self.verb)
-        if other and any(unknown in each.flags.split() for each in of_verb(other)):
+        if other and _has(other, unknown):
             raise CommandError(2, "option_of_other", option=unknown, verb=self.verb, other=other)
+        self._refuse_of_step(unknown.partition("=")[0])
         near = self._near(unknown)
         for key, pattern in _MESSAGES.items():
             if found := re.fullmatch(pattern, message):
                 message = said(f"wrong/{key}", self.language).format(*found.groups())
         raise CommandError(2, "bad_option", detail=message, verb=self.verb, near=near)
 
+    def _refuse_of_step(self, unknown: str) -> None:
+        """Say with which step of the verb an option goes that is unknown here."""
+        verb = self.verb.split()[0]
+        others = [name for name in (verb, *steps_of(verb)) if _has(name, unknown)]
+        if not others or not unknown.startswith("-"):
+            return
+        other = typed(others[0])
+        commands = (self.command, *others)
+        if all(name in STEPS and STEPS[name].choosers for name in commands) and all(
+            unknown in STEPS[name].choosers for name in others
+        ):
+            raise CommandError(2, "one_step", first=self.verb, second=other)
+        raise CommandError(2, "option_of_step", option=unknown, verb=self.verb, other=other)
+
     def _near(self, found: str) -> str:
         """Return what somebody may have meant with a word that is unknown here, or nothing."""
-        flags = [flag for option in self.table if not option.is_argument
+        table = [*self.table, *choosers_of(self.command)]
+        flags = [flag for option in table if not option.is_argument
                  for flag in option.flags.split()]  # fmt: skip
         if "--robot" in flags and found.lower() in robots.names():
             return f"--robot {found.lower()}"
         return _near(found, flags) if found.startswith("--") else ""
+
+
+def _has(command: str, flag: str) -> bool:
+    return any(flag in option.flags.split() for option in of_verb(command))
 
 
 def _near(found: str, known: Sequence[str]) -> str:
@@ -112,7 +143,8 @@ def _near(found: str, known: Sequence[str]) -> str:
 def bad_choice(option: str, known: Sequence[str], found: str, language: str) -> CommandError:
     """Return the error for a value that is not among an option's choices."""
     allowed = f"{', '.join(known[:-1])} {text('or', language)} {known[-1]}"
-    return CommandError(2, "bad_choice", option=option, known=allowed, found=shown(found) or "''")
+    return CommandError(2, "bad_choice", option=option, known=allowed, found=shown(found) or "''",
+                        near=_near(found, known))  # fmt: skip
 
 
 def whole_number(option: str, found: str | None, default: int, low: int, high: int,

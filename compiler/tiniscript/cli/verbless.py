@@ -1,11 +1,13 @@
-"""Which verb is meant by a word that is none: `tsc uplod`, `tsc prog.ts`, `tsc help "put on"`.
+"""Which command is meant where no verb stands: `tsc uplod`, `tsc prog.ts`, `tsc help "put on"`.
 
-A question may have words of several languages: the tables of verbs and options have all of them.
+Knows what a command was called when it was a verb, too. A question may have words of several
+languages: the tables of verbs and options have all of them.
 """
 
 from __future__ import annotations
 
 import re
+import shlex
 import unicodedata
 from functools import cache
 from math import log
@@ -17,21 +19,39 @@ from tiniscript.base.source import PROGRAM_ENDS
 from tiniscript.base.spelling import nearest
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.texts.options import of_verb
-from tiniscript.cli.texts.verbs import VERBS, said
+from tiniscript.cli.texts.options import chosen, of_verb
+from tiniscript.cli.texts.verbs import COMMANDS, STEPS, VERBS, WAS, said, typed
 from tiniscript.cli.texts.verbs import of_verb as said_of
 
 
-def refuse(name: str) -> NoReturn:
-    """Raise CommandError where a word stands in place of a verb."""
+def refuse(name: str, words: list[str], language: str) -> NoReturn:
+    """Raise CommandError where a word stands in place of a verb, with `words` behind it."""
+    if name in WAS:
+        raise CommandError(2, "was_verb", was=name, now=_now(WAS[name], words, language))
     refuse_program(name)
     raise CommandError(2, "no_verb", found=name, near=meant(name))
 
 
+def _now(command: str, words: list[str], language: str) -> str:
+    """Return what is typed for a command that was a verb: with the words behind it, if they fit."""
+    from tiniscript.cli.options import Options
+
+    head = STEPS[command].head if command in STEPS else command
+    for begun in (head, typed(command)):
+        verb, *more = [*begun.split(), *words]
+        found, rest = chosen(verb, more)
+        if found == command and Options(command, language).fits(rest):
+            return shlex.join([verb, *more])
+    from tiniscript.cli.help import begins
+
+    return begins(command, language)
+
+
 def meant(name: str) -> str:
-    """Return the verb that somebody means with a word that is none, or nothing."""
-    called = (verb for verb in (*VERBS, "--version") if _plain(name) in _elsewhere(verb).split())
-    return next(called, None) or nearest(name, VERBS) or ""
+    """Return the command that somebody means with a word that is no verb, or nothing."""
+    called = (each for each in (*COMMANDS, "--version") if _plain(name) in _elsewhere(each).split())
+    near = next(called, None) or nearest(name, (*VERBS, *WAS)) or ""
+    return typed(WAS.get(near, near))
 
 
 def is_help(name: str) -> bool:
@@ -74,24 +94,24 @@ STEM = 5  # letters in which forms of a word agree: connect, connected; conecta,
 
 
 def verbs_for(said: str) -> list[str]:
-    """Return the verbs whose texts have the words of a question, best first; most have none.
+    """Return the commands whose texts have the words of a question, best first; most have none.
 
-    A word counts more where fewer verbs have it, and more in a verb's name and summary than in
-    what else is said of it.
+    A word counts more where fewer commands have it, and more in a command's name and summary than
+    in what else is said of it.
     """
-    texts = {verb: _weights(verb) for verb in VERBS}
-    scores = dict.fromkeys(VERBS, 0.0)
+    texts = {command: _weights(command) for command in COMMANDS}
+    scores = dict.fromkeys(COMMANDS, 0.0)
     for stem in _stems(said):
-        having = [verb for verb in VERBS if stem in texts[verb]]
-        for verb in having:
-            scores[verb] += texts[verb][stem] * log(1 + len(VERBS) / len(having))
+        having = [command for command in COMMANDS if stem in texts[command]]
+        for command in having:
+            scores[command] += texts[command][stem] * log(1 + len(COMMANDS) / len(having))
     best = max(scores.values())
-    found = [verb for verb in VERBS if scores[verb] and scores[verb] >= best / 2]
+    found = [command for command in COMMANDS if scores[command] and scores[command] >= best / 2]
     return sorted(found, key=lambda verb: -scores[verb])[:MOST]
 
 
 def _weights(verb: str) -> dict[str, int]:
-    """Return what each stem of a verb's texts counts."""
+    """Return what each stem of a command's texts counts."""
     options = [option for option in of_verb(verb) if option.verbs not in ("*", "tsc")]
 
     def said(what: str) -> set[str]:

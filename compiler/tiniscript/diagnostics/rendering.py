@@ -4,13 +4,13 @@ Knows how the texts of the catalogue are filled, and how a line of a program is 
 marked under it. Knows no single diagnostic. Prints nothing.
 
 Of each code the catalogue has a title, which is the diagnostic in general words; a message, which
-is one cause; what to try, which is one thing; and what `tsc explain` says: more, a program with the
-diagnostic, its first one, and the mended program, both if it is in a short text. Messages and
-things to try have gaps: `{found}` is a value itself, `{@unit}` one in the reader's language. Words
-in it that are terms are translated, all else stays: `F(time, power)` is `F(tiempo, potencia)`. A
-value that begins with @ is a term, wherever it stands. Of several texts, `/message`, `/message/2`,
-the first one whose gaps all have a value is taken, else the last one. No full stop stands right
-after a gap or a piece of program: it would look like a part of it.
+is one cause; what to try, which is one thing; and what `tsc check --explain` says: more, a program
+with the diagnostic, its first one, and the mended program, both if it is in a short text. Messages
+and things to try have gaps: `{found}` is a value itself, `{@unit}` one in the reader's language.
+Words in it that are terms are translated, all else stays: `F(time, power)` is `F(tiempo,
+potencia)`. A value that begins with @ is a term, wherever it stands. Of several texts, `/message`,
+`/message/2`, the first one whose gaps all have a value is taken, else the last one. No full stop
+stands right after a gap or a piece of program: it would look like a part of it.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ CHIPS: dict[tuple[str, str], tuple[str, str]] = {
     ("067b", "2303"): ("PL2303", "pl2303"),
 }
 ARDUINOS = ("2341", "2a03")  # vendors
-# Names that modules have from the factory, and from `tsc module`.
+# Names that modules have from the factory, and from `tsc doctor --module`.
 _MODULES = re.compile(r"HC-0[56]|HC0[56]|linvor|HMSoft|BT05|BT-05|MLT|CC41|SPP-C|JDY|Tini-", re.I)
 
 

@@ -22,7 +22,7 @@ from tiniscript.doctor.computer import (
     looks_wireless,
     without_driver,
 )
-from tiniscript.doctor.examination import Expected, examined
+from tiniscript.doctor.examination import Expected, Heard, examined
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.line import Line
 from tiniscript.doctor.robot import SharedRobot
@@ -30,6 +30,7 @@ from tiniscript.doctor.system import System
 from tiniscript.link import errors
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
+from tiniscript.link.messages import OWNED
 from tiniscript.link.outcomes import ConnectionLost
 from tiniscript.link.port_names import PSEUDO, is_address, same_for_all
 from tiniscript.link.sharing.shared_connection import OtherVersion
@@ -99,9 +100,10 @@ class Diagnosis(NamedTuple):
 def diagnosed(doors: Doors, question: Question) -> Diagnosis:
     doors.tell("computer")
     found = looked(doors.system)
-    port = question.port or question.last or _only(found)
+    port = question.port or question.last or _only(found, question.virtual)
     if port is None:
         return Diagnosis(None, _without_port(found, question.virtual), found, False)
+    question = question._replace(expected=question.expected._replace(port=port))
     client = None
     try:
         client = doors.join(port)
@@ -131,26 +133,35 @@ def _opened(
         return Diagnosis(port, (_unopened(failure, found, port, doors.system),), found, False)
     is_radio = is_radio and not port.startswith(PSEUDO)
     asked = Line(question.baud, is_radio, question.nonce)
+    expected, heard = question.expected, list[Heard]()
+
+    def hear(each: Heard) -> None:
+        heard.append(each)
+        expected.hear(each)
+
     try:
-        findings = line.looked(wire, asked, question.expected, doors.tell)
+        findings = line.looked(wire, asked, expected._replace(hear=hear), doors.tell)
     except OSError:
         cause = "other_host" if is_address(port) else "port_gone"
         findings = [Finding(cause, not is_address(port))]
     finally:
         wire.close()
-    if question.watch_ms and not any(finding.is_wrong for finding in findings):
+    # a key is shown by the connection alone, and a robot with an owner tells more then
+    has_key = any(each.hello.features & OWNED and expected.has_key(each.hello.id) for each in heard)
+    if (question.watch_ms or has_key) and not any(finding.is_wrong for finding in findings):
         with doors.share(port) as shared:
             findings = list(_shared(shared, doors, question))
     return Diagnosis(port, tuple(findings), found, True)
 
 
-def _only(found: Computer) -> str | None:
-    """Return the only port that may be a robot's: of USB or Bluetooth."""
+def _only(found: Computer, virtual: tuple[str, ...]) -> str | None:
+    """Return the only port that may be a robot's: of USB or Bluetooth, else of a virtual one."""
     names = [
         each.port for each in found.ports
         if "usb" in each.port.lower() or "acm" in each.port.lower()
         or looks_wireless(each.port, each.description) or found.platform == "win32"
     ]  # fmt: skip
+    names = names or [*virtual]
     return names[0] if len(names) == 1 else None
 
 

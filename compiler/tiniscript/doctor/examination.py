@@ -6,6 +6,7 @@ Everything is asked; nothing is started, stopped, set or written.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from time import perf_counter
 from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
@@ -27,8 +28,9 @@ from tiniscript.link.messages import (
     YOURS,
 )
 from tiniscript.link.names import row_name
-from tiniscript.link.payloads import HelloReply, SentReply, StatusReply
-from tiniscript.link.requests import Reply
+from tiniscript.link.outcomes import OTHER_ROBOT, UNPROVEN
+from tiniscript.link.payloads import HelloReply, SentReply, StatusReply, TrimReply
+from tiniscript.link.requests import OK, Reply
 from tiniscript.link.robot_state import lost_packets
 
 PINGS = 20
@@ -41,18 +43,33 @@ _BROWN_OUT = "BROWN_OUT"
 _WATCHDOG = "WATCHDOG"
 
 
+class Heard(NamedTuple):
+    """What a robot has answered. `trips_ms`: how long it took to answer each PING at once."""
+
+    hello: HelloReply
+    status: StatusReply
+    trim: TrimReply | None
+    trips_ms: tuple[float, ...]
+
+
 class Expected(NamedTuple):
     """The kit that the robot should have, None for any; `names` says whose a kit is, or nothing.
 
-    `has_key` says whether this computer has a key of the robot with this id. `note` gets what a
-    robot has told of itself, whatever is wrong with it.
+    `has_key` says whether this computer has a key of the robot with this id. `doubts` returns the
+    cause why what answers on `port` may be another robot than that of a key, or nothing. `note`
+    gets what a robot has told of itself, whatever is wrong with it, and `hear` the answers.
+    `pings`: how often it is asked whether it hears.
     """
 
     kit: int | None
     name: str
     names: Callable[[int], str | None]
     has_key: Callable[[int], bool] = lambda robot: False
+    doubts: Callable[[str, HelloReply], str] = lambda port, hello: ""
+    port: str = ""
     note: Callable[[Mapping[str, str]], None] = lambda told: None
+    hear: Callable[[Heard], None] = lambda heard: None
+    pings: int = PINGS
 
 
 class Restart(NamedTuple):
@@ -71,9 +88,15 @@ def examined(
     Where nothing is, the only finding that is no note is `fine`. `tell` gets `pings` and `watch`.
     """
     hello = values_of(first)
+    if first.status == OTHER_ROBOT:  # the tsc that has the port does not believe it
+        return [sure("other_robot", id=f"{first.detail:08x}")]
+    if first.status == UNPROVEN:
+        return [sure("unproven", id="ID")]
     if hello is None:
         return [_other_link(first)]
-    findings = [*_versions(hello), *_kit(hello, expected), *_owner(hello, expected)]
+    if doubt := expected.doubts(expected.port, hello):
+        return [sure(doubt, id=f"{hello.id:08x}")]
+    findings = [*_versions(hello), *_kit(hello, expected), *_owner(robot, hello, expected)]
     if hello.features & WIFI_RESTS:
         findings.append(sure("wifi_rests"))
     expected.note(_about(hello, expected))
@@ -81,7 +104,9 @@ def examined(
     restarts: list[Restart] = []
     if before is not None:
         findings += _told(before)
-        findings += _hearing(robot, before, expected, tell)
+        lost, trips_ms = _hearing(robot, before, expected, tell)
+        findings += lost
+        expected.hear(Heard(hello, before, _trim(robot, hello), trips_ms))
         tell("watch")
         restarts = _watched(robot, hello, watch_ms)
     after = robot.status() if before is not None else None
@@ -96,7 +121,12 @@ def examined(
     if not any(each.is_wrong for each in findings):
         name = hello.name.decode("utf-8", "replace")
         whose = expected.names(hello.kit) or f"{hello.kit:04x}"
-        values = {"name": name or whose, "kit": whose, "id": f"{hello.id:08x}", "n": str(PINGS)}
+        values = {
+            "name": name or whose,
+            "kit": whose,
+            "id": f"{hello.id:08x}",
+            "n": str(expected.pings),
+        }
         findings.append(sure("fine", **values))
     return findings
 
@@ -144,9 +174,10 @@ def _kit(hello: HelloReply, expected: Expected) -> list[Finding]:
     return []
 
 
-def _owner(hello: HelloReply, expected: Expected) -> list[Finding]:
+def _owner(robot: Robot, hello: HelloReply, expected: Expected) -> list[Finding]:
     """Compare who may drive it: what is refused for that looks like a robot that does nothing."""
-    is_others = hello.features & (OWNED | YOURS) == OWNED and not expected.has_key(hello.id)
+    is_open = not robot.has_shown_keys and expected.has_key(hello.id)
+    is_others = hello.features & (OWNED | YOURS) == OWNED and not is_open
     return [sure("of_another_owner")] if is_others else []
 
 
@@ -166,12 +197,16 @@ def _told(status: StatusReply) -> list[Finding]:
 
 def _hearing(
     robot: Robot, before: StatusReply, expected: Expected, tell: Callable[[str], None]
-) -> list[Finding]:
+) -> tuple[list[Finding], tuple[float, ...]]:
     """Send PING, and count what is not answered at once and what the robot heard damaged."""
     tell("pings")
     missed = robot.missed
-    for _ in range(PINGS):
+    trips_ms: list[float] = []
+    for number in range(expected.pings):
+        began_s = perf_counter()
         robot.ask("PING")
+        if robot.missed - missed + len(trips_ms) <= number:
+            trips_ms.append((perf_counter() - began_s) * 1000)
         robot.pause(PAUSE_MS)
     missed = robot.missed - missed
     after = robot.status()
@@ -179,13 +214,23 @@ def _hearing(
     if after is not None:
         pairs = zip(_four(before), _four(after), strict=True)
         damaged = sum((now - then) & 0xFF for then, now in pairs)
-    values = {"missed": str(missed), "n": str(PINGS), "damaged": str(damaged)}
-    expected.note({"good": str(PINGS - missed), **values})
-    if missed >= LOSSY or damaged >= LOSSY:
-        return [sure("lossy", **values)] if after is not None else []
-    if after is not None and lost_packets(before) >= 10 * LOSSY:
-        return [probably("lossy", **{**values, "damaged": str(lost_packets(before))})]
-    return []
+    values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged)}
+    expected.note({"good": str(expected.pings - missed), **values})
+    lost = []
+    if max(missed, damaged) * PINGS >= LOSSY * expected.pings:
+        lost = [sure("lossy", **values)] if after is not None else []
+    elif after is not None and lost_packets(before) >= 10 * LOSSY:
+        lost = [probably("lossy", **{**values, "damaged": str(lost_packets(before))})]
+    return lost, tuple(trips_ms)
+
+
+def _trim(robot: Robot, hello: HelloReply) -> TrimReply | None:
+    """Return the robot's trim, where whoever asks may know it; None where nothing is known."""
+    if hello.features & (OWNED | YOURS) == OWNED:
+        return None
+    reply = robot.ask("TRIM", tries=1)
+    values = reply.values if reply is not None and reply.status == OK else None
+    return values if isinstance(values, TrimReply) else None
 
 
 def _four(status: StatusReply) -> tuple[int, int, int, int]:

@@ -21,10 +21,19 @@ WRONG = (
     "other_sketch", "bootloader_only", "garbled", "silent",
     # the robot
     "firmware_older", "firmware_newer", "wrong_kit", "unknown_kit", "restarts", "motors_restart",
-    "brown_out", "hung", "low_supply", "wifi_rests", "lossy", "falls_silent",
+    "brown_out", "hung", "low_supply", "wifi_rests", "lossy", "falls_silent", "other_robot",
+    "unproven",
 )
 # fmt: on
 NOTES = ("of_another_owner", "stopped", "not_saved_yet", "other_program")  # nothing is wrong then
+# What of a robot a cause is about, for a list of what is good, too.
+PARTS = {
+    "kit": ("wrong_kit", "unknown_kit"),
+    "firmware": ("firmware_older", "firmware_newer"),
+    "line": ("lossy", "falls_silent"),
+    "supply": ("low_supply", "brown_out", "hung", "restarts", "motors_restart", "wifi_rests"),
+    "store": ("not_saved_yet", "other_program"),
+}
 CAUSES = (*WRONG, *NOTES, "fine")
 
 

@@ -13,7 +13,7 @@ from tiniscript.doctor.findings import Finding
 from tiniscript.link.port_names import is_address
 
 MARK = "TiniScript doctor report 1"  # the first line: the file is one of ours
-SELFTEST_MARK = "TiniScript selftest report 1"  # that of `tsc selftest`
+SELFTEST_MARK = "TiniScript selftest report 1"  # that of `tsc doctor --selftest`
 HIDDEN = "…"
 # Values of findings that are made by others or tell whose robot it is: its name and number, what a
 # sketch prints, system messages.

@@ -1,4 +1,4 @@
-"""A robot as the doctor asks it: HELLO, STATUS and PING, which change nothing in it.
+"""A robot as the doctor asks it: HELLO, STATUS, PING and TRIM, which change nothing in it.
 
 Two ways: by frames on a wire, where each try is counted, and through the connection of another
 tsc that has the port.
@@ -7,6 +7,7 @@ tsc that has the port.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from typing import Any
 
 from tiniscript.bytecode.image import isa_of
@@ -25,13 +26,15 @@ SHARED_MS = 4000  # for one through another tsc, with its own retries
 
 
 class Robot(ABC):
-    """`missed` is how many requests were not answered at the first try."""
+    """`missed` is how many requests were not answered at the first try. `has_shown_keys`: those of
+    this computer, so that the robot has told whether it is the person's."""
 
     missed = 0
+    has_shown_keys = False
 
     @abstractmethod
     def ask(self, name: str, tries: int = TRIES) -> Reply[SentReply] | None:
-        """Return the reply to HELLO, STATUS or PING; None where none came."""
+        """Return the reply to HELLO, STATUS, PING or TRIM; None where none came."""
 
     @abstractmethod
     def pause(self, wait_ms: int) -> None: ...
@@ -55,15 +58,17 @@ class WireRobot(Robot):
         self._seq = 0
         self._epoch = 0
         isa = isa_of(0)
-        self._hello = {"major": MAJOR, "minor": MINOR, "isa_major": isa[0],
-                       "isa_minor": isa[1], "kit": kit, "nonce": nonce}  # fmt: skip
+        hello = {"major": MAJOR, "minor": MINOR, "isa_major": isa[0], "isa_minor": isa[1],
+                 "kit": kit, "nonce": nonce}  # fmt: skip
+        # without a value the robot tells the trim that it has
+        self._values: dict[str, Mapping[str, int | bytes]] = {"HELLO": hello, "TRIM": {"trim": b""}}
 
     def pause(self, wait_ms: int) -> None:
         self.heard += self.wire.heard(wait_ms, wait_ms)
 
     def ask(self, name: str, tries: int = TRIES) -> Reply[SentReply] | None:
         """Ask until an answer comes: a 0x00 goes before each try, as `docs/link.md` says."""
-        values = self._hello if name == "HELLO" else {}
+        values = self._values.get(name, {})
         self._seq = (self._seq + 1) & 0xFF
         message = BY_NAME[name]
         frame = Frame(message.number, self._seq, self._epoch, written(message.request, values))
@@ -96,7 +101,9 @@ class WireRobot(Robot):
 
 
 class SharedRobot(Robot):
-    """The robot behind the connection of another tsc, which does the retries."""
+    """The robot behind a connection, which does the retries and shows keys."""
+
+    has_shown_keys = True
 
     def __init__(self, line: LinkConnection) -> None:
         self.line = line

@@ -18,6 +18,12 @@ def shipped_of_kit(fingerprint: int) -> str | None:
     return None
 
 
+def name_of(fingerprint: int) -> str | None:
+    """Return the name of the robot that has this kit, or None where this computer knows none."""
+    found = of_kit(fingerprint)
+    return None if found is None else found.name
+
+
 def of_kit(fingerprint: int) -> Robot | None:
     """Return the profile that has this kit: a shipped one, or one that a user has given before."""
     name = shipped_of_kit(fingerprint)

@@ -143,7 +143,7 @@ def _opened_line(
         device.close()
         raise RobotError("port_of_another", language, {"port": shown(port)})
     # who claims a robot has it before them: one of many, perhaps, at the same cable
-    keys = KeyFile(is_for_virtual=_is_virtual(address), accepts_all=verb == "claim")
+    keys = KeyFile(is_for_virtual=is_virtual(address), accepts_all=verb == "set owner")
     place = port_names.same_for_all(port)  # an address may be another robot's tomorrow
     nonce = int.from_bytes(os.urandom(4), "little")
     session = Session(nonce, baud, kit, keys=keys, place=place)
@@ -177,7 +177,7 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
 def remember(port: str, name: str, is_used: bool = True) -> None:
     """Remember a port and the name of its robot; not for a virtual robot, whose port is new each
     time."""
-    if not is_at_broker(port) and not _is_virtual(port):
+    if not is_at_broker(port) and not is_virtual(port):
         known_ports.remember(port, name, is_used)
 
 
@@ -188,7 +188,7 @@ def last_port() -> str | None:
     return last if is_there else None
 
 
-def _is_virtual(port: str) -> bool:
+def is_virtual(port: str) -> bool:
     if not is_address(port) and not port.startswith(PSEUDO):
         return False
     return directory.is_virtual(port)

@@ -23,7 +23,7 @@ enum class Remark : uint8_t {
   kLatched = 7,  // It was stopped. Begin with SI|
   kSaving = 8,  // Still saving. Send it again.
   kRefused = 9,  // Not possible here.
-  kNotOwner = 10,  // Owned: tsc text on, or button 2 s.
+  kNotOwner = 10,  // Owned: tsc set text on, or button 2 s.
   kHeldBack = 11,  // The teacher stopped it.
   kDone = 12,  // DONE
   kFault = 13,  // FAULT

@@ -1,1 +1,1 @@
-"""The verbs of `tsc`: a module for each, called by the verb's name, with a function `run`."""
+"""The commands of `tsc`, verbs and their steps: a module for each, with a function `run`."""

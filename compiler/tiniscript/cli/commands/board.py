@@ -1,4 +1,4 @@
-"""`tsc board`: the header that tells the firmware how a robot is wired."""
+"""`tsc firmware --board`: the header that tells the firmware how a robot is wired."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import say, text
+from tiniscript.flash.bootloaders import BOARDS
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import Robot
 
@@ -16,8 +17,10 @@ SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the plac
 
 
 def run(options: Namespace, language: str) -> int:
+    if options.robot in BOARDS:
+        raise CommandError(2, "board_is_chip", chip=options.robot)
     robot = wired(options, language).speaking(language)
-    header = firmware.header([robot], "tsc board, from a robot profile.")
+    header = firmware.header([robot], "tsc firmware --board, from a robot profile.")
     if not outputs.put(options.output, header.encode()):
         return 0
     now = _next(options.robot, Path(options.output), robot.board.chip, language)

@@ -1,4 +1,4 @@
-"""`tsc claim`: the robot gets an owner, when its button is held down."""
+"""`tsc set owner`: the robot gets an owner, when its button is held down."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tsc completion`: what a shell needs so that the Tab key completes commands of `tsc`.
+"""`tsc help --completion`: what a shell needs so that the Tab key completes commands of `tsc`.
 
 A shell's script asks `tsc` at each Tab what fits the typed words: they come behind `--`, the last
 one with a dot before it, as PowerShell 5 leaves out an empty one. The first line of the answer says
@@ -12,7 +12,14 @@ import sys
 from argparse import Namespace
 
 from tiniscript import robots
-from tiniscript.cli.texts.options import LESSON_ACTIONS, VERB, Kind, of_verb
+from tiniscript.cli.texts.options import (
+    LESSON_ACTIONS,
+    VERB,
+    Kind,
+    choosers_of,
+    chosen,
+    of_verb,
+)
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.cli.texts.verbs import of_verb as summary_of
 from tiniscript.cli.verbless import is_help
@@ -24,10 +31,10 @@ from tiniscript.virtual import worlds
 FILES = ("program", "robot", "world", "file", "action", "port")  # kinds that may name a file
 SCRIPTS = {
     "bash": """\
-# Tab completes commands of tsc. In ~/.bashrc:  eval "$(tsc completion bash)"
+# Tab completes commands of tsc. In ~/.bashrc:  eval "$(tsc help --completion bash)"
 _tsc() {
     local IFS=$'\\n' found last=$COMP_CWORD
-    found=($("$1" completion --lang LANGUAGE bash -- \\
+    found=($("$1" help --completion bash --lang LANGUAGE -- \\
         "${COMP_WORDS[@]:1:last-1}" ".${COMP_WORDS[last]}" 2>/dev/null))
     # where no word fits, bash completes files
     [[ ${found[0]-} == files ]] || compopt +o default 2>/dev/null
@@ -38,10 +45,10 @@ complete -o default -F _tsc tsc tiniscript
 """,
     "zsh": """\
 #compdef tsc tiniscript
-# Tab completes commands of tsc. In ~/.zshrc, behind compinit:  eval "$(tsc completion zsh)"
+# Tab completes commands of tsc. In ~/.zshrc, behind compinit:  eval "$(tsc help --completion zsh)"
 _tsc() {
   local -a found
-  found=("${(@f)$("$words[1]" completion --lang LANGUAGE zsh -- \\
+  found=("${(@f)$("$words[1]" help --completion zsh --lang LANGUAGE -- \\
     "${(@)words[2,CURRENT-1]}" ".$words[CURRENT]" 2>/dev/null)}")
   local kind=$found[1]
   found=("${(@)${(@)${(@)found[2,-1]}//:/\\\\:}/$'\\t'/:}")
@@ -52,14 +59,14 @@ if [[ $funcstack[1] == _tsc ]]; then _tsc "$@"; else compdef _tsc tsc tiniscript
 """,
     "powershell": """\
 # Tab completes commands of tsc. In the file $PROFILE:
-#   tsc completion powershell | Out-String | Invoke-Expression
+#   tsc help --completion powershell | Out-String | Invoke-Expression
 Register-ArgumentCompleter -Native -CommandName tsc, tiniscript -ScriptBlock {
     param($word, $command, $position)
     $typed = @($command.CommandElements | Select-Object -Skip 1 |
         Where-Object { $_.Extent.EndOffset -lt $position } | ForEach-Object { $_.ToString() })
     $tsc = $command.CommandElements[0].ToString()
     # where nothing fits, PowerShell completes files
-    & $tsc completion --lang LANGUAGE powershell '--' @typed ".$word" 2>$null |
+    & $tsc help --completion powershell --lang LANGUAGE '--' @typed ".$word" 2>$null |
         Select-Object -Skip 1 | ForEach-Object {
             $found, $says = $_ -split "`t", 2
             [System.Management.Automation.CompletionResult]::new(
@@ -88,10 +95,11 @@ def run(options: Namespace, language: str) -> int:
 
 def _fitting(before: list[str], last: str, language: str) -> tuple[str, list[tuple[str, str]]]:
     """Return the kind of what the last word may be, and the words of that kind."""
-    verb = _verb(before)
+    verb, before = _verb(before)
     if verb not in ("tsc", *VERBS):
         return "", []
-    options = of_verb(verb)
+    command, _ = chosen(verb, before)
+    options = [*of_verb(command), *choosers_of(command)]
     flags = {flag: each for each in options if not each.is_argument for flag in each.flags.split()}
     name, equals, _ = last.partition("=")
     option = flags.get(name if equals else before[-1] if before else "")
@@ -105,14 +113,14 @@ def _fitting(before: list[str], last: str, language: str) -> tuple[str, list[tup
     return kind.name, [(begin + word, says) for word, says in _words_of(kind, language)]
 
 
-def _verb(before: list[str]) -> str:
-    words = iter(before)
-    for word in words:
-        if word == "--lang":
-            next(words, "")
-        elif not word.startswith("-"):
-            return "help" if word not in VERBS and is_help(word) else word
-    return "tsc"
+def _verb(before: list[str]) -> tuple[str, list[str]]:
+    """Return the verb, or `tsc` where there is none, and the words behind it."""
+    is_value = False
+    for k, word in enumerate(before):
+        if not is_value and not word.startswith("-"):
+            return ("help" if word not in VERBS and is_help(word) else word), before[k + 1 :]
+        is_value = word == "--lang"
+    return "tsc", before
 
 
 def _words_of(kind: Kind, language: str) -> list[tuple[str, str]]:
@@ -121,7 +129,7 @@ def _words_of(kind: Kind, language: str) -> list[tuple[str, str]]:
         return [(each, _short(summary_of(each, "summary", language))) for each in VERBS]
     if kind.name == "port":
         return [(each.port, each.description) for each in ports.listed()]
-    named = {"robot": robots.names(), "world": worlds.names(), "board": BOARDS, "code": CODES,
+    named = {"robot": robots.names(), "world": worlds.names(), "chip": BOARDS, "code": CODES,
              "action": LESSON_ACTIONS, "hurry": ("max",)}  # fmt: skip
     return [(word, "") for word in named.get(kind.name, kind.choices)]
 

@@ -1,4 +1,4 @@
-"""`tsc conform`: whether a machine or a robot that others have made does what it should."""
+"""`tsc doctor --conform`: whether a machine or a robot of others does what it should."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tsc disown`: the owner gives a robot up."""
+"""`tsc set owner --give-up`: the owner gives a robot up."""
 
 from __future__ import annotations
 

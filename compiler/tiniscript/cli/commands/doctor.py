@@ -1,4 +1,7 @@
-"""`tsc doctor`: prints what the doctor finds, and writes it into a report."""
+"""`tsc doctor`: prints what the doctor finds, what the robot says of itself, and the ports.
+
+What is wrong goes into a report, too, which may be sent.
+"""
 
 from __future__ import annotations
 
@@ -13,26 +16,40 @@ from pathlib import Path
 
 from tiniscript.base.version import __version__
 from tiniscript.cli import inputs, outputs
+from tiniscript.cli.commands import ports as ports_step
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.robot.connect import Connection, baud_of
+from tiniscript.cli.robot.connect import Connection, baud_of, remember_profile
+from tiniscript.cli.robot.description import (
+    Description,
+    measuring,
+    trips_as_data,
+    trips_in_words,
+)
+from tiniscript.cli.robot.fleet import together
+from tiniscript.cli.robot.member import are_many
 from tiniscript.cli.robot.simulator import running_address
 from tiniscript.cli.terminal.asking import agreed, can_ask
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import Said, has_text, text
 from tiniscript.doctor import report
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
-from tiniscript.doctor.examination import Expected
+from tiniscript.doctor.examination import PINGS, Expected, Heard
 from tiniscript.doctor.findings import NOTES, Finding
 from tiniscript.doctor.system import System
 from tiniscript.library import opening
-from tiniscript.library.known_kits import of_kit, shipped_of_kit
+from tiniscript.library.known_kits import name_of
 from tiniscript.link import ports
+from tiniscript.link.authority import has_to_seal, is_other, whose
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.keys import KeyFile
-from tiniscript.link.messages import RESETS
+from tiniscript.link.messages import OWNED, RESETS, SEALS
+from tiniscript.link.payloads import HelloReply
+from tiniscript.link.port_names import same_for_all
+from tiniscript.link.requests import described
 from tiniscript.link.sharing.shared_connection import joined
+from tiniscript.link.trim import told as trim_told
 from tiniscript.link.wire import Wire
 from tiniscript.virtual import directory
 
@@ -44,17 +61,37 @@ STEPS = ("answers", "boot", "drive", "stop", "typed", "cable", "upload", "power"
 
 
 def run(options: Namespace, language: str) -> int:
+    count = whole_number("--count", options.count, PINGS, 1, 10_000, language)
+    if are_many(options):
+        if options.report is not None or options.watch is not None:
+            raise CommandError(2, "doctor_one")
+        return together(options, inputs.robot(options, language), language, measuring(count))
     told: dict[str, str] = {}  # by a robot, of itself
-    question = _question(options, language, told)
+    heard: list[Heard] = []
+    question = _question(options, language, told, heard, count)
     doing = Doing(not options.json)
     try:
         diagnosis = diagnosed(_doors(options, language, doing), question)
     finally:
         doing.end()
+    robot = _described(diagnosis, heard[-1], language) if heard else None
+    if robot is not None:
+        opening.remember(robot.port, robot.device_info.name)
+        remember_profile(options, inputs.robot(options, language), robot.device_info.kit)
+    rows = ports_step.listed(language)
     if options.json:
-        print(json.dumps(_fields(diagnosis, language), indent=2))
+        fields = {**_fields(diagnosis, language), "ports": rows, "robot": None}
+        if robot is not None:
+            fields["robot"] = {**robot.fields(), **trips_as_data([*heard[-1].trips_ms])}
+        print(json.dumps(fields, indent=2))
     else:
-        print(Said("\n".join(_lines(diagnosis, language))), flush=True)
+        lines = _lines(diagnosis, language)
+        if robot is not None:
+            lines += ["", robot.text()]
+            if heard[-1].trips_ms:
+                lines.append(trips_in_words([*heard[-1].trips_ms], language))
+        lines += ["", text("doctor_ports", language), *ports_step.lines(rows, language)]
+        print(Said("\n".join(lines)), flush=True)
     if options.report is not None:
         data = "\n".join(_report(diagnosis, told, language)) + "\n"
         outputs.write(Path(options.report), data.encode(), "unwritable_at --report")
@@ -64,7 +101,16 @@ def run(options: Namespace, language: str) -> int:
     return 0 if is_fine else 3
 
 
-def _question(options: Namespace, language: str, told: dict[str, str]) -> Question:
+def _described(diagnosis: Diagnosis, heard: Heard, language: str) -> Description:
+    """Return what a robot says about itself, of what it has answered."""
+    info = described(heard.hello)
+    trim = None if heard.trim is None else trim_told(heard.trim)
+    return Description(diagnosis.port or "", info, heard.status, trim, whose(info), language)
+
+
+def _question(
+    options: Namespace, language: str, told: dict[str, str], heard: list[Heard], count: int
+) -> Question:
     robot = inputs.robot(options, language)
     watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
     port: str | None = options.port
@@ -78,20 +124,24 @@ def _question(options: Namespace, language: str, told: dict[str, str]) -> Questi
         port,
         opening.last_port(),
         baud_of(options, robot, language),
-        Expected(kit, robot.name, _name_of_kit, _has_key, told.update),
+        Expected(kit, robot.name, name_of, _has_key, _doubt, "", told.update, heard.append, count),
         int.from_bytes(os.urandom(4), "little"),
         watch_s * 1000,
         tuple(each.address for each in directory.for_all()),
     )
 
 
-def _name_of_kit(kit: int) -> str | None:
-    found = of_kit(kit)
-    return shipped_of_kit(kit) or (None if found is None else found.name)
-
-
 def _has_key(robot: int) -> bool:
-    return any(not key.is_stale for key in KeyFile().of_robot(robot))
+    return bool(KeyFile().of_robot(robot))
+
+
+def _doubt(port: str, hello: HelloReply) -> str:
+    """Return the cause why this may be another robot than the one of a key of this computer."""
+    keys, info = KeyFile(is_for_virtual=opening.is_virtual(port)), described(hello)
+    if is_other(keys, same_for_all(port), info):
+        return "other_robot"
+    is_right = hello.features & (OWNED | SEALS) == (OWNED | SEALS)
+    return "unproven" if has_to_seal(keys, info) and not is_right else ""
 
 
 def _doors(options: Namespace, language: str, doing: Doing) -> Doors:
@@ -218,6 +268,5 @@ def _fields(diagnosis: Diagnosis, language: str) -> dict[str, object]:
         "port": diagnosis.port,
         "is_opened": diagnosis.is_opened,
         "bluetooth": diagnosis.computer.bluetooth,
-        "ports": [each.port for each in diagnosis.computer.ports],
         "findings": rows,
     }

@@ -1,4 +1,4 @@
-"""`tsc explain`: a mistake's longer explanation."""
+"""`tsc check --explain`: a mistake's longer explanation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tiniscript.diagnostics.rendering import explain, titles
 
 
 def run(options: Namespace, language: str) -> int:
-    if options.code is None:
+    if not options.code:
         for code, title in titles(language):
             print(Said(f"{code}  {title}"))
         return 0

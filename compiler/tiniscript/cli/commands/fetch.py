@@ -1,4 +1,4 @@
-"""`tsc fetch`: the program that the robot holds, read back."""
+"""`tsc show --port`: the program that the robot holds, read back."""
 
 from __future__ import annotations
 

@@ -6,11 +6,11 @@ import sys
 from argparse import Namespace
 
 from tiniscript.cli import firmware_build, inputs
-from tiniscript.cli.commands.info import Description
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import bad_choice
 from tiniscript.cli.robot.connect import Connection, opening_port
+from tiniscript.cli.robot.description import described
 from tiniscript.cli.terminal.progress import Progress, waiting
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.flash import avrdude
@@ -33,7 +33,7 @@ def run(options: Namespace, language: str) -> int:
     if options.list:
         firmware_build.print_list(language)
         return 0
-    if options.board is None and inputs.robot(options, language).board.chip in ESP32S:
+    if options.chip is None and inputs.robot(options, language).board.chip in ESP32S:
         return _esp32(options, language)
     robot, bootloaders = _chosen(options, language)
     if options.build:
@@ -71,10 +71,10 @@ def _esp32(options: Namespace, language: str) -> int:
 
 def _chosen(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader, ...]]:
     """Return the robot of the options, on its board, and the bootloaders that it may have."""
-    if options.board is not None and options.board not in BOARDS:
-        raise bad_choice("--board", list(BOARDS), options.board, language)
+    if options.chip is not None and options.chip not in BOARDS:
+        raise bad_choice("--chip", list(BOARDS), options.chip, language)
     robot = inputs.robot(options, language)
-    board, bootloaders = BOARDS[options.board or robot.board.chip]
+    board, bootloaders = BOARDS[options.chip or robot.board.chip]
     there = firmware_build.on_boards(options.robot, language, [board])
     if not there:
         fits = ", ".join(
@@ -147,7 +147,7 @@ def _introduce(port: str, robot: Robot, board: str, language: str) -> None:
         options = Namespace(verb="firmware", port=port, baud=None, virtual=False)
         with Connection(options, robot, language) as connection:
             connection.meet(board)
-            print(Description(connection).text())
+            print(described(connection).text())
     except CommandError as failure:
         if failure.exit_code != 3:
             raise

@@ -1,4 +1,4 @@
-"""`tsc help`: what a verb does, and which options it has; or which verb does something."""
+"""`tsc help`: what a command does, and which options it has; or which command does something."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tiniscript.base.languages import languages
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.help import everything, listed, of, overview, show
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.texts.verbs import VERBS, said
+from tiniscript.cli.texts.verbs import COMMANDS, WAS, said, typed
 from tiniscript.cli.verbless import meant, refuse, verbs_for
 
 
@@ -19,13 +19,13 @@ def run(options: Namespace, language: str) -> int:
         show(overview, language)
     elif any(about in said("all", each).split() for each in languages()):
         show(everything, language)
-    elif about in VERBS:
-        show(partial(of, about), language)
+    elif command := next((each for each in COMMANDS if typed(each) == about), WAS.get(about)):
+        show(partial(of, command), language)
     else:
         found = [] if meant(about) else verbs_for(about)
         if not found and " " in about:
             raise CommandError(2, "none_does", found=shown(about))
         if not found:
-            refuse(about)
+            refuse(about, [], language)
         show(partial(listed, found), language)
     return 0

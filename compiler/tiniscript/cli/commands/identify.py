@@ -1,4 +1,4 @@
-"""`tsc identify`: a robot blinks and plays its tune, so that everybody sees which one it is."""
+"""`tsc doctor --identify`: a robot blinks and plays its tune, so that all see which one it is."""
 
 from __future__ import annotations
 

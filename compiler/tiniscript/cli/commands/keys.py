@@ -1,4 +1,4 @@
-"""`tsc keys`: the robots whose keys this computer has; a class list to bring to another one."""
+"""`tsc set owner --list`: the robots whose keys this computer has; a list for another one."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tiniscript.link.messages import KEYS
 
 
 def run(options: Namespace, language: str) -> int:
-    ways = options.export, options.bring, options.forget, options.accept
+    ways = options.list or None, options.export, options.bring, options.forget, options.accept
     if sum(each is not None for each in ways) > 1:
         raise CommandError(2, "one_way")
     own = KeyFile()

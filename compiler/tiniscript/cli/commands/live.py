@@ -11,11 +11,11 @@ from collections.abc import Callable, Iterable, Iterator
 from tiniscript.base import files
 from tiniscript.base.words import WORDS, said_of
 from tiniscript.cli import inputs, outputs
-from tiniscript.cli.commands.ping import ping
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit
 from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.description import introduced
 from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
 from tiniscript.cli.robot.live_state import Known, Line, Value, header, open_ends
 from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
@@ -108,7 +108,7 @@ class Repl:
     def do(self, line: str, is_last: bool = False) -> int:
         """Run a line; return the exit code. Ctrl-C stops the robot."""
         if header(line) == "PING":
-            return ping(self.connection, is_json=False)
+            return introduced(self.connection, is_json=False)
         robot = self.connection.profile
         room = short_bytes(self.connection.device_info)  # less where frames are sealed
         found = _compiled(line, self.known, robot, self.language, is_last, room)
@@ -144,7 +144,7 @@ class Repl:
 
     def _run(self, found: Line, is_last: bool) -> int:
         places = source_map.made(found.compiled.source, found.compiled.places)
-        source_map.remember(found.compiled.image, places)  # tsc info names a fault's line later
+        source_map.remember(found.compiled.image, places)  # tsc doctor names a fault's line later
         kit = kit_of(found.compiled, self.connection.profile)
         reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))
         printer = printer_of(self.connection, places=places)

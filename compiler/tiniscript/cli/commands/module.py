@@ -1,4 +1,4 @@
-"""`tsc module`: finds the Bluetooth module on a wire, and sets its name, PIN and speed."""
+"""`tsc doctor --module`: finds the Bluetooth module on a wire, and sets its name, PIN and speed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tsc name`: the robot gets another name."""
+"""`tsc set name`: the robot gets another name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tsc ports`: the ports of this computer, and which robots answer there."""
+"""`tsc doctor --ports`: the ports of this computer, and which robots answer there."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import about_port, about_virtual, baud_of, opened_client
 from tiniscript.cli.robot.in_reach import AT_ONCE, InReach, alive, found
-from tiniscript.cli.texts import say, text
+from tiniscript.cli.texts import text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.library.known_kits import shipped_of_kit
@@ -21,25 +21,29 @@ from tiniscript.link import known_ports, ports
 from tiniscript.link.authority import whose
 from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.link.requests import OK
+from tiniscript.link.sharing.protocol import LOOKER
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory
 
 OPEN_S = 12.0
+NOWHERE = InReach({}, [], [], [])  # nothing was searched
+
+Row = dict[str, object]  # a port as data
 
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     baud = None if options.baud is None else baud_of(options, robot, language)
-    in_reach = InReach({}, [], [], [])
+    in_reach = NOWHERE
     if options.ask and options.port is None:
         in_reach = found(list(known_ports.known().names), language)
         for note in in_reach.notes:  # what could not be searched
             print(note, file=sys.stderr, flush=True)
-    rows = _rows(options, in_reach, language)
+    rows = listed(language, options.port, in_reach)
     if options.ask:
-        absent: dict[str, object] = {"answer": None, "said": text("out_of_reach", language)}
+        absent: Row = {"answer": None, "said": text("out_of_reach", language)}
 
-        def ask(row: dict[str, object]) -> dict[str, object]:
+        def ask(row: Row) -> Row:
             port = str(row["port"])
             is_absent = port in in_reach.absent and row["held_by"] is None
             return absent if is_absent else _ask(port, baud, robot, language)
@@ -49,22 +53,20 @@ def run(options: Namespace, language: str) -> int:
                 row.update(answer)
     if options.json:
         print(json.dumps(rows, indent=2))
-    elif not rows:
-        say("no_port_listed", language)
-    for row in [] if options.json else rows:
-        print(_line(row, language))
+    else:
+        print("\n".join(lines(rows, language)))
     return 0
 
 
-def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str, object]]:
+def listed(language: str, only: str | None = None, in_reach: InReach = NOWHERE) -> list[Row]:
     """Return the ports that the system lists, those in reach, and others that had a robot."""
     known = known_ports.known()
     virtual = {each.address: each for each in directory.running()}
     about = {each.port: about_port(each, language) for each in ports.listed()}
     about |= in_reach.about
     held = {registration.port: registration.verb for registration in alive()}
-    names = [options.port] if options.port is not None else list(about)
-    if options.port is None:
+    names = [only] if only is not None else list(about)
+    if only is None:
         names += [port for port in known.names if port not in about and is_there(port)
                   and port not in in_reach.others and not directory.is_gone(port)]  # fmt: skip
         names += [port for port in virtual if port not in (*names, *in_reach.others)]
@@ -84,10 +86,10 @@ def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str
     ]
 
 
-def _ask(port: str, baud: int | None, robot: Robot, language: str) -> dict[str, object]:
+def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
     """Return the robot that answers on a port, or why none does."""
     try:
-        with closing(opened_client(port, robot, "ports", baud, language, OPEN_S)) as client:
+        with closing(opened_client(port, robot, LOOKER, baud, language, OPEN_S)) as client:
             reply = client.hello()
             device_info, heard = client.line.robot, client.line.heard
     except CommandError as failure:
@@ -114,7 +116,11 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> dict[str, 
     return {"answer": None, "said": text("port_other" if heard else "port_quiet", language)}
 
 
-def _line(row: dict[str, object], language: str) -> str:
+def lines(rows: list[Row], language: str) -> list[str]:
+    return [_line(row, language) for row in rows] or [text("no_port_listed", language)]
+
+
+def _line(row: Row, language: str) -> str:
     """Return a port as a line: its name, the system's description, and the robot there."""
     parts = [shown(str(row["port"])), shown(str(row["description"]))]
     if "said" in row:

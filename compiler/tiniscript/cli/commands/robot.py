@@ -290,7 +290,7 @@ def _memory(name: str | None) -> bytes | None:
 
 
 def _name(robot: VirtualRobot, name: str) -> None:
-    """Name the robot as `tsc name` does, before any client connects."""
+    """Name the robot as `tsc set name` does, before any client connects."""
     data = name_bytes(name)
     keys = KeyFile(is_for_virtual=True)
     computer = Computer(robot, robot.chance.getrandbits(32), keys)

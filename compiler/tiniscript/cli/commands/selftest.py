@@ -1,4 +1,4 @@
-"""`tsc selftest`: whether a robot is ready for a lesson, as far as a computer can check that."""
+"""`tsc doctor --selftest`: whether a robot is ready for a lesson, as far as a computer can see."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def _fields(found: Found, language: str) -> dict[str, object]:
     return {
         "what": found.what,
         "verdict": found.verdict,
-        "finding": found.key.removeprefix("self_"),
+        "finding": found.key.removeprefix("self_").removeprefix("doctor_"),
         "values": dict(found.values),
         "said": _said(found.key, found.values, language),
         "next": _said(found.then, found.values, language) if found.then else None,

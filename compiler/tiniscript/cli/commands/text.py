@@ -1,4 +1,4 @@
-"""`tsc text`: whether lines of text may drive a robot that has an owner."""
+"""`tsc set text`: whether lines of text may drive a robot that has an owner."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tsc trim`: how a robot's motors are wired, how strong each is and how fast it goes.
+"""`tsc set trim`: how a robot's motors are wired, how strong each is and how fast it goes.
 
 The robot keeps it.
 """

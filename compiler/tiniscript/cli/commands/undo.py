@@ -1,4 +1,4 @@
-"""`tsc undo`: the robot holds the program before again."""
+"""`tsc start --previous`: the robot holds the program before again."""
 
 from __future__ import annotations
 

@@ -51,9 +51,9 @@ def run(options: Namespace, language: str) -> int:
         if connection.simulator is not None and options.detach:
             raise CommandError(2, "virtual_and_detach")
         if ready.image.start == "PING":  # a program that asks who is there
-            from tiniscript.cli.commands.ping import ping
+            from tiniscript.cli.robot.description import introduced
 
-            return ping(connection, options.json)
+            return introduced(connection, options.json)
         connection.meet()
         is_kit_wrong = ready.image.devices and connection.device_info.kit != robot.kit.fingerprint
         if is_open and is_kit_wrong and own_kit.take(connection, options):

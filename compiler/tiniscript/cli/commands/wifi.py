@@ -1,4 +1,4 @@
-"""`tsc wifi`: which network the robot joins, or is, and which MQTT broker it uses.
+"""`tsc set wifi`: which network the robot joins, or is, and which MQTT broker it uses.
 
 A password is asked for, and kept nowhere.
 """

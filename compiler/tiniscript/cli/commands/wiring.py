@@ -1,4 +1,4 @@
-"""`tsc wiring`: a page that shows how a robot is wired."""
+"""`tsc firmware --wiring`: a page that shows how a robot is wired."""
 
 from __future__ import annotations
 

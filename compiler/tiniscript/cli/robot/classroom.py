@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 from tiniscript.cli import inputs
 from tiniscript.cli.commands import stop as stop_verb
 from tiniscript.cli.commands import upload as upload_verb
-from tiniscript.cli.commands.info import one_of_many
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.paths import CLASS_ROWS
 from tiniscript.cli.robot import broker_options
 from tiniscript.cli.robot.connect import Connection, opening_port
+from tiniscript.cli.robot.description import in_a_line
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
@@ -98,7 +98,7 @@ class Classroom:
 def list_robots(room: Classroom) -> int:
     found = room.present()
     own = room.targets(found)
-    code = together(own, inputs.robot(own, room.language), room.language, one_of_many)
+    code = together(own, inputs.robot(own, room.language), room.language, in_a_line)
     for each in found:
         if not each.is_here and not own.json:
             say("class_gone", room.language, robot=shown(each.name), id=each.id)

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 # verbs that stay on a port, and share it
-SHARED = ("doctor", "link", "live", "monitor", "start", "upload")
+SHARED = ("doctor", "live", "monitor", "monitor --hold", "start", "upload")
 STOP_S = 1.5  # timeout for a stop when the command ends and may have no reader
 VIRTUAL = ""  # no port: this command starts its own virtual robot
 
@@ -81,7 +81,8 @@ class Connection(Client):
         self.starts_nothing = options.verb not in ("upload", "start", "live")
         is_detached = getattr(options, "detach", False)
         self.drives = (
-            options.verb in ("upload", "start", "live", "trim", "selftest") and not is_detached
+            options.verb in ("upload", "start", "live", "set trim", "doctor --selftest")
+            and not is_detached
         )
         baud = baud_of(options, robot, language)
         self._is_meeting = False
@@ -168,7 +169,7 @@ class Connection(Client):
             device_info = super().meet(board, is_patient or (lambda: self.starts_nothing))
         self._is_meeting = False
         self.quiet.go_on()
-        _remember_profile(self.options, self.profile, device_info.kit)
+        remember_profile(self.options, self.profile, device_info.kit)
         if not self.is_one_of_many:
             self.remember(device_info.name)
             self._tell_stale_key(device_info)
@@ -241,9 +242,7 @@ class Connection(Client):
     @property
     def name(self) -> str:
         """The robot's name for messages: its own, else that of its profile, else its port."""
-        if self.device_info.name:
-            return shown(self.device_info.name)
-        return shipped_of_kit(self.device_info.kit) or text("robot", self.language)
+        return name_of(self.device_info, self.language)
 
     def text(self, key: str, **values: object) -> str:
         """Return a sentence, which may name the robot that has answered, and its port."""
@@ -309,6 +308,11 @@ class Connection(Client):
         return CommandError(3, lost.key, **lost.values)
 
 
+def name_of(info: DeviceInfo, language: str) -> str:
+    """Return the name of a robot for messages: its own, else that of its profile."""
+    return shown(info.name) or shipped_of_kit(info.kit) or text("robot", language)
+
+
 @contextmanager
 def told() -> Iterator[None]:
     """Have a RobotError say what the command says of it."""
@@ -344,7 +348,7 @@ def opening_port(port: str) -> Iterator[None]:
         raise port_failure(port, failure) from None
 
 
-def _remember_profile(options: Namespace, robot: Robot, kit: int) -> None:
+def remember_profile(options: Namespace, robot: Robot, kit: int) -> None:
     """Remember the profile of a file for the robots with this kit."""
     name = getattr(options, "robot", None)
     if name is None or kit != robot.kit.fingerprint or name.lower() in robots.names():

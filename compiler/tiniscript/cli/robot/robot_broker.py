@@ -1,4 +1,4 @@
-"""`tsc wifi --broker`: the MQTT broker that a robot connects to."""
+"""`tsc set wifi --broker`: the MQTT broker that a robot connects to."""
 
 from __future__ import annotations
 

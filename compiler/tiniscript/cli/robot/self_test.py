@@ -1,5 +1,6 @@
 """What a computer can check of a robot that should be ready for a lesson.
 
+What the robot says of itself the doctor examines; here are its trim, and what it senses and does.
 The findings are data: a verdict, a sentence and the next step, each a key with values. Nothing
 moves before a person has lifted the robot; without a person no motor turns. Changes nothing that
 the robot keeps.
@@ -11,11 +12,9 @@ import sys
 from collections.abc import Mapping
 from contextlib import suppress
 from statistics import median
-from time import perf_counter
 from typing import NamedTuple
 
 from tiniscript.base.kit import Device
-from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.cli.commands.trim import words
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
@@ -23,17 +22,18 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.program_upload import follow_line
 from tiniscript.cli.terminal import asking
 from tiniscript.cli.texts import text
-from tiniscript.library.known_kits import of_kit
+from tiniscript.doctor.examination import Expected, Heard, examined
+from tiniscript.doctor.findings import PARTS
+from tiniscript.doctor.robot import SharedRobot
+from tiniscript.library.known_kits import name_of, of_kit
 from tiniscript.link.messages import RESETS, SAVED
 from tiniscript.link.names import row_name
-from tiniscript.link.outcomes import Event
-from tiniscript.link.payloads import StatusReply
-from tiniscript.link.robot_state import lost_packets
+from tiniscript.link.outcomes import LOST, Event
+from tiniscript.link.requests import Reply
 from tiniscript.link.trim import told
 from tiniscript.robots.profile import Robot
 
 OK, WRONG, OPEN = "ok", "wrong", "open"
-PINGS = 20
 READINGS = 3
 NOTICED = 50  # a hand changes a reading by more than one part of so many of its range
 TURNING = 60  # percent
@@ -43,7 +43,7 @@ ANSWERED = ("plain", "selftest_silent")  # failures that the robot has told: it 
 
 
 class Found(NamedTuple):
-    """One line of a self-test. `what`, `key` and `then` name sentences."""
+    """One line of a self-test. `what`, `key` and `then` name sentences, those of a cause, too."""
 
     what: str
     verdict: str
@@ -65,6 +65,7 @@ class SelfTest:
         self.is_given = is_given  # the person has said which robot it should be
         self.is_asking = is_asking
         self.found: list[Found] = []
+        self.heard: Heard | None = None
 
     def run(self) -> list[Found]:
         """Return what was found; an end of the link is the last of it."""
@@ -78,17 +79,12 @@ class SelfTest:
     def _check(self) -> None:
         self.connection.meet()
         self._add("answers", OK, "self_is_there")
-        robot = self._kit()
-        self._firmware(robot)
-        self._line()
-        status = self.connection.ask(lambda session: session.status()).values
-        self._supply(status)
-        self._store(status)
+        robot = self._examine()
         self._trim()
         if robot is None:
             return
         self.connection.profile = robot
-        if status.noise:
+        if self.heard is not None and self.heard.status.noise:
             self._discs()
         is_lifted = self._is_lifted()
         for sensor in robot.kit.sensors:
@@ -103,68 +99,51 @@ class SelfTest:
 
     # -- what the robot says about itself
 
-    def _kit(self) -> Robot | None:
-        """Return the robot that it is, where this computer knows it."""
-        kit = self.connection.device_info.kit
+    def _examine(self) -> Robot | None:
+        """Let the doctor examine it; return the robot that it is, where this computer knows it."""
         wanted = self.connection.profile
-        if kit == wanted.kit.fingerprint:
-            self._add("kit", OK, "self_kit_is", robot=wanted.name)
-            return wanted
-        robot = of_kit(kit)
-        if robot is None:
-            self._add("kit", WRONG, "self_kit_unknown", "then_profile", kit=f"{kit:04x}")
-        elif self.is_given:
-            names = {"robot": robot.name, "wanted": wanted.name}
-            self._add("kit", WRONG, "self_kit_other", "then_kit", **names)
-        else:
-            self._add("kit", OK, "self_kit_is", robot=robot.name)
-        return robot
+        kit = self.connection.device_info.kit
+        expected = Expected(wanted.kit.fingerprint if self.is_given else None, wanted.name, name_of,
+                            hear=self._hear)  # fmt: skip
+        robot = SharedRobot(self.connection.line)
+        reply = robot.hello()
+        if reply is None:
+            raise self.connection.failure(Reply(LOST))
+        causes = {each.cause: each for each in examined(robot, reply, expected)}
+        known = wanted if kit == wanted.kit.fingerprint else of_kit(kit)
+        good = self._good(known.name if known is not None else "")
+        for what, about in PARTS.items():
+            wrong = [causes[cause] for cause in about if cause in causes]
+            for each in wrong:
+                verdict = WRONG if each.is_wrong else OPEN
+                self._add(what, verdict, f"doctor_{each.cause}", f"next_{each.cause}",
+                          **each.values)  # fmt: skip
+            if not wrong and what in good:
+                self.found.append(good[what])
+        return known
 
-    def _firmware(self, robot: Robot | None) -> None:
-        major, minor = self.connection.device_info.isa
-        said = {"isa": f"{major}.{minor}", "wanted": f"{ISA_MAJOR}.{ISA_MINOR}"}
-        said["robot"] = robot.name if robot is not None else "my.toml"
-        hello = self.connection.device_info.values
-        said |= {name: str(getattr(hello, name)) for name in ("room", "largest", "window")}
-        if (major, minor) == (ISA_MAJOR, ISA_MINOR):
-            self._add("firmware", OK, "self_firmware_is", **said)
-        else:
-            self._add("firmware", WRONG, "self_firmware_old", "then_firmware", **said)
+    def _hear(self, heard: Heard) -> None:
+        self.heard = heard
 
-    def _line(self) -> None:
-        """Ask often; what was damaged meanwhile, the robot has counted."""
-        ask = self.connection.ask
-        before = lost_packets(ask(lambda session: session.status()).values)
-        times = []
-        for _ in range(PINGS):
-            begin_s = perf_counter()
-            ask(lambda session: session.ping())
-            times.append((perf_counter() - begin_s) * 1000)
-        lost = lost_packets(ask(lambda session: session.status()).values) - before
-        said = {"n": str(PINGS), "ms": f"{median(times):.0f}", "lost": str(lost)}
-        said |= {"least": f"{min(times):.0f}", "most": f"{max(times):.0f}"}
-        if lost > 0:
-            self._add("line", WRONG, "self_line_bad", "then_nearer", **said)
-        else:
-            self._add("line", OK, "self_line_is", **said)
-
-    def _supply(self, status: StatusReply) -> None:
-        reset = row_name(RESETS, self.connection.device_info.values.reset)
-        if reset == "BROWN_OUT" or row_name(SAVED, status.saved) == "LOW_SUPPLY":
-            self._add("supply", WRONG, "self_supply_low", "then_batteries")
-        elif reset == "WATCHDOG":
-            self._add("supply", WRONG, "self_hung", "then_again")
-        else:
-            self._add("supply", OK, "self_supply_is", reset=text(f"reset_{reset}", self.language))
-
-    def _store(self, status: StatusReply) -> None:
-        saved = row_name(SAVED, status.saved)
-        if saved == "OTHER_VERSION":
-            self._add("store", WRONG, "self_other_version", "then_upload")
-        elif saved in ("STORED", "NOTHING"):
-            self._add("store", OK, "self_saved" if saved == "STORED" else "self_empty")
-        else:
-            self._add("store", OPEN, "self_unsaved", "then_upload")
+    def _good(self, name: str) -> dict[str, Found]:
+        """Return what is said of each part of a robot of which nothing is wrong."""
+        if self.heard is None:
+            return {}
+        hello, status, _, trips_ms = self.heard
+        reset = text(f"reset_{row_name(RESETS, hello.reset)}", self.language)
+        sizes = {size: str(getattr(hello, size)) for size in ("room", "largest", "window")}
+        found = [
+            Found("kit", OK, "self_kit_is", values={"robot": name}),
+            Found("firmware", OK, "self_firmware_is",
+                  values={"isa": f"{hello.isa_major}.{hello.isa_minor}", **sizes}),
+            Found("supply", OK, "self_supply_is", values={"reset": reset}),
+            _store(row_name(SAVED, status.saved)),
+        ]  # fmt: skip
+        if trips_ms:
+            times = {"least": min(trips_ms), "ms": median(trips_ms), "most": max(trips_ms)}
+            values = {"n": str(len(trips_ms)), **{each: f"{ms:.0f}" for each, ms in times.items()}}
+            found.append(Found("line", OK, "self_line_is", values=values))
+        return {each.what: each for each in found}
 
     def _trim(self) -> None:
         trim = told(self.connection.ask(lambda session: session.trim()).values)
@@ -293,6 +272,12 @@ class SelfTest:
             print(file=sys.stderr)
             raise NoPerson
         return answer
+
+
+def _store(saved: str) -> Found:
+    if saved in ("STORED", "NOTHING"):
+        return Found("store", OK, "self_saved" if saved == "STORED" else "self_empty")
+    return Found("store", OPEN, "self_unsaved", "then_upload")
 
 
 def _range(sensor: Device, values: list[int]) -> str:

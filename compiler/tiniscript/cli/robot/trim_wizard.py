@@ -1,4 +1,4 @@
-"""The dialog of `tsc trim`: it turns motors, and asks the user what they do.
+"""The dialog of `tsc set trim`: it turns motors, and asks the user what they do.
 
 If it ends early, the robot keeps its former trim.
 """

@@ -1,4 +1,4 @@
-"""The options of all verbs: one table. What each does says the catalogue `help`.
+"""The options of all commands: one table. What each does says the catalogue `help`.
 
 Parsers, help, completion, `cli/paths.py` and the documents are made from it and from the table in
 `verbs.py`, which says how texts are written.
@@ -8,7 +8,7 @@ Parsers, help, completion, `cli/paths.py` and the documents are made from it and
 from typing import NamedTuple
 
 from tiniscript.base.languages import languages
-from tiniscript.cli.texts.verbs import said
+from tiniscript.cli.texts.verbs import STEPS, said, settings, steps_of, typed
 from tiniscript.robots.text_levels import LEVELS
 
 
@@ -26,21 +26,22 @@ class Kind(NamedTuple):
 
 
 class Option(NamedTuple):
-    """An option, or, where its name has no dash, an argument. All but `is_needed` may be left out.
+    """An option of commands, or, where its name has no dash, an argument. All may be left out.
 
     `kind` and `value` (its name in help) describe the option's value; a switch has none. `dest` is
     its name in the code, if it is not the last of its flags. `repeats`: each use adds one value.
-    `virtual`: only for the virtual robot. `silent`: verbs that take it without a row in help.
+    `may_be_alone`: its value may be left out. `virtual`: only for the virtual robot. `silent`:
+    commands that take it without a row in help.
     """
 
     flags: str
-    verbs: str  # "*" is each, and tsc itself; "tsc" is tsc itself
+    verbs: str  # commands; "*" is each, and tsc itself; "tsc" is tsc itself
     kind: Kind | None = None
     value: str = ""
     dest: str = ""
     repeats: bool = False
     virtual: bool = False
-    is_needed: bool = False
+    may_be_alone: bool = False
     silent: str = ""
 
     @property
@@ -81,7 +82,7 @@ MEMORY = Kind("file", reads="path_memory", writes="unwritable_at --memory")
 TEXT = Kind("text")
 NUMBER = Kind("number")
 CODE = Kind("code")  # of a mistake
-BOARD = Kind("board")
+CHIP = Kind("chip")
 SENSOR = Kind("sensor")
 VERB = Kind("verb")
 HURRY = Kind("hurry")
@@ -90,6 +91,7 @@ LANGUAGE = Kind("choice", choices=languages())
 MACHINE = Kind("choice", choices=("python", "cpp"))
 YES_NO = Kind("choice", choices=("yes", "no"))
 ON_OFF = Kind("choice", choices=("on", "off"))
+SETTING = Kind("choice", choices=settings())
 IN_CLASS = Kind("choice", choices=("list", "upload", "stop", "show"))
 TRUST = Kind("file", reads="path_trust")
 SHELL = Kind("choice", choices=("bash", "zsh", "powershell"))
@@ -107,12 +109,14 @@ P, N, S, X = "P", "N", "S", "X"
 YES = "yes|no"
 A_LEVEL = "|".join(LEVELS)
 
-TO_MANY = "ping upload stop info undo identify"  # may work on many robots at once
-TO_ONE = "live link start monitor fetch name trim claim disown text wifi selftest"
+TO_ONE = "live hold start monitor fetch name trim claim disown text wifi selftest"
 OWN = "upload live robot"  # may bring a virtual robot along
 # Verbs that take an option which hardly anybody combines with them.
-NO_BAUD = f"check {TO_MANY} live start monitor fetch name trim claim disown text wifi selftest"
-NO_ROBOT = "ports ping stop link start monitor fetch name trim undo claim disown text wifi identify"
+NO_BAUD = (
+    "check upload stop undo identify live start monitor fetch name trim claim disown text wifi "
+    "selftest"
+)
+NO_ROBOT = "ports stop hold start monitor fetch name trim undo claim disown text wifi identify"
 
 # fmt: off
 OPTIONS: tuple[Option, ...] = (
@@ -124,15 +128,27 @@ OPTIONS: tuple[Option, ...] = (
     Option("program", "class", PROGRAM, "PROGRAM"),
     Option("program", "compile run show fmt upload", PROGRAM, "PROGRAM"),
     Option("programs", "check", PROGRAM, "PROGRAM", repeats=True),
-    Option("code", "explain", CODE, "CODE"),
-    Option("robot", "board", ROBOT, "ROBOT", is_needed=True),
     Option("line", "live", TEXT, "LINE"),
+    Option("what", "set", SETTING, "SETTING"),
     Option("name", "name", TEXT, "NEW"),
     Option("whether", "text", ON_OFF, "on|off"),
     Option("network", "wifi", TEXT, "NETWORK"),
     Option("about", "help", VERB, "COMMAND", repeats=True),
-    Option("shell", "completion", SHELL, "SHELL", is_needed=True),
     Option("words", "completion", TEXT, A_TEXT, repeats=True, silent="completion"),
+    # what chooses a step of a verb
+    Option("--explain", "explain", CODE, "CODE", "code", may_be_alone=True),
+    Option("--previous", "undo"),
+    Option("--hold", "hold"),
+    Option("--ports", "ports", dest="is_about_ports"),
+    Option("--identify", "identify"),
+    Option("--selftest", "selftest"),
+    Option("--module", "module"),
+    Option("--conform", "conform"),
+    Option("--wiring", "wiring"),
+    Option("--board", "board", ROBOT, A_ROBOT, "robot"),
+    Option("--give-up", "disown"),
+    Option("--list", "keys"),
+    Option("--completion", "completion", SHELL, "|".join(SHELL.choices), "shell"),
     # the program
     Option("-e", "compile check run show fmt upload lesson class", TEXT, A_TEXT, "texts", repeats=True),
     Option("-e", "live", TEXT, A_TEXT, "text"),
@@ -173,7 +189,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--plot", "lesson", PICTURE, "F.png"),
     # the firmware
     Option("--port", "firmware", PORT, P),
-    Option("--board", "firmware", BOARD, "BOARD"),
+    Option("--chip", "firmware", CHIP, "CHIP"),
     Option("--build", "firmware"),
     Option("--list", "firmware"),
     # what a verb does
@@ -192,7 +208,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--record", "upload", RECORDING, A_FILE),
     Option("--verbose", "upload class"),
     Option("--ask", "ports"),
-    Option("--count", "ping", NUMBER, N),
+    Option("--count", "doctor", NUMBER, N),
     Option("--plot", "monitor"),
     Option("--csv", "monitor", ROWS, A_FILE),
     Option("--csv", "class", ROWS, A_FILE),
@@ -244,36 +260,36 @@ OPTIONS: tuple[Option, ...] = (
     # the robot, and the way to it
     Option("--report", "selftest", REPORT, A_FILE),
     Option("--port", "conform", PORT, P),
-    Option("--port", "doctor", PORT, P),
+    Option("--port", "doctor", PORT, P, "ports", repeats=True),
     Option("--port", "check", PORT, P),
     Option("--port", "ports", PORT, P),
     Option("--port", TO_ONE, PORT, P),
-    Option("--port", "ping info undo identify", PORT, P, "ports", repeats=True),
+    Option("--port", "undo identify", PORT, P, "ports", repeats=True),
     Option("--port", "upload", PORT, P, "ports", repeats=True),
     Option("--port", "stop", PORT, P, "ports", repeats=True),
-    Option("--all", "ping info identify"),
+    Option("--all", "doctor identify"),
     Option("--all", "upload undo"),
     Option("--all", "stop"),
     Option("--baud", "doctor", NUMBER, N),
-    Option("--baud", f"check {TO_ONE} {TO_MANY}", NUMBER, N, silent=NO_BAUD),
+    Option("--baud", f"check {TO_ONE} upload stop undo identify", NUMBER, N, silent=NO_BAUD),
     Option("--baud", "conform", NUMBER, N),
     Option("--baud", "ports", NUMBER, N, silent="ports"),
     Option("--baud", "robot", NUMBER, N),
     Option("--robot", "compile check run show fmt upload live class", ROBOT, A_ROBOT),
-    Option("--robot", "wiring ports ping stop link start info monitor fetch name trim undo claim disown text wifi identify robot", ROBOT, A_ROBOT, silent=NO_ROBOT),
+    Option("--robot", "wiring ports stop hold start monitor fetch name trim undo claim disown text wifi identify robot", ROBOT, A_ROBOT, silent=NO_ROBOT),
     Option("--robot", "selftest doctor", ROBOT, A_ROBOT),
     Option("--robot", "firmware", ROBOT, A_ROBOT),
     Option("--virtual", "check"),
-    Option("--virtual", "ping link start info monitor fetch name trim undo claim disown text wifi identify selftest doctor", silent="link disown text identify"),
+    Option("--virtual", "doctor hold start monitor fetch name trim undo claim disown text wifi identify selftest", silent="hold disown text identify"),
     Option("--virtual", "stop"),
     Option("--virtual", "upload"),
     Option("--virtual", "live"),
     # how it is said
-    Option("--json", "check show lesson ping info ports keys doctor selftest conform", silent="keys"),
+    Option("--json", "check show lesson ports keys doctor selftest conform", silent="keys"),
     Option("--json", "upload class"),
     Option("--json", "undo", silent="undo"),
     Option("--json", "stop identify", silent="identify"),
-    Option("--json", "link start monitor", silent="link"),
+    Option("--json", "hold start monitor", silent="hold"),
     Option("--json", "trim", silent="trim"),
     # a virtual robot of one's own
     Option("--world", OWN, WORLD, A_ROBOT, virtual=True),
@@ -294,8 +310,48 @@ OPTIONS: tuple[Option, ...] = (
 
 
 def of_verb(verb: str) -> list[Option]:
-    """Return the options of a verb, or of `tsc` itself, in the order of help."""
+    """Return the options of a command, or of `tsc` itself, in the order of help."""
     return [option for option in OPTIONS if option.taken_by(verb)]
+
+
+def choosers_of(command: str) -> list[Option]:
+    """Return the options that make another command of this one."""
+    return [
+        option
+        for name in steps_of(command)
+        for option in of_verb(name)
+        if STEPS[name].head == typed(command) and option.flags in STEPS[name].choosers
+    ]
+
+
+def chosen(verb: str, words: list[str]) -> tuple[str, list[str]]:
+    """Return the command that a verb and the words behind it mean, and what is left of these.
+
+    That is the verb itself where they choose none of its steps.
+    """
+    own = words[: words.index("--")] if "--" in words else words
+    flags = {word.partition("=")[0] for word in own if word.startswith("-")}
+    at = _first(verb, own)
+    said = f"{verb} {words[at]}" if at is not None else verb
+    begun = [name for name in steps_of(verb) if STEPS[name].head in (verb, said)]
+    found = next((name for name in begun if flags & {*STEPS[name].choosers}), None)
+    found = found or next((name for name in begun if STEPS[name].typed == said), verb)
+    if found == verb or STEPS[found].head == verb:
+        return found, words
+    return found, [word for k, word in enumerate(words) if k != at]
+
+
+def _first(verb: str, words: list[str]) -> int | None:
+    """Return where the first word is that is neither an option nor the value of one."""
+    commands = (verb, *steps_of(verb))
+    valued = {flag for command in commands for option in of_verb(command)
+              if option.kind is not None for flag in option.flags.split()}  # fmt: skip
+    is_value = False
+    for k, word in enumerate(words):
+        if not is_value and not word.startswith("-"):
+            return k
+        is_value = not is_value and word in valued
+    return None
 
 
 def shown_of(verb: str) -> list[Option]:

@@ -1,14 +1,16 @@
-"""The verbs of `tsc`, in the order in which help has them, and what the catalogue `help` says of them.
+"""The commands of `tsc`, in the order of help, and what the catalogue `help` says of them.
 
+A command is a verb, or a step of one, which more words choose: `tsc doctor --ports`.
 Parsers, help, completion and the documents are made from it and from the table in `options.py`.
 What is typed stands between backticks: documents show it as code, and on a terminal no line ends
 in it.
 """
 
+from typing import NamedTuple
+
 from tiniscript.base import languages
 
-# A verb is a module of `cli/commands/`. Beside it is the heading below which help has it; where its
-# example stands beside that of another verb, that verb.
+# A verb, and the heading below which help has it.
 VERBS: dict[str, str] = {
     "studio": "programs",
     "lesson": "programs",
@@ -17,37 +19,70 @@ VERBS: dict[str, str] = {
     "compile": "programs",
     "show": "programs",
     "fmt": "programs",
-    "explain": "programs",
     "upload": "robots",
     "live": "robots",
-    "stop": "robots",
     "start": "robots",
-    "undo": "start",
+    "stop": "robots",
     "monitor": "robots",
-    "fetch": "robots",
     "robot": "robots",
-    "link": "robots",
     "class": "robots",
     "doctor": "trouble",
-    "selftest": "doctor",
-    "ports": "trouble",
-    "info": "trouble",
-    "ping": "info",
-    "identify": "trouble",
-    "claim": "settings",
-    "disown": "claim",
-    "keys": "claim",
-    "name": "settings",
-    "trim": "settings",
-    "text": "settings",
-    "wifi": "settings",
     "firmware": "building",
-    "wiring": "building",
-    "board": "building",
-    "module": "building",
-    "conform": "building",
+    "set": "settings",
     "help": "itself",
-    "completion": "itself",
+}
+
+
+class Step(NamedTuple):
+    """What a verb does besides, where it is followed by more: `tsc doctor --ports`.
+
+    `typed` is that command; the last of its flags chooses the step, and so do `flags`.
+    """
+
+    typed: str
+    flags: str = ""
+
+    @property
+    def head(self) -> str:
+        """The words that come first, without a flag: `set owner`."""
+        return self.typed.partition(" -")[0]
+
+    @property
+    def choosers(self) -> list[str]:
+        """The flags of which one chooses the step; none where its words do."""
+        own = [word for word in self.typed.split() if word.startswith("-")]
+        return [*own, *self.flags.split()]
+
+
+# Each command is a module of `cli/commands/`: a verb, or a step of one by its name there.
+STEPS: dict[str, Step] = {
+    "explain": Step("check --explain"),
+    "fetch": Step("show --port", "--virtual"),
+    "undo": Step("start --previous"),
+    "hold": Step("monitor --hold"),
+    "ports": Step("doctor --ports"),
+    "identify": Step("doctor --identify"),
+    "selftest": Step("doctor --selftest"),
+    "module": Step("doctor --module"),
+    "conform": Step("doctor --conform"),
+    "wiring": Step("firmware --wiring"),
+    "board": Step("firmware --board"),
+    "claim": Step("set owner"),
+    "disown": Step("set owner --give-up"),
+    "keys": Step("set owner --list", "--export --import --forget --accept"),
+    "name": Step("set name"),
+    "trim": Step("set trim"),
+    "text": Step("set text"),
+    "wifi": Step("set wifi"),
+    "completion": Step("help --completion"),
+}
+COMMANDS = (*VERBS, *STEPS)
+# What was a verb before 0.3, and the command that it is now; no verb is called so.
+WAS = {
+    **{name: name for name in STEPS if name != "hold"},
+    "link": "hold",
+    "info": "doctor",
+    "ping": "doctor",
 }
 FIRST = (
     "studio",
@@ -69,11 +104,31 @@ def said(key: str, language: str) -> str:
     return languages.found("help", key, language) or ""
 
 
-def of_verb(verb: str, what: str, language: str) -> str:
-    """Return what is said of a verb.
+def typed(command: str) -> str:
+    """Return what is typed behind `tsc` for a command: `doctor --ports`."""
+    return STEPS[command].typed if command in STEPS else command
 
-    `example` is a command with it, the verb alone where it is not there, `summary` what that does,
-    `says` what the verb does, `ends` what else there is to know. Where it is used in several ways,
-    `usage` has a line for each.
+
+def steps_of(command: str) -> list[str]:
+    """Return what begins with a command: the steps of a verb, `set owner --list` of `set owner`."""
+    begin = f"{typed(command)} "
+    return [
+        name
+        for name, step in STEPS.items()
+        if name != command and f"{step.head} ".startswith(begin)
+    ]
+
+
+def settings() -> tuple[str, ...]:
+    """Return the words that `tsc set` takes."""
+    words = (step.head.split()[-1] for step in STEPS.values() if step.head.startswith("set "))
+    return tuple(dict.fromkeys(words))
+
+
+def of_verb(verb: str, what: str, language: str) -> str:
+    """Return what is said of a command.
+
+    `example` is what may be typed for it, `summary` what that does, `says` what the command does,
+    `ends` what else there is to know. Where it is used in several ways, `usage` has a line for each.
     """
-    return said(f"verb/{verb}/{what}", language) or verb * (what == "example")
+    return said(f"verb/{verb}/{what}", language) or typed(verb) * (what == "example")

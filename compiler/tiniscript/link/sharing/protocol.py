@@ -42,7 +42,8 @@ JsonMessage = dict[str, object]
 T = TypeVar("T")
 
 _GREETING = re.compile(
-    rb'{"tsc":"[0-9A-Za-z.+-]{1,40}","token":"([0-9a-f]{32})","verb":"([A-Za-z]{1,20})"}\n'
+    rb'{"tsc":"[0-9A-Za-z.+-]{1,40}","token":"([0-9a-f]{32})",'
+    rb'"verb":"([A-Za-z][A-Za-z -]{0,29})"}\n'
 )
 
 

@@ -34,7 +34,7 @@ import { whole } from '../writing/messages.js';
  * @property {import('./place.js').RobotPlace} place where its program is
  */
 
-// The keys of robots that this browser keeps: the text of a file of keys, as `tsc keys` writes it. Who uses
+// The keys of robots that this browser keeps: the text of a file of keys, as `tsc set owner --list` writes it. Who uses
 // this browser uses them; the page gives them to no one but the robot's session.
 const KEYS = 'tiniscript.link.keys';
 const WORD_MS = 2000; // after which it is said that the robot has not answered yet

@@ -2,7 +2,7 @@
 // others work with it, over whatever carries bytes.
 //
 // It keeps a program in RAM alone: what is sent is gone after power-off. It knows no owner, no trim
-// and no text. `tsc conform --port P` passes.
+// and no text. `tsc doctor --conform --port P` passes.
 
 #pragma once
 

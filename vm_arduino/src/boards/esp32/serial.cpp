@@ -33,7 +33,7 @@ constexpr bool is_usb(Pin pin) { return pin.number == 18 || pin.number == 19; }
 
 static_assert(!is_usb(kBuzzer.pin) && !is_usb(kLight) && !is_usb(kStartButton),
               "Pins 18 and 19 are the USB of an ESP32-C3, and that is the port of this board: it would "
-              "be gone. Take other pins, and make the header again with tsc board.");
+              "be gone. Take other pins, and make the header again with tsc firmware --board.");
 #endif
 #else
 constexpr Pin kReceive = {3};

@@ -1,7 +1,7 @@
 // The link over the USB cable: `tsc upload prog.ts --port P --baud 115200`, `tsc live`, `tsc stop`.
 //
 // The robot has no sensor; its motors are the two of the example ImageInFlash. What is sent stays
-// in RAM. `tsc conform --port P --baud 115200` tests it.
+// in RAM. `tsc doctor --conform --port P --baud 115200` tests it.
 
 #include <TiniMotor.h>
 #include <TiniScriptLink.h>

@@ -1,4 +1,4 @@
-"""`tsc link`: holds a port, so that other commands share it, and prints its events."""
+"""`tsc monitor --hold`: holds a port, so that other commands share it, and prints its events."""
 
 from __future__ import annotations
 

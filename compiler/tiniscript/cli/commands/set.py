@@ -1,0 +1,15 @@
+"""`tsc set`: names the settings of a robot; each is a step of its own."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.texts import text
+from tiniscript.cli.texts.verbs import settings
+
+
+def run(options: Namespace, language: str) -> int:
+    *known, last = settings()
+    named = f"{', '.join(known)} {text('or', language)} {last}"
+    raise CommandError(2, "set_what", known=named)

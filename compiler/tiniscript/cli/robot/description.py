@@ -1,0 +1,221 @@
+"""What a robot says about itself, as data, as lines and as a line; and how soon it answers."""
+
+from __future__ import annotations
+
+import json
+from contextlib import suppress
+from statistics import median
+from time import perf_counter
+from typing import NamedTuple
+
+from tiniscript.cli.commands.trim import words
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.connect import Connection, name_of
+from tiniscript.cli.robot.event_printer import fault_sentence
+from tiniscript.cli.robot.fleet import Work
+from tiniscript.cli.robot.member import Member, Result
+from tiniscript.cli.texts import text
+from tiniscript.library import source_map
+from tiniscript.library.known_kits import shipped_of_kit
+from tiniscript.link.authority import OF_ANOTHER, whose
+from tiniscript.link.messages import (
+    RESETS,
+    SAVED,
+    SAVED_NOTHING,
+    SAVED_OTHER_VERSION,
+    SAVED_STORED,
+    SAVED_UNREADABLE,
+    STATES,
+    TEXT_LEVEL,
+    TEXT_LEVELS,
+)
+from tiniscript.link.names import fault_name, row_name
+from tiniscript.link.payloads import StatusReply
+from tiniscript.link.requests import DeviceInfo
+from tiniscript.link.trim import Pace, Trim, told
+
+COUNT = 10  # round trips
+
+
+class Description(NamedTuple):
+    """The replies of a robot to HELLO, STATUS and TRIM. `owner`: see `authority.whose`."""
+
+    port: str
+    device_info: DeviceInfo
+    status: StatusReply
+    trim: Trim | None
+    owner: str
+    language: str
+
+    def fields(self) -> dict[str, object]:
+        """Return it as data."""
+        status, hello = self.status, self.device_info.values
+        has_program = not self._why_no_program()
+        fault = None
+        if status.fault:
+            program = f"{status.fault_program:08x}"
+            fault = {"fault": fault_name(status.fault), "at": status.fault_at,
+                     "program": program}  # fmt: skip
+        return {
+            "name": self.device_info.name,
+            "id": f"{self.device_info.id:08x}",
+            "port": self.port,
+            "owner": self.owner,
+            "kit": f"{self.device_info.kit:04x}",
+            "robot": shipped_of_kit(self.device_info.kit),
+            "link": f"{hello.major}.{hello.minor}",
+            "isa": f"{self.device_info.isa[0]}.{self.device_info.isa[1]}",
+            "room": self.device_info.room,
+            "text_level": self._text_level(),
+            "state": row_name(STATES, status.state),
+            "program": f"{status.program:08x}" if has_program else None,
+            "code_bytes": status.length if has_program else None,
+            "saved": row_name(SAVED, status.saved),
+            "slot": status.slot if status.saved == SAVED_STORED else None,
+            "fault": fault,
+            "reset": row_name(RESETS, hello.reset),
+            "trim": None if self.trim is None else self.trim.as_data(),
+            "damaged": status.damaged,
+            "dropped": status.dropped,
+            "framing": status.framing,
+            "overrun": status.overrun,
+            "noise": [*status.noise] or None,
+        }
+
+    def line(self) -> str:
+        """Return the most important of it in one line."""
+        fields = self.fields()
+        state, owner = self._text(f"state_{fields['state']}"), self._text(f"whose_{self.owner}")
+        return f"{self._program()}; {state}; {owner}"
+
+    def text(self) -> str:
+        """Return it as lines."""
+        say, status, fields = self._text, self.status, self.fields()
+        kit = f"{fields['kit']} ({fields['robot']})" if fields["robot"] else fields["kit"]
+        state, reset = say(f"state_{fields['state']}"), say(f"reset_{fields['reset']}")
+        lines = [
+            say("info_robot", id=fields["id"], whose=say(f"whose_{self.owner}")),
+            say("info_kit", kit=kit, isa=fields["isa"], room=self.device_info.room),
+            self._reader(),
+            self._program(),
+            say("info_state", state=state, reset=reset),
+        ]
+        if self.trim not in (None, Trim(), Trim(pace=Pace())):
+            lines.append(say("info_trim", trim=words(self.trim or Trim(), self.language)))
+        if status.fault:
+            lines.append(self._fault())
+        if status.damaged or status.dropped or status.framing or status.overrun:
+            lines.append(say("info_hearing", **status._asdict()))
+        if any(status.noise):
+            left, right = status.noise
+            lines.append(say("info_noise", left=left, right=right))
+        return "\n".join(lines)
+
+    def _text(self, key: str, **values: object) -> str:
+        names = {"robot": name_of(self.device_info, self.language), "port": shown(self.port)}
+        return text(key, self.language).format(**{**names, **values})
+
+    def _program(self) -> str:
+        say, status, fields = self._text, self.status, self.fields()
+        why = self._why_no_program()
+        if why:
+            return say(why)
+        places = source_map.recall(status.program)
+        name = f" ({shown(places.name)})" if places is not None else ""
+        saved = say(f"saved_{fields['saved']}", slot=status.slot)
+        return say("info_program", checksum=fields["program"], name=name, code=status.length,
+                   saved=saved)  # fmt: skip
+
+    def _text_level(self) -> str | None:
+        """Return the level of text that the robot reads, or None."""
+        number = self.device_info.values.features & TEXT_LEVEL
+        return row_name(TEXT_LEVELS, number).lower() if number else None
+
+    def _reader(self) -> str:
+        level = self._text_level()
+        return self._text("info_no_text" if level is None else "info_text", level=level)
+
+    def _why_no_program(self) -> str:
+        """Return the reason why the robot holds no program, or an empty text."""
+        texts = {
+            SAVED_NOTHING: "info_no_program", SAVED_OTHER_VERSION: "info_other_version",
+            SAVED_UNREADABLE: "info_unreadable",
+        }  # fmt: skip
+        return texts.get(self.status.saved, "")
+
+    def _fault(self) -> str:
+        status = self.status
+        said = fault_sentence(status.fault, status.fault_at, status.fault_program, None,
+                              self.language)  # fmt: skip
+        return self._text("info_fault", fault=said)
+
+
+def described(connection: Connection) -> Description:
+    """Ask a robot that has answered HELLO what it says about itself."""
+    status = connection.ask(lambda session: session.status()).values
+    owner = whose(connection.device_info)
+    trim: Trim | None = None
+    if owner != OF_ANOTHER:  # it would count as a wrong key
+        with suppress(CommandError):
+            trim = told(connection.ask(lambda session: session.trim()).values)
+    return Description(
+        connection.port, connection.device_info, status, trim, owner, connection.language
+    )
+
+
+def in_a_line(connection: Connection, member: Member) -> Result:
+    """Describe one of many robots."""
+    member.meet(connection)
+    description = described(connection)
+    return Result(True, description.line(), description.fields())
+
+
+def introduced(connection: Connection, is_json: bool) -> int:
+    """Print what a robot says about itself and how soon it answers; return the exit code."""
+    connection.meet()
+    trips = _trips(connection, COUNT)
+    description = described(connection)
+    if is_json:
+        print(json.dumps({**description.fields(), **trips_as_data(trips)}, indent=2))
+    else:
+        print(description.text())
+        print(trips_in_words(trips, connection.language))
+    return 0
+
+
+def measuring(count: int) -> Work:
+    """Return the function that describes each of many robots, and says how soon it answers."""
+
+    def work(connection: Connection, member: Member) -> Result:
+        described = in_a_line(connection, member)
+        member.tell("crew_pinging")
+        trips = _trips(connection, count)
+        said = f"{described.said}; {trips_in_words(trips, connection.language)}"
+        return Result(True, said, {**described.fields, **trips_as_data(trips)})
+
+    return work
+
+
+def _trips(connection: Connection, count: int) -> list[float]:
+    """Return how many milliseconds each of so many answers took."""
+    trips = []
+    for _ in range(count):
+        begin_s = perf_counter()
+        connection.ask(lambda session: session.ping())
+        trips.append((perf_counter() - begin_s) * 1000)
+    return trips
+
+
+def _shortest_usual_longest(trips: list[float]) -> dict[str, float]:
+    return {"least": min(trips), "median": median(trips), "most": max(trips)}
+
+
+def trips_as_data(trips: list[float]) -> dict[str, object]:
+    found = _shortest_usual_longest(trips) if trips else {}
+    return {"round_trips": len(trips)} | {f"{name}_ms": round(ms, 1) for name, ms in found.items()}
+
+
+def trips_in_words(trips: list[float], language: str) -> str:
+    numbers = {name: f"{ms:.1f}" for name, ms in _shortest_usual_longest(trips).items()}
+    return text("ping", language).format(n=len(trips), **numbers)

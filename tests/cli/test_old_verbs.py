@@ -1,0 +1,194 @@
+"""What was a verb is a part of another command: its name says so, and nothing else has it."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tests.support.command import Tsc
+from tests.support.rows import each_row
+from tests.support.texts import LANGUAGES
+from tests.support.texts import said as all_said
+from tiniscript.base.languages import FOLDER
+from tiniscript.cli.options import Options
+from tiniscript.cli.texts.options import choosers_of, chosen, of_verb
+from tiniscript.cli.texts.verbs import COMMANDS, STEPS, VERBS, WAS, typed
+from tiniscript.cli.verbless import is_help
+
+OLD = "|".join(WAS)
+# `tsc name`, as a command or in a list of words; the changelog says what was called how, and when.
+NAMED = re.compile(
+    rf"(?:\btsc|-m tiniscript)(?:['\", ]+--lang['\", ]+\w\w)?['\", ]+(?:{OLD})\b(?!=)"
+)
+HISTORY = ("CHANGELOG.md", "tests/cli/test_old_verbs.py")
+MISSPELLED = "complie "  # as a document shows what is said then
+KINDS = ("c", "cpp", "h", "html", "ini", "ino", "js", "json", "md", "mjs", "ps1", "py", "sh", "svg",
+         "toml", "txt", "yml", "yaml")  # fmt: skip
+NOT_OURS = {".git", ".venv", ".pio", "node_modules", "__pycache__", "build", "dist"}
+
+
+def files() -> Iterator[Path]:
+    """Yield the texts of the repository, and of what it has made for itself."""
+    for path in ROOT.rglob("*"):
+        name = path.relative_to(ROOT)
+        if not NOT_OURS & {*name.parts} and path.suffix[1:] in KINDS and path.is_file():
+            if name.as_posix() not in HISTORY and ".mypy_cache" not in name.parts:
+                yield path
+
+
+def test_no_file_names_an_old_verb() -> None:
+    seen = 0
+    found: list[str] = []
+    for path in files():
+        seen += 1
+        text = path.read_text(encoding="utf-8", errors="replace")
+        found += [f"{path.relative_to(ROOT)}: {each[0]}" for each in NAMED.finditer(text)]
+    assert seen > 1000 and not found, "\n".join(found)
+
+
+def test_what_is_searched_for_is_found() -> None:
+    for name in WAS:
+        for words in ("Try:  tsc {}", "`tsc {} x`", '["tsc", "{}"]', "python -m tiniscript {}",
+                      '"-m tiniscript", "--lang", "es", "{}"'):  # fmt: skip
+            assert NAMED.search(words.format(name)), words
+    for command in COMMANDS:
+        assert not NAMED.search(f"tsc {typed(command)}"), command
+
+
+# -- what texts say that can be typed -------------------------------------------------------------
+
+
+def commands_in(text: str, is_document: bool) -> Iterator[str]:
+    """Yield the commands of a text: between backticks, and in messages behind two blanks, too."""
+    yield from re.findall(r"`tsc ([^`\n]+)`", text)
+    yield from re.findall(r"^\$ tsc (.+)$", text, re.M)
+    if not is_document:
+        yield from re.findall(r"  tsc ((?:[^ `]+ ?)+)", text)
+
+
+def wrong_in(command: str) -> str | None:
+    """Return which word of a command no table has, or None."""
+    if command.startswith(MISSPELLED):
+        return None
+    words = re.sub(r"[\"'“”|]|\{\w+\}|…|\.\.\.", "", command).split()
+    if not words or words[0].startswith("-") or not re.fullmatch("[a-z]+", words[0]):
+        return None  # `tsc --help`, `tsc COMMAND`
+    if words[0] not in VERBS and not is_help(words[0]):
+        return words[0]
+    name, _ = chosen(words[0] if words[0] in VERBS else "help", words[1:])
+    known = {
+        flag for option in [*of_verb(name), *choosers_of(name)] for flag in option.flags.split()
+    }
+    flags = [re.match("-[-a-z0-9]+", word) for word in words[1:]]
+    given = [flag[0] for flag in flags if flag is not None and flag[0].startswith("--")]
+    return next((flag for flag in given if flag not in known), None)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_what_messages_say_to_type_is_a_command(language: str) -> None:
+    found = 0
+    for path in (FOLDER / language).glob("*.toml"):
+        if path.stem == "language" or not all_said(language, path.stem):
+            continue
+        for key, text in all_said(language, path.stem).items():
+            for command in commands_in(text, is_document=False):
+                found += 1
+                assert wrong_in(command) is None, (path.stem, key, command)
+    assert found > 100
+
+
+def test_what_documents_say_to_type_is_a_command() -> None:
+    """Those that say how something was before do not count."""
+    found = 0
+    for path in files():
+        if path.suffix != ".md":
+            continue
+        for command in commands_in(path.read_text(encoding="utf-8"), is_document=True):
+            found += 1
+            assert wrong_in(command) is None, (path.relative_to(ROOT), command)
+    assert found > 500
+
+
+# -- the old names --------------------------------------------------------------------------------
+
+
+@each_row("name", WAS)
+def test_an_old_name_says_what_it_is_now(tsc: Tsc, name: str) -> None:
+    assert name not in VERBS
+    for language in LANGUAGES:
+        for more in ([], ["--nonsense"], ["--lang", language]):
+            done = tsc("--lang", language, name, *more).gives(2, out="")
+            assert done.err.count("\n") == 1 and name in done.err
+            now = done.err.rstrip("\n").rpartition("  tsc ")[2]
+            verb, *words = shlex.split(now)
+            assert chosen(verb, words)[0] == WAS[name], now
+            assert "nonsense" not in now and wrong_in(now) is None
+
+
+@each_row("was, now", [
+    ("explain TS012", "check --explain TS012"), ("explain", "check --explain"),
+    ("ports --ask --json", "doctor --ports --ask --json"), ("info --all", "doctor --all"),
+    ("ping --port COM5 --count 3", "doctor --port COM5 --count 3"),
+    ("fetch", "show --port P"), ("fetch -o a.bin --port P", "show -o a.bin --port P"),
+    ("fetch --virtual", "show --virtual"), ("undo --all", "start --previous --all"),
+    ("keys", "set owner --list"), ("keys --accept 12347f3a", "set owner --accept 12347f3a"),
+    ("keys --json", "set owner --list --json"),
+    ("disown --teacher", "set owner --give-up --teacher"),
+    ("board my.toml -o own.h", "firmware --board my.toml -o own.h"),
+    ("wiring -o 'a page.html'", "firmware --wiring -o 'a page.html'"),
+    ("name 'ANA\x1b[31m'", "set name 'ANA?[31m'"), ("trim --balance -5", "set trim --balance -5"),
+    ("wifi --help", "set wifi --help"), ("completion bash", "help --completion bash"),
+    ("text on", "set text on"), ("link", "monitor --hold"),
+])  # fmt: skip
+def test_what_was_typed_behind_it_stands_behind_the_new_one(tsc: Tsc, was: str, now: str) -> None:
+    done = tsc(*shlex.split(was), "--lang", "en").gives(2, out="")
+    assert done.err.rstrip("\n").rpartition("  tsc ")[2].removesuffix(" --lang en") == now
+
+
+def test_help_on_an_old_name_is_that_of_the_new_command(tsc: Tsc) -> None:
+    for name, command in WAS.items():
+        told = tsc("help", name, "--lang", "en").gives(0)
+        assert told.out == tsc("help", command, "--lang", "en").out or command in STEPS
+
+
+@each_row("words, first, second", [
+    ("doctor --ports --identify", "doctor --ports", "doctor --identify"),
+    ("set owner --give-up --list", "set owner --give-up", "set owner --list"),
+    ("firmware --wiring --board x", "firmware --wiring", "firmware --board"),
+])  # fmt: skip
+def test_two_steps_are_not_done_at_once(tsc: Tsc, words: str, first: str, second: str) -> None:
+    tsc(*words.split(), "--lang", "en").gives(2, f"tsc {first} or tsc {second}", out="")
+
+
+@each_row("words, other", [
+    ("doctor --pin 1234", "doctor --module"), ("doctor --ports --watch 3", "doctor"),
+    ("set owner --balance 3", "set trim"), ("show --port P --arduino", "show"),
+    ("check --explain TS012 --fix", "check"), ("set --give-up", "set owner --give-up"),
+])  # fmt: skip
+def test_an_option_of_another_step_is_named_with_it(tsc: Tsc, words: str, other: str) -> None:
+    option = words.split()[-2] if words.split()[-1][0] != "-" else words.split()[-1]
+    said = f"{option} is an option of tsc {other}, not of tsc "
+    tsc(*words.split(), "--lang", "en").gives(2, said, f"Try:  tsc {other} --help", out="")
+
+
+def test_the_word_behind_set_may_come_behind_options(tsc: Tsc) -> None:
+    for words in (["--port", "trim", "name"], ["--lang", "en", "name"], ["name", "--port", "x"]):
+        tsc("set", *words).gives(2, "which name?", out="")
+    tsc("set", "--lang", "en").gives(2, "owner, name, trim, text or wifi")
+    tsc("set", "trmi", "--lang", "en").gives(2, "Did you mean trim?")
+
+
+def test_each_command_is_chosen_by_what_is_typed_for_it() -> None:
+    for command in COMMANDS:
+        verb, *words = typed(command).split()
+        assert chosen(verb, words)[0] == command
+        for flag in STEPS[command].choosers if command in STEPS else ():
+            head = STEPS[command].head.split()[1:]
+            assert chosen(verb, [*head, f"{flag}=x"])[0] == command
+            assert chosen(verb, [*head, "--", flag])[0] != command
+        assert Options(command, "en").verb == typed(command)
