@@ -215,7 +215,7 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
 @pytest.mark.parametrize("language", DOCUMENTED)
 @of_each
 def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) -> None:
-    page = (ROOT / name_in(language, "docs/command.en.md")).read_text(encoding="utf-8")
+    page = (ROOT / name_in(language, "docs/en/command.md")).read_text(encoding="utf-8")
     common, *sections = page.split("\n## ")
     (section,) = (each for each in sections if each.startswith(f"`tsc {verb}`\n"))
     typed = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)

@@ -22,7 +22,7 @@ from tiniscript.cli.commands.doctor import BLANK, STEPS
 from tiniscript.cli.options import Options
 from tools.site.documents import sources
 
-LISTS = {each: ROOT / name for each, name in sources(ROOT, "docs/bring-up.md").items()}
+LISTS = {each: ROOT / name for each, name in sources(ROOT, "docs/en/bring-up.md").items()}
 each_list = pytest.mark.parametrize(("language", "path"), LISTS.items(), ids=list(LISTS))
 
 

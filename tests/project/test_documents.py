@@ -91,7 +91,7 @@ def test_python(
     assert capsys.readouterr().out == example.output
 
 
-@each_row("name", sources(ROOT, "docs/api.en.md").values())
+@each_row("name", sources(ROOT, "docs/en/api.md").values())
 def test_each_page_of_the_library_names_all_of_it(name: str) -> None:
     page = (ROOT / name).read_text(encoding="utf-8")
     absent = [each for each in tiniscript.__all__ if f"`{each}" not in page]

@@ -16,7 +16,7 @@ from tools.release import facts
 
 VERSION = "9.8.7"
 URL = "https://example.org/tiniscript"
-FILES = ("CITATION.cff", "LICENSE", "docs/versions.md", "pyproject.toml", "CHANGELOG.md",
+FILES = ("CITATION.cff", "LICENSE", "docs/en/versions.md", "pyproject.toml", "CHANGELOG.md",
          "compiler/tiniscript/base/version.py")  # fmt: skip
 CHANGES = f"# Changelog\n\n## Unreleased\n\n## {VERSION} (2031-02-03)\n\n- All.\n"
 
@@ -78,7 +78,7 @@ WRONG: dict[str, Callable[[Path], object]] = {
     "CITATION.cff has the date 2030": replaced(
         "CITATION.cff", "license:", "date-released: 2030-01-01\nlicense:"
     ),
-    "docs/versions.md has version": replaced("docs/versions.md", f"`{VERSION}`", "`0.0.1`"),
+    "docs/en/versions.md has version": replaced("docs/en/versions.md", f"`{VERSION}`", "`0.0.1`"),
     "LICENSE names Somebody": replaced("LICENSE", facts.PEOPLE, "Somebody"),
     "CITATION.cff names nobody": replaced("CITATION.cff", facts.PEOPLE, ""),
     "pyproject.toml names": replaced("pyproject.toml", facts.PEOPLE, "Ann"),

@@ -140,18 +140,18 @@ def test_a_dead_link_ends_the_build(
 
 def test_links_lead_to_pages_and_copies() -> None:
     on = shelf(ROOT, documents(ROOT))
-    text = page("docs/monday.en.md", on)
+    text = page("docs/en/monday.md", on)
     assert "](wiring/tinibot.md)" in text
-    assert '<a href="../files/docs/poster/poster.en.pdf">' in page("docs/materials.en.md", on)
-    assert '<a href="../en/command.html' in page("docs/comandos.es.md", on)
-    assert "docs/wiring/liner.en.svg" not in on.files | on.pictures
-    assert "![" in page("docs/wiring/liner.en.md", on)
-    assert "docs/wiring/liner.en.svg" in on.pictures
+    assert '<a href="../files/docs/poster/poster.en.pdf">' in page("docs/en/materials.md", on)
+    assert '<a href="../en/command.html' in page("docs/es/command.md", on)
+    assert "docs/pictures/wiring/liner.en.svg" not in on.files | on.pictures
+    assert "![" in page("docs/en/wiring/liner.md", on)
+    assert "docs/pictures/wiring/liner.en.svg" in on.pictures
 
 
 def test_code_is_left_as_it_is(clone: Path) -> None:
     (clone / "docs" / "store.md").write_text("# A\n\n```text\n[x](nowhere.md)\n```\n")
-    assert "[x](nowhere.md)" in page("docs/store.md", shelf(clone, documents(clone)))
+    assert "[x](nowhere.md)" in page("docs/develop/store.md", shelf(clone, documents(clone)))
 
 
 def test_programs_have_colours() -> None:

@@ -27,7 +27,7 @@ from tiniscript.codegen.text.line import PlainCode, plain_code
 from tiniscript.robots.text_levels import CODE_BYTES
 
 TINIBOT, GRABBER = robots.load("tinibot").kit, robots.load("grabber").kit
-# what is for the optimising compiler alone: `docs/text.md` has none of it
+# what is for the optimising compiler alone: `docs/develop/text.md` has none of it
 FUSED = re.compile(
     r"PUSH_READ|(SET_VAR|ADD_VAR|WAIT|BEEP|MOTORS|LOOP|UNTIL|IF|IF_VAR)(8|16)|MOVE8|IF_NOT|INC_|DEC_"
     r"|ADD_VAR|AND$|OR$|END$|\w+_FAR$"

@@ -38,9 +38,9 @@ li.check { list-style: none; }
 @page { size: A4; margin: 15mm; }
 @media print { h2, h3 { break-after: avoid; } tr, pre, li { break-inside: avoid; } }
 """
-GUIDES = ("docs/monday.en.md", "docs/lessons.en.md", "docs/materials.en.md", "docs/studio.en.md",
-          "docs/class.en.md", "docs/language.en.md", "docs/robots.en.md", "docs/command.en.md",
-          "docs/worlds.en.md", "docs/modules.en.md", "docs/api.en.md", "README.md")  # fmt: skip
+GUIDES = ("docs/en/monday.md", "docs/en/lessons.md", "docs/en/materials.md", "docs/en/studio.md",
+          "docs/en/class.md", "docs/en/language.md", "docs/en/robots.md", "docs/en/command.md",
+          "docs/en/worlds.md", "docs/en/modules.md", "docs/en/api.md", "README.md")  # fmt: skip
 INDEX, POSTER = "index.html", "docs/poster/poster.en.pdf"
 LINK = re.compile(r'(href|src)="([^"#:]+)(#[^"]*)?"')
 

@@ -3,7 +3,7 @@
 `python -m tools.campaign` goes on where the last one ended, until every goal is reached; Ctrl-C
 ends it at once, and all but the piece that was under way is kept. `--list` says what is reached,
 and when; `--minutes 30` ends it after a while. What committed code has reached is written into the
-table of `docs/guarantees.md`. Calls the campaigns of the tests; has none of its own.
+table of `docs/en/guarantees.md`. Calls the campaigns of the tests; has none of its own.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The guarantees, how each is tested, and how many times that is to have been done.
 
-The one table of the campaign: `docs/guarantees.md` and `python -m tools.campaign` are made from it.
+The one table of the campaign: `docs/en/guarantees.md` and `python -m tools.campaign` are made from it.
 Knows commands, and no results.
 """
 

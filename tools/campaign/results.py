@@ -1,4 +1,4 @@
-"""What campaigns have measured: `results.json`, and from it the table of `docs/guarantees.md`.
+"""What campaigns have measured: `results.json`, and from it the table of `docs/en/guarantees.md`.
 
 A result belongs to the code with which it was measured: figures of other code are not added up.
 """
@@ -75,7 +75,7 @@ def measured(goal: Goal, result: Result | None) -> str:
 
 
 def rows() -> list[tuple[str, ...]]:
-    """Return the table of `docs/guarantees.md`."""
+    """Return the table of `docs/en/guarantees.md`."""
     results = read()
     found: list[tuple[str, ...]] = []
     for goal in GOALS:

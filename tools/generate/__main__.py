@@ -230,7 +230,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     *((ROOT / "docs" / name, make) for name, make in DOCUMENTS.items()),
     (PAYLOADS, partial(payloads, COMMAND)),
     *(
-        (ROOT / name_in(language, "docs/command.en.md"), partial(page, language, COMMAND, table))
+        (ROOT / name_in(language, "docs/en/command.md"), partial(page, language, COMMAND, table))
         for language in DOCUMENTED
     ),
     *((ROOT / "docs" / "poster" / name, make) for name, make in posters(COMMAND).items()),

@@ -23,7 +23,7 @@ PACKAGE = ROOT / "compiler" / "tiniscript"
 
 
 def architecture_document() -> str:
-    """Return `docs/architecture.md` with the picture of the modules, and what each folder says."""
+    """Return `docs/develop/architecture.md` with the picture of the modules, and what each folder says."""
     rows = []
     for path in sorted(PACKAGE.glob("*/**/__init__.py")):
         said = ast.get_docstring(ast.parse(path.read_bytes())) or ""
@@ -53,7 +53,7 @@ def link_document(document: str) -> str:
 
 
 def text_document() -> str:
-    """Return `docs/text.md` with the table of levels."""
+    """Return `docs/develop/text.md` with the table of levels."""
     rows = [
         (f"`{each.name}`", ", ".join(f"`{word}`" for word in sorted(each.lacks)) or "nothing",
          each.room, min(CODE_BYTES, each.room))
@@ -64,14 +64,14 @@ def text_document() -> str:
 
 
 def guarantees_document() -> str:
-    """Return `docs/guarantees.md` with the table of goals and figures."""
+    """Return `docs/en/guarantees.md` with the table of goals and figures."""
     from tools.campaign.results import HEAD, rows
 
     return spliced(_text("guarantees.md"), "guarantees", table(HEAD, rows()))
 
 
 def lessons_document() -> str:
-    """Return `docs/lessons.en.md` with the table of criteria."""
+    """Return `docs/en/lessons.md` with the table of criteria."""
     return spliced(_text("lessons.en.md"), "criteria", table(*criteria()))
 
 
@@ -157,11 +157,11 @@ DOCUMENTS: dict[str, Callable[[], str]] = {
     "guarantees.md": guarantees_document,
     **{
         Path(path).name: partial(bring_up_document, Path(path).name, language)
-        for language, path in sources(ROOT, "docs/bring-up.md").items()
+        for language, path in sources(ROOT, "docs/en/bring-up.md").items()
     },
     **{
         Path(path).name: partial(language_document, Path(path).name, language)
-        for language, path in sources(ROOT, "docs/language.en.md").items()
+        for language, path in sources(ROOT, "docs/en/language.md").items()
     },
     "lessons.en.md": lessons_document,
 }

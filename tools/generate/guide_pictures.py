@@ -21,7 +21,7 @@ from tools.generate.arena import FLOOR, WALL, WAY, arena, driven
 from tools.site.documents import sources
 
 DOCS = ROOT / "docs"
-GUIDES = {each: Path(file).name for each, file in sources(ROOT, "docs/monday.en.md").items()}
+GUIDES = {each: Path(file).name for each, file in sources(ROOT, "docs/en/monday.md").items()}
 PAD, PAPER, SKY = 10, "#ffffff", "#dcebfb"
 
 

@@ -1,6 +1,6 @@
 """What is made of the table of messages: `messages.h`, `messages.cpp`, `link/payloads.py`.
 
-`__main__.py` writes the files, and the tables of `docs/link.md`, which are here too.
+`__main__.py` writes the files, and the tables of `docs/develop/link.md`, which are here too.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def header(command: str) -> str:
     )  # fmt: skip
     about = (
         "The numbers of the link: messages, where the fields of their requests begin,",
-        "statuses, states, times. Knows no behaviour. `docs/link.md` says what they mean.",
+        "statuses, states, times. Knows no behaviour. `docs/develop/link.md` says what they mean.",
     )
     return cpp_file(command, "link/messages.h", about, "\n".join(parts), "../vm/flash.h")
 

@@ -16,7 +16,7 @@ _DATED = re.compile(r"^## (\d+\.\d+\.\d+) \((\d{4}-\d{2}-\d{2})\)$", re.MULTILIN
 # Each place that repeats the version, and how.
 _REPEATED = {
     "CITATION.cff": r"(?m)^version: (\S+)$",
-    "docs/versions.md": r"\| TiniScript, the package \| `([^`]+)` \|",
+    "docs/en/versions.md": r"\| TiniScript, the package \| `([^`]+)` \|",
 }
 # Each place that repeats who has made it.
 _PEOPLE = {
