@@ -39,7 +39,7 @@ from tiniscript.vm.tasks import machine_of
 from tools.builds import conformance
 
 TINIBOT = tuple(line.removesuffix("\n") for line in robots.load("tinibot").kit.lines())
-PAGE = ROOT / "docs" / "conformance.md"
+PAGE = ROOT / "docs" / "develop" / "conformance.md"
 FROM_SPEC = shlex.join([sys.executable, "-m", "tests.conform.spec_machine"])
 
 

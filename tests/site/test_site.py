@@ -106,12 +106,12 @@ def test_a_link_that_leads_nowhere_ends_the_build(
 ) -> None:
     few = [each for each in documents(ROOT) if each.name in ("link", "store")]  # in English alone
     monkeypatch.setattr(site, "documents", lambda root: few)
-    store = clone / "docs" / "store.md"
+    store = clone / "docs" / "develop" / "store.md"
     text = "# A title\n"
     for path in clone.rglob("*.md"):
         path.write_text(text, encoding="utf-8")
     store.write_text(f"{text}\n[no](nowhere.md)\n", encoding="utf-8")
-    with pytest.raises(CannotMake, match=r"^docs/store\.md: nowhere\.md$"):
+    with pytest.raises(CannotMake, match=r"^docs/develop/store\.md: nowhere\.md$"):
         site.build(clone, tmp_path / "site", has_studio=False)
     # what Sphinx looks at itself
     store.write_text(f"{text}\n[no](link.md#elsewhere)\n\n```strange\nx\n```\n", encoding="utf-8")
@@ -150,7 +150,7 @@ def test_links_lead_to_pages_and_copies() -> None:
 
 
 def test_code_is_left_as_it_is(clone: Path) -> None:
-    (clone / "docs" / "store.md").write_text("# A\n\n```text\n[x](nowhere.md)\n```\n")
+    (clone / "docs" / "develop" / "store.md").write_text("# A\n\n```text\n[x](nowhere.md)\n```\n")
     assert "[x](nowhere.md)" in page("docs/develop/store.md", shelf(clone, documents(clone)))
 
 

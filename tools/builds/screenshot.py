@@ -73,11 +73,11 @@ GUIDES = {
     each: "".join((ROOT / guide).read_text("utf-8") for guide in (name, CLASS.get(each)) if guide)
     for each, name in sources(ROOT, "docs/en/studio.md").items()
 }
-LANGUAGES = tuple(each for each, text in GUIDES.items() if f"(studio.{each}.png)" in text)
+LANGUAGES = tuple(each for each, text in GUIDES.items() if f"/studio.{each}.png)" in text)
 
 
 def picture(language: str, scene: str = "") -> Path:
-    return ROOT / "docs" / f"studio{scene}.{language}.png"
+    return ROOT / "docs" / "pictures" / f"studio{scene}.{language}.png"
 
 
 def main(arguments: list[str] | None = None) -> int:

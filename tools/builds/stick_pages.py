@@ -19,11 +19,11 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 from tiniscript import robots
-from tiniscript.base.languages import SOURCE, about, languages, text, told_in
+from tiniscript.base.languages import SOURCE, about, text, told_in
 from tiniscript.lessons import catalogue
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.plan import plan_of
-from tools.site.documents import name_in, sources
+from tools.site.documents import language_of, name_in, sources
 
 STYLE = """\
 body { font-family: Verdana, 'DejaVu Sans', Arial, sans-serif; line-height: 1.5; color: #111;
@@ -53,9 +53,8 @@ def make(root: Path, folder: Path) -> None:
         body, title = rendered(source.read_text(encoding="utf-8"))
         wanted |= {(source.parent / path).resolve() for _, path, _ in LINK.findall(body)}
         body = LINK.sub(partial(_to_page, folder=source.parent, documents=documents), body)
-        own = source.name.split(".")[-2]
-        language = own if own in languages() else SOURCE
-        _write(folder / source.relative_to(root).with_suffix(".html"), page(title, body, language))
+        file = source.relative_to(root)
+        _write(folder / file.with_suffix(".html"), page(title, body, language_of(file.as_posix())))
     for path in sorted(wanted - {each.resolve() for each in documents}):
         target = folder / path.relative_to(root.resolve())
         if path.is_file():

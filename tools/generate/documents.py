@@ -9,7 +9,6 @@ import ast
 import os
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
-from pathlib import Path
 
 from tiniscript.base.languages import SOURCE, languages, text
 from tiniscript.base.words import WORDS
@@ -18,18 +17,18 @@ from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools import ROOT, measures
 from tools.site.documents import LIST, documents, sources
 
-FOLDER = ROOT / "docs"
 PACKAGE = ROOT / "compiler" / "tiniscript"
 
 
 def architecture_document() -> str:
-    """Return `docs/develop/architecture.md` with the picture of the modules, and what each folder says."""
+    """Return `docs/develop/architecture.md` with its picture, and what each folder says."""
     rows = []
     for path in sorted(PACKAGE.glob("*/**/__init__.py")):
         said = ast.get_docstring(ast.parse(path.read_bytes())) or ""
         about = " ".join(said.split("\n\n")[0].split())
         rows.append((f"`{path.parent.relative_to(PACKAGE).as_posix()}/`", about))
-    made = spliced(_text("architecture.md"), "packages", table(("folder", "content"), rows))
+    made = table(("folder", "content"), rows)
+    made = spliced(_text("docs/develop/architecture.md"), "packages", made)
     return spliced(made, "modules", _modules())
 
 
@@ -60,19 +59,19 @@ def text_document() -> str:
         for each in LEVELS.values()
     ]  # fmt: skip
     made = table(("level", "lacks", "room in bytes", "bytes of code, at most"), rows)
-    return spliced(_text("text.md"), "levels", made)
+    return spliced(_text("docs/develop/text.md"), "levels", made)
 
 
 def guarantees_document() -> str:
     """Return `docs/en/guarantees.md` with the table of goals and figures."""
     from tools.campaign.results import HEAD, rows
 
-    return spliced(_text("guarantees.md"), "guarantees", table(HEAD, rows()))
+    return spliced(_text("docs/en/guarantees.md"), "guarantees", table(HEAD, rows()))
 
 
 def lessons_document() -> str:
     """Return `docs/en/lessons.md` with the table of criteria."""
-    return spliced(_text("lessons.en.md"), "criteria", table(*criteria()))
+    return spliced(_text("docs/en/lessons.md"), "criteria", table(*criteria()))
 
 
 def bring_up_document(document: str, language: str) -> str:
@@ -129,7 +128,7 @@ def _linked(source: str) -> str:
 
 
 def _text(name: str) -> str:
-    return (FOLDER / name).read_text(encoding="utf-8")
+    return (ROOT / name).read_text(encoding="utf-8")
 
 
 def spliced(text: str, name: str, table: str) -> str:
@@ -149,21 +148,21 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 DOCUMENTS: dict[str, Callable[[], str]] = {
-    "architecture.md": architecture_document,
-    "link.md": partial(link_document, "link.md"),
-    "network.md": partial(link_document, "network.md"),
-    "owners.md": partial(link_document, "owners.md"),
-    "text.md": text_document,
-    "guarantees.md": guarantees_document,
+    "docs/develop/architecture.md": architecture_document,
+    "docs/develop/link.md": partial(link_document, "docs/develop/link.md"),
+    "docs/develop/network.md": partial(link_document, "docs/develop/network.md"),
+    "docs/develop/owners.md": partial(link_document, "docs/develop/owners.md"),
+    "docs/develop/text.md": text_document,
+    "docs/en/guarantees.md": guarantees_document,
     **{
-        Path(path).name: partial(bring_up_document, Path(path).name, language)
+        path: partial(bring_up_document, path, language)
         for language, path in sources(ROOT, "docs/en/bring-up.md").items()
     },
     **{
-        Path(path).name: partial(language_document, Path(path).name, language)
+        path: partial(language_document, path, language)
         for language, path in sources(ROOT, "docs/en/language.md").items()
     },
-    "lessons.en.md": lessons_document,
+    "docs/en/lessons.md": lessons_document,
 }
 
 

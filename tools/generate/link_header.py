@@ -171,7 +171,7 @@ def bit_rows(table: Sequence[tuple[int, str, str]], bits: str = "bits", digits: 
 
 
 DOCUMENT_TABLES: dict[str, dict[str, Callable[[], Rows]]] = {
-    "link.md": {
+    "docs/develop/link.md": {
         "messages": message_rows,
         "modes": lambda: bit_rows(messages.MODES),
         "wheels": lambda: bit_rows(messages.WHEELS, "bit"),
@@ -187,12 +187,12 @@ DOCUMENT_TABLES: dict[str, dict[str, Callable[[], Rows]]] = {
             [(number, f"`{name}`", what) for number, name, what in messages.LINK_FAULTS],
         ),
     },
-    "network.md": {
+    "docs/develop/network.md": {
         "wifi_steps": lambda: number_rows(messages.WIFI_STEPS),
         "wifi_modes": lambda: number_rows(messages.WIFI_MODES),
         "wifi_states": lambda: number_rows(messages.WIFI_STATES),
     },
-    "owners.md": {"keys": lambda: number_rows(messages.KEYS)},
+    "docs/develop/owners.md": {"keys": lambda: number_rows(messages.KEYS)},
 }
 
 
