@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT
+from tools.site.documents import language_of
 
 PAGES = sorted([*ROOT.glob("README*.md"), *(ROOT / "docs").glob("*/*.md")])
 ANSWER = "// "
@@ -32,7 +33,7 @@ def conversations(page: Path) -> Iterator[list[str]]:
 
 
 EVERY = [
-    pytest.param(page.name.split(".")[-2], lines, id=f"{page.name}-{k}")
+    pytest.param(language_of(page.relative_to(ROOT).as_posix()), lines, id=f"{page.name}-{k}")
     for page in PAGES
     for k, lines in enumerate(conversations(page))
 ]
