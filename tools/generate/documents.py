@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import ast
 import os
+import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
+from pathlib import Path
 
 from tiniscript.base.languages import SOURCE, languages, text
 from tiniscript.base.words import WORDS
@@ -96,7 +98,7 @@ def language_document(document: str, language: str) -> str:
 
 
 def list_of_documents(command: str) -> str:
-    """Return `docs/README.md`: the documents' titles, in all languages side by side."""
+    """Return `docs/README.md`: title and first sentence of each, in all languages side by side."""
     found = [each for each in documents(ROOT) if each.sources.get(SOURCE) != LIST]
     shown = [each for each in languages() if any(each in one.sources for one in found)]
 
@@ -119,12 +121,22 @@ def list_of_documents(command: str) -> str:
 
 
 def _linked(source: str) -> str:
-    """Return the title of a document, with a link to it, or nothing."""
+    """Return the title of a document, with a link to it, and its first sentence, or nothing."""
     if not source:
         return ""
-    text = (ROOT / source).read_text(encoding="utf-8")
-    title = next(row[2:] for row in text.splitlines() if row.startswith("# "))
-    return f"[{title}]({os.path.relpath(source, 'docs')})"
+    title, sentence = _about((ROOT / source).read_text(encoding="utf-8"))
+    link = f"[{title}]({Path(os.path.relpath(source, 'docs')).as_posix()})"
+    return f"{link}<br>{sentence}" if sentence else link
+
+
+def _about(text: str) -> tuple[str, str]:
+    """Return the title of a document, and the sentence that says who reads it, and for what."""
+    _, _, body = f"\n{text}".partition("\n# ")
+    title, *paragraphs = body.split("\n\n")
+    first = next((each for each in paragraphs if not re.match(r"[\[!<]", each)), "")
+    prose = first if re.match(r"\w|`[^`]", first) else ""
+    words = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", " ".join(prose.split()))
+    return title, re.split(r"(?<=\.)\s", words)[0]
 
 
 def _text(name: str) -> str:
