@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
@@ -98,9 +98,12 @@ def _lessons(root: Path) -> list[Document]:
     ]
 
 
-def documents(root: Path) -> list[Document]:
-    """Return the documents of a clone, in the order in which the site shows them."""
-    return [
+def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
+    """Return the documents of a clone, in the order in which the site shows them.
+
+    `built` are the names of those that are there beside its files.
+    """
+    found = [
         *_guides(root, "teach", "monday", "bring-up", "lessons", "materials", "measure", "modules"),
         *_guides(root, "write", "language", "robots", "studio", "command"),
         *_guides(root, "teach", "class"),
@@ -119,3 +122,14 @@ def documents(root: Path) -> list[Document]:
         *_rows(root, "build", "CHANGELOG.md"),
         Document("documents", "build", {SOURCE: LIST}),
     ]
+    there = [
+        each
+        for each in found
+        if each.sources[SOURCE] in built or (root / each.sources[SOURCE]).is_file()
+    ]
+    return [each._replace(sources=_with(built, each.sources)) for each in there]
+
+
+def _with(built: Collection[str], kept: dict[str, str]) -> dict[str, str]:
+    names = {language: name_in(language, kept[SOURCE]) for language in languages()}
+    return {each: name for each, name in names.items() if each in kept or name in built}
