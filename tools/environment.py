@@ -52,13 +52,13 @@ SAID = {
     ),
     "no_pip": (
         "pip could not install; is this computer online? A proxy is given by the variable"
-        " HTTPS_PROXY, as http://proxy:3128. Without internet: docs/monday.en.md, a USB stick."
+        " HTTPS_PROXY, as http://proxy:3128. Without internet: docs/en/monday.md, a USB stick."
         " What pip said is in {log}; at its end:\n{end}",
         "pip no pudo instalar; ¿hay internet? Un proxy se indica con la variable"
-        " HTTPS_PROXY, como http://proxy:3128. Sin internet: docs/lunes.es.md, una memoria USB."
+        " HTTPS_PROXY, como http://proxy:3128. Sin internet: docs/es/monday.md, una memoria USB."
         " Lo que dijo pip está en {log}; al final:\n{end}",
         "pip não conseguiu instalar; há internet? Um proxy se indica com a variável"
-        " HTTPS_PROXY, como http://proxy:3128. Sem internet: docs/monday.pt.md, um pen drive (USB)."
+        " HTTPS_PROXY, como http://proxy:3128. Sem internet: docs/pt/monday.md, um pen drive (USB)."
         " O que pip disse está em {log}; no fim:\n{end}",
     ),
 }

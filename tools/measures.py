@@ -96,7 +96,6 @@ def _words(tracked: list[Path]) -> int:
         ROOT / "CHANGELOG.md",
         ROOT / "compiler" / "tiniscript" / "lessons",
         ROOT / "tests" / "cases",
-        ROOT / "docs" / "wiring",
     )
     count = 0
     for path in tracked:

@@ -1,7 +1,7 @@
 """TiniScript: from a line of text to what a robot does.
 
 For programs in Python there are `compile`, `check`, `run`, `show`, `connect` and `virtual_robot`:
-`docs/api.en.md`. They are in `library/`, and are imported when they are used. So is `compile_text`,
+`docs/en/api.md`. They are in `library/`, and are imported when they are used. So is `compile_text`,
 the whole road from text to image: `library/compiling.py`.
 """
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tiniscript.library.runs import Fault, Trace, TraceEvent, run
     from tiniscript.library.simulated import VirtualRobotConnection, virtual_robot
 
-__all__ = (  # what `docs/api.en.md` promises
+__all__ = (  # what `docs/en/api.md` promises
     "Ending",
     "Fault",
     "Message",

@@ -19,8 +19,10 @@ from tools.campaign.goals import GOALS, Goal
 from tools.campaign.results import Result
 
 HERE = "tests.campaign.stand_in"  # a campaign that takes no time
-DONE = Goal("done", "It ends.", "things", 25, 10, f"{HERE} {{count}} --seed {{seed}}", 5)
-BAD = Goal("bad", "It does not.", "things", 10, 5, f"{HERE} {{count}} --seed {{seed}} --fails", 5)
+IS_OLD = results.is_old
+COMMAND, PATHS = f"{HERE} {{count}} --seed {{seed}}", ("tried",)
+DONE = Goal("done", "It ends.", "things", 25, 10, COMMAND, PATHS, 5)
+BAD = Goal("bad", "It does not.", "things", 10, 5, f"{COMMAND} --fails", PATHS, 5)
 
 
 @pytest.fixture(autouse=True)
@@ -32,6 +34,7 @@ def own_goals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(campaign, "BY_NAME", {"done": DONE, "bad": BAD})
     monkeypatch.setattr(results, "WRITTEN", tmp_path / "results.json")
     monkeypatch.setattr(results, "commit", lambda: "a" * 10)
+    monkeypatch.setattr(results, "is_old", lambda goal, result: False)
     monkeypatch.setattr(campaign, "FIRST_SEED", 7)
     run = subprocess.run
 
@@ -103,6 +106,48 @@ def test_what_code_has_reached_that_is_in_no_commit_is_not_kept(
     monkeypatch.setattr(results, "commit", lambda: "a" * 10 + "+")
     campaign.main(["bad"])
     assert results.read() == {}
+
+
+def test_a_figure_is_old_when_what_it_tried_has_changed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def committed(name: str, text: str) -> str:
+        (tmp_path / name).write_text(text)
+        for words in (("add", "."), ("-c", "user.name=a", "-c", "user.email=a@b", "commit", "-mx")):
+            assert results.git(*words).returncode == 0
+        return results.git("rev-parse", "--short=10", "HEAD").stdout.strip()
+
+    monkeypatch.setattr(results, "is_old", IS_OLD)
+    monkeypatch.setattr(results, "ROOT", tmp_path)
+    monkeypatch.setattr(results, "DOCUMENT", tmp_path / "page")
+    results.git("init")
+    first = committed("tried", "1")
+    second = committed("other", "2")
+
+    def said(commit: str) -> str:
+        return results.measured(DONE, Result(25, 1, 7, 22, "", commit))
+
+    assert said(first) == said(second) == "25"
+    assert said("b" * 10) == said(f"{second}+") == "25, old"
+    (tmp_path / "tried").write_text("3")
+    assert said(first) == said(second) == "25, old"
+    results.write({"done": Result(25, 1, 7, 22, "", first)})
+    assert results.old() == ["done"]
+    third = committed("tried", "3")
+    assert (said(second), said(third)) == ("25, old", "25")
+    monkeypatch.setattr(results, "ROOT", tmp_path / "none")  # no repository: as the page says
+    (tmp_path / "none").mkdir()
+    monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path))
+    (tmp_path / "page").write_text("| `done` | It ends. | 25 things | 25, old | 7 |\n")
+    assert said(third) == "25, old"
+    (tmp_path / "page").write_text("| `done` | It ends. | 25 things | 25 | 7 |\n")
+    assert said(first) == "25"
+
+
+@pytest.mark.parametrize("goal", GOALS, ids=lambda goal: goal.name)
+def test_each_goal_names_what_it_tries(goal: Goal) -> None:
+    assert goal.paths
+    assert [each for each in goal.paths if not (ROOT / each).exists()] == []
 
 
 def test_each_figure_is_of_a_commit_that_led_here(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.casefile import ROOT
 from tests.support.command import PROGRAM, Tsc, inside
 from tests.support.rows import each_row
 from tests.support.terminal import Terminal
@@ -27,8 +26,8 @@ from tiniscript.cli.texts.verbs import said as said_in
 from tiniscript.flash.bootloaders import BOARDS
 from tiniscript.robots.ports import AVRS
 from tiniscript.virtual import worlds
-from tools.generate.command_pages import DOCUMENTED
-from tools.site.documents import name_in
+from tools.generate.command_pages import DOCUMENTED, page
+from tools.generate.documents import table
 
 PARSERS = parsers()
 FLAG = r"(?<![\w-])--?[a-zA-Z][a-z0-9-]*"
@@ -222,8 +221,7 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
 @pytest.mark.parametrize("language", DOCUMENTED)
 @of_each
 def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) -> None:
-    page = (ROOT / name_in(language, "docs/command.en.md")).read_text(encoding="utf-8")
-    common, *sections = page.split("\n## ")
+    common, *sections = page(language, "a test", table).split("\n## ")
     sections = [each for part in sections for each in part.split("\n### ")]
     (section,) = (each for each in sections if each.startswith(f"`tsc {typed(verb)}`\n"))
     found = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)

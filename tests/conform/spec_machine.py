@@ -1,7 +1,7 @@
 """A machine for `tsc doctor --conform --machine`: what `tests/oracle` has of `bytecode_spec.md`.
 
 `python -m tests.conform.spec_machine` takes runs on standard input and prints their traces, as
-`docs/conformance.md` says. It runs no tasks: it lacks all that an image says to need.
+`docs/develop/conformance.md` says. It runs no tasks: it lacks all that an image says to need.
 """
 
 from __future__ import annotations

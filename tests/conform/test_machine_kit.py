@@ -39,12 +39,12 @@ from tiniscript.vm.tasks import machine_of
 from tools.builds import conformance
 
 TINIBOT = tuple(line.removesuffix("\n") for line in robots.load("tinibot").kit.lines())
-PAGE = ROOT / "docs" / "conformance.md"
+PAGE = ROOT / "docs" / "develop" / "conformance.md"
 FROM_SPEC = shlex.join([sys.executable, "-m", "tests.conform.spec_machine"])
 
 
 def test_a_sensor_without_readings_has_a_line_without_values() -> None:
-    """As docs/conformance.md says; the machine that is made from it reads 0 then."""
+    """As docs/develop/conformance.md says; the machine that is made from it reads 0 then."""
     case = next(each for each in machine_cases() if not each.needs and each.readings)
     rows = case._replace(readings={0: (), 1: (5000, -1)}).request().splitlines()
     assert [row for row in rows if row.startswith("readings")] == [

@@ -227,7 +227,7 @@ STATES: dict[str, Callable[[Table], None]] = {
 @lru_cache
 def promised() -> dict[str, list[str]]:
     """Return the table of the document."""
-    text = (ROOT / "docs" / "link.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "develop" / "link.md").read_text(encoding="utf-8")
     rows = text.split("<!-- button -->\n")[1].split("\n\n")[0].splitlines()[2:]
     cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in rows]
     return {name: rest for name, *rest in cells}

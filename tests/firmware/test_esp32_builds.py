@@ -217,7 +217,7 @@ def test_the_menu_of_the_arduino_ide_that_has_room_is_named() -> None:
     ]
     sizes = {int(size, 0) for _, kind, _, _, size in rows if kind == "app"}
     assert sizes == {1_966_080}
-    page = (SOURCES.parent / "docs" / "esp32.md").read_text(encoding="utf-8")
+    page = (SOURCES.parent / "docs" / "develop" / "esp32.md").read_text(encoding="utf-8")
     assert "*Minimal SPIFFS*" in page and "1,966,080" in page and "1,310,720" in page
     settings = (SOURCES / "platformio.ini").read_text(encoding="utf-8")
     assert "whatever its menu says" not in settings and "Minimal SPIFFS" in settings

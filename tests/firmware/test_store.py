@@ -92,7 +92,7 @@ def test_the_layout_of_a_mega() -> None:
 
 @pytest.mark.parametrize(("column", "flags"), [(1, ()), (2, (MEGA,))])
 def test_the_document_says_where_everything_lies(column: int, flags: tuple[str, ...]) -> None:
-    text = (ROOT / "docs" / "store.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "develop" / "store.md").read_text(encoding="utf-8")
     rows = [row.split("|") for row in text.splitlines() if re.match(r"\| \d[\d, ]* \| \d", row)]
     places = [int(word) for row in rows[:6] for word in re.findall(r"\d+", row[column])]
     code = re.search(r"has at most ([\d,]+) bytes of code, on a Mega ([\d,]+)", text)

@@ -15,7 +15,7 @@ from tiniscript.link.payloads import HelloReply
 from tools.uno import CYCLES_PER_MS, Uno
 
 PRESSED = "if (press == Press::kPressed) firmware_on_pressed();"
-WATCHDOG, STALL = 4, 66  # a reset and a fault in docs/link.md
+WATCHDOG, STALL = 4, 66  # a reset and a fault in docs/develop/link.md
 HANGS, HANGS_ALONE = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
 TIMER_MS, WATCHDOG_MS = 110, 300
 MOVE_AT = 2  # the offset in AWAY, behind what it takes

@@ -32,7 +32,7 @@ from tools.uno import CYCLES_PER_MS, Uno
 TRIES = 20  # a simulated board waits for its bootloader as long as a real one, however late it is
 
 DRIVES = "SI|F(0.3, 80)"
-UNKNOWN, POWER, WATCHDOG = 0, 1, 4  # resets in docs/link.md
+UNKNOWN, POWER, WATCHDOG = 0, 1, 4  # resets in docs/develop/link.md
 WAIT_MS = 2500  # so long an old Nano waits for a sketch
 
 

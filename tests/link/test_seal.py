@@ -1,7 +1,7 @@
 """The seal of a session: both halves against the same bytes, and against what is not theirs.
 
-The bytes are made here anew from what `docs/owners.md` says, with SipHash-2-4 alone, which has the
-vectors of its authors.
+The bytes are made here anew from what `docs/develop/owners.md` says, with SipHash-2-4 alone, which
+has the vectors of its authors.
 """
 
 from __future__ import annotations

@@ -88,7 +88,7 @@ RANGES: dict[str, tuple[tuple[int, int], ...]] = {
 
 # Words with fixed values, and the instructions that they stand for, as the reference lists them:
 # "- With fixed values: `HORN` = `BEEP(0.5, 440)`".
-_REFERENCE = Path(__file__).parent.parent.parent / "docs" / "language.en.md"
+_REFERENCE = Path(__file__).parent.parent.parent / "docs" / "en" / "language.md"
 FIXED = {
     word: meaning
     for line in _REFERENCE.read_text("utf-8").splitlines()

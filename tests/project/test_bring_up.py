@@ -23,7 +23,7 @@ from tiniscript.cli.options import Options
 from tiniscript.cli.texts.options import chosen
 from tools.site.documents import sources
 
-LISTS = {each: ROOT / name for each, name in sources(ROOT, "docs/bring-up.md").items()}
+LISTS = {each: ROOT / name for each, name in sources(ROOT, "docs/en/bring-up.md").items()}
 each_list = pytest.mark.parametrize(("language", "path"), LISTS.items(), ids=list(LISTS))
 
 

@@ -17,7 +17,7 @@ import tiniscript
 from tests.support.casefile import ROOT, Example, examples
 from tests.support.rows import each_row
 from tiniscript.cli import main
-from tools.site.documents import FRONT, links, sources
+from tools.site.documents import FRONT, documents, links, name_in, sources
 
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
 
@@ -53,6 +53,19 @@ def commands() -> list[Command]:
 def test_every_readme_leads_to_the_others(language: str, name: str) -> None:
     row = (ROOT / name).read_text(encoding="utf-8").splitlines()[2]
     assert row == " · ".join(links(language, FRONT, sources(ROOT, FRONT)))
+
+
+@each_row(
+    "language, name, others",
+    [(each, name, of.sources) for of in documents(ROOT) for each, name in of.sources.items()],
+)
+def test_a_document_leads_to_itself_in_all_languages_or_in_none(
+    language: str, name: str, others: dict[str, str]
+) -> None:
+    text = (ROOT / name).read_text(encoding="utf-8")
+    targets = re.findall(r"\(.*?\)", " ".join(links(language, others["en"], others)))
+    absent = [each for each in targets if each not in text]
+    assert absent in ([], targets), f"{name} lacks {absent}"
 
 
 @pytest.mark.parametrize("command", commands(), ids=lambda c: f"{c.document.name}:{c.line}")
@@ -91,12 +104,12 @@ def test_python(
     assert capsys.readouterr().out == example.output
 
 
-@each_row("name", sources(ROOT, "docs/api.en.md").values())
+@each_row("name", sources(ROOT, "docs/en/api.md").values())
 def test_each_page_of_the_library_names_all_of_it(name: str) -> None:
     page = (ROOT / name).read_text(encoding="utf-8")
     absent = [each for each in tiniscript.__all__ if f"`{each}" not in page]
     assert not absent, f"{name} says nothing of {absent}"
-    assert len(examples(ROOT / name)) == len(examples(ROOT / "docs" / "api.en.md")) >= 8
+    assert len(examples(ROOT / name)) == len(examples(ROOT / "docs" / "en" / "api.md")) >= 8
 
 
 @each_row("document", DOCUMENTS)
@@ -105,6 +118,28 @@ def test_links_lead_somewhere(document: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text):
         if "://" not in target:
             assert (document.parent / target).exists(), f"{document.name}: {target}"
+
+
+TRANSLATED = [
+    (language, name, of.sources["en"])
+    for of in documents(ROOT)
+    for language, name in of.sources.items()
+    if language != "en"
+]
+
+
+@each_row("language, name, english", TRANSLATED)
+def test_a_translation_leads_to_documents_of_its_language(
+    language: str, name: str, english: str
+) -> None:
+    page = ROOT / name
+    wrong = []
+    for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
+        led = (page.parent / target).resolve().relative_to(ROOT).as_posix()
+        own = name_in(language, led)
+        if led not in (english, own) and (ROOT / own).is_file():
+            wrong.append(f"{target}: there is {own}")
+    assert not wrong, "\n".join(wrong)
 
 
 # -- names of files, folders and modules ----------------------------------------------------------

@@ -27,7 +27,7 @@ from tiniscript.link import ports
 from tiniscript.link.ports import Found
 from tools.site.documents import sources
 
-GUIDES = {each: ROOT / name for each, name in sources(ROOT, "docs/monday.en.md").items()}
+GUIDES = {each: ROOT / name for each, name in sources(ROOT, "docs/en/monday.md").items()}
 # The robot's port by cable, then by Bluetooth, and what Windows says of them.
 PORTS = {
     "COM3": "Arduino Uno (COM3)",

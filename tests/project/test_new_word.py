@@ -151,8 +151,8 @@ def test_a_page_that_is_full_is_an_error(monkeypatch: pytest.MonkeyPatch) -> Non
 @each_row(
     "document, language, says",
     [
-        ("language.en.md", "en", "With fixed values"),
-        ("lenguaje.es.md", "es", "Con valores fijos"),
+        ("docs/en/language.md", "en", "With fixed values"),
+        ("docs/es/language.md", "es", "Con valores fijos"),
     ],
 )
 def test_it_is_in_the_references(document: str, language: str, says: str) -> None:

@@ -15,7 +15,7 @@ GENERATED = ("// Generated", "# Generated", "; Generated")
 
 
 def test_the_page_of_versions_has_those_of_the_code() -> None:
-    page = (ROOT / "docs" / "versions.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "en" / "versions.md").read_text(encoding="utf-8")
     assert f"| TiniScript, the package | `{tiniscript.__version__}` |" in page
     assert f"| the bytecode | {ISA_MAJOR}.{ISA_MINOR} |" in page
     assert f"| the link | {MAJOR}.{MINOR} |" in page

@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT
+from tools.site.documents import language_of
 
-PAGES = sorted([*ROOT.glob("README*.md"), *(ROOT / "docs").glob("*.md")])
+PAGES = sorted([*ROOT.glob("README*.md"), *(ROOT / "docs").glob("*/*.md")])
 ANSWER = "// "
 LONGEST_MS = 5000  # until an answer comes
 SILENT_MS = 1500  # after the answers, before the next line: more than a second
@@ -32,7 +33,7 @@ def conversations(page: Path) -> Iterator[list[str]]:
 
 
 EVERY = [
-    pytest.param(page.name.split(".")[-2], lines, id=f"{page.name}-{k}")
+    pytest.param(language_of(page.relative_to(ROOT).as_posix()), lines, id=f"{page.name}-{k}")
     for page in PAGES
     for k, lines in enumerate(conversations(page))
 ]
@@ -69,5 +70,6 @@ def test_a_robot_answers_as_the_document_shows(language: str, lines: list[str]) 
 
 
 def test_the_front_door_and_both_guides_show_a_terminal() -> None:
-    shown = {page.name for page in PAGES if list(conversations(page))}
-    assert {"README.md", "README.es.md", "monday.en.md", "lunes.es.md"} <= shown
+    shown = {page.relative_to(ROOT).as_posix() for page in PAGES if list(conversations(page))}
+    guides = {"docs/en/monday.md", "docs/es/monday.md"}
+    assert {"README.md", "README.es.md", *guides} <= shown

@@ -107,7 +107,7 @@ def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
     assert "Listo." in done.stdout
     assert "no funciona" not in done.stdout
-    assert (home / "pages" / "indice.html").is_file()
+    assert (home / "pages" / "index.es.html").is_file()
     assert (home / "pages" / "index.pt.html").is_file()
     tsc = home / "tsc" / "bin" / "tsc"
     ran = subprocess.run(
@@ -164,7 +164,7 @@ def test_each_system_has_its_script_with_its_line_ends(stick: Path) -> None:
     readme = (stick / "README.txt").read_text(encoding="utf-8-sig")
     lacks = ("BeOS: no ports", "falta: BeOS: sin puertos", "falta: BeOS: sem portas")
     assert all(each in readme for each in lacks)
-    assert all(page in readme for page in ("index.html", "indice.html", "index.pt.html"))
+    assert all(page in readme for page in ("index.html", "index.es.html", "index.pt.html"))
 
 
 def test_the_script_of_windows_keeps_the_rules_of_cmd(stick: Path) -> None:
@@ -217,11 +217,11 @@ def test_an_installer_that_cannot_be_fetched_is_named(tmp_path: Path) -> None:
 
 
 def test_the_pages_speak_one_language_and_have_boxes_to_tick(stick: Path) -> None:
-    index = (stick / "pages" / "indice.html").read_text(encoding="utf-8")
+    index = (stick / "pages" / "index.es.html").read_text(encoding="utf-8")
     assert "El lenguaje en una página" in index
     assert "Una clase en el estudio" in index
     assert "`" not in index
-    materials = (stick / "pages" / "docs" / "materiales.es.html").read_text(encoding="utf-8")
+    materials = (stick / "pages" / "docs" / "es" / "materials.html").read_text(encoding="utf-8")
     assert materials.count('<li class="check">☐ ') == 8
     assert "[ ]" not in materials
     assert not re.search(r"Poster|Wiring|teacher</a>", index)
@@ -229,7 +229,7 @@ def test_the_pages_speak_one_language_and_have_boxes_to_tick(stick: Path) -> Non
 
 def test_a_phone_shows_each_page_of_a_teacher_whole(stick: Path) -> None:
     """Nothing is cut at 390 px, but the drawing of the wires, which says that it slides."""
-    pages = [*sorted(stick.glob("pages/**/*.es.html")), stick / "pages" / "indice.html"]
+    pages = [*sorted(stick.glob("pages/**/*.es.html")), stick / "pages" / "index.es.html"]
     cut = """[...document.querySelectorAll('pre, table, .finished')]
         .filter(each => each.scrollWidth > each.clientWidth + 1).length"""
     wide = "document.documentElement.scrollWidth > window.innerWidth"

@@ -16,8 +16,8 @@ from tools.release import facts
 
 VERSION = "9.8.7"
 URL = "https://example.org/tiniscript"
-FILES = ("CITATION.cff", "LICENSE", "docs/versions.md", "pyproject.toml", "CHANGELOG.md",
-         "compiler/tiniscript/base/version.py")  # fmt: skip
+FILES = ("CITATION.cff", "LICENSE", "SECURITY.md", "docs/en/versions.md", "pyproject.toml",
+         "CHANGELOG.md", "compiler/tiniscript/base/version.py")  # fmt: skip
 CHANGES = f"# Changelog\n\n## Unreleased\n\n## {VERSION} (2031-02-03)\n\n- All.\n"
 
 
@@ -54,6 +54,7 @@ def clone(tmp_path: Path) -> Path:
         text = re.sub(r"(?m)^date-released: .*\n", "", text)
         path.write_text(text, encoding="utf-8")
     (root / "CHANGELOG.md").write_text(CHANGES, encoding="utf-8")
+    replaced("SECURITY.md", facts.NO_CONTACT, "people@example.org")(root)
     about = root / "pyproject.toml"
     about.write_text(facts.with_address(about.read_text("utf-8"), URL), encoding="utf-8")
     git(tmp_path, "init", "-q", str(root))
@@ -78,10 +79,12 @@ WRONG: dict[str, Callable[[Path], object]] = {
     "CITATION.cff has the date 2030": replaced(
         "CITATION.cff", "license:", "date-released: 2030-01-01\nlicense:"
     ),
-    "docs/versions.md has version": replaced("docs/versions.md", f"`{VERSION}`", "`0.0.1`"),
+    "docs/en/versions.md has version": replaced("docs/en/versions.md", f"`{VERSION}`", "`0.0.1`"),
     "LICENSE names Somebody": replaced("LICENSE", facts.PEOPLE, "Somebody"),
     "CITATION.cff names nobody": replaced("CITATION.cff", facts.PEOPLE, ""),
     "pyproject.toml names": replaced("pyproject.toml", facts.PEOPLE, "Ann"),
+    "does not say how to reach": replaced("SECURITY.md", "people@example.org", facts.NO_CONTACT),
+    "SECURITY.md does not say": replaced("SECURITY.md", "Contact: people@example.org", "Contact:"),
     "does not say where it is published": replaced("pyproject.toml", "Source =", "Home ="),
 }
 
@@ -142,6 +145,6 @@ def test_an_address_is_kept_where_it_is_another_one(
 
 def test_this_repository_agrees_with_itself() -> None:
     """But for what a release alone brings: a date, an address, a commit of everything."""
-    brought = ("CHANGELOG.md", "not committed", "does not say where", "The tag", "The commit has")
+    brought = ("CHANGELOG.md", "not committed", "does not say", "The tag", "The commit has")
     assert [each for each in facts.complaints(ROOT)
             if not any(word in each for word in brought)] == []  # fmt: skip

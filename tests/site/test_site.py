@@ -21,6 +21,8 @@ from tests.support.rows import each_row
 from tools import CannotMake
 from tools.builds import site
 from tools.builds import studio as studio_build
+from tools.generate.built import built as built_texts
+from tools.generate.built import kept
 from tools.site.documents import PARTS, documents
 from tools.site.lexer import TiniScriptLexer
 from tools.site.pages import page, shelf
@@ -80,11 +82,12 @@ def visitor(browser: Browser, address: str) -> Iterator[Page]:
 
 
 def test_every_document_is_on_the_site_and_in_a_part_of_it(built: Path) -> None:
-    found = documents(ROOT)
+    found = documents(ROOT, built_texts())
     there = {source for each in found for source in each.sources.values()}
     paths = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"),
              *ROOT.glob("compiler/tiniscript/lessons/*/*.md")]  # fmt: skip
-    assert {path.relative_to(ROOT).as_posix() for path in paths} == there
+    kept = {path.relative_to(ROOT).as_posix() for path in paths}
+    assert kept | {name for name in built_texts() if name.endswith(".md")} == there
     assert {each.part for each in found} == set(PARTS)
     for each in found:
         for language in each.sources:
@@ -105,13 +108,13 @@ def test_a_link_that_leads_nowhere_ends_the_build(
     clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     few = [each for each in documents(ROOT) if each.name in ("link", "store")]  # in English alone
-    monkeypatch.setattr(site, "documents", lambda root: few)
-    store = clone / "docs" / "store.md"
+    monkeypatch.setattr(site, "documents", lambda root, built: few)
+    store = clone / "docs" / "develop" / "store.md"
     text = "# A title\n"
     for path in clone.rglob("*.md"):
         path.write_text(text, encoding="utf-8")
     store.write_text(f"{text}\n[no](nowhere.md)\n", encoding="utf-8")
-    with pytest.raises(CannotMake, match=r"^docs/store\.md: nowhere\.md$"):
+    with pytest.raises(CannotMake, match=r"^docs/develop/store\.md: nowhere\.md$"):
         site.build(clone, tmp_path / "site", has_studio=False)
     # what Sphinx looks at itself
     store.write_text(f"{text}\n[no](link.md#elsewhere)\n\n```strange\nx\n```\n", encoding="utf-8")
@@ -139,19 +142,27 @@ def test_a_dead_link_ends_the_build(
 
 
 def test_links_lead_to_pages_and_copies() -> None:
-    on = shelf(ROOT, documents(ROOT))
-    text = page("docs/monday.en.md", on)
-    assert "](wiring/tinibot.md)" in text
-    assert '<a href="../files/docs/poster/poster.en.pdf">' in page("docs/materials.en.md", on)
-    assert '<a href="../en/command.html' in page("docs/comandos.es.md", on)
-    assert "docs/wiring/liner.en.svg" not in on.files | on.pictures
-    assert "![" in page("docs/wiring/liner.en.md", on)
-    assert "docs/wiring/liner.en.svg" in on.pictures
+    texts = built_texts()
+    on = shelf(ROOT, documents(ROOT, texts), texts)
+    for language in ("en", "es", "pt"):  # each leads to wiring in its own language
+        assert "](wiring/tinibot.md)" in page(f"docs/{language}/monday.md", on)
+    assert '<a href="../files/docs/poster/poster.en.pdf">' in page("docs/en/materials.md", on)
+    assert '<a href="../en/command.html' in page("docs/es/command.md", on)
+    assert '<a href="../en/robots.html' in page("docs/es/robots.md", on), "to itself in English"
+    assert "docs/pictures/wiring/liner.en.svg" not in on.files | on.pictures
+    assert "![" in page("docs/en/wiring/liner.md", on)
+    assert "docs/pictures/wiring/liner.en.svg" in on.pictures
+
+
+def test_a_clone_keeps_what_a_person_reads_there_and_no_more() -> None:
+    paths = (*ROOT.glob("docs/*/wiring/*"), *ROOT.glob("docs/*/command.md"))
+    there = {path.relative_to(ROOT).as_posix() for path in paths}
+    assert there == set(kept()) < set(built_texts())
 
 
 def test_code_is_left_as_it_is(clone: Path) -> None:
-    (clone / "docs" / "store.md").write_text("# A\n\n```text\n[x](nowhere.md)\n```\n")
-    assert "[x](nowhere.md)" in page("docs/store.md", shelf(clone, documents(clone)))
+    (clone / "docs" / "develop" / "store.md").write_text("# A\n\n```text\n[x](nowhere.md)\n```\n")
+    assert "[x](nowhere.md)" in page("docs/develop/store.md", shelf(clone, documents(clone)))
 
 
 def test_programs_have_colours() -> None:
@@ -168,7 +179,7 @@ def test_nothing_is_wider_than_a_phone(visitor: Page, address: str, part: int) -
     visitor.set_viewport_size({"width": 390, "height": 844})
     visitor.goto(address)
     wide = [address] if _is_too_wide(visitor) else []
-    for each in documents(ROOT)[part::4]:
+    for each in documents(ROOT, built_texts())[part::4]:
         for language in each.sources:
             visitor.goto(f"{address}{language}/{each.name}.html", wait_until="domcontentloaded")
             if _is_too_wide(visitor):

@@ -231,9 +231,9 @@ def test_no_line_is_too_long_and_no_gap_stays_open(
     assert not is_foreign(made)
 
 
-@pytest.mark.parametrize(("name", "language"), [("language.en.md", "en"), ("lenguaje.es.md", "es")])
-def test_the_sketch_on_the_page_is_what_tsc_writes(name: str, language: str) -> None:
-    page = (ROOT / "docs" / name).read_text(encoding="utf-8")
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_the_sketch_on_the_page_is_what_tsc_writes(language: str) -> None:
+    page = (ROOT / "docs" / language / "language.md").read_text(encoding="utf-8")
     before, _, after = page.partition("```cpp\n")
     program = before.rpartition("```tiniscript\n")[2].partition("```")[0]
     assert "\n" + after.partition("```")[0] in sketch(program, language)

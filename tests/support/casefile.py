@@ -18,7 +18,9 @@ from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
 
+from tiniscript.base.languages import languages
 from tiniscript.library.named_robot import name_in
+from tools.site.documents import language_of
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PARTS = ("tiniscript", "senses", "robot", "bytecode", "plain", "line", "mistake", "warning",
@@ -40,7 +42,13 @@ class Case(NamedTuple):
 
     @property
     def id(self) -> str:
-        return f"{self.path.stem}: {self.title}"
+        folder = self.path.parent.name
+        of_language = f"{folder}/" if folder in languages() else ""
+        return f"{of_language}{self.path.stem}: {self.title}"
+
+    @property
+    def language(self) -> str:
+        return language_of(self.path.relative_to(ROOT).as_posix())
 
 
 def documents() -> list[Path]:

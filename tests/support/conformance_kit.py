@@ -14,7 +14,7 @@ from tools.builds import conformance
 SOURCES = (
     "compiler/tiniscript/**/*.py", "compiler/tiniscript/robots/*.toml", "tests/cases/*.md",
     "tests/machines/*.py", "tests/oracle/*.py", "tests/support/*.py", "tools/generate/*_kit.py",
-    "tools/builds/conformance.py", "bytecode_spec.md", "docs/link.md",
+    "tools/builds/conformance.py", "bytecode_spec.md", "docs/develop/link.md",
 )  # fmt: skip
 
 

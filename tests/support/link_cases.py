@@ -66,7 +66,7 @@ class LinkCase(NamedTuple):
 
 
 def documents() -> list[Path]:
-    return [*sorted(ROOT.glob("tests/cases/link*.md")), ROOT / "docs" / "link.md"]
+    return [*sorted(ROOT.glob("tests/cases/link*.md")), ROOT / "docs" / "develop" / "link.md"]
 
 
 def link_cases(kind: str) -> list[LinkCase]:

@@ -27,7 +27,7 @@ from tiniscript.codegen.text.line import PlainCode, plain_code
 from tiniscript.robots.text_levels import CODE_BYTES
 
 TINIBOT, GRABBER = robots.load("tinibot").kit, robots.load("grabber").kit
-# what is for the optimising compiler alone: `docs/text.md` has none of it
+# what is for the optimising compiler alone: `docs/develop/text.md` has none of it
 FUSED = re.compile(
     r"PUSH_READ|(SET_VAR|ADD_VAR|WAIT|BEEP|MOTORS|LOOP|UNTIL|IF|IF_VAR)(8|16)|MOVE8|IF_NOT|INC_|DEC_"
     r"|ADD_VAR|AND$|OR$|END$|\w+_FAR$"
@@ -167,7 +167,7 @@ def test_code_that_fits_a_level_has_no_far_jump() -> None:
 
 def test_the_page_names_every_instruction_of_plain_code_and_no_other() -> None:
     """`MOVE_B`, `PUSH_NUM_5` and the like are under the first of their kind."""
-    page = (ROOT / "docs" / "text.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "develop" / "text.md").read_text(encoding="utf-8")
     page = page[page.index("## Plain code") : page.index("## A program, byte")]
     named = {word for part in re.findall(r"`([^`]+)`", page) for word in part.split()}
     for name in PLAIN:

@@ -81,9 +81,9 @@ def test_a_world_is_read() -> None:
     assert without.obstacles() == []
 
 
-@pytest.mark.parametrize("name", ["worlds.en.md", "mundos.es.md"])
-def test_the_world_of_the_documents_is_one(name: str) -> None:
-    text = (ROOT / "docs" / name).read_text(encoding="utf-8")
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_the_world_of_the_documents_is_one(language: str) -> None:
+    text = (ROOT / "docs" / language / "worlds.md").read_text(encoding="utf-8")
     _, fence, _ = re.split(r"```toml\n|```\n", text)
     world = read(fence, "mine")
     assert dict(world.labels) == {"en": "my classroom", "es": "mi aula"}

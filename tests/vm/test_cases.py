@@ -9,7 +9,6 @@ from tests.support.case_runs import compiled, robot_and_senses
 from tests.support.casefile import Case, accept, all_cases
 from tests.support.images import image_for
 from tests.support.rows import each_row
-from tiniscript.base.languages import SOURCE, languages
 from tiniscript.bytecode.disassembly import assemble, disassemble
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.codegen.text.line import line_of, plain_code
@@ -17,11 +16,6 @@ from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.syntax.formatter import formatted
 
 CASES = all_cases()
-
-
-def language_of(case: Case) -> str:
-    code = case.path.suffixes[0][1:]  # `values.md` is English
-    return code if code in languages() else SOURCE
 
 
 def trace_of(case: Case, machine: Machine) -> str:
@@ -81,9 +75,7 @@ def test_what_is_said(case: Case, request: pytest.FixtureRequest) -> None:
     for part, is_mistake in (("mistake", True), ("warning", False)):
         if part in case.parts:
             said = [
-                as_text(
-                    message(each, found.source, language_of(case)), found.source, language_of(case)
-                )
+                as_text(message(each, found.source, case.language), found.source, case.language)
                 for each in found.diagnostics
                 if each.is_mistake == is_mistake
             ]

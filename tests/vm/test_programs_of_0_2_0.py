@@ -79,7 +79,7 @@ def test_of_those_with_a_newer_word_as_a_name_it_is_told_since_when() -> None:
         assert trace_of(old._replace(text=new)) == old.said
 
 
-@pytest.mark.parametrize("path", ["CHANGELOG.md", "docs/versions.md"])
+@pytest.mark.parametrize("path", ["CHANGELOG.md", "docs/en/versions.md"])
 def test_the_documents_name_the_newer_words(path: str) -> None:
     said = (ROOT / path).read_text(encoding="utf-8")
     breaking = next(part for part in re.split(r"\n(?=- |\n)", said)

@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 BENCHMARKS = (
-    # in the order of `docs/figures.md`, then what other documents quote
+    # in the order of `docs/en/figures.md`, then what other documents quote
     "compiler",
     "machine",
     "code_size",

@@ -1,4 +1,4 @@
-"""Takes the pictures of the studio for its pages, in Chromium: `docs/studio.en.png`.
+"""Takes the pictures of the studio for its pages, in Chromium: `docs/pictures/studio.en.png`.
 
     python -m tools.builds.screenshot
 
@@ -68,16 +68,16 @@ GAP = 12  # pixels between the pictures of a sheet
 COLOURS = 72  # of a picture: its bytes are less than half, and nobody sees it
 KEPT = "words"  # the text of the picture that has them
 SEEN = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
-CLASS = sources(ROOT, "docs/class.en.md")
+CLASS = sources(ROOT, "docs/en/class.md")
 GUIDES = {
     each: "".join((ROOT / guide).read_text("utf-8") for guide in (name, CLASS.get(each)) if guide)
-    for each, name in sources(ROOT, "docs/studio.en.md").items()
+    for each, name in sources(ROOT, "docs/en/studio.md").items()
 }
-LANGUAGES = tuple(each for each, text in GUIDES.items() if f"(studio.{each}.png)" in text)
+LANGUAGES = tuple(each for each, text in GUIDES.items() if f"/studio.{each}.png)" in text)
 
 
 def picture(language: str, scene: str = "") -> Path:
-    return ROOT / "docs" / f"studio{scene}.{language}.png"
+    return ROOT / "docs" / "pictures" / f"studio{scene}.{language}.png"
 
 
 def main(arguments: list[str] | None = None) -> int:

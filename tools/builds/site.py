@@ -25,6 +25,7 @@ from pathlib import Path
 from tiniscript.base.languages import SOURCE, about, languages, text
 from tools import ROOT, CannotMake
 from tools.builds import studio
+from tools.generate.built import built
 from tools.site import links, theme
 from tools.site.documents import FRONT, PARTS, Document, documents, sources
 from tools.site.pages import FILES, Place, Shelf, page, shelf
@@ -67,8 +68,9 @@ def build(root: Path, folder: Path, has_studio: bool) -> None:
 
 
 def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
-    found = documents(root)
-    on = shelf(root, found)
+    texts = built()
+    found = documents(root, texts)
+    on = shelf(root, found, texts)
     halves = halves_of(found)
 
     def make(language: str) -> None:
@@ -79,7 +81,7 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
     with ThreadPoolExecutor(AT_ONCE) as pool:
         list(pool.map(make, halves))
     for name in sorted(on.files):
-        _copy(root / name, folder / FILES / name)
+        on.copy(name, folder / FILES / name)
     link = ""
     if has_studio:
         shutil.copytree(studio.PAGE, folder / "studio",
@@ -120,7 +122,7 @@ def stage(half: Path, found: list[Document], on: Shelf, language: str) -> None:
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(said, encoding="utf-8")
     for name in sorted(on.pictures):
-        _copy(on.root / name, half / FILES / name)
+        on.copy(name, half / FILES / name)
     for name in ("templates", "static"):
         shutil.copytree(SITE / name, half / name)
     shutil.copy(SITE / "conf.py", half)
@@ -162,11 +164,6 @@ def contents(found: list[Document], language: str) -> str:
                 "```",
             ]
     return "\n".join(rows) + "\n"
-
-
-def _copy(source: Path, target: Path) -> None:
-    target.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(source, target)
 
 
 if __name__ == "__main__":

@@ -19,11 +19,12 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 from tiniscript import robots
-from tiniscript.base.languages import SOURCE, about, languages, text, told_in
+from tiniscript.base.languages import SOURCE, about, text, told_in
 from tiniscript.lessons import catalogue
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.plan import plan_of
-from tools.site.documents import name_in, sources
+from tools.generate.built import built
+from tools.site.documents import language_of, name_in, sources
 
 STYLE = """\
 body { font-family: Verdana, 'DejaVu Sans', Arial, sans-serif; line-height: 1.5; color: #111;
@@ -38,25 +39,28 @@ li.check { list-style: none; }
 @page { size: A4; margin: 15mm; }
 @media print { h2, h3 { break-after: avoid; } tr, pre, li { break-inside: avoid; } }
 """
-GUIDES = ("docs/monday.en.md", "docs/lessons.en.md", "docs/materials.en.md", "docs/studio.en.md",
-          "docs/class.en.md", "docs/language.en.md", "docs/robots.en.md", "docs/command.en.md",
-          "docs/worlds.en.md", "docs/modules.en.md", "docs/api.en.md", "README.md")  # fmt: skip
+GUIDES = ("docs/en/monday.md", "docs/en/lessons.md", "docs/en/materials.md", "docs/en/studio.md",
+          "docs/en/class.md", "docs/en/language.md", "docs/en/robots.md", "docs/en/command.md",
+          "docs/en/worlds.md", "docs/en/modules.md", "docs/en/api.md", "README.md")  # fmt: skip
 INDEX, POSTER = "index.html", "docs/poster/poster.en.pdf"
 LINK = re.compile(r'(href|src)="([^"#:]+)(#[^"]*)?"')
 
 
 def make(root: Path, folder: Path) -> None:
     """Write all pages into a folder, with an index in each language."""
-    documents = [*root.glob("*.md"), *root.glob("docs/**/*.md")]
+    pages = {path: path.read_text(encoding="utf-8")
+             for path in (*root.glob("*.md"), *root.glob("docs/**/*.md"))}  # fmt: skip
+    pages |= {root / name: made for name, made in built().items() if name.endswith("command.md")}
     wanted = {(root / name).resolve() for name in sources(root, POSTER).values()}
-    for source in documents:
-        body, title = rendered(source.read_text(encoding="utf-8"))
+    titles: dict[str, str] = {}
+    for source, markdown in pages.items():
+        body, title = rendered(markdown)
         wanted |= {(source.parent / path).resolve() for _, path, _ in LINK.findall(body)}
-        body = LINK.sub(partial(_to_page, folder=source.parent, documents=documents), body)
-        own = source.name.split(".")[-2]
-        language = own if own in languages() else SOURCE
-        _write(folder / source.relative_to(root).with_suffix(".html"), page(title, body, language))
-    for path in sorted(wanted - {each.resolve() for each in documents}):
+        body = LINK.sub(partial(_to_page, folder=source.parent, documents=list(pages)), body)
+        name = source.relative_to(root).as_posix()
+        titles[name] = title
+        _write((folder / name).with_suffix(".html"), page(title, body, language_of(name)))
+    for path in sorted(wanted - {each.resolve() for each in pages}):
         target = folder / path.relative_to(root.resolve())
         if path.is_file():
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -67,7 +71,7 @@ def make(root: Path, folder: Path) -> None:
         for name in robots.names():
             plan = plan_of(robots.load(name).speaking(language), language)
             _write(folder / "wiring" / f"{name}.{language}.html", html_of(plan))
-        _write(folder / name_in(language, INDEX), _index(root, folder, language))
+        _write(folder / name_in(language, INDEX), _index(root, folder, language, titles))
 
 
 def page(title: str, body: str, language: str) -> str:
@@ -110,7 +114,7 @@ def _to_page(found: re.Match[str], folder: Path, documents: list[Path]) -> str:
     return f'{kind}="{path}{anchor}"'
 
 
-def _index(root: Path, folder: Path, language: str) -> str:
+def _index(root: Path, folder: Path, language: str, titles: dict[str, str]) -> str:
     """Write the lessons' sheets, and return the page that leads to everything."""
     from tiniscript.cli import main as tsc
 
@@ -125,9 +129,10 @@ def _index(root: Path, folder: Path, language: str) -> str:
     )
     rows = [f"<h1>{title}</h1>", f"<p>{others}</p>", f"<h2>{guides}</h2>", "<ul>"]
     for guide in GUIDES:
-        name = sources(root, guide).get(language, guide)
-        _, heading = rendered((root / name).read_text(encoding="utf-8"))
-        rows.append(f'<li><a href="{name.removesuffix(".md")}.html">{escape(heading)}</a></li>')
+        own = name_in(language, guide)
+        name = own if own in titles else guide
+        address = f"{name.removesuffix('.md')}.html"
+        rows.append(f'<li><a href="{address}">{escape(titles[name])}</a></li>')
     file = sources(root, POSTER).get(language, POSTER)
     rows += [f'<li><a href="{file}">{poster}</a></li>', "</ul>"]
     rows += [f"<h2>{wiring}</h2>", "<ul>"]

@@ -3,7 +3,7 @@
 `python -m tools.campaign` goes on where the last one ended, until every goal is reached; Ctrl-C
 ends it at once, and all but the piece that was under way is kept. `--list` says what is reached,
 and when; `--minutes 30` ends it after a while. What committed code has reached is written into the
-table of `docs/guarantees.md`. Calls the campaigns of the tests; has none of its own.
+table of `docs/en/guarantees.md`. Calls the campaigns of the tests; has none of its own.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def run(goals: Sequence[Goal], end_s: float) -> int:
 
 def is_reached(goal: Goal, result: Result | None, commit: str) -> bool:
     """Whether nothing is left to do with this code."""
-    if result is None or not results.is_same_code(result.commit, commit):
+    if result is None or not results.is_same_code(goal, result.commit, commit):
         return False
     return not result.wrong and result.done >= goal.target
 
@@ -82,7 +82,7 @@ def piece(goal: Goal, before: Result | None, commit: str) -> Result:
 
     A piece that was wrong is run again. What other code has reached counts no more.
     """
-    if before is None or not results.is_same_code(before.commit, commit):
+    if before is None or not results.is_same_code(goal, before.commit, commit):
         before = Result(0, 0, FIRST_SEED, FIRST_SEED, "", commit)
     seed = before.next_seed
     count = min(goal.piece, goal.target - before.done)

@@ -1,6 +1,6 @@
 """The guarantees, how each is tested, and how many times that is to have been done.
 
-The one table of the campaign: `docs/guarantees.md` and `python -m tools.campaign` are made from it.
+The one table of the campaign: `docs/en/guarantees.md` and `python -m tools.campaign` are made from it.
 Knows commands, and no results.
 """
 
@@ -13,7 +13,7 @@ class Goal(NamedTuple):
     """`target` of `unit` are to be done, `piece` of them at a time, by `command`.
 
     In the command `{count}` and `{seed}` are those of a piece. A command that fails has found
-    something. Seeds of pieces are `stride` apart.
+    something. Seeds of pieces are `stride` apart. `paths` hold the code that it tries.
     """
 
     name: str
@@ -22,98 +22,118 @@ class Goal(NamedTuple):
     target: int
     piece: int
     command: str
+    paths: tuple[str, ...]
     stride: int = 1
+
+    @property
+    def code(self) -> tuple[str, ...]:
+        """The code that a figure is about: what it tries, and the campaign itself."""
+        return (*self.paths, self.command.split()[0].replace(".", "/") + "*")
+
+
+def _code(*names: str) -> tuple[str, ...]:
+    """Return the folders of the robot, and those of the package, by their names."""
+    folders = (
+        f"vm_arduino/src/{name[1:]}" if name[0] == "@" else f"compiler/tiniscript/{name}"
+        for name in names
+    )
+    return tuple(folders)
 
 
 FUZZ = "libFuzzer, ASan and UBSan"
 _CHANNEL = "tests.link.test_link_channel"
+_ROBOT = _code("@vm", "@store", "@link", "@text", "@firmware")
+_UPLOADS = (*_code("link", "@store", "@link", "@firmware"), "tests/link")
+_FRAMES = (*_code("link", "@link"), "tests/link")
+_MACHINE = _code("bytecode", "vm", "@vm")
+_COMPILER = _code("syntax", "semantics", "codegen")
 
 # fmt: off
 GOALS: tuple[Goal, ...] = (
     Goal("store", "A plug pulled at any write leaves the old program or the new one, the same at every later start.",
-         "power cuts", 10_000_000, 2_000_000, "tests.firmware.test_store {count} --seed {seed}", 20),
+         "power cuts", 10_000_000, 2_000_000, "tests.firmware.test_store {count} --seed {seed}", _code("@store"), 20),
     Goal("uploads", "An upload over a bad radio says done only if the robot has the program; nothing is done twice; after a stop nothing starts.",
-         "uploads", 10_000, 500, f"{_CHANNEL} {{count}} --seed {{seed}}", 1000),
+         "uploads", 10_000, 500, f"{_CHANNEL} {{count}} --seed {{seed}}", _UPLOADS, 1000),
     Goal("uploads-large", "The same for a robot with large frames, several of them under way; some arrive twice or in another order.",
-         "uploads", 10_000, 500, f"{_CHANNEL} {{count}} --large --seed {{seed}}", 1000),
+         "uploads", 10_000, 500, f"{_CHANNEL} {{count}} --large --seed {{seed}}", _UPLOADS, 1000),
     Goal("broken-off", "If the largest upload is cut, or the robot stopped once or twice, at any byte, it holds the old program or the new one, and the next upload is whole.",
-         "runs over all bytes", 1, 1, "tests.firmware.test_cut_uploads"),
+         "runs over all bytes", 1, 1, "tests.firmware.test_cut_uploads", _UPLOADS),
     Goal("undos", "An undo whose answer is lost is not done twice.",
-         "robots, four undos each", 10_000, 500, f"{_CHANNEL} {{count}} --undos --seed {{seed}}", 1000),
+         "robots, four undos each", 10_000, 500, f"{_CHANNEL} {{count}} --undos --seed {{seed}}", _UPLOADS, 1000),
     Goal("lives", "A live line whose answer is lost is not done twice.",
-         "live lines", 1_000_000, 20_000, "tests.link.test_live_lines {count} --seed {seed}"),
+         "live lines", 1_000_000, 20_000, "tests.link.test_live_lines {count} --seed {seed}", _UPLOADS),
     Goal("sealed", "A stranger on the line of a robot that seals gets nothing done, repeated or believed; whatever the computer reports as done is done.",
-         "uploads beside a stranger", 10_000, 500, "tests.link.test_sealed_channel {count} --seed {seed}", 1000),
+         "uploads beside a stranger", 10_000, 500, "tests.link.test_sealed_channel {count} --seed {seed}", _UPLOADS, 1000),
     Goal("sealed-large", "The same for a robot with large frames.",
-         "uploads beside a stranger", 10_000, 500, "tests.link.test_sealed_channel {count} --large --seed {seed}", 1000),
+         "uploads beside a stranger", 10_000, 500, "tests.link.test_sealed_channel {count} --large --seed {seed}", _UPLOADS, 1000),
     Goal("downgrade", "If somebody in between removes the seals from HELLO, changes its id, refuses keys, answers for the robot or leads to another one, the computer says so; nothing counts as done, and no stop as confirmed.",
-         "requests and stops", 10_000, 2_000, "tests.firmware.test_downgrade {count} --seed {seed}", 2000),
+         "requests and stops", 10_000, 2_000, "tests.firmware.test_downgrade {count} --seed {seed}", _UPLOADS, 2000),
     Goal("thieves", "Replayed, forged, reflected or cut frames on an owner's line, and frames of another session, do nothing; a stop works.",
-         "frames", 100_000, 20_000, "tests.firmware.test_sealed_robot {count} --seed {seed}"),
+         "frames", 100_000, 20_000, "tests.firmware.test_sealed_robot {count} --seed {seed}", _ROBOT),
     Goal("strangers", "Without its owner's key, a robot without seals ignores replayed, forged and reordered frames; a stop works.",
-         "frames", 100_000, 20_000, "tests.firmware.test_authority {count} --seed {seed}"),
+         "frames", 100_000, 20_000, "tests.firmware.test_authority {count} --seed {seed}", _ROBOT),
     Goal("between", "Whatever is lost, late, held, cut or suspended between a command and its robot, each command ends, is silent for no more than 3 s, says a thing once, and nothing that is not so; the next one works.",
-         "commands", 1_000, 50, "tests.between.test_commands {count} --seed {seed}", 50),
+         "commands", 1_000, 50, "tests.between.test_commands {count} --seed {seed}", (*_ROBOT, *_code("cli", "library", "link"), "tests/between"), 50),
     Goal("between-page", "The same for what is pressed on the page, and all between it, tsc studio and the robot.",
-         "runs of all actions and faults", 10, 1, "tests.studio.test_page_between {count} --seed {seed}"),
+         "runs of all actions and faults", 10, 1, "tests.studio.test_page_between {count} --seed {seed}", (*_ROBOT, *_code("studio", "link"), "tools/studio", "tests/between")),
     Goal("frames", "No damaged frame passes for a whole one, and damage costs at most one more frame.",
-         "damaged frames", 100_000_000, 5_000_000, "tests.link.test_damaged_frames {count} --seed {seed}"),
+         "damaged frames", 100_000_000, 5_000_000, "tests.link.test_damaged_frames {count} --seed {seed}", _FRAMES),
     Goal("frames-large", "The same for large frames.",
-         "damaged frames", 10_000_000, 2_000_000, "tests.link.test_damaged_frames {count} --large --seed {seed}"),
+         "damaged frames", 10_000_000, 2_000_000, "tests.link.test_damaged_frames {count} --large --seed {seed}", _FRAMES),
     Goal("field", "Behind what people, apps and radio modules send, a right line runs or an answer says why not; a glitch runs no other program; a person and a computer on one port are both heard.",
-         "robots of each kind", 100_000, 3_000, "tests.link.test_field {count} --seed {seed}", 1000),
+         "robots of each kind", 100_000, 3_000, "tests.link.test_field {count} --seed {seed}", (*_ROBOT, *_FRAMES), 1000),
     Goal("pieces", "The same as for uploads over radios that send pieces of 20 bytes, with pauses of up to 1.5 s between them.",
-         "uploads", 10_000, 300, f"{_CHANNEL} {{count}} --pieces --seed {{seed}}", 1000),
+         "uploads", 10_000, 300, f"{_CHANNEL} {{count}} --pieces --seed {{seed}}", _UPLOADS, 1000),
     Goal("typed-stops", "The receiver sees a typed stop behind any bytes, and none in a frame that arrives whole.",
-         "prefixes, and a hundred frames of each", 1_000_000, 100_000, "tests.link.test_typed_stops {count} --seed {seed}"),
+         "prefixes, and a hundred frames of each", 1_000_000, 100_000, "tests.link.test_typed_stops {count} --seed {seed}", _FRAMES),
     Goal("typed-stops-chip", "On a simulated Uno, at both rates, a typed stop behind random bytes reaches the pins within a millisecond, or within 105 ms of the last byte if its packet began as a frame; nothing that came before it starts.",
-         "stops", 10_000, 500, "tests.firmware.test_typed_stops {count} --seed {seed}", 1000),
+         "stops", 10_000, 500, "tests.firmware.test_typed_stops {count} --seed {seed}", _code("@"), 1000),
     Goal("rows", "Tests that each commit only samples pass with every row: chips, random programs and codes.",
-         "runs of all rows", 1, 1, "pytest tests -m sampled --whole -n 2 --dist worksteal"),
+         "runs of all rows", 1, 1, "pytest tests -m sampled --whole -n 2 --dist worksteal", ("compiler", "vm_arduino", "tests")),
     Goal("fuzz-machine", f"No image harms the machine: what the verifier accepts runs without BAD_CODE ({FUZZ}).",
-         "inputs", 100_000_000, 5_000_000, "tests.fuzz.harnesses machine {count} --seed {seed}"),
+         "inputs", 100_000_000, 5_000_000, "tests.fuzz.harnesses machine {count} --seed {seed}", (*_code("@vm"), "tests/fuzz")),
     Goal("fuzz-link", f"No bytes harm the receiver, the link or the reader of text ({FUZZ}).",
-         "inputs", 100_000_000, 1_000_000, "tests.fuzz.harnesses link {count} --seed {seed}"),
+         "inputs", 100_000_000, 1_000_000, "tests.fuzz.harnesses link {count} --seed {seed}", (*_code("@link", "@text"), "tests/fuzz")),
     Goal("fuzz-store", f"No contents of the EEPROM harm the store, at start or during saves ({FUZZ}).",
-         "inputs", 10_000_000, 100_000, "tests.fuzz.harnesses store {count} --seed {seed}"),
+         "inputs", 10_000_000, 100_000, "tests.fuzz.harnesses store {count} --seed {seed}", (*_code("@store"), "tests/fuzz")),
     Goal("agreement", "The machines and verifiers in C++ and in Python say and do the same.",
-         "random and mutated codes", 10_000_000, 200_000, "tests.vm.test_cpp_agreement {count} --seed {seed}", 1000),
+         "random and mutated codes", 10_000_000, 200_000, "tests.vm.test_cpp_agreement {count} --seed {seed}", (*_MACHINE, "tests/vm"), 1000),
     Goal("verifier", "Both verifiers and the one in the specification give the same verdict at the same offset.",
-         "random and damaged codes", 10_000_000, 100_000, "tests.oracle.test_verifier {count} --seed {seed}", 1000),
+         "random and damaged codes", 10_000_000, 100_000, "tests.oracle.test_verifier {count} --seed {seed}", (*_MACHINE, "bytecode_spec.md", "tests/oracle"), 1000),
     Goal("machine", "The machine does what the one written from the specification does with programs without tasks.",
-         "runs", 100_000, 5_000, "tests.oracle.test_machine {count} --seed {seed}"),
+         "runs", 100_000, 5_000, "tests.oracle.test_machine {count} --seed {seed}", (*_MACHINE, "bytecode_spec.md", "tests/oracle")),
     Goal("compiler", "Programs do what the interpreter written from the language reference does.",
-         "programs, right and broken", 100_000, 5_000, "tests.vm.test_agreement {count} --seed {seed}", 10_000),
+         "programs, right and broken", 100_000, 5_000, "tests.vm.test_agreement {count} --seed {seed}", (*_COMPILER, *_MACHINE, "tests/oracle"), 10_000),
     Goal("tasks", "Programs with TASK and WHEN do the same on the machines in Python and in C++ and in the interpreter written from the language reference.",
-         "programs", 100_000, 5_000, "tests.oracle.test_tasks {count} --seed {seed}", 10_000),
+         "programs", 100_000, 5_000, "tests.oracle.test_tasks {count} --seed {seed}", (*_COMPILER, *_MACHINE, "tests/oracle"), 10_000),
     Goal("ways", "Programs that go by centimetres and degrees, half of them with tasks, do the same on the machines in Python and in C++ and in the interpreter written from the language reference.",
-         "programs", 100_000, 5_000, "tests.oracle.test_ways {count} --seed {seed}", 10_000),
+         "programs", 100_000, 5_000, "tests.oracle.test_ways {count} --seed {seed}", (*_COMPILER, *_MACHINE, "tests/oracle"), 10_000),
     Goal("page", "From a program's text, and from its blocks, the studio's page makes the same bytecode as tsc compile.",
-         "programs", 1_000, 100, "tests.studio.random_in_page {count} --seed {seed}", 100),
+         "programs", 1_000, 100, "tests.studio.random_in_page {count} --seed {seed}", (*_COMPILER, "tools/studio"), 100),
     Goal("reader", "The robot's reader makes the same of a text as the compiler.",
-         "programs, and twenty changed texts of each", 100_000, 1_000, "tests.text.test_reader_agreement {count} --seed {seed}", 10_000),
+         "programs, and twenty changed texts of each", 100_000, 1_000, "tests.text.test_reader_agreement {count} --seed {seed}", (*_COMPILER, *_code("@text"), "tests/text"), 10_000),
     Goal("text", "A robot obeys a line of text, whatever was thrown at it before.",
-         "robots", 10_000, 100, "tests.firmware.test_text {count} --seed {seed}", 1000),
+         "robots", 10_000, 100, "tests.firmware.test_text {count} --seed {seed}", _ROBOT, 1000),
     Goal("waiting", "A robot runs exactly the code of a frame that it verified, whatever text waits before and after.",
-         "programs", 100_000, 10_000, "tests.firmware.test_waiting_text {count} --seed {seed}"),
+         "programs", 100_000, 10_000, "tests.firmware.test_waiting_text {count} --seed {seed}", _ROBOT),
     Goal("clients", "After any frames a robot answers each whole frame, does nothing stale, and can be stopped.",
-         "clients", 10_000, 100, "tests.firmware.test_hostile_client {count} --seed {seed}", 1000),
+         "clients", 10_000, 100, "tests.firmware.test_hostile_client {count} --seed {seed}", _ROBOT, 1000),
     Goal("fuzz-mqtt", f"Whatever a broker says, an ESP32's MQTT reader finds the same as a second reader, within its memory ({FUZZ}).",
-         "inputs", 10_000_000, 200_000, "tests.fuzz.harnesses mqtt {count} --seed {seed}"),
+         "inputs", 10_000_000, 200_000, "tests.fuzz.harnesses mqtt {count} --seed {seed}", (*_code("@boards/esp32"), "tests/fuzz")),
     Goal("fuzz-compiler", "The compiler compiles any text, or refuses it with mistakes that it can name in every language.",
-         "texts", 1_000_000, 5_000, "tests.fuzz.test_python compiler {count} --seed {seed}"),
+         "texts", 1_000_000, 5_000, "tests.fuzz.test_python compiler {count} --seed {seed}", (*_COMPILER, *_code("recovery", "diagnostics"), "tests/fuzz")),
     Goal("fuzz-profiles", "Any robot profile is read or refused.",
-         "texts", 1_000_000, 5_000, "tests.fuzz.test_python profiles {count} --seed {seed}"),
+         "texts", 1_000_000, 5_000, "tests.fuzz.test_python profiles {count} --seed {seed}", (*_code("robots"), "tests/fuzz")),
     Goal("fuzz-worlds", "Any world is read or refused.",
-         "texts", 1_000_000, 5_000, "tests.fuzz.test_python worlds {count} --seed {seed}"),
+         "texts", 1_000_000, 5_000, "tests.fuzz.test_python worlds {count} --seed {seed}", (*_code("virtual"), "tests/fuzz")),
     Goal("fuzz-answers", "Whatever a robot answers, every request of the computer ends.",
-         "sequences of answers", 1_000_000, 5_000, "tests.fuzz.test_python answers {count} --seed {seed}"),
+         "sequences of answers", 1_000_000, 5_000, "tests.fuzz.test_python answers {count} --seed {seed}", (*_code("link", "library"), "tests/fuzz")),
     Goal("fuzz-messages", "Any message from another command on a shared port counts as a request, or is refused.",
-         "messages", 1_000_000, 5_000, "tests.fuzz.test_python messages {count} --seed {seed}"),
+         "messages", 1_000_000, 5_000, "tests.fuzz.test_python messages {count} --seed {seed}", (*_code("link"), "tests/fuzz")),
     Goal("fuzz-greetings", "Any bytes from a stranger on a shared port count as a greeting, or are refused.",
-         "sequences of bytes", 1_000_000, 5_000, "tests.fuzz.test_python greetings {count} --seed {seed}"),
+         "sequences of bytes", 1_000_000, 5_000, "tests.fuzz.test_python greetings {count} --seed {seed}", (*_code("link"), "tests/fuzz")),
     Goal("mutation", "A test of the module notices any small mistake in its code.",
-         "mutants", 1_500, 150, "tools.mutation {count} --seed {seed}"),
+         "mutants", 1_500, 150, "tools.mutation {count} --seed {seed}", ("compiler", "vm_arduino", "tests")),
 )
 # fmt: on
 

@@ -1,4 +1,4 @@
-"""What campaigns have measured: `results.json`, and from it the table of `docs/guarantees.md`.
+"""What campaigns have measured: `results.json`, and from it the table of `docs/en/guarantees.md`.
 
 A result belongs to the code with which it was measured: figures of other code are not added up.
 """
@@ -15,6 +15,8 @@ from tools import ROOT
 from tools.campaign.goals import GOALS, Goal
 
 WRITTEN = Path(__file__).with_name("results.json")
+DOCUMENT = ROOT / "docs" / "en" / "guarantees.md"
+OLD = ", old"
 CODE = ("compiler", "vm_arduino", "tests")  # what a figure is about
 HEAD = ("name", "guarantee", "target", "measured", "seeds", "date", "commit")
 
@@ -53,12 +55,36 @@ def commit() -> str:
     return head + "+" * bool(git("status", "--porcelain", "--", *CODE).stdout.strip())
 
 
-def is_same_code(one: str, other: str) -> bool:
-    """Whether two commits have the same code; one with a `+` is like no other."""
+def is_same_code(goal: Goal, one: str, other: str = "") -> bool:
+    """Whether two commits, or one and the files that are here, have the same code of a goal.
+
+    A commit with a `+` is like no other, nor is one that nobody knows here.
+    """
+    commits = [each for each in (one, other) if each]
     is_known = "+" not in one + other
     return one == other or (
-        is_known and not git("diff", "--quiet", one, other, "--", *CODE).returncode
+        is_known and not git("diff", "--quiet", *commits, "--", *goal.code).returncode
     )
+
+
+def is_old(goal: Goal, result: Result) -> bool:
+    """Whether the code of a goal has changed since its figure.
+
+    Without the project's commits nobody can tell: then it is as the document says.
+    """
+    if git("rev-parse", "--is-shallow-repository").stdout.strip() != "false":
+        return f"| {_figure(goal, result)}{OLD} |" in _row(goal, DOCUMENT.read_text("utf-8"))
+    return not is_same_code(goal, result.commit)
+
+
+def old() -> list[str]:
+    """Return the names of the goals whose figures are old."""
+    found = read()
+    return [goal.name for goal in GOALS if goal.name in found and is_old(goal, found[goal.name])]
+
+
+def _row(goal: Goal, document: str) -> str:
+    return next((row for row in document.splitlines() if row.startswith(f"| `{goal.name}` |")), "")
 
 
 def git(*words: str) -> subprocess.CompletedProcess[str]:
@@ -66,16 +92,20 @@ def git(*words: str) -> subprocess.CompletedProcess[str]:
 
 
 def measured(goal: Goal, result: Result | None) -> str:
-    """Return the figure, and that it is less than the goal where it is."""
+    """Return the figure, that it is less than the goal where it is, and whether it is old."""
     if result is None:
         return "not run yet"
+    return _figure(goal, result) + OLD * is_old(goal, result)
+
+
+def _figure(goal: Goal, result: Result) -> str:
     if result.wrong:
         return f"**wrong**: {result.wrong}"
     return f"{result.done:,}" + ("" if result.done >= goal.target else ": less")
 
 
 def rows() -> list[tuple[str, ...]]:
-    """Return the table of `docs/guarantees.md`."""
+    """Return the table of `docs/en/guarantees.md`."""
     results = read()
     found: list[tuple[str, ...]] = []
     for goal in GOALS:

@@ -21,9 +21,8 @@ from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
 from tools import ROOT
-from tools.generate import avr_header, cpp_header, link_header, remark_tables, text_tables
+from tools.generate import avr_header, built, cpp_header, link_header, remark_tables, text_tables
 from tools.generate.arena import world_picture
-from tools.generate.command_pages import DOCUMENTED, page
 from tools.generate.cpp_cases import cases_table
 from tools.generate.documents import DOCUMENTS, list_of_documents, spliced, table
 from tools.generate.driver_lists import with_drivers
@@ -31,8 +30,7 @@ from tools.generate.front import fronts
 from tools.generate.guide_pictures import guide_pictures
 from tools.generate.link_header import payloads
 from tools.generate.poster import posters
-from tools.generate.wiring_pages import wiring_pages
-from tools.site.documents import LIST, name_in
+from tools.site.documents import LIST
 
 COMMAND = "python -m tools.generate"
 KITS = ("tinibot", "liner", "grabber")  # that differ
@@ -210,7 +208,7 @@ LINK = ROOT / "vm_arduino" / "src" / "link"
 PAYLOADS = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
 TEXT = ROOT / "vm_arduino" / "src" / "text"
 WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
-WIRING = ROOT / "docs" / "wiring"
+DOCS, PICTURES = ROOT / "docs", ROOT / "docs" / "pictures"
 
 OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (ROBOTS / "tinibot.toml", partial(with_drivers, ROBOTS / "tinibot.toml")),
@@ -227,23 +225,19 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (TEXT / "remarks.h", partial(remark_tables.remarks_header, COMMAND)),
     (TEXT / "texts.h", partial(remark_tables.texts_header, COMMAND)),
     (TEXT / "texts.cpp", partial(remark_tables.texts, COMMAND)),
-    *((ROOT / "docs" / name, make) for name, make in DOCUMENTS.items()),
+    *((ROOT / name, make) for name, make in DOCUMENTS.items()),
     (PAYLOADS, partial(payloads, COMMAND)),
-    *(
-        (ROOT / name_in(language, "docs/command.en.md"), partial(page, language, COMMAND, table))
-        for language in DOCUMENTED
-    ),
-    *((ROOT / "docs" / "poster" / name, make) for name, make in posters(COMMAND).items()),
-    *((ROOT / "docs" / name, make) for name, make in fronts(COMMAND).items()),
-    (ROOT / "docs" / "worlds.svg", partial(world_picture, COMMAND)),
-    *((ROOT / "docs" / name, make) for name, make in guide_pictures(COMMAND).items()),
+    *((DOCS / "poster" / name, make) for name, make in posters(COMMAND).items()),
+    *((PICTURES / name, make) for name, make in fronts(COMMAND).items()),
+    (PICTURES / "worlds.svg", partial(world_picture, COMMAND)),
+    *((PICTURES / name, make) for name, make in guide_pictures(COMMAND).items()),
     (ROOT / LIST, partial(list_of_documents, COMMAND)),  # which reads the other documents' titles
     (ROOT / "vm_arduino" / "test" / "cases.cpp", partial(cases_table, COMMAND)),
     *(
         (WIRED / f"{path.stem}.h", partial(robot_header, path))
         for path in sorted(ROBOTS.glob("*.toml"))
     ),
-    *((WIRING / name, make) for name, make in wiring_pages(COMMAND).items()),
+    *((ROOT / name, make) for name, make in built.kept().items()),
 ]
 
 

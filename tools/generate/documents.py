@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 import os
+import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
@@ -18,18 +19,18 @@ from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools import ROOT, measures
 from tools.site.documents import LIST, documents, sources
 
-FOLDER = ROOT / "docs"
 PACKAGE = ROOT / "compiler" / "tiniscript"
 
 
 def architecture_document() -> str:
-    """Return `docs/architecture.md` with the picture of the modules, and what each folder says."""
+    """Return `docs/develop/architecture.md` with its picture, and what each folder says."""
     rows = []
     for path in sorted(PACKAGE.glob("*/**/__init__.py")):
         said = ast.get_docstring(ast.parse(path.read_bytes())) or ""
         about = " ".join(said.split("\n\n")[0].split())
         rows.append((f"`{path.parent.relative_to(PACKAGE).as_posix()}/`", about))
-    made = spliced(_text("architecture.md"), "packages", table(("folder", "content"), rows))
+    made = table(("folder", "content"), rows)
+    made = spliced(_text("docs/develop/architecture.md"), "packages", made)
     return spliced(made, "modules", _modules())
 
 
@@ -53,26 +54,26 @@ def link_document(document: str) -> str:
 
 
 def text_document() -> str:
-    """Return `docs/text.md` with the table of levels."""
+    """Return `docs/develop/text.md` with the table of levels."""
     rows = [
         (f"`{each.name}`", ", ".join(f"`{word}`" for word in sorted(each.lacks)) or "nothing",
          each.room, min(CODE_BYTES, each.room))
         for each in LEVELS.values()
     ]  # fmt: skip
     made = table(("level", "lacks", "room in bytes", "bytes of code, at most"), rows)
-    return spliced(_text("text.md"), "levels", made)
+    return spliced(_text("docs/develop/text.md"), "levels", made)
 
 
 def guarantees_document() -> str:
-    """Return `docs/guarantees.md` with the table of goals and figures."""
+    """Return `docs/en/guarantees.md` with the table of goals and figures."""
     from tools.campaign.results import HEAD, rows
 
-    return spliced(_text("guarantees.md"), "guarantees", table(HEAD, rows()))
+    return spliced(_text("docs/en/guarantees.md"), "guarantees", table(HEAD, rows()))
 
 
 def lessons_document() -> str:
-    """Return `docs/lessons.en.md` with the table of criteria."""
-    return spliced(_text("lessons.en.md"), "criteria", table(*criteria()))
+    """Return `docs/en/lessons.md` with the table of criteria."""
+    return spliced(_text("docs/en/lessons.md"), "criteria", table(*criteria()))
 
 
 def bring_up_document(document: str, language: str) -> str:
@@ -97,7 +98,7 @@ def language_document(document: str, language: str) -> str:
 
 
 def list_of_documents(command: str) -> str:
-    """Return `docs/README.md`: the documents' titles, in all languages side by side."""
+    """Return `docs/README.md`: title and first sentence of each, in all languages side by side."""
     found = [each for each in documents(ROOT) if each.sources.get(SOURCE) != LIST]
     shown = [each for each in languages() if any(each in one.sources for one in found)]
 
@@ -120,16 +121,26 @@ def list_of_documents(command: str) -> str:
 
 
 def _linked(source: str) -> str:
-    """Return the title of a document, with a link to it, or nothing."""
+    """Return the title of a document, with a link to it, and its first sentence, or nothing."""
     if not source:
         return ""
-    text = (ROOT / source).read_text(encoding="utf-8")
-    title = next(row[2:] for row in text.splitlines() if row.startswith("# "))
-    return f"[{title}]({os.path.relpath(source, 'docs')})"
+    title, sentence = _about((ROOT / source).read_text(encoding="utf-8"))
+    link = f"[{title}]({Path(os.path.relpath(source, 'docs')).as_posix()})"
+    return f"{link}<br>{sentence}" if sentence else link
+
+
+def _about(text: str) -> tuple[str, str]:
+    """Return the title of a document, and the sentence that says who reads it, and for what."""
+    _, _, body = f"\n{text}".partition("\n# ")
+    title, *paragraphs = body.split("\n\n")
+    first = next((each for each in paragraphs if not re.match(r"[\[!<]", each)), "")
+    prose = first if re.match(r"\w|`[^`]", first) else ""
+    words = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", " ".join(prose.split()))
+    return title, re.split(r"(?<=\.)\s", words)[0]
 
 
 def _text(name: str) -> str:
-    return (FOLDER / name).read_text(encoding="utf-8")
+    return (ROOT / name).read_text(encoding="utf-8")
 
 
 def spliced(text: str, name: str, table: str) -> str:
@@ -149,21 +160,21 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 DOCUMENTS: dict[str, Callable[[], str]] = {
-    "architecture.md": architecture_document,
-    "link.md": partial(link_document, "link.md"),
-    "network.md": partial(link_document, "network.md"),
-    "owners.md": partial(link_document, "owners.md"),
-    "text.md": text_document,
-    "guarantees.md": guarantees_document,
+    "docs/develop/architecture.md": architecture_document,
+    "docs/develop/link.md": partial(link_document, "docs/develop/link.md"),
+    "docs/develop/network.md": partial(link_document, "docs/develop/network.md"),
+    "docs/develop/owners.md": partial(link_document, "docs/develop/owners.md"),
+    "docs/develop/text.md": text_document,
+    "docs/en/guarantees.md": guarantees_document,
     **{
-        Path(path).name: partial(bring_up_document, Path(path).name, language)
-        for language, path in sources(ROOT, "docs/bring-up.md").items()
+        path: partial(bring_up_document, path, language)
+        for language, path in sources(ROOT, "docs/en/bring-up.md").items()
     },
     **{
-        Path(path).name: partial(language_document, Path(path).name, language)
-        for language, path in sources(ROOT, "docs/language.en.md").items()
+        path: partial(language_document, path, language)
+        for language, path in sources(ROOT, "docs/en/language.md").items()
     },
-    "lessons.en.md": lessons_document,
+    "docs/en/lessons.md": lessons_document,
 }
 
 

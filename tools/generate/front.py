@@ -38,7 +38,7 @@ COLOURS = {"setup": SETUP, **dict.fromkeys(GRAMMAR_ROLES, GRAMMAR)}
 
 
 def fronts(command: str) -> dict[str, partial[str]]:
-    """Return how the pictures are made, by their names in `docs/`. `command` makes them."""
+    """Return how each picture of `docs/pictures/` is made, by its name. `command` makes them."""
     return {
         f"front.{language}.svg": partial(front, language, command)
         for language in sources(ROOT, "README.md")

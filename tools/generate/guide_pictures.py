@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from functools import partial
 from html import escape
-from pathlib import Path
 
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.variation import varied
@@ -20,8 +19,8 @@ from tools import ROOT
 from tools.generate.arena import FLOOR, WALL, WAY, arena, driven
 from tools.site.documents import sources
 
-DOCS = ROOT / "docs"
-GUIDES = {each: Path(file).name for each, file in sources(ROOT, "docs/monday.en.md").items()}
+REFERENCE, GUIDE = "docs/en/language.md", "docs/en/monday.md"
+GUIDES = sources(ROOT, GUIDE)
 PAD, PAPER, SKY = 10, "#ffffff", "#dcebfb"
 
 
@@ -43,19 +42,19 @@ OBSTACLES = worlds.load("obstacles")
 LANE = floor(125, 30, 15, 15, 0)
 Drives = tuple[tuple[World, int], ...]  # worlds, each for so many milliseconds
 DRIVES: dict[str, tuple[str, str, Drives]] = {  # the guide, how its program begins
-    "moves.svg": ("language.en.md", "SPEED = 90", ((floor(110, 110, 80, 25, 0), 4000),)),
-    "until.svg": ("language.en.md", "F(3, 80) UNTIL", ((floor(120, 40, 20, 20, 0), 4000),)),
-    "faster.svg": ("language.en.md", "SPEED = 40", ((LANE, 1000), (LANE, 2000), (LANE, 3000))),
-    "if.svg": ("language.en.md", "SI|IF(DISTANCE < 10)",
+    "moves.svg": (REFERENCE, "SPEED = 90", ((floor(110, 110, 80, 25, 0), 4000),)),
+    "until.svg": (REFERENCE, "F(3, 80) UNTIL", ((floor(120, 40, 20, 20, 0), 4000),)),
+    "faster.svg": (REFERENCE, "SPEED = 40", ((LANE, 1000), (LANE, 2000), (LANE, 3000))),
+    "if.svg": (REFERENCE, "SI|IF(DISTANCE < 10)",
                ((before(8), 2000), (before(20), 2000), (before(60), 2000))),
-    "def.svg": ("language.en.md", "DEF SIDE(SIZE)", ((floor(75, 85, 18, 68, 0), 5000),)),
-    "dice.svg": ("language.en.md", "SB|LOOP(FOREVER)\n  F(FOREVER, 70)", ((OBSTACLES, 20_000),)),
-    "course.svg": ("monday.en.md", "SB|LOOP(FOREVER)", ((OBSTACLES, 20_000),)),
+    "def.svg": (REFERENCE, "DEF SIDE(SIZE)", ((floor(75, 85, 18, 68, 0), 5000),)),
+    "dice.svg": (REFERENCE, "SB|LOOP(FOREVER)\n  F(FOREVER, 70)", ((OBSTACLES, 20_000),)),
+    "course.svg": (GUIDE, "SB|LOOP(FOREVER)", ((OBSTACLES, 20_000),)),
 }  # fmt: skip
 
 
 def guide_pictures(command: str) -> dict[str, partial[str]]:
-    """Return how the pictures are made, by their names in `docs/`. `command` makes them."""
+    """Return how each picture of `docs/pictures/` is made, by its name. `command` makes them."""
     made = {name: partial(drive, command, *row) for name, row in DRIVES.items()}
     made |= {f"phone.{each}.svg": partial(phone, command, each) for each in GUIDES}
     return made | {"lesson.svg": partial(lesson, command), "hand.svg": partial(hand, command)}
@@ -116,7 +115,7 @@ def hand(command: str) -> str:
 
 
 def _text(guide: str) -> str:
-    return (DOCS / guide).read_text(encoding="utf-8")
+    return (ROOT / guide).read_text(encoding="utf-8")
 
 
 def _box(x: float, y: float, width: float, height: float, colour: str) -> str:

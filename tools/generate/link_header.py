@@ -1,6 +1,6 @@
 """What is made of the table of messages: `messages.h`, `messages.cpp`, `link/payloads.py`.
 
-`__main__.py` writes the files, and the tables of `docs/link.md`, which are here too.
+`__main__.py` writes the files, and the tables of `docs/develop/link.md`, which are here too.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def header(command: str) -> str:
     )  # fmt: skip
     about = (
         "The numbers of the link: messages, where the fields of their requests begin,",
-        "statuses, states, times. Knows no behaviour. `docs/link.md` says what they mean.",
+        "statuses, states, times. Knows no behaviour. `docs/develop/link.md` says what they mean.",
     )
     return cpp_file(command, "link/messages.h", about, "\n".join(parts), "../vm/cpu.h")
 
@@ -170,7 +170,7 @@ def bit_rows(table: Sequence[tuple[int, str, str]], bits: str = "bits", digits: 
 
 
 DOCUMENT_TABLES: dict[str, dict[str, Callable[[], Rows]]] = {
-    "link.md": {
+    "docs/develop/link.md": {
         "messages": message_rows,
         "modes": lambda: bit_rows(messages.MODES),
         "wheels": lambda: bit_rows(messages.WHEELS, "bit"),
@@ -186,12 +186,12 @@ DOCUMENT_TABLES: dict[str, dict[str, Callable[[], Rows]]] = {
             [(number, f"`{name}`", what) for number, name, what in messages.LINK_FAULTS],
         ),
     },
-    "network.md": {
+    "docs/develop/network.md": {
         "wifi_steps": lambda: number_rows(messages.WIFI_STEPS),
         "wifi_modes": lambda: number_rows(messages.WIFI_MODES),
         "wifi_states": lambda: number_rows(messages.WIFI_STATES),
     },
-    "owners.md": {"keys": lambda: number_rows(messages.KEYS)},
+    "docs/develop/owners.md": {"keys": lambda: number_rows(messages.KEYS)},
 }
 
 

@@ -1,8 +1,8 @@
 """Makes `conformance/link.json`: what a robot must do on a port, and conversations to play.
 
-Knows the form of the file, which `docs/conformance.md` describes. Programs and refusals are those
-of `machine_kit` that any robot can run without a sensor, a motor or a minute; the conversations
-are the cases of the link, row by row.
+Knows the form of the file, which `docs/develop/conformance.md` describes. Programs and refusals are
+those of `machine_kit` that any robot can run without a sensor, a motor or a minute; the
+conversations are the cases of the link, row by row.
 """
 
 from __future__ import annotations

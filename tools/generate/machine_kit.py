@@ -1,9 +1,10 @@
 """Makes `conformance/machine.json`: what a machine of any language must do with images.
 
-Knows the form of the file, which `docs/conformance.md` describes, and where its cases come from:
-the case files, images that are damaged on purpose, the edges of numbers, and random programs. What
-is expected is what the machine in Python answers; the tests compare it with the others and with the
-oracles. Needs nothing but the package and the sources of the tests: not what they are run with.
+Knows the form of the file, which `docs/develop/conformance.md` describes, and where its cases come
+from: the case files, images that are damaged on purpose, the edges of numbers, and random programs.
+What is expected is what the machine in Python answers; the tests compare it with the others and
+with the oracles. Needs nothing but the package and the sources of the tests: not what they are run
+with.
 """
 
 from __future__ import annotations

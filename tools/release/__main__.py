@@ -28,6 +28,7 @@ from pathlib import Path
 
 from tools import ROOT, CannotMake
 from tools.builds.studio import found_tools
+from tools.campaign import results
 from tools.release import facts
 from tools.release.packing import sha256
 from tools.release.parts import PARTS, Clone, chosen
@@ -95,6 +96,8 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
     print(sums, end="")
     if options.url and facts.address(ROOT) != options.url.rstrip("/"):
         _say(f"pyproject.toml does not have {options.url}: what is published is made with it there")
+    if old := ", ".join(results.old()):
+        _say(f"{results.DOCUMENT.relative_to(ROOT)}: figures of older code: {old}")
     for each in failed:
         print(f"made twice, it is not the same: {each}", file=sys.stderr)
     return 1 if wrong or failed else 0

@@ -16,8 +16,9 @@ _DATED = re.compile(r"^## (\d+\.\d+\.\d+) \((\d{4}-\d{2}-\d{2})\)$", re.MULTILIN
 # Each place that repeats the version, and how.
 _REPEATED = {
     "CITATION.cff": r"(?m)^version: (\S+)$",
-    "docs/versions.md": r"\| TiniScript, the package \| `([^`]+)` \|",
+    "docs/en/versions.md": r"\| TiniScript, the package \| `([^`]+)` \|",
 }
+NO_CONTACT = "(whoever publishes this repository writes an address here)"
 # Each place that repeats who has made it.
 _PEOPLE = {
     "LICENSE": r"Copyright \(c\) \d{4} (.+)",
@@ -65,6 +66,8 @@ def complaints(root: Path) -> Iterator[str]:
         found = _first(root / name, pattern)
         if found != PEOPLE:
             yield f"{name} names {found or 'nobody'}, not {PEOPLE}."
+    if _first(root / "SECURITY.md", "(?m)^Contact: (.+)$") in ("", NO_CONTACT):
+        yield "SECURITY.md does not say how to reach somebody: write an address behind Contact."
     if not address(root):
         yield (
             "pyproject.toml does not say where it is published. Add there:  [project.urls]  and "

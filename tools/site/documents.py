@@ -1,22 +1,23 @@
 """Which documents the site has, in which language, under which name, and beside which others.
 
-Knows the repository's documents by their English files. In another language a document has the
-name that `documents.txt` in the folder of the language gives it, else that of the English file with
-the code of the language; it is there as soon as its file is. `test_site.py` fails where a document
+Knows the repository's documents by their English files. In another language a document of
+`docs/en` is in the folder of that language, under the same name; a file elsewhere has the code of
+the language in its name. It is there as soon as its file is. `test_site.py` fails where a document
 of the repository is in no row.
 """
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Iterable
-from functools import cache
+from collections.abc import Collection, Iterable
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
-from tiniscript.base.languages import SOURCE, about, languages, table
+from tiniscript.base.languages import SOURCE, about, languages
 
 LIST = "docs/README.md"  # of all others, made from here
+PAGES = "docs/en/"
 FRONT = "README.md"  # of each half of the site
 PARTS = ("teach", "write", "wiring", "pupils", "teachers", "trust", "build")
 ENDING = re.compile(r"(?:\.en)?(\.\w+)$")
@@ -34,13 +35,15 @@ def name_in(language: str, english: str) -> str:
     """Return what the file of a document is called in a language, whether it is there or not."""
     if language == SOURCE:
         return english
-    return _names(language).get(english) or ENDING.sub(rf".{language}\1", english)
+    if english.startswith(PAGES):
+        return f"docs/{language}/{english.removeprefix(PAGES)}"
+    return ENDING.sub(rf".{language}\1", english)
 
 
-@cache
-def _names(language: str) -> dict[str, str]:
-    rows = (row.split() for row in table(language, "documents.txt").splitlines())
-    return {row[0]: row[1] for row in rows if row and row[0] != "#"}
+def language_of(name: str) -> str:
+    """Return the language that a document is in, by the name of its file."""
+    folder, code = PurePosixPath(name).parts[1:2], name.split(".")[-2:-1]
+    return next((each for each in (*folder, *code) if each in languages()), SOURCE)
 
 
 def sources(root: Path, english: str) -> dict[str, str]:
@@ -55,8 +58,9 @@ def sources(root: Path, english: str) -> dict[str, str]:
 
 def links(language: str, english: str, others: Iterable[str]) -> list[str]:
     """Return the links on a document to itself in other languages."""
+    here = PurePosixPath(name_in(language, english)).parent
     return [
-        f"[{about(each).name}]({PurePosixPath(name_in(each, english)).name})"
+        f"[{about(each).name}]({Path(os.path.relpath(name_in(each, english), here)).as_posix()})"
         for each in others
         if each != language
     ]
@@ -72,6 +76,15 @@ def _rows(root: Path, part: str, *files: str, folder: str = "") -> list[Document
     ]
 
 
+def _guides(root: Path, part: str, *names: str) -> list[Document]:
+    return _rows(root, part, *(f"{PAGES}{each}.md" for each in names))
+
+
+def _pages(root: Path, *names: str) -> list[Document]:
+    """Return pages for developers, which are in English alone."""
+    return _rows(root, "build", *(f"docs/develop/{each}.md" for each in names))
+
+
 def _files(root: Path, pattern: str) -> list[str]:
     return sorted(path.relative_to(root).as_posix() for path in root.glob(pattern))
 
@@ -85,24 +98,38 @@ def _lessons(root: Path) -> list[Document]:
     ]
 
 
-def documents(root: Path) -> list[Document]:
-    """Return the documents of a clone, in the order in which the site shows them."""
-    return [
-        *_rows(root, "teach", "docs/monday.en.md", "docs/bring-up.md", "docs/lessons.en.md",
-               "docs/materials.en.md", "docs/measure.en.md", "docs/modules.en.md"),
-        *_rows(root, "write", "docs/language.en.md", "docs/robots.en.md", "docs/studio.en.md",
-               "docs/command.en.md"),
-        *_rows(root, "teach", "docs/class.en.md"),
-        *_rows(root, "write", "docs/worlds.en.md"),
-        Document("library", "write", sources(root, "docs/api.en.md")),
-        *_rows(root, "wiring", *_files(root, "docs/wiring/*.en.md"), folder="wiring/"),
+def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
+    """Return the documents of a clone, in the order in which the site shows them.
+
+    `built` are the names of those that are there beside its files.
+    """
+    found = [
+        *_guides(root, "teach", "monday", "bring-up", "lessons", "materials", "measure", "modules"),
+        *_guides(root, "write", "language", "robots", "studio", "command"),
+        *_guides(root, "teach", "class"),
+        *_guides(root, "write", "worlds"),
+        Document("library", "write", sources(root, f"{PAGES}api.md")),
+        *_rows(root, "wiring", *_files(root, f"{PAGES}wiring/*.md"), folder="wiring/"),
         *_lessons(root),
         Document("index", "trust", sources(root, FRONT)),
-        *_rows(root, "trust", "docs/comparison.en.md", "docs/guarantees.md", "docs/figures.md",
-               "docs/computer.md", "SECURITY.md", "CODE_OF_CONDUCT.md"),
-        *_rows(root, "build", "CONTRIBUTING.md", "docs/first-change.md", "docs/translating.md",
-               "docs/architecture.md", "bytecode_spec.md", "docs/conformance.md", "docs/link.md",
-               "docs/owners.md", "docs/network.md", "docs/text.md", "docs/store.md",
-               "docs/esp32.md", "docs/versions.md", "CHANGELOG.md"),
+        *_guides(root, "trust", "comparison", "guarantees", "figures", "computer"),
+        *_rows(root, "trust", "SECURITY.md", "CODE_OF_CONDUCT.md"),
+        *_rows(root, "build", "CONTRIBUTING.md"),
+        *_pages(root, "first-change", "translating", "architecture"),
+        *_rows(root, "build", "bytecode_spec.md"),
+        *_pages(root, "conformance", "link", "owners", "network", "text", "store", "esp32"),
+        *_guides(root, "build", "versions"),
+        *_rows(root, "build", "CHANGELOG.md"),
         Document("documents", "build", {SOURCE: LIST}),
-    ]  # fmt: skip
+    ]
+    there = [
+        each
+        for each in found
+        if each.sources[SOURCE] in built or (root / each.sources[SOURCE]).is_file()
+    ]
+    return [each._replace(sources=_with(built, each.sources)) for each in there]
+
+
+def _with(built: Collection[str], kept: dict[str, str]) -> dict[str, str]:
+    names = {language: name_in(language, kept[SOURCE]) for language in languages()}
+    return {each: name for each, name in names.items() if each in kept or name in built}

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path, PurePosixPath
@@ -36,22 +37,41 @@ class Place(NamedTuple):
 
 @dataclass
 class Shelf:
-    """Where the documents of a clone are on the site, and which files they lead to besides."""
+    """Where the documents of a clone are on the site, and which files they lead to besides.
+
+    `built` are texts beside the files of the clone, by the names that they would have there.
+    """
 
     root: Path
     places: dict[str, Place]
+    twins: dict[str, dict[str, Place]]  # by source: the places of a document, by language
+    built: dict[str, str] = field(default_factory=dict)
     files: set[str] = field(default_factory=set)
     pictures: set[str] = field(default_factory=set)
 
+    def text(self, name: str) -> str:
+        return self.built.get(name) or (self.root / name).read_text(encoding="utf-8")
 
-def shelf(root: Path, found: list[Document]) -> Shelf:
+    def has(self, name: str) -> bool:
+        return name in self.built or (self.root / name).is_file()
+
+    def copy(self, name: str, target: Path) -> None:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if name in self.built:
+            target.write_text(self.built[name], encoding="utf-8")
+        else:
+            shutil.copyfile(self.root / name, target)
+
+
+def shelf(root: Path, found: list[Document], built: dict[str, str] | None = None) -> Shelf:
     """Return the shelf of a clone's documents."""
-    places = {
-        source: Place(language, each.name)
-        for each in found
-        for language, source in each.sources.items()
-    }
-    return Shelf(root, places)
+    places: dict[str, Place] = {}
+    twins: dict[str, dict[str, Place]] = {}
+    for each in found:
+        own = {language: Place(language, each.name) for language in each.sources}
+        for language, source in each.sources.items():
+            places[source], twins[source] = own[language], own
+    return Shelf(root, places, twins, built or {})
 
 
 def page(source: str, on: Shelf, place: Place | None = None) -> str:
@@ -63,7 +83,7 @@ def page(source: str, on: Shelf, place: Place | None = None) -> str:
     found: list[str] = []
     path = on.root / source
     here = place or on.places[source]
-    text = path.read_text(encoding="utf-8")
+    text = on.text(source)
     if (path.parent / "lesson.toml").is_file():
         text = filled(text, source, catalogue.load(path.parent))
     for number, part in enumerate(_FENCED.split(text)):
@@ -80,12 +100,14 @@ def _led(link: re.Match[str], source: str, here: Place, on: Shelf) -> str:
     if not path or ":" in path:
         return link.group(0)
     target = Path(os.path.normpath(PurePosixPath(source).parent / path)).as_posix()
-    there = on.places.get(target)
+    twins = on.twins.get(target, {})
+    is_itself = here in twins.values()  # in another language
+    there = on.places.get(target) if is_itself else twins.get(here.language, on.places.get(target))
     if there is not None and there.language == here.language:
         return f"[{text}]({way(here.name, there.name)}.md{anchor})"
     if there is not None:
         return _plain(text, way(here.address, there.address) + anchor)
-    if not (on.root / target).is_file():
+    if not on.has(target):
         raise CannotMake(f"{source}: {path}")
     if mark:
         on.pictures.add(target)

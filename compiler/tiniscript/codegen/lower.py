@@ -4,7 +4,8 @@ Knows which instruction says a thing in the fewest bytes, and lays out jumps: ea
 short, and becomes far where its target is. Does not know what an image is.
 
 Plain code is what one pass over the text can emit, as a robot does that reads text
-(`docs/text.md`): no instruction that fuses others, every ELSE of the text, DEFs where they stand.
+(`docs/develop/text.md`): no instruction that fuses others, every ELSE of the text, DEFs where they
+stand.
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.

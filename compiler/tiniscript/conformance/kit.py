@@ -1,8 +1,8 @@
 """What a machine or a robot on a port must do: what `machine.json` and `link.json` say, as values.
 
 `python -m tools.builds.conformance` makes the files, which a package of a release has. Knows their
-form, and how a case is told to a machine: `docs/conformance.md` has both. The conversations of
-`link.json` are for tests of others.
+form, and how a case is told to a machine: `docs/develop/conformance.md` has both. The conversations
+of `link.json` are for tests of others.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """A machine as a process of its own: it is asked for runs on its standard input, and answers.
 
 Knows the process, its time and its bounds: one that hangs, crashes, floods or goes on after its
-answer ends as a Problem. Does not know what an answer should be. The form: `docs/conformance.md`.
+answer ends as a Problem. Does not know what an answer should be. The form:
+`docs/develop/conformance.md`.
 """
 
 from __future__ import annotations

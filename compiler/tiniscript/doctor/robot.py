@@ -67,7 +67,7 @@ class WireRobot(Robot):
         self.heard += self.wire.heard(wait_ms, wait_ms)
 
     def ask(self, name: str, tries: int = TRIES) -> Reply[SentReply] | None:
-        """Ask until an answer comes: a 0x00 goes before each try, as `docs/link.md` says."""
+        """Ask until an answer comes; 0x00 goes before each try, as `docs/develop/link.md` says."""
         values = self._values.get(name, {})
         self._seq = (self._seq + 1) & 0xFF
         message = BY_NAME[name]

@@ -57,7 +57,7 @@ class RobotInfo(NamedTuple):
 
 class Receipt(NamedTuple):
     """The program in the robot. `checksum` is that of the program's image; `saved` is
-    MEMORY, SAVING, STORED, LOW_SUPPLY or NOTHING, as in docs/link.md."""
+    MEMORY, SAVING, STORED, LOW_SUPPLY or NOTHING, as in docs/develop/link.md."""
 
     checksum: int
     saved: str

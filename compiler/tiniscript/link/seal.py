@@ -1,7 +1,7 @@
 """The seal of a session: a key that both ends have derived, and a counter for each direction.
 
-Knows the bytes of a sealed frame, and no message; the algorithm is SipHash. `docs/owners.md` says
-what they protect. The C++ version is `vm_arduino/src/link/seal.cpp`.
+Knows the bytes of a sealed frame, and no message; the algorithm is SipHash.
+`docs/develop/owners.md` says what they protect. The C++ version is `vm_arduino/src/link/seal.cpp`.
 """
 
 from __future__ import annotations

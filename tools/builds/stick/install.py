@@ -18,7 +18,7 @@ STICK = Path(__file__).resolve().parent
 IS_WINDOWS = os.name == "nt"
 LANGUAGES = ("en", "es", "pt")  # of the sentences, in this order
 TEAMS = {"spanish": "es", "portuguese": "pt"}  # as Windows says it
-PAGES = ("index.html", "indice.html", "index.pt.html")
+PAGES = ("index.html", "index.es.html", "index.pt.html")
 SAID = {
     "old": ("This Python is {version}; tsc needs 3.10 or newer.",
             "Este Python es {version}; tsc necesita 3.10 o posterior.",

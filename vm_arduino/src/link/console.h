@@ -2,7 +2,7 @@
 // which answer is due.
 //
 // Knows how long a line may take, and which lines are ignored. What a line asks for is done by the
-// link. `docs/link.md` is the contract.
+// link. `docs/develop/link.md` is the contract.
 
 #pragma once
 

@@ -2,7 +2,7 @@
 //
 // Maps messages to `port.h`, and knows what a client must be told. Bytes come in through a Receiver
 // and go out through `next_tx_byte`; time comes in as `now_ms`. Nothing here blocks. A repeated
-// request is answered again but not executed again. `docs/link.md` is the contract.
+// request is answered again but not executed again. `docs/develop/link.md` is the contract.
 
 #pragma once
 

@@ -1,4 +1,4 @@
-// Sealed frames: which ones the robot takes, and which of its own it seals. `docs/link.md` says why.
+// Sealed frames: which ones the robot takes, and which of its own it seals. `docs/develop/link.md` says why.
 
 #include "../vm/build.h"
 #include "link.h"

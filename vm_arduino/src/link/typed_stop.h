@@ -1,7 +1,7 @@
 // Finds a typed stop in the bytes of a line, whatever its spelling.
 //
 // Only ASCII letters and digits count, in any case, and none behind `//`. Knows no packets and no time.
-// `docs/link.md` says which stop counts where.
+// `docs/develop/link.md` says which stop counts where.
 
 #pragma once
 

@@ -1,6 +1,6 @@
 // The layout of everything that a robot saves in its EEPROM.
 //
-// The only definition of these numbers; `docs/store.md` draws them. Does not know how they are
+// The only definition of these numbers; `docs/develop/store.md` draws them. Does not know how they are
 // written.
 
 #pragma once

@@ -20,7 +20,7 @@ constexpr uint8_t kEmptied = 0xff;
 constexpr uint8_t kRefused = kGenerations;  // added to the generation: the slot does not count
 constexpr uint8_t kNothing = 0xff;
 
-// The write steps of a slot. `docs/store.md` says why they come in this order.
+// The write steps of a slot. `docs/develop/store.md` says why they come in this order.
 enum class WriteStep : uint8_t {
   kLook,
   kClear,       // one of the first bytes of the slot: to 0, without an erase

@@ -2,7 +2,7 @@
 //
 // Writes through `nvm.h`, one byte per call of `tick`, while a program runs; nothing here blocks.
 // After a power cut at any moment, the next start finds either the old or the new data, whole, and
-// so does every later start. `docs/store.md` explains how, and the order of steps.
+// so does every later start. `docs/develop/store.md` explains how, and the order of steps.
 //
 // Knows checksums. The caller decides whether a robot may run a program (`refuse`).
 

@@ -1,9 +1,9 @@
 """How much of its memory a robot's reader uses while it reads a program, token by token.
 
-Knows what a reader keeps beside the code, and in which order: `docs/text.md`. The code grows from
-one end of the memory; names, blocks that are open and operators that wait grow from the other one,
-and a word lies behind the code until it has been looked up. Made for right programs: it looks for
-no mistake.
+Knows what a reader keeps beside the code, and in which order: `docs/develop/text.md`. The code
+grows from one end of the memory; names, blocks that are open and operators that wait grow from the
+other one, and a word lies behind the code until it has been looked up. Made for right programs: it
+looks for no mistake.
 """
 
 from __future__ import annotations

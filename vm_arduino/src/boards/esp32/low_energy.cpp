@@ -14,7 +14,7 @@
 #include "radio.h"
 
 #ifdef CONFIG_NIMBLE_ENABLED
-#error "An ESP32-C3 wants the core esp32 2.0.17 to 3.2 by Espressif, or pio run: see docs/esp32.md"
+#error "An ESP32-C3 wants the core esp32 2.0.17 to 3.2 by Espressif, or pio run: see docs/develop/esp32.md"
 #endif
 
 namespace tiniscript {

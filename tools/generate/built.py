@@ -1,0 +1,52 @@
+"""Documents that nobody keeps: they are made for the site and for a USB stick.
+
+Knows which documents a person reads in the repository: of each robot the English page of its
+wiring, and the drawings that some document shows. The command's pages, and wiring in other
+languages, are what `tsc help` and `tsc firmware --wiring` say.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import partial
+
+from tiniscript.base.languages import SOURCE
+from tools import ROOT
+from tools.generate.command_pages import DOCUMENTED, page
+from tools.generate.documents import table
+from tools.generate.wiring_pages import wiring_pages
+from tools.site.documents import name_in
+
+COMMAND = "python -m tools.generate"
+Made = dict[str, Callable[[], str]]
+
+
+def kept() -> Made:
+    """Return how what is kept of these documents is made, by its name in a clone."""
+    made = wiring_pages(COMMAND, is_kept=True)
+    pages = {name: make for name, make in made.items() if name.startswith(f"docs/{SOURCE}/")}
+    shown = _shown() | {each for make in pages.values() for each in _drawings(make())}
+    return pages | {name: make for name, make in made.items() if name in shown}
+
+
+def built() -> dict[str, str]:
+    """Return the documents of a site, by the names that they would have in a clone."""
+    made = {
+        name_in(language, "docs/en/command.md"): partial(page, language, COMMAND, table)
+        for language in DOCUMENTED
+    }
+    return {name: make() for name, make in (made | wiring_pages(COMMAND)).items()}
+
+
+def _shown() -> set[str]:
+    """Return the drawings that the documents of a clone show, but for pages of wiring."""
+    return {
+        drawing
+        for path in ROOT.glob("docs/*/*.md")
+        for drawing in _drawings(path.read_text(encoding="utf-8"))
+    }
+
+
+def _drawings(text: str) -> list[str]:
+    return [f"docs/{each}" for each in re.findall(r"\.\./(pictures/wiring/[\w.]+)\)", text)]
