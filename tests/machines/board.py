@@ -109,7 +109,8 @@ def flags_of(board: str, flags: Sequence[str]) -> tuple[str, ...]:
 def built(header: str, board: str, more: str = "") -> bytes:
     """Return the sketch for the robot of a header, an ELF file; `more` is a file beside it."""
     main = Path(__file__).with_name("board_main.cpp")
-    with_discs = ("-Dtiniscript_with_discs",) if "tiniscript_discs" in header else ()
+    discs = ("-Dtiniscript_with_tasks", "-Dtiniscript_with_discs")  # as platformio.ini has them
+    with_discs = discs if "tiniscript_discs" in header else ()
     flags = (*flags_of(board, FLAGS), *with_discs, *CPP, "-Wall", "-Wextra", "-Werror",
              "-Wl,--gc-sections")  # fmt: skip
     made_from = [header.encode(), more.encode(), main.read_bytes(), bytes(core(board))]
