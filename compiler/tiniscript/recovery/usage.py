@@ -39,7 +39,7 @@ _TOP = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
 _PIECE = re.compile(r"[^;|{}]*")
-_CALL = re.compile(r"(\w+)\s*\([^()]*\w[^()]*\)")
+_CALL = re.compile(r"(\w{3,})\s*\([^()]*\w[^()]*\)")
 _LONG_HEAD = 100  # characters of a DEF before the name of a value
 _TAUGHT = re.compile(r"(?i)\bDEF\s+(\w+[ \t]*\([^()\n]*)?$")
 _OWN = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
