@@ -61,7 +61,9 @@ _TOP = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
 _PIECE = re.compile(r"[^;|{}]*")
-_CALL = re.compile(r"(\w+)\s*\([^()]*\w[^()]*\)")
+_CALL = re.compile(r"(\w{3,})\s*\([^()]*\w[^()]*\)")
+_LONG_HEAD = 100  # characters of a DEF before the name of a value
+_TAUGHT = re.compile(r"(?i)\bDEF\s+(\w+[ \t]*\([^()\n]*)?$")
 _OWN = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
 _MOST_TIMES = 20  # that a DEF is done
 _LONGEST = 120  # characters of a sentence that a message shows
@@ -598,7 +600,7 @@ class _Usage:
         """A word of the language as a name: another one for it."""
         word, text, start = self.found.values["word"], self.source.text, self.found.span.start
         is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
-        is_taught = re.search(r"(?i)\bDEF\s+$", text[max(0, start - 9) : start])
+        is_taught = _TAUGHT.search(text[max(0, start - _LONG_HEAD) : start])
         right = in_place_of(text, word) if is_set or is_taught else ""
         near = nearest(word, self.names.variables - {word}) if is_set else None
         if right and (word in SINCE or not (near or (is_set and word == "TIME" and not is_set[1]))):

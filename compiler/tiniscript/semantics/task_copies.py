@@ -37,6 +37,8 @@ def separated(program: ir.Program) -> ir.Program:
                     variables.append(program.variables[variable])
             its.calls[k] = len(procedures)
             procedures.append(_copied(procedure, its))
+        for its in maps:  # of a DEF that nobody calls: it calls the first copy
+            its.calls.setdefault(k, maps[its_tasks[0]].calls[k])
     main, *others = maps
     tasks = tuple(
         task._replace(body=_body(task.body, its))

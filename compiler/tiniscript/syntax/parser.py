@@ -246,7 +246,7 @@ class Parser:
                 self.reporter.fail(codes.PARAMETER_NEEDS_NAME, name.span, name=of.text)
             cursor.take_inner(WORD)
             if name.text in WORDS:
-                self.reporter.fail(codes.RESERVED, name.span, word=name.text)
+                self.reporter.report(codes.RESERVED, name.span, word=name.text)
             found.append(Parameter(name.text, name.span))
             if not cursor.take_inner(","):
                 break

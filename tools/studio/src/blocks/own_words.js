@@ -5,7 +5,7 @@ import { NameField } from './fields.js';
 import { tipOf } from '../page/words.js';
 
 const MOST_VALUES = 4; // of a DEF
-const NAMES = ['A', 'B', 'C', 'D', 'E', 'G', 'H', 'J', 'K', 'N']; // F, L, R and so on are words of the language
+const NAMES = ['A', 'C', 'D', 'E', 'G', 'H', 'J', 'K', 'N', 'P']; // B, F, L and so on are words of the language
 
 /** @param {any} block @param {() => void} act fires what has changed of its state */
 function changed(block, act) {
