@@ -121,7 +121,7 @@ def test_a_new_board_becomes_a_robot(
     board: str, robot: str, option: str, bytes_least: int, package: Path
 ) -> None:
     with new_board(bootloader(board)) as uno:
-        done = tsc(package, "--port", uno.pty, "--robot", robot, "--board", option).gives(0)
+        done = tsc(package, "--port", uno.pty, "--robot", robot, "--chip", option).gives(0)
         first, second = done.out.splitlines()[:2]
         name, _, rest = first.partition(" on the ")
         size = int(rest.split()[1].replace(",", ""))
@@ -198,7 +198,7 @@ def test_a_nano_is_tried_with_both_of_its_bootloaders(
 ) -> None:
     silent = 'print("avrdude: stk500_getsync() attempt 1 of 10: not in sync: resp=0x00")'
     body = f'{silent}\nopen({str(tmp_path / "bauds")!r}, "a").write(baud + " ")\nsys.exit(1)'
-    done = tsc(package, "--port", board.pty, "--board", "nano", **fake(tmp_path, body))
+    done = tsc(package, "--port", board.pty, "--chip", "nano", **fake(tmp_path, body))
     assert done.code == 3
     assert "trying an older Nano" in done.err and "Is it a nano" in done.err
     assert (tmp_path / "bauds").read_text() == "115200 57600 "
@@ -344,13 +344,13 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
     (["--port", ""], "--port takes the name of a port"),
     (["--port", "socket://localhost:1"], "is on a network or a radio"),
     (["--port", "/dev/none"], "there is no port /dev/none"),
-    (["--port", "x", "--board", "teensy"], "uno, nano, nano-old or mega, not teensy"),
-    (["--port", "x", "--robot", "grabber", "--board", "uno"], "does not fit the board uno"),
+    (["--port", "x", "--chip", "teensy"], "uno, nano, nano-old or mega, not teensy"),
+    (["--port", "x", "--robot", "grabber", "--chip", "uno"], "does not fit the board uno"),
     (["--port", "x", "--robot", "mine.toml"], "There is no file mine.toml"),
     (["--build", "--robot", "nobody"], "nobody"),
 ])  # fmt: skip
 def test_wrong_use_is_said(words: list[str], said: str, tsc: Tsc) -> None:
-    is_told_without = "--board" in words or "--robot" in words
+    is_told_without = "--chip" in words or "--robot" in words
     need("" if is_told_without or shutil.which("avrdude") else "no avrdude on this computer")
     done = tsc("firmware", "--yes", *words)
     assert done.code in (2, 3) and said in done.err

@@ -52,7 +52,7 @@ def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot
         assert (done.code, done.err) == (0, ""), port
         assert done.out.splitlines()[-2:] == ["Done.", "Saved. It starts with the button."]
         assert (ble.robot.did, ble.connections) == (DROVE * count, 2 * count - 1)
-        assert inside("doctor").code == 0  # the port is remembered
+        assert inside("set", "trim", "--show").code == 0  # the port is remembered
     assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
     assert max(len(data) for _, data in ble.written) == 20
     inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\nR(0.1, 40)\n").gives(0, "")

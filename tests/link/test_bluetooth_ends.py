@@ -55,7 +55,7 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     """The connection ends within HELLO, or a frame of the program, or before the last answer."""
     before, after = tmp_path / "before.bin", tmp_path / "after.bin"
     assert inside("upload", "-e", "SB|F(1, 10)", "--port", PLACE).code == 0
-    assert inside("show", "-o", before).code == 0
+    assert inside("show", "-o", before, "--port", PLACE).code == 0
     ble.parts_after = len(ble.heard) + heard
     done = inside("upload", "-e", LONG, "--port", PLACE)
     assert done.code == 3
