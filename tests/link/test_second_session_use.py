@@ -33,7 +33,7 @@ from tiniscript.link.outcomes import MissedEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
-QUIET_MS = 8000  # until a session knows that its robot is lost, and one that is lost says so
+QUIET_MS = 8000
 LATER_MS = 600  # a session that has seen losses may wait so much longer, or less
 PROGRAMS = ("SI|SHOW(1);F(0.2, 50);SHOW(2)", LONG, "SI|X = 0;W(0.1);SHOW(1 / X)", "SI|F(60, 50)")
 
