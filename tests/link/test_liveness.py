@@ -7,7 +7,7 @@ or while the robot shows every so often that it goes on; and whatever is lost, e
 from __future__ import annotations
 
 import random
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable
 from typing import Any
 
@@ -23,6 +23,7 @@ from tiniscript.link.session import DEAF_MS, Session
 
 IN_A_ROW = 4  # packets of both that are lost before an answer arrives
 DEAD_MS, ALIVE_MS = 2500, 1500  # of a line that is dead again and again
+LATE_MS = 1200  # that what goes to the robot takes
 EACH_MS = 10_000  # of a request and of each of its pieces
 LONG = "SI|" + "F(0.1, 30); B(0.1, 20);" * 60
 GOES_ON = "SI|F(20, 40)"
@@ -48,8 +49,11 @@ class BadLine:
     def __init__(self, rng: random.Random) -> None:
         self.rng = rng
         self.lost = 0
-        self.is_bursty = rng.random() < 0.4
-        self.likely = rng.choice((0.2, 0.5, 0.8))
+        kind = rng.choice(("losses", "losses", "bursts", "late"))
+        self.is_bursty = kind == "bursts"
+        self.likely = rng.choice((0.2, 0.5, 0.8)) if kind == "losses" else 0
+        self.late_ms = rng.choice((300, LATE_MS)) if kind == "late" else 0
+        self.under_way: deque[tuple[int, bytes]] = deque()  # to the robot
         self.packets = [(-9, False), (-9, False)]  # when each way's last one was, and what it met
         self.dead_ms = rng.choice((500, 1500, DEAD_MS))
 
@@ -67,7 +71,13 @@ class BadLine:
 
 
 def turn(session: Session, robot: HostFirmware, line: BadLine) -> None:
-    sent = robot.step(line.takes(session.poll(robot.now_ms), robot.now_ms))
+    data = line.takes(session.poll(robot.now_ms), robot.now_ms)
+    line.under_way.append((robot.now_ms + line.late_ms, data))
+    due_ms, data = line.under_way[0]
+    is_there = due_ms <= robot.now_ms
+    if is_there:
+        line.under_way.popleft()
+    sent = robot.wait(10 if line.late_ms else 1, data if is_there else b"")
     session.receive(line.takes(sent, robot.now_ms, True), robot.now_ms)
 
 
@@ -89,7 +99,7 @@ def check(seed: int) -> str:
     assert robot.until(session, session.upload(image_of("SI|F(0.2, 50)"))) == OK
     robot.talk(session, 3000)
     asked = [ASKED[name](session), session.status()]
-    said = f"seed {seed}, {name}, {'bursts' if line.is_bursty else line.likely}"
+    said = f"seed {seed}, {name}, {line.is_bursty} {line.likely} {line.late_ms}"
     pieces = 40 if "program" in name else 4
     for request in asked:
         status = until(session, robot, line, request, pieces * EACH_MS)
@@ -114,7 +124,7 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
     for seed in range(part * 12, (part + 1) * 12):
         rng = random.Random(seed)
         robot, session, line = switched_on(), computer(), BadLine(rng)
-        line.is_bursty, line.likely = False, 0
+        line.is_bursty, line.likely, line.late_ms = False, 0, 0
         asked = [rng.choice([*ASKED.values()])(session) for _ in range(rng.randint(1, 4))]
         for _ in range(rng.choice((0, 1, 3, 10, 40))):
             turn(session, robot, line)

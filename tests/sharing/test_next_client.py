@@ -210,16 +210,23 @@ def comes_first(rng: random.Random, at: Desk) -> str:
         asks(rng, client, rng.choice((*ASKED, *OF_WHAT_IT_HOLDS)))
         at.steps(rng.choice((0, 20, 40, 100, 400, 1500)))
     if rng.random() < 0.6:  # of its run, or while it is on its way
-        asks(rng, client, rng.choice(("upload", "live")))
+        for _ in range(rng.choice((1, 1, 3))):
+            asks(rng, client, rng.choice(("upload", "live")))
         at.steps(rng.choice((0, 20, 40, 60, 400)))
     ends = rng.choice([*ENDS])
     ENDS[ends](rng, client)
     if ends == "breaks off":
         at.steps(rng.choice((20, 300)))
         client.socket.close()
+    robot = at.line.robot_itself
+    robot.codes()
     if rng.random() < 0.5:
         at.steps(rng.choice((60, 400, 900)))
         return ends
+    if ends != "is silent":
+        at.steps(400)
+        assert client.has_detached or not at.line.session.is_running, f"{ends}: not at once"
+        assert len(robot.codes()) <= 1, f"{ends}: more begins than what was under way"
     at.steps(2500)
     if at.line.session.is_running:
         assert client.has_detached, f"{ends}: the run of a client that has gone goes on"
