@@ -1,9 +1,10 @@
 """What a robot does the second time is what a fresh robot does, whatever it did the first time.
 
 A random program is stopped, ends, loses its computer or is written over at a random moment, while
-somebody holds the button or the supply is low; then comes another, the same way or another, from the
-same computer or the next. All that can be seen of that one, motors, devices and what the computer
-hears, is what a robot does that was switched on for it. Behind a stop nothing starts before it.
+somebody holds the button or a wheel, or the supply is low; then comes another, the same way or
+another, from the same computer or the next. All that can be seen of that one, motors, devices and
+what the computer hears, is what a robot does that was switched on for it. Behind a stop nothing
+starts before it.
 
 `python -m tests.firmware.test_second_time 2000` tries more.
 """
@@ -315,6 +316,7 @@ def test_the_second_program_is_as_on_a_fresh_robot(starts: str, kind: str, part:
 
 # -- a start that waits for the memory --------------------------------------------------------
 
+
 def waiting_start() -> tuple[Scene, bytes]:
     """Return a robot whose button is down, and that cannot read its program while it saves."""
     scene = Scene("a mega")
@@ -448,6 +450,34 @@ def check_ways(seed: int) -> str:
 def test_ways_behind_anything_are_as_on_a_fresh_robot(part: int) -> None:
     found = Counter(check_ways(seed) for seed in range(part * 60, (part + 1) * 60))
     assert found["from where it stood"] > 20 and found["from a move"] > 2, found
+
+
+def most_ahead(scene: Scene) -> float:
+    """Return how far one wheel is ahead of the other at most in a straight move."""
+    robot = scene.robot
+    uploads(scene, "F(60 CM, 60)")
+    left, right = robot.gone()
+    found = 0.0
+    for _ in range(60):
+        robot.talk(scene.session, 20)
+        its_left, its_right = robot.gone()
+        found = max(found, abs(its_left - left - its_right + right))
+    return found
+
+
+@pytest.mark.parametrize("wheels", [1, 2])
+def test_what_a_held_wheel_was_behind_is_not_made_up_for_by_the_next_program(wheels: int) -> None:
+    assert most_ahead(with_discs()) < 0.01
+    scene = with_discs()
+    uploads(scene, "F(60 CM, 60)")
+    scene.robot.talk(scene.session, 300)
+    scene.robot.hold(wheels)
+    scene.robot.talk(scene.session, 420)
+    scene.robot.hold(0)
+    ENDS["zeros"](scene)
+    scene.robot.wait(2000)
+    scene.next_computer()
+    assert most_ahead(scene) < 0.15
 
 
 def check_all(seed: int) -> str:

@@ -41,7 +41,9 @@ def output(rng: random.Random, whole_s: float, longest_s: float) -> list[tuple[f
     return found
 
 
-def watched(clock: Clock, parts: list[tuple[float, str]], until_s: float) -> tuple[Ended | None, float]:
+def watched(
+    clock: Clock, parts: list[tuple[float, str]], until_s: float
+) -> tuple[Ended | None, float]:
     """Return how the watch has ended it, or None, and when."""
     seen: list[Seen | None] = []
     watch = avrdude._Watch(seen.append)

@@ -1,5 +1,5 @@
-"""What goes on ends well: no request is given up while fewer than so many packets in a row are lost,
-or while the robot shows every so often that it goes on; and whatever is lost, each one ends.
+"""What goes on ends well: no request is given up while few packets in a row are lost, or while the
+robot shows every so often that it goes on; and whatever is lost, each one ends.
 
 `python -m tests.link.test_liveness 2000` tries more.
 """
@@ -82,7 +82,11 @@ def turn(session: Session, robot: HostFirmware, line: BadLine) -> None:
 
 
 def until(
-    session: Session, robot: HostFirmware, line: BadLine, request: PendingRequest[Any], limit_ms: int
+    session: Session,
+    robot: HostFirmware,
+    line: BadLine,
+    request: PendingRequest[Any],
+    limit_ms: int,
 ) -> int:
     """Return how a request has ended, which it does in so long a time."""
     end_ms = robot.now_ms + limit_ms

@@ -12,6 +12,8 @@ from __future__ import annotations
 import random
 import re
 from collections import Counter
+from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import pytest
@@ -29,6 +31,7 @@ from tests.link.test_queue_across_a_stop import (
 from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import TINIBOT, image_of
+from tiniscript.link.connection import PendingRequest
 from tiniscript.link.outcomes import MissedEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -79,16 +82,16 @@ def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
     what: list[str] = []
     took_ms: list[int] = []
     for _ in range(4):
-        text = rng.choice(PROGRAMS)
-        ask = rng.choice([
-            lambda: session.live(image_of(PROGRAMS[0]).code),
-            lambda: session.upload(image_of(text), saves=rng.random() < 0.5),
-            session.start, session.status, session.ping, session.trim, session.undo,
+        upload = partial(session.upload, image_of(rng.choice(PROGRAMS)), saves=rng.random() < 0.5)
+        live = partial(session.live, image_of(PROGRAMS[0]).code)
+        asks: list[Callable[[], PendingRequest[Any]]] = [
+            live, upload, session.start, session.status, session.ping, session.trim, session.undo,
             session.fetch, session.identify,
-        ])  # fmt: skip
+        ]  # fmt: skip
         began_ms = robot.now_ms
-        request: Any = ask()
+        request = rng.choice(asks)()
         status = robot.until(session, request)
+        assert request.outcome
         what.append(f"{status} {request.outcome.values if status == OK else ''}")
         took_ms.append(robot.now_ms - began_ms)
         began_ms = robot.now_ms

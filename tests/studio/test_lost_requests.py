@@ -244,7 +244,8 @@ def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
     assert done.returncode == 0, done.stderr
     rows = [json.loads(line) for line in done.stdout.splitlines()]
     assert len(rows) == 400
-    assert sum(each["first"]["isThere"] for each in rows if each["isWild"]) < 150  # so some are lost
+    wild = [each["first"]["isThere"] for each in rows if each["isWild"]]
+    assert sum(wild) < 0.8 * len(wild)  # so some are lost
     for row in rows:
         for part in (row["first"], row["second"]):
             assert set(part["ends"]) == {1} and part["over"] == part["met"] == 1, row

@@ -1,8 +1,8 @@
 """What a virtual robot does behind anything is what one does that was switched on where it stands.
 
 A random program ends, or is ended in a random way at any moment; then comes another one. A second
-robot begins in a world whose start is the place where the first one stands by then: both do the same
-at the same times, see the same, and arrive at the same place.
+robot begins in a world whose start is the place where the first one stands by then: both do the
+same at the same times, see the same, and arrive at the same place.
 
 `python -m tests.virtual.test_second_run 2000` tries more.
 """
