@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from tests.link.test_session_resets import running
+from tests.machines.host_firmware import HostFirmware
 from tests.support.link_cases import KIT
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, pack, unpack
@@ -27,7 +28,7 @@ from tiniscript.link.messages import (
     STATUSES,
 )
 from tiniscript.link.outcomes import CANCELLED, LOST, MIDWAY, PlaceEvent, TextEvent
-from tiniscript.link.payloads import ReceiptReply
+from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.requests import SHORT_BYTES
 from tiniscript.link.round_trips import DOUBLED_MS, LIVELY_MS
 from tiniscript.link.session import IDLE_HEARTBEAT_MS, Session
@@ -571,6 +572,22 @@ def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
     for each in reversed(told) if is_event_first else told:
         session.receive(each, at)
     assert [each.name for each in session.events()] == ["DONE"]
+
+
+def test_an_upload_that_waits_for_the_button_tells_the_end_of_the_run_before_it() -> None:
+    """It has ended that, and nothing of it is told behind what the button begins."""
+    robot = HostFirmware(ROBOT.kit)
+    robot.wait(200)
+    session = Session(1, kit=KIT)
+    forever = compile_text("F(200, 80)", ROBOT.kit).code
+    assert robot.until(session, session.live(forever)) == 0
+    shows = unpack(compile_text("SHOW(1)", ROBOT.kit).image or b"")
+    assert robot.until(session, session.upload(shows, runs=False, saves=False)) == 0
+    assert session.events() == [DoneEvent(1)]
+    assert not session.is_running
+    robot.talk(session, 100, flags=1)
+    robot.talk(session, 1500, flags=2)
+    assert [each.name for each in session.events()] == ["SHOW", "DONE"]
 
 
 def asked(statuses: list[int]) -> tuple[int, int]:

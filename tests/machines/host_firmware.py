@@ -111,6 +111,10 @@ class HostFirmware(Process):
         """
         self.ask(b"G", pack("<IIHH", cm, degrees, left, right))
 
+    def hold(self, wheels: int) -> None:
+        """Hold the left wheel (1) and the right one (2), and let go of the others."""
+        self.ask(b"H", bytes((wheels,)))
+
     def gone(self) -> tuple[float, float]:
         """Return how many edges both wheels have gone, less those that they went back."""
         left, right = unpack("<ii", self.ask(b"O", b""))

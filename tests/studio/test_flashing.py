@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pty
 import subprocess
@@ -50,6 +51,36 @@ def hex_file(folder: Path, data: bytes) -> Path:
     lines = [f":{row.hex().upper()}" for row in rows]
     file.write_text("\n".join([*lines, ":00000001FF"]) + "\n", encoding="ascii")
     return file
+
+
+# -- onto boards that lose and delay, on a clock of the script
+
+SLOW_SCRIPT = Path(__file__).with_name("slow_board_in_node.mjs")
+TRIES, SYNC_MS, ANSWER_MS = 8, 250, 1000  # as the page's code has them
+
+
+def test_what_goes_on_is_written_and_what_does_not_ends_soon() -> None:
+    """A board is found that answers one of eight times; then each answer may take its second."""
+    try:
+        node = found_tools().node
+    except CannotMake as why:
+        need(str(why))
+    words = [*node, str(SLOW_SCRIPT), str(SOURCES / "src"), "120"]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
+    assert done.returncode == 0, done.stderr
+    rows = [json.loads(line) for line in done.stdout.splitlines()]
+    assert len(rows) == 120
+    ends = {each["ended"] for each in rows if each["slow_ms"] < SYNC_MS}
+    assert ends == {"done", "flash_broken_off", "flash_nobody"}
+    for row in rows:
+        assert (row["ended"] == "done") == (row["last"] == 1 and row["isSame"]), row
+        if row["losses"] < TRIES and row["slow_ms"] < SYNC_MS and not row["silent"]:
+            assert row["ended"] == "done", row
+        if row["losses"] >= TRIES:
+            assert row["ended"] == "flash_nobody", row
+        asked = 4 * row["pages"] + 3
+        finds_ms = 2 * TRIES * (SYNC_MS + ANSWER_MS)
+        assert row["took_ms"] <= finds_ms + asked * row["slow_ms"] + 2 * ANSWER_MS, row
 
 
 # -- onto simulated boards

@@ -6,21 +6,28 @@ page asks for later is not undone. Robots are counted stops, their threads the t
 
 from __future__ import annotations
 
+import json
+import subprocess
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from random import Random
 from typing import Any, ClassVar, cast
 
 import pytest
 
 from tests.support.command import FOREVER
+from tests.support.needs import need
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import until
 from tiniscript import compile, robots
 from tiniscript.studio import hosting as hosting_of
 from tiniscript.studio.attending import Attending
+from tiniscript.studio.building import SOURCES
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
 from tiniscript.studio.robot_link import RobotLink
+from tools import CannotMake
+from tools.builds.studio import found_tools
 
 Json = dict[str, Any]
 BEAT_MS = 100
@@ -219,6 +226,38 @@ def test_a_stop_of_the_connection_before_stops_unless_a_run_came_after_it(
     asks("stop", 1, stops=1)
     asks("stop", 1, stops=1)
     assert [what for what, _, _ in World.done] == ["run" if runs else "stop"]
+
+
+PAGE_SCRIPT = Path(__file__).with_name("lost_requests_in_node.mjs")
+
+
+def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
+    """Nothing comes behind its end. Where a few in a row are lost, all is done, and once; and the
+    page's next connection is as the first one of a fresh page.
+    """
+    try:
+        node = found_tools().node
+    except CannotMake as why:
+        need(str(why))
+    words = [*node, str(PAGE_SCRIPT), str(SOURCES / "src"), "400"]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
+    assert done.returncode == 0, done.stderr
+    rows = [json.loads(line) for line in done.stdout.splitlines()]
+    assert len(rows) == 400
+    wild = [each["first"]["isThere"] for each in rows if each["isWild"]]
+    assert sum(wild) < 0.8 * len(wild)  # so some are lost
+    for row in rows:
+        for part in (row["first"], row["second"]):
+            assert set(part["ends"]) == {1} and part["over"] == part["met"] == 1, row
+            assert part["isGone"] and part["isQuiet"] and part["timers"] == 0, row
+            assert set(part["heard"]) <= {"STOPPED"}, row
+            assert len(part["heard"]) <= part["presses"], row
+        assert len(set(row["made"])) == len(row["made"]), row
+        if not row["isWild"]:
+            first = row["first"]
+            assert first["isThere"] and len(row["made"]) == len(first["ends"]), row
+            assert bool(first["heard"]) == bool(first["presses"]), row
+        assert (row["second"], row["secondDone"]) == (row["fresh"], row["freshDone"]), row
 
 
 class Asker:

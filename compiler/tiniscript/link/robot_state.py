@@ -88,6 +88,15 @@ class RobotState:
         """Note that it is known how our run has ended, of which no event has told."""
         self._ended, self._is_asked = self.run, False
 
+    def replaced(self) -> list[Event]:
+        """Note that a program which waits to be started has ended our run; return what tells so."""
+        is_going, run = self._is_going, self.run
+        self.clear()
+        if not is_going or run is None:
+            return []
+        self.end()
+        return [DoneEvent(run)]
+
     def moved(self, values: SentReply) -> list[PlaceEvent]:
         """Take a reply; return where the program is now, if that is another place than before."""
         if not isinstance(values, PingReply):

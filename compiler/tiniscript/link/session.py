@@ -736,6 +736,8 @@ class Session(Requester):
         pending.outcome = outcome
         if outcome.status == OK and pending.ends_runs:
             self._orphan = None
+            if not pending.starts:
+                self._events += self._state.replaced()
         if not pending.starts or outcome.status != OK:
             return
         receipt: ReceiptReply = outcome.values

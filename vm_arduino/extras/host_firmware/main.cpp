@@ -34,9 +34,11 @@ struct Wheel {
   double speed = 0;  // in edges a millisecond
   double gone = 0;   // edges, less those that it went back
   double turned = 0;  // edges in all
+  bool is_held = false;
 
   void pass_millisecond(int8_t percent) {
     speed += (percent * kEdgesPerMs / 100 - speed) / kLagMs;
+    if (is_held) speed = 0;
     gone += speed;
     turned += fabs(speed);
   }
@@ -237,6 +239,12 @@ void answer_discs(RequestReader* request, Writer*) {
   for (Wheel& wheel : table.wheels) wheel.turned = request->u16() / 1000.0;
 }
 
+// H: holds the left wheel (1) and the right one (2), and lets go of the others.
+void answer_held(RequestReader* request, Writer*) {
+  const uint8_t held = request->u8();
+  for (uint8_t k = 0; k < 2; k++) table.wheels[k].is_held = (held >> k & 1) != 0;
+}
+
 // O: how far both wheels have gone, in thousandths of the way between two edges.
 void answer_wheels(RequestReader*, Writer* answer) {
   for (const Wheel& wheel : table.wheels) {
@@ -392,6 +400,7 @@ const Answers answers = {
     {'T', answer_trim},
     {'G', answer_discs},
     {'O', answer_wheels},
+    {'H', answer_held},
 };
 
 }  // namespace tiniscript

@@ -1,0 +1,86 @@
+"""A long flashing that goes on is waited for, and one that stands still is not: on a fake clock."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from tiniscript.flash import avrdude
+from tiniscript.flash.avrdude import MARKS, NOBODY_S, SILENCE_S, WHOLE_S, Ended, Seen
+
+LOOK_S = 0.1
+MEGA_S = 50.0  # writing its 256 KB and reading them back
+SIGNATURE = "Reading | " + "#" * MARKS + " | 100% 0.01s\n"
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now_s = 100.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    found = Clock()
+    monkeypatch.setattr(avrdude, "monotonic", found)
+    return found
+
+
+def output(rng: random.Random, whole_s: float, longest_s: float) -> list[tuple[float, str]]:
+    """Return the output of an avrdude and when it comes: never later than that behind the last."""
+    parts = [SIGNATURE, "Writing | ", *"#" * MARKS, " |\nReading | ", *"#" * MARKS, " |\n"]
+    gaps_s = [rng.random() ** 4 for _ in parts]
+    total = sum(gaps_s)
+    at_s, found = 0.0, []
+    for gap_s, part in zip(gaps_s, parts, strict=True):
+        at_s += min(gap_s / total * whole_s, longest_s)
+        found.append((at_s, part))
+    return found
+
+
+def watched(
+    clock: Clock, parts: list[tuple[float, str]], until_s: float
+) -> tuple[Ended | None, float]:
+    """Return how the watch has ended it, or None, and when."""
+    seen: list[Seen | None] = []
+    watch = avrdude._Watch(seen.append)
+    began_s = clock.now_s
+    while clock.now_s - began_s < until_s:
+        passed_s = clock.now_s - began_s
+        try:
+            watch("".join(part for at_s, part in parts if at_s <= passed_s))
+        except avrdude._Over as over:
+            return over.ended, passed_s
+        clock.now_s += LOOK_S
+    percents = [each.percent + 100 * (each.phase == avrdude.READING) for each in seen if each]
+    assert percents == sorted(percents) and percents[-1] == 200
+    return None, until_s
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_goes_on_is_waited_for(clock: Clock, seed: int) -> None:
+    """A Mega, and one that is as slow as may be, with pauses that are nearly too long."""
+    rng = random.Random(seed)
+    parts = output(rng, rng.choice((10, MEGA_S, 200)), NOBODY_S - 1)
+    assert watched(clock, parts, parts[-1][0] + 1) == (None, parts[-1][0] + 1)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_stands_still_ends(clock: Clock, seed: int) -> None:
+    rng = random.Random(seed)
+    parts = output(rng, MEGA_S, NOBODY_S - 1)
+    some = parts[: rng.randrange(len(parts) - 1)]
+    last_s = some[-1][0] if some else 0.0
+    how, at_s = watched(clock, some, WHOLE_S + 1)
+    assert how and how.how == (avrdude.BROKEN_OFF if len(some) > 1 else avrdude.NOBODY)
+    limit_s = SILENCE_S if len(some) > 1 else NOBODY_S
+    assert limit_s - LOOK_S < at_s - last_s < limit_s + 2 * LOOK_S
+
+
+def test_what_only_says_something_ends(clock: Clock) -> None:
+    parts = [(0.0, SIGNATURE + "Writing | #"), *((k * 1.0, ".") for k in range(1000))]
+    how, at_s = watched(clock, parts, WHOLE_S + 10)
+    assert how == Ended(avrdude.ENDLESS) and at_s < WHOLE_S + 2 * LOOK_S

@@ -1,0 +1,154 @@
+"""What goes on ends well: no request is given up while few packets in a row are lost, or while the
+robot shows every so often that it goes on; and whatever is lost, each one ends.
+
+`python -m tests.link.test_liveness 2000` tries more.
+"""
+
+from __future__ import annotations
+
+import random
+from collections import Counter, deque
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from tests.firmware.test_host_firmware import computer, switched_on
+from tests.machines.host_firmware import HostFirmware
+from tests.support.campaign import each_seed, wanted
+from tests.support.images import TINIBOT, image_of
+from tiniscript.link.connection import DEADLINE_MS, PendingRequest
+from tiniscript.link.requests import OK
+from tiniscript.link.session import DEAF_MS, Session
+
+IN_A_ROW = 4  # packets of both that are lost before an answer arrives
+DEAD_MS, ALIVE_MS = 2500, 1500  # of a line that is dead again and again
+LATE_MS = 1200  # that what goes to the robot takes
+EACH_MS = 10_000  # of a request and of each of its pieces
+LONG = "SI|" + "F(0.1, 30); B(0.1, 20);" * 60
+GOES_ON = "SI|F(20, 40)"
+
+ASKED: dict[str, Callable[[Session], PendingRequest[Any]]] = {
+    "a long program": lambda session: session.upload(image_of(LONG), saves=False),
+    "a saved program": lambda session: session.upload(image_of(LONG)),
+    "a short program": lambda session: session.upload(image_of("SI|F(0.2, 50)"), saves=False),
+    "a line": lambda session: session.live(image_of("SI|F(0.2, 50)").code),
+    "what goes on alone": lambda session: session.upload(
+        image_of(GOES_ON), saves=False, is_detached=True
+    ),
+    "its program": lambda session: session.fetch(),
+    "its state": lambda session: session.status(),
+    "its trim": lambda session: session.trim(),
+    "its name": lambda session: session.name(b"Pia"),
+}
+
+
+class BadLine:
+    """Says what is lost of that which the one or the other sends, packet by packet."""
+
+    def __init__(self, rng: random.Random) -> None:
+        self.rng = rng
+        self.lost = 0
+        kind = rng.choice(("losses", "losses", "bursts", "late"))
+        self.is_bursty = kind == "bursts"
+        self.likely = rng.choice((0.2, 0.5, 0.8)) if kind == "losses" else 0
+        self.late_ms = rng.choice((300, LATE_MS)) if kind == "late" else 0
+        self.under_way: deque[tuple[int, bytes]] = deque()  # to the robot
+        self.packets = [(-9, False), (-9, False)]  # when each way's last one was, and what it met
+        self.dead_ms = rng.choice((500, 1500, DEAD_MS))
+
+    def takes(self, data: bytes, now_ms: int, is_answer: bool = False) -> bytes:
+        if not data:
+            return data
+        if self.is_bursty:
+            return data if now_ms % (self.dead_ms + ALIVE_MS) < ALIVE_MS else b""
+        before_ms, is_lost = self.packets[is_answer]
+        if now_ms > before_ms + 2:  # another packet
+            is_lost = self.lost < IN_A_ROW and self.rng.random() < self.likely
+            self.lost = self.lost + 1 if is_lost else 0 if is_answer else self.lost
+        self.packets[is_answer] = now_ms, is_lost
+        return b"" if is_lost else data
+
+
+def turn(session: Session, robot: HostFirmware, line: BadLine) -> None:
+    data = line.takes(session.poll(robot.now_ms), robot.now_ms)
+    line.under_way.append((robot.now_ms + line.late_ms, data))
+    due_ms, data = line.under_way[0]
+    is_there = due_ms <= robot.now_ms
+    if is_there:
+        line.under_way.popleft()
+    sent = robot.wait(10 if line.late_ms else 1, data if is_there else b"")
+    session.receive(line.takes(sent, robot.now_ms, True), robot.now_ms)
+
+
+def until(
+    session: Session,
+    robot: HostFirmware,
+    line: BadLine,
+    request: PendingRequest[Any],
+    limit_ms: int,
+) -> int:
+    """Return how a request has ended, which it does in so long a time."""
+    end_ms = robot.now_ms + limit_ms
+    while request.outcome is None:
+        assert robot.now_ms < end_ms, "it waits for ever"
+        turn(session, robot, line)
+    return request.outcome.status
+
+
+def check(seed: int) -> str:
+    rng = random.Random(seed)
+    robot, session, line = switched_on(), computer(), BadLine(rng)
+    name = rng.choice([*ASKED])
+    assert robot.until(session, session.upload(image_of("SI|F(0.2, 50)"))) == OK
+    robot.talk(session, 3000)
+    asked = [ASKED[name](session), session.status()]
+    said = f"seed {seed}, {name}, {line.is_bursty} {line.likely} {line.late_ms}"
+    pieces = 40 if "program" in name else 4
+    for request in asked:
+        status = until(session, robot, line, request, pieces * EACH_MS)
+        assert status == OK, f"{said}: {status}"
+    if name == "what goes on alone":
+        robot.wait(2 * DEAF_MS)  # who has asked for it has gone
+        assert not robot.is_latched, said
+    return name
+
+
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(20))
+def test_what_is_lost_now_and_then_is_done(part: int) -> None:
+    found = Counter(check(seed) for seed in range(part * 15, (part + 1) * 15))
+    assert len(found) > 4, found
+
+
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(10))
+def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) -> None:
+    """The robot falls silent at any moment, for any time, or was reset; then it is there again."""
+    for seed in range(part * 12, (part + 1) * 12):
+        rng = random.Random(seed)
+        robot, session, line = switched_on(), computer(), BadLine(rng)
+        line.is_bursty, line.likely, line.late_ms = False, 0, 0
+        asked = [rng.choice([*ASKED.values()])(session) for _ in range(rng.randint(1, 4))]
+        for _ in range(rng.choice((0, 1, 3, 10, 40))):
+            turn(session, robot, line)
+        silent_ms = rng.choice((200, 1000, 4000, 40_000))
+        for _ in range(silent_ms // 50):
+            session.poll(robot.now_ms)
+            robot.wait(50)
+        if rng.random() < 0.5:
+            fresh = HostFirmware(TINIBOT, robot.memory(), seed=rng.getrandbits(32) | 1)
+            fresh.now_ms = robot.now_ms
+            fresh.wait(200)
+            robot = fresh
+        limit_ms = len(asked) * (DEADLINE_MS + DEAF_MS) + 5000
+        for request in asked:
+            until(session, robot, line, request, limit_ms)
+        robot.talk(session, 2000)
+        if until(session, robot, line, session.hello(), DEADLINE_MS) != OK:
+            raise AssertionError(f"seed {seed}: it is there")
+        assert until(session, robot, line, ASKED["a long program"](session), 20_000) == OK, seed
+
+
+if __name__ == "__main__":
+    each_seed(check, wanted(1000, 10_000))

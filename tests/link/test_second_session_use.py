@@ -1,0 +1,142 @@
+"""What a session does behind anything is what a fresh one does with the same robot.
+
+Random requests, losses of the line, stops, a reset and a silence come first, the same for two
+robots. Then the one robot is asked by the session that has seen all that, the other one by a fresh
+session: both are answered and told the same, and about as soon.
+
+`python -m tests.link.test_second_session_use 2000` tries more.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections import Counter
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple
+
+import pytest
+
+from tests.firmware.test_host_firmware import computer
+from tests.link.test_queue_across_a_stop import (
+    ACTING,
+    LONG,
+    NOTHING,
+    OTHERS,
+    STOPS,
+    Losses,
+    Wire,
+)
+from tests.machines.host_firmware import HostFirmware
+from tests.support.campaign import each_seed, wanted
+from tests.support.images import TINIBOT, image_of
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.messages import STATUSES
+from tiniscript.link.outcomes import MissedEvent
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+STALE = STATUSES["STALE"]
+QUIET_MS = 8000
+LATER_MS = 600  # a session that has seen losses may wait so much longer, or less
+PROGRAMS = ("SI|SHOW(1);F(0.2, 50);SHOW(2)", LONG, "SI|X = 0;W(0.1);SHOW(1 / X)", "SI|F(60, 50)")
+
+
+class Said(NamedTuple):
+    what: list[str]
+    took_ms: list[int]
+
+
+def first(rng: random.Random) -> Wire:
+    """Return both ends when the first story is over."""
+    wire = Wire(rng)
+    for _ in range(rng.randint(1, 4)):
+        for _ in range(rng.randint(0, 3)):
+            rng.choice(ACTING if rng.random() < 0.6 else OTHERS)(wire.session)
+        wire.loses = rng.choice((NOTHING, Losses(0.3, 0.3), Losses(0.9, 0.9), Losses(0, 1)))
+        wire.turns(rng.choice((1, 3, 8, 30, 300)))
+        happens(rng, wire)
+    wire.loses = NOTHING
+    wire.turns(wire.late_ms)
+    wire.robot.step(b"".join(wire.under_way))
+    wire.under_way.clear()
+    return wire
+
+
+def happens(rng: random.Random, wire: Wire) -> None:
+    # A STOP of who has said no HELLO may bear a number that is ahead of ours: not "a message".
+    how = rng.choice(("zeros", "the button", "the cable", "its own stop", "a reset", "a silence"))
+    if how in STOPS:
+        wire.turn(STOPS[how](wire.robot, wire.session))
+    elif how == "its own stop":
+        wire.session.stop(wire.robot.now_ms)
+    elif how == "a silence":
+        wire.robot.wait(rng.choice((400, 4000)))
+    elif how == "a reset":
+        fresh = HostFirmware(TINIBOT, wire.robot.memory(), seed=rng.getrandbits(32) | 1)
+        fresh.now_ms = wire.robot.now_ms
+        fresh.wait(200)
+        wire.robot = fresh
+
+
+def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
+    """Ask some things one after the other; return what comes of them."""
+    what: list[str] = []
+    took_ms: list[int] = []
+    may_be_stale = True
+    for _ in range(4):
+        upload = partial(session.upload, image_of(rng.choice(PROGRAMS)), saves=rng.random() < 0.5)
+        live = partial(session.live, image_of(PROGRAMS[0]).code)
+        asks: list[Callable[[], PendingRequest[Any]]] = [
+            live, upload, session.start, session.status, session.ping, session.trim, session.undo,
+            session.fetch, session.identify,
+        ]  # fmt: skip
+        began_ms = robot.now_ms
+        ask = rng.choice(asks)
+        request = ask()
+        status = robot.until(session, request)
+        if status == STALE and may_be_stale:  # a reset or a stop that nobody has told shows here
+            request, may_be_stale = ask(), False
+            status = robot.until(session, request)
+        assert request.outcome
+        what.append(f"{status} {request.outcome.values if status == OK else ''}")
+        took_ms.append(robot.now_ms - began_ms)
+        began_ms = robot.now_ms
+        if rng.random() < 0.3:
+            session.stop(robot.now_ms)
+        robot.talk(session, rng.choice((5, 700)))
+        what += [str(event) for event in session.events() if not isinstance(event, MissedEvent)]
+    robot.talk(session, 1500)
+    what += [str(event) for event in session.events()]
+    return Said([re.sub(r"\b(run|boot|damaged|dropped|nonce)=\d+", r"\1", one) for one in what],
+                took_ms)  # fmt: skip
+
+
+def check(seed: int) -> str:
+    used, other = first(random.Random(seed)), first(random.Random(seed))
+    for each in (used, other):
+        each.robot.talk(each.session, QUIET_MS)
+        if not each.robot.is_latched:  # what runs detached goes on
+            each.session.stop(each.robot.now_ms)
+            each.robot.talk(each.session, 300)
+    used.session.events()
+    session = computer(77)
+    assert other.robot.until(session, session.hello()) == OK
+    did = second(random.Random(seed), used.session, used.robot)
+    want = second(random.Random(seed), session, other.robot)
+    assert did.what == want.what, f"seed {seed}\n{did.what}\nnot\n{want.what}"
+    late = [a - b for a, b in zip(did.took_ms, want.took_ms, strict=True)]
+    assert all(abs(each) < LATER_MS for each in late), f"seed {seed} {late}"
+    return "it runs" if "DoneEvent" in str(want) else "it stands"
+
+
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(20))
+def test_a_session_is_as_a_fresh_one_whatever_it_has_seen(part: int) -> None:
+    found = Counter(check(seed) for seed in range(part * 20, (part + 1) * 20))
+    assert found["it runs"] > 0, found
+
+
+if __name__ == "__main__":
+    each_seed(check, wanted(2000, 10_000))

@@ -1,0 +1,289 @@
+"""What a client of a shared port does and hears is what one hears who is the first.
+
+A command asks random things of a simulated robot and leaves, breaks off, falls silent or breaks the
+protocol at any moment; then comes the next one. Of it all that can be seen, its answers, its events
+and what the robot does, is what there is where nobody came before. Port, robot and server take
+their turns on the clock of the test.
+
+`python -m tests.sharing.test_next_client 500` tries more.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+import socket
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from threading import Thread
+from typing import Any, cast
+
+import pytest
+
+from tests.firmware.test_host_firmware import computer, switched_on
+from tests.support.campaign import each_seed, wanted
+from tests.support.images import TINIBOT, image_of
+from tiniscript.base.version import __version__
+from tiniscript.link.connection import PendingRequest, Requester
+from tiniscript.link.outcomes import Event, Told
+from tiniscript.link.port_connection import PortConnection
+from tiniscript.link.sharing import protocol, registry
+from tiniscript.link.sharing import server as server_of
+from tiniscript.link.sharing.server import Server
+
+STEP_MS = 20
+MARK, MARKED = "BEEP(0.001, 31);", "BEEP 31 1"
+# What tells of the robot, its runs and the clock, not of the client.
+STRIPPED = re.compile(r'"(run|ms|boot|nonce|epoch|heard|noise|reset|fault\w*|state|program|length'
+                      r'|slot|saved|answer|cause)": ?("[^"]*"|\d+)')  # fmt: skip
+Json = dict[str, Any]
+
+
+class SteppedLine:
+    """The port of a simulated robot, without a thread."""
+
+    address, held_by, gone, heard, is_echoed, boot = "", "", None, 0, False, 0
+
+    def __init__(self) -> None:
+        self.robot_itself, self.session = switched_on(), computer()
+        self.session.tells_starts = True
+
+    @property
+    def robot(self) -> object:
+        return self.session.robot
+
+    def listen(self, on_events: Callable[[list[Told]], None]) -> None:
+        self._on_events = on_events
+
+    def tell(self, event: Event) -> None:
+        """Of this process alone."""
+
+    def do(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
+        return make(self.session)
+
+    def runs(self, run: int) -> bool:
+        return self.session.is_running and self.session.run == run
+
+    def stop(self) -> None:
+        self.session.stop(self.robot_itself.now_ms)
+
+    def halt(self, run: int) -> None:
+        self.session.halt(run, self.robot_itself.now_ms)
+
+    def withdraw(self, request: PendingRequest[Any]) -> None:
+        self.session.withdraw(request)
+
+    def fail(self, bug: Exception) -> None:
+        raise bug
+
+    def step(self) -> None:
+        self.robot_itself.talk(self.session, STEP_MS)
+        self._on_events([(self.robot_itself.now_ms, each) for each in self.session.events()])
+
+
+class Client:
+    """A command, that says what the test says."""
+
+    def __init__(self, server: Server, verb: str) -> None:
+        port = server.registration.number
+        self.socket = socket.create_connection((protocol.HOST, port))
+        self.socket.setblocking(False)
+        self.reader = protocol.MessageReader(protocol.LINE_BYTES)
+        self.heard: list[Json] = []
+        self.beats, self.has_detached = True, False
+        self._number = 0
+        self.says({"tsc": __version__, "token": server.registration.token, "verb": verb})
+
+    def says(self, message: Json) -> None:
+        with suppress(OSError):
+            self.socket.send(protocol.written(message))
+
+    def asks(self, do: str, **more: object) -> None:
+        self._number += 1
+        self.says({"do": do, "id": self._number, "limit_ms": 6000, **more})
+
+    def look(self) -> None:
+        with suppress(OSError, BlockingIOError):
+            self.heard += cast(list[Json], self.reader.put(self.socket.recv(1 << 20)))
+
+    def answered(self) -> int:
+        return sum("status" in each for each in self.heard)
+
+
+class Desk:
+    """A robot, the server of its port, and the commands at it, in simulated time."""
+
+    def __init__(self) -> None:
+        self.line = SteppedLine()
+        line = cast(PortConnection, self.line)
+        self.server = Server(line, "/dev/ttyUSB0", 9600, "link")
+        self.clients: list[Client] = []
+
+    def joined(self, verb: str) -> Client:
+        self.clients.append(Client(self.server, verb))
+        return self.clients[-1]
+
+    def step(self) -> None:
+        for client in self.clients:
+            if client.beats and self.line.robot_itself.now_ms % 200 < STEP_MS:
+                client.says({"do": "beat"})
+        for _ in range(3):  # what has come, and what came of that
+            self.server._attend()
+        self.line.step()
+        self.server._attend()
+        for client in self.clients:
+            client.look()
+
+    def steps(self, milliseconds: int) -> None:
+        for _ in range(milliseconds // STEP_MS):
+            self.step()
+
+
+@contextmanager
+def desk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
+    with monkeypatch.context() as patched:
+        patched.setattr(Thread, "start", lambda self: None)
+        patched.setattr(server_of, "PAUSE_S", 0)
+        patched.setattr(server_of, "REST_S", 0)
+        found = Desk()
+        robot = found.line.robot_itself
+        patched.setattr(server_of, "monotonic", lambda: robot.now_ms / 1000)
+        try:
+            yield found
+        finally:
+            for client in found.clients:
+                client.socket.close()
+            for each in found.server._names:
+                registry.remove(each)
+            found.server._close_all()
+
+
+def upload(text: str, is_detached: bool = False) -> Json:
+    image = image_of(text)
+    given = image._asdict() | {"isa": bytes(image.isa)}
+    made = {k: each.hex() if isinstance(each, bytes) else each for k, each in given.items()}
+    return {**made, "runs": True, "saves": False, "is_detached": is_detached, "kit": 0}
+
+
+def drawn(rng: random.Random) -> str:
+    moves = ";".join(rng.choice(("F(0.3, 60)", "W(0.2)", "SHOW(TIME > 3)", "M(20, 30)", "S",
+                                 "B(2, 40) UNTIL(TIME > 0.5)"))
+                     for _ in range(rng.randint(1, 5)))  # fmt: skip
+    return f"SI|{MARK}{moves};{rng.choice(('', 'F(60, 50)', 'F(60, 50)', 'X = 0;SHOW(1 / X)'))}"
+
+
+ASKED = ("upload", "upload", "live", "status", "trim", "identify")
+OF_WHAT_IT_HOLDS = ("start", "undo")  # these tell the next one of the one before
+
+
+def asks(rng: random.Random, client: Client, what: str) -> None:
+    text = drawn(rng)
+    if what == "upload":
+        is_detached = rng.random() < 0.2
+        client.has_detached |= is_detached
+        client.asks("upload", **upload(text, is_detached))
+    elif what == "live":
+        seconds = rng.choice((0.4, 60))
+        code = image_of(f"SI|{MARK}F({seconds}, 30)").code
+        client.asks("live", code=code.hex(), kit=TINIBOT.fingerprint)
+    else:
+        given: dict[str, Json] = {"start": {"is_detached": False}, "trim": {"trim": ""}}
+        client.asks(what, **given.get(what, {}))
+
+
+def stops(client: Client) -> None:
+    client.says({"do": "stop"})
+    client.socket.close()
+
+
+def falls_silent(rng: random.Random, client: Client) -> None:
+    client.beats = False
+
+
+ENDS: dict[str, Callable[[random.Random, Client], object]] = {
+    "leaves": lambda rng, client: client.socket.close(),
+    "is silent": falls_silent,
+    "breaks the protocol": lambda rng, client: client.socket.send(b'{"do":"nothing"}\n'),
+    "breaks off": lambda rng, client: client.socket.send(b'{"do":"sta'),
+    "stops and leaves": lambda rng, client: stops(client),
+}
+
+
+def comes_first(rng: random.Random, at: Desk) -> str:
+    client = at.joined(rng.choice(("upload", "run", "monitor", "python")))
+    at.steps(rng.choice((20, 200)))
+    for _ in range(rng.randint(1, 3)):
+        asks(rng, client, rng.choice((*ASKED, *OF_WHAT_IT_HOLDS)))
+        at.steps(rng.choice((0, 20, 40, 100, 400, 1500)))
+    if rng.random() < 0.6:  # of its run, or while it is on its way
+        for _ in range(rng.choice((1, 1, 3))):
+            asks(rng, client, rng.choice(("upload", "live")))
+        at.steps(rng.choice((0, 20, 40, 60, 400)))
+    ends = rng.choice([*ENDS])
+    ENDS[ends](rng, client)
+    if ends == "breaks off":
+        at.steps(rng.choice((20, 300)))
+        client.socket.close()
+    robot = at.line.robot_itself
+    robot.codes()
+    if rng.random() < 0.5:
+        at.steps(rng.choice((60, 400, 900)))
+        return ends
+    if ends != "is silent":
+        at.steps(400)
+        assert client.has_detached or not at.line.session.is_running, f"{ends}: not at once"
+        assert len(robot.codes()) <= 1, f"{ends}: more begins than what was under way"
+    at.steps(2500)
+    if at.line.session.is_running:
+        assert client.has_detached, f"{ends}: the run of a client that has gone goes on"
+        other = at.joined("stop")
+        other.says({"do": "stop"})
+        at.steps(400)
+        other.socket.close()
+        at.steps(400)
+    return ends
+
+
+def second(rng: random.Random, at: Desk) -> tuple[list[str], list[str]]:
+    """Return what the second one hears from its first run on, and what the robot does."""
+    robot = at.line.robot_itself
+    client = at.joined("run")
+    at.steps(60)
+    robot.did.clear()
+    client.heard.clear()
+    asks(rng, client, "upload")
+    at.steps(rng.choice((400, 1500, 3000)))
+    for _ in range(2):
+        asks(rng, client, rng.choice(ASKED))
+        at.steps(rng.choice((400, 1500)))
+    client.says({"do": "stop"})
+    at.steps(400)
+    heard = [each for each in client.heard if "beat" not in each]
+    begins = next((k for k, each in enumerate(heard) if "status" in each), 0)
+    said = [STRIPPED.sub(r'"\1"', protocol.written(each).decode()) for each in heard[begins:]]
+    did = [line.split(" ", 1)[1] for line in robot.did if not line.endswith(" 200")]  # its sign
+    return said, did[did.index(MARKED) :] if MARKED in did else did
+
+
+def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:
+    with desk(monkeypatch) as at:
+        ends = comes_first(random.Random(seed), at)
+        heard, did = second(random.Random(-seed), at)
+    with desk(monkeypatch) as at:
+        want, its = second(random.Random(-seed), at)
+    said = f"seed {seed} {ends}\n{heard}\n{did}\nnot\n{want}\n{its}"
+    assert did == its and heard == want, said
+    return ends if len(its) > 1 else "little"
+
+
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(20))
+def test_the_next_client_is_as_the_first_one(part: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = Counter(check(seed, monkeypatch) for seed in range(part * 12, (part + 1) * 12))
+    assert found["little"] < 6, found
+
+
+if __name__ == "__main__":
+    with pytest.MonkeyPatch.context() as patch:
+        each_seed(lambda seed: check(seed, patch), wanted(500, 5_000))

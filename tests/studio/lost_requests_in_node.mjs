@@ -1,0 +1,171 @@
+// node lost_requests_in_node.mjs SOURCES SEEDS: the page's own way through `tsc studio` asks a server that
+// this script plays, on its clock. Any of its requests and answers are lost, late or come twice. Prints a
+// JSON row for each seed: how often each ask has ended, what was done, and what came after the end.
+
+import { pathToFileURL } from 'node:url';
+
+const [sources, seeds] = process.argv.slice(2);
+let now_ms = 0;
+let timers = [];
+let server = null;
+const setLater = (does, ms = 0) => {
+  const timer = { at_ms: now_ms + ms, does };
+  timers.push(timer);
+  return timer;
+};
+const stands = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
+globalThis.setTimeout = setLater;
+globalThis.clearTimeout = (timer) => {
+  timers = timers.filter((each) => each !== timer);
+};
+const store = { getItem: () => 'a token', setItem() {}, removeItem() {} };
+stands('window', { setTimeout: setLater, sessionStorage: store, localStorage: store });
+stands('document', { documentElement: { dataset: {} } });
+stands('location', { hash: '', pathname: '/', search: '', href: 'http://127.0.0.1/' });
+stands('performance', { now: () => now_ms });
+AbortSignal.timeout = (ms) => ({ limit_ms: ms });
+stands('fetch', (where, options) => server.asked(JSON.parse(options.body), options.signal?.limit_ms ?? 1e9));
+const { HostRobot } = await import(pathToFileURL(`${sources}/robot/host.js`).href);
+
+function chance(seed) {
+  let state = seed * 2654435761 + 1;
+  return () => {
+    state = (Math.imul(state ^ (state >>> 15), 0x2c1b3c6d) + 0x9e3779b9) | 0;
+    return ((state ^ (state >>> 13)) >>> 0) / 2 ** 32;
+  };
+}
+
+async function passes() {
+  for (let k = 0; k < 40; k += 1) await Promise.resolve();
+}
+
+async function until(end_ms) {
+  for (;;) {
+    timers.sort((a, b) => a.at_ms - b.at_ms);
+    if (!timers.length || timers[0].at_ms > end_ms) break;
+    const next = timers.shift();
+    now_ms = next.at_ms;
+    next.does();
+    await passes();
+  }
+  now_ms = end_ms;
+}
+
+// As `tsc studio`: an id of a connection is done once, and news are told until the page has seen them.
+class Server {
+  constructor(random) {
+    this.random = random;
+    this.loses = () => false;
+    this.late_ms = () => 1;
+    this.done = [];
+    this.stops = [];
+    this.connection = 0;
+  }
+
+  asked(request, limit_ms) {
+    return new Promise((resolve, reject) => {
+      setLater(() => reject(new Error('timeout')), limit_ms);
+      const arrives = () => {
+        const answer = this.answer(request);
+        if (this.loses(true)) return setLater(() => reject(new Error('lost')), 1);
+        setLater(() => resolve({ ok: true, status: 200, json: async () => answer }), this.late_ms());
+      };
+      if (this.loses(false)) return setLater(() => reject(new Error('lost')), 1);
+      setLater(arrives, this.late_ms());
+      if (this.random() < this.again) setLater(() => this.answer(request), this.late_ms());
+    });
+  }
+
+  answer(request) {
+    if (request.do === 'connect') {
+      if (request.connection > this.connection) {
+        Object.assign(this, { connection: request.connection, news: [], count: 0, ids: new Set(), pressed: 0 });
+        this.tell({ connected: { name: 'TINI' } });
+      }
+      return {};
+    }
+    if (request.connection !== this.connection) return { news: [{ number: 1e6, over: 'left' }] };
+    if (request.stops > this.pressed) {
+      this.pressed = request.stops;
+      this.stops.push(request.stops);
+      this.tell({ event: 'STOPPED', cause: 'sequence' });
+    }
+    if (request.do === 'leave') this.tell({ over: 'left' });
+    for (const each of request.asked ?? []) {
+      if (this.ids.has(each.id)) continue;
+      this.ids.add(each.id);
+      this.done.push(each.what);
+      setLater(() => this.tell({ id: each.id, ok: true, what: each.what }), this.takes_ms());
+    }
+    this.news = this.news.filter(({ number }) => number > request.seen);
+    return { news: this.news };
+  }
+
+  tell(news) {
+    this.news.push({ number: (this.count += 1), ...news });
+  }
+}
+
+// One connection of the page: asks, presses and an end; returns what is seen of it.
+async function story(random, bad, isWild = false) {
+  const ends = [];
+  const heard = [];
+  let over = 0;
+  server.takes_ms = () => (random() < 0.5 ? 1 : Math.floor(random() * 800));
+  let lost = 0;
+  server.loses = (isAnswer) => {
+    const loses = random() < bad && (isWild || lost < 2);
+    if (loses) lost += 1;
+    else if (isAnswer) lost = 0;
+    return loses;
+  };
+  server.late_ms = () => (bad && random() < 0.2 ? Math.floor(random() * (isWild ? 2500 : 400)) : 1);
+  server.again = bad ? 0.1 : 0;
+  const robot = new HostRobot({ event: (event) => heard.push(event.event), over: () => (over += 1) });
+  let met = 0;
+  let wasMet = false;
+  robot.connect('p', 'tinibot', 'en').then(() => (wasMet = true)).catch(() => {}).finally(() => (met += 1));
+  await until(now_ms + 3000);
+  const asks = 1 + Math.floor(random() * 12);
+  let presses = 0;
+  for (let k = 0; k < asks; k += 1) {
+    ends.push(0);
+    const counts = () => (ends[k] += 1);
+    robot.ask({ what: `${server.name} ${k}` }).then((answer) => {
+      counts();
+      if (answer.what !== `${server.name} ${k}`) heard.push(`another's answer: ${answer.what}`);
+    }, counts);
+    if (random() < 0.1) {
+      robot.stop();
+      presses += robot.isOver ? 0 : 1;
+    }
+    await until(now_ms + Math.floor(random() * 300));
+  }
+  await until(now_ms + (bad === 1 ? 8000 : 30_000));
+  const isThere = wasMet && !robot.isOver;
+  const isGone = bad < 1 || robot.isOver; // nothing arrives, and that is known
+  robot.leave();
+  await passes();
+  const before = JSON.stringify([ends, heard, over]);
+  await until(now_ms + 10_000);
+  const isQuiet = JSON.stringify([ends, heard, over]) === before;
+  return { met, wasMet, isThere, isGone, over, ends, presses, heard, isQuiet, timers: timers.length };
+}
+
+for (let seed = 0; seed < seeds; seed += 1) {
+  const [bad, isWild] = [[0.2, false], [0.5, false], [0.5, true], [1, true]][seed % 4];
+  server = new Server(chance(seed + 1));
+  server.name = 'first';
+  const first = await story(chance(seed + 7), bad, isWild);
+  const made = server.done;
+  server.done = [];
+  server.stops = [];
+  server.name = 'second';
+  const second = await story(chance(seed + 99), 0);
+  const secondDone = server.done;
+  server = new Server(chance(seed + 1));
+  server.name = 'second';
+  const fresh = await story(chance(seed + 99), 0);
+  console.log(JSON.stringify({ isWild, first, made, second, secondDone, fresh, freshDone: server.done }));
+}
+process.exit(0);

@@ -1,0 +1,126 @@
+"""What a virtual robot does behind anything is what one does that was switched on where it stands.
+
+A random program ends, or is ended in a random way at any moment; then comes another one. A second
+robot begins in a world whose start is the place where the first one stands by then: both do the
+same at the same times, see the same, and arrive at the same place.
+
+`python -m tests.virtual.test_second_run 2000` tries more.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections import Counter
+from collections.abc import Callable
+from math import hypot
+from typing import NamedTuple
+
+import pytest
+
+from tests.oracle.task_programs import task_program
+from tests.support.campaign import each_seed, wanted
+from tests.support.virtual_robot import Talk, floor, robot_in, trace
+from tiniscript.link.messages import STOP_BYTES
+from tiniscript.robots.kinematics import Pose
+from tiniscript.virtual.robot import RESET_BUTTON
+
+WALL = "[[boxes]]\nx_cm = 140\ny_cm = 140\nlength_cm = 20\nwidth_cm = 20\nheading = 20\n"
+NEAR_CM, NEAR_DEGREES = 0.5, 1.0
+RUNS_MS = 2500
+
+
+def pushes(talk: Talk) -> None:
+    talk.robot.press()
+    talk.wait(60)
+    talk.robot.let_go()
+
+
+def types(talk: Talk) -> None:
+    talk.robot.step(talk.robot.now_ms + 20, b"\nS\n")
+
+
+def computer_stops(talk: Talk) -> None:
+    talk.session.stop(talk.robot.now_ms)
+    talk.wait(200)
+
+
+ENDS: dict[str, Callable[[Talk], object]] = {
+    "nothing": lambda talk: talk.wait(4000),
+    "zeros": lambda talk: talk.robot.step(talk.robot.now_ms + 20, bytes(STOP_BYTES)),
+    "a line": types,
+    "its computer": computer_stops,
+    "the button": pushes,
+    "silence": lambda talk: talk.robot.step(talk.robot.now_ms + 3000),
+    "a reset": lambda talk: talk.robot.power_cycle(RESET_BUTTON),
+    "off and on": lambda talk: talk.robot.power_cycle(),
+    "the next program": lambda talk: None,
+}
+
+
+OFF = ("a reset", "off and on")
+
+
+def program(rng: random.Random, name: str) -> str:
+    text = re.sub(r"RANDOM\(\d, \d\)", "2", task_program(rng)[0]).replace("\n", ";")
+    ends = rng.choice(("", "F(0.3, 60);", "X = 0;W(0.05);SHOW(1 / X);", "M(30, -30);W(0.2);"))
+    if name == "grabber":
+        text = text.replace("LIGHT_L", "TEMPERATURE")
+        text = rng.choice(("", "GRIPPER(40);LED(TRUE);", "LED(DISTANCE < 40);")) + text
+    return f"SI|SHOW(DISTANCE);{text};{ends}"
+
+
+class Did(NamedTuple):
+    trace: list[str]
+    state: tuple[str, bool, bool, str]
+    pose: Pose
+    actuators: dict[int, int]
+
+
+def does(talk: Talk, text: str) -> Did:
+    robot = talk.robot
+    robot.take_events()
+    assert talk.upload(text).status == 0
+    talk.wait(RUNS_MS)
+    state = robot.fault, robot.is_running, robot.ended_ms is None, robot.held
+    return Did(trace(robot.take_events()), state, robot.pose, robot.actuators)
+
+
+def check(seed: int) -> str:
+    rng = random.Random(seed)
+    name = rng.choice(("grabber", "tinibot2"))
+    robot = robot_in(floor(WALL), name, baud=0)
+    talk = Talk(robot)
+    assert talk.upload(program(rng, name), is_detached=rng.random() < 0.3).status == 0
+    talk.wait(rng.choice((0, 1, 30, 300, 900)))
+    ends = rng.choice([*ENDS])
+    ENDS[ends](talk)
+    assert ends not in OFF or (not robot.is_running and robot.at is None), seed
+    robot.step(robot.now_ms + 20, b"\0S\n")
+    robot.step(robot.now_ms + 1500)  # until it stands
+    pose = robot.pose
+    is_done = "DONE" in [each.what for each in robot.take_events()][-2:]
+    text = program(rng, name)
+    other = robot_in(floor(WALL)._replace(start=pose), name, baud=0)
+    other.step(1500)
+    did, want = does(Talk(robot, 7), text), does(Talk(other, 7), text)
+    said = f"seed {seed} {ends} {name} {text}\n{did}\nnot\n{want}"
+    assert did[:2] == want[:2], said
+    there, its = did.pose, want.pose
+    assert hypot(there.x_cm - its.x_cm, there.y_cm - its.y_cm) < NEAR_CM, said
+    assert abs(there.heading - its.heading) < NEAR_DEGREES, said
+    left = {k: value for k, value in did.actuators.items() if k not in want.actuators}
+    assert {**want.actuators, **left} == did.actuators, said
+    assert is_done or not any(left.values()), said  # what a program's own end leaves on
+    return ends if len(want.trace) > 3 else "little"
+
+
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(20))
+def test_a_second_run_is_as_on_a_robot_that_was_switched_on_there(part: int) -> None:
+    found = Counter(check(seed) for seed in range(part * 15, (part + 1) * 15))
+    assert found["little"] < 8, found
+
+
+if __name__ == "__main__":
+    each_seed(check, wanted(500, 5_000))
