@@ -57,9 +57,9 @@ def test_words_of_a_language_are_in_its_folder() -> None:
     assert found == set()
 
 
-# What is written so in each language: signs, functions of Arduino, letters, two words that are one,
-# and the name of the command.
-WRITTEN = {"X", "TONE", "A", "FL", "LF", "FR", "RF", "UN", "TIL", "TSC"}
+# What is written so in each language: signs, functions of Arduino, a word of Logo, letters, two
+# words that are one, and the name of the command.
+WRITTEN = {"X", "TONE", "TO", "A", "FL", "LF", "FR", "RF", "UN", "TIL", "TSC"}
 
 
 def test_rows_name_no_word_of_a_language() -> None:

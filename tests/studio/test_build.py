@@ -100,7 +100,8 @@ def test_every_block_says_something_and_nothing_else_does() -> None:
     blocks = {f"block/{word}" for word in words if not SAYS.get(word)}
     assert {key for key in said if key.startswith("block/")} == blocks
     tips = {key.partition("/")[2] for key in said if key.startswith("tip/")}
-    assert tips <= {*KINDS, "program", "more", "less"} and len(tips) > 25
+    buttons = {"more", "less", "more_values", "less_values"}
+    assert tips <= {*KINDS, "program", *buttons} and len(tips) > 25
 
 
 def test_a_plural_has_the_form_of_its_number() -> None:
