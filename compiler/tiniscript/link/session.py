@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
@@ -584,7 +585,7 @@ class Session(Requester):
         still for so long. An answer to DATA that brings nothing new is no progress.
         """
         pending = self._pending
-        if pending is None or reply.status != OK:
+        if pending is None or pending.wanted.is_whole or reply.status != OK:
             return
         if isinstance(reply.values, NextReply):
             is_data = isinstance(self._transmission, Window)
@@ -749,6 +750,9 @@ class Session(Requester):
         pending, self._pending = self._pending.wanted, None
         # a robot that answers, but waits for too long, is not lost
         is_there = pending.waits_for and now_ms - pending.answered_ms <= DEAF_MS
+        if pending.waits_for and not self._transmission.is_sent:
+            with suppress(StopIteration):  # nothing of it is under way: it learns that
+                pending.exchange.send(Reply(CANCELLED))
         self._transmission.end()
         pending.outcome = Reply(pending.waits_for if is_there else LOST)
         if pending.is_own:
