@@ -10,10 +10,12 @@ from random import Random
 from typing import NamedTuple
 
 from tests.machines.host_firmware import EMPTY
+from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
 
 KIT = robots.load("tinibot").kit
+ESP32 = "tinibot32"
 LATEST_MS = 2000  # a fault begins by then, however few bytes have come
 FOREVER_MS = 10**9
 
@@ -90,13 +92,14 @@ class Way:
         return bytes(found)
 
 
-class BadLine(PtyRobot):
+class BehindBadLine(PtyRobot):
     """A robot behind a line with a fault that begins after `after` bytes, or after a while.
 
     `mend` takes the fault away; what is still on its way arrives then.
     """
 
-    def __init__(self, fault: Fault, chance: Random, after: int, memory: bytes = EMPTY) -> None:
+    def _lay(self, fault: Fault, chance: Random, after: int) -> None:
+        """Lay the line, before the robot begins."""
         self.fault = fault
         self.has_begun = False
         self._after = after
@@ -105,13 +108,12 @@ class BadLine(PtyRobot):
         self._ways = [Way(fault, is_held, chance) for is_held in fault.ways]
         self._is_mended = False
         self._since_ms: int | None = None  # the first byte
-        super().__init__(KIT, memory)
 
-    def begin(self, fault: Fault) -> None:
-        """Have a fault from now on, in the place of the one before."""
+    def begin(self, fault: Fault, after: int = 0) -> None:
+        """Have a fault from now on, or so many bytes on, in the place of the one before."""
         with self._lock:
             self.fault, self.has_begun, self._is_mended = fault, False, False
-            self._after, self._since_ms = 0, self._line_ms
+            self._after, self._since_ms = after, self._line_ms
             self._ways = [Way(fault, is_held, self._chance) for is_held in fault.ways]
 
     @property
@@ -152,3 +154,19 @@ class BadLine(PtyRobot):
                 with self._lock:
                     self._take_power()
                     self._robot = self._made(seed=0x9ABCDEF1)
+
+
+class BadLine(BehindBadLine):
+    """The same of an Uno."""
+
+    def __init__(self, fault: Fault, chance: Random, after: int, memory: bytes = EMPTY) -> None:
+        self._lay(fault, chance, after)
+        super().__init__(KIT, memory)
+
+
+class BadEsp32Line(BehindBadLine, Esp32PtyRobot):
+    """The same of an ESP32."""
+
+    def __init__(self, fault: Fault, chance: Random, after: int) -> None:
+        self._lay(fault, chance, after)
+        super().__init__(ESP32)

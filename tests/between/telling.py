@@ -9,6 +9,7 @@ import os
 import re
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
 from threading import Thread
@@ -59,7 +60,7 @@ class Teller(Terminal):
     """A command at a terminal of its own."""
 
     def __init__(self, words: Sequence[str], env: Mapping[str, str]) -> None:
-        self.began_s = CLOCK.now_s  # or when it has sent its first byte
+        self.began_s = CLOCK.now_s  # or when it has sent its first byte, or has connected
         self.told: list[tuple[float, str]] = []  # "" is what a person has done
         self.ended_s: float | None = None
         self.suspended: list[tuple[float, float]] = []
@@ -93,6 +94,14 @@ class Teller(Terminal):
         while self.ended_s is None and CLOCK.now_s < end_s:
             time.sleep(STEP_S)
         return self.ended_s is not None
+
+    def has_socket(self) -> bool:
+        """Whether it is connected to another command."""
+        with suppress(OSError):
+            folder = f"/proc/{self.process.pid}/fd"
+            return any(os.readlink(f"{folder}/{each}").startswith("socket:")
+                       for each in os.listdir(folder))  # fmt: skip
+        return False
 
     def has_said(self, pattern: str) -> bool:
         return re.search(pattern, self.text) is not None

@@ -3,7 +3,8 @@ for; nothing contradicts what was said, a thing is said once, and the next try w
 
 `python -m tests.between.test_commands 100 --seed 1` draws commands, faults and moments, and prints
 how long each command was silent, and how long it took; a second figure is that of the line that is
-right. With `--whole` each command meets each fault, once for each seed.
+right. With `--whole` each command meets each fault, once for each seed; with `--clients` those of
+a shared port alone, with `--esp32` those with an ESP32.
 """
 
 from __future__ import annotations
@@ -23,7 +24,15 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.between.lines import FAULTS, KIT, BadLine, Fault
+from tests.between.lines import (
+    ESP32,
+    FAULTS,
+    KIT,
+    BadEsp32Line,
+    BadLine,
+    BehindBadLine,
+    Fault,
+)
 from tests.between.telling import CLOCK, Teller, own_folders
 from tests.support.campaign import wanted
 from tests.support.command import FOREVER, LONG
@@ -42,13 +51,15 @@ UNCONFIRMED = re.compile(r"has not confirmed the stop")
 
 
 class Words(NamedTuple):
-    """A command; `stays`: until Ctrl-C."""
+    """A command; `stays`: until Ctrl-C; `is_client`: of `tsc link`, which has the port."""
 
     name: str
     words: tuple[str, ...]
     stays: bool = False
     takes_s: float = 0.0  # of its own
     may_fail: bool = False  # whatever the line does
+    is_client: bool = False
+    robot: tuple[str, ...] = ()
 
 
 COMMANDS = (
@@ -74,6 +85,20 @@ COMMANDS = (
     Words("doctor --selftest --yes", ("doctor", "--selftest", "--yes"), may_fail=True),
     Words("doctor --yes", ("doctor", "--yes"), may_fail=True),
 )
+BY_NAME = {each.name: each for each in COMMANDS}
+CLIENTS = tuple(
+    BY_NAME[name]._replace(name=f"{name}, beside link", is_client=True)
+    for name in ("upload", "upload, Ctrl-C", "start", "live LINE", "stop", "doctor --yes")
+)
+ON_ESP32 = tuple(
+    each._replace(name=f"{each.name}, ESP32", robot=("--robot", ESP32))
+    for each in (
+        *(BY_NAME[name] for name in ("upload", "upload, long", "upload, Ctrl-C", "live LINE")),
+        Words("live LONG LINE", ("live", "; ".join(["SHOW(TIME * 1.234)"] * 8))),
+        *(BY_NAME[name] for name in ("stop", "doctor --yes", "set name")),
+    )
+)
+ALL = (*COMMANDS, *CLIENTS, *ON_ESP32)
 
 
 class Found(NamedTuple):
@@ -107,18 +132,21 @@ def tried(words: Words, fault: Fault, seed: int) -> Found:
         folder = stack.enter_context(tempfile.TemporaryDirectory())
         env = own_folders(folder)
         after = chance.choice((0, 1, 12, 30, 60, 150))
-        line = BadLine(fault, chance, after, with_program())
+        line = _line(words, fault, chance, after)
         stack.callback(line.clear_away)
-        teller = Teller([*words.words, "--port", line.port], env)
+        holder = _holder(line, env, stack) if words.is_client else None
+        teller = Teller([*words.words, *words.robot, "--port", line.port], env)
         stack.callback(teller.end)
-        has_ended = _played(teller, line, words, chance)
+        if holder is not None:
+            line.begin(fault, after)
+        has_ended = _played(teller, line, words, chance, holder)
         wrong = [] if has_ended else ["it has no end"]
         if not has_ended:
             teller.process.kill()
             teller.wait(ENDS_S)
         wrong += _contradictions(teller, line, words)
         if fault.has_end or not fault.pulls:
-            wrong += _next_try(line, env)
+            wrong += _next_try(line, env, words)
         asked_s = [at_s for at_s, said in teller.told if not said]
         began_s = asked_s[0] if asked_s else teller.began_s
         assert teller.ended_s is not None
@@ -126,14 +154,35 @@ def tried(words: Words, fault: Fault, seed: int) -> Found:
                      teller.ended_s - began_s, tuple(wrong), teller.text)  # fmt: skip
 
 
-def _played(teller: Teller, line: BadLine, words: Words, chance: Random) -> bool:
-    """Let the fault happen, and a person be there; return whether the command has ended."""
+def _line(words: Words, fault: Fault, chance: Random, after: int) -> BehindBadLine:
+    if words.robot:
+        return BadEsp32Line(fault, chance, after)
+    return BadLine(Fault("nothing") if words.is_client else fault, chance, after, with_program())
+
+
+def _holder(line: BehindBadLine, env: dict[str, str], stack: ExitStack) -> Teller:
+    """Let `tsc link` have the port, which meets its robot before there is a fault."""
+    holder = Teller(["link", "--port", line.port], env)
+    stack.callback(holder.end)
+    end_s = CLOCK.now_s + ENDS_S
+    while not holder.has_said("Ctrl-C"):
+        assert CLOCK.now_s < end_s, holder.text
+        CLOCK.wait(0.05)
+    return holder
+
+
+def _played(
+    teller: Teller, line: BehindBadLine, words: Words, chance: Random, holder: Teller | None
+) -> bool:
+    """Let the fault happen, and a person be there; return whether the command has ended. Of two
+    commands the one with the port is suspended."""
     fault = line.fault
     is_slow = fault.rate or fault.lost or fault.late_ms
     limit_s = (SLOW_ENDS_S if is_slow else ENDS_S + fault.held_ms % 10**9 / 1000) + words.takes_s
     end_s = CLOCK.now_s + limit_s
     leaves_s = chance.choice((1.0, 6.0, 15.0)) if words.stays else limit_s
-    while not line.is_used and teller.ended_s is None and CLOCK.now_s < end_s:
+    has_begun = teller.has_socket if words.is_client else lambda: line.is_used
+    while not has_begun() and teller.ended_s is None and CLOCK.now_s < end_s:
         CLOCK.wait(0.01)
     teller.began_s = CLOCK.now_s
     while not line.has_begun and teller.ended_s is None and CLOCK.now_s < end_s:
@@ -141,18 +190,18 @@ def _played(teller: Teller, line: BadLine, words: Words, chance: Random) -> bool
     if fault.pulls:
         line.pull()
     if fault.suspends and teller.ended_s is None:
-        began_s = CLOCK.now_s
-        teller.process.send_signal(signal.SIGSTOP)
+        began_s, slept = CLOCK.now_s, holder or teller
+        slept.process.send_signal(signal.SIGSTOP)
         CLOCK.wait(fault.held_ms / 1000)
-        teller.suspended.append((began_s, CLOCK.now_s))
-        teller.process.send_signal(signal.SIGCONT)
+        slept.suspended.append((began_s, CLOCK.now_s))
+        slept.process.send_signal(signal.SIGCONT)
     if words.stays and not teller.wait(leaves_s):
         teller.interrupt()
         return teller.wait(STOPS_S + 2 * fault.late_ms / 1000 + (30 if fault.rate else 0))
     return teller.wait(max(0.1, end_s - CLOCK.now_s))
 
 
-def _contradictions(teller: Teller, line: BadLine, words: Words) -> list[str]:
+def _contradictions(teller: Teller, line: BehindBadLine, words: Words) -> list[str]:
     """Return what was said twice, or is not so."""
     lines, code, fault = teller.kept, teller.process.returncode, line.fault
     found = [f"said twice: {each}" for each in teller.repeated()]
@@ -169,17 +218,17 @@ def _contradictions(teller: Teller, line: BadLine, words: Words) -> list[str]:
         found.append(f"exit code {code}")
     if fault.pulls:
         return found
-    if words.name != "upload --detach":
+    if not words.name.startswith("upload --detach"):
         CLOCK.wait(0 if is_confirmed or not line.moves else DRIVES_ON_S)
         if line.moves:
             found.append("it moves")
     return found
 
 
-def _next_try(line: BadLine, env: dict[str, str]) -> list[str]:
+def _next_try(line: BehindBadLine, env: dict[str, str], words: Words) -> list[str]:
     line.mend()
     CLOCK.wait(0.2)
-    teller = Teller(["upload", "-e", SHORT, "--port", line.port], env)
+    teller = Teller(["upload", "-e", SHORT, *words.robot, "--port", line.port], env)
     teller.wait(ENDS_S)
     code = teller.end()
     return [] if code == 0 else [f"the next try: {code}, {teller.kept}"]
@@ -202,7 +251,7 @@ def printed(found: Sequence[Found]) -> None:
     for each in found:
         rows[each.name].append(each)
     print("| command | tries | longest silence, s | to its end, s |\n|---|---:|---:|---:|")
-    for command in COMMANDS:
+    for command in ALL:
         if mine := rows[command.name]:
             quiet = max(mine, key=lambda each: each.silence_s)
             late = max(mine, key=lambda each: each.took_s)
@@ -210,14 +259,16 @@ def printed(found: Sequence[Found]) -> None:
                   f" {late.took_s:.1f} ({late.fault}) |")  # fmt: skip
 
 
-def drawn(count: int, seed: int, is_whole: bool) -> list[tuple[Words, Fault, int]]:
+def drawn(
+    count: int, seed: int, is_whole: bool, among: Sequence[Words] = ALL
+) -> list[tuple[Words, Fault, int]]:
     if is_whole:
         return [(words, fault, seed + k) for k in range(count)
-                for fault in FAULTS for words in COMMANDS]  # fmt: skip
+                for fault in FAULTS for words in among]  # fmt: skip
     rows = []
     for k in range(seed, seed + count):
         chance = Random(k)
-        rows.append((chance.choice(COMMANDS), chance.choice(FAULTS), k))
+        rows.append((chance.choice(among), chance.choice(FAULTS), k))
     return rows
 
 
@@ -237,9 +288,10 @@ ROOM_CI_S = 2.0  # processes begin slowly beside others
 
 
 if __name__ == "__main__":
-    given = wanted(100, 1, "whole")
+    given = wanted(100, 1, "whole", "clients", "esp32")
+    among = CLIENTS if given.clients else ON_ESP32 if given.esp32 else ALL
     began_s = CLOCK.now_s
-    found = all_tried(drawn(given.count, given.seed, given.whole))
+    found = all_tried(drawn(given.count, given.seed, given.whole, among))
     printed(found)
     wrong = [(each, judged(each)) for each in found]
     for each, why in wrong:

@@ -19,7 +19,7 @@ from tests.support.command import FOREVER, Command, Done, inside
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.cli import main
 from tiniscript.cli.commands import claim
-from tiniscript.link import authority
+from tiniscript.link import connection
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
 from tiniscript.link.sharing.requests import ClientRequests
@@ -140,7 +140,7 @@ def test_a_claim_without_the_button_says_what_to_do(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """And where the key could not be kept the robot gives none."""
-    monkeypatch.setattr(authority, "HOLD_TRIES", 3)
+    monkeypatch.setattr(connection, "CLAIM_LIMIT_MS", 700)
     on(pty_robot, "set", "owner").gives(3, "2 s")
     assert KeyFile().all() == []
     path = KeyFile().path

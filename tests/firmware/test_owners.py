@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from random import Random
 from typing import Any
 
 import pytest
 
+from tests.between.lines import Fault, Way
 from tests.support.images import image_of
 from tests.support.owners import (
     FOREVER,
@@ -79,6 +81,68 @@ def test_what_confirms_no_claim(what: Callable[[Owned, Session], PendingRequest[
     assert table.outcome(session, what(table, session)) == "HOLD_BUTTON"
     assert keys.found == []
     assert owner_of(table, session) == FREE
+
+
+class Late:
+    """A session and its robot, with a line between them on which bytes are late, or is cut."""
+
+    def __init__(self, table: Owned, session: Session, late_ms: int) -> None:
+        self.table, self.session = table, session
+        self.ways = [Way(Fault("late", late_ms=late_ms), False, Random(0)) for _ in range(2)]
+        self.is_cut = False
+
+    def pass_time(self, milliseconds: int, flags: int = 0) -> None:
+        """Let time pass, at whose beginning something happens to the button."""
+        robot, (there, back) = self.table.robot, self.ways
+        end_ms = robot.now_ms + milliseconds
+        while robot.now_ms < end_ms:
+            data = self.session.poll(robot.now_ms)
+            there.put(b"" if self.is_cut else data, robot.now_ms)
+            data = there.arrived(robot.now_ms)
+            sent = robot.step(data, flags) if flags else robot.wait(LINE_STEP_MS, data)
+            back.put(b"" if self.is_cut else sent, robot.now_ms)
+            self.session.receive(back.arrived(robot.now_ms), robot.now_ms)
+            flags = 0
+
+    def until(self, request: PendingRequest[Any]) -> None:
+        while request.outcome is None:
+            self.pass_time(LINE_STEP_MS)
+
+
+LINE_STEP_MS = 5
+SAID_MS = 30_000  # "tsc waits 30 s"
+
+
+CLAIMS = ["nothing", "cut", "cut, later not", "held", "held and cut", "taken and cut"]
+
+
+@pytest.mark.parametrize("late_ms", [0, 40, 300, 700])
+@pytest.mark.parametrize("what", CLAIMS)
+def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None:
+    """However long answers take, and whatever comes of the press. A key that the robot may have
+    taken is kept: it is shown the next time."""
+    table, keys = Owned(), Keys()
+    session = table.session(keys)
+    line = Late(table, session, late_ms)
+    began_ms = table.robot.now_ms
+    request = session.claim(KEY_OWNER)
+    line.is_cut = what.startswith("cut")
+    line.pass_time(SAID_MS - 6000)
+    line.is_cut = what == "cut"
+    if what[:4] in ("held", "take"):
+        line.pass_time(1, PRESSED)
+        line.pass_time(30)
+        line.pass_time(1970, HELD)
+        line.is_cut = what == "held and cut"
+        while what == "taken and cut" and keys.found[0].is_pending and request.outcome is None:
+            line.pass_time(LINE_STEP_MS)
+        line.is_cut |= what == "taken and cut"
+    line.until(request)
+    assert table.robot.now_ms <= began_ms + SAID_MS + 2 * LINE_STEP_MS
+    table.robot.step(flags=RELEASED)
+    is_taken = owner_of(table, table.session(nonce=8)) != FREE
+    assert is_taken or what not in ("held", "taken and cut")
+    assert owner_of(table, table.session(keys, nonce=7)) == (YOUR_OWN if is_taken else FREE)
 
 
 def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() -> None:

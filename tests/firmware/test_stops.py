@@ -12,6 +12,8 @@ import pytest
 from tests.firmware.test_button_states import STATES, Table, keeps_trim, saves
 from tests.firmware.test_host_firmware import AWAY, KIT, computer, happened, live, send, switched_on
 from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
+from tests.support.pty_robot import drives_now
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.requests import OK
@@ -206,3 +208,29 @@ def test_a_stop_at_any_time_of_a_save(state: Callable[[Table], None], after_ms: 
     later.push()
     later.talk(session, 50)
     assert happened(later)[-1] == f"MOTORS {table.program} {table.program}"
+
+
+def drives(robot: HostFirmware) -> bool:
+    return drives_now([line.split(" ", 1)[1] for line in robot.did])
+
+
+@pytest.mark.parametrize("is_asked", ["search", "upload", "nothing"])
+def test_a_robot_that_is_not_heard_any_more_is_not_kept_driving_by_who_looks_for_it(
+    is_asked: str,
+) -> None:
+    """It hears all: its program ends by itself, as is said of one that is lost."""
+    robot, session = switched_on(), computer()
+    live(robot, session, "SI|F(60, 80)")
+    robot.talk(session, 300)
+    assert drives(robot)
+    lost_ms: int | None = None
+    request = session.upload(image_of("SI|F(60, 80)"), saves=False) if is_asked == "upload" else None
+    while lost_ms is None or robot.now_ms < lost_ms + 6000:
+        if robot.now_ms % 10 == 0 and any(each.name == "LOST" for each in session.events()):
+            lost_ms = lost_ms or robot.now_ms
+            if is_asked == "search":
+                request = session.hello()
+        robot.step(session.poll(robot.now_ms))
+        assert lost_ms is None or robot.now_ms < lost_ms + 1500 or not drives(robot)
+    robot.talk(session, 3000)
+    assert request is None or request.outcome is not None

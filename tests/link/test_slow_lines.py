@@ -53,6 +53,7 @@ class Talk:
         self.there, self.back = (Wire(line.rate * 10, line.late_ms) for _ in range(2))
         self.now_ms = 0
         self.sent_bytes = 0
+        self.did: list[str] = []
         self.is_cut = False
 
     def kept(self, data: bytes) -> bytes:
@@ -68,7 +69,9 @@ class Talk:
         self.there.send(self.kept(data), self.now_ms)
         came = self.there.arrived(self.now_ms)
         if came or self.now_ms % LOOK_MS == 0:
-            self.back.send(self.kept(self.robot.step(self.now_ms, came).sent), self.now_ms)
+            found = self.robot.step(self.now_ms, came)
+            self.did += found.did
+            self.back.send(self.kept(found.sent), self.now_ms)
         self.session.receive(self.back.arrived(self.now_ms), self.now_ms)
         self.now_ms += STEP_MS
 
@@ -126,6 +129,29 @@ def test_a_program_that_would_fit_into_one_large_frame_gets_through_a_line_with_
     for seed in range(20):
         talk = Talk(Line(11_520, 20, 0.01), 115_200, is_large=True, seed=seed)
         assert talk.upload(code_bytes) == OK, seed
+
+
+@pytest.mark.parametrize("code_bytes", [60, 100, 150])
+def test_a_long_live_line_gets_through_a_line_with_losses_and_is_done_once(
+    code_bytes: int,
+) -> None:
+    """It cannot come in pieces, so hardly one of its frames comes whole."""
+    for seed in range(60):
+        talk = Talk(Line(11_520, 20, 0.01), 115_200, is_large=True, seed=seed)
+        assert talk.wait(talk.session.hello()) == OK
+        assert talk.wait(talk.session.live(program(code_bytes).code, KIT)) == OK, seed
+        for _ in range(200):  # what is still under way arrives
+            talk.step()
+        assert sum(line.startswith("START") for line in talk.did) == 1, seed
+
+
+@pytest.mark.parametrize("line", [Line(1000), Line(1000, 40), Line(500, 100)])
+def test_a_long_live_line_gets_through_a_slow_line_without_many_copies(line: Line) -> None:
+    talk = Talk(line, 115_200, is_large=True)
+    assert talk.wait(talk.session.hello()) == OK
+    talk.sent_bytes = 0
+    assert talk.wait(talk.session.live(program(230).code, KIT)) == OK
+    assert talk.sent_bytes < 230 * 1.35
 
 
 @pytest.mark.parametrize("line", [Line(1000), Line(1000, 40), Line(500, 100), Line(11_520, 300)])

@@ -21,7 +21,7 @@ from tools import CannotMake
 from tools.builds.studio import found_tools
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page, Route
+    from playwright.sync_api import Browser, Locator, Page, Route
 
 SCRIPT = Path(__file__).with_name("progress_in_node.mjs")
 FILE = "tinibot-uno-digest.hex"
@@ -56,7 +56,7 @@ Object.defineProperty(navigator, 'serial', {
 
 @pytest.fixture(scope="module")
 def server(browser: Browser) -> Iterator[serving.Server]:
-    rows = [{"title": "tinibot", "board": "uno", "file": FILE}]
+    rows = [{"title": "tinibot", "board": board, "file": FILE} for board in ("uno", "esp32dev")]
     page = {
         **serving.files(),
         serving.FIRMWARE: serving.File(json.dumps(rows).encode(), "application/json"),
@@ -74,19 +74,23 @@ def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
 
 
 class Held:
-    """Requests that nobody answers until they are let go."""
+    """Requests that nobody answers until they are let go; later ones, then, at once."""
 
     def __init__(self, page: Page, what: str) -> None:
         self.routes: list[Route] = []
+        self._has_end = False
         page.context.route(what, self._hold)
 
     def _hold(self, route: Route) -> None:
         self.routes.append(route)
+        if self._has_end:
+            route.continue_()
 
     def has(self, count: int) -> bool:
         return len(self.routes) == count
 
     def let_go(self) -> None:
+        self._has_end = True
         for each in self.routes:
             each.continue_()
 
@@ -100,7 +104,7 @@ def with_serial(pages: Pages, server: serving.Server, has_clock: bool = False) -
     enter(page, server.address)
     page.click("#side_real")
     page.click("#link_teacher summary")
-    page.locator("#flash_board option").wait_for(state="attached")
+    page.locator("#flash_board option").first.wait_for(state="attached")
     return page
 
 
@@ -139,6 +143,23 @@ def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
     assert page.evaluate("window.port.opened") == 0
 
 
+def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
+    pages: Pages, server: serving.Server
+) -> None:
+    page = with_serial(pages, server, has_clock=True)
+    page.select_option("#flash_board", "esp32dev")
+    held = Held(page, "**/esp32-*.js")
+    for _ in range(2):
+        page.click("#flash_write")
+        hears(page, lambda: held.routes, "it is fetched")
+        said(page, "Fetching the firmware. Nothing is written yet.")
+        page.clock.fast_forward(4000)
+        said(page, "The firmware does not come.")
+        page.click("#flash_cancel")
+        said(page, "Cancelled. Nothing was written: the board is as it was.")
+    assert page.evaluate("window.port.opened") == 0
+
+
 def test_a_port_that_takes_no_bytes_is_closed_and_may_be_tried_again(
     pages: Pages, server: serving.Server
 ) -> None:
@@ -167,15 +188,122 @@ def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: servi
     assert page.locator("#link_serial:enabled").is_visible()
 
 
-@pytest.mark.parametrize("what", ["tiniscript.zip", "worker.js"])
-def test_a_compiler_that_does_not_come_is_told_and_goes_on_when_it_does(
-    pages: Pages, server: serving.Server, what: str
+# -- what a run needs
+
+# What the page says where something is held; the pictures and the style are the browser's to fetch.
+WORDS = "#coming, #status:has-text('does not come'), #doing:has-text('does not come')"
+OF_THE_COMPILER = ("worker.js", "pyodide.asm.mjs", "pyodide.asm.wasm", "python.zip",
+                   "tiniscript.zip", "messages.en.json")  # fmt: skip
+BEGINS = "html[data-screen=start] [data-begin=dance]"
+NEEDLESS = ("style.css", ".svg", ".webmanifest", ".cur")
+
+
+@pytest.fixture(scope="module")
+def hasty(browser: Browser) -> Iterator[serving.Server]:
+    """A page that says after a moment what it waits for, and gives up soon."""
+    page = serving.files()
+    for name, file in page.items():
+        data = file.data
+        if b"nothing comes" in data and name.endswith(".js"):
+            assert data.count(b"},3e3)") == data.count(b"),2e4)") == 1
+            data = data.replace(b"},3e3)", b"},500)").replace(b"),2e4)", b"),5e3)")
+        if name == "style.css":
+            assert b"comes 0s 3s" in data
+            data = data.replace(b"comes 0s 3s", b"comes 0s .5s")
+        if data != file.data:
+            page[name] = serving.File(data, file.kind)
+    with studio.served(page) as made:
+        yield made
+
+
+@pytest.fixture
+def visits(browser: Browser, hasty: serving.Server) -> Iterator[Pages]:
+    found = Pages(browser, hasty.address)
+    yield found
+    found.wrong.clear()  # a browser complains of each file that it has not got
+    found.close()
+
+
+def danced(page: Page) -> None:
+    """A run that was asked for goes on."""
+    page.locator("html[data-phase=running]").wait_for(state="attached")
+
+
+def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes(
+    visits: Pages,
 ) -> None:
-    page = pages.blank(is_alone=True)
-    held = Held(page, f"**/{what}")
-    page.goto(server.address)
-    page.locator("#status").filter(has_text="The compiler does not come").wait_for(state="attached")
+    page = visits.blank(is_alone=True)
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url.removeprefix(visits.address)))
+    page.goto(visits.address)
+    page.click("[data-begin=dance]")
+    danced(page)
+    names = sorted({name for name in asked if name and not name.endswith(NEEDLESS)})
+    assert {*OF_THE_COMPILER, "main.js", "texts.en.json"} <= {*names}
+    for name in names:
+        page = visits.blank(is_alone=True)
+        held = Held(page, f"**/{name}")
+        page.goto(visits.address, wait_until="commit")
+        begin, word = page.locator(f"{BEGINS}:visible"), page.locator(WORDS)
+        running = page.locator("html[data-phase=running]")
+
+        def is_told(begin: Locator = begin, word: Locator = word) -> bool:
+            return word.first.is_visible() or begin.count() > 0
+
+        hears(page, is_told, name)
+        if begin.count():
+            begin.click()
+        hears(page, partial(is_told, running), name)
+        held.let_go()
+        if not page.locator("html[data-screen=program]").count():
+            page.click(BEGINS)
+        danced(page)
+        page.context.close()
+
+
+@pytest.mark.parametrize("name", OF_THE_COMPILER)
+def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
+    visits: Pages, name: str
+) -> None:
+    """In vain, and once more."""
+    page = visits.blank(is_alone=True)
+    Held(page, f"**/{name}")
+    page.goto(visits.address)
+    page.click("[data-begin=dance]")
+    for _ in range(2):
+        page.locator("#doing", has_text="The program waits for the compiler").wait_for()
+        page.locator("#doing", has_text="The compiler did not come. Run tries").wait_for()
+        page.click("#run")
+    page.locator("#doing", has_text="The program waits for the compiler").wait_for()
+    page.context.unroute_all()
+    danced(page)
+    page.click("#stop")
+    checked(page)
+
+
+def test_who_stops_while_the_compiler_is_held_has_no_run_when_it_comes(visits: Pages) -> None:
+    page = visits.blank(is_alone=True)
+    held = Held(page, "**/pyodide.asm.mjs")
+    page.goto(visits.address)
+    page.click("[data-begin=dance]")
+    page.locator("#doing", has_text="STOP ends the wait").wait_for()
+    page.click("#stop")
+    hears(page, lambda: "compiler" not in page.locator("#doing").inner_text(), "it waits no more")
     held.let_go()
+    checked(page)
+    page.wait_for_timeout(300)
+    assert page.locator("html[data-phase=off]").count()
+    page.click("#run")
+    danced(page)
+
+
+def test_a_robots_run_tries_the_compiler_again(visits: Pages) -> None:
+    page = visits.blank(is_alone=True)
+    page.context.route("**/tiniscript.zip", lambda route: route.abort())
+    page.goto(visits.address)
+    page.locator("html[data-state=failed]").wait_for(state="attached")
+    page.context.unroute_all()
+    page.evaluate("document.querySelector('#link_upload').click()")
     checked(page)
 
 

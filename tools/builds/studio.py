@@ -19,6 +19,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from html import escape
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -138,7 +139,14 @@ def put_own(page: Path) -> None:
             whole = json.dumps(content, ensure_ascii=False, separators=(",", ":"))
             (page / name).write_text(whole, encoding="utf-8")
     html = (SOURCES / "src" / "index.html").read_text(encoding="utf-8")
-    (page / "index.html").write_text(html.replace("POLICY", POLICY), encoding="utf-8")
+    html = html.replace("POLICY", POLICY).replace("COMING", coming())
+    (page / "index.html").write_text(html, encoding="utf-8")
+
+
+def coming() -> str:
+    """Return what the page says before a language is there: in each."""
+    said = [(code, page_texts(code)["page_waits"]) for code in languages()]
+    return "".join(f'<span lang="{code}">{escape(str(text))}</span>' for code, text in said)
 
 
 def said_in(language: str) -> tuple[str, str]:

@@ -28,18 +28,20 @@ STATUS = "status"  # the robot's status says why
 
 
 DEADLINE_MS = 20_000  # of a request, unless another is given
-CLAIM_LIMIT_MS = 45_000  # the robot waits for a hand on its button
+CLAIM_LIMIT_MS = 30_000  # the robot waits for a hand on its button so long, and no longer
 T = TypeVar("T")
 
 
 class PendingRequest(Generic[T]):
     """A request in progress: `outcome` is set when it is over.
 
-    `limit_ms` is its timeout, from its first frame on; `done_bytes` of a program have arrived;
-    `starts`: a program runs when the request is done.
+    `limit_ms` is its timeout, from its first frame on, and anew from each progress unless it
+    `is_whole`; `done_bytes` of a program have arrived; `starts`: a program runs when the request is
+    done.
     """
 
     limit_ms = DEADLINE_MS
+    is_whole = False
     starts = False
     done_bytes = 0
     outcome: Reply[T] | None = None
@@ -107,7 +109,7 @@ class Requester:
         one.
         """
         pending = self._ask("claim", EmptyReply, which=which)
-        pending.limit_ms = CLAIM_LIMIT_MS
+        pending.limit_ms, pending.is_whole = CLAIM_LIMIT_MS, True
         return pending
 
     def disown(self, which: int) -> PendingRequest[EmptyReply]:

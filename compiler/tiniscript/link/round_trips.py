@@ -21,6 +21,7 @@ class RoundTrips:
         self._mean_ms: float | None = None
         self._variation_ms = 0.0
         self._byte_ms: float | None = None  # a byte takes no longer, as far as answers tell
+        self._is_certain = False  # an answer belonged to one sending for certain
         self._doublings = 0
 
     def learn(self, took_ms: int, count: int, is_certain: bool) -> None:
@@ -34,7 +35,7 @@ class RoundTrips:
         self._byte_ms = byte_ms if self._byte_ms is None else min(self._byte_ms, byte_ms)
         if not is_certain:
             return
-        self._doublings = 0
+        self._doublings, self._is_certain = 0, True
         if self._mean_ms is None:
             self._mean_ms, self._variation_ms = took_ms, took_ms / 2
             return
@@ -42,8 +43,12 @@ class RoundTrips:
         self._mean_ms += (took_ms - self._mean_ms) * _MEAN
 
     def double(self) -> None:
-        """No answer has come in time."""
+        """No answer has come in time. What was learnt of a request that was sent more than once may
+        be too much: where nothing comes, one is waited for half as long, so that it is tried often.
+        """
         self._doublings += 1
+        if self._byte_ms is not None and not self._is_certain:
+            self._byte_ms /= 2
 
     def bytes_in(self, time_ms: int) -> int:
         """Return how many bytes this line carries in a time at least, as far as answers tell."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
@@ -22,6 +23,7 @@ from tiniscript.link.handshake import EXCHANGES, NEED_NO_HELLO, Handshake, ping,
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
+    DEAD_MAN_MS,
     FIRST_ACTING,
     FIRST_EVENT,
     MESSAGES,
@@ -81,6 +83,7 @@ from tiniscript.link.transmission import TRIES, StopSequence, Transmission, Wind
 
 HEARTBEAT_MS = 200  # between two frames while a program runs
 IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise
+SILENT_MS = DEAD_MAN_MS + 200  # after a lost link nothing but a stop is sent, and a little longer
 DEAF_MS = 3000  # a heartbeat without an answer for this time means that the link is lost
 MOST_SHOWN = 5  # times that a key is shown again for one request
 _STALE = STATUSES["STALE"]
@@ -157,6 +160,7 @@ class Session(Requester):
         self._epoch = 0
         self._baud = baud
         self._stop = StopSequence()
+        self._is_lost = False  # the link is, and nothing was sent since
         self._talked_ms = 0  # when something was sent, or while nothing runs, answered
         self._sealing = Sealing()
         self._state = RobotState()
@@ -250,6 +254,9 @@ class Session(Requester):
         """Return the bytes to send now."""
         if self._stop.due_ms is not None:
             return self._send_stop(now_ms)
+        if self._is_lost and now_ms < self._talked_ms + SILENT_MS:
+            return b""
+        self._is_lost = False
         if not self._transmission.is_under_way:
             self._next_pending(now_ms)
         if not self._transmission.is_under_way:
@@ -282,7 +289,7 @@ class Session(Requester):
             assert self._pending
             return min(self._transmission.due_ms, self._pending.deadline_ms)
         if self._waiting:
-            return 0
+            return self._talked_ms + SILENT_MS if self._is_lost else 0
         heartbeat_ms = self._heartbeat_ms()
         return None if heartbeat_ms is None else self._talked_ms + heartbeat_ms
 
@@ -448,6 +455,7 @@ class Session(Requester):
         if self._stop.is_over(now_ms):
             self._stop.end()
             self._close()
+            self._is_lost = False  # its zeros keep no run alive
             return b""
         self._talked_ms = now_ms
         return self._stop.sent(now_ms, self._sender)
@@ -584,7 +592,7 @@ class Session(Requester):
         still for so long. An answer to DATA that brings nothing new is no progress.
         """
         pending = self._pending
-        if pending is None or reply.status != OK:
+        if pending is None or pending.wanted.is_whole or reply.status != OK:
             return
         if isinstance(reply.values, NextReply):
             is_data = isinstance(self._transmission, Window)
@@ -751,6 +759,9 @@ class Session(Requester):
         pending, self._pending = self._pending.wanted, None
         # a robot that answers, but waits for too long, is not lost
         is_there = pending.waits_for and now_ms - pending.answered_ms <= DEAF_MS
+        if pending.waits_for and not self._transmission.is_sent:
+            with suppress(StopIteration):  # nothing of it is under way: it learns that
+                pending.exchange.send(Reply(CANCELLED))
         self._transmission.end()
         pending.outcome = Reply(pending.waits_for if is_there else LOST)
         if pending.is_own:
@@ -761,6 +772,10 @@ class Session(Requester):
         self._lost()
 
     def _lost(self) -> None:
+        """A robot that hears us and is not heard drives while it hears anything: first its dead
+        man's time goes by, from the last frame on.
+        """
+        self._is_lost = True
         self._handshake.is_open = False
         self._state.clear()
         self._events.append(LostEvent())

@@ -27,6 +27,7 @@ from tiniscript.link.seal import Seal
 from tiniscript.link.sender import Sender
 
 TRIES = 30  # without progress
+LONG_TRIES = 1  # of a long frame, before it is sent more than once at a time
 
 
 class Transmission:
@@ -107,11 +108,24 @@ class Transmission:
             self._began_ms, self._wire_bytes = now_ms, len(wire)
         self.tries += 1
         self.is_sent = True
+        for _ in range(self._copies(len(wire))):
+            wire += encoded(self.frame if self.seal is None else self.seal.closed(self.frame))
         count = len(wire) + self._largest + 2
         self.due_ms = now_ms + self._trips.wait_ms(count, self._is_lively or is_hello)
         return sender.frames(wire, now_ms, self.tries > 1 or is_hello)
 
+    def _copies(self, wire_bytes: int) -> int:
+        """Return how many more of this frame are sent with it. Of a line that loses a byte now and
+        then hardly one long frame comes whole, so it gets as many as it carries in half the wait;
+        the robot does one of them, and answers each.
+        """
+        if wire_bytes <= SMALL_FRAME + WIRE_BYTES or self.tries <= LONG_TRIES:
+            return 0
+        wait_ms = self._trips.wait_ms(wire_bytes + self._largest + 2, self._is_lively)
+        return max(0, self._trips.bytes_in(wait_ms // 2) // wire_bytes - 1)
 
+
+WIRE_BYTES = 4  # of a frame on the wire: what COBS adds to a long one, and its zeros
 AHEAD_MS = 200  # a stop waits behind so much of the port's time at most
 SLOW_MS = 1000  # and behind so much of a line that is slower than its port, about
 REPLY_BYTES = 32  # of DATA on the wire, and more

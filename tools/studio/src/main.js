@@ -59,6 +59,7 @@ const work = kept ?? {
 const python = new Python(work.language);
 languages.replaceChildren(...LANGUAGES.map(([code, name]) => Object.assign(new Option(name, code), { lang: code })));
 languages.value = work.language = await setLanguage(work.language);
+element('coming', HTMLElement).remove();
 pageState.note.subscribe((said) => {
   note.textContent = said;
 });
@@ -154,22 +155,27 @@ pageState.offeredFinding.subscribe((which) => {
 if (whyOutside) pageState.note.set(text(known(`why_${whyOutside}`)));
 editor.replace(work.text);
 status.textContent = text('starting');
-python.waits = () => {
-  if (isReady) pageState.note.set(text('starting_waits'));
-  else status.textContent = text('starting_waits');
-};
-python.ready.then(
-  () => {
-    isReady = true;
-    checking.ready();
-    views.ready();
-    if (isStart()) views.fetchAhead();
+python.heed({
+  waits: () => {
+    if (isReady) pageState.note.set(text('starting_waits'));
+    else status.textContent = text('starting_waits');
+    driving.waitOn();
   },
-  () => {
+  begins: () => {
+    status.textContent = text('starting');
+    checking.begins();
+  },
+  fails: () => {
     status.textContent = text('no_compiler');
     checking.failed();
   },
-);
+});
+python.ready.then(() => {
+  isReady = true;
+  checking.ready();
+  views.ready();
+  if (isStart()) views.fetchAhead();
+});
 
 /** @param {string} said of the newest text @param {string} look */
 function sayStatus(said, look) {

@@ -1,5 +1,7 @@
 // Asks the Python in the worker. Knows the form of requests and answers, and no program.
 
+import { watched } from './page/progress.js';
+
 /**
  * @typedef {object} Change
  * @property {number} line
@@ -61,50 +63,102 @@
 
 /** @typedef {{resolve: (answer: any) => void, reject: (why: Error) => void}} Waiting */
 
-const WORD_MS = 3000;
+/**
+ * @typedef {object} Heard what is told of it until it is there
+ * @property {() => void} waits nothing has come of what it needs for a while
+ * @property {() => void} fails it cannot be had
+ * @property {() => void} begins it is tried again
+ */
 
 export class Python {
-  #worker;
+  /** @type {Worker | null} */
+  #worker = null;
+  #isThere = false;
   /** @type {Map<number, Waiting>} */
   #waiting = new Map();
   #asked = 0;
-  /** @type {(why: Error) => void} */
-  #fails = () => {};
-  /** Nothing has come of what Python needs for a while. */
-  waits = () => {};
-  /** Resolves when it answers; rejects when it cannot be had. @type {Promise<void>} */
+  #answers = () => {};
+  #isLate = false;
+  /** @type {Heard} */
+  #heard = { waits() {}, fails() {}, begins() {} };
+  /** Resolves when it answers, be that at another try. @type {Promise<void>} */
   ready;
 
   /** @param {string} language to begin with */
   constructor(language) {
-    this.#worker = new Worker('./worker.js', { type: 'module', name: language });
-    this.ready = new Promise((resolve, reject) => {
-      const word = setTimeout(() => this.waits(), WORD_MS); // the worker itself does not come
-      this.#worker.addEventListener('message', ({ data }) => {
-        clearTimeout(word);
+    this.ready = new Promise((resolve) => { this.#answers = resolve; });
+    this.#begin(language);
+  }
+
+  /** Whether nothing has come for a while. */
+  get isLate() { return this.#isLate; }
+
+  /** Tells of it from now on, and where it is. @param {Heard} heard */
+  heed(heard) {
+    this.#heard = heard;
+    if (!this.#worker) heard.fails();
+    else if (this.#isLate) heard.waits();
+  }
+
+  /** Tries once more where it could not be had. @param {string} language */
+  again(language) {
+    if (this.#worker) return;
+    this.#begin(language);
+    this.#heard.begins();
+  }
+
+  /** @param {string} language */
+  #begin(language) {
+    const worker = this.#worker = new Worker('./worker.js', { type: 'module', name: language });
+    /** @type {Promise<void>} */
+    const begun = new Promise((resolve) => {
+      worker.addEventListener('message', ({ data }) => {
+        resolve();
         if (data.begun) return;
-        if (data.waits) {
-          this.waits();
-          return;
+        if (data.waits) this.#wait(worker);
+        else if (data.id === 0) this.#settle(worker, data.error);
+        else {
+          const waiting = this.#waiting.get(data.id);
+          this.#waiting.delete(data.id);
+          if (data.error) waiting?.reject(new Error(data.error));
+          else waiting?.resolve(JSON.parse(data.answer));
         }
-        if (data.id === 0) {
-          if (data.error) reject(new Error(data.error));
-          else resolve();
-          return;
-        }
-        const waiting = this.#waiting.get(data.id);
-        this.#waiting.delete(data.id);
-        if (data.error) waiting?.reject(new Error(data.error));
-        else waiting?.resolve(JSON.parse(data.answer));
-      });
-      this.#fails = reject;
-      this.#worker.addEventListener('error', (event) => {
-        const why = new Error(event.message || 'worker');
-        this.#fails(why);
-        for (const waiting of this.#waiting.values()) waiting.reject(why);
-        this.#waiting.clear();
       });
     });
+    watched(begun, { waits: () => this.#wait(worker) }).catch((why) => this.#settle(worker, String(why)));
+    worker.addEventListener('error', (event) => {
+      const why = event.message || 'worker';
+      this.#rejectAll(why);
+      this.#settle(worker, why);
+    });
+  }
+
+  /** @param {Worker} worker */
+  #wait(worker) {
+    if (worker !== this.#worker) return;
+    this.#isLate = true;
+    this.#heard.waits();
+  }
+
+  /** Whether it is there is known now. @param {Worker} worker @param {string} [error] */
+  #settle(worker, error) {
+    if (worker !== this.#worker || this.#isThere) return;
+    this.#isLate = false;
+    if (error) {
+      worker.terminate(); // what it waits for may come later: then it is another one's
+      this.#worker = null;
+      this.#rejectAll(error);
+      this.#heard.fails();
+    } else {
+      this.#isThere = true;
+      this.#answers();
+    }
+  }
+
+  /** @param {string} why */
+  #rejectAll(why) {
+    for (const waiting of this.#waiting.values()) waiting.reject(new Error(why));
+    this.#waiting.clear();
   }
 
   /**
@@ -115,6 +169,7 @@ export class Python {
   ask(request, data = new Uint8Array()) {
     const id = ++this.#asked;
     return new Promise((resolve, reject) => {
+      if (!this.#worker) throw new Error('no worker');
       this.#waiting.set(id, { resolve, reject });
       this.#worker.postMessage({ id, request: JSON.stringify(request), data });
     });

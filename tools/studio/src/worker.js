@@ -1,7 +1,7 @@
 // The worker: Python, and in it the compiler of this project itself.
 
 import { loadPyodide } from 'pyodide';
-import { watchedFetch } from './page/progress.js';
+import { Progress, watchedFetch } from './page/progress.js';
 // Nothing is installed: all modules are in the archives.
 import languages from '../made/languages.json';
 import lock from '../made/lock.json';
@@ -9,14 +9,18 @@ import lock from '../made/lock.json';
 postMessage({ id: 0, begun: true });
 const waits = () => postMessage({ id: 0, waits: true });
 const plainFetch = self.fetch.bind(self);
-// Also what Pyodide fetches: what is held on its way ends, and the page is told before.
-self.fetch = (what, options) => watchedFetch(what, { ...options, waits }, plainFetch);
+// Pyodide's own module. An import tells of no progress: while something else comes, the line carries it, too.
+const module = new Progress({ waits });
+const came = () => module.came();
+// What is held on its way ends, and the page is told before. Pyodide waits for ever for what it has not got.
+const fails = (/** @type {unknown} */ why) => postMessage({ id: 0, error: String(why) });
+self.fetch = (what, options) => watchedFetch(what, { ...options, waits, came, fails }, plainFetch);
 
 const SOURCE = languages[0]?.[0] ?? ''; // the language that is always there
 
 /** @param {string} name */
 async function fetched(name) {
-  const found = await fetch(`./${name}`).catch((why) => {
+  const found = await watchedFetch(`./${name}`, { waits, came }, plainFetch).catch((why) => {
     throw new Error(`${name}: ${why}`);
   });
   if (!found.ok) throw new Error(`${name}: ${found.status}`);
@@ -29,18 +33,22 @@ const learnt = new Set();
 const coming = new Map();
 
 async function begin() {
+  const imported = module.until(import(new URL('./pyodide.asm.mjs', self.location.href).href));
   const archive = fetched('tiniscript.zip');
   const wanted = [...new Set([SOURCE, self.name || SOURCE])];
   const messages = wanted.map((language) => fetched(`messages.${language}.json`).catch((why) => {
     if (language === SOURCE) throw why;
     return null;
   }));
-  const python = await loadPyodide({
-    indexURL: new URL('./', self.location.href).href,
-    stdLibURL: new URL('./python.zip', self.location.href).href,
-    lockFileContents: /** @type {any} */ (lock),
-    packageBaseUrl: new URL('./', self.location.href).href,
-  });
+  const [python] = await Promise.all([
+    loadPyodide({
+      indexURL: new URL('./', self.location.href).href,
+      stdLibURL: new URL('./python.zip', self.location.href).href,
+      lockFileContents: /** @type {any} */ (lock),
+      packageBaseUrl: new URL('./', self.location.href).href,
+    }),
+    imported,
+  ]);
   python.FS.mkdirTree('/studio');
   /** @param {ArrayBuffer} data */
   const unpack = (data) => python.unpackArchive(data, 'zip', { extractDir: '/studio' });

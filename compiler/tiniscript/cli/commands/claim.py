@@ -9,6 +9,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, whose
+from tiniscript.link.connection import CLAIM_LIMIT_MS
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNERS, STATUSES
 from tiniscript.link.outcomes import UNKEPT
@@ -27,7 +28,8 @@ def run(options: Namespace, language: str) -> int:
 def _claim(connection: Connection, which: int) -> None:
     request = connection.line.do(lambda session: session.claim(which))
     # Said once the robot is asked: a press that has lasted 2 s before counts for nothing.
-    print(connection.text("claim_hold"), file=sys.stderr, flush=True)
+    said = connection.text("claim_hold", seconds=CLAIM_LIMIT_MS // 1000)
+    print(said, file=sys.stderr, flush=True)
     reply = connection.wait(request)
     if reply.status == UNKEPT:
         raise CommandError(2, "unkept_key", file=shown(str(KeyFile().path)))

@@ -127,6 +127,7 @@ export class Lessons {
     this.#said.textContent = text('lessons_coming');
     const language = currentLanguage();
     try {
+      this.#page.python.again(language);
       const { lessons } = await this.#page.python.ask({ do: 'lesson_titles', language });
       if (asked !== this.#asked) return;
       this.#lessons = lessons;

@@ -4,11 +4,12 @@
 const WAITS_MS = 3000;
 const HELD_MS = 20_000;
 
-/** @typedef {{waits?: (() => void) | undefined, cancelled?: AbortSignal | undefined}} Watching `waits`: nothing has come for a while, told once */
+/** @typedef {{waits?: (() => void) | undefined, cancelled?: AbortSignal | undefined, came?: (() => void) | undefined, fails?: ((why: unknown) => void) | undefined}} Watching `waits`: nothing has come for a while, told once; `came`: something has; `fails`: not all will come */
 
-class Progress {
+export class Progress {
   #end = new AbortController();
   #waits;
+  #isOver = false;
   /** @type {ReturnType<typeof setTimeout>[]} */
   #timers = [];
 
@@ -24,7 +25,8 @@ class Progress {
   get signal() { return this.#end.signal; }
 
   came() {
-    this.end();
+    this.#clear();
+    if (this.#isOver) return;
     this.#timers = [
       setTimeout(() => {
         this.#waits();
@@ -35,7 +37,28 @@ class Progress {
   }
 
   end() {
+    this.#isOver = true;
+    this.#clear();
+  }
+
+  #clear() {
     for (const each of this.#timers) clearTimeout(each);
+  }
+
+  /**
+   * Waits for what tells of no progress itself, as a module that is fetched.
+   * @template T
+   * @param {Promise<T>} promise
+   * @returns {Promise<T>}
+   */
+  until(promise) {
+    /** @type {Promise<never>} */
+    const ended = new Promise((_, reject) => {
+      const end = () => reject(this.signal.reason);
+      if (this.signal.aborted) end();
+      this.signal.addEventListener('abort', end);
+    });
+    return Promise.race([promise, ended]).finally(() => this.end());
   }
 }
 
@@ -45,7 +68,7 @@ class Progress {
  * @param {RequestInit & Watching} options
  * @param {typeof fetch} by
  */
-export async function watchedFetch(what, { waits, cancelled, ...options } = {}, by = fetch) {
+export async function watchedFetch(what, { waits, cancelled, came = () => {}, fails = () => {}, ...options } = {}, by = fetch) {
   const progress = new Progress({ waits, cancelled });
   progress.signal.addEventListener('abort', () => progress.end());
   try {
@@ -54,34 +77,30 @@ export async function watchedFetch(what, { waits, cancelled, ...options } = {}, 
       progress.end();
       return answer;
     }
-    const body = answer.body.pipeThrough(new TransformStream({
+    const { readable, writable } = new TransformStream({
       transform(part, to) {
         progress.came();
+        came();
         to.enqueue(part);
       },
       flush: () => progress.end(),
-    }));
-    return new Response(body, { status: answer.status, headers: answer.headers });
+    });
+    answer.body.pipeTo(writable).catch(fails);
+    return new Response(readable, { status: answer.status, headers: answer.headers });
   } catch (why) {
     progress.end();
+    fails(why);
     throw why;
   }
 }
 
 /**
- * Waits for what tells of no progress, as a module that is fetched.
+ * Waits for what tells of no progress at all.
  * @template T
  * @param {Promise<T>} promise
  * @param {Watching} watching
  * @returns {Promise<T>}
  */
 export function watched(promise, watching) {
-  const progress = new Progress(watching);
-  /** @type {Promise<never>} */
-  const ended = new Promise((_, reject) => {
-    const end = () => reject(progress.signal.reason);
-    if (progress.signal.aborted) end();
-    progress.signal.addEventListener('abort', end);
-  });
-  return Promise.race([promise, ended]).finally(() => progress.end());
+  return new Progress(watching).until(promise);
 }

@@ -5,6 +5,7 @@
 import languages from '../../made/languages.json';
 import { needLanguage } from './offline.js';
 import { pageState } from './page_state.js';
+import { watchedFetch } from './progress.js';
 
 /** @typedef {Exclude<keyof typeof import('../../made/texts.en.json'), ''>} Key */
 
@@ -33,7 +34,7 @@ export async function setLanguage(chosen) {
   let language = currentLanguage();
   wanted = chosen;
   for (const code of [chosen, ...(language ? [] : LANGUAGES.map(([each]) => each))]) {
-    const found = await fetch(`./texts.${code}.json`).then((answer) => (answer.ok ? answer.json() : null)).catch(() => null);
+    const found = await watchedFetch(`./texts.${code}.json`).then((answer) => (answer.ok ? answer.json() : null)).catch(() => null);
     if (chosen !== wanted) return currentLanguage(); // another one was chosen meanwhile
     if (!found) continue;
     texts = found;

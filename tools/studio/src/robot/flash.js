@@ -26,6 +26,11 @@ export async function firmwareOf(which, board, watching) {
   return new Uint8Array(found);
 }
 
+/** Has what writes onto a board fetched. @param {string} board @returns {Promise<unknown>} */
+export async function writerOf(board) {
+  return BOARDS[board] ? null : import('./esp32.js');
+}
+
 /**
  * Writes a firmware; rejects with a Failed.
  * @param {any} port of the browser

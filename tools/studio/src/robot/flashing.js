@@ -71,8 +71,9 @@ export class Flashing {
       this.#bar.value = 0;
       this.#bar.hidden = this.#cancel.hidden = false;
       const watching = { waits: () => speech.say('say_fetching_waits'), cancelled: signal };
-      const { firmwareOf, flashBoard } = await watched(import('./flash.js'), watching);
+      const { firmwareOf, flashBoard, writerOf } = await watched(import('./flash.js'), watching);
       const data = await firmwareOf(which, board, watching);
+      await watched(writerOf(board), watching);
       speech.say('say_flashing');
       await flashBoard(port, board, data, (part) => { this.#bar.value = part; }, signal);
       setBusy(false);

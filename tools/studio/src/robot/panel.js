@@ -274,6 +274,7 @@ export class RobotPanel {
   #upload(runs) {
     const program = pageState.checked.value;
     if (!program?.image) {
+      this.#page.python.again(currentLanguage());
       this.#speech.say(program ? 'first_repair' : 'press_again'); // a robot does not start late by itself
       if (runs && program) this.#stop('say_broken'); // what runs is not what is seen
       return;

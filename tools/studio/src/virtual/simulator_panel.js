@@ -183,6 +183,13 @@ export class SimulatorPanel {
     if (this.#isDriving) await new Promise((resolve) => { this.#seenRun = () => resolve(undefined); });
   }
 
+  /** Nothing comes of the compiler, for which a run may wait. */
+  waitOn() {
+    if (!this.#isWaiting) return;
+    this.#note = text('run_waits');
+    this.#show();
+  }
+
   /** Another screen is seen. */
   leave() {
     this.stop();
@@ -294,10 +301,10 @@ export class SimulatorPanel {
     let program = pageState.checked.value;
     if (!program) {
       this.#isWaiting = true;
-      this.#note = text('still_compiling');
+      this.#note = text(this.#page.python.isLate ? 'run_waits' : 'still_compiling');
       this.#show();
       program = await this.#page.whenCompiled();
-      await this.#restored;
+      if (program) await this.#restored;
       if (start !== this.#starts) return;
       this.#isWaiting = false;
     }

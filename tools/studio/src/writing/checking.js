@@ -46,6 +46,11 @@ export class Checking {
     this.#check();
   }
 
+  /** It is tried again to have a compiler. */
+  begins() {
+    dataset['state'] = 'changed';
+  }
+
   /** There is no compiler. */
   failed() {
     dataset['state'] = 'failed';
@@ -59,9 +64,9 @@ export class Checking {
     this.#check();
   }
 
-  /** What the compiler says of the newest text, as soon as it can; null if it cannot. @returns {Promise<Checked | null>} */
+  /** What the compiler says of the newest text, as soon as it can; null if it cannot. One that did not come is tried again. @returns {Promise<Checked | null>} */
   whenChecked() {
-    if (dataset['state'] === 'failed') return Promise.resolve(null);
+    this.#python.again(pageState.language.value);
     return new Promise((resolve) => {
       this.#waiting.push(resolve);
       this.#check();
