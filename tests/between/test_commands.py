@@ -51,7 +51,7 @@ UNCONFIRMED = re.compile(r"has not confirmed the stop")
 
 
 class Words(NamedTuple):
-    """A command; `stays`: until Ctrl-C; `is_client`: of `tsc link`, which has the port."""
+    """A command; `stays`: until Ctrl-C; `is_client`: of `tsc monitor --hold`, which has the port."""
 
     name: str
     words: tuple[str, ...]
@@ -87,7 +87,7 @@ COMMANDS = (
 )
 BY_NAME = {each.name: each for each in COMMANDS}
 CLIENTS = tuple(
-    BY_NAME[name]._replace(name=f"{name}, beside link", is_client=True)
+    BY_NAME[name]._replace(name=f"{name}, beside monitor --hold", is_client=True)
     for name in ("upload", "upload, Ctrl-C", "start", "live LINE", "stop", "doctor --yes")
 )
 ON_ESP32 = tuple(
@@ -161,7 +161,7 @@ def _line(words: Words, fault: Fault, chance: Random, after: int) -> BehindBadLi
 
 
 def _holder(line: BehindBadLine, env: dict[str, str], stack: ExitStack) -> Teller:
-    """Let `tsc link` have the port, which meets its robot before there is a fault."""
+    """Let `tsc monitor --hold` have the port, which meets its robot before there is a fault."""
     holder = Teller(["link", "--port", line.port], env)
     stack.callback(holder.end)
     end_s = CLOCK.now_s + ENDS_S

@@ -7,7 +7,7 @@ tsc that has the port.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from tiniscript.bytecode.image import isa_of
@@ -101,12 +101,18 @@ class WireRobot(Robot):
 
 
 class SharedRobot(Robot):
-    """The robot behind a connection, which does the retries and shows keys."""
+    """The robot behind a connection, which does the retries and shows keys.
+
+    `wait` waits for a request, if somebody is to be told that it takes long.
+    """
 
     has_shown_keys = True
 
-    def __init__(self, line: LinkConnection) -> None:
+    def __init__(
+        self, line: LinkConnection, wait: Callable[[PendingRequest[Any]], Reply[Any]] | None = None
+    ) -> None:
         self.line = line
+        self._wait = wait or line.wait
 
     def pause(self, wait_ms: int) -> None:
         self.line.event(wait_ms / 1000)
@@ -117,7 +123,7 @@ class SharedRobot(Robot):
             request.limit_ms = SHARED_MS
             return request
 
-        reply: Reply[SentReply] = self.line.wait(self.line.do(limited))
+        reply: Reply[SentReply] = self._wait(self.line.do(limited))
         if reply.status in (LOST, CANCELLED):
             self.missed += 1
             return None

@@ -105,7 +105,7 @@ class SelfTest:
         kit = self.connection.device_info.kit
         expected = Expected(wanted.kit.fingerprint if self.is_given else None, wanted.name, name_of,
                             hear=self._hear)  # fmt: skip
-        robot = SharedRobot(self.connection.line)
+        robot = SharedRobot(self.connection.line, self.connection.wait)
         reply = robot.hello()
         if reply is None:
             raise self.connection.failure(Reply(LOST))
