@@ -98,9 +98,8 @@ class Teller(Terminal):
     def has_socket(self) -> bool:
         """Whether it is connected to another command."""
         with suppress(OSError):
-            folder = f"/proc/{self.process.pid}/fd"
-            return any(os.readlink(f"{folder}/{each}").startswith("socket:")
-                       for each in os.listdir(folder))  # fmt: skip
+            files = Path(f"/proc/{self.process.pid}/fd").iterdir()
+            return any(str(each.readlink()).startswith("socket:") for each in files)
         return False
 
     def has_said(self, pattern: str) -> bool:
