@@ -24,6 +24,7 @@ ESCAPED = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 STANDING = re.compile(r"…$|…Asking [^…]*$|: running$|Ctrl-C|hold its start button")
 
 ADVICE = "Try:"  # belongs to the line above it
+ROBOT = "The robot says:"  # of each line that it takes for text: the rest of a frame after a reset
 
 
 class Clock:
@@ -98,9 +99,8 @@ class Teller(Terminal):
     def has_socket(self) -> bool:
         """Whether it is connected to another command."""
         with suppress(OSError):
-            folder = f"/proc/{self.process.pid}/fd"
-            return any(os.readlink(f"{folder}/{each}").startswith("socket:")
-                       for each in os.listdir(folder))  # fmt: skip
+            files = Path(f"/proc/{self.process.pid}/fd").iterdir()
+            return any(str(each.readlink()).startswith("socket:") for each in files)
         return False
 
     def has_said(self, pattern: str) -> bool:
@@ -126,7 +126,8 @@ class Teller(Terminal):
         awaited = [each for (each, end), (after, _) in pairwise(words)
                    if each == after and end.endswith("\n")]  # fmt: skip
         others = [each for each in self.kept
-                  if not STANDING.search(each) and not each.startswith(ADVICE)]  # fmt: skip
+                  if not STANDING.search(each)
+                  if not each.startswith((ADVICE, ROBOT))]  # fmt: skip
         return sorted({*awaited, *(each for each in others if others.count(each) > 1)})
 
     def longest_silence_s(self) -> float:

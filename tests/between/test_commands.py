@@ -19,6 +19,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from functools import lru_cache
+from pathlib import Path
 from random import Random
 from typing import NamedTuple
 
@@ -46,12 +47,12 @@ SLOW_ENDS_S = 240.0  # over a line that lets little through
 STOPS_S = 12.0  # from Ctrl-C to the end
 DRIVES_ON_S = 3.0  # a robot that hears nothing more stands after that
 SHORT = "SI|F(0.3, 80)"
-CONFIRMED = re.compile(r"[Ss]topped the robot.*confirmed it|has confirmed the stop|: stopped")
+CONFIRMED = re.compile(r"[Ss]topped the robot.*confirmed it|has confirmed|: stopped")
 UNCONFIRMED = re.compile(r"has not confirmed the stop")
 
 
 class Words(NamedTuple):
-    """A command; `stays`: until Ctrl-C; `is_client`: of `tsc monitor --hold`, which has the port."""
+    """A command; `stays`: until Ctrl-C; `is_client`: `tsc monitor --hold` has the port."""
 
     name: str
     words: tuple[str, ...]
@@ -94,7 +95,7 @@ ON_ESP32 = tuple(
     each._replace(name=f"{each.name}, ESP32", robot=("--robot", ESP32))
     for each in (
         *(BY_NAME[name] for name in ("upload", "upload, long", "upload, Ctrl-C", "live LINE")),
-        Words("live LONG LINE", ("live", "; ".join(["SHOW(TIME * 1.234)"] * 8))),
+        Words("live LONG LINE", ("live", "; ".join(f"SHOW(TIME * 1.234 + {k})" for k in range(6)))),
         *(BY_NAME[name] for name in ("stop", "doctor --yes", "set name")),
     )
 )
@@ -281,6 +282,25 @@ def test_a_sample_of_commands_keeps_the_laws_behind_bad_lines(
     found = all_tried(drawn(SAMPLE, seed, is_whole=False))
     wrong = {f"{each.name}, {each.fault}": (judged(each, ROOM_CI_S), each.said) for each in found}
     assert not {name: why for name, why in wrong.items() if why[0]}
+
+
+@pytest.mark.parametrize("name", ["nothing", "very late", "robot hears nothing"])
+def test_a_second_ctrl_c_ends_the_wait_and_is_no_second_word(name: str, tmp_path: Path) -> None:
+    fault = next(each for each in FAULTS if each.name == name)
+    with ExitStack() as stack:
+        line = BadLine(Fault("nothing"), Random(1), 0)
+        stack.callback(line.clear_away)
+        teller = Teller(["upload", "-e", FOREVER, "--port", line.port], own_folders(str(tmp_path)))
+        stack.callback(teller.end)
+        line.until(lambda: line.moves and teller.has_said(": running"), "it drives")
+        line.begin(fault)
+        teller.interrupt()
+        CLOCK.wait(0.2)
+        teller.interrupt()
+        assert teller.wait(STOPS_S)
+        told = [each for each in teller.kept if CONFIRMED.search(each) or UNCONFIRMED.search(each)]
+        assert len(told) == 1 and not teller.repeated(), teller.text
+        line.until(lambda: not line.moves, "it stands")
 
 
 SAMPLE = 12

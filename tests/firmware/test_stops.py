@@ -6,6 +6,7 @@ The states are those of the button: what the robot holds is still there, and its
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -14,6 +15,7 @@ from tests.firmware.test_host_firmware import AWAY, KIT, computer, happened, liv
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tests.support.pty_robot import drives_now
+from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.requests import OK
@@ -224,7 +226,9 @@ def test_a_robot_that_is_not_heard_any_more_is_not_kept_driving_by_who_looks_for
     robot.talk(session, 300)
     assert drives(robot)
     lost_ms: int | None = None
-    request = session.upload(image_of("SI|F(60, 80)"), saves=False) if is_asked == "upload" else None
+    request: PendingRequest[Any] | None = None
+    if is_asked == "upload":
+        request = session.upload(image_of("SI|F(60, 80)"), saves=False)
     while lost_ms is None or robot.now_ms < lost_ms + 6000:
         if robot.now_ms % 10 == 0 and any(each.name == "LOST" for each in session.events()):
             lost_ms = lost_ms or robot.now_ms

@@ -2,7 +2,7 @@
 has a fault: it ends, each thing is said once, and the next try works.
 
 `python -m tests.studio.test_page_between 1 --seed 1` tries each action with each fault, and prints
-how long the page was silent, and how long it took.
+how long the page was silent, and how long it took; `--taught` does so in a class.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from tests.support.command import FOREVER, Command
 from tests.support.network import Network
 from tests.support.studio import Pages, write
 from tiniscript.link import known_ports
+from tiniscript.studio.attending import LATCH_S
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -36,8 +37,8 @@ if TYPE_CHECKING:
 SILENT_S, ROOM_S = 3.0, 0.5
 ENDS_S = 40.0  # the longest request, and a stop
 AGAIN_S = 40.0  # until the next try works
-LISTEN = """() => {
-  const line = document.querySelector('#link_said');
+LISTEN = """(place) => {
+  const line = document.querySelector(place);
   window.told = [];
   window.listens?.disconnect();
   const tell = () => window.told.push([performance.now(), line.textContent]);
@@ -45,7 +46,7 @@ LISTEN = """() => {
   window.listens.observe(line, { childList: true, characterData: true, subtree: true });
   return performance.now();
 }"""
-STANDING = re.compile(r"…|^Stopping")  # what it says goes on
+STANDING = re.compile(r"…|^Stopping|STOP: 0 of 1")  # what it says goes on
 CONNECTED = "Connected: "
 CONFIRMED = "the robot has confirmed it|has confirmed the stop now"
 UNCONFIRMED = "has not confirmed the stop"
@@ -73,6 +74,7 @@ BETWEEN = (
     Between("studio suspended long", held_s=12.0, suspends=True),
 )
 LINES = tuple(each for each in FAULTS if not each.pulls and not each.suspends)
+SAID = "#link_said"
 ACTIONS = ("connect", "run", "stop", "identify", "leave")
 ENDS = {
     "connect": r"^(?!Connecting|Choose)",
@@ -156,16 +158,15 @@ class Scene:
     def tried(self, action: str, fault: Fault | Between) -> Found:
         """Do something while there is a fault, then all of it without."""
         self._prepare(action, fault)
-        page = self.page
-        begun_ms = page.evaluate(LISTEN)
+        page, place = self._place(action)
+        begun_ms = page.evaluate(LISTEN, place)
         self._begin(fault)
         page.click(BUTTONS[action])
-        has_ended = self._until(ENDS[action], ENDS_S)
-        told: list[tuple[float, str]] = page.evaluate("window.told")
+        has_ended = self._until(ENDS[action], ENDS_S, page)
         wrong = [] if has_ended else ["it has no end"]
         page.wait_for_timeout(500)
         self._mend(fault)
-        told = page.evaluate("window.told")
+        told: list[tuple[float, str]] = page.evaluate("window.told")
         said = [text for _, text in told]
         wrong += [f"said twice: {each}" for each, after in pairwise(said) if each == after]
         wrong += self._next_try()
@@ -216,13 +217,17 @@ class Scene:
     def _said(self) -> str:
         return self.page.locator("#link_said").inner_text()
 
-    def _until(self, pattern: str, limit_s: float) -> bool:
-        end_s = CLOCK.now_s + limit_s
+    def _place(self, action: str) -> tuple[Page, str]:
+        """Return the page on which it is pressed, and where that tells what comes of it."""
+        return self.page, SAID
+
+    def _until(self, pattern: str, limit_s: float, page: Page | None = None) -> bool:
+        end_s, page = CLOCK.now_s + limit_s, page or self.page
         while CLOCK.now_s < end_s:
-            told = self.page.evaluate("window.told")
+            told = page.evaluate("window.told")
             if any(re.search(pattern, text) for _, text in told):
                 return True
-            self.page.wait_for_timeout(50)
+            page.wait_for_timeout(50)
         return False
 
     def _choose(self) -> None:
@@ -248,14 +253,14 @@ class Scene:
                 and page.locator("#link_connect").is_enabled()
             ):
                 self._choose()
-                page.evaluate(LISTEN)
+                page.evaluate(LISTEN, SAID)
                 page.click("#link_connect")
                 self._until(r"^(?!Connecting)", AGAIN_S)
             page.wait_for_timeout(100)
         return ""
 
     def _run(self) -> str:
-        self.page.evaluate(LISTEN)
+        self.page.evaluate(LISTEN, SAID)
         self.page.click("#link_upload")
         if not self._until("The robot has it|stopped", AGAIN_S):
             return f"no run: {self._said()}"
@@ -267,7 +272,7 @@ class Scene:
         return ""
 
     def _stop(self) -> str:
-        self.page.evaluate(LISTEN)
+        self.page.evaluate(LISTEN, SAID)
         self.page.click("#stop")
         if not self._until(CONFIRMED, AGAIN_S):
             return f"no stop: {self._said()}"
@@ -277,6 +282,74 @@ class Scene:
         if self.page.locator("#link_leave").is_visible():
             self.page.click("#link_leave")
             self.page.locator("html:not([data-robot=connected])").wait_for(state="attached")
+
+
+class ClassScene(Scene):
+    """The same in a class: a pupil, a teacher, and the class's robot behind the line."""
+
+    def __init__(self, opened: Browser, chance: Random, stack: ExitStack) -> None:
+        patch = stack.enter_context(pytest.MonkeyPatch.context())
+        for name, value in own_folders(stack.enter_context(tempfile.TemporaryDirectory())).items():
+            patch.setenv(name, value)
+        self._chance = chance
+        self.line = BadLine(Fault("nothing"), chance, 0)
+        stack.callback(self.line.clear_away)
+        taught = stack.enter_context(studio.taught([self.line.port]))
+        self.pages = Pages(opened, taught.server.address)
+        stack.callback(self.pages.close)
+        self.teacher = self.pages.visit(taught.server.entrance(), "wall", is_alone=True)
+        self.page = self.pages.open(is_alone=True)
+        write(self.page, FOREVER)
+        self.page.click("#side_real")
+        for which, said in enumerate((taught.room.code, "Ana")):
+            self.page.locator("#class_pupil input").nth(which).fill(said)
+        self.page.click("[data-text=class_join]")
+        self.page.locator(ASKS).wait_for()
+
+    def _place(self, action: str) -> tuple[Page, str]:
+        return (self.teacher, "#stops") if action == "stop all" else (self.page, SAID)
+
+    def _prepare(self, action: str, fault: Fault | Between) -> None:
+        if action == "ask":
+            self._leave()
+            self.page.locator(ASKS).wait_for()
+            return
+        assert self._connect() == "", self._said()
+        if action in ("stop", "stop all"):
+            assert self._run() == "", self._said()
+
+    def _mend(self, fault: Fault | Between) -> None:
+        super()._mend(fault)
+        self.line.begin(Fault("nothing"))
+        self.page.wait_for_timeout(1000 * LATCH_S)  # after a teacher's stop nobody drives
+
+    def _connect(self) -> str:
+        page, end_s = self.page, CLOCK.now_s + AGAIN_S
+        while not page.locator("html[data-robot=connected]").count():
+            if CLOCK.now_s > end_s:
+                return f"no connection: {self._said()}"
+            for button in (ASKS, "#class_pupil [data-text=link_connect]"):
+                if page.locator(button).is_visible() and page.locator(button).is_enabled():
+                    page.click(button)
+            page.wait_for_timeout(200)
+        return ""
+
+
+ASKS = "[data-text=class_ask]"
+BUTTONS |= {"ask": ASKS, "stop all": "#stop"}
+ENDS |= {
+    "ask": r"^(?!Connecting|Choose|$)",
+    "stop all": "STOP: 1 of 1|Not confirmed|has not reached",
+}
+CLASS_ACTIONS = ("ask", "run", "stop", "stop all", "leave")
+CLASS_LINES = tuple(each for each in LINES if each.name in (
+    "loses", "very late", "stalls long", "computer hears nothing"))  # fmt: skip
+
+
+@contextmanager
+def class_scene(opened: Browser, chance: Random) -> Iterator[ClassScene]:
+    with ExitStack() as stack:
+        yield ClassScene(opened, chance, stack)
 
 
 @contextmanager
@@ -312,11 +385,27 @@ def test_a_sample_of_what_is_pressed_keeps_the_laws(
             assert not judged(found, 3.0), found
 
 
+def test_a_sample_of_what_is_pressed_in_a_class_keeps_the_laws(
+    request: pytest.FixtureRequest, browser: Browser
+) -> None:
+    chance = Random(sampling.seed(request.config))
+    with class_scene(browser, chance) as seen:
+        found = seen.tried(chance.choice(CLASS_ACTIONS), chance.choice(CLASS_LINES))
+        assert not judged(found, 3.0), found
+
+
 if __name__ == "__main__":
-    given = wanted(1, 1, "network", "line")
+    given = wanted(1, 1, "network", "line", "taught")
     all_found = []
     with studio.driver() as driver, studio.browser(driver) as opened:
-        for seed in range(given.seed, given.seed + given.count):
+        for seed in range(given.seed, given.seed + given.count * given.taught):
+            with class_scene(opened, Random(seed)) as taught:
+                for line in CLASS_LINES:
+                    for action in CLASS_ACTIONS:
+                        all_found.append(taught.tried(action, line))
+                        found = all_found[-1]
+                        print(*found[:4], judged(found), found.told, sep="; ", flush=True)
+        for seed in range(given.seed, given.seed + given.count * (not given.taught)):
             with scene(opened, Random(seed)) as seen:
                 faults: list[Fault | Between] = [*BETWEEN * (not given.line),
                                                  *LINES * (not given.network)]  # fmt: skip

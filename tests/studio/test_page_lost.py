@@ -12,7 +12,7 @@ from tests.studio.test_page_link import KIT, connect, said
 from tests.support import studio
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import Pages, drives, hang, hears, write
+from tests.support.studio import Pages, checked, drives, hang, hears, write
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
 from tiniscript.studio.attending import LEFT_S
@@ -222,6 +222,40 @@ def test_who_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
         page.wait_for_timeout(300)
         page.unroute_all(behavior="wait")
         assert page.evaluate("window.told") == ["Stopping…", CONFIRMED]
+
+
+def test_who_presses_five_times_stops_once_more_and_is_told_once(
+    page: Page, robot: PtyRobot
+) -> None:
+    """Be every request of it lost; and the run after it is stopped by none of them."""
+    connect(page, robot)
+    drives(page, robot)
+    torn = tears(page, "stop", lambda route: route.abort(), times=99)
+    page.evaluate(LISTEN)
+    page.evaluate("() => { for (let k = 0; k < 5; k++) document.querySelector('#stop').click(); }")
+    said(page, CONFIRMED)
+    hears(page, lambda: torn, "they are lost")
+    page.wait_for_timeout(300)
+    assert page.evaluate("window.told") == ["Stopping…", CONFIRMED]
+    page.unroute_all(behavior="wait")
+    drives(page, robot)
+    page.wait_for_timeout(700)  # beats have come since
+    assert robot.moves
+
+
+def test_a_page_that_is_loaded_again_before_its_stop_is_answered_stops_its_robot(
+    page: Page, robot: PtyRobot
+) -> None:
+    for has_come in (False, True):
+        connect(page, robot)
+        drives(page, robot)
+        tears(page, "stop", lose_answer if has_come else lambda route: route.abort(), times=99)
+        page.click("#stop")
+        page.reload()
+        hears(page, lambda: not robot.moves, "it stands")
+        page.unroute_all(behavior="wait")
+        checked(page)
+        page.click("#side_real")
 
 
 def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:

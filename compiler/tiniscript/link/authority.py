@@ -194,7 +194,7 @@ def _show(
 
 
 def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
-    """Give the robot a new key, when its button was held down; the time for that is the request's."""
+    """Give the robot a new key, when its button was held down in the time of the request."""
     key = ring.made(robot.id, which, robot.name)
     if key is None:
         return Reply(UNKEPT)

@@ -60,5 +60,6 @@ function show(robots, isLate) {
   red.className = 'wrong';
   red.textContent = silent || '';
   const said = isNone ? text('stops_none') : robots ? text('stops_confirmed', { confirmed, count: robots.length }) : '';
+  if (place.textContent === said + (silent ? ` ${silent}` : '')) return; // who hears the page hears each thing once
   place.replaceChildren(said, ...(silent ? [' ', red] : []));
 }
