@@ -125,9 +125,8 @@ class Teller(Terminal):
         words = [(said.strip(), end) for said, end in parts if said.strip()]
         awaited = [each for (each, end), (after, _) in pairwise(words)
                    if each == after and end.endswith("\n")]  # fmt: skip
-        others = [each for each in self.kept
-                  if not STANDING.search(each)
-                  if not each.startswith((ADVICE, ROBOT))]  # fmt: skip
+        own = [each for each in self.kept if not each.startswith((ADVICE, ROBOT))]
+        others = [each for each in own if not STANDING.search(each)]
         return sorted({*awaited, *(each for each in others if others.count(each) > 1)})
 
     def longest_silence_s(self) -> float:
