@@ -58,8 +58,8 @@ def test_words_of_a_language_are_in_its_folder() -> None:
 
 
 # What is written so in each language: signs, functions of Arduino, letters, two words that are one,
-# and the name of the command.
-WRITTEN = {"X", "TONE", "A", "FL", "LF", "FR", "RF", "UN", "TIL", "TSC"}
+# the DEF of Logo, and the name of the command.
+WRITTEN = {"X", "TONE", "A", "FL", "LF", "FR", "RF", "UN", "TIL", "TSC", "TO"}
 
 
 def test_rows_name_no_word_of_a_language() -> None:
