@@ -264,6 +264,8 @@ class _Explainer:
     def new(self, k: int, part: _Change, code: Code, step: Step | None) -> Explanation:
         place, edit, _, before, after = part
         values = _slip(code, step, before, after)
+        if code is codes.OTHER_SIGN and values["right"] in ("SI", "SB"):
+            values["fix"] = f"{values['right']}|"
         if code is codes.BRACES and before and not after:
             values["needless"] = values["found"]
         if code is codes.UNTIL_NOT_HERE:
@@ -455,6 +457,7 @@ def _slip(
         now = now if now in WORDS else meant_by(now) or now  # of `bot.forward`
     now = f"{now} )" if now.endswith("(") else now
     word = _word(code, old, new, start, other)
+    word = f"DEF {word}" if code is codes.NO_BRACKETS_HERE and "DEF" in texts(after) else word
     usage = WORDS[word].usage if word in WORDS else ""
     until = len(fix[head]) if len(told) < len(fix) else None  # one instruction became two
     kept = _written(one[: _alike(texts(one), texts(other[:until]))[0]])

@@ -93,7 +93,7 @@ def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
         words = lexemes(title)
         if not words:
             continue
-        is_set = said_of(words[0].text, "set") or title.lower().startswith("#define")  # `set SPEED to 70`
+        is_set = said_of(words[0].text, "set") or title.lower().startswith("#define")
         if is_set or lines.is_right(words, Names([], kit)) or "(" in title or "{" in title:
             return []
         span, fix = Span(row.start(), row.start() + len(title)), f"// {title}"

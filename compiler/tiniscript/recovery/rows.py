@@ -786,7 +786,8 @@ a=@close ⟨by? please+¦CM|@in_cm|@in_secs+⟩ $
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num
     | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered
     | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
-a=@close ⟨,? then|soon+ ,? b=@start¦,|.|:? b=@start¦&|+|AND b=@startm¦->|=>|/|>|>>|_|*|-|'|' b=@start⟩
+a=@close ⟨,? then|soon+ ,? b=@start¦,|.|:? b=@start¦&|+|AND b=@startm¦->|=>|/|>|>>|_|*|-|'|'
+    b=@start⟩
     | $a ; $b | 1 | ⟨TS044¦TS013¦TS061¦TS061⟩ | applied
     | F(1, 75)⟨ y¦,¦&¦->⟩ R(1, 75) => F(1, 75);R(1, 75)
 a=@close ⟨comma¦point then comma⟩ b=@start

@@ -9,13 +9,14 @@ the others are the words behind it. Classes of the instruction, beside its word:
 language), @did (a DEF), @more (others stand before it on its line), @later (others stand before
 it), @outer (in no block), @move, @clock (its first value is its time), @asked (has its UNTIL) and
 @unasked (may get one). Words without an instruction have @none there, also @after where one stands
-before them, @opening where they are the first of several lines, @last where they end the text, and @unbegun in a text without `SI|`. Classes of the
-words: @number (in words, too), @often (a number that says how often), @percent (one that says a
-power), @in_s (a unit of time), @other (the other way), @paced (another pace than its power), @told
-(says nothing that the instruction does not), @quote, @mark (what is written below a line that is
-meant again), @dots, @ask (a word of the language that asks) and @noBUTTON (a word for BUTTON, which
-the kit lacks), @call and @order (of the language: with values, or without). What `s` captures is
-pointed at. `h` is a header: the rest is read with what is asked as its question, else with TRUE.
+before them, @opening where they are the first of several lines, @last where they end the text, and
+@unbegun in a text without `SI|`. Classes of the words: @number (in words, too), @often (a number
+that says how often), @percent (one that says a power), @in_s (a unit of time), @other (the other
+way), @paced (another pace than its power), @told (says nothing that the instruction does not),
+@quote, @mark (what is written below a line that is meant again), @dots, @ask (a word of the
+language that asks) and @noBUTTON (a word for BUTTON, which the kit lacks), @call and @order (of the
+language: with values, or without). What `s` captures is pointed at. `h` is a header: the rest is
+read with what is asked as its question, else with TRUE.
 
 Values are texts with gaps. A gap is a capture, or a function in `suggestions`; a row with a gap
 that cannot be filled does not hold, unless `?` stands behind its name. `⟨less¦more⟩` makes a row of

@@ -133,13 +133,13 @@ class _Text:
 
     def turned(self) -> list[Diagnostic]:
         """Return moves with the power before the time, as another call of the text has them."""
-        return [
-            Diagnostic(codes.SWAPPED, Span(*each.span()), {
-                "time": each[1], "power": each[2], "fix": f"{each[0][0].upper()}({each[2]}, {each[1]})",
-            })
-            for each in _TURNED.finditer(self.source.text)
-            if LONG_S <= float(each[1]) <= _MOST_POWER and 0 < float(each[2]) < LONG_S
-        ]  # fmt: skip
+        found: list[Diagnostic] = []
+        for each in _TURNED.finditer(self.source.text):
+            if LONG_S <= float(each[1]) <= _MOST_POWER and 0 < float(each[2]) < LONG_S:
+                fix = f"{each[0][0].upper()}({each[2]}, {each[1]})"
+                values = {"time": each[1], "power": each[2], "fix": fix}
+                found.append(Diagnostic(codes.SWAPPED, Span(*each.span()), values))
+        return found
 
     def end_at(self, place: int) -> str:
         """Return the end of the innermost block that is open at a place, "" for none."""
@@ -261,8 +261,8 @@ class _Usage:
             end = named or self.text.end_at(self.piece.start)
             said = self.source[self.piece]
             return self.offers(codes.END_ALONE, end, found=said, right=end) if end else None
-        named = re.findall("[A-Z]?[a-z]+", self.source[self.piece].split("(")[0])
-        if len(named) > 1 and any(self.is_button(plain(each)) for each in named):
+        parted = re.findall("[A-Z]?[a-z]+", self.source[self.piece].split("(")[0])
+        if len(parted) > 1 and any(self.is_button(plain(each)) for each in parted):
             return self.no_button()  # `onButtonPressed(…)`
         if parts := _MEMBER.match(self.source.text, self.found.span.start):  # `Serial.begin`
             thing, _, done = plain(parts[0]).rpartition(".")
@@ -412,7 +412,8 @@ class _Usage:
         """A button that nobody can ask for; a program may begin with the one that starts it."""
         asked = next((it.source for it in self.tokens if self.is_button(it.text)), "")
         begun = "SB|" if self.text.begun == "SB" else ""
-        return self.says(codes.NO_BUTTON, begun=begun, asked=asked or "BUTTON")
+        when = self.source[self.piece] if self.signs[:1] == ["WHEN"] and not begun else ""
+        return self.says(codes.NO_BUTTON, begun=begun, asked=asked or "BUTTON", when=when)
 
     def is_button(self, word: str) -> bool:
         return "BUTTON" not in self.names.sensors and concept_of(word) == "BUTTON"
