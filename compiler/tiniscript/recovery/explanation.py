@@ -457,7 +457,7 @@ def _slip(
         now = now if now in WORDS else meant_by(now) or now  # of `bot.forward`
     now = f"{now} )" if now.endswith("(") else now
     word = _word(code, old, new, start, other)
-    word = f"DEF {word}" if code is codes.NO_BRACKETS_HERE and "DEF" in texts(after) else word
+    word = f"DEF {word}" if code is codes.EMPTY_BRACKETS and "DEF" in texts(after) else word
     usage = WORDS[word].usage if word in WORDS else ""
     until = len(fix[head]) if len(told) < len(fix) else None  # one instruction became two
     kept = _written(one[: _alike(texts(one), texts(other[:until]))[0]])
