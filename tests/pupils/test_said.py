@@ -78,7 +78,7 @@ def test_the_body_of_a_def_is_read_once_for_all_its_calls(monkeypatch: pytest.Mo
 
     monkeypatch.setattr(unknown_words, "scan", scanned)
     told = check("DEF V;F(X CM, 60);END_DEF\n" + "V(20)\n" * 50)
-    assert [each.values["fix"] for each in told[1:]] == ["X = 20;V"] * 50
+    assert [each.values["head"] for each in told[1:]] == ["DEF V(X)"] * 50
     assert set(read) == {";F(X CM, 60);"}
     assert len(read) <= 5  # of the program, and of what is offered: not of each call
 

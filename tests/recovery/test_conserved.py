@@ -184,6 +184,19 @@ def test_what_is_only_shown_says_what_it_loses_and_what_else_is_meant(
     assert fixed(wrong, check).text == wrong or found.values.get("carried")
 
 
+def test_no_repair_takes_a_sign_for_a_command_out() -> None:
+    """A stop sign is S, wherever it stands; a sign that nothing is said with may go."""
+    rows = (table(each, "lexicon.txt").split("\n") for each in languages())
+    told = [row.partition("|") for its in rows for row in its if re.match("[FBLRS] ", row)]
+    signs = [(it[0].strip(), s) for it in told for s in it[2].split() if not s.isascii()]
+    signs = [(word, sign) for word, sign in signs if len(sign) == 1 and not sign.isalpha()]
+    assert ("S", "\U0001f6d1") in signs
+    for word, sign in signs:
+        for text in ("F(2, 80) {}", "F(2, 80){}", "F(2, 80); {}", "S\n{}", "SI|F(2, 80)\n  {} "):
+            made = fixed(text.format(sign), check).text
+            assert sign in made or made.rstrip().endswith(word), (sign, text, made)
+
+
 def test_what_one_line_would_lose_costs_the_others_nothing() -> None:
     """A number of another line is not that of this one, and nobody knows what BLA is."""
     wrong = "IF(LUZ_ESQ > 50%)\nF(2 80)\nENDIF\nBLA(3);F(1, 50)"

@@ -12,7 +12,10 @@ from tiniscript.diagnostics.rendering import message, names_found
 from tiniscript.recovery.concepts import plain
 
 # What they found is counted, calculated, a sign for the words that say it, or what a note says.
-OTHERS = (codes.ARGUMENT_COUNT, codes.OUT_OF_RANGE, codes.MISSING_VALUE, codes.IN_A_NOTE)
+OTHERS = (
+    codes.ARGUMENT_COUNT, codes.CALL_VALUES, codes.OUT_OF_RANGE, codes.MISSING_VALUE,
+    codes.IN_A_NOTE,
+)  # fmt: skip
 
 
 def alike(text: str) -> str:

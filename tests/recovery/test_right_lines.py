@@ -76,9 +76,18 @@ def test_what_is_right_in_an_odd_way_is_right_beside_a_wrong_line(odd: str) -> N
         "F(2, 80) 5 veces",
         "F(2)",
         "X := 5",
+        "F(1, 80) LOP",
     ):
         is_told_alone([odd], line, [])
         is_told_alone([odd], line, [odd.removeprefix("SI|")] if "DEF" not in odd else [])
+
+
+@each_row("block", ["LOOP(3)⏎{}⏎END_LOOP", "DEF A1⏎{}⏎END_DEF⏎A1", "IF(DISTANCE < 9)⏎{}⏎ENDIF"])
+def test_a_word_behind_an_instruction_begins_no_block(block: str) -> None:
+    """Where what follows is not deeper than the wrong line, the block around both is not over."""
+    for line in ("F(1, 80) LOP", "F(1, 80) loop", "S repite"):
+        head, tail = block.replace("⏎", "\n").split("{}")
+        is_told_alone([f"{head}  F(1, 80)"], line, tail.strip().split("\n"))
 
 
 def is_told_alone(before: list[str], line: str, behind: list[str]) -> None:

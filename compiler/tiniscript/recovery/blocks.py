@@ -138,6 +138,8 @@ class Matching:
         """Take an item; return whether it has a place among the blocks."""
         kind = self.item.kind
         if kind == "open":
+            if self.is_made_up():
+                return False
             if not self.is_end_of_do():
                 if self.is_when():
                     self.edit(1, "WHEN")
@@ -152,6 +154,13 @@ class Matching:
         elif kind == "end" and not self.is_before_arm():
             return self.bare_end() if self.item.word == ANY_END else self.end()
         return True
+
+    def is_made_up(self) -> bool:
+        """Whether a header is a word behind an instruction, and nothing more: `F(1, 80) LOP`."""
+        tokens, (_, _, start, end) = self.line.reading.tokens, self.item
+        around = [*tokens[max(0, start - 1) : start], *tokens[start + 1 : end]]
+        is_begun = [each.text for each in around[:2]] == [";", "("]
+        return is_begun and end == len(tokens) and all(it.source is None for it in around)
 
     def is_when(self) -> bool:
         """Whether an IF is meant as a WHEN: at the top level, with lines and an end of its own."""

@@ -228,7 +228,7 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
             continue
         if depth > 0:
             found.in_brackets.add(token.text)
-        elif after.text in ("=", "++", "+=", "-=", ":=") and token.text not in WORDS:
+        elif after.text in ("=", "++", "+=", "-=", ":=", "<-") and token.text not in WORDS:
             found.variables.add(token.text)
         is_def = "DEF" in (token.text, concept_of(token.text))
         is_def = is_def or (token.text == "TASK" and at == len(line))  # a name that it needs not
@@ -416,6 +416,7 @@ class Names:
         found += [each for each in ANY if not said_of(text, "do") or each not in _NO_DO]
         if text in self.read_as.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
             found.append("@val")
+            found += ["@measured"] if {word, text} & self.asked.keys() else []
         if text in self.defs:
             own = ["@defw", "@callw"] if self.takes(text) else ["@step", "@close"]
             found += ["@def", "@start", "@startm", *own]

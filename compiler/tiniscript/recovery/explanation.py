@@ -264,6 +264,8 @@ class _Explainer:
     def new(self, k: int, part: _Change, code: Code, step: Step | None) -> Explanation:
         place, edit, _, before, after = part
         values = _slip(code, step, before, after)
+        if code is codes.OTHER_SIGN and values["right"] in ("SI", "SB"):
+            values["fix"] = f"{values['right']}|"
         if code is codes.BRACES and before and not after:
             values["needless"] = values["found"]
         if code is codes.UNTIL_NOT_HERE:
@@ -306,9 +308,21 @@ class _Explainer:
         values = {"word": word, "right": end, "line": str(change.last + 1), "last": behind_this,
                   "whole": self.whole(first, last)}  # fmt: skip
         if block and self.may_end_earlier(block, last[0]):
-            values |= {"several": behind_this, "last": "", "whole": ""}
+            values |= {"several": behind_this, "last": "", "whole": ""} | self.early(block, last[0])
+        if first < last[0]:
+            values["begun"] = str(self.changes[first].first + 1)
         told = Explanation(codes.NEVER_ENDS, place, place, values, [edit], first, (first, 1))
         self.out.append(told)
+
+    def early(self, block: _Block, last: int) -> dict[str, str]:
+        """Return the line before the first header in a block: it may end there as well."""
+        for k in range(block.first + 2, last + 1):
+            words = texts(lexemes(self.changes[k].text))
+            if words and words[0] in BLOCK_ENDS and self.changes[k - 1].text.strip():
+                before = self.changes[k - 1]
+                begins = laid_out(tokens_of(before.text.split("\n")[0]))
+                return {"early": str(before.last + 1), "begins": begins}
+        return {}
 
     def may_end_earlier(self, block: _Block, last: int) -> bool:
         """Whether nothing says that the last instruction of a block is in it.
@@ -430,6 +444,7 @@ def _slip(
     if code is codes.OTHER_ASSIGNMENT:  # `DISTÂNCIA := 5`: the sign alone
         found = [each for each in found if each.kind is not WORD] or found
     was = _written(one if is_all or not is_found else found)
+    was = "_" if code is codes.LINE_NUMBER and was[:1] == "_" else was
     was = was.strip("; ") if code in (codes.OTHER_LANGUAGE, codes.EXTRA_WORD) else was
     if is_note:
         was = re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
@@ -442,6 +457,7 @@ def _slip(
         now = now if now in WORDS else meant_by(now) or now  # of `bot.forward`
     now = f"{now} )" if now.endswith("(") else now
     word = _word(code, old, new, start, other)
+    word = f"DEF {word}" if code is codes.EMPTY_BRACKETS and "DEF" in texts(after) else word
     usage = WORDS[word].usage if word in WORDS else ""
     until = len(fix[head]) if len(told) < len(fix) else None  # one instruction became two
     kept = _written(one[: _alike(texts(one), texts(other[:until]))[0]])

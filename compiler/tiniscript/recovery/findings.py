@@ -32,6 +32,7 @@ LONGEST = 4_000  # characters of a text that is read as a whole
 _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OTHER_ASSIGNMENT)
 _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
 _FIRST_NUMBERS = (1, 10, 100)
+_CALL = re.compile(r"(?i)\s*(?:[FBLRMW]|BEEP)\s*\(")
 _BEGUN, _ROW = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
 _NUMBER = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
 _SET = re.compile(r"(\w+) = -?[0-9.]+")
@@ -54,7 +55,8 @@ def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
     said = setup(source.text)
     if said and said.repair:
         after = check(applied(source.text, said.repair.edits))
-        if is_better(after, found, said.repair.edits):
+        is_call = _CALL.match(source.text, said.repair.edits[0].span.end) is not None
+        if is_call or is_better(after, found, said.repair.edits):
             return _with_edits([said])
     if aside := _titles(source, kit) or _numbers(source):
         return _with_edits(aside)
@@ -91,7 +93,7 @@ def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
         words = lexemes(title)
         if not words:
             continue
-        is_set = said_of(words[0].text, "set")  # `set SPEED to 70`
+        is_set = said_of(words[0].text, "set") or title.lower().startswith("#define")
         if is_set or lines.is_right(words, Names([], kit)) or "(" in title or "{" in title:
             return []
         span, fix = Span(row.start(), row.start() + len(title)), f"// {title}"

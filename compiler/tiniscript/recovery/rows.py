@@ -82,6 +82,18 @@ SIGNS = r"""
 (?<![^;])\s*([*/+=-]+)([A-Za-z](?:[^;]*[\w)])?)\1\s*(?![^;])
     | `\2` | TS054 | applied
     | **F(2, 80)** => F(2, 80)
+(?<![^;])\s*(_+)([A-Za-z]\w*\s*\([^;]*\))\1\s*(?![^;])
+    | `\2` | TS054 | applied
+    | _F(2, 80)_ => F(2, 80)
+^\s*\[[^\]\n]*\d:\d\d[^\]\n]*\][^:|()\n]*:\s*(?=\w)
+    | `` | TS054 | applied
+    | [14:32, 12/03] Leo: F(2, 80) => F(2, 80)
+^\s*#\s*define\s+([A-Za-z]\w*)\s+(\d+(?:\.\d+)?)\s*$
+    | `\1 = \2` | TS050 | applied
+    | #define X 70⏎F(1, X) => X = 70⏎F(1, X)
+⟨\(\s*(?:\(\s*\)\s*=>|function\s*\(\s*\))\s*\{¦^\s*\}\s*\)⟩
+    | `⟨() {¦}⟩` | TS102 | applied
+    | ⟨forever(() => {⏎S⏎}¦forever() {⏎S⏎})⟩ => LOOP(FOREVER);⏎S⏎END_LOOP
 ^^\s*["'«`](S?[IB]?\|?[^"'«»`]*\([^"'«»`]*)["'»`]\s*$$
     | `\1` | TS006 | applied
     | ⟨"SI|F(2,80);R(1,50)"¦“F(2,80);R(1,50)”⟩ => ⟨SI|¦⟩F(2,80);R(1,50)
@@ -137,9 +149,9 @@ SIGNS = r"""
     | `FOREVER, ` | TS017 | applied
     | F(FOREVER.60) UNTIL(DISTANCE < 9) => F(FOREVER, 60) UNTIL(DISTANCE < 9)
 (?<=\d)\.\.(?=\d) | `, ` | TS020 | offered | X = RANDOM(1..6) => X = RANDOM(1, 6)
-⟨≤¦¡=¦(?<= )><⟩
-    | `⟨<=¦<>¦<>⟩` | TS010 | applied
-    | IF(DISTANCE ⟨≤¦¡=¦><⟩ 10);S;ENDIF => IF(DISTANCE ⟨<=¦<>¦<>⟩ 10);S;ENDIF
+⟨≤¦≥¦≠¦¡=¦(?<= )><⟩
+    | `⟨<=¦>=¦<>¦<>¦<>⟩` | TS010 | applied
+    | IF(DISTANCE ⟨≤¦≥¦≠¦¡=¦><⟩ 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=¦<>¦<>¦<>⟩ 10);S;ENDIF
 (?<=\))\s*[↑↓⬅-⬇➡]\uFE0F?\s*(?=[A-Za-z]+\s*\()
     | `; ` | TS061 | applied
     | F(2, 80) ➡ R(1, 60) => F(2, 80); R(1, 60)
@@ -150,7 +162,7 @@ SIGNS = r"""
     | tsc live "SI|F(2, 80)" => SI|F(2, 80)
 ^\s*(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z]) | `` | TS054 | applied | ⟨*¦•¦a)⟩ F(2,80) => F(2,80)
 ^\s*(?:-(?=[A-Z]\w*\()|[=-]?>+\s*) | `` | TS054 | applied | ⟨> ¦=> ¦-> ¦-⟩F(2,80) => F(2,80)
-^\s*[➤↑↓⏫⏬⬅-⬇\u2600-\u27A1\U0001F300-\U0001FAFF]\uFE0F?\s*(?=[A-Za-z]+\s*\()
+^\s*(?![⛔✋🛑])[➤↑↓⏫⏬⬅-⬇\u2600-\u27A1\U0001F300-\U0001FAFF]\uFE0F?\s*(?=[A-Za-z]+\s*\()
     | `` | TS054 | applied
     | ✅ F(2,80) => F(2,80)
 (?<![\d/*])(?<![\d)] )⟨1/2¦1/4¦3/4⟩(?!\d)(?=\s*[a-z])
@@ -172,7 +184,7 @@ SIGNS = r"""
 (?<=\d)(?:'(?=\d+\s*(?:[,;]|$))|(?<!\d\d),(?=\d+\s*(?:s|segs?|segundos?|sec|seconds?|minutos?)\b))
     | `.` | TS012 | applied
     | F(1'5, 80) => F(1.5, 80)
-(?<=[\w)])(?:\s*(?:[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)|\.{2,})\s*$
+(?<=[\w)])(?:\s*(?:(?![⛔✋🔼🔽🛑])[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)|\.{2,})\s*$
     | `` | TS005 | applied
     | STOP! => STOP
 (?:(?<=\|)|(?<=;)|^)(\s*)([FBLR])(?!\s+-\d|\s+\.\d|\.\d+(?![\d.]))\s*[_.<=,;"
@@ -221,6 +233,9 @@ TOKENS = r"""
 v=@val [ n=@num )
     | $v < $n ) | 1 | TS010 | offered
     | IF(DISTANCE[30)⏎S⏎ENDIF => IF(DISTANCE < 30)⏎S⏎ENDIF
+o=(|AND|OR !|no v=@measured e=)|AND|OR
+    | $o $v = 0 $e | .5 | TS010 | first offered
+    | IF(!LIGHT_L);S;ENDIF => IF(LIGHT_L = 0);S;ENDIF
 ! v=@val|( | NOT $v | 1 | TS010 | first | X = TRUE⏎IF(!X);S;ENDIF => X = TRUE⏎IF(NOT X);S;ENDIF
 # sums in words
 o==|(|, a=@num|@val minus b=@num|@val
@@ -334,6 +349,9 @@ h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val
     | &h $b &v | 1 | TS102 | first
     | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
+o=(|AND|OR the? wall s=<|<=|>|>= n=@num CM?
+    | $o DISTANCE $s $n | 1 | TS102 | offered
+    | F(5, 60) HASTA(PARED < 10 CM) => F(5, 60) UNTIL(DISTANCE < 10)
 sensing ( v=@val ) | $v | 1 | TS044 | first | SHOW(SENSOR(DISTANCE)) => SHOW(DISTANCE)
 sensing of? the? v=@val|light | $v | 1 | TS044 | first | SHOW(sensor de distancia) => SHOW(DISTANCE)
 # variables
@@ -341,6 +359,7 @@ v=@name = a=@num|@val b=@start
     | $v = $a ; $b | 1 | TS013 | applied
     | X = DISTANCE F(1, 50) => X = DISTANCE;F(1, 50)
 v=@name ++ | $v = $v + 1 | 1 | TS050 | applied | v = 0⏎v++ => v = 0⏎v = v + 1
+^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | X <- 5⏎F(X, 80) => X = 5⏎F(X, 80)
 ^ v=@name = + e=@num $ | $v = $v + $e | 1 | TS050 | offered | X = 1⏎X = +1 => X = 1⏎X = X + 1
 v=@name += e=@any+ | $v = $v + $e | 1 | TS050 | applied | X = 1⏎X += 2 => X = 1⏎X = X + 2
 ^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
@@ -365,6 +384,12 @@ a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => 
 ^ ⟨add¦subtract⟩ n=@num|@val from|to the? v=@name $
     | $v = $v ⟨+¦-⟩ $n | 1 | TS050 | offered
     | X = 40⏎⟨suma¦resta⟩ 5 a X⏎F(1, X) => X = 40⏎X = X ⟨+¦-⟩ 5⏎F(1, X)
+^ ⟨add¦subtract⟩ to|from the? v=@name n=@num $
+    | $v = $v ⟨+¦-⟩ $n | 1 | TS050 | offered
+    | X = 40⏎⟨sumar a¦restar a⟩ X 5⏎F(1, X) => X = 40⏎X = X ⟨+¦-⟩ 5⏎F(1, X)
+^ give to the? v=@name the? sensing? e=@num $
+    | $v = $e | 1 | TS050 | offered
+    | dar a X el valor 5⏎F(X, 80) => X = 5⏎F(X, 80)
 ^ ⟨multiply¦divide¦increase¦decrease⟩ the? v=@name by|over n=@num|@val $
     | $v = $v ⟨*¦/¦+¦-⟩ $n | 1 | TS050 | offered
     | X = 40⏎⟨multiply¦divide¦increase¦decrease⟩ X by 2 => X = 40⏎X = X ⟨*¦/¦+¦-⟩ 2
@@ -460,10 +485,13 @@ ELSE a=@val s=<|<=|>|>= b=@num|@val do|:? $
     | ELSEIF ( $a $s $b ) | .9 | TS015 | offered
     | IF(DISTANCE < 10)⏎S⏎ELSE DISTANCE < 30⏎B(1, 50)⏎ENDIF =>
     IF(DISTANCE < 10)⏎S⏎ELSEIF(DISTANCE < 30)⏎B(1, 50)⏎ENDIF
-ELSE ( a=@val s=<|<=|>|>= b=@num|@val )
+ELSE ( a=@noparen* s=<|<=|>|>=|=|<> b=@noparen+ )
     | ELSEIF ( $a $s $b ) | 1 | TS039 | offered
     | IF(DISTANCE < 10)⏎S⏎ELSE(DISTANCE < 30)⏎B(1, 50)⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ELSEIF(DISTANCE
     < 30)⏎B(1, 50)⏎ENDIF
+h=IF|WHILE|ELSEIF|WHEN < a=@val s=<|<=|>|>=|= b=@num|@val > do|:?
+    | &h ( $a $s $b ) | 1 | TS010 | applied
+    | si <DISTANCE < 15> entonces⏎S⏎fin => IF(DISTANCE < 15)⏎S⏎ENDIF
 c=IF|WHILE|ELSEIF|UNTIL ( ( a=@noparen* b=@num|@word ) e=;|$
     | $c ( ( $a $b ) ) $e | 1 | TS016 | applied
     | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
@@ -538,6 +566,12 @@ h=ELSE|TASK ⟨:|,|-|do|=|'|'¦b=@start|'{'⟩
 ^ LOOP n=@num times? ( <body> ) $
     | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied
     | repite 4 (F(1, 60) R(0.5, 60)) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
+basic . W ( n=@num )
+    | W ( @ms:n ) | 1 | TS102 | applied
+    | basic.pause(500) => W(0.5)
+basic . FOREVER ( ) '{'
+    | LOOP ( FOREVER ) ; { | 1 | TS102 | applied
+    | basic.forever() {⏎S⏎} => LOOP(FOREVER);⏎S⏎END_LOOP
 ^ FOREVER ( ) '{'
     | LOOP ( FOREVER ) ; { | 1 | TS102 | applied
     | void loop() {⏎  F(1, 50);⏎} => LOOP(FOREVER);⏎  F(1, 50);⏎END_LOOP
@@ -733,6 +767,7 @@ h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ )
     | | 1 | ⟨TS065¦TS072⟩ | applied
     | ⟨return 0;¦import robot⟩⏎F(1, 50) => ⏎F(1, 50)
 ^ idles $ | | 1 | TS044 | offered | NADA⏎F(1, 50) => ⏎F(1, 50)
+^ closing $$ | | 0 | TS044 | first | F(1, 50)⏎fimalgoritmo => F(1, 50)⏎
 ^ end program? $$ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$
     | @endof:k | 1 | TS022 | first
@@ -751,9 +786,13 @@ a=@close ⟨by? please+¦CM|@in_cm|@in_secs+⟩ $
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num
     | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered
     | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
-a=@close ⟨,? then|soon+ ,? b=@start¦,|.|:? b=@start¦&|+|AND b=@startm¦->|=>|/|>|>>|_|*|'|' b=@start⟩
+a=@close ⟨,? then|soon+ ,? b=@start¦,|.|:? b=@start¦&|+|AND b=@startm¦->|=>|/|>|>>|_|*|-|'|'
+    b=@start⟩
     | $a ; $b | 1 | ⟨TS044¦TS013¦TS061¦TS061⟩ | applied
     | F(1, 75)⟨ y¦,¦&¦->⟩ R(1, 75) => F(1, 75);R(1, 75)
+a=@close ⟨comma¦point then comma⟩ b=@start
+    | $a ; $b | 1 | TS061 | applied
+    | F(2, 80) ⟨coma¦ponto e vírgula⟩ L(1, 50) => F(2, 80);L(1, 50)
 a=@close ⟨+|&|AND|->|'|'¦,⟩ $
     | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | applied
     | F(2, 80)⟨ +¦,⟩⏎R(1, 50) => F(2, 80)⏎R(1, 50)

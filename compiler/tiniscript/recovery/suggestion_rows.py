@@ -9,13 +9,14 @@ the others are the words behind it. Classes of the instruction, beside its word:
 language), @did (a DEF), @more (others stand before it on its line), @later (others stand before
 it), @outer (in no block), @move, @clock (its first value is its time), @asked (has its UNTIL) and
 @unasked (may get one). Words without an instruction have @none there, also @after where one stands
-before them, @last where they end the text, and @unbegun in a text without `SI|`. Classes of the
-words: @number (in words, too), @often (a number that says how often), @percent (one that says a
-power), @in_s (a unit of time), @other (the other way), @paced (another pace than its power), @told
-(says nothing that the instruction does not), @quote, @mark (what is written below a line that is
-meant again), @dots, @ask (a word of the language that asks) and @noBUTTON (a word for BUTTON, which
-the kit lacks), @call and @order (of the language: with values, or without). What `s` captures is
-pointed at. `h` is a header: the rest is read with what is asked as its question, else with TRUE.
+before them, @opening where they are the first of several lines, @last where they end the text, and
+@unbegun in a text without `SI|`. Classes of the words: @number (in words, too), @often (a number
+that says how often), @percent (one that says a power), @in_s (a unit of time), @other (the other
+way), @paced (another pace than its power), @told (says nothing that the instruction does not),
+@quote, @mark (what is written below a line that is meant again), @dots, @ask (a word of the
+language that asks) and @noBUTTON (a word for BUTTON, which the kit lacks), @call and @order (of the
+language: with values, or without). What `s` captures is pointed at. `h` is a header: the rest is
+read with what is asked as its question, else with TRUE.
 
 Values are texts with gaps. A gap is a capture, or a function in `suggestions`; a row with a gap
 that cannot be filled does not hold, unless `?` stands behind its name. `⟨less¦more⟩` makes a row of
@@ -47,9 +48,9 @@ SUGGESTIONS = """
 ^ @after|@later ⟨<rest> etc @any*¦<rest> so forth @any*¦,? and forth so|all?¦,? @dots+⟩ $
     | TS131 | found={said}; all={often?}
     | F(2, 80)⏎⟨etc.¦y asi siempre¦y todo eso¦...⟩ => all=LOOP(4);F(2, 80);END_LOOP
-^ @after goback to the|one? beginning $
+^ @after ⟨¦@num .|) ⟩goback to the|one? beginning|1 $
     | TS131 | found={said}; endless={endless}
-    | F(1, 80)⏎GO TO START => endless=LOOP(FOREVER);F(1, 80);END_LOOP
+    | F(1, 80)⏎⟨GO TO START¦3. voltar ao 1⟩ => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 # notes
 ^ @none this @word @word+ $
     | TS073 | fix=// {said}
@@ -61,7 +62,11 @@ SUGGESTIONS = """
 ^ @last repeat (? n=@num? )? times? $
     | TS062 | found={words}; all={all?}
     | F(1, 50)⏎repetir 3 => all=LOOP(3);F(1, 50);END_LOOP
+^ @opening launch $ | TS102 | found={words}; right=SI|; usage=SI|; fix= | go⏎S => right=SI|
 # questions in words
+^ @opening when|at|to? @word? @noBUTTON @word? pressed? $
+    | TS102 | found={words}; right=SB|; usage=SB|; fix=
+    | on button pressed⏎S => right=SB|
 ^ @unbegun when|at @word* flag @word* $
     | TS102 | found={words}; right=SI|; usage=SI|; fix=
     | when green flag clicked => right=SI|

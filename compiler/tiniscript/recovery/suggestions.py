@@ -51,6 +51,7 @@ _BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
 _PART = re.compile(r"((?:[^;{}|]|\|\|)+)(\|?)")
 _ONCE = re.compile(r"(.+?;)\1*")  # orders that the others repeat
 _CHOICE = re.compile(r"\s*(\w+)\s*(\([0-9., ]*\))?\s*")
+_COUNTED = re.compile(r"^\s*\d{1,2}\s*[.)]\s*(?=[A-Za-z])")
 _SHORTEST_WORD = 3  # letters: X is rather a variable
 _BARE = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
 
@@ -105,7 +106,9 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
                     told.append(each)
         found += told
         if body.strip() and not any(each.diagnostic.code is codes.SAME_AGAIN for each in told):
-            above.append(_as_orders(body.partition("|")[2] or body, is_right))
+            bare = _COUNTED.sub("", body)  # `2. S`
+            is_right = is_right or (bare != body and lines.is_right(lexemes(bare), names))
+            above.append(_as_orders(bare.partition("|")[2] or bare, is_right))
         depth += sum((each.text in BLOCK_ENDS) - (each.text in ENDED) for each in words)
         start += len(line) + 1
     return found

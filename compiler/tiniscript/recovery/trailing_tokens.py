@@ -152,8 +152,14 @@ class Trailing:
                 "@after": self.is_later,
                 "@last": self.is_later and is_end,
                 "@unbegun": not _BEGUN.match(self.text),
+                "@opening": not _BEGUN.match(self.text) and self._is_opening(),
             }
         return _label("\x01", labels)
+
+    def _is_opening(self) -> bool:
+        """Whether words are the first line of a text, and others follow."""
+        before, behind = self.text[: self.place.start], self.text[self.place.end :]
+        return not before.strip() and bool(behind.strip()) and not behind.split("\n")[0].strip()
 
     def _label_of(self, k: int) -> str:
         token = self.row[k]

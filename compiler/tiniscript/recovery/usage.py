@@ -53,6 +53,7 @@ _DOTS = re.compile(
     r"(?i)\b(?P<head>(?P<word>IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|DEF[ \t]+(?P<name>\w+))[\s;]*"
     r"(?P<here>(?:\.[ \t]*){2,}|\u2026)[ \t]*\n?[ \t]*(?P<end>END_?\w+|ELSE\w*)?"
 )
+_MOST_POWER = 100
 _MANY_BELOW = 6  # instructions that an example takes into a block
 _ENDS = re.compile(rf"\b{words_of('end')}")
 _BREAK = re.compile(r"(?i)\b(IF[ \t]*\([^\n;]*\))[\s;]*(?P<here>BREAK)[\s;]*END_?IF\b")
@@ -65,7 +66,9 @@ _CALL = re.compile(r"(\w{3,})\s*\([^()]*\w[^()]*\)")
 _LONG_HEAD = 100  # characters of a DEF before the name of a value
 _TAUGHT = re.compile(r"(?i)\bDEF\s+(\w+[ \t]*\([^()\n]*)?$")
 _OWN = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
-_MOST_TIMES = 20  # that a DEF is done
+_ANGLE = re.compile(r"\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)$")
+_FOREVER_BEHIND = re.compile(r"(?i)([FBLR])\s*\(([^(),]+),\s*FOREVER\s*\)(\s*UNTIL.*)?")
+_TURNED = re.compile(r"(?im)\b[FBLR]\s*\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)(?!\s*UNTIL)")
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
 _OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
@@ -91,12 +94,15 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
         told.append((say(_Usage(text, each)) if say else None) or each)
     is_near = text.lacks_loop and any(it.values.get("near", "")[:4] == "LOOP" for it in told)
     has_no_ends = is_near or any(it.code in (codes.BRACES, codes.DOTS) for it in told)
+    is_unread = any(it.code is codes.SPANISH_IF or it.values.get("right") == "ELSE" for it in told)
     reserved = {each.values["word"] for each in told if each.code is codes.RESERVED}
     unknown = {text.piece(it.span) for it in told if it.code in _OF_ITS_WORD}
     parts = [it for it in told if it.values.get("part")]
     if parts and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
         part = {"part": parts[0].values["part"]}
         told = [it._replace(values={**it.values, **part}) for it in told if it not in parts]
+    if any("usage" in each.values for each in told if each.code is codes.OUT_OF_RANGE):
+        told += text.turned()
     renamed = {edit.span for it in told if it.code is codes.RESERVED and it.repair
                for edit in it.repair.edits[1:]}  # fmt: skip
     return [
@@ -106,6 +112,7 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
         and (each.code is not codes.NO_VALUE or each.values.get("word") not in reserved)
         and (each.code is not codes.UNIT_PLACE or text.piece(each.span) not in unknown)
         and not (has_no_ends and each.code in _OF_ENDS)
+        and not (is_unread and each.code is codes.NOT_OPEN and each.values["right"] == "IF")
     ]
 
 
@@ -123,6 +130,16 @@ class _Text:
         own = next(it for it in _PIECE.finditer(body) if it.end() >= min(column - 1, len(body)))
         begin = span.start - column + 1 + own.end() - len(own[0].lstrip())
         return Span(begin, begin + len(own[0].strip()))
+
+    def turned(self) -> list[Diagnostic]:
+        """Return moves with the power before the time, as another call of the text has them."""
+        found: list[Diagnostic] = []
+        for each in _TURNED.finditer(self.source.text):
+            if LONG_S <= float(each[1]) <= _MOST_POWER and 0 < float(each[2]) < LONG_S:
+                fix = f"{each[0][0].upper()}({each[2]}, {each[1]})"
+                values = {"time": each[1], "power": each[2], "fix": fix}
+                found.append(Diagnostic(codes.SWAPPED, Span(*each.span()), values))
+        return found
 
     def end_at(self, place: int) -> str:
         """Return the end of the innermost block that is open at a place, "" for none."""
@@ -196,6 +213,9 @@ class _Usage:
         """Return how an instruction is written: a block with its end, where the text has none."""
         if word in ASKING and (asked := self.question(word)):
             return asked
+        if word in ("L", "R") and (angle := _ANGLE.search(self.source[self.piece])):
+            if float(angle[1]) >= LONG_S:  # `turnLeft(90, 70)`: no seconds
+                return f"{word}({angle[1]} DEG, {angle[2]})"
         is_ended = _ENDS.search(plain(self.source.text)) is not None
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
@@ -241,10 +261,14 @@ class _Usage:
             end = named or self.text.end_at(self.piece.start)
             said = self.source[self.piece]
             return self.offers(codes.END_ALONE, end, found=said, right=end) if end else None
+        parted = re.findall("[A-Z]?[a-z]+", self.source[self.piece].split("(")[0])
+        if len(parted) > 1 and any(self.is_button(plain(each)) for each in parted):
+            return self.no_button()  # `onButtonPressed(…)`
         if parts := _MEMBER.match(self.source.text, self.found.span.start):  # `Serial.begin`
             thing, _, done = plain(parts[0]).rpartition(".")
             right = "" if said_of(thing, "device") else self.names.meant(done)  # `servo.write`
-            values = {"right": right, "usage": _usage(right)} if self.names.takes(right) else {}
+            usage = self.usage(right)
+            values = {"right": right, "usage": usage} if self.names.takes(right) else {}
             code = codes.OTHER_LANGUAGE if values else codes.UNKNOWN_WORD
             return Diagnostic(code, Span(*parts.span()), {"found": parts[0], **values})
         if self.names.meant(first) == "SHOW" and {*self.signs} & {*QUOTES}:
@@ -354,12 +378,12 @@ class _Usage:
         if number and self.text.lacks_loop:
             return self.adds(near="LOOP")
         given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.source.text)
-        if len({*given}) > 1 or (number and not 1 < int(number) <= _MOST_TIMES):
-            return self.with_values(piece)  # its value is no count
+        if number or len({*given}) > 1:
+            return self.with_values(piece)  # seconds, or how often: who writes it knows
         if self.names.meant(name):
             return None  # a function of another language
         lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.source.text)
-        times = int(number or len(lone))
+        times = len(lone)
         if is_call or len(lone) > 1 or self.names.defs or said_of(name, "taught"):
             often = f"LOOP({times});{name};END_LOOP" if times > 1 else ""
             return self.says(codes.UNTAUGHT, name=name, often=often)
@@ -372,6 +396,14 @@ class _Usage:
             return None
         return self.adds(taught=match[1])
 
+    def forever(self) -> Diagnostic | None:
+        """`F(50, FOREVER)`: FOREVER is a time, and goes first."""
+        match = _FOREVER_BEHIND.fullmatch(self.source[self.piece])
+        if match is None:
+            return None
+        until = match[3] or f" UNTIL({WORDS['UNTIL'].arguments[0].sample})"
+        return self.adds(fix=f"{match[1].upper()}(FOREVER, {match[2].strip()}){until}")
+
     def until(self) -> Diagnostic:
         asked = re.match(r"\s*(\([^()\n]+\))", self.source.text[self.found.span.start + 5 :])
         return self.adds(example=f"F(2, 80) UNTIL{asked[1]}" if asked else "")
@@ -380,7 +412,8 @@ class _Usage:
         """A button that nobody can ask for; a program may begin with the one that starts it."""
         asked = next((it.source for it in self.tokens if self.is_button(it.text)), "")
         begun = "SB|" if self.text.begun == "SB" else ""
-        return self.says(codes.NO_BUTTON, begun=begun, asked=asked or "BUTTON")
+        when = self.source[self.piece] if self.signs[:1] == ["WHEN"] and not begun else ""
+        return self.says(codes.NO_BUTTON, begun=begun, asked=asked or "BUTTON", when=when)
 
     def is_button(self, word: str) -> bool:
         return "BUTTON" not in self.names.sensors and concept_of(word) == "BUTTON"
@@ -509,6 +542,10 @@ class _Usage:
     def begins(self) -> Diagnostic:
         """`SI` in the midst of a program begins a condition, or the program once more."""
         word = self.source[self.found.span].upper()
+        arm = self.names.meant("_".join(self.words[:2]))
+        if arm == "ELSE" and len(self.tokens) == 2:  # `si no`
+            found = self.source[self.piece]
+            return self.offers(codes.OTHER_LANGUAGE, arm, found=found, right=arm, usage=arm)
         if word == "CHECK_CONNECTION":
             return self.says(codes.PING_ALONE)
         if word == "PING":
@@ -740,6 +777,7 @@ _SAYS: dict[Code, Callable[[_Usage], Diagnostic | None]] = {
     codes.NO_FUNCTION: _Usage.function,
     codes.NO_BUTTON: _Usage.no_button,
     codes.UNTIL_ALONE: _Usage.until,
+    codes.FOREVER_NOT_HERE: _Usage.forever,
     codes.BAD_NAME: _Usage.letters,
     codes.UNKNOWN_NAME: _Usage.name_in_words,
 }

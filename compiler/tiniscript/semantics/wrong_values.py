@@ -129,6 +129,8 @@ class WrongValues:
         span = Span(operand.start, operand.end)
         found = self.scope.source[span]
         values = self.condition(found)
+        if by == "NOT" and "example" in values:  # NOT X is `X = 0`, as other languages have it
+            values = {"example": f"{found.upper()} > 0"}
         if other is not None and other.end - other.start <= 80:
             asked = self.scope.source[Span(other.start, other.end)]
             before, behind = _COMPARED.match(asked), _COMPARES.fullmatch(asked)

@@ -290,7 +290,12 @@ class Parser:
         self.no_arguments(word)
         blocks, begun = self.blocks, ENDS[word.text]
         if not any(each.word == begun for each in blocks.open):
-            self.reporter.report(codes.NOT_OPEN, word.span, found=word.text, right=begun)
+            around = {}
+            if blocks.open:  # it may be the end of that
+                inner = blocks.open[-1]
+                line = str(self.cursor.source.position(inner.header.start)[0])
+                around = {"around": inner.word, "line": line, "ends": BLOCK_ENDS[inner.word]}
+            self.reporter.report(codes.NOT_OPEN, word.span, found=word.text, right=begun, **around)
             return
         while (block := blocks.open[-1]).word != begun:
             line = str(self.cursor.source.position(block.header.start)[0])
