@@ -4,6 +4,7 @@ on a fake clock."""
 from __future__ import annotations
 
 import random
+import socket
 from bisect import insort
 from collections.abc import Callable
 from typing import cast
@@ -12,7 +13,7 @@ import pytest
 
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.outcomes import LOOK_S, ConnectionLost
-from tiniscript.link.payloads import ShowEvent
+from tiniscript.link.payloads import EmptyReply, ShowEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing import protocol, shared_connection
 from tiniscript.link.sharing.protocol import JsonMessage, MessageReader
@@ -71,8 +72,8 @@ class Holder:
 
 def shared(monkeypatch: pytest.MonkeyPatch, holder: Holder) -> SharedConnection:
     monkeypatch.setattr(shared_connection, "monotonic", holder.clock)
-    at = Registration("P", "upload", 1, "token", "answer", 9600, 1)
-    peer = cast("shared_connection.socket.socket", holder)
+    at = Registration("P", 1, "token", "answer", "upload", 9600, 1)
+    peer = cast(socket.socket, holder)
     return SharedConnection(peer, at, MessageReader(protocol.LINE_BYTES))
 
 
@@ -121,7 +122,7 @@ def test_a_request_that_takes_long_is_answered(
 ) -> None:
     holder = Holder(lambda: 0.1)
     line = shared(monkeypatch, holder)
-    request: PendingRequest[None] = line.do(lambda session: session.name(b"Pia"))
+    request: PendingRequest[EmptyReply] = line.do(lambda session: session.name(b"Pia"))
     holder.says(ANSWER, takes_s)
     assert line.wait(request).status == OK
     assert holder.now_s - 100.0 >= takes_s
