@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from typing import Any
 
 import pytest
 
@@ -36,8 +37,8 @@ def receipt(saved: int) -> ReceiptReply:
 
 
 def status(saved: int) -> StatusReply:
-    return StatusReply(**{**dict.fromkeys(StatusReply._fields, 0), "program": PROGRAM,
-                          "saved": saved})  # fmt: skip
+    fields: dict[str, Any] = dict.fromkeys(StatusReply._fields, 0)
+    return StatusReply(**{**fields, "program": PROGRAM, "saved": saved})
 
 
 def waited(clock: Clock, saving: Saving, story: list[tuple[float, int]]) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator
+from concurrent import futures
 from types import SimpleNamespace
 from typing import Any
 
@@ -155,14 +156,13 @@ def test_ctrl_c_leaves_the_device(
     """Within any look of who waits."""
     device = Device()
     device.fails_at = stage
-    wait = event_loop.wait
 
     def press(*words: Any) -> Any:
-        wait(*words)
+        futures.wait(*words)
         raise KeyboardInterrupt
 
     with monkeypatch.context() as pressed:
-        pressed.setattr(event_loop, "wait", press)
+        pressed.setattr("tiniscript.link.transports.event_loop.wait", press)
         with pytest.raises(KeyboardInterrupt):
             connects_until(loop, device, pressed)
     assert device.clients == []
