@@ -26,7 +26,7 @@ from tests.support.pty_robot import on
 from tests.support.rows import each_row
 from tests.support.waiting import HANGS_S, until
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.robot import robot_broker
+from tiniscript.cli.robot import classroom, robot_broker
 from tiniscript.cli.robot.classroom import Classroom, Listener
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import Member
@@ -229,6 +229,27 @@ def test_the_times_of_all_robots_count_from_one_start() -> None:
     early_ms = times[0] - 2000
     assert 0 <= early_ms < 1000
     assert [each - early_ms for each in times] == [2000, 2100, 7000, 7100]
+
+
+@pytest.mark.parametrize("code", [0, 2, 3])
+@pytest.mark.parametrize("verb", ["list", "show", "show for a second", "upload", "stop"])
+def test_what_became_of_the_robots_is_the_exit_code(
+    monkeypatch: pytest.MonkeyPatch, verb: str, code: int
+) -> None:
+    """Ctrl-C is the usual end of `class show`, and of nothing else."""
+    own = SimpleNamespace(json=True, csv=None, max_time="1" if "second" in verb else None,
+                          robot=None)  # fmt: skip
+    room = cast(Classroom, SimpleNamespace(
+        options=own, language="en", group="c", present=list, targets=lambda *_: own,
+        broker=SimpleNamespace(stop=lambda _: True),
+    ))  # fmt: skip
+    monkeypatch.setattr(classroom, "together", lambda *_: code)
+    monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
+    for name in ("upload", "stop"):
+        monkeypatch.setattr(f"tiniscript.cli.commands.{name}.run", lambda *_: code)
+    done = {"list": classroom.list_robots, "upload": classroom.upload, "stop": classroom.stop}
+    is_usual = verb.startswith("show") and code == 2
+    assert done.get(verb, classroom.show)(room) == (0 if is_usual else code)
 
 
 def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:

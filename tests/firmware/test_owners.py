@@ -224,6 +224,25 @@ def test_a_key_that_one_of_both_cannot_keep_is_nobodys() -> None:
     assert owner_of(table, session) == FREE
 
 
+@pytest.mark.parametrize("second", [KEY_OWNER, KEY_TEACHER])
+@pytest.mark.parametrize("first", [KEY_OWNER, KEY_TEACHER])
+@pytest.mark.parametrize("by", ["the same session", "the next one", "one whose answer was lost"])
+def test_each_claim_has_a_press_of_its_own(first: int, second: int, by: str) -> None:
+    """Who has confirmed the one has not confirmed the next, however often that was asked for."""
+    table, keys = Owned(), Keys()
+    session = table.claimed(keys, first)
+    if by == "one whose answer was lost":
+        session = table.claimed(keys, first)
+    elif by == "the next one":
+        session = table.session(keys, nonce=8)
+    before = table.robot.memory()
+    request = session.claim(second)
+    table.pass_time(session, 3000)
+    assert request.outcome is None and table.robot.memory() == before
+    table.hold(session, 2200)
+    assert table.outcome(session, request) == "OK"
+
+
 def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
     table, mine, other = Owned(), Keys(), Keys(70)
     table.claimed(mine)

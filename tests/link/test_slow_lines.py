@@ -20,6 +20,7 @@ from tiniscript.link.connection import DEADLINE_MS, PendingRequest
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.session import Session
+from tiniscript.link.transmission import TRIES
 from tools.bench.large_upload import MOVE, Wire
 
 OK, STALE = STATUSES["OK"], STATUSES["STALE"]
@@ -109,6 +110,60 @@ class Talk:
 def test_an_upload_that_goes_on_is_not_given_up(code_bytes: int, line: Line) -> None:
     for seed in range(5):
         assert Talk(line, seed=seed).upload(code_bytes) == OK, seed
+
+
+class LossyWire(Wire):
+    """What is sent at once is lost whole, so often in a row at most."""
+
+    in_a_row = losses = lost = 0
+    draw = random.Random()
+
+    def send(self, data: bytes, now_ms: int) -> None:
+        is_lost = bool(data) and self.lost < self.in_a_row and self.draw.random() < 0.7
+        if data:
+            self.lost = self.lost + 1 if is_lost else 0
+            self.losses += is_lost
+        super().send(b"" if is_lost else data, now_ms)
+
+
+@pytest.mark.sampled("seed", keep=2)
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("in_a_row", [1, 2, 4])
+def test_a_long_program_is_not_given_up_for_its_losses_in_all(in_a_row: int, seed: int) -> None:
+    """Each piece that arrives gives the next one the whole patience."""
+    line, is_large = Line(11_520, 5), seed % 2 == 1
+    talk = Talk(line, 115_200, is_large)
+    wire = LossyWire(line.rate * 10, line.late_ms)
+    wire.draw = random.Random(seed)
+    talk.there = wire
+    talk.wait(talk.session.hello())
+    wire.in_a_row = in_a_row
+    most = 0
+    for code_bytes in (7000, 7000) if is_large else [380] * 6:
+        before = wire.losses
+        request = talk.session.upload(program(code_bytes), runs=False)
+        request.limit_ms = PATIENCE_MS
+        status = talk.wait(request)
+        most = max(most, wire.losses - before)
+        assert status == OK, most
+    assert most > TRIES or in_a_row == 1 or not is_large, most
+
+
+@pytest.mark.parametrize("is_large", [False, True])
+@pytest.mark.parametrize("cut_ms", [0, 30, 60, 100])
+def test_what_gets_no_further_is_given_up_and_the_next_one_is_done(
+    is_large: bool, cut_ms: int
+) -> None:
+    talk = Talk(Line(1000, 5), 115_200, is_large)
+    talk.wait(talk.session.hello())
+    for _ in range(3):
+        request = talk.session.upload(program(380), runs=False)
+        for _ in range(cut_ms // STEP_MS):
+            talk.step()
+        talk.is_cut = True
+        assert talk.wait(request, 60_000) == LOST
+        talk.is_cut = False
+        assert talk.upload(300) == OK
 
 
 def test_who_asks_again_after_an_answer_finds_the_line_free() -> None:

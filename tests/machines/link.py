@@ -17,6 +17,8 @@ from tests.machines.host import FLAGS, SOURCES, Process, compiled, files_in, fir
 from tiniscript import robots
 from tiniscript.robots.kit_words import kit_words
 
+# of the machine
+VERIFIER = ("bytecode", "crc32", "decode_form", "find_word", "image", "verify")
 LIBRARY = ("-std=c++11", "-O1", "-shared", "-fPIC")
 
 
@@ -125,8 +127,12 @@ def built(sources: Path, is_large: bool = False, flags: tuple[str, ...] = FLAGS)
     inputs.append(sources / "extras/host" / "wire.h")
     # the machine is not asked here, only its verifier and its checksum
     flags = (*flags, "-Dtiniscript_like_esp32") if is_large else flags
-    asked = [each for each in inputs if not each.name.startswith(("vm", "number"))]
+    asked = [each for each in inputs if each.parent.name != "vm" or is_asked(each)]
     return compiled(asked, flags)
+
+
+def is_asked(path: Path) -> bool:
+    return path.suffix == ".h" or path.stem in VERIFIER
 
 
 @lru_cache(maxsize=2)

@@ -76,6 +76,7 @@ def run(
                 _end(running)
             else:
                 running.wait()
+                _kill(running)
             if reader.is_alive():  # a thread that reads while Python ends can take it down
                 reader.join(KILLED_AFTER_S)
             raise

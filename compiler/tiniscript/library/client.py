@@ -50,7 +50,7 @@ class Client:
 
         `verb` is the name that other commands show for this one. `baud` is the speed that the user
         has asked for, else that of the profile. While `is_latched` no other command starts a run.
-        `heed` is called repeatedly in every wait.
+        `heed` is called before every request, and repeatedly in every wait.
         """
         self._heed = heed
         self.port = port
@@ -158,6 +158,7 @@ class Client:
             request.limit_ms = limit_ms or PATIENCE_MS
             return request
 
+        self._heed()  # a robot that answers at once makes nobody wait
         with self._connected():
             return self.line.do(limited)
 

@@ -244,6 +244,8 @@ void answer_radio(RequestReader* request, Writer* answer) {
       return network_expires();
     case 'l':
       return network_leases_after(request->u32());
+    case 'f':
+      return network_searches(request->u32());
     case 'L':
       return radio_logs();
     case 'x':

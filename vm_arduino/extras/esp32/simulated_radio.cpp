@@ -78,6 +78,7 @@ uint8_t refusal = 15;
 bool reconnects = true;  // STAClass::_autoReconnect
 esp_log_level_t log_level = ESP_LOG_ERROR;  // CONFIG_LOG_DEFAULT_LEVEL of the core
 uint32_t lease_ms;
+uint32_t search_ms;  // until a network is found, or none
 bool is_associated;
 bool is_expired;  // of which the core does not notice: its status stays WL_CONNECTED
 uint32_t associated_ms;
@@ -322,6 +323,11 @@ void network_leases_after(uint32_t found_ms) {
   lease_ms = found_ms;
 }
 
+void network_searches(uint32_t found_ms) {
+  const Lock lock(guard);
+  search_ms = found_ms;
+}
+
 void radio_logs() {
   if (log_level >= ESP_LOG_ERROR) {
     chip.sent += "E (15234) wifi:sta is connecting, cannot set config\r\n";
@@ -498,6 +504,7 @@ wl_status_t WiFiClass::status() {
     if (wifi_mode != WIFI_STA) return WL_NO_SHIELD;
     if (is_expired) return WL_CONNECTED;
     const uint32_t now_ms = static_cast<uint32_t>(millis());
+    if (!is_associated && now_ms - scanned_ms < search_ms) return WL_DISCONNECTED;
     const bool is_near = !near_name.empty() && near_name == settings.network;
     if (is_near && near_password == settings.password) {
       // once out of reach, it is joined again by whoever tries

@@ -36,6 +36,7 @@ void network_in_reach(const std::string& name, const std::string& password);
 void network_refuses(uint8_t reason);  // a wrong password
 void network_expires();  // it sends the robot away: its authentication is over
 void network_leases_after(uint32_t lease_ms);  // until whoever has joined has an address
+void network_searches(uint32_t search_ms);     // until a network is found, or none
 void radio_logs();  // a library of ESP-IDF tells an error, on UART 0
 // Lets the network know a name of a computer; none but "localhost" is known before.
 // Looking it up takes `wait_ms`.

@@ -49,10 +49,14 @@ struct Settings {
 // core tells them as "disconnected".
 constexpr uint8_t kRefusals[] = {15, 202, 203, 204};  // 4-way handshake, authentication, association
 
-uint8_t reason;       // the last one; 0 since the last try. The core's task writes these two
+// The core's task writes these two.
+uint8_t reason;      // the last one; 0 since a network was set, or has let the robot in
 bool is_associated;  // with the network; an address may still have to come
 
-void on_connected(arduino_event_t*) { __atomic_store_n(&is_associated, true, __ATOMIC_RELAXED); }
+void on_connected(arduino_event_t*) {
+  __atomic_store_n(&is_associated, true, __ATOMIC_RELAXED);
+  __atomic_store_n(&reason, static_cast<uint8_t>(0), __ATOMIC_RELAXED);
+}
 
 void on_disconnected(arduino_event_t* event) {
   __atomic_store_n(&is_associated, false, __ATOMIC_RELAXED);

@@ -1,0 +1,104 @@
+"""Ctrl-C while a program goes to many robots: at whatever stage each of them is, and whoever still
+connects, behind it none starts anything, and all stand."""
+
+from __future__ import annotations
+
+import random
+import threading
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+from tests.support.command import FOREVER, inside
+from tests.support.robot_fleet import RobotFleet
+from tiniscript import robots
+from tiniscript.cli.robot.fleet import Fleet
+from tiniscript.library import opening
+from tiniscript.library.client import Client
+from tiniscript.link import known_ports, ports
+
+TINIBOT = robots.load("tinibot").kit
+# Where the thread of a robot may be.
+OPENING, OPENED, ASKING, ASKED, SENDING, DRIVING = range(6)
+DRIVES = "MOTORS 80 80"
+
+
+class Room:
+    """Robots, and the stage at which each one's thread waits until Ctrl-C was pressed."""
+
+    def __init__(self, fleet: RobotFleet, stages: list[int]) -> None:
+        self.fleet = fleet
+        self.stages = {pupil.port: stage for pupil, stage in zip(fleet.pupils, stages, strict=True)}
+        self.there: set[str] = set()
+        self.pressed = threading.Event()
+        self.starts: list[int] = []  # of each robot, when Ctrl-C was pressed
+
+    def at(self, stage: int, port: str) -> None:
+        if self.stages[port] == stage and not self.pressed.is_set():
+            self.there.add(port)
+            assert self.pressed.wait(60), "nobody presses Ctrl-C"
+
+    def may_press(self) -> bool:
+        return all(
+            pupil.moves if self.stages[pupil.port] == DRIVING else pupil.port in self.there
+            for pupil in self.fleet.pupils
+        )
+
+    def counted(self) -> list[int]:
+        return [pupil.did.count(DRIVES) for pupil in self.fleet.pupils]
+
+
+def stepping(
+    monkeypatch: pytest.MonkeyPatch, room: Room, owner: object, name: str, before: int, after: int
+) -> None:
+    """Let each call of a function, whose first word is a port or has one, reach two stages."""
+    whole: Callable[..., Any] = getattr(owner, name)
+
+    def stepped(first: Any, *words: Any, **named: Any) -> Any:
+        port = first if isinstance(first, str) else first.port
+        room.at(before, port)
+        found = whole(first, *words, **named)
+        room.at(after, port)
+        return found
+
+    monkeypatch.setattr(owner, name, stepped)
+
+
+@pytest.fixture
+def fleet(monkeypatch: pytest.MonkeyPatch) -> Iterator[RobotFleet]:
+    monkeypatch.setattr(ports, "listed", list)
+    with RobotFleet([TINIBOT] * 3) as found:
+        for pupil in found.pupils:
+            known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
+        yield found
+
+
+@pytest.mark.sampled("seed", keep=3)
+@pytest.mark.parametrize("seed", range(8))
+def test_behind_ctrl_c_nothing_starts(
+    fleet: RobotFleet, monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    rng = random.Random(seed)
+    first = seed % 6  # each stage comes, beside others
+    room = Room(fleet, [first, *(rng.choice((OPENING, OPENED, ASKED, DRIVING)) for _ in "23")])
+    stepping(monkeypatch, room, opening, "connection_to", OPENING, OPENED)
+    stepping(monkeypatch, room, Client, "meet", ASKING, ASKED)
+    stepping(monkeypatch, room, Client, "send_program", SENDING, DRIVING + 1)
+    interrupt = Fleet.interrupt
+
+    def press(_: Fleet) -> None:
+        if not room.pressed.is_set() and room.may_press():
+            raise KeyboardInterrupt
+
+    def interrupted(its: Fleet) -> None:
+        interrupt(its)
+        room.starts = room.starts or room.counted()
+        room.pressed.set()
+
+    monkeypatch.setattr(Fleet, "_refuse_unread", press)
+    monkeypatch.setattr(Fleet, "interrupt", interrupted)
+    done = inside("upload", "-e", FOREVER, "--all").gives(2)
+    assert room.pressed.is_set()
+    assert room.counted() == room.starts, (room.stages, done)
+    assert not any(pupil.moves for pupil in fleet.pupils)

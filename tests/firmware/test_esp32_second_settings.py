@@ -1,0 +1,331 @@
+"""What an ESP32 does with a network or a broker is what a fresh one does with it, whatever it was
+told before: one that sent it away, one of which only a part came, one that its memory has damaged,
+one whose connection was cut anywhere."""
+
+from __future__ import annotations
+
+import random
+import socket
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import partial
+from struct import pack
+from typing import Any
+
+import pytest
+
+from tests.firmware.test_esp32_transports import Ends, ended
+from tests.firmware.test_esp32_wifi import (
+    HOTSPOT,
+    SCHOOL,
+    WIFI_KEY,
+    joined,
+    owned,
+    remote,
+    school_in_reach,
+    state,
+)
+from tests.machines.esp32 import Esp32Robot, Kept
+from tests.support.esp32_radio import in_reach, radios, talk
+from tests.support.owners import Keys
+from tiniscript.link import wifi
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.messages import AUTHORITY_MS
+from tiniscript.link.session import Session
+
+BROKER_KEY = b"broker"
+# The same network: its password was mistyped, as is usual.
+SECOND = SCHOOL._replace(password=b"another long password")
+OTHERS = SCHOOL._replace(password=b"that of somebody else")
+BROKER = wifi.BrokerSettings(bytes((127, 0, 0, 1)), 1883, "aula", b"pia", b"p" * 40, b"b.local")
+OTHER = wifi.BrokerSettings(bytes((10, 0, 0, 9)), 8883, "patio", b"robots-of-ana", b"q" * 63,
+                            b"a-longer.name", wifi.Tls(bytes(range(200)), 20261121))  # fmt: skip
+LEASE_MS, SEARCH_MS = 40_000, 4000
+TRY_MS = 15_000  # kJoinAgainMs
+AGAIN_MS = 4000  # between two tries at a broker, at most
+
+
+# -- networks -----------------------------------------------------------------------------------
+
+
+def sent_away(reason: int, robot: Esp32Robot, network: wifi.Network) -> None:
+    robot.radio("x", bytes([reason]))
+    let_in(robot, OTHERS if network == SECOND else SECOND)
+
+
+def out_of_reach(robot: Esp32Robot, network: wifi.Network) -> None:
+    in_reach(robot, "", "")
+
+
+def let_in(robot: Esp32Robot, network: wifi.Network, lease_ms: int = 0) -> None:
+    robot.radio("l", pack("<I", lease_ms))
+    robot.radio("f", pack("<I", 0))
+    in_reach(robot, network.name.decode(), network.password.decode())
+
+
+def searched_long(robot: Esp32Robot, network: wifi.Network) -> None:
+    """It is not found before that."""
+    let_in(robot, network)
+    robot.radio("f", pack("<I", SEARCH_MS))
+
+
+def let_in_late(robot: Esp32Robot, network: wifi.Network) -> None:
+    """Its address comes much later."""
+    let_in(robot, network, LEASE_MS)
+
+
+ENDS: dict[str, Callable[[Esp32Robot, wifi.Network], None]] = {
+    "out of reach": out_of_reach,
+    "joined": let_in,
+    "joined late": let_in_late,
+    "searched for long": searched_long,
+    **{f"refused for {reason}": partial(sent_away, reason) for reason in (15, 202, 203, 204)},
+}
+
+
+def states(robot: Esp32Robot, owner: Session, network: wifi.Network) -> tuple[set[str], Any]:
+    """Join a network; return all states that are told then, and what is known in the end."""
+    ends: Ends = [(None, owner)]
+    assert ended(robot, ends, owner.join(network)) == "OK"
+    talk(robot, ends, 2)
+    seen = {state(robot, owner)[1] for _ in range(20)}
+    asked = radios(robot)
+    return seen, (state(robot, owner), asked.network, asked.password, asked.is_access_point)
+
+
+@pytest.mark.parametrize("second", [*ENDS][:5])
+@pytest.mark.parametrize("first", ENDS)
+def test_a_second_network_is_joined_as_a_first_one(first: str, second: str) -> None:
+    robot, owner = owned(Keys())
+    ENDS[second](robot, SECOND)
+    _, fresh = states(robot, owner, SECOND)
+    robot, owner = owned(Keys())
+    ENDS[first](robot, SCHOOL)
+    states(robot, owner, SCHOOL)
+    ENDS[second](robot, SECOND)
+    seen, found = states(robot, owner, SECOND)
+    assert found == fresh
+    assert ("REFUSED" in seen) == second.startswith("refused"), seen
+
+
+@pytest.mark.parametrize("reason", [15, 202, 203, 204])
+def test_who_is_let_in_at_last_was_not_refused(reason: int) -> None:
+    """As where the signal was weak: the robot has joined, and waits for its address."""
+    robot, owner = owned(Keys())
+    sent_away(reason, robot, SCHOOL)
+    seen, _ = states(robot, owner, SCHOOL)
+    assert "REFUSED" in seen
+    let_in_late(robot, SCHOOL)
+    robot.wait(TRY_MS + 1000)
+    assert state(robot, owner) == ("STATION", "SEARCHING")
+    robot.wait(LEASE_MS)
+    assert state(robot, owner) == ("STATION", "READY")
+
+
+# -- what comes in parts ------------------------------------------------------------------------
+
+
+ASKED: dict[str, Callable[[Session], PendingRequest[Any]]] = {
+    "a network": lambda owner: owner.join(SCHOOL),
+    "a hotspot": lambda owner: owner.join(HOTSPOT),
+    "a broker": lambda owner: owner.use_broker(BROKER),
+    "a broker with TLS": lambda owner: owner.use_broker(OTHER),
+    "no broker": lambda owner: owner.use_broker(None),
+    "no network": lambda owner: owner.forget_wifi(),
+}
+
+
+def kept_settings(robot: Esp32Robot) -> tuple[bytes | None, bytes | None]:
+    entries = robot.kept().entries
+    return entries.get(WIFI_KEY), entries.get(BROKER_KEY)
+
+
+def took_ms(robot: Esp32Robot, owner: Session, what: str) -> int:
+    """Have something kept; return how long that took."""
+    began_ms = robot.now_ms
+    assert ended(robot, [(None, owner)], ASKED[what](owner)) == "OK"
+    return robot.now_ms - began_ms
+
+
+@pytest.mark.sampled("seed", keep=4)
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("last", ASKED)
+def test_of_what_came_in_part_nothing_is_in_what_comes_whole(last: str, seed: int) -> None:
+    """Who gives it leaves at any moment before its last part has come."""
+    rng = random.Random(seed)
+    robot, owner = owned(Keys())
+    usual_ms = took_ms(robot, owner, last)
+    fresh = kept_settings(robot)
+    keys = Keys()
+    robot, _ = owned(keys)
+    for nonce in range(rng.randint(1, 3)):
+        talk(robot, [], AUTHORITY_MS + 100)
+        first = remote(robot, keys, 20 + nonce)
+        assert ended(robot, [(None, first)], first.wifi()) == "OK"
+        request = ASKED[rng.choice([last, "a network", "a broker", "a broker with TLS"])](first)
+        talk(robot, [(None, first)], rng.randint(1, usual_ms))
+        if request.outcome is not None or kept_settings(robot) != (None, None):
+            return  # it came whole
+    talk(robot, [], AUTHORITY_MS + 100)
+    owner = remote(robot, keys, 50)
+    assert ended(robot, [(None, owner)], ASKED[last](owner)) == "OK"
+    assert kept_settings(robot) == fresh
+
+
+# -- what is damaged ----------------------------------------------------------------------------
+
+
+def damaged(entry: bytes) -> Iterator[bytes]:
+    """Of another version, cut, and full of ends that are missing."""
+    yield from (entry[:1], entry[: len(entry) // 2], entry[:-1], entry + b"\0", entry * 2)
+    yield b"~" * 8 + entry[8:]  # no mode, and no class
+    yield b"x" * len(entry)
+    yield entry[:7] + b"y" * (len(entry) - 7)
+
+
+@pytest.mark.parametrize("key", [WIFI_KEY, BROKER_KEY])
+def test_damaged_settings_are_none(key: bytes) -> None:
+    """Nothing of them is told, and what is set anew is set as for the first time."""
+    keys = Keys()
+    robot, owner = joined(keys)
+    ends: Ends = [(None, owner)]
+    assert ended(robot, ends, owner.use_broker(BROKER)) == "OK"
+    kept, whole = robot.kept(), kept_settings(robot)
+    for entry in damaged(kept.entries[key]):
+        again = Esp32Robot(kept=Kept(b"", {**kept.entries, key: entry}, 0))
+        school_in_reach(again)
+        again.wait(400)
+        owner = remote(again, keys, 30)
+        ends = [(None, owner)]
+        asked = owner.wifi() if key == WIFI_KEY else owner.broker()
+        assert ended(again, ends, asked) == "OK" and asked.outcome
+        values = asked.outcome.values
+        found = wifi.MODES[values.mode], wifi.STATES[values.state], values.network
+        assert found == ("OFF", "OFF", b""), entry
+        assert (radios(again).joins == 0) == (key == WIFI_KEY)
+        assert ended(again, ends, owner.join(SCHOOL)) == "OK"
+        assert ended(again, ends, owner.use_broker(BROKER)) == "OK"
+        assert kept_settings(again) == whole
+
+
+# -- a broker's connection ----------------------------------------------------------------------
+
+
+ACCEPTED, SUBSCRIBED, PINGED = b"\x20\2\0\0", b"\x90\4\0\1\0\0", b"\xd0\0"
+MESSAGE = b"\x30" + bytes((2 + len(b"tiniscript/aula/stop") + 5, 0, len(b"tiniscript/aula/stop")))
+MESSAGE += b"tiniscript/aula/stop" + b"hello"
+CONNECT, SUBSCRIBE, PING = 1, 8, 12
+
+
+class CutBroker:
+    """A broker that breaks its connections off behind so many bytes; then it says `rest` first."""
+
+    def __init__(self) -> None:
+        self.listening = socket.create_server(("127.0.0.1", 0))
+        self.listening.setblocking(False)
+        self.port = self.listening.getsockname()[1]
+        self.client: socket.socket | None = None
+        self.said = self.cuts = 0
+        self.heard = b""
+        self.cut_after: int | None = None
+        self.rest = b""
+
+    def close(self) -> None:
+        self.part()
+        self.listening.close()
+
+    def step(self) -> None:
+        with suppress(BlockingIOError):
+            client, _ = self.listening.accept()
+            client.setblocking(False)
+            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            self.part()
+            self.client, self.heard, self.said = client, b"", 0
+        if self.client is None:
+            return
+        try:
+            data = self.client.recv(4096)
+        except BlockingIOError:
+            return
+        except OSError:
+            data = b""
+        if not data:
+            self.part()
+            return
+        self.heard += data
+        while len(self.heard) >= 2 and len(self.heard) >= 2 + self._length():
+            kind = self.heard[0] >> 4
+            self.heard = self.heard[2 + self._length() :]
+            self._answer(kind)
+
+    def _length(self) -> int:
+        assert self.heard[1] < 128
+        return self.heard[1]
+
+    def _answer(self, kind: int) -> None:
+        answers = {CONNECT: ACCEPTED, SUBSCRIBE: SUBSCRIBED + MESSAGE * 3, PING: PINGED}
+        data = answers.get(kind, b"")
+        if self.client is None or not data:
+            return
+        if self.cut_after is not None and self.said + len(data) >= self.cut_after:
+            with suppress(OSError):
+                self.client.send(data[: self.cut_after - self.said] + self.rest)
+            self.cuts += 1
+            self.cut_after = None
+            if not self.rest:
+                self.part()
+            return
+        with suppress(OSError):
+            self.client.send(data)
+        self.said += len(data)
+
+    def part(self) -> None:
+        if self.client is not None:
+            self.client.close()
+        self.client = None
+
+
+@pytest.fixture
+def cut_broker() -> Iterator[CutBroker]:
+    found = CutBroker()
+    yield found
+    found.close()
+
+
+def broker_state(robot: Esp32Robot, owner: Session) -> str:
+    request = owner.broker()
+    assert ended(robot, [(None, owner)], request) == "OK" and request.outcome
+    return wifi.STATES[request.outcome.values.state]
+
+
+def comes_back(robot: Esp32Robot, owner: Session, broker: CutBroker, limit_ms: int) -> bool:
+    """Whether the robot is at its broker, all cuts done, within so long."""
+    for _ in range(limit_ms // 20):
+        robot.wait(20)
+        broker.step()
+        is_there = broker.cut_after is None and broker.client is not None
+        if is_there and broker_state(robot, owner) == "READY":
+            return True
+    return False
+
+
+LONGEST = len(ACCEPTED + SUBSCRIBED + MESSAGE * 3 + PINGED * 2)
+
+
+@pytest.mark.parametrize("rest", [b"", b"\xff" * 9, b"\x30\xff\xff\xff\xff\xff"])
+@pytest.mark.sampled("part", keep=2)
+@pytest.mark.parametrize("part", range(6))
+def test_a_connection_that_is_cut_anywhere_is_made_again(
+    cut_broker: CutBroker, part: int, rest: bytes
+) -> None:
+    """In each byte of each packet, or broken there; the next one begins as the first."""
+    robot, owner = joined(Keys())
+    settings = wifi.BrokerSettings(bytes((127, 0, 0, 1)), cut_broker.port, "aula")
+    assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+    assert comes_back(robot, owner, cut_broker, AGAIN_MS)
+    for count, cut_after in enumerate(range(1 + part, LONGEST + 1, 6), 1):
+        cut_broker.part()
+        cut_broker.cut_after, cut_broker.rest = cut_after, rest
+        limit_ms = 3 * AGAIN_MS + 6000
+        assert comes_back(robot, owner, cut_broker, limit_ms), cut_after
+        assert cut_broker.cuts == count

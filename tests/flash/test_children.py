@@ -1,0 +1,74 @@
+"""Whatever ends a program that is run: what it has started holds no port any more."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from tests.support.waiting import until
+from tiniscript.flash import children
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs a shell")
+
+# Starts a program that has none of its ends, and goes on as its last word says.
+PARENT = 'sleep 3600 </dev/null >/dev/null 2>&1 & echo $! > "$1"; echo begun; {}'
+
+
+class Broken(Exception):
+    """The look at it has failed."""
+
+
+def looks_on(said: str) -> None:
+    """It may go on."""
+
+
+def breaks(said: str) -> None:
+    if "begun" in said:
+        raise Broken
+
+
+def presses(said: str) -> None:
+    if "begun" in said:
+        raise KeyboardInterrupt
+
+
+FIRST_ITS_END = "it may not be ended, as what writes a firmware"
+WAYS: dict[str, tuple[str, Callable[[str], None], type[BaseException] | None]] = {
+    "it ends well": ("true", looks_on, None),
+    "it fails": ("exit 3", looks_on, None),
+    "it is killed": ("kill -9 $$", looks_on, None),
+    "it closes its ends and stays": ("exec sleep 3600 >&- 2>&-", looks_on,
+                                     subprocess.TimeoutExpired),
+    "it is not waited for": ("sleep 3600", breaks, Broken),
+    "Ctrl-C": ("sleep 3600", presses, KeyboardInterrupt),
+    "it takes no Ctrl-C": ("trap '' INT; sleep 3600", breaks, Broken),
+    FIRST_ITS_END: ("sleep 0.2", breaks, Broken),
+}  # fmt: skip
+
+
+def is_over(process: int) -> bool:
+    """Whether it has ended, though nobody may have waited for it."""
+    done = subprocess.run(["ps", "-o", "stat=", "-p", str(process)], capture_output=True, text=True)
+    return done.stdout.strip()[:1] in ("", "Z")
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_nothing_is_left_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str) -> None:
+    end, look, failure = WAYS[way]
+    monkeypatch.setattr(children, "KILLED_AFTER_S", 0.2)
+    for round_ in range(2):  # the second one as the first one
+        noted = tmp_path / f"{round_}"
+        words = ["sh", "-c", PARENT.format(end), "sh", str(noted)]
+        if failure is None:
+            code, said = children.run(words, None, look)
+            assert said == "begun\n" and (code == 0) == (way == "it ends well")
+        else:
+            with pytest.raises(failure):
+                children.run(words, None, look, None, lambda _: way != FIRST_ITS_END, 0.2)
+        child = int(noted.read_text(encoding="utf-8"))
+        until(partial(is_over, child), "what it has started ends")

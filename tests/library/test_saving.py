@@ -1,0 +1,94 @@
+"""How long a robot is waited for that saves a program: on a fake clock."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import pytest
+
+from tiniscript.library import client
+from tiniscript.library.client import LOW_S, SAVE_S, Saving
+from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
+from tiniscript.link.payloads import ReceiptReply, StatusReply
+
+LOOK_S = 0.1
+PROGRAM = 7
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now_s = 0.0  # a clock may begin there
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    found = Clock()
+    monkeypatch.setattr(client, "monotonic", found)
+    return found
+
+
+def receipt(saved: int) -> ReceiptReply:
+    return ReceiptReply(**{**dict.fromkeys(ReceiptReply._fields, 0), "program": PROGRAM,
+                           "saved": saved})  # fmt: skip
+
+
+def status(saved: int) -> StatusReply:
+    fields: dict[str, Any] = dict.fromkeys(StatusReply._fields, 0)
+    return StatusReply(**{**fields, "program": PROGRAM, "saved": saved})
+
+
+def waited(clock: Clock, saving: Saving, story: list[tuple[float, int]]) -> float:
+    """Let the robot say, up to each of these times, how far it is; return how long it was asked."""
+    began_s = clock.now_s
+    for _ in saving.rounds():
+        passed_s = clock.now_s - began_s
+        saving.learn(status(next(saved for until_s, saved in story if passed_s < until_s)))
+        clock.now_s += LOOK_S
+        assert passed_s <= SAVE_S + LOOK_S, "it waits for ever"
+    return clock.now_s - began_s
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_dips_of_the_supply_end_no_saving_that_goes_on(clock: Clock, seed: int) -> None:
+    rng = random.Random(seed)
+    story, at_s = [], 0.0
+    done_s = rng.uniform(LOW_S, SAVE_S - 1)
+    is_low = rng.random() < 0.5
+    while at_s < done_s:
+        at_s += rng.uniform(0.1, LOW_S - 2 * LOOK_S) if is_low else rng.uniform(2 * LOOK_S, 1.5)
+        story.append((min(at_s, done_s), SAVED_LOW_SUPPLY if is_low else SAVED_SAVING))
+        is_low = not is_low
+    story.append((SAVE_S * 9, SAVED_STORED))
+    first = SAVED_LOW_SUPPLY if rng.random() < 0.5 else SAVED_SAVING
+    clock.now_s = rng.choice((0.0, 5.0, 1e6))
+    saving = Saving(receipt(first))
+    waited(clock, saving, story)
+    assert (saving.is_over, saving.reason) == (True, ""), story
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_a_supply_that_stays_low_is_waited_for_as_long_each_time(clock: Clock, seed: int) -> None:
+    """Whatever came before it, and in a second wait as in the first."""
+    rng = random.Random(seed)
+    saving = Saving(receipt(SAVED_SAVING))
+    for _ in range(3):
+        dip_s = rng.uniform(0, 1.5)
+        good_s = dip_s + rng.uniform(0.3, 3)
+        story = [(dip_s, SAVED_LOW_SUPPLY), (good_s, SAVED_SAVING), (SAVE_S * 9, SAVED_LOW_SUPPLY)]
+        assert (
+            good_s + LOW_S - LOOK_S <= waited(clock, saving, story) <= good_s + LOW_S + 4 * LOOK_S
+        )
+        assert saving.reason == "low_supply"
+        clock.now_s += rng.uniform(0, 20)
+
+
+def test_what_is_never_saved_is_given_up(clock: Clock) -> None:
+    saving = Saving(receipt(SAVED_SAVING))
+    assert SAVE_S <= waited(clock, saving, [(SAVE_S * 9, SAVED_SAVING)]) <= SAVE_S + LOOK_S
+    assert saving.reason == "saves_later"
+    assert waited(clock, saving, [(SAVE_S * 9, SAVED_STORED)]) == pytest.approx(LOOK_S)
+    assert saving.reason == ""

@@ -1,0 +1,141 @@
+"""What a connection of the library does with its last program does not depend on those before it:
+whatever ended them, leaving it stops the robot, or not, as on a fresh connection."""
+
+from __future__ import annotations
+
+import itertools
+import random
+from collections.abc import Callable
+from time import monotonic
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from tests.support.link_events import event
+from tiniscript import robots
+from tiniscript.library import connection, opening
+from tiniscript.library.connection import RobotConnection
+from tiniscript.library.errors import RobotError
+from tiniscript.link.messages import SAVED_STORED
+from tiniscript.link.outcomes import Event, RestartedEvent, StartedEvent
+from tiniscript.link.payloads import DoneEvent, ReceiptReply, StatusReply
+from tiniscript.link.requests import OK, Reply
+
+PROGRAM = 7
+
+
+class Line:
+    """A robot that runs what it is told, and what its client did with it."""
+
+    def __init__(self, *_: object) -> None:
+        self.run = 0
+        self.events: list[tuple[int, Event]] = []
+        self.did: list[str] = []
+        self.drives_another = self.holds_for_others = False
+        self.device_info = SimpleNamespace(kit=robots.load("tinibot").kit.fingerprint, name="")
+
+    def meet(self) -> Any:
+        return self.device_info
+
+    def ask(self, make: object) -> Reply[Any]:
+        if getattr(make, "__name__", "") == "status":
+            fields: dict[str, Any] = dict.fromkeys(StatusReply._fields, 0)
+            return Reply(
+                OK, 0, StatusReply(**{**fields, "program": PROGRAM, "saved": SAVED_STORED})
+            )
+        self.run += 1
+        fields = dict.fromkeys(ReceiptReply._fields, 0)
+        return Reply(OK, 0, ReceiptReply(**{**fields, "program": PROGRAM, "run": self.run}))
+
+    def send_program(self, *_: object, **__: object) -> Reply[Any]:
+        return self.ask(None)
+
+    def event(self, limit_s: float) -> tuple[int, Event] | None:
+        return self.events.pop(0) if self.events else None
+
+    def stop(self) -> bool:
+        self.did.append("stop")
+        return True
+
+    def close(self) -> None:
+        self.did.append("close")
+
+
+# How a program ends, and whether who has started it looks.
+ENDS: dict[str, Callable[[Line], list[Event]]] = {
+    "runs on": lambda line: [],
+    "done": lambda line: [DoneEvent(line.run)],
+    "stopped": lambda line: [event("STOPPED")],
+    "replaced": lambda line: [StartedEvent(line.run + 1, PROGRAM)],
+    "restarted": lambda line: [RestartedEvent()],
+}
+STARTS = ("start", "start detached", "upload", "live")
+Story = tuple[str, str, bool]
+
+
+def happens(robot: RobotConnection, line: Line, story: Story) -> str:
+    how, end, looks = story
+    if how == "upload":
+        robot.upload("SI|F(2, 50)", save=False)
+    elif how == "live":
+        robot.live("F(2, 50)")
+    else:
+        robot.start(detached=how == "start detached")
+    found = [StartedEvent(line.run, PROGRAM), *ENDS[end](line)]
+    line.events += [(int(monotonic() * 1000), each) for each in found]
+    if not looks:
+        return ""
+    try:
+        return robot.wait(0).name
+    except RobotError as error:
+        return error.reason
+
+
+def connected(monkeypatch: pytest.MonkeyPatch) -> tuple[RobotConnection, Line]:
+    line = Line()
+    monkeypatch.setattr(connection, "Client", lambda *_: line)
+    monkeypatch.setattr(opening, "remember", lambda *_: None)
+    return RobotConnection("P", robots.load("tinibot"), False, None, "en"), line
+
+
+def left(robot: RobotConnection, line: Line, kind: type[BaseException] | None) -> list[str]:
+    robot.__exit__(kind)
+    return line.did
+
+
+STORIES = list(itertools.product(STARTS, ENDS, (False, True)))
+
+
+@pytest.mark.sampled("seed", keep=20)
+@pytest.mark.parametrize("kind", [None, ValueError, KeyboardInterrupt])
+@pytest.mark.parametrize("seed", range(len(STORIES)))
+def test_leaving_is_about_the_last_program_alone(
+    monkeypatch: pytest.MonkeyPatch, seed: int, kind: type[BaseException] | None
+) -> None:
+    rng = random.Random(seed)
+    last = STORIES[seed]
+    robot, line = connected(monkeypatch)
+    said = happens(robot, line, last)
+    fresh = left(robot, line, kind)
+    for _ in range(8):
+        robot, line = connected(monkeypatch)
+        before = [rng.choice(STORIES) for _ in range(rng.randint(1, 3))]
+        for story in before:
+            happens(robot, line, story)
+            line.events.clear()
+        assert happens(robot, line, last) == said, before
+        assert left(robot, line, kind) == fresh, (before, last)
+
+
+def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the others are compared with."""
+    for story, found in (
+        (("start", "runs on", False), ["stop", "close"]),
+        (("start detached", "runs on", False), ["close"]),
+        (("upload", "replaced", True), ["close"]),
+        (("upload", "replaced", False), ["close"]),
+    ):
+        robot, line = connected(monkeypatch)
+        happens(robot, line, story)
+        assert left(robot, line, None) == found, story

@@ -1,0 +1,186 @@
+"""Whatever ends an attempt to open a port by Bluetooth LE, at whatever stage: the device is free
+for others, and the next attempt is as the first one."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from concurrent import futures
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+pytest.importorskip("bleak", reason="no bleak: pip install tiniscript[radio]")
+
+from bleak.exc import BleakDeviceNotFoundError, BleakError
+
+from tiniscript.link import errors
+from tiniscript.link.errors import PortError
+from tiniscript.link.transports import bluetooth, event_loop
+
+UART = bluetooth.MODULES[0]
+
+
+class Device:
+    """What a radio knows of a device: who is connected to it."""
+
+    def __init__(self) -> None:
+        self.fails_at = ""
+        self.failure: BaseException | None = None
+        self.lacks = ""
+        self.clients: list[Client] = []
+        self.notified = 0
+
+    async def reached(self, stage: str) -> None:
+        await asyncio.sleep(0)
+        if self.fails_at == stage:
+            if self.failure is None:
+                await asyncio.Event().wait()  # it never ends
+            else:
+                raise self.failure
+
+
+class Client:
+    """A BleakClient. Being connected it keeps others off until it is disconnected."""
+
+    def __init__(self, device: Device, *_: object, **__: object) -> None:
+        self.device = device
+
+    async def connect(self) -> None:
+        assert not self.device.clients, "somebody else has the device"
+        await self.device.reached("before it is connected")
+        self.device.clients.append(self)
+        await self.device.reached("connected")
+
+    async def disconnect(self) -> None:
+        await asyncio.sleep(0)
+        if self in self.device.clients:
+            self.device.clients.remove(self)
+
+    @property
+    def is_connected(self) -> bool:
+        return self in self.device.clients
+
+    @property
+    def services(self) -> list[Any]:
+        lacks = self.device.lacks
+
+        def characteristic(uuid: str) -> Any:
+            is_writes = uuid == UART.writes
+            if lacks == ("writes" if is_writes else "notifies"):
+                return None
+            properties = ["read"] if lacks == "write" else ["write-without-response", "notify"]
+            return SimpleNamespace(uuid=uuid, properties=properties)
+
+        uuid = "of something else" if lacks == "service" else UART.service
+        return [SimpleNamespace(uuid=uuid, get_characteristic=characteristic)]
+
+    async def start_notify(self, *_: object) -> None:
+        await self.device.reached("notify")
+        self.device.notified += 1
+
+
+FAILURES: dict[str, tuple[BaseException | None, str]] = {
+    "an error of bleak": (BleakError("no"), ""),
+    "a device that is gone": (BleakDeviceNotFoundError("x", "no"), errors.UNREACHABLE),
+    "an error of the system": (OSError("no"), ""),
+    "a bug of bleak": (ValueError("no"), ""),
+    "no end": (None, errors.SLOW),
+}
+STAGES = ("before it is connected", "connected", "notify")
+
+
+@pytest.fixture
+def loop(monkeypatch: pytest.MonkeyPatch) -> Iterator[event_loop.EventLoop]:
+    monkeypatch.setattr(bluetooth, "BleakClient", Client)
+    bluetooth._turn.cache_clear()  # the lock is of one loop
+    found = event_loop.EventLoop()
+    yield found
+    found.close()
+    bluetooth._turn.cache_clear()
+
+
+def connects(loop: event_loop.EventLoop, device: Any) -> bluetooth.BluetoothPort:
+    port = bluetooth.BluetoothPort(loop, 9600)
+    port.connect(device)
+    return port
+
+
+def works(loop: event_loop.EventLoop, device: Device) -> None:
+    """The next one gets the device, and leaves it."""
+    device.fails_at = device.lacks = ""
+    before = device.notified
+    for _ in range(2):
+        port = connects(loop, device)
+        assert len(device.clients) == 1
+        port.close()
+        assert device.clients == []
+        port.close()  # does nothing
+    assert device.notified == before + 2
+
+
+@pytest.mark.parametrize("failure", FAILURES)
+@pytest.mark.parametrize("stage", STAGES)
+def test_what_fails_leaves_the_device(
+    loop: event_loop.EventLoop, monkeypatch: pytest.MonkeyPatch, stage: str, failure: str
+) -> None:
+    device = Device()
+    for _ in range(2):
+        device.fails_at = stage
+        device.failure, reason = FAILURES[failure]
+        with monkeypatch.context() as short, pytest.raises(PortError) as found:
+            if device.failure is None:
+                short.setattr(bluetooth, "QUEUE_S", 0.1)
+            connects(loop, device)
+        assert found.value.reason == reason or not reason
+        assert device.clients == []
+        works(loop, device)
+
+
+@pytest.mark.parametrize("lacks", ["service", "writes", "notifies", "write"])
+def test_what_is_no_robot_is_left(loop: event_loop.EventLoop, lacks: str) -> None:
+    device = Device()
+    device.lacks = lacks
+    with pytest.raises(PortError) as found:
+        connects(loop, device)
+    assert found.value.reason == errors.NO_ROBOT
+    assert device.clients == []
+    works(loop, device)
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_ctrl_c_leaves_the_device(
+    loop: event_loop.EventLoop, stage: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Within any look of who waits."""
+    device = Device()
+    device.fails_at = stage
+
+    def press(*words: Any) -> Any:
+        futures.wait(*words)
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as pressed:
+        pressed.setattr("tiniscript.link.transports.event_loop.wait", press)
+        with pytest.raises(KeyboardInterrupt):
+            connects_until(loop, device, pressed)
+    assert device.clients == []
+    works(loop, device)
+
+
+def connects_until(loop: event_loop.EventLoop, device: Device, pressed: pytest.MonkeyPatch) -> None:
+    """Ctrl-C is pressed once: what clears up behind it is left alone."""
+    run = loop.run
+    runs = 0
+
+    def counted(coroutine: Any, limit_s: float) -> Any:
+        nonlocal runs
+        runs += 1
+        if runs == 2:
+            pressed.undo()
+        return run(coroutine, limit_s)
+
+    port = bluetooth.BluetoothPort(loop, 9600)
+    pressed.setattr(loop, "run", counted)
+    port.connect(device)  # type: ignore[arg-type]

@@ -1,0 +1,95 @@
+"""The reading half of a radio's port: whatever came before, a read waits where there is nothing to
+read and nobody has cancelled it, once for each cancelling."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from tiniscript.link.transports import READ_S
+from tiniscript.link.transports.pushed import ENDED, KEPT_BYTES, PushedTransport
+
+
+class Waits:
+    """The condition of one thread, which counts how often it would have waited.
+
+    What comes meanwhile is brought by `then`.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.then: list[bytes] = []
+        self.port: PushedTransport | None = None
+
+    def __enter__(self) -> None:
+        """Nobody else is there."""
+
+    def __exit__(self, *_: object) -> None:
+        """The same."""
+
+    def notify_all(self) -> None:
+        """The same."""
+
+    def wait(self, limit_s: float) -> None:
+        assert limit_s == READ_S
+        self.count += 1
+        if self.then and self.port is not None:
+            self.port.bring(self.then.pop())
+
+
+def port_and_waits(monkeypatch: pytest.MonkeyPatch) -> tuple[PushedTransport, Waits]:
+    port, waits = PushedTransport(), Waits()
+    monkeypatch.setattr(port, "_news", waits)
+    waits.port = port
+    return port, waits
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
+    rng = random.Random(seed)
+    port, waits = port_and_waits(monkeypatch)
+    there, is_cancelled, why = b"", False, ""
+    for _ in range(200):
+        what = rng.choice(("read", "read", "read", "bring", "cancel", "while it waits"))
+        if rng.random() < 0.002:
+            what = "end"
+        if what == "bring":
+            data = rng.randbytes(rng.choice((1, 20, 300)))
+            port.bring(data)
+            there += data
+        elif what == "cancel":
+            port.cancel_read()
+            is_cancelled = True
+        elif what == "end":
+            port.end("")
+            why = why or ENDED
+        else:
+            size = rng.choice((1, 20, 4096))
+            late = rng.randbytes(5) if what == "while it waits" else b""
+            waits.then = [late] if late else []
+            has_to_wait = not (there or is_cancelled or why)
+            if has_to_wait:
+                there += late
+            before = waits.count
+            if why and not there:
+                with pytest.raises(OSError, match=why):
+                    port.read(size)
+            else:
+                assert port.read(size) == there[:size]
+            there = there[size:]
+            assert waits.count - before == has_to_wait, "it waits once, or not at all"
+            is_cancelled = False
+        assert port.in_waiting == len(there)
+
+
+@pytest.mark.parametrize("count", [KEPT_BYTES - 1, KEPT_BYTES, KEPT_BYTES + 1, 3 * KEPT_BYTES])
+def test_room_that_was_read_is_there_again(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
+    port, _ = port_and_waits(monkeypatch)
+    for _ in range(3):
+        for _ in range(count // 1000):
+            port.bring(bytes(1000))
+        port.bring(bytes(count % 1000))
+        assert port.in_waiting == min(count, KEPT_BYTES)
+        assert len(port.read(10 * KEPT_BYTES)) == min(count, KEPT_BYTES)
+        assert port.in_waiting == 0

@@ -1,0 +1,128 @@
+"""Who shares a port waits for a holder that answers, however long, and gives up one that does not:
+on a fake clock."""
+
+from __future__ import annotations
+
+import random
+import socket
+from bisect import insort
+from collections.abc import Callable
+from typing import cast
+
+import pytest
+
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.outcomes import LOOK_S, ConnectionLost
+from tiniscript.link.payloads import EmptyReply, ShowEvent
+from tiniscript.link.requests import OK
+from tiniscript.link.sharing import protocol, shared_connection
+from tiniscript.link.sharing.protocol import JsonMessage, MessageReader
+from tiniscript.link.sharing.registry import Registration
+from tiniscript.link.sharing.shared_connection import DEAF_S, SharedConnection
+
+LONG_S = 20 * DEAF_S
+ANSWER = {"id": 1, "status": OK, "detail": 0, "heard": 9, "is_echoed": False, "boot": 0,
+          "values": {}}  # fmt: skip
+SHOWN = {"event": "SHOW", "ms": 5, "values": protocol.of_event(ShowEvent(5, 0))}
+
+
+class Holder:
+    """The socket to a holder of a port: each heartbeat is answered so much later.
+
+    Behind `dies_s` it neither answers nor says anything. Time passes while somebody waits for it.
+    """
+
+    def __init__(self, answer_s: Callable[[], float], dies_s: float = float("inf")) -> None:
+        self.now_s, self.dies_s = 100.0, 100.0 + dies_s
+        self.beats = 0
+        self._answer_s = answer_s
+        self._limit_s = 0.0
+        self._coming: list[tuple[float, bytes]] = []
+        self._reader = MessageReader(protocol.LINE_BYTES)
+
+    def clock(self) -> float:
+        return self.now_s
+
+    def says(self, message: JsonMessage, after_s: float) -> None:
+        at_s = self.now_s + after_s
+        if at_s < self.dies_s:
+            insort(self._coming, (at_s, protocol.written(message)))
+
+    def settimeout(self, seconds: float) -> None:
+        self._limit_s = seconds
+
+    def sendall(self, data: bytes) -> None:
+        for message in self._reader.put(data):
+            if message["do"] == "beat":
+                self.beats += 1
+                self.says({"beat": True}, self._answer_s())
+
+    def recv(self, count: int) -> bytes:
+        end_s = self.now_s + self._limit_s
+        if not self._coming or self._coming[0][0] > end_s:
+            self.now_s = end_s
+            raise TimeoutError
+        at_s, data = self._coming.pop(0)
+        self.now_s = max(self.now_s, at_s)
+        return data
+
+    def close(self) -> None:
+        """It has no other end."""
+
+
+def shared(monkeypatch: pytest.MonkeyPatch, holder: Holder) -> SharedConnection:
+    monkeypatch.setattr(shared_connection, "monotonic", holder.clock)
+    at = Registration("P", 1, "token", "answer", "upload", 9600, 1)
+    peer = cast(socket.socket, holder)
+    return SharedConnection(peer, at, MessageReader(protocol.LINE_BYTES))
+
+
+def listens(line: SharedConnection, holder: Holder, seconds: float) -> float:
+    """Let it wait for events; return how long it has, until it has ended."""
+    began_s = holder.now_s
+    while holder.now_s - began_s < seconds:
+        try:
+            line.event(LOOK_S)
+        except ConnectionLost as over:
+            assert over.is_server
+            break
+    return holder.now_s - began_s
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_holder_that_answers_is_waited_for(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
+    """At once, now and then late, or always nearly too late; what it says meanwhile counts, too."""
+    rng = random.Random(seed)
+    longest_s = rng.choice((0.0, 1.0, DEAF_S - 3 * LOOK_S))
+    holder = Holder(lambda: rng.choice((0.0, longest_s)))
+    line = shared(monkeypatch, holder)
+    if seed % 2:
+        for second in range(int(LONG_S)):
+            holder.says(SHOWN, second + rng.random())
+    assert listens(line, holder, LONG_S) >= LONG_S and not line.has_ended
+    assert holder.beats > LONG_S / (protocol.HEARTBEAT_S + LOOK_S) / 2
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_holder_that_falls_silent_is_given_up(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
+    rng = random.Random(seed)
+    dies_s = rng.choice((0.0, rng.uniform(0, LONG_S)))
+    holder = Holder(lambda: rng.choice((0.0, 1.0)), dies_s)
+    line = shared(monkeypatch, holder)
+    ended_s = listens(line, holder, LONG_S * 2)
+    assert line.has_ended
+    assert dies_s - 1.0 + DEAF_S - LOOK_S < ended_s < dies_s + DEAF_S + 1.0 + 3 * LOOK_S
+    with pytest.raises(ConnectionLost):
+        line.event(0)
+
+
+@pytest.mark.parametrize("takes_s", [DEAF_S * 3, LONG_S])
+def test_a_request_that_takes_long_is_answered(
+    monkeypatch: pytest.MonkeyPatch, takes_s: float
+) -> None:
+    holder = Holder(lambda: 0.1)
+    line = shared(monkeypatch, holder)
+    request: PendingRequest[EmptyReply] = line.do(lambda session: session.name(b"Pia"))
+    holder.says(ANSWER, takes_s)
+    assert line.wait(request).status == OK
+    assert holder.now_s - 100.0 >= takes_s
