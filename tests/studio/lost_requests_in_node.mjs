@@ -79,7 +79,7 @@ class Server {
   answer(request) {
     if (request.do === 'connect') {
       if (request.connection > this.connection) {
-        Object.assign(this, { connection: request.connection, news: [], count: 0, ids: new Set(), pressed: 0 });
+        Object.assign(this, { connection: request.connection, news: [], count: 0, last: 0, pressed: 0 });
         this.tell({ connected: { name: 'TINI' } });
       }
       return {};
@@ -92,8 +92,8 @@ class Server {
     }
     if (request.do === 'leave') this.tell({ over: 'left' });
     for (const each of request.asked ?? []) {
-      if (this.ids.has(each.id)) continue;
-      this.ids.add(each.id);
+      if (each.id <= this.last) continue;
+      this.last = each.id;
       this.done.push(each.what);
       setLater(() => this.tell({ id: each.id, ok: true, what: each.what }), this.takes_ms());
     }
