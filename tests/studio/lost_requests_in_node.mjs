@@ -57,6 +57,7 @@ class Server {
     this.random = random;
     this.loses = () => false;
     this.late_ms = () => 1;
+    this.lost_ms = () => 1; // until the page knows
     this.done = [];
     this.stops = [];
     this.connection = 0;
@@ -67,10 +68,10 @@ class Server {
       setLater(() => reject(new Error('timeout')), limit_ms);
       const arrives = () => {
         const answer = this.answer(request);
-        if (this.loses(true)) return setLater(() => reject(new Error('lost')), 1);
+        if (this.loses(true)) return setLater(() => reject(new Error('lost')), this.lost_ms());
         setLater(() => resolve({ ok: true, status: 200, json: async () => answer }), this.late_ms());
       };
-      if (this.loses(false)) return setLater(() => reject(new Error('lost')), 1);
+      if (this.loses(false)) return setLater(() => reject(new Error('lost')), this.lost_ms());
       setLater(arrives, this.late_ms());
       if (this.random() < this.again) setLater(() => this.answer(request), this.late_ms());
     });
@@ -79,7 +80,7 @@ class Server {
   answer(request) {
     if (request.do === 'connect') {
       if (request.connection > this.connection) {
-        Object.assign(this, { connection: request.connection, news: [], count: 0, ids: new Set(), pressed: 0 });
+        Object.assign(this, { connection: request.connection, news: [], count: 0, last: 0, pressed: 0 });
         this.tell({ connected: { name: 'TINI' } });
       }
       return {};
@@ -92,8 +93,8 @@ class Server {
     }
     if (request.do === 'leave') this.tell({ over: 'left' });
     for (const each of request.asked ?? []) {
-      if (this.ids.has(each.id)) continue;
-      this.ids.add(each.id);
+      if (each.id <= this.last) continue;
+      this.last = each.id;
       this.done.push(each.what);
       setLater(() => this.tell({ id: each.id, ok: true, what: each.what }), this.takes_ms());
     }
@@ -106,24 +107,25 @@ class Server {
   }
 }
 
-// One connection of the page: asks, presses and an end; returns what is seen of it.
-async function story(random, bad, isWild = false) {
+// One connection of the page: asks, presses and an end; returns what is seen of it. Where the server `dies`, it has been met.
+async function story(random, bad, isWild = false, dies = false) {
   const ends = [];
   const heard = [];
   let over = 0;
   server.takes_ms = () => (random() < 0.5 ? 1 : Math.floor(random() * 800));
+  let met = 0;
+  let wasMet = false;
   let lost = 0;
   server.loses = (isAnswer) => {
-    const loses = random() < bad && (isWild || lost < 2);
+    const loses = random() < (dies && !wasMet ? 0 : bad) && (isWild || lost < 2);
     if (loses) lost += 1;
     else if (isAnswer) lost = 0;
     return loses;
   };
   server.late_ms = () => (bad && random() < 0.2 ? Math.floor(random() * (isWild ? 2500 : 400)) : 1);
+  server.lost_ms = () => (bad && random() < 0.5 ? Math.floor(random() * 600) : 1);
   server.again = bad ? 0.1 : 0;
   const robot = new HostRobot({ event: (event) => heard.push(event.event), over: () => (over += 1) });
-  let met = 0;
-  let wasMet = false;
   robot.connect('p', 'tinibot', 'en').then(() => (wasMet = true)).catch(() => {}).finally(() => (met += 1));
   await until(now_ms + 3000);
   const asks = 1 + Math.floor(random() * 12);
@@ -139,7 +141,7 @@ async function story(random, bad, isWild = false) {
       robot.stop();
       presses += robot.isOver ? 0 : 1;
     }
-    await until(now_ms + Math.floor(random() * 300));
+    if (random() < 0.7) await until(now_ms + Math.floor(random() * 300)); // or at once
   }
   await until(now_ms + (bad === 1 ? 8000 : 30_000));
   const isThere = wasMet && !robot.isOver;
@@ -156,7 +158,7 @@ for (let seed = 0; seed < seeds; seed += 1) {
   const [bad, isWild] = [[0.2, false], [0.5, false], [0.5, true], [1, true]][seed % 4];
   server = new Server(chance(seed + 1));
   server.name = 'first';
-  const first = await story(chance(seed + 7), bad, isWild);
+  const first = await story(chance(seed + 7), bad, isWild, seed % 8 === 7);
   const made = server.done;
   server.done = [];
   server.stops = [];

@@ -78,7 +78,10 @@ export class Pictures {
     await this.#python.ready;
     const form = await this.#python.ask({ do: 'blocks', robot, first: FIRST }, new TextEncoder().encode(text));
     this.#blocks ??= import('../blocks/blocks.js').then(({ Blocks }) => new Blocks(this.#place, ROBOTS[0]?.name ?? '', 'few', { changed() {}, toggle() {} }));
-    const blocks = await this.#blocks;
+    const blocks = await this.#blocks.catch((why) => {
+      this.#blocks = null; // the next picture tries again
+      throw why;
+    });
     if (this.#areWordsOld) blocks.showWords();
     this.#areWordsOld = false;
     const file = await blocks.pictureOf(form, robot, MOST_PIXELS);

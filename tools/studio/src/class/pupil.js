@@ -23,6 +23,17 @@ const SOON_MS = 300; // while the next turn may be one's own
 /** @typedef {{key: string, text: string, robot: string, lessons: string[]}} Given */
 /** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: Given, over?: string}} Here */
 
+function newStay() {
+  return {
+    wants: /** @type {boolean | null} */ (null), // a robot, told at the next look
+    hand: /** @type {boolean | null} */ (null), // help, told at the next look
+    told: /** @type {Record<string, string>} */ ({}), // what the teacher's page knows
+    taken: /** @type {Given | null} */ (null), // the work that was given last
+    isNews: false, // the class has yet to hear that this is here
+    place: -1,
+  };
+}
+
 export class Pupil {
   #panel;
   #work;
@@ -36,22 +47,13 @@ export class Pupil {
   #quit = button('class_quit', () => this.#want(false));
   /** In the own turn, where the page has not come to its robot by itself. */
   #connect = button('link_connect', () => this.#panel.byHost());
-  /** What is told at the next look. @type {boolean | null} */
-  #wants = null;
   #hands = button('', () => {
-    this.#hand = !this.#isUp;
+    this.#stay.hand = !this.#isUp;
     this.#look();
   }, sign('hand', 26));
-  /** Whether help is wanted, told at the next look. @type {boolean | null} */
-  #hand = null;
   #isUp = false;
-  /** What the teacher's page knows. @type {Record<string, string>} */
-  #told = {};
-  /** The work that was given last, and whether the class has yet to hear that it is here. @type {Given | null} */
-  #taken = null;
-  #isNews = false;
   #isEntering = false;
-  #place = -1;
+  #stay = newStay(); // in one class: an answer of the one before is none of the next one
   #timer = 0;
 
   /** @param {import('./classroom.js').Page} page */
@@ -102,7 +104,6 @@ export class Pupil {
     askAs(token);
     keepAt(PLACE, token, 'sessionStorage'); // without a storage, a reload joins anew
     keepAt(BEFORE, token);
-    this.#told = {};
     this.#join.hidden = true;
     this.#hands.hidden = false;
     this.#look();
@@ -111,6 +112,8 @@ export class Pupil {
   /** @param {import('../page/texts.js').Key} why */
   #leave(why) {
     clearTimeout(this.#timer);
+    this.#stay = newStay();
+    this.#showHand(false);
     askAs('');
     keepAt(PLACE, '', 'sessionStorage');
     this.#join.hidden = false;
@@ -120,35 +123,38 @@ export class Pupil {
 
   /** @param {boolean} wants */
   #want(wants) {
-    this.#wants = wants;
+    this.#stay.wants = wants;
     this.#look();
   }
 
   async #look() {
     clearTimeout(this.#timer);
-    const wants = this.#wants, hand = this.#hand, taken = this.#isNews ? this.#taken : null;
-    const now = taken ? this.#told : this.#now(); // two programs may be too large
+    const stay = this.#stay;
+    const { wants, hand } = stay, taken = stay.isNews ? stay.taken : null;
+    const now = taken ? stay.told : this.#now(); // two programs may be too large
     /** @type {Record<string, unknown>} */
     const request = { do: 'here' };
     if (taken) request['took'] = { key: taken.key, text: taken.text };
     if (wants !== null) request['wants'] = wants;
     if (hand !== null) request['hand'] = hand;
-    for (const [name, value] of Object.entries(now)) if (this.#told[name] !== value) request[name] = JSON.parse(value);
+    for (const [name, value] of Object.entries(now)) if (stay.told[name] !== value) request[name] = JSON.parse(value);
     let wait_ms = LOOK_MS;
     try {
       const answer = /** @type {Here} */ (await post(request));
-      if (this.#wants === wants) this.#wants = null;
-      if (this.#hand === hand) this.#hand = null;
-      this.#told = now;
+      if (stay !== this.#stay) return;
+      if (stay.wants === wants) stay.wants = null;
+      if (stay.hand === hand) stay.hand = null;
+      stay.told = now;
       if (answer.over) {
         this.#end(answer.over === 'erased');
         return;
       }
       this.#show(answer);
-      if (taken) this.#isNews = false;
+      if (taken) stay.isNews = false;
       this.#take(answer.given);
       if (answer.place > 0 && answer.place <= answer.robots) wait_ms = SOON_MS;
     } catch (why) {
+      if (stay !== this.#stay) return;
       if (why instanceof Failed && why.reason === 'host_other') {
         this.#leave('class_gone');
         return;
@@ -173,9 +179,10 @@ export class Pupil {
   /** Takes work that the teacher gives back, once; it is given until the class has heard of that. @param {Given | undefined} given */
   #take(given) {
     if (!given) return;
-    this.#isNews = true;
-    if (this.#taken?.key === given.key) return;
-    this.#taken = given;
+    const stay = this.#stay;
+    stay.isNews = true;
+    if (stay.taken?.key === given.key) return;
+    stay.taken = given;
     for (const name of given.lessons) keepDone(name);
     this.#page.put({ text: given.text, robot: isRobot(given.robot) ? given.robot : this.#work.robot });
     element('note', HTMLElement).textContent = text('class_given');
@@ -194,8 +201,8 @@ export class Pupil {
   /** @param {Here} here */
   #show({ place, waiting, robots, robot, left_s, name, hand }) {
     this.#showHand(hand);
-    const isNew = place === 0 && this.#place !== 0;
-    this.#place = place;
+    const isNew = place === 0 && this.#stay.place !== 0;
+    this.#stay.place = place;
     this.#ask.hidden = place >= 0;
     this.#quit.hidden = place <= 0;
     const time = clock(left_s);

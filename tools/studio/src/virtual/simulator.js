@@ -30,6 +30,7 @@ export class Simulator {
   #rest = 0; // of a millisecond that is not asked for yet
   #last = 0;
   #left = 0; // runs that were left
+  #next = 0; // picture of the browser, for which it waits
   /** @type {Promise<void> | null} */
   #stopped = null; // when the last stop is confirmed
 
@@ -65,7 +66,7 @@ export class Simulator {
     this.#last = performance.now();
     const request = { do: 'power_on', robot, world, language: currentLanguage(), parts, breakpoints, variables, is_held: isPaused };
     await this.#ask(request, new Uint8Array(bytes));
-    if (this.phase === 'running') requestAnimationFrame((now) => this.#frame(now));
+    if (this.phase === 'running') this.#goOnWithNext();
   }
 
   pause() {
@@ -80,7 +81,7 @@ export class Simulator {
     if (this.phase !== 'running') return;
     this.#last = performance.now();
     this.#shown();
-    requestAnimationFrame((now) => this.#frame(now));
+    this.#goOnWithNext();
   }
 
   /** Lets the robot go on until another part of the program is next. */
@@ -125,6 +126,12 @@ export class Simulator {
     this.trace = [];
   }
 
+  /** There is one row of pictures, whichever run or pause has begun it. */
+  #goOnWithNext() {
+    cancelAnimationFrame(this.#next);
+    this.#next = requestAnimationFrame((now) => this.#frame(now));
+  }
+
   /** @param {number} now */
   async #frame(now) {
     if (this.phase !== 'running') return;
@@ -137,7 +144,7 @@ export class Simulator {
         await this.#ask({ do: 'go', duration_ms: whole });
       }
     }
-    requestAnimationFrame((later) => this.#frame(later));
+    this.#goOnWithNext();
   }
 
   /**

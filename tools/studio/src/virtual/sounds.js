@@ -16,8 +16,9 @@ export class Sounds {
   #playing = new Set();
   #closing = 0;
 
-  /** Makes the computer's sound ready before a run, whose picture would wait for it. */
+  /** Makes the computer's sound ready before a run, whose picture would wait for it; nothing of the one before sounds any more. */
   begin() {
+    this.silence();
     const context = this.#awake();
     if (context) this.#rest(context);
   }

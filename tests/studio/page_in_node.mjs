@@ -1,0 +1,188 @@
+// The page's modules in node, on a clock of the script, with as much of a browser as they touch.
+//
+// `freshPage` gives modules that share nothing with those of the page before, as a tab that is loaded again.
+
+import { readFileSync } from 'node:fs';
+import { registerHooks } from 'node:module';
+import { pathToFileURL } from 'node:url';
+
+export const [sources, made, ...words] = process.argv.slice(2);
+
+/** Modules that a script plays, by the end of their address; each one's exports are of `globalThis.played[name]`. */
+const PLAYED = {
+  'virtual/arena.js': ['Arena'],
+  'virtual/plot.js': ['Plot'],
+  'virtual/where.js': ['Where', 'starsShown'],
+  'virtual/sounds.js': ['Sounds'],
+  'world/choice.js': ['WorldChoice'],
+  'world/drawing.js': ['WorldDrawing'],
+  'page/pictures.js': ['offer', 'pictured', 'dialPicture'],
+  'blocks/blocks.js': ['Blocks'],
+  'robot/serial.js': ['hasSerial', 'chosenPort'],
+  'robot/flash.js': ['firmwares', 'firmwareOf', 'flashBoard'],
+  pyodide: ['loadPyodide'],
+};
+/** What is played now; other modules are the page's own. */
+let played = {};
+globalThis.played = new Proxy({}, { get: (_, name) => played[name] });
+
+registerHooks({
+  resolve(specifier, context, next) {
+    const query = /\?page=\d+$/.exec(context.parentURL ?? '')?.[0];
+    if (!query) return next(specifier, context);
+    const name = Object.keys(PLAYED).find((each) => specifier === each || specifier.endsWith(`/${each.split('/')[1]}`));
+    if (name && PLAYED[name][0] in played) return { url: `played:${name}${query}`, shortCircuit: true };
+    if (specifier.endsWith('.json')) return { url: `made:${specifier.split('/').at(-1)}${query}`, shortCircuit: true };
+    const found = next(specifier, context);
+    return { ...found, url: found.url + query };
+  },
+  load(url, context, next) {
+    const [kind, name] = url.replace(/\?page=\d+$/, '').split(/:(.*)/s);
+    if (kind === 'played') {
+      const source = PLAYED[name].map((each) => `export const ${each} = globalThis.played.${each};`).join('\n');
+      return { format: 'module', source, shortCircuit: true };
+    }
+    if (kind === 'made') return { format: 'module', source: `export default ${readFileSync(`${made}/${name}`, 'utf-8')}`, shortCircuit: true };
+    return next(url, context);
+  },
+});
+
+// -- the clock
+
+let now_ms = 0;
+let timers = [];
+let count = 0;
+const setLater = (does, ms = 0, ...given) => {
+  timers.push({ at_ms: now_ms + Math.max(0, ms || 0), does: () => does(...given), number: (count += 1) });
+  return count;
+};
+const clearLater = (number) => {
+  timers = timers.filter((each) => each.number !== number);
+};
+export const now = () => now_ms;
+export const later = (ms, value) => new Promise((resolve) => setLater(() => resolve(value), ms));
+const realImmediate = globalThis.setImmediate;
+
+/** Lets all go on that waits for no time; what is imported waits for the real clock. */
+export async function settles() {
+  for (let k = 0; k < 3; k += 1) await new Promise((resolve) => realImmediate(resolve));
+}
+
+export async function passes(ms) {
+  const end_ms = now_ms + ms;
+  await settles();
+  for (;;) {
+    timers.sort((a, b) => a.at_ms - b.at_ms || a.number - b.number);
+    if (!timers.length || timers[0].at_ms > end_ms) break;
+    const next = timers.shift();
+    now_ms = next.at_ms;
+    next.does();
+    await settles();
+  }
+  now_ms = end_ms;
+}
+
+// -- a browser
+
+class Part extends EventTarget {
+  dataset = {};
+  children = [];
+  files = [];
+  options = [];
+  textContent = '';
+  value = '';
+  hidden = false;
+  disabled = false;
+  attributes = {};
+  classList = { toggle() {}, add() {}, remove() {} };
+  style = { setProperty() {}, removeProperty() {} };
+
+  get lastElementChild() { return this.children.at(-1); }
+  append(...parts) {
+    for (const each of parts) if (each instanceof Part) each.parent = this;
+    this.children.push(...parts);
+  }
+  replaceChildren(...parts) {
+    this.children = [];
+    this.append(...parts);
+  }
+  appendChild(part) {
+    this.append(part);
+    return part;
+  }
+  before(part) { this.placedBefore = part; }
+  remove() { this.parent.children = this.parent.children.filter((each) => each !== this); }
+  setAttribute(name, value) { this.attributes[name] = value; }
+  removeAttribute(name) { delete this.attributes[name]; }
+  getAttribute(name) { return this.attributes[name] ?? null; }
+  click() { this.dispatchEvent(new Event('click')); }
+}
+
+class Store {
+  #kept = new Map();
+  getItem(key) { return this.#kept.get(key) ?? null; }
+  setItem(key, value) { this.#kept.set(key, value); }
+  removeItem(key) { this.#kept.delete(key); }
+}
+
+const stands = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
+for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Details']) stands(`HTML${kind}Element`, Part);
+stands('setTimeout', setLater);
+stands('clearTimeout', clearLater);
+stands('performance', { now });
+stands('requestAnimationFrame', (does) => setLater(() => does(now_ms), 16));
+stands('cancelAnimationFrame', clearLater);
+stands('ResizeObserver', class { observe() {} });
+stands('matchMedia', () => ({ matches: false }));
+stands('self', globalThis);
+stands('location', { hash: '', pathname: '/', search: '', href: 'http://127.0.0.1/' });
+AbortSignal.timeout = () => new AbortController().signal;
+
+let pages = 0;
+/** Loads the page anew; what is played is as given. @returns how its modules are imported, and its elements by their ids */
+export function freshPage(given = {}) {
+  const query = `?page=${(pages += 1)}`;
+  const parts = new Map();
+  const byId = (id) => parts.get(id) ?? parts.set(id, new Part()).get(id);
+  played = given;
+  timers = [];
+  stands('window', Object.assign(new EventTarget(), { setTimeout: setLater, sessionStorage: new Store(), localStorage: new Store() }));
+  const heard = new EventTarget();
+  for (const name of ['addEventListener', 'dispatchEvent']) stands(name, heard[name].bind(heard));
+  stands('document', {
+    documentElement: new Part(), body: new Part(), getElementById: byId, querySelectorAll: () => [],
+    createElement: () => new Part(), createElementNS: () => new Part(),
+  });
+  const load = (name) => import(pathToFileURL(`${sources}/${name}`).href + query);
+  return { load, byId };
+}
+
+/** The texts of the page are there. */
+export async function learns(page) {
+  const before = globalThis.fetch;
+  stands('fetch', async () => ({ ok: true, json: async () => JSON.parse(readFileSync(`${made}/texts.json`, 'utf-8')) }));
+  await (await page.load('page/texts.js')).setLanguage('en');
+  stands('fetch', before);
+}
+
+export const playsFetch = (does) => stands('fetch', does);
+export const playsNavigator = (value) => stands('navigator', value);
+
+/** What calls it, with what; of each name its answer. */
+export function noting(notes, name, answers = {}) {
+  return new Proxy(answers, {
+    get: (_, what) => (what in answers ? answers[what] : (...given) => { notes.push([name, what, ...given]); }),
+    set: (_, what, value) => { answers[what] = value; return true; },
+  });
+}
+
+export function chanceOf(seed) {
+  let state = seed * 2654435761 + 1;
+  const chance = () => {
+    state = (Math.imul(state ^ (state >>> 15), 0x2c1b3c6d) + 0x9e3779b9) | 0;
+    return ((state ^ (state >>> 13)) >>> 0) / 2 ** 32;
+  };
+  chance.below = (most) => Math.floor(chance() * most);
+  chance.of = (list) => list[chance.below(list.length)];
+  return chance;
+}

@@ -1,0 +1,291 @@
+"""The second time of whatever a studio does is as the first one, however the first one has ended.
+
+Who comes late, comes back or comes again finds what a fresh one finds: behind a STOP for all nobody
+starts, each silence of a page stops its robot, and a connection carries any number of requests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from http.client import HTTPConnection
+from random import Random
+from typing import Any, ClassVar, cast
+
+import pytest
+
+from tests.support.page_server import serves
+from tests.support.waiting import HANGS_S
+from tiniscript.studio import hosting as hosting_of
+from tiniscript.studio import serving
+from tiniscript.studio.attending import HEARD_S, LATCH_S, LEFT_S, Attending
+from tiniscript.studio.hosting import Hosting
+from tiniscript.studio.robot_link import BadRequest, RobotLink
+
+Json = dict[str, Any]
+LOOK_MS = 20
+BEAT_MS = 100
+RUN = {"do": "upload", "runs": True}
+
+
+class Room:
+    """The clock, and what robots have done."""
+
+    now_ms = 0
+    done: ClassVar[list[tuple[str, int]]] = []  # and when
+    robots: ClassVar[list[ThreadlessRobot]] = []
+
+    @classmethod
+    def clock(cls) -> float:
+        return cls.now_ms / 1000
+
+
+class NotingLink:
+    """A robot that does what it is told at once, and runs until it is stopped."""
+
+    def __init__(self) -> None:
+        self.has_run = False
+        self._news: list[Json] = []
+
+    def stop(self) -> None:
+        self.has_run = False
+        Room.done.append(("stop", Room.now_ms))
+        self._news.append({"event": "STOPPED"})
+
+    def ask(self, request: Json) -> None:
+        self.has_run = True
+        Room.done.append(("run", Room.now_ms))
+        self._news.append({"id": request["id"], "ok": True})
+
+    def news(self, limit_s: float = 0) -> list[Json]:
+        found, self._news = self._news, []
+        return found
+
+
+class ThreadlessRobot:
+    """A connection whose steps are the test's; it takes a while until it meets its robot."""
+
+    holds = False
+
+    def __init__(
+        self, port: str, robot: str, language: str, tab: str, connection: int, stops: int,
+        before: list[ThreadlessRobot],
+    ) -> None:  # fmt: skip
+        self.name = self.port = port
+        self.tab, self.connection = tab, connection
+        self.attending = Attending(Room.clock, stops)
+        self.link = NotingLink()
+        self.has_ended = self.is_parting = False
+        self._meets_ms = Room.now_ms + 300 * (connection % 4)
+        Room.robots.append(self)
+
+    def leave(self) -> None:
+        self.is_parting = True
+
+    def step(self) -> None:
+        if self.has_ended:
+            return
+        if self.is_parting or self.attending.has_left:
+            self.has_ended, self.is_parting = True, False
+            if self.link.has_run:
+                self.link.stop()
+        elif Room.now_ms >= self._meets_ms:
+            self.attending.attend(cast(RobotLink, self.link), 0)
+
+
+@pytest.fixture(autouse=True)
+def own_clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Room, "now_ms", 0)
+    monkeypatch.setattr(Room, "done", [])
+    monkeypatch.setattr(Room, "robots", [])
+
+
+@pytest.fixture
+def hosting(monkeypatch: pytest.MonkeyPatch) -> Hosting:
+    monkeypatch.setattr(hosting_of, "HostedRobot", ThreadlessRobot)
+    monkeypatch.setattr(hosting_of, "monotonic", Room.clock)
+    return Hosting()
+
+
+# -- a STOP for all, and whoever comes behind it
+
+
+class ComingPage:
+    """A page that comes, asks for runs, and goes, reloads or falls silent, as it happens."""
+
+    def __init__(self, hosting: Hosting, name: str, chance: Random) -> None:
+        self.hosting, self.name, self.chance = hosting, name, chance
+        self.tab = name
+        self._connection = self._seen = self._number = 0
+        self._is_there = self._sleeps = False
+        self._asked: list[Json] = []
+
+    def _ask(self, do: str, **more: object) -> Json:
+        return self.hosting.answer({
+            "do": do, "page": self.name, "tab": self.tab, "connection": self._connection,
+            "port": self.name, "robot": "tinibot", "language": "en", "seen": self._seen, **more,
+        })  # fmt: skip
+
+    def _connect(self) -> None:
+        self._connection += 1
+        self._seen = self._number = 0
+        self._asked = []
+        self._is_there = self._ask("connect") == {}
+
+    def _wants_run(self) -> None:
+        self._number += 1
+        self._asked.append({**RUN, "id": self._number, "stops": 0, "seen": self._seen})
+
+    def turn(self) -> None:
+        does = self.chance.random()
+        if not self._is_there:
+            if does < 0.1:
+                self._connect()
+                self._wants_run()  # at once, as it may be on its way
+        elif does < 0.01:
+            self._ask("leave")
+            self._is_there = False
+        elif does < 0.02:  # loaded again, under another name of its own or the same one
+            self.tab = self.chance.choice((self.tab, f"{self.tab}+"))
+            self._is_there, self._connection = False, self._connection + 3
+        elif does < 0.04:
+            self._sleeps = not self._sleeps
+        elif does < 0.3:
+            self._wants_run()
+        if self._is_there and not self._sleeps:
+            self._beat()
+
+    def _beat(self) -> None:
+        for each in self._ask("beat", asked=self._asked[:8]).get("news", ()):
+            if "over" in each:
+                self._is_there = False
+            elif each["number"] > self._seen:
+                self._seen = each["number"]
+                self._asked = [one for one in self._asked if one["id"] != each.get("id")]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_nobody_starts_behind_a_stop_for_all_whenever_it_has_come(
+    hosting: Hosting, seed: int
+) -> None:
+    """Neither a page that was there, nor one that connects, the first time or again; and what
+    drove stands. When the while is over, pages drive again."""
+    chance = Random(seed)
+    pages = [ComingPage(hosting, f"page{k}", chance) for k in range(5)]
+    latched_until_ms = stops = late_runs = 0
+    for _ in range(3000):
+        Room.now_ms += LOOK_MS
+        if chance.random() < 0.005:
+            hosting.answer({"do": "stop_all"})
+            latched_until_ms = Room.now_ms + round(1000 * LATCH_S)
+            stops += 1
+        begun = len(Room.done)
+        for robot in Room.robots:
+            robot.step()
+            assert not (robot.link.has_run and Room.now_ms < latched_until_ms)
+        if Room.now_ms % BEAT_MS == 0:
+            for page in pages:
+                page.turn()
+        runs = [what for what, _ in Room.done[begun:] if what == "run"]
+        assert not (runs and Room.now_ms < latched_until_ms), (Room.now_ms, latched_until_ms)
+        late_runs += len(runs) if stops else 0
+    assert stops > 3 and late_runs > 10
+
+
+# -- a page that is silent, and is heard again
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_each_silence_of_a_page_stops_what_it_drives_once(seed: int) -> None:
+    """However often it was silent before, and whether it drove then; one that is heard goes on."""
+    chance = Random(seed)
+    attending, link = Attending(Room.clock), NotingLink()
+    number = 0
+    silences = 0
+    for _ in range(150):
+        is_heard, lasts_ms = chance.random() < 0.5, chance.choice((100, 400, 800, 2000))
+        drives, is_stopped = chance.random() < 0.6, chance.random() < 0.2
+        if is_heard and drives:
+            number += 1
+            attending.on_beat([{**RUN, "id": number, "stops": 0, "seen": 0}], 0)
+            attending.attend(cast(RobotLink, link), 0)
+        if is_stopped:
+            attending.stop()
+            attending.attend(cast(RobotLink, link), 0)
+        for _ in range(0, lasts_ms, LOOK_MS):
+            Room.now_ms += LOOK_MS
+            if is_heard:
+                attending.on_beat([], 0)
+            was_driving, done = link.has_run, len(Room.done)
+            is_silent = attending.silent_s > HEARD_S
+            attending.attend(cast(RobotLink, link), 0)
+            assert link.has_run == (was_driving and not is_silent)
+            stops = [what for what, _ in Room.done[done:]]
+            assert stops == (["stop"] if was_driving and is_silent else [])
+            silences += len(stops)
+    assert silences > 3 and HEARD_S < LEFT_S
+
+
+# -- many requests on one connection
+
+BEAT = b'{"do": "beat"}'
+PAGE = {"index.html": serving.File(b"<!doctype html>", serving.TYPES[".html"]),
+        "main.js": serving.File(b"0", serving.TYPES[".js"], '"tag"')}  # fmt: skip
+PADDINGS = (0, 3000, 9000, 12_000, serving.HEAD_BYTES)  # of a head; the last one is too large
+
+
+def answered(request: Json) -> Json:
+    if request != {"do": "beat"}:
+        raise BadRequest
+    return {"news": []}
+
+
+@pytest.fixture
+def server() -> Iterator[serving.Server]:
+    with serves(serving.Server(PAGE, 0, answered)) as made:
+        yield made
+
+
+@pytest.fixture
+def ask(server: serving.Server) -> Callable[[HTTPConnection, str, int], tuple[int, bytes, bool]]:
+    """Return how the page asks one thing; it gets the answer, and whether that ends all."""
+    token = server.entrances.token
+
+    def asked(connection: HTTPConnection, what: str, padding: int) -> tuple[int, bytes, bool]:
+        given = {"Origin": f"http://{serving.HOST}:{server.server_port}"}
+        given["X-Padding"] = " " + "x " * (padding // 2)
+        if what.startswith("/"):
+            connection.request("GET", what, None, given)
+        else:
+            body = what.encode()
+            connection.request("POST", serving.ROBOTS, body, {**given, serving.TOKEN: token})
+        response = connection.getresponse()
+        data = response.read()
+        return response.status, data, response.will_close
+
+    return asked
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
+    server: serving.Server, ask: Callable[[HTTPConnection, str, int], tuple[int, bytes, bool]],
+    seed: int,
+) -> None:  # fmt: skip
+    """Whatever was asked there before, and however much."""
+    chance = Random(seed)
+    made = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
+    longest = begun = 0
+    for _ in range(40):
+        is_odd = chance.random() < 0.04
+        what = chance.choice(("/nothing", "{}") if is_odd else ("/", "/main.js", BEAT.decode()))
+        padding = chance.choice(PADDINGS if is_odd else PADDINGS[:-1])
+        fresh = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
+        wanted = ask(fresh, what, padding)
+        fresh.close()
+        assert ask(made, what, padding) == wanted, (what, padding)
+        begun += 1
+        longest = max(longest, begun)
+        if wanted[2]:
+            made.close()
+            begun = 0
+    made.close()
+    assert longest > 4

@@ -1,0 +1,66 @@
+"""The second time of each part of the page is as the first one of a page that was just loaded.
+
+The parts run in node, on a clock of the script; whatever the first time has met (a write that
+fails, a STOP, a refusal, a fault, a class that is gone), nothing of it is seen in the second one.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.needs import need
+from tiniscript.base.languages import SOURCE, about, languages
+from tiniscript.studio import block_kinds
+from tiniscript.studio.building import SOURCES
+from tiniscript.studio.description import description
+from tools import CannotMake
+from tools.builds.page_texts import page_texts
+from tools.builds.studio import found_tools
+
+SCRIPT = Path(__file__).with_name("second_time_in_node.mjs")
+SEEDS = 80
+# What the first one has to have met, for the row to be about something.
+ENDS = {
+    "bluetooth": {"open", "failed", "link_silent"},
+    "simulator": {"stop", "leave", "wait", "failure", "ended"},
+    "panel": {"stop", "wait", "running", "paused", "ended", "off", "refused", "breaks", "fault"},
+    "sounds": {"silence", "mute", "stop"},
+    "stopping": {"confirm", "over"},
+    "flashing": {"good", "port", "firmware", "flash", "meet", "cancel"},
+    "pupil": {"removed"},
+    "pictures": {"made", "none"},
+    "worker": {"good", "failed"},
+}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the build makes for the page's sources."""
+    folder = tmp_path_factory.mktemp("made")
+    content = {"languages": [(code, about(code).name) for code in languages()], "lock": {},
+               "description": description(), "blocks": block_kinds.data(),
+               "texts": page_texts(SOURCE)}  # fmt: skip
+    for name, each in content.items():
+        (folder / f"{name}.json").write_text(json.dumps(each), encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize("part", ENDS)
+def test_it_is_as_on_a_page_that_was_just_loaded(made: Path, part: str) -> None:
+    try:
+        node = found_tools().node
+    except CannotMake as why:
+        need(str(why))
+    words = [*node, str(SCRIPT), str(SOURCES / "src"), str(made), part, str(SEEDS)]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
+    assert done.returncode == 0, done.stderr
+    rows: list[dict[str, Any]] = [json.loads(line) for line in done.stdout.splitlines()]
+    assert len(rows) == SEEDS
+    assert ENDS[part] <= {end for row in rows for end in row["ends"]}
+    for row in rows:
+        assert row["isSame"] and not row["unhandled"], row
