@@ -83,6 +83,8 @@ def test_a_new_board_gets_the_whole_firmware_and_starts_it(board: str) -> None:
         ({"chip": "esp32c3"}, "flash_other_esp"),
         ({"chip": "esp8266"}, "flash_other_esp"),
         ({"cancelAt": -1}, "flash_not_begun"),
+        ({"heldUntil": "end"}, "flash_held"),
+        ({"heldUntil": "cancel"}, "flash_not_begun"),
     ],
 )
 def test_a_board_that_is_not_the_one_stays_as_it_is(how: dict[str, Any], ended: str) -> None:

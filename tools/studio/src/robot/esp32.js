@@ -4,6 +4,7 @@
 import { ESPLoader } from 'esptool-js/lib/esploader.js';
 import { Transport } from 'esptool-js/lib/webserial.js';
 
+import { Progress } from '../page/progress.js';
 import { md5 } from './md5.js';
 import { Failed, pause, within } from './transport.js';
 
@@ -47,7 +48,7 @@ export async function flashEsp32(port, board, firmware, progress, cancelled) {
   const loader = new ESPLoader({ transport, baudrate: BAUD, romBaudrate: BAUD, terminal: QUIET });
   let isWriting = false;
   try {
-    await reached(loader);
+    await reached(loader, cancelled);
     if (loader.chip.CHIP_NAME !== CHIPS[board]?.name) throw new Failed('flash_other_esp');
     loader.FLASH_WRITE_SIZE = ROM_BLOCK;
     if (cancelled.aborted) throw new Failed('flash_not_begun');
@@ -73,12 +74,14 @@ export async function flashEsp32(port, board, firmware, progress, cancelled) {
   }
 }
 
-/** @param {ESPLoader} loader */
-async function reached(loader) {
+/** The part of esptool-js for the chip is fetched meanwhile. @param {ESPLoader} loader @param {AbortSignal} cancelled */
+async function reached(loader, cancelled) {
   try {
-    await loader.detectChip('default_reset', TRIES);
+    await new Progress({ cancelled }).until(loader.detectChip('default_reset', TRIES));
   } catch (why) {
+    if (cancelled.aborted) throw new Failed('flash_not_begun');
     const { name } = /** @type {Error} */ (why);
+    if (name === 'TimeoutError') throw new Failed('flash_held');
     if (name === 'InvalidStateError') throw new Failed('port_busy');
     throw new Failed(name === 'NetworkError' ? 'port_broken' : 'flash_nobody_esp');
   }
