@@ -163,7 +163,7 @@ def _line(words: Words, fault: Fault, chance: Random, after: int) -> BehindBadLi
 
 def _holder(line: BehindBadLine, env: dict[str, str], stack: ExitStack) -> Teller:
     """Let `tsc monitor --hold` have the port, which meets its robot before there is a fault."""
-    holder = Teller(["link", "--port", line.port], env)
+    holder = Teller(["monitor", "--hold", "--port", line.port], env)
     stack.callback(holder.end)
     end_s = CLOCK.now_s + ENDS_S
     while not holder.has_said("Ctrl-C"):

@@ -232,19 +232,20 @@ def test_what_the_other_verb_takes_leads_there(language: str, try_it: str, tsc: 
 def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     done = tsc("check", *LINE)
     assert done.code == 1
-    said = "tinibot has no BUTTON; the robot liner has it.   Try:  "  # its first word
-    assert f"{said}Write above the program: // robot: liner" in done.err
+    said = "tinibot has no BUTTON; the robot liner has it.\nTry:  "  # its first word
+    either = "If your robot is no liner, take BUTTON out. If it is, write above the program: "
+    assert f"{said}{either}// robot: liner " in done.err
     assert "LINE_L = 0" not in done.err
     for verb in (["run"], ["compile", "-o", "-"], ["upload", "--virtual"], ["upload"]):
         assert "the robot liner has it" in tsc(*verb, *LINE).err, verb
     done = tsc("check", *LINE, "--lang", "es")
     assert "tinibot no tiene BUTTON; lo tiene el robot liner." in done.err
-    assert "Prueba:  Escribe encima del programa: // robot: liner" in done.err
+    assert "Si lo es, escribe encima del programa: // robot: liner " in done.err
     done = tsc("check", "-e", "LED(BUTTON)", "--json")
     (found,) = [each for each in json.loads(done.out) if each["column"] == 1]
     assert found["code"] == "TS119"
     assert found["message"] == "tinibot has no LED; the robots grabber and liner have it."
-    assert found["fix"] == "Write above the program: // robot: grabber"
+    assert found["fix"].endswith("If it is, write above the program: // robot: grabber")
     # where one robot has all words, the others are not named
     assert "// robot: liner " in tsc("check", "-e", "LED(LINE_L)").err
     assert "// robot: grabber " in tsc("check", "-e", "LED(DISTANCE > 5)").err

@@ -311,7 +311,7 @@ def test_the_second_program_is_as_on_a_fresh_robot(starts: str, kind: str, part:
         starts = "uploads"  # its button takes longer than ours, `test_button` has it
     many = SOME[kind]
     found = Counter(check(seed, starts, kind) for seed in range(part * many, (part + 1) * many))
-    assert found["too long"] <= many / 2, found
+    assert found["too long"] <= max(many / 2, 3), found
 
 
 # -- a start that waits for the memory --------------------------------------------------------

@@ -37,10 +37,10 @@ def test_a_board_with_an_avr_is_written_and_has_sketches(board: str) -> None:
 
 
 def test_every_board_is_told_to_people() -> None:
-    (option,) = (each for each in OPTIONS if (each.flags, each.verbs) == ("--board", "firmware"))
+    (option,) = (each for each in OPTIONS if (each.flags, each.verbs) == ("--chip", "firmware"))
     for language in languages():
         assert set(bootloaders.BOARDS) <= set(re.findall(r"[\w-]+", option.help(language))), (
-            "the catalogue help names the values of --board"
+            "the catalogue help names the values of --chip"
         )
     sample = ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml"
     comment = re.search(r"(?m)^chip = .*# (.*)$", sample.read_text(encoding="utf-8"))

@@ -32,6 +32,7 @@ registerHooks({
     if (!query) return next(specifier, context);
     const name = Object.keys(PLAYED).find((each) => specifier === each || specifier.endsWith(`/${each.split('/')[1]}`));
     if (name && PLAYED[name][0] in played) return { url: `played:${name}${query}`, shortCircuit: true };
+    if (specifier.endsWith('/pyodide.asm.mjs')) return { url: 'data:text/javascript,', shortCircuit: true };
     if (specifier.endsWith('.json')) return { url: `made:${specifier.split('/').at(-1)}${query}`, shortCircuit: true };
     const found = next(specifier, context);
     return { ...found, url: found.url + query };

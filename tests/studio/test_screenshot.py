@@ -18,4 +18,5 @@ def test_a_picture_has_words_of_the_page_alone_and_is_shown(language: str, scene
         assert image.size == (screenshot.SIZE["width"], screenshot.SIZE["height"])
         assert len(json.loads(image.info[screenshot.KEPT])) > 12
     assert screenshot.picture(language, scene).stat().st_size < 80_000
-    assert f"]({screenshot.picture(language, scene).name})" in screenshot.GUIDES[language]
+    name = screenshot.picture(language, scene).name
+    assert f"](../pictures/{name})" in screenshot.GUIDES[language]
