@@ -19,6 +19,7 @@ from tiniscript.conformance.kit import FORM, VERSION, cases_in
 from tools.generate.machine_kit import Run, answer_of, case_of, lines_of, runs
 
 AVR_BYTES = 700  # of an image
+AVR_DEVICES = 8, 4  # sensors and actuators, at most: `kMostSensors` of the chip's runner
 
 
 @lru_cache(maxsize=1)
@@ -85,7 +86,9 @@ def is_for(name: str, run: Run, answer: list[str]) -> bool:
     if answer[-1].startswith("REFUSED") or len(every_ms) > 1:
         return False
     if name in avr.BUILT:
-        return len(run.image) < AVR_BYTES
+        sensors, actuators = AVR_DEVICES
+        has_room = len(run.kit.sensors) <= sensors and len(run.kit.actuators) <= actuators
+        return has_room and len(run.image) < AVR_BYTES
     return name != "wasm" or not begin_ms  # it is told no time to begin with
 
 
