@@ -122,7 +122,8 @@ class Teller(Terminal):
     def repeated(self) -> list[str]:
         """Return what was said twice; what is waited for, only with nothing else in between."""
         parts = re.findall(r"([^\r\n]+)(\r*\n|\r|$)", self.text)
-        words = [(said.strip(), end) for said, end in parts if said.strip()]
+        words = [(said.strip(), end) for said, end in parts
+                 if said.strip() and not said.strip().startswith(ROBOT)]  # fmt: skip
         awaited = [each for (each, end), (after, _) in pairwise(words)
                    if each == after and end.endswith("\n")]  # fmt: skip
         own = [each for each in self.kept if not each.startswith((ADVICE, ROBOT))]
