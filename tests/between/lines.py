@@ -142,7 +142,7 @@ class BehindBadLine(PtyRobot):
         self._after -= count
         if count and self._since_ms is None:
             self._since_ms = self._line_ms
-        if self.has_begun or self._since_ms is None:
+        if self.has_begun or self._since_ms is None or self._is_mended:
             return
         if self._after <= 0 or self._line_ms - self._since_ms > LATEST_MS:
             self.has_begun = True

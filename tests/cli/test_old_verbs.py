@@ -180,7 +180,8 @@ def test_the_word_behind_set_may_come_behind_options(tsc: Tsc) -> None:
     for words in (["--port", "trim", "name"], ["--lang", "en", "name"], ["name", "--port", "x"]):
         tsc("set", *words).gives(2, "which name?", out="")
     tsc("set", "--lang", "en").gives(2, "owner, name, trim, text or wifi")
-    tsc("set", "trmi", "--lang", "en").gives(2, "Did you mean trim?")
+    for more in ([], ["3", "--balance"]):  # what is wrong first is told first
+        tsc("set", "trmi", *more, "--lang", "en").gives(2, "Did you mean trim?")
 
 
 def test_each_command_is_chosen_by_what_is_typed_for_it() -> None:

@@ -19,6 +19,7 @@ from tiniscript.cli.commands.doctor import _said
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES
+from tiniscript.doctor.robot import SILENT
 from tiniscript.link import errors
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
@@ -30,7 +31,7 @@ from tiniscript.link.outcomes import (
     UNPROVEN,
     ConnectionLost,
 )
-from tiniscript.link.payloads import HelloReply
+from tiniscript.link.payloads import HelloReply, PingReply, StatusReply
 from tiniscript.link.requests import OK, Reply
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.shared_connection import OtherVersion
@@ -38,6 +39,8 @@ from tiniscript.link.wire import Wire
 
 CABLE, RADIO = "/dev/ttyUSB0", "/dev/rfcomm0"
 HELLO = HelloReply(**Firmware().hello)  # type: ignore[arg-type]
+STATUS = StatusReply(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, b"\0\0")
+PONG = PingReply(0, 0, b"")
 
 
 class Shared:
@@ -329,6 +332,20 @@ def test_through_another_tsc(case: Case, replies: list[Reply[Any]], cause: str) 
     assert [each.cause for each in diagnosis.findings] == [cause]
     assert diagnosis.is_opened and case.shared.is_closed
     assert case.opened == []
+
+
+@pytest.mark.parametrize("answered", [0, 3, 12])
+def test_a_robot_that_falls_silent_behind_another_tsc_is_given_up(
+    case: Case, answered: int
+) -> None:
+    """Each request waits for the retries of that tsc, and for its search for the robot."""
+    known = [Reply(OK, 0, HELLO), Reply(OK, 0, STATUS), *[Reply(OK, 0, PONG)] * answered]
+    lost: list[Reply[Any]] = [Reply(LOST)] * SILENT
+    case.shared = Shared(*known, *lost)
+    assert "falls_silent" in [each.cause for each in case.diagnosis().findings]
+    case.shared = Shared(*known, *lost[1:], *[Reply(OK, 0, PONG)] * 3, *lost)
+    assert "falls_silent" in [each.cause for each in case.diagnosis().findings]
+    assert case.shared.replies == [], "one that is heard again has all of them again"
 
 
 def test_a_robot_is_watched_where_nothing_else_is_wrong_and_its_port_is_shared(case: Case) -> None:

@@ -67,9 +67,12 @@ class Options(ArgumentParser):
 
             show(partial(of, self.command), self.language)
             return None
-        options = self.parse_args(arguments, Namespace(verb=self.verb, language=self.language))
+        begun = Namespace(verb=self.verb, language=self.language)
+        options, more = self.parse_known_args(arguments, begun)
         for option in self.table:
             self._refuse_other(option, getattr(options, option.name))
+        if more:  # told of behind a wrong value: `tsc set nme TINI`
+            self.error(f"unrecognized arguments: {' '.join(more)}")
         if sys.platform == "win32" and getattr(options, "programs", None):
             from tiniscript.cli.windows_names import matching
 

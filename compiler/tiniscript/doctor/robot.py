@@ -23,6 +23,7 @@ TRIES = 3
 READS = 4  # of the wire in one try: what the robot tells by itself may come in between
 CABLE_MS, RADIO_MS = 300, 700  # for an answer
 SHARED_MS = 4000  # for one through another tsc, with its own retries
+SILENT = 3  # of these without an answer, one after another: the robot is asked no more
 
 
 class Robot(ABC):
@@ -113,6 +114,7 @@ class SharedRobot(Robot):
     ) -> None:
         self.line = line
         self._wait = wait or line.wait
+        self._unanswered = 0
 
     def pause(self, wait_ms: int) -> None:
         self.line.event(wait_ms / 1000)
@@ -123,11 +125,14 @@ class SharedRobot(Robot):
             request.limit_ms = SHARED_MS
             return request
 
-        reply: Reply[SentReply] = self._wait(self.line.do(limited))
-        if reply.status in (LOST, CANCELLED):
-            self.missed += 1
-            return None
-        return reply
+        if self._unanswered < SILENT:
+            reply: Reply[SentReply] = self._wait(self.line.do(limited))
+            if reply.status not in (LOST, CANCELLED):
+                self._unanswered = 0
+                return reply
+        self._unanswered += 1
+        self.missed += 1
+        return None
 
 
 def values_of(reply: Reply[SentReply] | None) -> HelloReply | None:
