@@ -200,22 +200,21 @@ def _hearing(
 ) -> tuple[list[Finding], tuple[float, ...]]:
     """Send PING, and count what is not answered at once and what the robot heard damaged."""
     tell("pings")
-    missed = robot.missed
     trips_ms: list[float] = []
-    for number in range(expected.pings):
-        began_s = perf_counter()
+    for _ in range(expected.pings):
+        missed, began_s = robot.missed, perf_counter()
         robot.ask("PING")
-        if robot.missed - missed + len(trips_ms) <= number:
+        if robot.missed == missed:
             trips_ms.append((perf_counter() - began_s) * 1000)
         robot.pause(PAUSE_MS)
-    missed = robot.missed - missed
+    missed = expected.pings - len(trips_ms)
     after = robot.status()
     damaged = 0
     if after is not None:
         pairs = zip(_four(before), _four(after), strict=True)
         damaged = sum((now - then) & 0xFF for then, now in pairs)
     values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged)}
-    expected.note({"good": str(expected.pings - missed), **values})
+    expected.note({"good": str(len(trips_ms)), **values})
     lost = []
     if max(missed, damaged) * PINGS >= LOSSY * expected.pings:
         lost = [sure("lossy", **values)] if after is not None else []
