@@ -45,13 +45,13 @@ _CLASSES = {
 }  # fmt: skip
 NEAR_CM = "10"  # an example of what is near
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
-_MOST_POWER = 100
+MOST_POWER = 100
 _EIGHTH, LAP = 45, 360  # degrees: eighths of a turn, and what is no power, are rather an angle
 # Classes of numbers by what they may be.
 _MAY_BE: dict[str, Callable[[float], bool]] = {
     "@whole": float.is_integer, "@time": lambda it: it < LONG_S,
-    "@power": lambda it: LONG_S <= it <= _MOST_POWER,
-    "@angle": lambda it: _MOST_POWER < it <= LAP or (it >= _EIGHTH and it % _EIGHTH == 0),
+    "@power": lambda it: LONG_S <= it <= MOST_POWER,
+    "@angle": lambda it: MOST_POWER < it <= LAP or (it >= _EIGHTH and it % _EIGHTH == 0),
 }  # fmt: skip
 _YEAR = ("ANO", "ANOS")  # nobody writes AÑO so
 REMEMBERED = 500  # lines: each is asked for often while one program is read
@@ -267,16 +267,16 @@ def _alone_in(line: tuple[Lexeme, ...]) -> set[str]:
 
 def _compared_in(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that are compared with a number, as nothing but a value is."""
-    behind = zip(line, line[1:], line[2:], line[3:], strict=False)
+    rows = [*zip(line, line[1:], line[2:], line[3:], strict=False)]
     alone = {
         name.text
-        for head, before, name, after in zip(line, line[1:], line[2:], line[3:], strict=False)
+        for head, before, name, after in rows
         if (before.text, after.text) == ("(", ")") and name.kind is head.kind is WORD
         if name.text not in lexicon() and (concept_of(head.text) or head.text) in ASKING
     }
     return alone | {
         name.text
-        for before, one, sign, other in behind
+        for before, one, sign, other in rows
         for name, number in ((one, other), (other, one))
         if sign.text in COMPARISONS - {"="} and name.kind is WORD and number.kind is NUMBER
         if before.text not in SEPARATORS

@@ -32,6 +32,7 @@ from tiniscript.recovery.concepts import (
     ASKING,
     DONE,
     LONG_S,
+    MOST_POWER,
     Lexeme,
     Names,
     closed,
@@ -53,7 +54,6 @@ _DOTS = re.compile(
     r"(?i)\b(?P<head>(?P<word>IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|DEF[ \t]+(?P<name>\w+))[\s;]*"
     r"(?P<here>(?:\.[ \t]*){2,}|\u2026)[ \t]*\n?[ \t]*(?P<end>END_?\w+|ELSE\w*)?"
 )
-_MOST_POWER = 100
 _MANY_BELOW = 6  # instructions that an example takes into a block
 _ENDS = re.compile(rf"\b{words_of('end')}")
 _BREAK = re.compile(r"(?i)\b(IF[ \t]*\([^\n;]*\))[\s;]*(?P<here>BREAK)[\s;]*END_?IF\b")
@@ -135,7 +135,7 @@ class _Text:
         """Return moves with the power before the time, as another call of the text has them."""
         found: list[Diagnostic] = []
         for each in _TURNED.finditer(self.source.text):
-            if LONG_S <= float(each[1]) <= _MOST_POWER and 0 < float(each[2]) < LONG_S:
+            if LONG_S <= float(each[1]) <= MOST_POWER and 0 < float(each[2]) < LONG_S:
                 fix = f"{each[0][0].upper()}({each[2]}, {each[1]})"
                 values = {"time": each[1], "power": each[2], "fix": fix}
                 found.append(Diagnostic(codes.SWAPPED, Span(*each.span()), values))
@@ -338,7 +338,7 @@ class _Usage:
             angle = numbers[0]  # `SPIN 360`: no time, and no power
         turns = orders(self.tokens, self.names)
         values = laid_out(self.tokens[1:])
-        is_call = all(float(each) <= 100 for each in numbers)  # no power is more
+        is_call = all(float(each) <= MOST_POWER for each in numbers)
         side = {"L": "left", "R": "right"}.get(way, "")
         if angle and way and not is_timed:
             right = f"{way}({angle} DEG, 60)"
