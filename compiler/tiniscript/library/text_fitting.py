@@ -14,6 +14,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.robots.text_levels import CODE_BYTES, LONGEST_WORD, Level
 from tiniscript.semantics.ir import Program, are_yes_no
+from tiniscript.semantics.task_copies import users
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse
 
@@ -49,8 +50,6 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
 
 def _values(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return each DEF that has a value other than a number, or values for several tasks."""
-    from tiniscript.semantics.task_copies import users
-
     found, yes_no = [], are_yes_no(program, kit)
     for procedure, tasks in zip(program.procedures, users(program), strict=True):
         said = {"level": level.name, "name": procedure.name}

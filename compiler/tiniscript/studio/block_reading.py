@@ -181,10 +181,7 @@ class _Reader:
         if node.until is not None:
             kind += "_until"
             arguments = (*arguments, node.until)
-        count = (
-            len(arguments) if kind == "call" else len(KINDS[kind].values if kind in KINDS else ())
-        )
-        is_known = kind in KINDS and count == len(arguments)
+        is_known = kind == "call" or (kind in KINDS and len(KINDS[kind].values) == len(arguments))
         if not is_known or (unit is not None and KINDS[kind].units.get(node.word) != unit.op):
             return Block("grey", instruction_text(piece.tokens))
         return Block(kind, word, tuple(self._value(each) for each in arguments))

@@ -333,11 +333,12 @@ class Parser:
             self.reporter.report(codes.UNIT_IN_CALL, Span(unit.start, unit.end),
                                  name=word.text, found=unit.op, right=fix)  # fmt: skip
 
-    def no_arguments(self, word: Token, before: str = "") -> None:
+    def no_arguments(self, word: Token) -> None:
         bracket = self.cursor.token
         if bracket.kind == "(":
-            self.reporter.fail(codes.NO_BRACKETS_HERE, bracket.span, word=word.text,
-                               right=before + word.text)  # fmt: skip
+            self.reporter.fail(
+                codes.NO_BRACKETS_HERE, bracket.span, word=word.text, right=word.text
+            )
 
     # -- what is wrong ------------------------------------------------------------------------
 
