@@ -1,8 +1,8 @@
 """The single table of the link: messages, their fields, and every number that is sent.
 
 `frames` and `session` import it; `python -m tools.generate` writes from it
-`vm_arduino/src/link/messages.h` and the tables of `docs/develop/link.md`. Numbers on the wire are stable: a
-number is never reused for something else.
+`vm_arduino/src/link/messages.h` and the tables of `docs/develop/link.md`. Numbers on the wire are
+stable: a number is never reused for something else.
 
 Knows numbers, sizes and times. Does not know how a message is answered.
 """

@@ -188,11 +188,11 @@ def measuring(count: int) -> Work:
     """Return the function that describes each of many robots, and says how soon it answers."""
 
     def work(connection: Connection, member: Member) -> Result:
-        described = in_a_line(connection, member)
+        result = in_a_line(connection, member)
         member.tell("crew_pinging")
         trips = _trips(connection, count)
-        said = f"{described.said}; {trips_in_words(trips, connection.language)}"
-        return Result(True, said, {**described.fields, **trips_as_data(trips)})
+        said = f"{result.said}; {trips_in_words(trips, connection.language)}"
+        return Result(True, said, {**result.fields, **trips_as_data(trips)})
 
     return work
 

@@ -44,13 +44,8 @@ REST_S = 1.0  # between two checks while none has
 _ENDS = ("DONE", "FAULT", "STOPPED", "RESTARTED", "LOST")
 _MAY_MISS = ("SHOW", "TEXT")
 _STARTING = ("upload", "live", "start")
-_DRIVING = (
-    "upload",
-    "start",
-    "set trim",
-    "doctor --selftest",
-    "python",
-)  # that end with what they start
+# that end with what they start
+_DRIVING = ("upload", "start", "set trim", "doctor --selftest", "python")
 
 
 class ConnectedClient:
