@@ -224,6 +224,29 @@ def test_a_key_that_one_of_both_cannot_keep_is_nobodys() -> None:
     assert owner_of(table, session) == FREE
 
 
+def test_a_claim_is_kept_beside_a_name_that_is_not_and_leaves_that_told() -> None:
+    table, keys = Owned(), Keys()
+    for place in (4, 4 + 31):  # both slots of the name
+        table.robot.wear_out(place + 12)  # its first letter
+    session = table.session(keys)
+    assert table.outcome(session, session.name(b"NEW")) == "NOT_KEPT"
+    table.pass_time(session, 500)  # the robot has tried again
+    assert table.claim(session) == "OK"
+    assert table.outcome(session, session.name(b"NEW")) == "NOT_KEPT"
+    again = Owned(table.robot.memory())
+    assert owner_of(again, again.session()) == OF_ANOTHER
+
+
+def test_a_name_is_kept_beside_a_key_that_is_not() -> None:
+    table, keys = Owned(), Keys()
+    session = table.session(keys)
+    assert table.outcome(session, session.name(b"NEW")) == "OK"
+    table.robot.wear_out(536 + 8)
+    assert table.claim(session) == "NOT_KEPT"
+    table.pass_time(session, 500)
+    assert table.outcome(session, session.name(b"NEW")) == "OK"
+
+
 @pytest.mark.parametrize("second", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("first", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("by", ["the same session", "the next one", "one whose answer was lost"])

@@ -29,7 +29,7 @@ QuickByte<kToKeepAt> to_keep;
 QuickByte<kKeepingAt> keeping;  // the bits that the store is writing
 Flag<Bit::kLow> is_low;         // saving waits for more voltage
 uint16_t low_ms;                // when that wait began
-bool is_worn;                   // the memory has failed to save a record since one was asked for
+uint8_t worn;                   // what it has failed to save since that was asked for: bits
 
 // -- after a reset ------------------------------------------------------------------------------
 
@@ -125,7 +125,7 @@ bool may_keep_keys() { return has_booted() && !store.is_busy() && (to_keep | kee
 void keep_keys() {
   store.begin_keep(Area::kOwner, record);
   keeping = kOwnerBit;
-  is_worn = false;
+  worn &= static_cast<uint8_t>(~kOwnerBit);
 }
 
 }  // namespace
@@ -147,7 +147,7 @@ void tick_persistence() {
     tell_saving();
   }
   if (is_busy) return;
-  if (keeping > kProgramBit && !is_kept) is_worn = true;
+  if (!is_kept) worn |= keeping;
   if (keeping == kOwnerBit) read_owner();
   keeping = 0;
   if (to_keep != 0) keep_next();
@@ -164,14 +164,14 @@ void keep_fault() { to_keep = to_keep | kFaultBit; }
 
 void keep_identity() {
   to_keep = to_keep | kIdentityBit;
-  is_worn = false;
+  worn &= kOwnerBit;
 }
 
 Answer identity_kept() {
   if (((to_keep | keeping) & (kIdentityBit | kFaultBit)) != 0) {
     return is_low ? Answer::kLowSupply : Answer::kSaving;
   }
-  if (!is_worn) return Answer::kOk;
+  if ((worn & (kIdentityBit | kFaultBit)) == 0) return Answer::kOk;
   keep_identity();
   keep_fault();
   return Answer::kNotKept;
@@ -194,7 +194,7 @@ Answer port_keep_key(uint8_t which, const uint8_t* key) {
     if (!fetch_key(k, record + kKeysAt + k * kKeyRoom)) return not_now();
   }
   copy_bytes(key, record + kKeysAt + which * kKeyRoom, kKeyRoom);
-  const bool was_worn = is_worn;
+  const bool was_worn = (worn & kOwnerBit) != 0;
   keep_keys();
 #ifdef tiniscript_transports
   link.expire_others();
