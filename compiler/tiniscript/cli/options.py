@@ -116,10 +116,8 @@ class Options(ArgumentParser):
         if not others or not unknown.startswith("-"):
             return
         other = typed(others[0])
-        commands = (self.command, *others)
-        if all(name in STEPS and STEPS[name].choosers for name in commands) and all(
-            unknown in STEPS[name].choosers for name in others
-        ):
+        choosers = {name: step.choosers for name, step in STEPS.items()}
+        if choosers.get(self.command) and all(unknown in choosers.get(it, ()) for it in others):
             raise CommandError(2, "one_step", first=self.verb, second=other)
         raise CommandError(2, "option_of_step", option=unknown, verb=self.verb, other=other)
 

@@ -19,6 +19,7 @@ from tiniscript.base.source import PROGRAM_ENDS
 from tiniscript.base.spelling import nearest
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.options import Options
 from tiniscript.cli.texts.options import chosen, of_verb
 from tiniscript.cli.texts.verbs import COMMANDS, STEPS, VERBS, WAS, said, typed
 from tiniscript.cli.texts.verbs import of_verb as said_of
@@ -34,8 +35,6 @@ def refuse(name: str, words: list[str], language: str) -> NoReturn:
 
 def _now(command: str, words: list[str], language: str) -> str:
     """Return what is typed for a command that was a verb: with the words behind it, if they fit."""
-    from tiniscript.cli.options import Options
-
     head = STEPS[command].head if command in STEPS else command
     for begun in (head, typed(command)):
         verb, *more = [*begun.split(), *words]

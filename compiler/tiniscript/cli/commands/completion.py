@@ -18,6 +18,7 @@ from tiniscript.cli.texts.options import (
     Kind,
     choosers_of,
     chosen,
+    first_word,
     of_verb,
 )
 from tiniscript.cli.texts.verbs import VERBS
@@ -115,12 +116,11 @@ def _fitting(before: list[str], last: str, language: str) -> tuple[str, list[tup
 
 def _verb(before: list[str]) -> tuple[str, list[str]]:
     """Return the verb, or `tsc` where there is none, and the words behind it."""
-    is_value = False
-    for k, word in enumerate(before):
-        if not is_value and not word.startswith("-"):
-            return ("help" if word not in VERBS and is_help(word) else word), before[k + 1 :]
-        is_value = word == "--lang"
-    return "tsc", before
+    at = first_word("tsc", before)
+    if at is None:
+        return "tsc", before
+    word = before[at]
+    return ("help" if word not in VERBS and is_help(word) else word), before[at + 1 :]
 
 
 def _words_of(kind: Kind, language: str) -> list[tuple[str, str]]:

@@ -331,7 +331,7 @@ def chosen(verb: str, words: list[str]) -> tuple[str, list[str]]:
     """
     own = words[: words.index("--")] if "--" in words else words
     flags = {word.partition("=")[0] for word in own if word.startswith("-")}
-    at = _first(verb, own)
+    at = first_word(verb, own)
     said = f"{verb} {words[at]}" if at is not None else verb
     begun = [name for name in steps_of(verb) if STEPS[name].head in (verb, said)]
     found = next((name for name in begun if flags & {*STEPS[name].choosers}), None)
@@ -341,7 +341,7 @@ def chosen(verb: str, words: list[str]) -> tuple[str, list[str]]:
     return found, [word for k, word in enumerate(words) if k != at]
 
 
-def _first(verb: str, words: list[str]) -> int | None:
+def first_word(verb: str, words: list[str]) -> int | None:
     """Return where the first word is that is neither an option nor the value of one."""
     commands = (verb, *steps_of(verb))
     valued = {flag for command in commands for option in of_verb(command)
