@@ -32,12 +32,10 @@ from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import TINIBOT, image_of
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import MissedEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
-STALE = STATUSES["STALE"]
 QUIET_MS = 8000
 LATER_MS = 600  # a session that has seen losses may wait so much longer, or less
 PROGRAMS = ("SI|SHOW(1);F(0.2, 50);SHOW(2)", LONG, "SI|X = 0;W(0.1);SHOW(1 / X)", "SI|F(60, 50)")
@@ -84,7 +82,6 @@ def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
     """Ask some things one after the other; return what comes of them."""
     what: list[str] = []
     took_ms: list[int] = []
-    may_be_stale = True
     for _ in range(4):
         upload = partial(session.upload, image_of(rng.choice(PROGRAMS)), saves=rng.random() < 0.5)
         live = partial(session.live, image_of(PROGRAMS[0]).code)
@@ -93,12 +90,8 @@ def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
             session.fetch, session.identify,
         ]  # fmt: skip
         began_ms = robot.now_ms
-        ask = rng.choice(asks)
-        request = ask()
+        request = rng.choice(asks)()
         status = robot.until(session, request)
-        if status == STALE and may_be_stale:  # a reset or a stop that nobody has told shows here
-            request, may_be_stale = ask(), False
-            status = robot.until(session, request)
         assert request.outcome
         what.append(f"{status} {request.outcome.values if status == OK else ''}")
         took_ms.append(robot.now_ms - began_ms)

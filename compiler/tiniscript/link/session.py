@@ -519,8 +519,7 @@ class Session(Requester):
             if has_ended and not is_other and isinstance(values, StatusReply):
                 self._tell_end(values)
             elif has_ended or (is_other and self._handshake.is_open):
-                again = self._look_again(has_ended, is_other)
-                self._waiting.appendleft(PendingExchange(again, DEAF_MS, is_own=True))
+                self._look_first(has_ended, is_other)
         self._advance(reply, now_ms)
         if self._state.is_cut:
             self._state.is_cut = False
@@ -535,15 +534,19 @@ class Session(Requester):
             self._handshake.doubted = self._epoch
         self._epoch = frame.epoch
 
-    def _is_one_fault(self, state: int, epoch: int) -> bool:
-        """Whether one fault, and nothing else, has ended the epoch before this one."""
+    def _is_next(self, epoch: int) -> bool:
+        """Whether one stop or fault, and nothing else, has ended the epoch before this one."""
         before = self._handshake.doubted
-        return state == STATE_FAULTED and before is not None and epoch == (before + 1) & 0xFF
+        return before is not None and epoch == (before + 1) & 0xFF
+
+    def _is_one_fault(self, state: int, epoch: int) -> bool:
+        return state == STATE_FAULTED and self._is_next(epoch)
 
     def _is_settled_by(self, values: SentReply) -> bool:
         """Whether a reply tells all that must be known of the epoch before for now."""
         if isinstance(values, (PingReply, StatusReply)):
-            if self._state.may_be_reset(values):
+            is_far = self._handshake.is_open and not self._is_next(self._epoch)
+            if is_far or self._state.may_be_reset(values):
                 return False
             is_stop = not self._is_one_fault(values.state, self._epoch)
         elif self._transmission.is_of("STOP"):
@@ -612,6 +615,10 @@ class Session(Requester):
             next_offset = reply.values.next
         return not self._transmission.take(frame, next_offset, now_ms)
 
+    def _look_first(self, has_ended: bool, is_other: bool) -> None:
+        again = self._look_again(has_ended, is_other)
+        self._waiting.appendleft(PendingExchange(again, DEAF_MS, is_own=True))
+
     def _look_again(self, has_ended: bool, is_other: bool) -> Exchange[StatusReply]:
         """Ask who the robot is now that its epoch is an `is_other` one, and how a run has ended."""
         run = self._state.run
@@ -659,7 +666,7 @@ class Session(Requester):
                 return
             if self._stop.due_ms is not None:
                 if not self._confirms(event, frame):
-                    self._doubt(frame)
+                    self._take_end(event, frame)
                     self._state.take(event)
                     return
                 self._stop.end()
@@ -690,9 +697,12 @@ class Session(Requester):
         self._doubt(frame)
         is_halt = event == StoppedEvent(_BY_MESSAGE) and self._pending and self._pending.halts
         if isinstance(event, StoppedEvent):
+            is_other = self._handshake.is_in_doubt and not self._is_next(frame.epoch)
             self._handshake.doubted = None
             if not is_halt:
                 self._void()
+            if is_other and self._handshake.is_open:  # a reset may have come before this stop
+                self._look_first(has_ended=False, is_other=True)
         elif self._is_one_fault(STATE_FAULTED, frame.epoch):
             self._handshake.doubted = None
             self._transmission.renew(self._epoch)
