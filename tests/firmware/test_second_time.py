@@ -190,8 +190,7 @@ class Story(NamedTuple):
     lasts: bool = False  # into the second
 
 
-def story(seed: int, starts: str, kind: str) -> Story:
-    rng = random.Random(f"{seed} {starts} {kind}")
+def story(rng: random.Random, starts: str, kind: str) -> Story:
     first, second = drawn(rng), drawn(rng)
     if kind == "an esp32":  # when its sonar hears something depends on when it has asked before
         second = without_readings(second)
@@ -278,15 +277,26 @@ def after(tale: Story, scene: Scene) -> Scene:
 OF_THE_FIRST = ("MissedEvent", "StartedEvent", "// Started again", "// The old program is lost.")
 
 
+def without_the_first(heard: list[str]) -> list[str]:
+    return [each for each in heard if not each.startswith(OF_THE_FIRST)]
+
+
+def fitting(rng: random.Random, starts: str, kind: str) -> tuple[Story, list[str], list[str]]:
+    """Return a story whose second one this robot can begin, and what a fresh one does and says."""
+    for _ in range(20):
+        tale = story(rng, starts, kind)
+        want, wanted_words = seen(Scene(kind), tale)
+        if want:
+            return tale, want, wanted_words
+    raise AssertionError(f"{kind}: of 20 programs none begins by {starts}")
+
+
 def check(seed: int, starts: str, kind: str) -> str:
-    tale = story(seed, starts, kind)
-    want, wanted_words = seen(Scene(kind), tale)
-    if not want:
-        return "too long"
+    tale, want, wanted_words = fitting(random.Random(f"{seed} {starts} {kind}"), starts, kind)
     scene = after(tale, Scene(kind))
     goes_on = not scene.robot.is_latched  # until the second begins
     did, heard = seen(scene, tale)
-    heard = [each for each in heard if not each.startswith(OF_THE_FIRST)]
+    heard, wanted_words = without_the_first(heard), without_the_first(wanted_words)
     if tale.beside == "the button is down":
         heard = [each for each in heard if "StoppedEvent(cause=3" not in each]
     if goes_on and heard == ["// Still saving. Send it again."]:
@@ -311,7 +321,7 @@ def test_the_second_program_is_as_on_a_fresh_robot(starts: str, kind: str, part:
         starts = "uploads"  # its button takes longer than ours, `test_button` has it
     many = SOME[kind]
     found = Counter(check(seed, starts, kind) for seed in range(part * many, (part + 1) * many))
-    assert found["too long"] <= max(many / 2, 3), found
+    assert found["it says why not"] <= many / 2, found
 
 
 # -- a start that waits for the memory --------------------------------------------------------
@@ -425,7 +435,7 @@ def stands(robot: HostFirmware) -> bool:
 
 def check_ways(seed: int) -> str:
     rng = random.Random(seed)
-    tale = story(seed, rng.choice([*STARTS]), "a mega")
+    tale = story(rng, rng.choice([*STARTS]), "a mega")
     first = rng.choice((tale.first, ways(rng, 4), task_program(rng, ways=True)[0], "F(60 CM, 60)"))
     tale = tale._replace(
         first=MARK + first,
