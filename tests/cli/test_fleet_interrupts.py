@@ -10,18 +10,19 @@ from typing import Any
 
 import pytest
 
-from tests.support.command import FOREVER, inside
-from tests.support.robot_fleet import RobotFleet
+from tests.support.command import inside
+from tests.support.robot_fleet import RobotFleet, known_fleet
+from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.robot.fleet import Fleet
 from tiniscript.library import opening
 from tiniscript.library.client import Client
-from tiniscript.link import known_ports, ports
 
 TINIBOT = robots.load("tinibot").kit
 # Where the thread of a robot may be.
 OPENING, OPENED, ASKING, ASKED, SENDING, DRIVING = range(6)
-DRIVES = "MOTORS 80 80"
+# It begins to drive once: that it drives on is no start.
+ENDLESS, DRIVES = "SI|M(80, 80);LOOP(FOREVER);W(1);END_LOOP", "MOTORS 80 80"
 
 
 class Room:
@@ -37,7 +38,7 @@ class Room:
     def at(self, stage: int, port: str) -> None:
         if self.stages[port] == stage and not self.pressed.is_set():
             self.there.add(port)
-            assert self.pressed.wait(60), "nobody presses Ctrl-C"
+            assert self.pressed.wait(HANGS_S), "nobody presses Ctrl-C"
 
     def may_press(self) -> bool:
         return all(
@@ -66,11 +67,8 @@ def stepping(
 
 
 @pytest.fixture
-def fleet(monkeypatch: pytest.MonkeyPatch) -> Iterator[RobotFleet]:
-    monkeypatch.setattr(ports, "listed", list)
-    with RobotFleet([TINIBOT] * 3) as found:
-        for pupil in found.pupils:
-            known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
+def fleet() -> Iterator[RobotFleet]:
+    with known_fleet([TINIBOT] * 3) as found:
         yield found
 
 
@@ -98,7 +96,7 @@ def test_behind_ctrl_c_nothing_starts(
 
     monkeypatch.setattr(Fleet, "_refuse_unread", press)
     monkeypatch.setattr(Fleet, "interrupt", interrupted)
-    done = inside("upload", "-e", FOREVER, "--all").gives(2)
+    done = inside("upload", "-e", ENDLESS, "--all").gives(2)
     assert room.pressed.is_set()
     assert room.counted() == room.starts, (room.stages, done)
     assert not any(pupil.moves for pupil in fleet.pupils)

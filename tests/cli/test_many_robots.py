@@ -13,7 +13,7 @@ from contextlib import closing
 import pytest
 
 from tests.support.command import FOREVER, Command, Done, inside
-from tests.support.robot_fleet import RobotFleet
+from tests.support.robot_fleet import RobotFleet, known_fleet
 from tests.support.terminal import Terminal
 from tiniscript import robots
 from tiniscript.cli.robot.fleet import Fleet
@@ -30,12 +30,8 @@ NOISY = (5, 13, 17, 21)
 
 
 @pytest.fixture
-def class_(monkeypatch: pytest.MonkeyPatch) -> Iterator[RobotFleet]:
-    """Four robots, whose ports are remembered, and no other port: each would be waited for."""
-    monkeypatch.setattr(ports, "listed", list)
-    with RobotFleet([TINIBOT] * 4) as found:
-        for pupil in found.pupils:
-            known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
+def class_() -> Iterator[RobotFleet]:
+    with known_fleet([TINIBOT] * 4) as found:
         yield found
 
 

@@ -10,14 +10,16 @@ import os
 import select
 import threading
 import time
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from unittest import mock
 
 from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
 from tests.support import waiting
 from tests.support.pty_robot import drives_now
 from tests.support.simulated_port import PtyPort, simulated
 from tiniscript.base.kit import Kit
+from tiniscript.link import known_ports, ports
 
 STEP_MS = 10  # between two steps of a robot for which nothing comes
 
@@ -104,3 +106,12 @@ class RobotFleet:
                 sent = pupil.pass_ms(min(passed_ms, 5 * STEP_MS), data)
                 if sent and select.select([], [end], [], 0)[1]:
                     os.write(end, sent)
+
+
+@contextmanager
+def known_fleet(kits: Sequence[Kit]) -> Iterator[RobotFleet]:
+    """Have robots whose ports are remembered, and no other port: each would be waited for."""
+    with mock.patch.object(ports, "listed", list), RobotFleet(kits) as fleet:
+        for pupil in fleet.pupils:
+            known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
+        yield fleet
