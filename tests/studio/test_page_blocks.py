@@ -21,6 +21,7 @@ from tests.support.needs import need
 from tests.support.studio import SETTLED, Pages, finger, hears, image, in_phase, shown, speak, write
 from tiniscript import check, compile, robots
 from tiniscript.base.languages import languages
+from tiniscript.base.limits import PARAMETERS
 from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.studio.block_form import data_of, kinds_in
@@ -731,6 +732,17 @@ def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
         canvas.locator("image[*|href$='less.svg']").first.click()
         page.locator("#blocks[data-state=shown]").wait_for()
         becomes(page, f"SI|DEF {head};\n{body}{calls}")
+
+
+def test_a_word_has_at_most_the_values_of_the_language(page: Page) -> None:
+    text = "SI|DEF A{};\n  F(1, 50);\nEND_DEF;\n"
+    start(page, text.format(""), "usual")
+    names = [*"CDEGH"][:PARAMETERS]
+    counts = [*range(1, PARAMETERS + 1), PARAMETERS]
+    for href, count in [*(("more.svg", each) for each in counts), ("less.svg", PARAMETERS - 1)]:
+        page.locator(f"#blocks .blocklyBlockCanvas image[*|href$='{href}']").first.click()
+        page.locator("#blocks[data-state=shown]").wait_for()
+        becomes(page, text.format(f"({', '.join(names[:count])})"))
 
 
 def test_keys_alone_add_a_block(page: Page) -> None:

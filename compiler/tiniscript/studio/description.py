@@ -10,6 +10,7 @@ from typing import Any
 from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.languages import languages
+from tiniscript.base.limits import PARAMETERS
 from tiniscript.base.words import WORDS
 from tiniscript.library import opening
 from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
@@ -34,6 +35,7 @@ def description() -> dict[str, Any]:
             for word in WORDS.values()
             if word.role.is_offered
         ],
+        "most_parameters": PARAMETERS,
         "robots": [_robot(robots.load(name)) for name in robots.names()],
         "link": {
             "stop_bytes": STOP_BYTES,

@@ -2,10 +2,7 @@
 
 import * as Blockly from 'blockly/core';
 import { NameField } from './fields.js';
-import { tipOf } from '../page/words.js';
-
-const MOST_VALUES = 4; // of a DEF
-const NAMES = ['A', 'C', 'D', 'E', 'G', 'H', 'J', 'K', 'N', 'P']; // B, F, L and so on are words of the language
+import { LETTERS, MOST_PARAMETERS, tipOf } from '../page/words.js';
 
 /** @param {any} block @param {() => void} act fires what has changed of its state */
 function changed(block, act) {
@@ -48,9 +45,10 @@ export const DEF = {
   /** @this {any} */
   more() {
     const names = this.names();
+    if (names.length >= MOST_PARAMETERS) return;
     const taken = new Set([...names, ...this.workspace.getAllBlocks(false).map((/** @type {any} */ each) => each.getFieldValue('WORD'))]);
-    const name = NAMES.find((each) => !taken.has(each)) ?? `A_${names.length + 1}`;
-    if (names.length < MOST_VALUES) changed(this, () => this.setNames([...names, name]));
+    const name = LETTERS.find((each) => !taken.has(each)) ?? `A_${names.length + 1}`;
+    changed(this, () => this.setNames([...names, name]));
   },
 
   /** @this {any} */

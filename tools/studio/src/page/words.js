@@ -11,6 +11,10 @@ import { called, hasText, text } from './texts.js';
 /** Words that stand for an instruction with its values. */
 export const FIXED = description.words.filter((word) => word.role === 'fixed');
 export const ROBOTS = description.robots;
+export const MOST_PARAMETERS = description.most_parameters;
+
+/** Letters that are no words of the language. */
+export const LETTERS = [...'ABCDEFGHIJKLMNOPQRSTUVWXYZ'].filter((each) => !description.words.some((word) => word.text === each));
 
 /** @param {string} name */
 export function robotOf(name) {

@@ -4,7 +4,7 @@
 import { ESPLoader } from 'esptool-js/lib/esploader.js';
 import { Transport } from 'esptool-js/lib/webserial.js';
 
-import { Progress } from '../page/progress.js';
+import { watched } from '../page/progress.js';
 import { md5 } from './md5.js';
 import { Failed, pause, within } from './transport.js';
 
@@ -77,7 +77,7 @@ export async function flashEsp32(port, board, firmware, progress, cancelled) {
 /** The part of esptool-js for the chip is fetched meanwhile. @param {ESPLoader} loader @param {AbortSignal} cancelled */
 async function reached(loader, cancelled) {
   try {
-    await new Progress({ cancelled }).until(loader.detectChip('default_reset', TRIES));
+    await watched(loader.detectChip('default_reset', TRIES), { cancelled });
   } catch (why) {
     if (cancelled.aborted) throw new Failed('flash_not_begun');
     const { name } = /** @type {Error} */ (why);
