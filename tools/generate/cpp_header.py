@@ -99,7 +99,7 @@ def header(command: str) -> str:
         "an image. Knows no behaviour. `bytecode_spec.md` says what they mean.",
     )
     body = "\n".join(parts)
-    return cpp_file(command, "vm/bytecode.h", about, body, "cpu.h", "build.h")
+    return cpp_file(command, "vm/bytecode.h", about, body, "build.h", "cpu.h")
 
 
 def cpp_file(command: str, name: str, about: Sequence[str], body: str, *includes: str) -> str:

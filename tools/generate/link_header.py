@@ -81,7 +81,7 @@ def tables(command: str) -> str:
     requests = {each.number: each for each in _requests()}
     rows = [_length_row(requests.get(number)) for number in range(1, max(requests) + 1)]
     table = f"const uint8_t kRequestBytes[][2] tini_progmem = {{\n{''.join(rows)}}};\n"
-    return cpp_file(command, "link/messages.cpp", (), table, "transports.h", "sizes.h")
+    return cpp_file(command, "link/messages.cpp", (), table, "sizes.h")
 
 
 def _length_row(request: Message | None) -> str:

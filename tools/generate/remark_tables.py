@@ -42,7 +42,7 @@ def texts_header(command: str) -> str:
             "constexpr uint8_t name_of_fault(uint8_t fault) {",
             "  return static_cast<uint8_t>(",
             f"      fault > {last} ? {behind} : fault < {first} ? fault + {before}",
-            f"                             : fault - {first - own - 1 - before});",
+            f"                             : fault - {first} + {before + own + 1});",
             "}",
             "",
             "// A code is the end of a text, a pair, or a letter from kFirstLetter on, in ASCII.",

@@ -6,8 +6,8 @@
 // so.
 
 #include "../../src/vm/crc32.h"
-#include "../../src/vm/number.h"
 #include "../../src/vm/machine.h"
+#include "../../src/vm/number.h"
 #include "../avr/simulated.h"
 #include "quiet_robot.h"
 

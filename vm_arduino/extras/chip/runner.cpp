@@ -1,8 +1,8 @@
 #include "runner.h"
 
 #include "../../src/vm/image.h"
-#include "../../src/vm/verify.h"
 #include "../../src/vm/machine.h"
+#include "../../src/vm/verify.h"
 #include "text.h"
 
 namespace tiniscript {
@@ -98,6 +98,24 @@ uint32_t run(const Image& image, const Limits& limits) {
   }
 }
 
+// Verifies an image, and answers if it may not run. On an Uno the run needs the stack that this takes.
+tini_noinline bool accepts(const uint8_t* data, size_t length, Image* image) {
+  uint16_t devices;
+  Refusal refusal = unpack(data, length, image);
+  if (refusal == Refusal::kNone) {
+    const Verdict verdict =
+        verify(image->code, image->code_length, robot.sensor_count, robot.actuator_count, &devices,
+               image->needs);
+    if (verdict.rule != Rule::kNone) {
+      end("BREAKS", static_cast<uint8_t>(verdict.rule), verdict.offset);
+      return false;
+    }
+    refusal = check_devices(*image, devices);
+  }
+  if (refusal != Refusal::kNone) end("REFUSED", static_cast<uint8_t>(refusal), 0);
+  return refusal == Refusal::kNone;
+}
+
 }  // namespace
 
 void answer_run(Request request, bool is_verified, const Pace& pace) {
@@ -112,21 +130,11 @@ void answer_run(Request request, bool is_verified, const Pace& pace) {
   const uint8_t* const data = request_bytes(request.place(), length, kEndBytes);
   if (data == nullptr) return put_text("NO ROOM\n");
   Image image;
-  if (is_verified) {
-    const Refusal refusal = unpack(data, length, &image);
-    if (refusal != Refusal::kNone) return end("REFUSED", static_cast<uint8_t>(refusal), 0);
-    uint16_t devices;
-    const Verdict verdict =
-        verify(image.code, image.code_length, robot.sensor_count, robot.actuator_count, &devices,
-               image.needs);
-    if (verdict.rule != Rule::kNone) {
-      return end("BREAKS", static_cast<uint8_t>(verdict.rule), verdict.offset);
-    }
-    const Refusal other = check_devices(image, devices);
-    if (other != Refusal::kNone) return end("REFUSED", static_cast<uint8_t>(other), 0);
-  } else {
+  if (!is_verified) {
     image.code = data;
     image.code_length = static_cast<uint16_t>(length);
+  } else if (!accepts(data, length, &image)) {
+    return;
   }
   const uint32_t steps = run(image, limits);
   end("RAN", machine.at(), steps);

@@ -9,8 +9,8 @@
 
 #include "../../src/robot.h"
 #include "../../src/vm/image.h"
-#include "../../src/vm/verify.h"
 #include "../../src/vm/machine.h"
+#include "../../src/vm/verify.h"
 #include "input.h"
 
 using namespace tiniscript;

@@ -10,8 +10,8 @@
 
 #include "../../src/vm/crc32.h"
 #include "../../src/vm/image.h"
-#include "../../src/vm/verify.h"
 #include "../../src/vm/machine.h"
+#include "../../src/vm/verify.h"
 #include "../chip/answers.h"
 #include "../chip/runner.h"
 #include "../chip/traced_robot.h"

@@ -6,8 +6,8 @@
 
 #include "../../src/robot.h"
 #include "../../src/vm/image.h"
-#include "../../src/vm/verify.h"
 #include "../../src/vm/machine.h"
+#include "../../src/vm/verify.h"
 
 #define tini_exported(name) extern "C" __attribute__((export_name(name)))
 #define tini_imported(name) extern "C" __attribute__((import_module("robot"), import_name(name)))

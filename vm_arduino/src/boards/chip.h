@@ -5,16 +5,16 @@
 #pragma once
 
 #ifdef __AVR__
-#include "avr/events.h"
 #include "avr/clock.h"
 #include "avr/echo.h"
 #include "avr/echo_interrupt.h"
+#include "avr/events.h"
 #include "avr/pins.h"
 #include "avr/watchdog.h"
 #elif defined(ARDUINO_ARCH_ESP32)
-#include "esp32/events.h"
 #include "esp32/clock.h"
 #include "esp32/echo.h"
+#include "esp32/events.h"
 #include "esp32/pins.h"
 #include "esp32/watchdog.h"
 #else

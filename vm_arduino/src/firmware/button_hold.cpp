@@ -1,7 +1,7 @@
 #include "button_hold.h"
 
-#include "../vm/build.h"
 #include "../robot.h"
+#include "../vm/build.h"
 #include "../vm/small.h"
 #include "persistence.h"
 #include "state.h"

@@ -8,8 +8,8 @@
 
 #include <stdint.h>
 
-#include "../link/transports.h"
 #include "../link/receiver.h"
+#include "../link/transports.h"
 #include "board.h"
 
 namespace tiniscript {

@@ -1,9 +1,9 @@
 // The robot's keys: implements what `port.h` says of them.
 
-#include "../vm/build.h"
 #include "../link/port.h"
 #include "../store/layout.h"
 #include "../store/nvm.h"
+#include "../vm/build.h"
 #include "persistence.h"
 #include "state.h"
 

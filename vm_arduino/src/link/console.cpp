@@ -1,7 +1,7 @@
 #include "console.h"
 
-#include "../vm/bytecode.h"
 #include "../vm/build.h"
+#include "../vm/bytecode.h"
 #include "../vm/small.h"
 #include "port.h"
 #include "run_down.h"

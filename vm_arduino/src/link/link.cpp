@@ -1,9 +1,9 @@
 #include "link.h"
 
+#include "../vm/build.h"
 #include "../vm/bytecode.h"
 #include "../vm/image.h"
 #include "../vm/small.h"
-#include "../vm/build.h"
 #include "port.h"
 #include "run_down.h"
 

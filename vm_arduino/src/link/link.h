@@ -11,7 +11,6 @@
 
 #include "../vm/build.h"
 #include "frames.h"
-#include "transports.h"
 #include "messages.h"
 #include "receiver.h"
 #include "seal.h"

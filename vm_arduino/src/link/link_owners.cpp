@@ -1,7 +1,7 @@
 // Who may drive the robot: claims, keys, and the authority of a session.
 
-#include "../vm/small.h"
 #include "../vm/build.h"
+#include "../vm/small.h"
 #include "link.h"
 #include "port.h"
 #include "seal.h"

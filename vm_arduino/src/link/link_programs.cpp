@@ -3,9 +3,9 @@
 // A program that runs once is prepared before its frame has ended, so that it starts at once.
 
 #include "../vm/image.h"
+#include "../vm/machine.h"
 #include "../vm/small.h"
 #include "../vm/verify.h"
-#include "../vm/machine.h"
 #include "link.h"
 #include "port.h"
 

@@ -11,9 +11,9 @@
 
 #include <stdint.h>
 
-#include "transports.h"
 #include "link.h"
 #include "port.h"
+#include "transports.h"
 
 #ifdef tiniscript_transports
 

@@ -7,7 +7,6 @@
 #include <stdint.h>
 
 #include "../vm/build.h"
-#include "transports.h"
 #include "messages.h"
 
 namespace tiniscript {

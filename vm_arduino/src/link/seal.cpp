@@ -1,7 +1,7 @@
 #include "seal.h"
 
-#include "../vm/small.h"
 #include "../vm/build.h"
+#include "../vm/small.h"
 #include "siphash.h"
 
 namespace tiniscript {

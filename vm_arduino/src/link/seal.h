@@ -7,8 +7,8 @@
 
 #include <stdint.h>
 
+#include "../vm/build.h"
 #include "frames.h"
-#include "transports.h"
 #include "messages.h"
 
 namespace tiniscript {

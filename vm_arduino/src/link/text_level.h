@@ -7,9 +7,9 @@
 
 namespace tiniscript {
 
-constexpr TextLevel kRobotTextLevel = !kHasText                    ? TextLevel::kNone
+constexpr TextLevel kRobotTextLevel = !kHasText                         ? TextLevel::kNone
                                       : kRobotSize == RobotSize::kMega  ? TextLevel::kMega
                                       : kRobotSize == RobotSize::kEsp32 ? TextLevel::kEsp32
-                                                                  : TextLevel::kUno;
+                                                                        : TextLevel::kUno;
 
 }  // namespace tiniscript

@@ -1,7 +1,7 @@
 #include "typed_stop.h"
 
-#include "../vm/find_word.h"
 #include "../vm/cpu.h"
+#include "../vm/find_word.h"
 #include "../vm/small.h"
 
 namespace tiniscript {

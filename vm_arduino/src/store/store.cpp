@@ -1,7 +1,7 @@
 #include "store.h"
 
-#include "../vm/crc32.h"
 #include "../vm/cpu.h"
+#include "../vm/crc32.h"
 #include "../vm/image.h"
 #include "../vm/small.h"
 #include "nvm.h"

@@ -24,7 +24,7 @@ constexpr uint8_t text_of(Remark remark) {
 constexpr uint8_t name_of_fault(uint8_t fault) {
   return static_cast<uint8_t>(
       fault > 66 ? 67 : fault < 64 ? fault + 57
-                             : fault - 0);
+                             : fault - 64 + 64);
 }
 
 // A code is the end of a text, a pair, or a letter from kFirstLetter on, in ASCII.

@@ -7,8 +7,8 @@
 
 #include <stdint.h>
 
-#include "cpu.h"
 #include "build.h"
+#include "cpu.h"
 
 // clang-format off
 

@@ -191,7 +191,7 @@ tini_always_inline bool InnerLoop::step() {
     case Op::kEndWhen:
       tini_each_short(kSet) : return act(code);
     case Op::kEscape:
-      return way();
+      return act(code, 2, 2);  // GO or WATCH_GO
     case Op::kUntil:
       return pop(1) && until(*top_ != 0);
 
@@ -270,37 +270,17 @@ tini_always_inline bool InnerLoop::step() {
       return push(in_thousandths(pushed(code)));
 
       // with a constant
-      tini_each_comparator(kUntil8) : {
-        const int32_t constant = in_thousandths(u8());
-        return pop(1) && until(relates(*top_, comparator_of(op), constant));
-      }
-      tini_each_comparator(kUntil16) : {
-        const int32_t constant = in_thousandths(i16());
-        return pop(1) && until(relates(*top_, comparator_of(op), constant));
-      }
-      tini_each_comparator(kIf8) : {
-        const int32_t constant = in_thousandths(u8());
-        return pop(1) &&
-               unless(relates(*top_, comparator_of(op), constant), u8());
-      }
-      tini_each_comparator(kIf16) : {
-        const int32_t constant = in_thousandths(i16());
-        return pop(1) &&
-               unless(relates(*top_, comparator_of(op), constant), u8());
-      }
+      tini_each_comparator(kUntil8) : return until_relates(op, in_thousandths(u8()));
+      tini_each_comparator(kUntil16) : return until_relates(op, in_thousandths(i16()));
+      tini_each_comparator(kIf8) : return unless_relates(op, in_thousandths(u8()));
+      tini_each_comparator(kIf16) : return unless_relates(op, in_thousandths(i16()));
       tini_each_comparator(kIfVar8) : {
         const uint8_t number = u8();
-        if (number >= kVariables) return halt(Fault::kBadCode);
-        const int32_t constant = in_thousandths(u8());
-        return unless(relates(machine_.task_.variables[number], comparator_of(op), constant),
-                      u8());
+        return unless_variable_relates(number, op, in_thousandths(u8()));
       }
       tini_each_comparator(kIfVar16) : {
         const uint8_t number = u8();
-        if (number >= kVariables) return halt(Fault::kBadCode);
-        const int32_t constant = in_thousandths(i16());
-        return unless(relates(machine_.task_.variables[number], comparator_of(op), constant),
-                      u8());
+        return unless_variable_relates(number, op, in_thousandths(i16()));
       }
   }
   return halt(Fault::kBadCode);

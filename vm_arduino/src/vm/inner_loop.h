@@ -50,9 +50,12 @@ class InnerLoop {
   bool unless(bool holds, uint16_t distance);
   bool join(bool decisive, uint16_t distance);
   bool stay();
+  bool act(uint8_t code, uint8_t pops, uint8_t size);
   bool act(uint8_t code);
-  bool way();
   bool until(bool stop);
+  bool until_relates(Op op, int32_t constant);
+  bool unless_relates(Op op, int32_t constant);
+  bool unless_variable_relates(uint8_t number, Op op, int32_t constant);
   bool push_variable(uint8_t number);
   bool push_sensor(uint8_t number);
   bool push_read(uint8_t number);
@@ -148,27 +151,19 @@ tini_always_inline bool InnerLoop::stay() {
 }
 
 // Lets `act` and `until` see where the program is, and go elsewhere.
-tini_always_inline bool InnerLoop::act(uint8_t code) {
-  const DecodeForm form = decode_form_of(code);
+tini_always_inline bool InnerLoop::act(uint8_t code, uint8_t pops, uint8_t size) {
   int32_t* const top = top_ - 1;
-  if (!pop(form.pops())) return false;
+  if (!pop(pops)) return false;
   machine_.at_ = offset(at_);
-  machine_.task_.pc = static_cast<uint16_t>(machine_.at_ + form.size());
+  machine_.task_.pc = static_cast<uint16_t>(machine_.at_ + size);
   const bool goes_on = machine_.act(code, at_, top);
   next_ = machine_.code_ + machine_.task_.pc;
   return goes_on;
 }
 
-// GO or WATCH_GO, in two bytes.
-tini_always_inline bool InnerLoop::way() {
-  next_++;
-  int32_t* const top = top_ - 1;
-  if (!pop(2)) return false;
-  machine_.at_ = offset(at_);
-  machine_.task_.pc = offset(next_);
-  const bool goes_on = machine_.act(static_cast<uint8_t>(Op::kEscape), at_, top);
-  next_ = machine_.code_ + machine_.task_.pc;
-  return goes_on;
+tini_always_inline bool InnerLoop::act(uint8_t code) {
+  const DecodeForm form = decode_form_of(code);
+  return act(code, form.pops(), form.size());
 }
 
 tini_always_inline bool InnerLoop::until(bool stop) {
@@ -176,6 +171,20 @@ tini_always_inline bool InnerLoop::until(bool stop) {
   const bool goes_on = machine_.until(stop);
   next_ = machine_.code_ + machine_.task_.pc;
   return goes_on;
+}
+
+// The instructions that compare with a constant.
+tini_always_inline bool InnerLoop::until_relates(Op op, int32_t constant) {
+  return pop(1) && until(relates(*top_, comparator_of(op), constant));
+}
+
+tini_always_inline bool InnerLoop::unless_relates(Op op, int32_t constant) {
+  return pop(1) && unless(relates(*top_, comparator_of(op), constant), u8());
+}
+
+tini_always_inline bool InnerLoop::unless_variable_relates(uint8_t number, Op op, int32_t constant) {
+  if (number >= kVariables) return halt(Fault::kBadCode);
+  return unless(relates(machine_.task_.variables[number], comparator_of(op), constant), u8());
 }
 
 // Variables and sensors: their numbers are checked, as damaged code may have any.

@@ -1,5 +1,4 @@
-// Where a machine has what in memory, for assembly. `layout_avr.cpp` asserts each offset, and
-// `layout_tasks_avr.cpp` those of tasks.
+// Where a machine has what in memory, for assembly. `layout_avr.cpp` asserts each offset.
 
 #pragma once
 
@@ -20,14 +19,14 @@
 #define tini_pc_at 16
 #define tini_depth_at 18
 #define tini_framed_at 19
-#ifdef tiniscript_has_tasks
 #define tini_others_at 29
 #define tini_is_quiet_at 30
 #define tini_me_at 31
 #define tini_after_at 33
 #define tini_holder_at 35
-#define tini_variables_at 37
 #define tini_records_at (tini_variables_at + 128)
+#ifdef tiniscript_has_tasks
+#define tini_variables_at 37
 #define tini_main_task_at (tini_records_at + tini_tasks * tini_record_bytes)
 #define tini_stack_at (tini_main_task_at + tini_record_bytes)
 #else

@@ -83,9 +83,8 @@ class Machine : public Scheduler {
   bool go_ms(uint8_t code, int32_t* top);
   bool show(int32_t value);
 
-  // Nobody calls these: what they assert, the compiler checks.
+  // Nobody calls it: what it asserts, the compiler checks.
   static void check_layout();
-  static void check_layout_of_tasks();
 };
 
 }  // namespace tiniscript

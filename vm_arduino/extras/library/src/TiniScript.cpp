@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "vm/crc32.h"
 #include "vm/cpu.h"
+#include "vm/crc32.h"
 #include "vm/verify.h"
 
 using namespace tiniscript;

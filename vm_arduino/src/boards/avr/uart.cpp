@@ -9,8 +9,8 @@
 #include "../../firmware/state.h"
 #include "../../link/messages.h"
 #include "../kit.h"
-#include "events.h"
 #include "clock.h"
+#include "events.h"
 #include "interrupts.h"
 #include "quick_stop.h"
 

@@ -14,8 +14,8 @@
 #include "../../firmware/firmware.h"
 #include "../kit.h"
 #include "../uart.h"
-#include "events.h"
 #include "clock.h"
+#include "events.h"
 #include "pins.h"
 #include "radio.h"
 
