@@ -43,6 +43,7 @@ def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
     terminal.until(r"motor der\. +40 %")
     terminal.type("b")
     terminal.until(r"s +detenido")
+    terminal.until(r"motor der\. +0 %")  # below it: what is drawn next is of the next run
     terminal.type("r")
     terminal.type("b")
     terminal.until(r"motor der\. +40 %")
