@@ -96,11 +96,15 @@ def make(extras: str, root: Path = ROOT) -> Path:
     if not _runs(python, "-m", "pip", "--version"):
         _make_empty(root / ".venv")
     # What was installed, and from where: times of files say neither in the second of a change, nor
-    # where a folder has been moved or an older state of it has been taken out.
-    stamp = root / ".venv" / f"installed{extras}"
-    digest = hashlib.sha256((root / "pyproject.toml").read_bytes()).hexdigest()
-    wanted = f"{digest} {root}\n"
-    if not stamp.is_file() or stamp.read_text(encoding="utf-8") != wanted:
+    # where a folder has been moved or an older state of it has been taken out. While pip works, and
+    # after it was cut off, nothing is.
+    stamp = root / ".venv" / "installed"
+    source = f"{hashlib.sha256((root / 'pyproject.toml').read_bytes()).hexdigest()} {root}"
+    was, *done_extras = stamp.read_text(encoding="utf-8").split("\n") if stamp.is_file() else ("",)
+    if was != source:
+        done_extras = []
+    if extras not in done_extras:
+        stamp.unlink(missing_ok=True)
         say(said("installing"))
         pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
         # Python compiles what it imports, a third of what there is.
@@ -117,7 +121,7 @@ def make(extras: str, root: Path = ROOT) -> Path:
             log.write_text(done.stdout, encoding="utf-8")
             rows = [row.strip() for row in done.stdout.splitlines() if "ERROR:" in row]
             _fail(said("no_pip", log=log.relative_to(root).as_posix(), end="\n".join(rows[-2:])))
-        stamp.write_text(wanted, encoding="utf-8")
+        stamp.write_text("\n".join((source, *done_extras, extras)), encoding="utf-8")
     return python
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import random
 import re
 import shutil
 import subprocess
@@ -16,6 +17,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.rows import each_row
+from tools import environment
 
 pytestmark = pytest.mark.skipif(not shutil.which("sh"), reason="no sh: Windows has no such scripts")
 
@@ -162,6 +164,46 @@ def test_a_folder_that_has_moved_is_installed_again(folder: Path) -> None:
     assert installed(folder)
     moved = folder.rename(folder.with_name("moved"))
     assert installed(moved)
+
+
+class Pip:
+    """Stands in for `subprocess.run`: an environment in which pip installs, fails or is cut off."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self.has: tuple[str, set[str]] = ("", set())  # of which state of pyproject.toml, and what
+        self.end = "works"
+
+    def __call__(self, words: list[str], **_: object) -> subprocess.CompletedProcess[str]:
+        if "install" in words:
+            state = (self.root / "pyproject.toml").read_text()
+            if self.end != "works":
+                self.has = ("a part", set())
+            if self.end == "is cut off":
+                raise KeyboardInterrupt
+            if self.end == "fails":
+                return subprocess.CompletedProcess(words, 1, "ERROR: no network")
+            had = self.has[1] if self.has[0] == state else set()
+            self.has = (state, had | {words[-1].removeprefix(str(self.root))})
+        return subprocess.CompletedProcess(words, 0, "")
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_is_there_is_what_is_asked_for(
+    seed: int, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After any history of states of the repository, of extras, and of ends of pip."""
+    rng, pip = random.Random(seed), Pip(folder)
+    monkeypatch.setattr(subprocess, "run", pip)
+    for _ in range(12):
+        state, extras = rng.choice(("one", "two")), rng.choice(("", "[test]", "[firmware]"))
+        pip.end = rng.choice(("works", "works", "works", "fails", "is cut off"))
+        (folder / "pyproject.toml").write_text(state)
+        try:
+            environment.make(extras, folder)
+        except (SystemExit, KeyboardInterrupt):
+            continue
+        assert pip.has[0] == state and extras in pip.has[1]
 
 
 def script(
