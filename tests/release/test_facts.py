@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT
+from tools import CannotMake
 from tools.release import __main__ as release
 from tools.release import facts
 
@@ -116,6 +117,16 @@ def test_a_tag_of_another_version_is_told(clone: Path) -> None:
     git(clone, "tag", "seen")
     (found,) = facts.complaints(clone)
     assert "v1.2.3" in found and VERSION in found
+
+
+def test_a_release_gets_its_tag_once(clone: Path) -> None:
+    for _ in range(2):
+        release.tag(clone, VERSION)
+    assert facts.tags(clone) == [f"v{VERSION}"]
+    assert list(facts.complaints(clone)) == []
+    commit(clone)
+    with pytest.raises(CannotMake, match=r"git tag does not work: .*already exists"):
+        release.tag(clone, VERSION)
 
 
 def test_an_address_has_one_place() -> None:

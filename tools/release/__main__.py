@@ -5,8 +5,8 @@
 takes the commit that is checked out into two clean folders, makes firmware, studio, the cases of
 tsc doctor --conform, wheel, source package, library, site and USB stick in both, and says what is
 not the same byte for byte; looks at the packages as a registry does. FOLDER then has the files and
-SHA256SUMS. Nothing is uploaded. It takes twenty minutes. That what is made installs and works is
-tested with each commit.
+SHA256SUMS. Nothing is uploaded. It takes twenty minutes. With `--tag` the commit then gets the tag
+of its version, if nothing is wrong. That what is made installs and works is tested with each commit.
 
 `--url https://…` rehearses with an address that pyproject.toml does not have yet; `--as-is` goes on
 where something keeps the commit from being released; `--part NAME` makes only some;
@@ -48,6 +48,7 @@ def main(words: Sequence[str] | None = None) -> int:
     reader.add_argument("folder", type=Path, help="a folder that is not there yet, or is empty")
     reader.add_argument("--url", default="", help="an address instead of pyproject.toml's")
     reader.add_argument("--as-is", action="store_true", help="go on with what cannot be released")
+    reader.add_argument("--tag", action="store_true", help="tag this commit if it can be released")
     reader.add_argument("--part", action="append", default=[], choices=PARTS, help="only this one")
     reader.add_argument("--whole-stick", action="store_true", help="for every system and Python")
     options = reader.parse_args(words)
@@ -100,7 +101,20 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
         _say(f"{results.DOCUMENT.relative_to(ROOT)}: figures of older code: {old}")
     for each in failed:
         print(f"made twice, it is not the same: {each}", file=sys.stderr)
-    return 1 if wrong or failed else 0
+    if wrong or failed:
+        return 1
+    if options.tag:
+        try:
+            tag(ROOT, facts.version(ROOT))
+        except CannotMake as why:
+            return _fail(str(why))
+    return 0
+
+
+def tag(root: Path, version: str) -> None:
+    """Give the commit of a repository the tag of a version. Raises CannotMake."""
+    if f"v{version}" not in facts.tags(root):
+        _git(root, [["tag", "--annotate", f"v{version}", "-m", f"TiniScript {version}"]])
 
 
 def lacks(parts: Sequence[str]) -> str:
@@ -139,16 +153,19 @@ def _clones(scratch: Path, url: str, whole_stick: bool) -> list[Clone]:
 
 def _commit(root: Path) -> None:
     """Keep the address of a rehearsal, so that a clone is clean, and its tags stay where it is."""
+    steps = [["commit", "--quiet", "-am", "release: An address to rehearse with."]]
+    steps += [["tag", "--force", name] for name in facts.tags(root)]
+    _git(root, steps)
+
+
+def _git(root: Path, steps: Sequence[Sequence[str]]) -> None:
     git = ["git", "-C", str(root), "-c", "user.name=release", "-c", "user.email=release@localhost",
            "-c", "commit.gpgsign=false", "-c", "tag.gpgsign=false"]  # fmt: skip
-    tags = subprocess.run([*git, "tag", "--points-at", "HEAD"], capture_output=True, text=True)
-    steps = [["commit", "--quiet", "-am", "release: An address to rehearse with."]]
-    steps += [["tag", "--force", tag] for tag in tags.stdout.split()]
     for step in steps:
         done = subprocess.run([*git, *step], capture_output=True, text=True)
         if done.returncode:
             said = (done.stderr or done.stdout).strip().splitlines() or ["git says nothing"]
-            raise CannotMake(f"git does not keep the address: {said[-1]}")
+            raise CannotMake(f"git {step[0]} does not work: {said[-1]}")
 
 
 def _make(clone: Clone, parts: Sequence[str]) -> dict[str, list[Path]]:

@@ -49,6 +49,11 @@ def epoch(root: Path) -> int:
     return int(_git(root, "log", "-1", "--format=%ct"))
 
 
+def tags(root: Path) -> list[str]:
+    """Return the tags of a clone's commit."""
+    return _git(root, "tag", "--points-at", "HEAD").splitlines()
+
+
 def complaints(root: Path) -> Iterator[str]:
     """Yield a sentence for each thing that keeps a clone from being released."""
     changed = _git(root, "status", "--porcelain").splitlines()
@@ -76,11 +81,10 @@ def complaints(root: Path) -> Iterator[str]:
 
 
 def _about_tags(root: Path, ours: str) -> Iterator[str]:
-    tags = [each for each in _git(root, "tag", "--points-at", "HEAD").splitlines()
-            if re.fullmatch(r"v\d.*", each)]  # fmt: skip
-    if tags and f"v{ours}" not in tags:
-        yield f"The commit has the tag {tags[0]}, and the version {ours}: one of both is wrong."
-    elif not tags and _git(root, "tag", "--list", f"v{ours}"):
+    versions = [name for name in tags(root) if re.fullmatch(r"v\d.*", name)]
+    if versions and f"v{ours}" not in versions:
+        yield f"The commit has the tag {versions[0]}, and the version {ours}: one of both is wrong."
+    elif not versions and _git(root, "tag", "--list", f"v{ours}"):
         yield f"The tag v{ours} is that of another commit: give this one a new version."
 
 
