@@ -6,7 +6,7 @@ takes the commit that is checked out into two clean folders, makes firmware, stu
 tsc doctor --conform, wheel, source package, library, site and USB stick in both, and says what is
 not the same byte for byte; looks at the packages as a registry does. FOLDER then has the files and
 SHA256SUMS. Nothing is uploaded. It takes twenty minutes. With `--tag` the commit then gets the tag
-of its version, if nothing is wrong. That what is made installs and works is tested with each commit.
+of its version, if nothing is wrong. Each commit tests that what is made installs and works.
 
 `--url https://…` rehearses with an address that pyproject.toml does not have yet; `--as-is` goes on
 where something keeps the commit from being released; `--part NAME` makes only some;
