@@ -66,7 +66,7 @@ def page(opened: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     """A page of many tests, which has not connected yet."""
     pages, found = opened
     yield found
-    found.unroute_all(behavior="wait")
+    found.unroute_all(behavior="ignoreErrors")
     found.evaluate("delete document.visibilityState")
     if found.locator("#link_leave").is_visible():
         found.click("#link_leave")
