@@ -287,6 +287,20 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "D = DISTANCE; F(D - 20 CM, 60); SHOW(D); SHOW(D)": "The robot showed 81.4, but DISTANCE was about 20 then",
         },
     },
+    17: {
+        "right": {
+            "DEF Q(N); LOOP(4); F(N CM, 60); L(90 DEG, 60); END_LOOP; END_DEF; Q(20); Q(30); Q(40)": "",
+            "SI|DEF C(N, P); LOOP(4); F(N cm, P); L(90°, 40); END_LOOP; END_DEF; C(20, 40); C(20 * 1.5, 60); C(40, 80)": "",
+            "DEF LADO(N); F(N CM, 60); L(90 DEG, 60); END_DEF; DEF C(K); LOOP(4); LADO(K * 10); END_LOOP; END_DEF; D = 2; WHILE(D <= 4); C(D); D = D + 1; END_WHILE": "",
+        },
+        "rote": {
+            "SI|F(20 CM, 60)": "The program ended before the robot got to corner 2 of 11",
+        },
+        "wrong": {
+            "DEF Q(N); LOOP(4); F(N CM, 60); R(90 DEG, 60); END_LOOP; END_DEF; Q(20); Q(30); Q(40)": "The robot touched the wall",
+            "DEF Q(N); LOOP(3); F(N CM, 60); L(90 DEG, 60); END_LOOP; END_DEF; Q(20); Q(30); Q(40)": "20 cm past corner 5",
+        },
+    },
 }  # fmt: skip
 EACH = [
     pytest.param(number, program, what, id=f"{number}-{group}-{k}")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from itertools import pairwise
+from itertools import pairwise, takewhile
 
 from tiniscript import robots
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
@@ -49,7 +49,7 @@ def explained(found: Sequence[Finding], text: str, lesson: Lesson, ending: str) 
         word = MISSING.get(each.key, "")
         name = _name_of_uncalled(word, tokens, words) if word else ""
         if name:
-            uncalled = [Finding("uses", "uses/uncalled", {"name": name})]
+            uncalled = [Finding("uses", "uses/uncalled", {"name": _call_of(name, tokens)})]
         elif word == "move":
             explained.append(_asked(each, tokens, words, lesson, ending))
         elif word not in words:
@@ -66,6 +66,15 @@ def _name_of_uncalled(word: str, tokens: Sequence[Token], words: Sequence[str]) 
         if kept.moving(inside) if word == "move" else word in [each.text for each in inside]:
             return name
     return ""
+
+
+def _call_of(name: str, tokens: Sequence[Token]) -> str:
+    """Return how a word of DEF is called, with the names of its values: `SQUARE(SIZE)`."""
+    texts = [token.text for token in tokens]
+    at = next(k for k, pair in enumerate(pairwise(texts)) if pair == ("DEF", name)) + 2
+    if texts[at : at + 1] != ["("]:
+        return name
+    return f"{name}{''.join(takewhile(lambda text: text != ')', texts[at:]))})".replace(",", ", ")
 
 
 def _owned(tokens: Sequence[Token]) -> list[tuple[str, Token]]:
@@ -125,7 +134,7 @@ def _uses(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
     own = _own_words(words)
     uncalled = _uncalled(words)
     if "DEF" in criterion.words and len(own) - len(uncalled) < times and uncalled:
-        return Finding("uses", "uses/uncalled", {"name": uncalled[0]})
+        return Finding("uses", "uses/uncalled", {"name": _call_of(uncalled[0], tokens)})
     if "LOOP" in criterion.words and not any(
         ACTS.union(own).intersection(inside) for inside in _repeated(words)
     ):
