@@ -60,6 +60,8 @@ GROUPS = (
     ("Words of your own", (
         "DEF STEP ... END_DEF",
         "STEP",
+        "DEF SIDE(SIZE) ... END_DEF",
+        "SIDE(30)",
         "SPEED = 50",
     )),
     ("Questions", (
