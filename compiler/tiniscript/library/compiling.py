@@ -183,7 +183,7 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
                              verdict=verdict, image=image)  # fmt: skip
 
 
-def compiled(
+def compile_source(
     data: bytes,
     robot: Robot,
     name: str,
@@ -240,7 +240,7 @@ def maker(robot: Robot) -> Callable[[str], Image | None]:
     """Return what makes the image of a text for a robot, or None where the text has mistakes."""
 
     def made(text: str) -> Image | None:
-        found = compiled(text.encode(), robot, "", is_strict=True)
+        found = compile_source(text.encode(), robot, "", is_strict=True)
         return image_of(found, robot) if found.is_right else None
 
     return made
