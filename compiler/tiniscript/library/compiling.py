@@ -22,7 +22,6 @@ from tiniscript.library.named_robot import unknown_robot
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
-from tiniscript.semantics.empty_blocks import empty_blocks
 from tiniscript.semantics.lint import lint
 from tiniscript.semantics.optimizer import optimized
 from tiniscript.syntax.parser import ENOUGH, parse
@@ -97,12 +96,7 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
     checked = check(source, parsed.program, kit)
     found = [*parsed.diagnostics, *checked.diagnostics]
     if not any(diagnostic.is_mistake for diagnostic in found):
-        found += lint(checked.program, kit, source)
-        found += empty_blocks(checked.program, source)
-        if parsed.scan.comments:
-            from tiniscript.semantics.notes import in_notes
-
-            found += in_notes(parsed.scan.comments, parsed.scan.tokens, source)
+        found += lint(checked.program, kit, source, parsed.scan)
     return Compiled(source, codes.in_order(found), checked.program)
 
 
