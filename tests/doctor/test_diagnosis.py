@@ -15,7 +15,7 @@ import pytest
 from tests.support.fake_computer import FakeComputer
 from tests.support.simulated_ends import KIT, Firmware, Nobody
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
-from tiniscript.cli.commands.doctor import _said
+from tiniscript.cli.texts.causes import said
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES
@@ -260,7 +260,7 @@ def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
     assert finding.cause == "charging_cable"
     assert finding.values == {"ports": f"/dev/ttyS0, {', '.join(case.virtual)}"}
     for language in ("en", "es"):
-        _, seen, then = _said(finding, finding.values, language)
+        _, seen, then = said(finding, language)
         assert finding.values["ports"] in seen
         assert "tsc doctor --port" in then
 
