@@ -23,6 +23,8 @@ from tests.support.simulated_port import simulated
 from tests.support.virtual_robot import robot_in
 from tiniscript import robots
 from tiniscript.cli import main
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.doctor import report
 from tiniscript.library.simulated import Simulated
 from tiniscript.link.messages import RESETS
@@ -60,6 +62,10 @@ def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
         "answers", "kit", "firmware", "line", "supply", "store", "trim", *sensors
     }  # fmt: skip
     assert {name for name, each in verdicts.items() if each == "open"} == asked
+    assert {each["finding"] for each in found.values()} == {
+        "is_there", "kit_is", "firmware_is", "line_is", "supply_is", "empty", "trim_is", "reads",
+        "unasked",
+    }  # fmt: skip
     assert not any("MOTORS" in line for line in pty_robot.did), "nobody has lifted it"
 
 
@@ -103,6 +109,7 @@ def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
     pty_robot.damages = 97
     told = json.loads(on(pty_robot, "doctor", "--robot", "liner", "--json").out)["findings"]
     _, found = found_by(pty_robot, "--robot", "liner")
+    assert found["store"]["finding"] == "unsaved"
     ours = {each["finding"]: each for each in found.values()}
     assert {each["cause"] for each in told} >= {"low_supply", "wrong_kit", "lossy"}
     for each in told:
@@ -128,7 +135,7 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     code, found = found_by(pty_robot)
     assert code == 3
     assert found["kit"]["verdict"] == "ok", "what was found before is said"
-    assert found["answers"]["verdict"] == "wrong"
+    assert (found["answers"]["verdict"], found["answers"]["finding"]) == ("wrong", "plain")
 
 
 # -- with a person
@@ -200,11 +207,19 @@ def person(
     return answer
 
 
+def causes(out: str) -> set[str]:
+    return {each["finding"] for each in json.loads(out)["found"]}
+
+
 def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
-    code, out, _ = asked(pty_robot, person(pty_robot))
+    assert on(pty_robot, "upload", "-e", "SB|F(1, 50)").code == 0
+    code, out, _ = asked(pty_robot, person(pty_robot), "--json")
     assert code == 0, out
-    assert "WRONG" not in out and "?  " not in out
+    assert causes(out) == {
+        "is_there", "kit_is", "firmware_is", "line_is", "supply_is", "saved", "trim_is", "changes",
+        "turns", "heard",
+    }  # fmt: skip
     turned = [line for line in pty_robot.did if "MOTORS" in line]
     assert turned == ["MOTORS 60 0", "MOTORS 0 0", "MOTORS 0 60", "MOTORS 0 0"]
 
@@ -224,6 +239,38 @@ def test_what_a_person_sees_is_wrong(pty_robot: PtyRobot) -> None:
     code, out, _ = asked(pty_robot, person(pty_robot, is_noticed=False))
     assert code == 3
     assert out.count("does not notice") == len(pty_robot.kit.sensors)
+
+
+def test_each_cause_of_what_a_person_sees(pty_robot: PtyRobot) -> None:
+    deaf = person(pty_robot, Wires(is_dead=True), is_noticed=False)
+
+    def answer(question: str) -> str:
+        return "2" if "buzzer" in question else deaf(question)
+
+    _, out, _ = asked(pty_robot, answer, "--json")
+    assert causes(out) > {"same", "still", "unheard"}
+    _, out, _ = asked(pty_robot, person(pty_robot, Wires(is_left_reversed=True)), "--json")
+    assert causes(out) > {"turns", "other_turn"}
+    with PtyRobot(robots.load("liner").kit) as robot:
+        _, out, _ = asked(robot, lambda question: "5" if "motor" in question else "1", "--json")
+    assert "as_bright" in causes(out)
+
+
+def test_each_cause_of_a_line_that_the_robot_ends(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is still there, so all else is looked at, too."""
+
+    def does(test: SelfTest, line: str) -> list[int]:
+        raise CommandError(3, "plain", said="stopped")
+
+    monkeypatch.setattr(SelfTest, "does", does)
+    _, out, _ = asked(pty_robot, person(pty_robot), "--json")
+    found = [(each["what"], each["finding"]) for each in json.loads(out)["found"]]
+    sensors = [("sensor", "no_reading")] * len(pty_robot.kit.sensors)
+    assert found[-3 - len(sensors) :] == [
+        *sensors, ("left", "ended"), ("right", "ended"), ("buzzer", "ended"),
+    ]  # fmt: skip
 
 
 WIRES = [Wires(*each) for each in product((False, True), repeat=3)]
@@ -279,10 +326,10 @@ def test_a_disc_that_flickers_at_rest_is_wrong(number: int | None) -> None:
         running.close()
     (disc,) = [each for each in json.loads(done.out)["found"] if each["what"] == "discs"]
     if number is None:
-        assert (done.code, disc["verdict"]) == (0, "ok") and "disc" not in said
+        assert (done.code, disc["finding"]) == (0, "discs_rest") and "disc" not in said
         return
     edges = [int(disc["values"][side]) for side in ("left", "right")]
-    assert done.code == 3 and disc["verdict"] == "wrong"
+    assert (done.code, disc["finding"], disc["verdict"]) == (3, "discs_noise", "wrong")
     assert edges[number] >= 18 and edges[1 - number] == 0
     assert "a disc flickers: look at its sensor" in said
 

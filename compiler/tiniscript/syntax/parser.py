@@ -285,6 +285,10 @@ class Parser:
     def block_end(self, word: Token) -> None:
         self.cursor.i += 1
         self.no_arguments(word)
+        self.close(word)
+
+    def close(self, word: Token) -> None:
+        """End the block that a word ends, and those that are still open in it."""
         blocks, begun = self.blocks, ENDS[word.text]
         if not any(each.word == begun for each in blocks.open):
             around = {}
@@ -360,7 +364,8 @@ class Parser:
         self.reporter.fail(code, token.span, before=before)
 
 
-# The rule of an instruction, by its first word; of all others it is `command`.
+# The rule of an instruction, by its first word; of all others it is `command`. A parser made
+# of this one changes what a rule calls, and no rule.
 _RULES: dict[str, Callable[[Parser, Token], None]] = {
     **dict.fromkeys(HEADERS, Parser.header),
     **dict.fromkeys(ENDS, Parser.block_end),
