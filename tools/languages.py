@@ -28,7 +28,7 @@ from tiniscript.base.languages import FOLDER, ITSELF, NAMES, SOURCE, files, lang
 from tiniscript.base.translations import read_language
 from tiniscript.base.words import WORDS
 from tiniscript.diagnostics.codes import CODES
-from tiniscript.recovery.concepts import plain
+from tiniscript.recovery.meanings import plain
 from tools.translation_files import Translation, heading, tell
 
 PSEUDO = "qps"  # by custom: no language has this code

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from tiniscript import robots
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import fixed
-from tiniscript.library.compiling import compiled
+from tiniscript.library.compiling import compile_source
 from tiniscript.library.named_robot import robot_of
 
 MEANT = ".meant.ts"
@@ -33,12 +33,12 @@ class Figures(NamedTuple):
 def image(text: str) -> bytes:
     """Return the code of a program for the robot that it names, nothing for a wrong one."""
     robot = robot_of(text.encode(), robots.load(robots.DEFAULT))
-    return compiled(text.encode(), robot, "", is_strict=True).image
+    return compile_source(text.encode(), robot, "", is_strict=True).image
 
 
 def check(text: str) -> list[Diagnostic]:
     robot = robot_of(text.encode(), robots.load(robots.DEFAULT))
-    return compiled(text.encode(), robot, "", is_strict=True).diagnostics
+    return compile_source(text.encode(), robot, "", is_strict=True).diagnostics
 
 
 def figures(folder: Path) -> Figures:

@@ -228,7 +228,7 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
     ],
 )
 def test_ports_in_a_report(port: str, told: str) -> None:
-    assert report.port(port) == told
+    assert report.shown_port(port) == told
 
 
 def test_values_of_others_stay_out_of_a_report() -> None:

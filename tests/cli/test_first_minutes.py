@@ -410,6 +410,15 @@ def test_a_file_is_found_by_the_name_that_a_folder_shows(
     assert tsc("check", folder / said).err == ""
 
 
+@pytest.mark.parametrize("more", [(), ("--port", "P"), ("--build",), ("--robot", "liner")])
+@pytest.mark.parametrize("chip", ["nano", "MEGA"])
+def test_a_chip_in_the_place_of_a_robot_leads_to_its_option(
+    tsc: Tsc, chip: str, more: tuple[str, ...]
+) -> None:
+    for words in (("--board", chip, *more), (*more, f"--board={chip}")):
+        tsc("firmware", *words).gives(2, f"Try:  tsc firmware --chip {chip.lower()}\n")
+
+
 def test_board_says_where_the_build_looks(
     tsc: Tsc, here: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -6,9 +6,11 @@ import io
 import json
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import redirect_stderr, redirect_stdout
+from itertools import product
 from pathlib import Path
+from typing import NamedTuple
 from unittest import mock
 
 import pytest
@@ -21,6 +23,8 @@ from tests.support.simulated_port import simulated
 from tests.support.virtual_robot import robot_in
 from tiniscript import robots
 from tiniscript.cli import main
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.doctor import report
 from tiniscript.library.simulated import Simulated
 from tiniscript.link.messages import RESETS
@@ -49,7 +53,8 @@ def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
     assert isinstance(sizes, dict)
     assert {name: sizes[name] for name in ("largest", "window")} == {"largest": "63", "window": "1"}
     assert int(sizes["room"]) >= 389
-    assert found["supply"]["values"] == {"reset": "power on"}
+    assert found["supply"]["values"] == {"reset": "POWER"}
+    assert "power on" in str(found["supply"]["said"])
     times = found["line"]["values"]
     assert isinstance(times, dict)
     assert float(times["least"]) <= float(times["ms"]) <= float(times["most"])
@@ -57,6 +62,10 @@ def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
         "answers", "kit", "firmware", "line", "supply", "store", "trim", *sensors
     }  # fmt: skip
     assert {name for name, each in verdicts.items() if each == "open"} == asked
+    assert {each["finding"] for each in found.values()} == {
+        "is_there", "kit_is", "firmware_is", "line_is", "supply_is", "empty", "trim_is", "reads",
+        "unasked",
+    }  # fmt: skip
     assert not any("MOTORS" in line for line in pty_robot.did), "nobody has lifted it"
 
 
@@ -100,6 +109,7 @@ def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
     pty_robot.damages = 97
     told = json.loads(on(pty_robot, "doctor", "--robot", "liner", "--json").out)["findings"]
     _, found = found_by(pty_robot, "--robot", "liner")
+    assert found["store"]["finding"] == "unsaved"
     ours = {each["finding"]: each for each in found.values()}
     assert {each["cause"] for each in told} >= {"low_supply", "wrong_kit", "lossy"}
     for each in told:
@@ -125,7 +135,7 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     code, found = found_by(pty_robot)
     assert code == 3
     assert found["kit"]["verdict"] == "ok", "what was found before is said"
-    assert found["answers"]["verdict"] == "wrong"
+    assert (found["answers"]["verdict"], found["answers"]["finding"]) == ("wrong", "plain")
 
 
 # -- with a person
@@ -143,7 +153,7 @@ def asked(pty_robot: PtyRobot, answers: Callable[[str], str], *words: str) -> tu
 
         def readline(self) -> str:
             question = err.getvalue()[self.read :]
-            assert question.endswith(("Enter. ", "more: "))
+            assert question.endswith(("Enter. ", "what it had. ", "again: ", "2 no: "))
             self.read += len(question)
             return f"{answers(question)}\n"
 
@@ -155,7 +165,34 @@ def asked(pty_robot: PtyRobot, answers: Callable[[str], str], *words: str) -> tu
     return code, out.getvalue(), err.getvalue()
 
 
-def person(pty_robot: PtyRobot, motors: str = "1", is_noticed: bool = True) -> Callable[[str], str]:
+class Wires(NamedTuple):
+    """How the motors of a robot are wired; a motor that is `dead` does not turn."""
+
+    is_exchanged: bool = False
+    is_left_reversed: bool = False  # the wheel
+    is_right_reversed: bool = False
+    is_dead: bool = False
+
+    def seen(self, did: Sequence[str]) -> str:
+        """Return what a person answers who has seen the last motor turn."""
+        outputs = [each.split()[-2:] for each in did if "MOTORS" in each]
+        left, right = next([*map(int, each)] for each in reversed(outputs) if {*each} != {"0"})
+        if self.is_dead:
+            return "5"
+        if self.is_exchanged:
+            left, right = right, left
+        wheel, power = ("right", right) if right else ("left", left)
+        is_reversed = self.is_right_reversed if right else self.is_left_reversed
+        is_forward = (power > 0) != is_reversed
+        return str({"left": 1, "right": 3}[wheel] + (not is_forward))
+
+
+AS_THEY_SHOULD = Wires()
+
+
+def person(
+    pty_robot: PtyRobot, wires: Wires = AS_THEY_SHOULD, is_noticed: bool = True, learns: str = "2"
+) -> Callable[[str], str]:
     """Return a person with a hand, who sees what the motors do."""
 
     def answer(question: str) -> str:
@@ -163,16 +200,26 @@ def person(pty_robot: PtyRobot, motors: str = "1", is_noticed: bool = True) -> C
             pty_robot.ask(lambda robot: robot.sense(100_000, 100_000, 5_000))
         elif "away from it" in question:
             pty_robot.ask(lambda robot: robot.sense(*GOOD))
-        return motors if question.endswith("more: ") and "wheel" in question else "1"
+        elif "motor turned" in question:
+            return wires.seen(pty_robot.did)
+        return learns if "can keep" in question else "1"
 
     return answer
 
 
+def causes(out: str) -> set[str]:
+    return {each["finding"] for each in json.loads(out)["found"]}
+
+
 def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
-    code, out, _ = asked(pty_robot, person(pty_robot))
+    assert on(pty_robot, "upload", "-e", "SB|F(1, 50)").code == 0
+    code, out, _ = asked(pty_robot, person(pty_robot), "--json")
     assert code == 0, out
-    assert "WRONG" not in out and "?  " not in out
+    assert causes(out) == {
+        "is_there", "kit_is", "firmware_is", "line_is", "supply_is", "saved", "trim_is", "changes",
+        "turns", "heard",
+    }  # fmt: skip
     turned = [line for line in pty_robot.did if "MOTORS" in line]
     assert turned == ["MOTORS 60 0", "MOTORS 0 0", "MOTORS 0 60", "MOTORS 0 0"]
 
@@ -180,27 +227,82 @@ def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
 def test_what_a_person_sees_is_wrong(pty_robot: PtyRobot) -> None:
     """Motors that turn wrong or not at all, and sensors that notice nothing."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
-    for motors, said in (("2", "tsc set trim"), ("3", "its wires")):
-        code, out, _ = asked(pty_robot, person(pty_robot, motors))
+    for wires, said in (
+        (Wires(is_exchanged=True), "tsc set trim"), (Wires(is_dead=True), "its wires"),
+    ):  # fmt: skip
+        code, out, err = asked(pty_robot, person(pty_robot, wires))
         assert code == 3
         assert out.count("WRONG") == 2
         assert f"Try:  {said}" in out
+        assert ("can keep" in err) == wires.is_exchanged
+    assert on(pty_robot, "set", "trim", "--show").out.count("as they are wired") == 1
     code, out, _ = asked(pty_robot, person(pty_robot, is_noticed=False))
     assert code == 3
     assert out.count("does not notice") == len(pty_robot.kit.sensors)
 
 
+def test_each_cause_of_what_a_person_sees(pty_robot: PtyRobot) -> None:
+    deaf = person(pty_robot, Wires(is_dead=True), is_noticed=False)
+
+    def answer(question: str) -> str:
+        return "2" if "buzzer" in question else deaf(question)
+
+    _, out, _ = asked(pty_robot, answer, "--json")
+    assert causes(out) > {"same", "still", "unheard"}
+    _, out, _ = asked(pty_robot, person(pty_robot, Wires(is_left_reversed=True)), "--json")
+    assert causes(out) > {"turns", "other_turn"}
+    with PtyRobot(robots.load("liner").kit) as robot:
+        _, out, _ = asked(robot, lambda question: "5" if "motor" in question else "1", "--json")
+    assert "as_bright" in causes(out)
+
+
+def test_each_cause_of_a_line_that_the_robot_ends(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is still there, so all else is looked at, too."""
+
+    def does(test: SelfTest, line: str) -> list[int]:
+        raise CommandError(3, "plain", said="stopped")
+
+    monkeypatch.setattr(SelfTest, "does", does)
+    _, out, _ = asked(pty_robot, person(pty_robot), "--json")
+    found = [(each["what"], each["finding"]) for each in json.loads(out)["found"]]
+    sensors = [("sensor", "no_reading")] * len(pty_robot.kit.sensors)
+    assert found[-3 - len(sensors) :] == [
+        *sensors, ("left", "ended"), ("right", "ended"), ("buzzer", "ended"),
+    ]  # fmt: skip
+
+
+WIRES = [Wires(*each) for each in product((False, True), repeat=3)]
+
+
+@pytest.mark.parametrize("wires", WIRES)
+def test_a_robot_learns_how_its_motors_are_wired(pty_robot: PtyRobot, wires: Wires) -> None:
+    """Whatever it has kept before; the rest of its trim stays."""
+    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    for before in ((), ("--exchange", "yes", "--reverse-left", "yes", "--balance", "7")):
+        assert on(pty_robot, "set", "trim", *before, "--least", "3").code == 0
+        code, out, _ = asked(pty_robot, person(pty_robot, wires, learns="1"))
+        assert (code, out.count("turns forward"), "WRONG" in out) == (0, 2, False), out
+        kept = json.loads(on(pty_robot, "set", "trim", "--show", "--json").out)
+        assert tuple(kept[name] for name in Wires._fields[:3]) == wires[:3]
+        assert (kept["least"], kept["balance"]) == (3, 7 if before else 0)
+        assert ("motors swapped" in out) == wires.is_exchanged, "what it keeps now is said"
+
+
 def test_once_more_turns_the_motor_again(pty_robot: PtyRobot) -> None:
-    """And where the person leaves, questions are left."""
+    """No number that is asked for moves nothing. And where the person leaves, nothing turns."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
     assert on(pty_robot, "doctor", "--selftest").code == 0
     assert not any("MOTORS" in line for line in pty_robot.did)
-    answers = iter(["4", "7", "1", "1", "1"])
+    answers = iter(["6", "7", "6", "1", "3", "1"])
 
     def answer(question: str) -> str:
-        return next(answers) if question.endswith("more: ") else ""
+        return next(answers) if question.endswith("again: ") else ""
 
-    asked(pty_robot, answer)
+    code, _, err = asked(pty_robot, answer)
+    assert code == 3, "no sensor has noticed anything"
+    assert "A number from 1 to 6" in err
     assert sum("MOTORS 60 0" in line for line in pty_robot.did) == 3
 
 
@@ -224,10 +326,10 @@ def test_a_disc_that_flickers_at_rest_is_wrong(number: int | None) -> None:
         running.close()
     (disc,) = [each for each in json.loads(done.out)["found"] if each["what"] == "discs"]
     if number is None:
-        assert (done.code, disc["verdict"]) == (0, "ok") and "disc" not in said
+        assert (done.code, disc["finding"]) == (0, "discs_rest") and "disc" not in said
         return
     edges = [int(disc["values"][side]) for side in ("left", "right")]
-    assert done.code == 3 and disc["verdict"] == "wrong"
+    assert (done.code, disc["finding"], disc["verdict"]) == (3, "discs_noise", "wrong")
     assert edges[number] >= 18 and edges[1 - number] == 0
     assert "a disc flickers: look at its sensor" in said
 

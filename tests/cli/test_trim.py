@@ -15,10 +15,10 @@ from tests.support.command import Command, Done, inside
 from tests.support.pty_robot import PtyRobot
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
-from tiniscript.cli.commands.trim import words
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import trim_wizard
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.description import trim_in_words
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.names import fault_name
 from tiniscript.link.payloads import TrimReply
@@ -121,7 +121,7 @@ def test_what_cannot_be_set_is_said_without_a_robot() -> None:
 # Enter; the left output turns the right wheel, backward; the right one the left wheel, forward;
 # 5 and 10 % do not move both, 15 do; on the floor at 40 % it goes to its left, its right, then
 # straight, and so at 80 %
-ANSWERS = "\n2\n2\n1\n1\n2\n2\n1\n\n2\n9\n3\n1\n1\n"
+ANSWERS = "\n4\n1\n2\n2\n1\n\n2\n9\n3\n1\n1\n"
 
 
 def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot) -> None:
@@ -142,10 +142,10 @@ def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot)
 def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "--balance", "7", "--least", "3").code == 0
     for answers, said in (
-        ("\n1\n1\n1\n1\n", "the same wheel"),
-        ("\n3\n", "did not turn"),
-        ("\n1\n1\n2\n1\n" + "2\n" * 8, "do not turn with 40 %"),
-        ("\n1\n1\n2\n1\n1\n\n" + "2\n" * 3, "more than 40 % stronger"),
+        ("\n1\n2\n", "the same wheel"),
+        ("\n5\n", "did not turn"),
+        ("\n1\n3\n" + "2\n" * 8, "do not turn with 40 %"),
+        ("\n1\n3\n1\n\n" + "2\n" * 3, "more than 40 % stronger"),
         ("\n1\n", "the answers ended"),
     ):
         on(pty_robot, data=answers).gives(3, said)
@@ -195,7 +195,7 @@ def test_ctrl_c_stops_the_robot_and_it_keeps_what_it_had(pty_robot: PtyRobot) ->
 # -- how fast it is -------------------------------------------------------------------------------
 
 PACE = Pace(16.5, 33.25, 144, 288)
-LIFTED = "\n1\n1\n2\n1\n1\n\n1\n1\n"  # as it is wired, straight at both powers
+LIFTED = "\n1\n3\n1\n\n1\n1\n"  # as it is wired, straight at both powers
 
 
 def moves_in(robot: HostFirmware, session: Session, line: str) -> list[int]:
@@ -265,7 +265,7 @@ def pace_of(memory: bytes) -> Pace | None:
 def test_older_firmware_keeps_none() -> None:
     older = TrimReply(0, 0, 0, b"")
     assert told(older).pace is None
-    assert "centimetres" not in words(told(older), "en")
+    assert "centimetres" not in trim_in_words(told(older), "en")
 
 
 def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None:

@@ -10,7 +10,7 @@ from tiniscript import check, robots
 from tiniscript.base.source import Source
 from tiniscript.diagnostics.fixing import fixed
 from tiniscript.diagnostics.rendering import Message, message
-from tiniscript.library.compiling import compiled
+from tiniscript.library.compiling import compile_source
 from tiniscript.library.named_robot import robot_of
 
 TINIBOT = robots.load(robots.DEFAULT)
@@ -19,7 +19,7 @@ TINIBOT = robots.load(robots.DEFAULT)
 def told(program: str, language: str = "en") -> list[Message]:
     """Return what is said of a program for the robot that it names."""
     robot = robot_of(program.encode(), TINIBOT)
-    found = compiled(program.encode(), robot, "", is_strict=True)
+    found = compile_source(program.encode(), robot, "", is_strict=True)
     return [message(each, found.source, language) for each in found.diagnostics]
 
 
@@ -47,7 +47,7 @@ def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: 
 )
 def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted: str) -> None:
     robot = robot_of(program.encode(), TINIBOT)
-    made = fixed(program, lambda to: compiled(to.encode(), robot, "", True).diagnostics)
+    made = fixed(program, lambda to: compile_source(to.encode(), robot, "", True).diagnostics)
     assert made.text == wanted and not made.left
 
 
@@ -120,7 +120,9 @@ def test_what_is_tried_does_what_was_written(program: str, fixes: list[str]) -> 
     ],
 )
 def test_what_is_done_beside_is_a_task(program: str, wanted: str) -> None:
-    made = fixed(program, lambda to: list(compiled(to.encode(), TINIBOT, "", True).diagnostics))
+    made = fixed(
+        program, lambda to: list(compile_source(to.encode(), TINIBOT, "", True).diagnostics)
+    )
     assert (made.text, made.left) == (wanted, [])
 
 

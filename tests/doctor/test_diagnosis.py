@@ -15,7 +15,7 @@ import pytest
 from tests.support.fake_computer import FakeComputer
 from tests.support.simulated_ends import KIT, Firmware, Nobody
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
-from tiniscript.cli.commands.doctor import _said
+from tiniscript.cli.texts.causes import said
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES
@@ -260,7 +260,7 @@ def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
     assert finding.cause == "charging_cable"
     assert finding.values == {"ports": f"/dev/ttyS0, {', '.join(case.virtual)}"}
     for language in ("en", "es"):
-        _, seen, then = _said(finding, finding.values, language)
+        _, seen, then = said(finding, language)
         assert finding.values["ports"] in seen
         assert "tsc doctor --port" in then
 
@@ -400,9 +400,10 @@ def test_what_was_not_opened_is_not_said_to_have_been(case: Case) -> None:
 
 
 def test_every_cause_has_a_test() -> None:
-    """Each is in a table of this folder, or is named in a test."""
+    """Each is in a table of this folder, or is named in a test, or in one of the self-test."""
     folder = Path(__file__).parent
-    tables = (folder / "test_line.py", folder / "test_diagnosis.py")
+    tables = (folder / "test_line.py", folder / "test_diagnosis.py",
+              folder.parent / "cli" / "test_selftest.py")  # fmt: skip
     said = "".join(path.read_text(encoding="utf-8") for path in tables)
     assert [cause for cause in CAUSES if f'"{cause}"' not in said] == []
     assert len(CAUSES) >= 20

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from string import Formatter
 
 from tests.support.rows import each_row
 from tests.support.texts import in_all
 from tests.support.texts import said as all_said
-from tiniscript.cli.commands.doctor import _said
-from tiniscript.doctor.findings import CAUSES, PARTS, WRONG, Finding
+from tiniscript.cli.robot.self_test import PARTS, SIDES
+from tiniscript.cli.texts.causes import label, said
+from tiniscript.doctor.findings import CAUSES, OK, Finding
 
 # The values of each cause that has some; the sentences may use no others.
 VALUES = {
@@ -21,35 +23,74 @@ VALUES = {
     "firmware_newer": {"theirs", "ours"}, "wrong_kit": {"kit", "robot", "expected"},
     "unknown_kit": {"kit"}, "restarts": {"count", "reset"}, "motors_restart": {"count", "reset"},
     "lossy": {"missed", "n", "damaged"}, "other_robot": {"id"}, "unproven": {"id"},
-    "fine": {"name", "kit", "id", "n"},
+    "fine": {"name", "kit", "id", "n"}, "plain": {"said"}, "kit_is": {"robot"},
+    "firmware_is": {"isa", "room", "largest", "window"}, "line_is": {"n", "ms", "least", "most"},
+    "supply_is": {"reset"}, "trim_is": {"trim"}, "discs_noise": {"left", "right"},
+    "reads": {"name", "values"}, "stuck": {"name", "values"}, "changes": {"name", "values", "now"},
+    "same": {"name", "values", "now"}, "as_bright": {"name", "values", "now"},
+    "no_reading": {"name", "said"}, "ended": {"said"},
 }  # fmt: skip
 
 
-@each_row("cause", CAUSES)
-def test_a_cause_says_what_is_wrong_what_was_seen_and_what_to_do(cause: str) -> None:
-    for kind in ("doctor", "seen", "next"):
-        for said in in_all(f"{kind}_{cause}"):
-            assert said
-            gaps = {name for _, name, _, _ in Formatter().parse(said) if name}
+# Of a part that is looked at whole nothing more is seen; several causes may have one next step.
+OF_A_PART = [each for each, row in CAUSES.items() if row.then or (row.verdict == OK and row.part)]
+
+
+def sentences(cause: str, *kinds: str) -> Iterator[str]:
+    for kind in kinds:
+        for sentence in in_all(f"{kind}_{cause}"):
+            assert sentence
+            gaps = {name for _, name, _, _ in Formatter().parse(sentence) if name}
             assert gaps <= VALUES.get(cause, set())
+            yield sentence
+
+
+@each_row("cause", [each for each in CAUSES if each not in OF_A_PART])
+def test_a_cause_says_what_is_wrong_what_was_seen_and_what_to_do(cause: str) -> None:
+    assert len([*sentences(cause, "found", "seen", "next")]) > 3
+
+
+@each_row("cause", OF_A_PART)
+def test_what_came_of_a_part_says_what_to_do_if_it_is_not_right(cause: str) -> None:
+    values = dict.fromkeys(VALUES.get(cause, ()), "7")
+    assert [*sentences(cause, "found")]
+    for language in ("en", "es", "pt"):
+        found = said(Finding(cause, True, values), language)
+        assert found.what and not found.seen
+        assert bool(found.then) == (CAUSES[cause].verdict != OK)
 
 
 def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
-    known = {f"{kind}_{cause}" for kind in ("seen", "next") for cause in CAUSES}
+    known = {f"found_{cause}" for cause in CAUSES}
+    known |= {f"next_{row.then or cause}" for cause, row in CAUSES.items()}
+    known -= {f"next_{cause}" for cause in OF_A_PART}
+    known |= {f"next_{CAUSES[cause].then}" for cause in OF_A_PART if CAUSES[cause].then}
+    known |= {f"seen_{cause}" for cause in CAUSES if cause not in OF_A_PART}
     known |= {"seen_busy_unknown", "seen_other_sketch_silent"}
     known |= {"seen_restarts_once", "seen_motors_restart_once"}
     known |= {"seen_no_permission_other", "next_no_permission_other"}
     known |= {"seen_no_port_others", "next_no_port_others"}
-    named = {key for key in all_said("en") if key.startswith(("seen_", "next_"))}
+    named = {key for key in all_said("en") if key.startswith(("found_", "seen_", "next_"))}
     assert named == known
 
 
-def test_each_part_of_a_robot_has_its_causes() -> None:
-    """What an examination finds wrong is about one of them, or may be no robot of ours."""
-    about = [cause for causes in PARTS.values() for cause in causes]
-    assert len(about) == len({*about}) and {*about} <= {*CAUSES}
-    first = WRONG.index("firmware_older")
-    assert {*WRONG[first:]} - {*about} == {"other_robot", "unproven"}
+def test_each_part_has_a_name() -> None:
+    parts = {row.part for row in CAUSES.values()} - {"", "motor"} | {*SIDES}
+    for language in ("en", "es", "pt"):
+        names = {label(Finding("plain", True, {"name": "X"}, part), language) for part in parts}
+        assert len(names) == len(parts)
+    assert {f"part_{part}" for part in parts} == {
+        key for key in all_said("en") if key.startswith("part_")
+    }
+
+
+def test_an_examination_finds_what_is_about_a_part_or_that_it_is_no_robot_of_ours() -> None:
+    names = [*CAUSES]
+    about_it = names[names.index("other_robot") : names.index("fine")]
+    assert {each for each in about_it if not CAUSES[each].part} == {
+        "other_robot", "unproven", "of_another_owner", "stopped",
+    }  # fmt: skip
+    assert {CAUSES[each].part for each in about_it} == {"", *PARTS}
 
 
 def test_one_restart_is_said_as_one() -> None:
@@ -59,4 +100,4 @@ def test_one_restart_is_said_as_one() -> None:
             values = {"count": count, "reset": "BROWN_OUT"}
             finding = Finding(cause, True, values)
             for language, word in zip(("en", "es"), words, strict=True):
-                assert _said(finding, values, language)[1].startswith(word)
+                assert said(finding, language).seen.startswith(word)

@@ -14,7 +14,7 @@ from tiniscript.lessons import catalogue, running
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.sentences import sentence as words_for
 from tiniscript.lessons.variation import point_of, varied
-from tiniscript.library.compiling import compiled, image_of
+from tiniscript.library.compiling import compile_source, image_of
 
 HEAD = 'robot = "{robot}"\nseconds = 10\n{more}\n[title]\nen = "A"\nes = "B"\n'
 WORLD = """\
@@ -269,7 +269,7 @@ def test_a_world_is_the_same_for_the_same_seed(tmp_path: Path) -> None:
     assert 105 <= point_of(box, varied(lesson, 1), False).y <= 130
     assert 70 <= point_of(box, varied(lesson, 2), True).y <= 95  # the other way round
     robot = robots.load("tinibot")
-    image = image_of(compiled(b"F(1, 80);L(1, 50)", robot, "p", True), robot)
+    image = image_of(compile_source(b"F(1, 80);L(1, 50)", robot, "p", True), robot)
     tracks = [running.run(image, robot, lesson, seed).track for seed in (1, 1, 3)]
     assert tracks[0] == tracks[1] != tracks[2]
 

@@ -17,7 +17,7 @@ from tiniscript.lessons.lesson import Answer, Lesson
 from tiniscript.lessons.markdown import blocks
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.sheet import sheet
-from tiniscript.library.compiling import compiled, maker
+from tiniscript.library.compiling import compile_source, maker
 from tools.builds.page_texts import page_texts
 
 FOLDERS = catalogue.folders()
@@ -137,7 +137,7 @@ def test_programs_on_pages_compile(folder: Path, language: str, who: str) -> Non
     ]
     assert programs or who == catalogue.TEACHER
     for program in programs:
-        found = compiled(program.encode(), robot, "page.ts", is_strict=True)
+        found = compile_source(program.encode(), robot, "page.ts", is_strict=True)
         assert found.is_right, (program, found.diagnostics)
 
 

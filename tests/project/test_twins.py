@@ -68,8 +68,16 @@ TASKS = Twins(
     },
 )
 RECEIVERS = Twins(
-    cpp=(("link/receiver.h", "Receiver"), ("link/key_sequence.h", "KeySequence")),
-    python=(("link/receiver.py", "Receiver"), ("link/receiver.py", "KeySequence")),
+    cpp=(
+        ("link/receiver.h", "Receiver"),
+        ("link/key_sequence.h", "KeySequence"),
+        ("link/zero_run.h", "ZeroRun"),
+    ),
+    python=(
+        ("link/receiver.py", "Receiver"),
+        ("link/receiver.py", "KeySequence"),
+        ("link/receiver.py", "ZeroRun"),
+    ),
     in_cpp={
         # bytes wait until the main loop looks at them, in the memory of the receiver
         **dict.fromkeys(
@@ -83,7 +91,8 @@ RECEIVERS = Twins(
         "disconnect": "(a transport makes a new receiver)",
         "is_active": "put",
         # the halves of `put`, between which an interrupt turns motors off
-        **dict.fromkeys(("stops", "take_last_zero"), "put"),
+        **dict.fromkeys(("stops", "keep", "keep_last_zero"), "put"),
+        **dict.fromkeys(("is_quiet", "is_whole", "last_ms"), "put"),
         "zeros_at": "(of an AVR)",
         "last_ms_at": "(of an AVR)",
         "state": "(an attribute)",
@@ -94,7 +103,11 @@ RECEIVERS = Twins(
              "let_frame", "put_mark", "stop", "stop_at_mark", "take_mark", "take_stop", "watch"),
             "(typed stops)"),
     },
-    in_python={"cut_packet": "cut_line, count_damaged", "has_place": "begin_packet"},
+    in_python={
+        "cut_packet": "cut_line, count_damaged",
+        "has_place": "begin_packet",
+        "take": "has_frame, bytes, release, take_text",
+    },
 )  # fmt: skip
 
 

@@ -20,7 +20,7 @@ from tiniscript.base.source import Source
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import fixed
 from tiniscript.diagnostics.rendering import message
-from tiniscript.library.compiling import compiled
+from tiniscript.library.compiling import compile_source
 
 FOLDER = Path(__file__).parent
 FOR = "  for  "
@@ -85,7 +85,7 @@ def _indent(line: str) -> str:
 def check(text: str) -> list[Diagnostic]:
     """Return what is said of a program: nobody changes the list, which all get."""
     robot = robots.load(robots.DEFAULT)
-    return compiled(text.encode(), robot, "prog.ts", is_strict=False).diagnostics
+    return compile_source(text.encode(), robot, "prog.ts", is_strict=False).diagnostics
 
 
 def found_in(entry: Entry) -> Entry:

@@ -8,7 +8,7 @@ from types import FrameType
 import pytest
 
 from tiniscript import robots
-from tiniscript.library.compiling import compiled
+from tiniscript.library.compiling import compile_source
 
 ROBOT = robots.load("tinibot")
 LEAST = 4_000  # pieces
@@ -25,7 +25,7 @@ def work(text: str) -> int:
     before = sys.getprofile()
     sys.setprofile(count)
     try:
-        compiled(text.encode(), ROBOT, "prog.ts", is_strict=False)
+        compile_source(text.encode(), ROBOT, "prog.ts", is_strict=False)
     finally:
         sys.setprofile(before)
     return calls

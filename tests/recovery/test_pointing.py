@@ -9,7 +9,7 @@ from tests.support.rows import each_row
 from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.rendering import message, names_found
-from tiniscript.recovery.concepts import plain
+from tiniscript.recovery.meanings import plain
 
 # What they found is counted, calculated, a sign for the words that say it, or what a note says.
 OTHERS = (

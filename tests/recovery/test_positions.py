@@ -18,7 +18,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.diagnostics.codes import Code
 from tiniscript.library.compiling import analyzed
 from tiniscript.recovery import rewrites, rows
-from tiniscript.recovery.concepts import ENDED, lexemes, texts
+from tiniscript.recovery.meanings import ENDED, lexemes, texts
 from tiniscript.recovery.search import Candidate, Recovery
 
 KITS = [robots.load(name).kit for name in ("tinibot", "grabber", "liner")]

@@ -16,8 +16,8 @@ from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.lessons import catalogue
 from tiniscript.library.compiling import analyzed
 from tiniscript.recovery import lines, rewrites, rows
-from tiniscript.recovery.concepts import Lexeme, Names, lexemes
 from tiniscript.recovery.explanation import explained
+from tiniscript.recovery.meanings import Lexeme, Names, lexemes
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.syntax.outline import Failure
 

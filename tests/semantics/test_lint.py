@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import pytest
+
 from tests.support.rows import each_row
 from tiniscript import check_text, robots
 from tiniscript.base.source import applied
+from tiniscript.diagnostics import codes
+from tiniscript.semantics import lint as lints
 from tiniscript.semantics.lint import lint
+from tiniscript.syntax.lexer import scan
 
 KIT = robots.load("tinibot").kit
 
@@ -84,6 +91,17 @@ ADVISED = [
      "TS832"),
     ("LOOP(FOREVER);F(1, 60);END_LOOP;TASK;LOOP(FOREVER);IF(DISTANCE < 9);L(1, 60);ENDIF\n"
      "F(1, 60);END_LOOP;END_TASK", "TS832"),
+    ("F(80, 2)", "TS810"),
+    ("F(2 CM, 0)", "TS808"),
+    ("F(5 * 1, 30 * 5)", "TS841"),
+    ("BEEP(0, 440)", "TS803"),
+    ("BEEP(500, 440)", "TS811"),
+    ("BEEP(1, 3 - 9)", "TS841"),
+    ("LOOP(0.2);S;END_LOOP", "TS812"),
+    ("F(5, 60) UNTIL(DISTANCE = 20)", "TS825"),
+    ("D = DISTANCE;LOOP(5);F(1, 60);SHOW(D);END_LOOP", "TS823"),
+    ("LOOP(FOREVER);X = DISTANCE;SHOW(X);END_LOOP", "TS804"),
+    ("LOOP(4);END_LOOP;F(1, 60)", "TS828"),
 ]  # fmt: skip
 
 
@@ -181,6 +199,35 @@ def test_no_advice(text: str) -> None:
     assert check_text(text, KIT).diagnostics == []
 
 
+# By other stages: of a number's text, and of the robot's memory.
+OF_OTHERS = {codes.ROUNDED, codes.BOARD_MAY_BE_TOO_SMALL}
+
+
+def test_the_table_has_every_warning() -> None:
+    warnings = {code for code in codes.CODES.values() if not code.is_mistake}
+    assert {code for row in lints.TABLE for code in row.codes} == warnings - OF_OTHERS
+
+
+def test_a_row_reports_its_codes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And each of them: what a row names and never reports would be a promise."""
+    reported: dict[lints.Row, set[codes.Code]] = {row: set() for row in lints.TABLE}
+
+    def watched(row: lints.Row) -> lints.Row:
+        def find(*given: Any) -> None:
+            found = given[-1].found
+            before = len(found)
+            row.find(*given)
+            reported[row] |= {each.code for each in found[before:]}
+
+        return row._replace(find=find)
+
+    rows = {at: [*map(watched, its)] for at, its in lints._ROWS.items()}
+    monkeypatch.setattr(lints, "_ROWS", rows)
+    for text, _ in ADVISED:
+        check_text(text, KIT)
+    assert reported == {row: set(row.codes) for row in lints.TABLE}
+
+
 def test_a_kit_without_numbers_has_a_usual_speed() -> None:
     """Centimetres were meant there, too; as it has no CM, the message offers none."""
     kit = KIT._replace(speed=0, turn=0)
@@ -195,7 +242,7 @@ def test_advice_is_for_right_programs_alone() -> None:
     wrong = check_text("X = 5;S = 5", KIT)
     assert [diagnostic.is_mistake for diagnostic in wrong.diagnostics] == [True]
     assert wrong.program is not None
-    assert lint(wrong.program, KIT, wrong.source)
+    assert lint(wrong.program, KIT, wrong.source, scan(wrong.source.text))
 
 
 @each_row(

@@ -13,7 +13,7 @@ from tests.support.texts import LANGUAGES
 from tiniscript import check, compile, compile_text, robots
 from tiniscript.diagnostics.fixing import OFFERS, fixed
 from tiniscript.diagnostics.rendering import Message
-from tiniscript.library.compiling import Compiled, compiled
+from tiniscript.library.compiling import Compiled, compile_source
 from tiniscript.studio import checking, worker
 from tiniscript.studio.description import description
 
@@ -245,9 +245,9 @@ def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
 
     def counted(data: bytes, *arguments: Any, **named: Any) -> Compiled:
         texts.append(data)
-        return compiled(data, *arguments, **named)
+        return compile_source(data, *arguments, **named)
 
-    monkeypatch.setattr(checking, "compiled", counted)
+    monkeypatch.setattr(checking, "compile_source", counted)
     text = ";\n".join(f"IF(DISTANCE < {k});R(90, 60);END_IF" for k in range(1, 101)) + f";\n{wrong}"
     found = checking.check(text.encode(), "tinibot", "en").findings
     assert len(texts) == 1 and sum(each.may_repair for each in found) == (1 if wrong else OFFERS)

@@ -8,7 +8,7 @@ import pytest
 
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.base.source import Source
-from tiniscript.library.compiling import compiled
+from tiniscript.library.compiling import compile_source
 from tiniscript.syntax.checksums import checksum_of, with_checksum
 from tiniscript.syntax.formatter import formatted
 
@@ -50,7 +50,7 @@ def test_a_line_with_its_checksum_is_the_line(text: str) -> None:
 
 
 def test_a_byte_order_mark_of_a_file_does_not_count() -> None:
-    assert compiled(b"\xef\xbb\xbf" + CHECKED.encode(), TINIBOT, "", True).is_right
+    assert compile_source(b"\xef\xbb\xbf" + CHECKED.encode(), TINIBOT, "", True).is_right
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])

@@ -18,7 +18,8 @@ from tests.oracle.programs import broken, program
 from tiniscript.base.fixed_point import as_text
 from tiniscript.base.source import Source, Span
 from tiniscript.syntax import ast
-from tiniscript.syntax.parser import ENOUGH, parse
+from tiniscript.syntax.outline import _Line
+from tiniscript.syntax.parser import _RULES, ENOUGH, Parser, parse
 
 
 def value(argument: ast.Argument | None) -> str:
@@ -327,3 +328,10 @@ def test_diagnostics_of_any_text_point_into_it() -> None:
     for text, diagnostics in found:
         for each in diagnostics:
             assert 0 <= each.span.start <= each.span.end <= len(text), text
+
+
+def test_no_parser_made_of_this_one_has_a_rule_that_its_table_would_not_find() -> None:
+    rules = {rule.__name__ for rule in _RULES.values()} | {"command"}
+    assert _Line in Parser.__subclasses__()
+    for heir in Parser.__subclasses__():
+        assert not rules & vars(heir).keys()

@@ -74,7 +74,7 @@ def _row(found: Found, options: Namespace, robot: Robot, language: str) -> Row:
         if problem:
             return Row(found.name, [], 0, problem)
     else:
-        compiled = compiling.compiled(given, robot, is_strict=False)
+        compiled = compiling.compile_input(given, robot, is_strict=False)
     compiled = compiling.for_level(compiled, robot, options.text_level)
     said = [message(each, compiled.source, language) for each in compiled.diagnostics]
     said.sort(key=lambda each: each.severity != "mistake")
@@ -89,7 +89,7 @@ def _repaired(
     if its.repairs and not options.json:
         print_difference(given.data, its.data, given.name)
     if options.diff:
-        return compiling.compiled(given, robot, is_strict=False), its.repairs, ""
+        return compiling.compile_input(given, robot, is_strict=False), its.repairs, ""
     if its.repairs:
         try:
             outputs.write(Path(given.name), its.data, "unwritable_source")

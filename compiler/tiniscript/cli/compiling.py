@@ -6,23 +6,18 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source
 from tiniscript.cli import inputs
 from tiniscript.diagnostics.codes import in_order
-from tiniscript.library import compiling as library
-from tiniscript.library.compiling import Compiled
+from tiniscript.library.compiling import Compiled, compile_source, text_of
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.text_levels import LEVELS
 from tiniscript.syntax.parser import parse
 
 
-def compiled(
+def compile_input(
     given: inputs.Input, robot: Robot, is_strict: bool, names_robots: bool = True
 ) -> Compiled:
-    """Return the result of compiling a program's text.
-
-    `is_strict`: a program that is too large for the robot is a mistake, else a warning.
-    `names_robots`: the command has `--robot`.
-    """
-    return library.compiled(given.data, robot, given.name, is_strict, names_robots=names_robots,
-                            is_chosen=given.has_robot)  # fmt: skip
+    """Return the result of compiling an input, whose `--robot` has chosen the robot or not."""
+    return compile_source(given.data, robot, given.name, is_strict, names_robots=names_robots,
+                          is_chosen=given.has_robot)  # fmt: skip
 
 
 def for_level(found: Compiled, robot: Robot, name: str | None) -> Compiled:
@@ -37,7 +32,7 @@ def for_level(found: Compiled, robot: Robot, name: str | None) -> Compiled:
 
 def parsed(given: inputs.Input, kit: Kit) -> Compiled:
     """Return only the syntax mistakes of a program's text."""
-    text = library.text_of(given.data, given.name)
+    text = text_of(given.data, given.name)
     if not isinstance(text, str):
         return text
     source = Source(text, given.name)

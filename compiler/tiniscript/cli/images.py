@@ -48,7 +48,7 @@ def ready(
         if is_strict and (lacks := lacking(image.needs, robot)):
             raise CommandError(1, lacks, robot=robot.name, file=inputs.shown(given.name))
         return Ready(image, len(given.data), source_map.recall(image.checksum))
-    compiled = compiling.compiled(given, robot, is_strict)
+    compiled = compiling.compile_input(given, robot, is_strict)
     if is_open and not compiled.is_right:
         if is_other_robots(compiled.diagnostics):
             raise OtherRobot(compiled)

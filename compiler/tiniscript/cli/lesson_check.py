@@ -130,7 +130,7 @@ class _Marker:
         if given.is_image:
             raise CommandError(2, "needs_text", file=inputs.shown(given.name), verb="lesson check")
         robot = robot_of(given.data, self.robot)
-        found = compiling.compiled(given, robot, is_strict=True, names_robots=False)
+        found = compiling.compile_input(given, robot, is_strict=True, names_robots=False)
         return for_robot(found, robot)
 
     def mark(self, given: inputs.Input, compiled: Compiled) -> Mark:

@@ -91,7 +91,15 @@ class Options(ArgumentParser):
         return True
 
     def _refuse_other(self, option: Option, found: str | None) -> None:
-        """Refuse a value that is not among the option's choices."""
+        """Refuse a value that is not among the option's choices, or that goes with another one.
+
+        Whatever stands beside it: `--board nano --port P` is no board too many, but a chip.
+        """
+        if option.flags == "--board" and found is not None:
+            from tiniscript.flash.bootloaders import BOARDS
+
+            if found.lower() in BOARDS:
+                raise CommandError(2, "board_is_chip", chip=found.lower())
         known = option.kind.choices if option.kind is not None else ()
         if known and found is not None and found not in known:
             label = option.shown_value(self.language) if option.is_argument else option.flags

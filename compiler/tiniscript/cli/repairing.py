@@ -38,7 +38,7 @@ def repaired(given: Input, robot: Robot) -> Repaired:
         return Repaired(given.data, 0, text)
 
     def compiled(data: bytes) -> Compiled:
-        return compiling.compiled(given._replace(data=data), robot, is_strict=False)
+        return compiling.compile_input(given._replace(data=data), robot, is_strict=False)
 
     found = fixed(text, lambda changed: compiled(changed.encode()).diagnostics)
     new = found.text.encode()

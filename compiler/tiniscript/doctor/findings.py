@@ -1,52 +1,97 @@
-"""What the doctor can find: the names of causes. Knows no sentence.
+"""What the doctor and the self-test can find: one table of causes. Knows no sentence.
 
 A cause is a short name that stays; its sentences are in `languages/en/command.toml`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-# fmt: off
-WRONG = (
+OK, OPEN, WRONG = "ok", "open", "wrong"  # OPEN: nothing is wrong for sure, and a person may look
+
+
+class Cause(NamedTuple):
+    """What a finding means. `part`: what of a robot it is about, where one is looked at whole.
+
+    `then` names the sentence with the next step, if that is not of this cause alone.
+    """
+
+    verdict: str
+    part: str = ""
+    then: str = ""
+
+
+def _all(verdict: str, part: str, causes: str, then: str = "") -> Iterable[tuple[str, Cause]]:
+    return ((each, Cause(verdict, part, then)) for each in causes.split())
+
+
+CAUSES = dict((
     # the computer
-    "no_port", "charging_cable", "port_missing", "which_port", "driver_missing", "brltty",
-    "no_bluetooth", "bluetooth_off", "not_paired", "no_rfcomm",
+    *_all(WRONG, "", "no_port charging_cable port_missing which_port driver_missing brltty"),
+    *_all(WRONG, "", "no_bluetooth bluetooth_off not_paired no_rfcomm"),
     # the port
-    "no_permission", "login_again", "busy", "modem_manager", "other_tsc", "out_of_reach",
-    "other_host", "slow_port", "no_serial_port", "port_broken", "port_gone", "not_opened",
+    *_all(WRONG, "", "no_permission login_again busy modem_manager other_tsc out_of_reach"),
+    *_all(WRONG, "", "other_host slow_port no_serial_port port_broken port_gone not_opened"),
     # what answers there
-    "echo", "module_set_up", "module_alone", "wrong_baud", "module_baud", "crossed",
-    "other_sketch", "bootloader_only", "garbled", "silent",
-    # the robot
-    "firmware_older", "firmware_newer", "wrong_kit", "unknown_kit", "restarts", "motors_restart",
-    "brown_out", "hung", "low_supply", "wifi_rests", "lossy", "falls_silent", "other_robot",
-    "unproven",
-)
-# fmt: on
-NOTES = ("of_another_owner", "stopped", "not_saved_yet", "other_program")  # nothing is wrong then
-# What of a robot a cause is about, for a list of what is good, too.
-PARTS = {
-    "kit": ("wrong_kit", "unknown_kit"),
-    "firmware": ("firmware_older", "firmware_newer"),
-    "line": ("lossy", "falls_silent"),
-    "supply": ("low_supply", "brown_out", "hung", "restarts", "motors_restart", "wifi_rests"),
-    "store": ("not_saved_yet", "other_program"),
-}
-CAUSES = (*WRONG, *NOTES, "fine")
+    *_all(WRONG, "", "echo module_set_up module_alone wrong_baud module_baud crossed other_sketch"),
+    *_all(WRONG, "", "bootloader_only garbled silent"),
+    # the robot, by what it says
+    *_all(WRONG, "", "other_robot unproven"),
+    *_all(OPEN, "", "of_another_owner stopped"),
+    *_all(WRONG, "kit", "wrong_kit unknown_kit"),
+    *_all(WRONG, "firmware", "firmware_older firmware_newer"),
+    *_all(WRONG, "line", "lossy falls_silent"),
+    *_all(WRONG, "supply", "low_supply brown_out hung restarts motors_restart wifi_rests"),
+    *_all(OPEN, "store", "not_saved_yet other_program"),
+    *_all(OK, "", "fine"),
+    # each part, where it is looked at whole
+    *_all(OK, "answers", "is_there"),
+    *_all(WRONG, "answers", "plain", then="doctor"),  # or of another part: what the robot told
+    *_all(OK, "kit", "kit_is"),
+    *_all(OK, "firmware", "firmware_is"),
+    *_all(OK, "line", "line_is"),
+    *_all(OK, "supply", "supply_is"),
+    *_all(OK, "store", "saved empty"),
+    *_all(OPEN, "store", "unsaved", then="upload"),
+    *_all(OK, "trim", "trim_is"),
+    *_all(OK, "discs", "discs_rest"),
+    *_all(WRONG, "discs", "discs_noise", then="discs"),
+    *_all(OK, "sensor", "reads changes"),
+    *_all(OPEN, "sensor", "stuck as_bright", then="hand"),
+    *_all(WRONG, "sensor", "same no_reading", then="wires"),
+    *_all(OK, "motor", "turns"),
+    *_all(WRONG, "motor", "other_turn", then="trim"),
+    *_all(WRONG, "motor", "still", then="wires"),
+    *_all(WRONG, "motor", "ended", then="batteries"),  # of the buzzer, too
+    *_all(OPEN, "motor", "unasked", then="person"),
+    *_all(OK, "buzzer", "heard"),
+    *_all(WRONG, "buzzer", "unheard", then="wires"),
+))  # fmt: skip
 
 
 class Finding(NamedTuple):
-    """A cause, whether it is sure or only probable, and what was seen: it fills the sentences."""
+    """A cause, whether it is sure or only probable, and what was seen: it fills the sentences.
+
+    `of` is the part that it is about, if that is another one than the table says: `left`.
+    """
 
     cause: str
     is_sure: bool
     values: Mapping[str, str] = {}
+    of: str = ""
+
+    @property
+    def verdict(self) -> str:
+        return CAUSES[self.cause].verdict
 
     @property
     def is_wrong(self) -> bool:
-        return self.cause not in (*NOTES, "fine")
+        return self.verdict == WRONG
+
+    @property
+    def part(self) -> str:
+        return self.of or CAUSES[self.cause].part
 
 
 def sure(cause: str, **values: str) -> Finding:

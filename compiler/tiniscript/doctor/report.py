@@ -6,8 +6,11 @@ number: many systems make the name of a port from one.
 
 from __future__ import annotations
 
+import platform
 import re
+from collections.abc import Iterable
 
+from tiniscript.base.version import __version__
 from tiniscript.doctor.computer import Computer, is_module
 from tiniscript.doctor.findings import Finding
 from tiniscript.link.port_names import is_address
@@ -27,7 +30,14 @@ def is_ours(data: bytes) -> bool:
     return data.split(b"\n", 1)[0].strip() in (MARK.encode(), SELFTEST_MARK.encode())
 
 
-def port(name: str) -> str:
+def head(mark: str, about: str, facts: Iterable[tuple[str, str]], port: str | None) -> list[str]:
+    """Return how every report begins: what it is, by which tsc, of which computer and port."""
+    rows = [mark, about, "", f"tsc: {__version__}, Python {platform.python_version()}"]
+    rows += [f"{name}: {value}" for name, value in facts]
+    return [*rows, "", f"port: {shown_port(port) if port else '-'}"]
+
+
+def shown_port(name: str) -> str:
     """Return a port's name without what tells whose it is: `socket://…`, `/dev/tty.usbmodem…`."""
     if is_address(name):
         return name.partition("://")[0] + "://" + HIDDEN
@@ -44,7 +54,7 @@ def values_of(finding: Finding) -> dict[str, str]:
     found = {}
     for key, value in finding.values.items():
         if key == "ports":
-            found[key] = ", ".join(port(each) for each in value.split(", "))
+            found[key] = ", ".join(shown_port(each) for each in value.split(", "))
         elif key == "by":
             names = [each if each in PROGRAMS else HIDDEN for each in value.split(", ") if each]
             found[key] = ", ".join(names)
@@ -64,7 +74,7 @@ def facts(computer: Computer) -> list[tuple[str, str]]:
     modules = "?" if computer.paired is None else str(sum(map(is_module, computer.paired)))
     return [
         ("system", computer.platform),
-        ("ports", ", ".join(port(each.port) for each in computer.ports) or "-"),
+        ("ports", ", ".join(shown_port(each.port) for each in computer.ports) or "-"),
         ("usb", adapters or "-"),
         ("bluetooth", computer.bluetooth),
         ("modules", modules),

@@ -22,7 +22,7 @@ NANO = Bootloader("nano", "arduino", "m328p", 115_200)
 NANO_OLD = Bootloader("nano-old", "arduino", "m328p", 57_600)
 MEGA = Bootloader("mega", "wiring", "m2560", 115_200)
 
-# For each value of `--board`: the board of the firmware, and the bootloaders to try. Which of the
+# For each value of `--chip`: the board of the firmware, and the bootloaders to try. Which of the
 # two a Nano has cannot be seen from outside.
 BOARDS: dict[str, tuple[str, tuple[Bootloader, ...]]] = {
     "uno": ("uno", (UNO,)),

@@ -22,7 +22,6 @@ from tiniscript.library.named_robot import unknown_robot
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
-from tiniscript.semantics.empty_blocks import empty_blocks
 from tiniscript.semantics.lint import lint
 from tiniscript.semantics.optimizer import optimized
 from tiniscript.syntax.parser import ENOUGH, parse
@@ -97,12 +96,7 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
     checked = check(source, parsed.program, kit)
     found = [*parsed.diagnostics, *checked.diagnostics]
     if not any(diagnostic.is_mistake for diagnostic in found):
-        found += lint(checked.program, kit, source)
-        found += empty_blocks(checked.program, source)
-        if parsed.scan.comments:
-            from tiniscript.semantics.notes import in_notes
-
-            found += in_notes(parsed.scan.comments, parsed.scan.tokens, source)
+        found += lint(checked.program, kit, source, parsed.scan)
     return Compiled(source, codes.in_order(found), checked.program)
 
 
@@ -183,7 +177,7 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
                              verdict=verdict, image=image)  # fmt: skip
 
 
-def compiled(
+def compile_source(
     data: bytes,
     robot: Robot,
     name: str,
@@ -240,7 +234,7 @@ def maker(robot: Robot) -> Callable[[str], Image | None]:
     """Return what makes the image of a text for a robot, or None where the text has mistakes."""
 
     def made(text: str) -> Image | None:
-        found = compiled(text.encode(), robot, "", is_strict=True)
+        found = compile_source(text.encode(), robot, "", is_strict=True)
         return image_of(found, robot) if found.is_right else None
 
     return made

@@ -18,7 +18,7 @@ from tiniscript.diagnostics.codes import (
     Repair,
 )
 from tiniscript.library.named_robot import named_robot
-from tiniscript.recovery.concepts import concept_of
+from tiniscript.recovery.meanings import concept_of
 from tiniscript.robots import given
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.lexer import WORD, scan

@@ -16,7 +16,7 @@ from tiniscript.bytecode.verify import Refused
 from tiniscript.diagnostics.rendering import Message as Message
 from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.library import source_map
-from tiniscript.library.compiling import Compiled, compiled, image_of
+from tiniscript.library.compiling import Compiled, compile_source, image_of
 from tiniscript.library.errors import ProgramError, UsageError, sentence
 from tiniscript.library.known_kits import fitting
 from tiniscript.library.named_robot import robot_of
@@ -213,7 +213,7 @@ def _compiled(
     else:
         profile = robot if isinstance(robot, Robot) else profile_of(robot, language)
     is_chosen = robot is not None
-    return compiled(data, profile, name, is_strict, optimize, is_chosen=is_chosen), profile
+    return compile_source(data, profile, name, is_strict, optimize, is_chosen=is_chosen), profile
 
 
 def _program(

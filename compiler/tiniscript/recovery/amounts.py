@@ -7,7 +7,7 @@ from collections.abc import Container
 
 from tiniscript.base.source import Span
 from tiniscript.base.words import WORDS, said_of
-from tiniscript.recovery.concepts import meant_by, plain
+from tiniscript.recovery.meanings import meant_by, plain
 
 _NEAR = 80  # characters around a value in which its call is looked for
 _BEFORE = re.compile(r"([A-Za-z]+)[ \t]*\(([^()\r\n;]*)\Z")

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
-from tiniscript.recovery.concepts import ENDED, Lexeme, made
 from tiniscript.recovery.lines import ANY_END, Reading
+from tiniscript.recovery.meanings import ENDED, Lexeme, made
 from tiniscript.recovery.rewrites import negated
 from tiniscript.syntax.outline import Item
 

@@ -25,7 +25,7 @@ from tiniscript.base.words import (
     lexicon,
 )
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.recovery.concepts import (
+from tiniscript.recovery.meanings import (
     ASKING,
     CALLED,
     ENDED,

@@ -17,8 +17,8 @@ from tiniscript.base.source import Edit, Span
 from tiniscript.base.words import BLOCK_ENDS, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
-from tiniscript.recovery.concepts import ENDED, SOME_END, Lexeme, lexemes, meant_by, said_of, texts
 from tiniscript.recovery.lines import BRACES, Step
+from tiniscript.recovery.meanings import ENDED, SOME_END, Lexeme, lexemes, meant_by, said_of, texts
 from tiniscript.recovery.search import Candidate, Change
 from tiniscript.recovery.writing import in_one_line, laid_out, tokens_of, without_note
 from tiniscript.syntax.lexer import NUMBER, WORD

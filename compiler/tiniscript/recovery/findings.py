@@ -18,9 +18,9 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import is_better
 from tiniscript.recovery import lines, rows
-from tiniscript.recovery.concepts import Names, lexemes, plain
 from tiniscript.recovery.conserved import difference
 from tiniscript.recovery.explanation import Explanation, explained, trimmed
+from tiniscript.recovery.meanings import Names, lexemes, plain
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.setup import setup
 from tiniscript.recovery.suggestions import suggested

@@ -17,8 +17,20 @@ from tiniscript.base.spelling import nearest
 from tiniscript.base.words import FUNCTIONS, MOVES, WAYS, WORDS, concept_of, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
-from tiniscript.recovery import concepts, rewrites, rows
-from tiniscript.recovery.concepts import CALLED, LONG_S, NEAR, Lexeme, Names, made, texts
+from tiniscript.recovery import rewrites, rows
+from tiniscript.recovery.meanings import (
+    CALLED,
+    KNOWN,
+    LONG_S,
+    NEAR,
+    REMEMBERED,
+    Lexeme,
+    Meaning,
+    Names,
+    closed,
+    made,
+    texts,
+)
 from tiniscript.recovery.slots import MILLISECONDS_FROM, filled
 from tiniscript.syntax.lexer import DEGREES, NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
@@ -100,7 +112,7 @@ def _alike(token: Lexeme) -> tuple[str, str]:
     return token.kind, "1" if is_plain else text
 
 
-@lru_cache(concepts.REMEMBERED)
+@lru_cache(REMEMBERED)
 def _right(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] | Failure:
     found: list[Item] = []
     start = 0
@@ -128,7 +140,7 @@ def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list
     return _read(tuple(tokens), names, is_quick)
 
 
-@lru_cache(concepts.REMEMBERED)
+@lru_cache(REMEMBERED)
 def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Reading]:
     has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
     setup = list(tokens[:2]) if has_setup else []
@@ -248,7 +260,7 @@ class _Search:
             is_function = around[k] in ("(", ",", *SIGNS) and around[k + 2] == "("
             is_misspelt = is_function and not concept_of(token.text)
             near = nearest(token.text, FUNCTIONS) if is_misspelt else None
-            guess = (concepts.Meaning(near, concepts.KNOWN),) if near else ()
+            guess = (Meaning(near, KNOWN),) if near else ()
             meanings = guess or self.names.meanings(token.text)
             if _is_long(tokens, k, meanings[0].concept if meanings else ""):
                 continue
@@ -334,4 +346,4 @@ def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
         if is_edge:
             start = max(start, k + 1)
         if token.text in _AT_END:
-            start = max(start, concepts.closed(tokens, k + 1) or k + 2)
+            start = max(start, closed(tokens, k + 1) or k + 2)

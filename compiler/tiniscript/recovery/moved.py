@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
-from tiniscript.recovery.concepts import ENDED
+from tiniscript.recovery.meanings import ENDED
 from tiniscript.recovery.writing import without_note
 
 _SETUP = re.compile(r"\s*S[IB]\s*\|\s*", re.IGNORECASE)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS, MOVES, POWER
 from tiniscript.recovery import lines, rewrites
-from tiniscript.recovery.concepts import (
+from tiniscript.recovery.meanings import (
     CALLED,
     ENDED,
     NEAR_CM,

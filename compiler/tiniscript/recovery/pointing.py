@@ -8,7 +8,7 @@ from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import names_found
-from tiniscript.recovery.concepts import plain
+from tiniscript.recovery.meanings import plain
 
 # what they found is a calculated number
 _COUNTED = (codes.ARGUMENT_COUNT, codes.CALL_VALUES, codes.OUT_OF_RANGE)

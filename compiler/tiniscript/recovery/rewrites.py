@@ -16,7 +16,7 @@ from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.recovery import rows
-from tiniscript.recovery.concepts import (
+from tiniscript.recovery.meanings import (
     ANY,
     ENDED,
     NEAR,

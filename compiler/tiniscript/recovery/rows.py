@@ -1,6 +1,6 @@
 r"""The rows: each slip that the recovery reads, with an example that is a test.
 
-`TOKENS` is what concept tokens become. Its columns:
+`TOKENS` is what tokens with meanings become. Its columns:
 
     pattern | becomes | cost | code | how | example => what becomes of it
 

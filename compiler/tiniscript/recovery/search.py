@@ -18,7 +18,8 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matching
-from tiniscript.recovery.concepts import (
+from tiniscript.recovery.lines import BRACES, MARGIN, Reading, Step, is_right
+from tiniscript.recovery.meanings import (
     ENDED,
     NEAR,
     Lexeme,
@@ -30,7 +31,6 @@ from tiniscript.recovery.concepts import (
     texts,
     words_of,
 )
-from tiniscript.recovery.lines import BRACES, MARGIN, Reading, Step, is_right
 from tiniscript.recovery.moved import Moved, ordered
 from tiniscript.recovery.writing import PLAIN_SIGNS, as_written, laid_out, without_note
 from tiniscript.syntax.outline import Failure

@@ -9,7 +9,7 @@ from tiniscript.base.words import WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery import rows
-from tiniscript.recovery.concepts import plain
+from tiniscript.recovery.meanings import plain
 from tiniscript.recovery.writing import without_note
 
 _INSIDE = re.compile(r"(?:[^()]|\([^()]*\))*(?=\))")  # brackets that are open before it

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from tiniscript.base.words import MOVES, OTHER_WAY, UNIT_OF, WAYS, WORDS, Argument, said_of
 from tiniscript.base.words import names as is_called
 from tiniscript.recovery import rows
-from tiniscript.recovery.concepts import (
+from tiniscript.recovery.meanings import (
     CALLED,
     DONE,
     LAP,

@@ -20,7 +20,7 @@ from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.recovery import lines, rewrites, suggestion_rows
-from tiniscript.recovery.concepts import (
+from tiniscript.recovery.meanings import (
     ASKING,
     ENDED,
     NEAR,

@@ -15,7 +15,7 @@ from tiniscript.base.source import Span
 from tiniscript.base.spelling import nearest
 from tiniscript.base.words import MOVES, OTHER_WAY, WAYS, WORDS, concept_of, said_of
 from tiniscript.recovery import lines
-from tiniscript.recovery.concepts import ASKING, ENDED, NEAR, Lexeme, Names, closed, lexemes
+from tiniscript.recovery.meanings import ASKING, ENDED, NEAR, Lexeme, Names, closed, lexemes
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure

@@ -28,7 +28,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
-from tiniscript.recovery.concepts import (
+from tiniscript.recovery.meanings import (
     ASKING,
     DONE,
     LONG_S,

@@ -11,7 +11,7 @@ from itertools import pairwise
 
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import Device
-from tiniscript.recovery.concepts import NEAR, Lexeme, Names, concept_of, made, said_of
+from tiniscript.recovery.meanings import NEAR, Lexeme, Names, concept_of, made, said_of
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
 

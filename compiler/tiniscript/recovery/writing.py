@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tiniscript.recovery.concepts import Lexeme, lexemes, made, plain
+from tiniscript.recovery.meanings import Lexeme, lexemes, made, plain
 from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 

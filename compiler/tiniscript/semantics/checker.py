@@ -61,6 +61,16 @@ class _Procedure(NamedTuple):
     calls: int
 
 
+class _Outside(NamedTuple):
+    """What is known of the program around a DEF or a task, while that is checked."""
+
+    surely_read: int
+    blocks: int
+    calls: int
+    beside_blocks: int
+    beside_calls: int
+
+
 class _Checker(Scope):
     def __init__(self, source: Source, kit: Kit, parsed: ast.Program) -> None:
         super().__init__(source, kit, parsed)
@@ -205,10 +215,8 @@ class _Checker(Scope):
             time, power = None if forever else terms[0], terms[-1] if word.role.is_move else None
             unit = "" if way is None else way.op
             made.append(ir.Move(node.word, time, power, until, span, unit))
-        elif word.role.name == "show":
-            made.append(ir.Show(terms[0], values[0].type == "yes_no", span))
         elif word.role.is_instruction:  # START does nothing
-            made.append(_MAKES[word.role.name](*terms, span))
+            made.append(_MAKES[word.role.name](values, span))
 
     def way(self, node: ast.Command, unit: ast.Part) -> None:
         """Check the unit of a move, and whether the robot's speed is known."""
@@ -263,17 +271,17 @@ class _Checker(Scope):
         name = self.names.get(node.word)
         if name is None:
             self.wrong.unknown(node, self.inside)
-        elif name.what == "actuator":
-            self.actuator(node, name.number, made)
-        elif name.what == "def":
-            self.call(node, name.number, made)
-        elif node.arguments is not None:
+        elif node.arguments is not None and name.what not in _TAKE_VALUES:
             self.wrong.not_callable(node)
-        elif name.what == "sensor":
-            made.append(ir.Read(name.number, node.span))
-            self.surely_read |= 1 << name.number
         else:
-            self.report(codes.VARIABLE_ALONE, node.span, name=node.word)
+            _NAMED[name.what](self, node, name.number, made)
+
+    def reading(self, node: ast.Command, number: int, made: list[Statement]) -> None:
+        made.append(ir.Read(number, node.span))
+        self.surely_read |= 1 << number
+
+    def variable_alone(self, node: ast.Command, number: int, made: list[Statement]) -> None:
+        self.report(codes.VARIABLE_ALONE, node.span, name=node.word)
 
     def actuator(self, node: ast.Command, number: int, made: list[Statement]) -> None:
         device = self.kit.actuators[number]
@@ -339,6 +347,13 @@ class _Checker(Scope):
         self.loops -= is_loop
         return made
 
+    def repeated(self, node: ast.Loop | ast.While) -> ir.Body:
+        """Check a body in which no turn surely finds what was read before it."""
+        before, self.surely_read = self.surely_read, 0
+        body = self.deeper(node.body, True, node.span)
+        self.surely_read = before
+        return body
+
     def if_(self, node: ast.If, made: list[Statement]) -> None:
         before, chain = self.surely_read, 0
         after = -1  # what all arms make surely read
@@ -369,18 +384,14 @@ class _Checker(Scope):
             self.stack_fits([value], node.times.span)
             self.take([value], node.span, made)
             count = value.terms
-        before, self.surely_read = self.surely_read, 0
-        body = self.deeper(node.body, True, node.span)
-        self.surely_read = before
+        body = self.repeated(node)
         made.append(ir.Loop(count, body, node.span))
 
     def while_(self, node: ast.While, made: list[Statement]) -> None:
         value = self.types.nothing
         if node.condition is not None:
             value = self.condition(node.condition, "WHILE")
-        before, self.surely_read = self.surely_read, 0
-        body = self.deeper(node.body, True, node.span)
-        self.surely_read = before
+        body = self.repeated(node)
         reads = self.missing([value], 0)
         made.append(ir.While(reads, value.terms, body, node.span))
 
@@ -436,9 +447,8 @@ class _Checker(Scope):
 
     def task(self, node: ast.Task, made: list[Statement]) -> None:
         outside = self.apart()
-        _, main_blocks, main_calls, *_ = outside
-        self.beside_blocks += main_blocks
-        self.beside_calls += main_calls
+        self.beside_blocks += outside.blocks
+        self.beside_calls += outside.calls
         look = None
         if node.is_when:
             nothing = ir.Until((), self.types.nothing.terms)
@@ -458,13 +468,15 @@ class _Checker(Scope):
         if found is not None:
             self.wrong.too_many_copies(program, found)
 
-    def apart(self) -> tuple[int, ...]:
+    def apart(self) -> _Outside:
         """Begin a DEF or a task, in which nothing is surely read or open; return what was."""
-        was = self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls
+        outside = _Outside(
+            self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls
+        )
         self.surely_read = self.deepest = self.calls = 0
-        return was
+        return outside
 
-    def back_in(self, was: tuple[int, ...]) -> None:
+    def back_in(self, was: _Outside) -> None:
         self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls = was
 
 
@@ -482,11 +494,20 @@ def _spelled_out(word: Word, span: Span) -> ast.Command:
     return command._replace(word_span=span, arguments=arguments, span=span)
 
 
-# What the other instructions become, by the role of their words: of their values, and the span.
-_MAKES: dict[str, Callable[..., Statement]] = {
-    "motors": ir.Motors,
-    "beep": ir.Beep,
-    "stop": ir.Stop,
+# What the instructions that take no time of their own become, by the role of their words.
+_MAKES: dict[str, Callable[[Sequence[Value], Span], Statement]] = {
+    "motors": lambda values, span: ir.Motors(values[0].terms, values[1].terms, span),
+    "beep": lambda values, span: ir.Beep(values[0].terms, values[1].terms, span),
+    "show": lambda values, span: ir.Show(values[0].terms, values[0].type == "yes_no", span),
+    "stop": lambda values, span: ir.Stop(span),
+}
+# What names do as instructions, by what they stand for; these take values in brackets.
+_TAKE_VALUES = frozenset(("actuator", "def"))
+_NAMED: dict[str, Callable[[_Checker, ast.Command, int, list[Statement]], None]] = {
+    "actuator": _Checker.actuator,
+    "def": _Checker.call,
+    "sensor": _Checker.reading,
+    "variable": _Checker.variable_alone,
 }
 _CHECKS: dict[type, Callable[..., None]] = {
     ast.Command: _Checker.command,

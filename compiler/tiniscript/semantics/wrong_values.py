@@ -12,7 +12,7 @@ from tiniscript.base.source import Span
 from tiniscript.base.words import OTHER_WAY, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery.amounts import is_amount, with_number
-from tiniscript.recovery.concepts import meant_by, said_of
+from tiniscript.recovery.meanings import meant_by, said_of
 from tiniscript.semantics.comparisons import is_aside
 from tiniscript.semantics.named_values import value_of, yes_no_of
 from tiniscript.semantics.symbols import ENOUGH, NUMBER, Operand, Scope

@@ -17,7 +17,7 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import OFFERS, edits_of, offer
 from tiniscript.diagnostics.rendering import Message, message
 from tiniscript.library import source_map
-from tiniscript.library.compiling import Compiled, compiled, for_robot, text_of
+from tiniscript.library.compiling import Compiled, compile_source, for_robot, text_of
 from tiniscript.library.named_robot import name_in, robot_of
 from tiniscript.library.text_fitting import misfits
 from tiniscript.robots.profile import Robot
@@ -88,7 +88,7 @@ def repair(data: bytes, robot: str, which: int) -> tuple[Change, ...]:
 
     def check(text: str) -> list[Diagnostic]:
         changed = text.encode()
-        return compiled(changed, profile_for(changed, robot), "", is_strict=True).diagnostics
+        return compile_source(changed, profile_for(changed, robot), "", is_strict=True).diagnostics
 
     edits = offer(found.source.text, found.diagnostics, which, check)
     return tuple(_change(edit, found.source) for edit in edits)
@@ -108,7 +108,7 @@ def line(data: bytes, robot: str, language: str) -> str | Message:
     Or what is wrong, where such a robot cannot read it.
     """
     profile = profile_for(data, robot)
-    found = compiled(data, profile, "", is_strict=True)
+    found = compile_source(data, profile, "", is_strict=True)
     if not found.is_right or found.program is None:
         mistake = next(each for each in found.diagnostics if each.is_mistake)
         return message(mistake, found.source, language)
@@ -131,7 +131,7 @@ def profile_for(data: bytes, robot: str) -> Robot:
 @lru_cache(maxsize=1)  # whose buttons are asked for, one after the other
 def _found(data: bytes, robot: str) -> Compiled:
     profile = profile_for(data, robot)
-    return for_robot(compiled(data, profile, "", is_strict=True), profile)
+    return for_robot(compile_source(data, profile, "", is_strict=True), profile)
 
 
 def _findings(found: Compiled, language: str) -> tuple[Finding, ...]:

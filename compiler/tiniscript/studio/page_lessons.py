@@ -21,7 +21,7 @@ from tiniscript.lessons.marking import Marking, Outcome
 from tiniscript.lessons.running import ASKS, STEP_MS, Trial
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.variation import is_mirrored, point_of, varied
-from tiniscript.library.compiling import compiled, for_robot, maker
+from tiniscript.library.compiling import compile_source, for_robot, maker
 from tiniscript.library.named_robot import name_in
 from tiniscript.link.session import Session
 from tiniscript.studio.block_form import kinds_in
@@ -139,7 +139,7 @@ class Check:
         self._worlds = lesson.worlds
         self._marking: Marking | None = None
         profile = profile_of(lesson.robot)
-        found = for_robot(compiled(data, profile, "", is_strict=True), profile)
+        found = for_robot(compile_source(data, profile, "", is_strict=True), profile)
         if found.is_right:
             seeds = range(1, lesson.worlds + 1)
             text = found.source.text

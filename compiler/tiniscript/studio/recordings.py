@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from tiniscript.base.fixed_point import ONE
 from tiniscript.bytecode.image import checksum
-from tiniscript.library.compiling import compiled, for_robot
+from tiniscript.library.compiling import compile_source, for_robot
 from tiniscript.library.source_map import made
 from tiniscript.semantics import ir
 from tiniscript.studio.checking import profile_of
@@ -129,7 +129,7 @@ def replay(recording: Recording, text: bytes, robot: str, world: World) -> Parti
     Raises WorldRefused.
     """
     profile = profile_of(robot)
-    found = compiled(text, profile, "", is_strict=True, is_chosen=True)
+    found = compile_source(text, profile, "", is_strict=True, is_chosen=True)
     found = for_robot(found, profile)
     if found.program is None or not found.image or checksum(found.image) != recording.program:
         return Parting("other_program")

@@ -120,9 +120,8 @@ class _Line(Parser):
         super().assignment(name)
         self._own.values |= {name.text}
 
-    def block_end(self, word: Token) -> None:
-        self.cursor.i += 1
-        self.no_arguments(word)
+    def close(self, word: Token) -> None:
+        """The block that it ends is on other lines."""
 
     def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
         found = super().arguments_of(word, known)

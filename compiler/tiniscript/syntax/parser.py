@@ -27,7 +27,7 @@ expected there; the next instruction is read then. What was meant is for `recove
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.source import Source, Span
@@ -42,11 +42,6 @@ from tiniscript.syntax.operators import SUMS
 from tiniscript.syntax.reporter import Failed, Reporter
 
 ENOUGH = 100  # diagnostics after which reading on helps nobody
-# The rule of an instruction, by its first word; of all others `command`.
-_RULES = {
-    **dict.fromkeys(HEADERS, "header"), **dict.fromkeys(ENDS, "block_end"),
-    "DEF": "definition", "TASK": "task", "BREAK": "leave", "ELSE": "arm", "ELSEIF": "arm",
-}  # fmt: skip
 # What is said of a word of the language that is no command, by its role.
 _NO_COMMANDS = {"until": codes.UNTIL_ALONE, "forever": codes.FOREVER_NOT_HERE,
                 "later": codes.LATER_WORD, "setup": codes.SETUP_TWICE}  # fmt: skip
@@ -127,8 +122,10 @@ class Parser:
             self.reporter.report(codes.SETUP_TWICE, token.span, word=text, found=text)
             cursor.i += 2
             return
-        rule = "assignment" if following.kind == "=" else _RULES.get(text, "command")
-        getattr(self, rule)(token)
+        if following.kind == "=":
+            self.assignment(token)
+        else:
+            _RULES.get(text, Parser.command)(self, token)
         if tokens[cursor.i].kind not in AT_END:
             self.no_separator(token)
 
@@ -288,6 +285,10 @@ class Parser:
     def block_end(self, word: Token) -> None:
         self.cursor.i += 1
         self.no_arguments(word)
+        self.close(word)
+
+    def close(self, word: Token) -> None:
+        """End the block that a word ends, and those that are still open in it."""
         blocks, begun = self.blocks, ENDS[word.text]
         if not any(each.word == begun for each in blocks.open):
             around = {}
@@ -361,3 +362,16 @@ class Parser:
         code = codes.HEADER_SEPARATOR if header else codes.MISSING_SEPARATOR
         before = " ".join(cursor.source[cursor.span_from(first)].split())
         self.reporter.fail(code, token.span, before=before)
+
+
+# The rule of an instruction, by its first word; of all others it is `command`. A parser made
+# of this one changes what a rule calls, and no rule.
+_RULES: dict[str, Callable[[Parser, Token], None]] = {
+    **dict.fromkeys(HEADERS, Parser.header),
+    **dict.fromkeys(ENDS, Parser.block_end),
+    "DEF": Parser.definition,
+    "TASK": Parser.task,
+    "BREAK": Parser.leave,
+    "ELSE": Parser.arm,
+    "ELSEIF": Parser.arm,
+}

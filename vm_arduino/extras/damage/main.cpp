@@ -235,7 +235,7 @@ uint32_t count_typed_stops() {
   uint8_t text;
   for (const char byte : stream) {
     const bool are_zeros = receiver.stops(static_cast<uint8_t>(byte), 0);
-    if (receiver.take(static_cast<uint8_t>(byte), 0) && !are_zeros) stops++;
+    if (receiver.keep(static_cast<uint8_t>(byte), 0) && !are_zeros) stops++;
     while (receiver.has_text() && receiver.take_text(&text)) {
     }
     if (!receiver.has_frame()) continue;
@@ -462,7 +462,7 @@ void judge_typed(uint64_t seed) {
     if (pause_ms >= kSilenceMs) was_held = false;
     const bool waited = receiver.is_held();
     const bool are_zeros = receiver.stops(byte, now_ms);
-    const bool is_stop = receiver.take(byte, now_ms);
+    const bool is_stop = receiver.keep(byte, now_ms);
     const Found found = finder.put(byte, now_ms);
     law = law_of(all, restart, is_running);
     if (law == Law::kStop && !is_stop) note("a typed stop is not seen");

@@ -172,7 +172,7 @@ void answer_packets(RequestReader* request, Writer* answer) {
     if (left == 0) take_lines(&line, &rows);
     const uint8_t byte = request->u8();
     if (receiver.stops(byte, now_ms)) rows += "stop\n";
-    receiver.take(byte, now_ms);
+    receiver.keep(byte, now_ms);
     if (left > 0) continue;
     if (held == 0) take_lines(&line, &rows);
     if (!receiver.has_frame()) continue;

@@ -82,13 +82,13 @@ void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {
   // Nothing is kept beside the call, so that no register must be saved before it.
   if (near(&receiver)->stops(byte, time_ms)) {
     board_stop();
-    return near(&receiver)->take_last_zero();
+    return near(&receiver)->keep_last_zero();
   }
   firmware_take_rx_byte(byte, time_ms);
 }
 
 void firmware_take_rx_byte(uint8_t byte, uint16_t time_ms) {
-  if (near(&receiver)->take(byte, time_ms)) board_stop();
+  if (near(&receiver)->keep(byte, time_ms)) board_stop();
 }
 
 bool firmware_has_tx_byte() { return link.has_tx_byte(); }

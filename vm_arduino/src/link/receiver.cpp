@@ -17,9 +17,9 @@ bool is_control(uint8_t byte) { return (byte < ' ' && byte != '\t') || byte == k
 
 }  // namespace
 
-tini_noinline bool Receiver::take(uint8_t byte, uint16_t now_ms) {
+tini_noinline bool Receiver::keep(uint8_t byte, uint16_t now_ms) {
   has_heard_ = true;
-  if (zeros_.take(byte, now_ms)) end_silence();
+  if (zeros_.keep(byte, now_ms)) end_silence();
   if (byte == 0) return put_zero();
   return state_ < State::kBegin ? put_text(byte) : put_packet(byte);
 }
@@ -42,7 +42,7 @@ inline bool Receiver::put_zero() {
   bool is_stop = false;
   Line next = Line::kNothing;
   if (state_ >= State::kFrame) {
-    is_stop = !end_packet(Packet::kFrame) && state_ == State::kHeld;
+    is_stop = !end_packet(Waiting::kFrame) && state_ == State::kHeld;
     is_cut_ = false;
   } else if (state_ == State::kLine || line_ >= Line::kSome) {
     is_stop = is_printable_ && typed_.found() != TypedStop::kNone;
@@ -123,7 +123,7 @@ inline bool Receiver::put_packet(uint8_t byte) {
   if (state_ == State::kBegin) {
     begin_packet();
   } else if (state_ == State::kLine && ends_line(byte)) {
-    return end_line(!is_cut_ && end_packet(Packet::kText));
+    return end_line(!is_cut_ && end_packet(Waiting::kText));
   }
   add(byte);
   if (state_ == State::kLine && !is_printable(byte)) {
@@ -156,7 +156,7 @@ void Receiver::begin_packet() {
   state_ = State::kLine;
   is_printable_ = true;
   may_be_line_ = true;
-  is_dropping_ = packet_[filled()] != Packet::kNone;
+  is_dropping_ = waiting_[filled()] != Waiting::kNone;
   if (is_dropping_) {
     dropped_ = static_cast<uint8_t>(dropped_ + 1);
     return;
@@ -178,13 +178,13 @@ void Receiver::add(uint8_t byte) {
 }
 
 // A line that may overtake older text, or a frame, is dropped. Returns whether the packet waits.
-bool Receiver::end_packet(Packet packet) {
+bool Receiver::end_packet(Waiting as) {
   if (is_dropping_) return false;
   taken_ = 0;
-  if (packet == Packet::kFrame || (text_.is_empty() && is_first())) {
+  if (as == Waiting::kFrame || (text_.is_empty() && is_first())) {
     may_stop_[filled()] = state_ == State::kHeld;
-    packet_[filled()] = packet;
-    if (packet == Packet::kFrame) fill_on();
+    waiting_[filled()] = as;
+    if (as == Waiting::kFrame) fill_on();
     return true;
   }
   dropped_ = static_cast<uint8_t>(dropped_ + 1);
@@ -230,13 +230,13 @@ void Receiver::disconnect() {
 }
 
 bool Receiver::take_text(uint8_t* byte) {
-  if (packet_[looked_at()] == Packet::kText) {
+  if (waiting_[looked_at()] == Waiting::kText) {
     if (taken_ < length_[looked_at()]) {
       *byte = bytes_[looked_at()][taken_++];
       return true;
     }
     asm volatile("" ::: "memory");  // barrier: the bytes are read before the interrupt may write
-    packet_[looked_at()] = Packet::kNone;
+    waiting_[looked_at()] = Waiting::kNone;
     *byte = kLineEnd;
     return true;
   }

@@ -24,7 +24,8 @@
 
 namespace tiniscript {
 
-enum class Packet : uint8_t { kNone, kFrame, kText };
+// What waits in a place.
+enum class Waiting : uint8_t { kNone, kFrame, kText };
 
 // What `take_text` returns beside the bytes of a line. A kLineCut is in the place of a line's end
 // that never came, or of bytes that found no room; a kLineStop is behind what was a typed stop.
@@ -65,12 +66,12 @@ class Receiver : private PacketPlaces<kWindow> {
   // framing error is 0.
   bool put(uint8_t byte, uint16_t now_ms) {
     const bool is_stop = stops(byte, now_ms);
-    return take(byte, now_ms) || is_stop;
+    return keep(byte, now_ms) || is_stop;
   }
 
   // The halves of `put`: between them the caller turns the motors off.
   tini_always_inline bool stops(uint8_t byte, uint16_t now_ms) { return zeros_.stops(byte, now_ms); }
-  bool take(uint8_t byte, uint16_t now_ms);
+  bool keep(uint8_t byte, uint16_t now_ms);
 
 #ifdef __AVR__
   // Where the count of zeros lies: its interrupt does `stops` in assembly.
@@ -78,14 +79,14 @@ class Receiver : private PacketPlaces<kWindow> {
   static constexpr size_t last_ms_at() { return offsetof(Receiver, zeros_) + ZeroRun::last_ms_at(); }
 #endif
 
-  // Takes the byte that completes a stop.
-  void take_last_zero() { take(0, zeros_.last_ms()); }
+  // Keeps the byte that completes a stop.
+  void keep_last_zero() { keep(0, zeros_.last_ms()); }
 
   // The connection is lost: what comes next is text, and what has not ended never will.
   void disconnect();
 
   // Whether a frame waits, the bytes of the first one and their number.
-  bool has_frame() const { return packet_[looked_at()] == Packet::kFrame; }
+  bool has_frame() const { return waiting_[looked_at()] == Waiting::kFrame; }
   uint8_t* bytes() { return bytes_[looked_at()]; }
   uint8_t length() const { return length_[looked_at()]; }
 
@@ -115,14 +116,14 @@ class Receiver : private PacketPlaces<kWindow> {
   // Goes on to the next frame: as if it began now, though it may be whole already.
   void release() {
     if (kWindow > 1) length_[looked_at()] = 0;
-    packet_[looked_at()] = Packet::kNone;
+    waiting_[looked_at()] = Waiting::kNone;
     if (kWindow == 1) return;
     look_on();
     has_begun_ = true;
   }
 
   // Whether text may wait.
-  bool has_text() const { return packet_[looked_at()] == Packet::kText || !text_.is_empty(); }
+  bool has_text() const { return waiting_[looked_at()] == Waiting::kText || !text_.is_empty(); }
 
   // Whether the next byte finds room, if it is text.
   bool has_room() const { return text_.has_room(); }
@@ -193,7 +194,7 @@ class Receiver : private PacketPlaces<kWindow> {
   void begin_line();
   void begin_packet();
   void add(uint8_t byte);
-  bool end_packet(Packet packet);
+  bool end_packet(Waiting as);
   void cut_line();
   void lose_line();
   void count_damaged() { damaged_ = static_cast<uint8_t>(damaged_ + 1); }
@@ -207,7 +208,7 @@ class Receiver : private PacketPlaces<kWindow> {
   }
 
   // The waiting packets. A line behind a 0x00 waits in `bytes_` like a frame, as the last.
-  volatile Packet packet_[kWindow];
+  volatile Waiting waiting_[kWindow];
   volatile bool has_begun_;
   volatile Cause due_stop_;
   ZeroRun zeros_;

@@ -14,7 +14,7 @@ namespace tiniscript {
 
 class ZeroRun {
  public:
-  // Whether this byte completes a run. Call it once for each byte, before `take`; an AVR's interrupt
+  // Whether this byte completes a run. Call it once for each byte, before `keep`; an AVR's interrupt
   // does it in assembly, at `zeros_at` and `last_ms_at`.
   tini_always_inline bool stops(uint8_t byte, uint16_t now_ms) {
     if (byte != 0) return false;
@@ -25,8 +25,8 @@ class ZeroRun {
     return true;
   }
 
-  // Takes the same byte. Returns whether a second of silence was before it.
-  tini_always_inline bool take(uint8_t byte, uint16_t now_ms) {
+  // Keeps what the same byte says. Returns whether a second of silence was before it.
+  tini_always_inline bool keep(uint8_t byte, uint16_t now_ms) {
     const bool was_quiet = is_quiet(now_ms);
     last_ms_ = now_ms;
     if (was_quiet) zeros_ = 1;
@@ -34,7 +34,7 @@ class ZeroRun {
     return was_quiet;
   }
 
-  // Whether the zero that was taken last has completed a run. Four more are another one.
+  // Whether the zero that was kept last has completed a run. Four more are another one.
   tini_always_inline bool is_whole() {
     if (zeros_ != kStopRun) return false;
     zeros_ = 0;

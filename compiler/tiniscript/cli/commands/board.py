@@ -9,7 +9,6 @@ from pathlib import Path
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import say, text
-from tiniscript.flash.bootloaders import BOARDS
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import Robot
 
@@ -17,8 +16,6 @@ SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the plac
 
 
 def run(options: Namespace, language: str) -> int:
-    if options.robot in BOARDS:
-        raise CommandError(2, "board_is_chip", chip=options.robot)
     robot = wired(options, language).speaking(language)
     header = firmware.header([robot], "tsc firmware --board, from a robot profile.")
     if not outputs.put(options.output, header.encode()):

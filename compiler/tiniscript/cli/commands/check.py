@@ -32,7 +32,7 @@ def run(options: Namespace, language: str) -> int:
     if options.fix or options.diff:
         compiled, is_right = _repaired(options, given, robot, language)
     else:
-        compiled = compiling.compiled(given, robot, is_strict=False)
+        compiled = compiling.compile_input(given, robot, is_strict=False)
         compiled = compiling.for_level(compiled, robot, options.text_level)
         is_right = compiled.is_right
     if options.json:

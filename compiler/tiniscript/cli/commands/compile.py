@@ -29,7 +29,7 @@ def run(options: Namespace, language: str) -> int:
     if options.map == "-":
         raise CommandError(2, "over_map", file="-")
     robot = inputs.robot_for(given, options, language)
-    compiled = compiling.compiled(given, robot, is_strict=True)
+    compiled = compiling.compile_input(given, robot, is_strict=True)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1
@@ -58,7 +58,7 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
     if options.map is not None:
         raise CommandError(2, "text_has_no_map")
     robot = inputs.robot_for(given, options, language)
-    compiled = for_robot(compiling.compiled(given, robot, is_strict=True), robot)
+    compiled = for_robot(compiling.compile_input(given, robot, is_strict=True), robot)
     compiled = compiling.for_level(compiled, robot, options.text_level)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:

@@ -7,14 +7,12 @@ from __future__ import annotations
 
 import json
 import os
-import platform
 import sys
 from argparse import Namespace
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from tiniscript.base.version import __version__
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.commands import ports as ports_step
 from tiniscript.cli.errors import CommandError
@@ -32,11 +30,12 @@ from tiniscript.cli.robot.member import are_many
 from tiniscript.cli.robot.simulator import running_address
 from tiniscript.cli.terminal.asking import agreed, can_ask
 from tiniscript.cli.terminal.progress import Doing
-from tiniscript.cli.texts import Said, has_text, text
+from tiniscript.cli.texts import Said, text
+from tiniscript.cli.texts.causes import said
 from tiniscript.doctor import report
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import PINGS, Expected, Heard
-from tiniscript.doctor.findings import NOTES, Finding
+from tiniscript.doctor.findings import OPEN
 from tiniscript.doctor.system import System
 from tiniscript.library import opening
 from tiniscript.library.known_kits import name_of
@@ -169,36 +168,14 @@ def _doors(options: Namespace, language: str, doing: Doing) -> Doors:
     )  # fmt: skip
 
 
-def _said(finding: Finding, values: Mapping[str, str], language: str) -> tuple[str, str, str]:
-    """Return what is wrong, what was seen, and the next step."""
-    filled = dict(values)
-    if filled.get("reset") in dict(RESETS):
-        filled["reset"] = text(f"reset_{filled['reset']}", language)
-    seen = f"seen_{finding.cause}"
-    if finding.cause == "busy" and not filled["by"]:
-        seen = "seen_busy_unknown"
-    if filled.get("count") == "1" and has_text(f"{seen}_once"):
-        seen += "_once"
-    then = f"next_{finding.cause}"
-    if finding.cause == "no_permission" and not filled["group"]:
-        seen, then = "seen_no_permission_other", "next_no_permission_other"
-    if finding.cause in ("no_port", "charging_cable") and filled.get("ports"):
-        seen, then = "seen_no_port_others", "next_no_port_others"
-    if finding.cause == "other_sketch" and not filled["said"]:
-        seen = "seen_other_sketch_silent"
-    keys = f"doctor_{finding.cause}", seen, then
-    what, seen, then = (text(key, language).format(**filled) for key in keys)
-    return what, seen, then
-
-
 def _rows(diagnosis: Diagnosis, language: str, is_private: bool) -> list[str]:
     """Return the findings as lines; `is_private`: as a report may have them."""
     rows = []
     for number, finding in enumerate(diagnosis.findings, 1):
-        values = report.values_of(finding) if is_private else finding.values
-        what, seen, then = _said(finding, values, language)
+        values = report.values_of(finding) if is_private else None
+        what, seen, then = said(finding, language, values)
         how = "doctor_sure" if finding.is_sure else "doctor_probably"
-        if finding.cause in NOTES:
+        if finding.verdict == OPEN:
             how = "doctor_note"
         rows += [
             text("doctor_finding", language).format(
@@ -237,11 +214,8 @@ def _form(told: Mapping[str, str], language: str) -> list[str]:
 
 def _report(diagnosis: Diagnosis, told: Mapping[str, str], language: str) -> list[str]:
     """Return the lines of a report."""
-    python = platform.python_version()
-    rows = [report.MARK, text("report_about", language), ""]
-    rows += [f"tsc: {__version__}, Python {python}"]
-    rows += [f"{name}: {value}" for name, value in report.facts(diagnosis.computer)]
-    rows += ["", f"port: {report.port(diagnosis.port) if diagnosis.port else '-'}"]
+    rows = report.head(report.MARK, text("report_about", language),
+                       report.facts(diagnosis.computer), diagnosis.port)  # fmt: skip
     rows += [
         f"{each.cause} {'sure' if each.is_sure else 'probably'}" for each in diagnosis.findings
     ]
@@ -252,7 +226,7 @@ def _fields(diagnosis: Diagnosis, language: str) -> dict[str, object]:
     """Return it as data."""
     rows = []
     for finding in diagnosis.findings:
-        what, seen, then = _said(finding, finding.values, language)
+        what, seen, then = said(finding, language)
         rows.append(
             {
                 "cause": finding.cause,

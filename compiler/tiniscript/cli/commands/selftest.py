@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import json
-import platform
+import sys
 from argparse import Namespace
-from collections.abc import Mapping
 from pathlib import Path
 
 from tiniscript import robots
-from tiniscript.base.version import __version__
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.self_test import OK, OPEN, WRONG, Found, SelfTest
+from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.cli.texts import say, text
+from tiniscript.cli.texts.causes import label, said
 from tiniscript.doctor import report
+from tiniscript.doctor.findings import OK, OPEN, WRONG, Finding, sure
 
 
 def run(options: Namespace, language: str) -> int:
@@ -27,8 +27,7 @@ def run(options: Namespace, language: str) -> int:
     except CommandError as failure:
         if options.report is None or failure.exit_code != 3:
             raise
-        found = [Found("answers", WRONG, "self_plain", "then_doctor",
-                       {"said": failure.sentence(language)})]  # fmt: skip
+        found = [sure("plain", said=failure.sentence(language))]
     else:
         with connection:
             port = connection.port
@@ -49,7 +48,7 @@ def run(options: Namespace, language: str) -> int:
     return 3 if any(each.verdict == WRONG for each in found) else 0
 
 
-def _print(found: list[Found], name: str, port: str | None, is_json: bool, language: str) -> None:
+def _print(found: list[Finding], name: str, port: str | None, is_json: bool, language: str) -> None:
     if is_json:
         fields = [_fields(each, language) for each in found]
         print(json.dumps({"robot": name, "port": port, "found": fields}, indent=2))
@@ -62,38 +61,35 @@ def _print(found: list[Found], name: str, port: str | None, is_json: bool, langu
     say("selftest_end", language, good=good, all=len(found), wrong=wrong, open=left)
 
 
-def _fields(found: Found, language: str) -> dict[str, object]:
+def _fields(found: Finding, language: str) -> dict[str, object]:
     """Return it as data."""
+    what, _, then = said(found, language)
     return {
-        "what": found.what,
+        "what": found.part,
         "verdict": found.verdict,
-        "finding": found.key.removeprefix("self_").removeprefix("doctor_"),
+        "finding": found.cause,
         "values": dict(found.values),
-        "said": _said(found.key, found.values, language),
-        "next": _said(found.then, found.values, language) if found.then else None,
+        "said": what,
+        "next": then or None,
     }
 
 
-def _rows(found: list[Found], language: str) -> list[str]:
+def _rows(found: list[Finding], language: str) -> list[str]:
     rows = []
     for each in found:
-        what = _said(f"self_{each.what}", each.values, language)
-        said = _said(each.key, each.values, language)
+        what, _, then = said(each, language)
         mark = text(f"selftest_{each.verdict}", language)
-        rows.append(text("selftest_row", language).format(mark=mark, what=what, said=said))
-        if each.then:
-            then = _said(each.then, each.values, language)
+        rows.append(
+            text("selftest_row", language).format(mark=mark, what=label(each, language), said=what)
+        )
+        if then and each.verdict != OK:
             rows.append(text("selftest_next", language).format(then=then))
     return rows
 
 
-def _said(key: str, values: Mapping[str, str], language: str) -> str:
-    return text(key, language).format(**values)
-
-
-def _report(found: list[Found], name: str, port: str, language: str) -> list[str]:
+def _report(found: list[Finding], name: str, port: str, language: str) -> list[str]:
     """Return the lines of a report: nothing in it tells whose robot or computer it is."""
-    hidden = [(each, report.port(port)) for each in (port, shown(port)) if port]
+    hidden = [(each, report.shown_port(port)) for each in (port, shown(port)) if port]
     if name and name not in robots.names():  # a shipped one's says what it is, not whose
         hidden.append((name, report.HIDDEN))
 
@@ -102,8 +98,6 @@ def _report(found: list[Found], name: str, port: str, language: str) -> list[str
             row = row.replace(private, public)
         return row
 
-    kind = report.port(port) if port else "-"
-    head = [report.SELFTEST_MARK, text("selftest_about", language), ""]
-    head += [f"tsc: {__version__}, Python {platform.python_version()}"]
-    head += [f"system: {platform.system()}", f"port: {kind}", ""]
-    return [*head, *map(without_names, _rows(found, language))]
+    head = report.head(report.SELFTEST_MARK, text("selftest_about", language),
+                       [("system", sys.platform)], port)  # fmt: skip
+    return [*head, "", *map(without_names, _rows(found, language))]

@@ -43,7 +43,7 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     if robot.board.chip not in BOARDS:
         known = ", ".join(BOARDS)
         raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=known)
-    compiled = compiling.compiled(given, robot, is_strict=False)
+    compiled = compiling.compile_input(given, robot, is_strict=False)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1

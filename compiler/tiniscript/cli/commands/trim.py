@@ -13,8 +13,8 @@ from tiniscript.base.fixed_point import ONE
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.options import thousandths, whole_number
 from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.robot.description import trim_in_words
 from tiniscript.cli.robot.trim_wizard import guided
-from tiniscript.cli.texts import text
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.trim import MOST_PACE, Pace, Trim, told
 
@@ -81,30 +81,4 @@ def _print(connection: Connection, key: str, trim: Trim, is_json: bool) -> None:
         print(json.dumps({"robot": connection.device_info.name, "port": connection.port,
                           **trim.as_data()}))  # fmt: skip
         return
-    connection.say(key, trim=words(trim, connection.language))
-
-
-def words(trim: Trim, language: str) -> str:
-    """Return a trim in words."""
-    found = [
-        text(key, language)
-        for key, is_so in (
-            ("trim_exchanged", trim.is_exchanged),
-            ("trim_left_reversed", trim.is_left_reversed),
-            ("trim_right_reversed", trim.is_right_reversed),
-        )
-        if is_so
-    ] or [text("trim_as_wired", language)]
-    key = "trim_left_weaker" if trim.balance > 0 else "trim_right_weaker"
-    balance = key if trim.balance else "trim_even"
-    found.append(text(balance, language).format(n=abs(trim.balance)))
-    if trim.least:
-        found.append(text("trim_least", language).format(n=trim.least))
-    if trim.pace is not None:
-        lines = (("trim_speed", trim.pace[:2]), ("trim_turn", trim.pace[2:]))
-        found += [
-            text(key, language).format(at_40=f"{at_40:g}", at_80=f"{at_80:g}")
-            for key, (at_40, at_80) in lines
-            if at_80
-        ] or [text("trim_kits_pace", language)]
-    return ", ".join(found)
+    connection.say(key, trim=trim_in_words(trim, connection.language))

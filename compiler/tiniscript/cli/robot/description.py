@@ -8,7 +8,6 @@ from statistics import median
 from time import perf_counter
 from typing import NamedTuple
 
-from tiniscript.cli.commands.trim import words
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, name_of
@@ -102,7 +101,7 @@ class Description(NamedTuple):
             say("info_state", state=state, reset=reset),
         ]
         if self.trim not in (None, Trim(), Trim(pace=Pace())):
-            lines.append(say("info_trim", trim=words(self.trim or Trim(), self.language)))
+            lines.append(say("info_trim", trim=trim_in_words(self.trim or Trim(), self.language)))
         if status.fault:
             lines.append(self._fault())
         if status.damaged or status.dropped or status.framing or status.overrun:
@@ -219,3 +218,29 @@ def trips_as_data(trips: list[float]) -> dict[str, object]:
 def trips_in_words(trips: list[float], language: str) -> str:
     numbers = {name: f"{ms:.1f}" for name, ms in _shortest_usual_longest(trips).items()}
     return text("ping", language).format(n=len(trips), **numbers)
+
+
+def trim_in_words(trim: Trim, language: str) -> str:
+    """Return a trim in words."""
+    found = [
+        text(key, language)
+        for key, is_so in (
+            ("trim_exchanged", trim.is_exchanged),
+            ("trim_left_reversed", trim.is_left_reversed),
+            ("trim_right_reversed", trim.is_right_reversed),
+        )
+        if is_so
+    ] or [text("trim_as_wired", language)]
+    key = "trim_left_weaker" if trim.balance > 0 else "trim_right_weaker"
+    balance = key if trim.balance else "trim_even"
+    found.append(text(balance, language).format(n=abs(trim.balance)))
+    if trim.least:
+        found.append(text("trim_least", language).format(n=trim.least))
+    if trim.pace is not None:
+        lines = (("trim_speed", trim.pace[:2]), ("trim_turn", trim.pace[2:]))
+        found += [
+            text(key, language).format(at_40=f"{at_40:g}", at_80=f"{at_80:g}")
+            for key, (at_40, at_80) in lines
+            if at_80
+        ] or [text("trim_kits_pace", language)]
+    return ", ".join(found)

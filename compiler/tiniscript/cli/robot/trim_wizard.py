@@ -1,4 +1,4 @@
-"""The dialog of `tsc set trim`: it turns motors, and asks the user what they do.
+"""The conversation's part about trim, with which `tsc set trim` begins: until it drives straight.
 
 If it ends early, the robot keeps its former trim.
 """
@@ -10,15 +10,12 @@ import sys
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.robot.program_upload import follow_line
-from tiniscript.cli.terminal import asking
-from tiniscript.cli.texts import say_aside, text
+from tiniscript.cli.robot.conversation import YES, Conversation, NoPerson, as_seen
+from tiniscript.cli.texts import say_aside
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.requests import TAKEN
 from tiniscript.link.trim import MOST_PACE, Pace, Trim
 
-TURNING = 60  # percent, while the user looks at a motor
 POWERS = 40, 80  # percent: it is seen and measured at both
 AHEAD_S, TURN_S = 2, 1  # how long it is measured
 INCH_CM = 2.54
@@ -27,7 +24,7 @@ INCHES = ("in", "inch", "inches", "pulg", "pulgada", "pulgadas", '"')
 DEGREES = ("°", "º")
 LEAST_STEP = 5  # percent
 FIRST_STEP = 16  # percent of balance; halved each time that the drift changes side
-YES, AGAIN = 1, 4
+AGAIN = 4
 # failures after a stop by another command
 STOPPED = ("stopped_elsewhere", "stopped_midway", "plain")
 TRIES = 4
@@ -43,6 +40,8 @@ def guided(connection: Connection, before: Trim) -> Trim:
             connection.stop()
         if not isinstance(why, CommandError) or _is_there(why):
             _give_back(connection, before)
+        if isinstance(why, NoPerson):
+            raise CommandError(3, "trim_no_answer") from None
         raise
 
 
@@ -64,25 +63,15 @@ def _give_back(connection: Connection, before: Trim) -> None:
     connection.ask(lambda session: session.trim(before.data()), TAKEN)
 
 
-class TrimWizard:
-    def __init__(self, connection: Connection) -> None:
-        self.connection = connection
-        self.language = connection.language
-
+class TrimWizard(Conversation):
     def trim(self, before: Trim) -> Trim:
-        self._ask_line("trim_lift")
+        self.lift()
         self._set(Trim())
-        left, left_forward = self._turned(f"M({TURNING}, 0)", "trim_which")
-        right, right_forward = self._turned(f"M(0, {TURNING})", "trim_which_other")
-        if left == right:
-            raise CommandError(3, "trim_same_wheel")
-        is_exchanged = left == 2
-        ways = {left: left_forward, right: right_forward}
-        found = Trim(is_exchanged, not ways[1], not ways[2])
+        found = self._wired()
         self._set(found)
         found = found._replace(least=self._least())
         self._set(found)
-        self._ask_line("trim_floor")
+        self.answer("trim_floor")
         slow = self._straight(found, POWERS[0])
         quick = self._straight(found._replace(balance=slow), POWERS[1])
         found = found._replace(balance=round((slow + quick) / 2))
@@ -90,27 +79,38 @@ class TrimWizard:
         if before.pace is None:
             say_aside("trim_no_pace_here", self.language)
             return found
-        if self._choice("trim_measure", 2) != YES:
+        if self.choice("trim_measure", 2) != YES:
             return found._replace(pace=before.pace)
         ahead = self._measured("F", AHEAD_S, "trim_how_far")
         turning = self._measured("R", TURN_S, "trim_how_round")
         return found._replace(pace=Pace(*ahead, *turning))
 
-    def _turned(self, motors: str, question: str) -> tuple[int, bool]:
-        """Turn a motor; return the wheel, 1 left or 2 right, and whether it turned forward."""
-        wheel = AGAIN
-        while wheel == AGAIN:
-            self._drive(f"{motors}; W(1); M(0, 0)")
-            wheel = self._choice(question, AGAIN)
-        if wheel == 3:
-            raise CommandError(3, "trim_no_wheel")
-        return wheel, self._choice("trim_way", 2) == YES
+    def does(self, line: str) -> list[int]:
+        try:
+            return super().does(line)
+        except CommandError as failure:
+            if failure.key != "plain":
+                raise
+            print(failure.sentence(self.language), file=sys.stderr)
+            raise CommandError(3, "trim_ended") from None
+
+    def _wired(self) -> Trim:
+        """Turn each motor; return the trim with which they are those of their wheels."""
+        seen = []
+        for side in ("left", "right"):
+            seen.append(self.turned(side))
+            if not seen[-1].wheel:
+                raise CommandError(3, "trim_no_wheel")
+        found = as_seen(Trim(), *seen)
+        if found is None:
+            raise CommandError(3, "trim_same_wheel")
+        return found
 
     def _least(self) -> int:
         """Return the smallest power that moves both wheels, or 0 if the smallest step does."""
         for power in range(LEAST_STEP, MOST_LEAST + 1, LEAST_STEP):
-            self._drive(f"M({power}, {power}); W(1); M(0, 0)")
-            if self._choice("trim_moves", 2, n=str(power)) == YES:
+            self.does(f"M({power}, {power}); W(1); M(0, 0)")
+            if self.choice("trim_moves", 2, n=str(power)) == YES:
                 return power if power > LEAST_STEP else 0
         raise CommandError(3, "trim_too_weak", n=str(MOST_LEAST))
 
@@ -124,24 +124,24 @@ class TrimWizard:
 
     def _went(self, move: str, power: int, seconds: int, question: str) -> float:
         """Return how far it went in centimetres, or turned in degrees, as the person measured."""
-        self._ask_line("trim_mark")
+        self.answer("trim_mark")
         while True:
-            self._drive(f"{move}({seconds}, {power})")
-            answer = self._ask_line(question, n=str(power)).strip()
+            self.does(f"{move}({seconds}, {power})")
+            answer = self.answer(question, n=str(power))
             while answer:
                 size = measured(answer, move == "R")
                 if size is not None and size <= MOST_PACE * seconds:
                     return size
                 say_aside(f"{question}_number", self.language)
-                answer = self._ask_line(question, n=str(power)).strip()
+                answer = self.answer(question, n=str(power))
 
     def _straight(self, found: Trim, power: int) -> int:
         """Balance the wheels until the robot goes straight; return the balance."""
         step, last = FIRST_STEP, 0
         self._set(found)
         while True:
-            self._drive(f"F(2, {power})")
-            answer = self._choice("trim_straight", AGAIN)
+            self.does(f"F(2, {power})")
+            answer = self.choice("trim_straight", AGAIN)
             if answer == 1:
                 return found.balance
             if answer == AGAIN:
@@ -159,23 +159,6 @@ class TrimWizard:
 
     def _set(self, trim: Trim) -> None:
         self.connection.ask(lambda session: session.trim(trim.data()), TAKEN)  # kept at the end
-
-    def _drive(self, line: str) -> None:
-        if follow_line(self.connection, line, EventPrinter(self.language), lambda event: True):
-            raise CommandError(3, "trim_ended")
-
-    def _choice(self, key: str, high: int, **values: str) -> int:
-        while True:
-            answer = self._ask_line(key, **values).strip()
-            if answer.isascii() and answer.isdigit() and 1 <= int(answer[:9]) <= high:
-                return int(answer)
-            say_aside("trim_number", self.language, high=high)
-
-    def _ask_line(self, key: str, **values: str) -> str:
-        answer = asking.answer(text(key, self.language).format(**values))
-        if not answer:
-            raise CommandError(3, "trim_no_answer")
-        return answer
 
 
 def measured(answer: str, is_turn: bool) -> float | None:

@@ -32,7 +32,7 @@ class StopFinder {
 
   Found put(uint8_t byte, uint16_t now_ms) {
     const bool are_zeros = zeros_.stops(byte, now_ms);
-    if (zeros_.take(byte, now_ms)) end_silence();
+    if (zeros_.keep(byte, now_ms)) end_silence();
     zeros_.is_whole();
     if (byte == 0) return put_zero() || are_zeros ? Found::kStop : Found::kNothing;
     return state_ == State::kText ? put_text(byte) : put_packet(byte);

@@ -1,22 +1,23 @@
-"""Warns of times and powers that nobody means: degrees, centimetres, milliseconds, `F(80, 2)`.
+"""Warns of numbers that nobody means: degrees, centimetres, milliseconds, `F(80, 2)`, `LOOP(0)`.
 
-Knows the IR, before it is optimised. Only numbers that are written are looked at, and variables
-that are set once.
+Only numbers that are written are looked at, and variables that are set once.
 """
 
 from __future__ import annotations
 
 import re
 
-from tiniscript.base.fixed_point import ONE, Fault, as_text
+from tiniscript.base.fixed_point import ONE, Fault, as_text, whole
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Source, Span
+from tiniscript.base.source import Span
 from tiniscript.base.words import HERTZ, POWER, UNIT_OF, Argument
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.semantics.ir import Assign, Beep, Expression, Move, Program, every
+from tiniscript.semantics import ir
+from tiniscript.semantics.ir import Beep, Expression, Move
+from tiniscript.semantics.lint.look import Around, Look
 from tiniscript.semantics.named_values import is_power, is_time
-from tiniscript.semantics.optimizer import known_value
+from tiniscript.semantics.optimizer import fold, known_value, sure_fault
 from tiniscript.semantics.ways import way_ms
 
 SECOND = 1000  # ms
@@ -40,17 +41,39 @@ _UNTIL = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its condition
 LITTLE_POWER = 10_000  # thousandths of a percent
 
 
-def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
+def will_fault(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
+    for expression in ir.expressions(statement):
+        fault = sure_fault(fold(expression))
+        if fault:
+            look.report(codes.WILL_FAULT, statement.span, fault=fault)
+            return
+
+
+def of_times(loop: ir.Loop, around: Around, look: Look) -> None:
+    """`LOOP(0)`, `LOOP(-1)`, which other languages take for one without an end; `LOOP(4.5)`."""
+    times = known_value(loop.times)
+    head = Span(loop.span.start, loop.span.start + len("LOOP"))
+    if times is not None and times < 500:  # it is rounded
+        look.report(codes.NEVER_REPEATS, head, times=as_text(times))
+    elif times is not None and times % 1000:
+        look.report(codes.ROUNDED_TIMES, head, times=as_text(times), right=str(whole(times)))
+
+
+def of_move(move: Move, around: Around, look: Look) -> None:
+    look.found += _of_way(move, look.kit) if move.unit else _of_time(move, look)
+
+
+def _of_time(move: Move, look: Look) -> list[Diagnostic]:
     """Return the warnings about the numbers of a move or a wait by its time.
 
     It is one thing at most, and for `R(03, 2)` what is said of its power, too. With UNTIL a long
     time is only how long it may last.
     """
-    time, power = known_value(move.time), known_value(move.power)
-    text, is_ended = source[move.span], move.until is not None
+    time, power, kit = known_value(move.time), known_value(move.power), look.kit
+    text, is_ended = look.source[move.span], move.until is not None
     zero = None if is_ended else _ZERO.match(text) or _ZERO_OF_TURN.match(text)
     if time is None:
-        return of_power(move) if is_ended else _measured(move, kit, source)
+        return _of_power(move) if is_ended else _measured(move, kit, text)
     if time <= 0 and not is_ended:
         return [Diagnostic(codes.MOVE_OF_NO_TIME, move.span, {"word": move.direction})]
     if zero is not None:  # `L(039, 60)`
@@ -60,7 +83,7 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
         if len(zero[1]) == 2:  # 3 seconds or 0.3
             values["point"] = f"0.{zero[1][1:]}"
         at = Span(move.span.start + zero.start(1), move.span.start + zero.end(1))
-        return [Diagnostic(codes.ZERO_BEFORE, at, values, move.span), *of_power(move)]
+        return [Diagnostic(codes.ZERO_BEFORE, at, values, move.span), *_of_power(move)]
     if _is_swapped(time, power):
         seconds, percent = as_text(time), as_text(power or 0)
         until = _UNTIL.search(text) if is_ended else None
@@ -68,10 +91,10 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
         values = {"time": seconds, "power": percent, "fix": fix}
         return [Diagnostic(codes.SWAPPED, move.span, values)]
     may_last = is_ended and not (move.direction in ("L", "R") and kit.turn)
-    return ([] if may_last else _long(move, time, power, kit, text)) or of_power(move)
+    return ([] if may_last else _long(move, time, power, kit, text)) or _of_power(move)
 
 
-def of_way(move: Move, kit: Kit) -> list[Diagnostic]:
+def _of_way(move: Move, kit: Kit) -> list[Diagnostic]:
     """Return the warning about a move by its way: what its numbers surely make."""
     way = known_value(move.time)
     if way is not None and way <= 0:
@@ -82,14 +105,14 @@ def of_way(move: Move, kit: Kit) -> list[Diagnostic]:
     except Fault as fault:
         values = {"fault": fault.name, "unit": move.unit if fault.name == "NO_POWER" else ""}
         return [Diagnostic(codes.WILL_FAULT, move.span, values)]
-    return of_power(move)
+    return _of_power(move)
 
 
-def _measured(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
+def _measured(move: Move, kit: Kit, text: str) -> list[Diagnostic]:
     """`F(DISTANCE, 60)`, `F(TIME, 60)`: centimetres, or a clock, in the place of seconds."""
     time = move.time or ()
     is_clock = len(time) == 1 and time[0].op == "TIME"
-    power = source[move.span].rpartition(",")[2].rstrip(") ")
+    power = text.rpartition(",")[2].rstrip(") ")
     seconds = f"{move.direction}(1)" if move.power is None else f"{move.direction}(2,{power})"
     if is_clock:
         values = {"clock": "TIME", "seconds": seconds}
@@ -106,7 +129,7 @@ def _measured(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
     return [Diagnostic(codes.LONG_TIME, move.span, values)]
 
 
-def of_power(move: Move) -> list[Diagnostic]:
+def _of_power(move: Move) -> list[Diagnostic]:
     """Return the warning about a power that moves no robot, or that is too much."""
     time, power = known_value(move.time), known_value(move.power)
     found = [] if move.power is None else _cut(move.power, POWER, move.span, move.direction)
@@ -166,14 +189,14 @@ def _is_milliseconds(time: int) -> bool:
     return is_whole and (time % (500 * SECOND) == 0 or time % (30 * SECOND) != 0)
 
 
-def of_beep(beep: Beep) -> list[Diagnostic]:
-    """Return the warning about a sound that lasts longer than anybody can bear."""
+def of_beep(beep: Beep, around: Around, look: Look) -> None:
+    """Warn of a sound that lasts longer than anybody can bear."""
     time, hertz = known_value(beep.time), known_value(beep.hertz)
-    found = _cut(beep.hertz, HERTZ, beep.span, "BEEP")
+    look.found += _cut(beep.hertz, HERTZ, beep.span, "BEEP")
     if time is not None and time <= 0:
-        found.append(Diagnostic(codes.MOVE_OF_NO_TIME, beep.span, {"word": "BEEP"}))
+        look.report(codes.MOVE_OF_NO_TIME, beep.span, word="BEEP")
     if time is None or hertz is None or time < LONG_BEEP:
-        return found
+        return
     # of an Arduino: `tone(pin, hertz, milliseconds)`; or in this order, with milliseconds
     fix = f"BEEP({as_text(hertz // 1000)}, {as_text(time)})"
     sound = ""
@@ -182,36 +205,25 @@ def of_beep(beep: Beep) -> list[Diagnostic]:
         fix = fix if hertz % 100_000 else ""
     elif hertz <= LOW_HERTZ:  # `BEEP(440, 80)`: how long it lasts is not said
         fix, sound = "", f"BEEP(seconds, {as_text(time)})"
-    values = {"time": as_text(time), "fix": fix, "sound": sound}
-    return [*found, Diagnostic(codes.LONG_TIME, beep.span, values)]
+    look.report(codes.LONG_TIME, beep.span, time=as_text(time), fix=fix, sound=sound)
 
 
-def swapped_names(program: Program) -> list[Diagnostic]:
+def swapped_names(move: Move, around: Around, look: Look) -> None:
     """`F(SPEED, TIME_S)`: variables that are set once, in the wrong order by name and number."""
-    found: list[Diagnostic] = []
-    set_to: dict[int, list[int | None]] = {}
-    for statement in every(program):
-        if isinstance(statement, Assign):
-            set_to.setdefault(statement.variable, []).append(known_value(statement.value))
-    for move in (each for each in every(program) if isinstance(each, Move)):
-        if move.until is not None or move.time is None or move.power is None or move.unit:
-            continue
-        sides = (move.time, move.power)
-        if not all(len(side) == 1 and side[0].op == "VARIABLE" for side in sides):
-            continue
-        numbers = [side[0].value for side in sides]
-        values = [set_to.get(each, []) for each in numbers]
-        if not all(len(each) == 1 and each[0] is not None for each in values):
-            continue
-        time, power = (each[0] or 0 for each in values)
-        first, second = (program.variables[each] for each in numbers)
-        if _is_right_order(first, second):
-            continue
-        if _is_swapped(time, power):
-            fix = f"{move.direction}({second}, {first})"
-            said = {"fix": fix, "time": as_text(time), "power": as_text(power)}
-            found.append(Diagnostic(codes.SWAPPED, move.span, said))
-    return found
+    if move.until is not None or move.time is None or move.power is None or move.unit:
+        return
+    sides = (move.time, move.power)
+    if not all(len(side) == 1 and side[0].op == "VARIABLE" for side in sides):
+        return
+    set_to = look.variables.set_to
+    values = [[*map(known_value, set_to.get(side[0].value, ()))] for side in sides]
+    if not all(len(each) == 1 and each[0] is not None for each in values):
+        return
+    time, power = (each[0] or 0 for each in values)
+    first, second = (look.program.variables[side[0].value] for side in sides)
+    if _is_swapped(time, power) and not _is_right_order(first, second):
+        fix = f"{move.direction}({second}, {first})"
+        look.report(codes.SWAPPED, move.span, fix=fix, time=as_text(time), power=as_text(power))
 
 
 def _is_right_order(first: str, second: str) -> bool:

@@ -1,4 +1,4 @@
-"""Concept tokens: what each word and sign of a wrong line may mean.
+"""Meanings: what each word and sign of a wrong line may stand for.
 
 Knows the lexicons, spelling, and the names that a program has. Knows no order of words.
 """
@@ -71,6 +71,8 @@ class Lexeme(NamedTuple):
 
 
 class Meaning(NamedTuple):
+    """A concept, that is a word of the language or a device, and what it costs to read it so."""
+
     concept: str
     cost: int
 

@@ -1,40 +1,43 @@
-"""Warns where a program looks at a sensor when a move is over, and meant: while the robot moves.
+"""Warns of what comes of a move: it is looked at when the move is over, or nobody sees it.
 
-`F(5, 60)`, then `IF(DISTANCE < 20); S; ENDIF`. Knows the IR, before it is optimised, and the text
-of the conditions. The repair is the move with that condition behind UNTIL.
+`F(5, 60)`, then `IF(DISTANCE < 20); S; ENDIF`, where while the robot moves was meant: the repair is
+the move with that condition behind UNTIL. `SI|M(2, 80)` and `M(80, 80); S`, where W is missing: the
+program ends right behind an M, or the motors change at once.
 """
 
 from __future__ import annotations
 
 from tiniscript.base.fixed_point import as_text
-from tiniscript.base.kit import Kit
-from tiniscript.base.source import Source, Span
+from tiniscript.base.source import Span
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import asks_if_near, comes_true, is_distance, looks_ahead
+from tiniscript.semantics.lint.look import Around, Look
 from tiniscript.semantics.optimizer import known_value
-from tiniscript.semantics.written_conditions import written_condition
 from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
 
 LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
 LONG_STEP = 1000  # ms: in a WHILE it is looked at again after so long
 _PASSED_OVER = (ir.Read, ir.Assign, ir.Show, ir.Beep)  # they leave the robot where it is
 _GREATER = ("GT", "GE")
+_TAKE_NO_TIME = (ir.Read, ir.Assign, ir.Show, ir.Set)
+_TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
+_POWERS = range(20_000, 100_001)  # and a power
 
 
-class LateConditions:
-    """Looks at the bodies of one program; `found` are its warnings."""
+def late_conditions(body: ir.Body, around: Around, look: Look) -> None:
+    """Look at the statements of a body, not at those within them."""
+    _LateConditions(look).look_at(body, around.loop)
 
-    def __init__(self, program: ir.Program, kit: Kit, source: Source) -> None:
-        self._kit = kit
-        self._source = source
-        # Without M the motors stand between two instructions.
-        self._stands = not any(isinstance(each, ir.Motors) for each in ir.every(program))
-        self.found: list[Diagnostic] = []
+
+class _LateConditions:
+    def __init__(self, look: Look) -> None:
+        self._look = look
+        self._kit = look.kit
+        self._source = look.source
 
     def look_at(self, body: ir.Body, loop: ir.Loop | ir.While | None) -> None:
-        """Look at the statements of a body, which `loop` repeats; not at those within them."""
+        """Look at the statements of a body, which `loop` repeats."""
         late = self._in_loop(body) if loop is not None else set()
         if isinstance(loop, ir.While):
             self._in_while(loop)
@@ -60,7 +63,7 @@ class LateConditions:
             sensor = self._distance_in(condition)
             comes = comes_true(condition, statement.direction, self._kit)
             if sensor is not None and comes:
-                asked = written_condition(self._source, branch.arms[0].span, "IF")
+                asked = self._look.condition(branch.arms[0].span, "IF")
                 self._late(statement, sensor, asked)
                 late.add(place)
         return late
@@ -91,7 +94,7 @@ class LateConditions:
             "move": written,
             "fix": f"{written} UNTIL({asked})" if asked else "",
         }
-        self.found.append(Diagnostic(codes.LATE_CHECK, move.span, values))
+        self._look.report(codes.LATE_CHECK, move.span, **values)
 
     def _idle_stop(
         self, body: ir.Body, k: int, branch: ir.If, loop: ir.Loop | ir.While | None
@@ -99,7 +102,7 @@ class LateConditions:
         """`F(5, 60); IF(DISTANCE < 20); S; ENDIF`: its S stops what stands."""
         stop = _only_stop(branch)
         condition = branch.arms[0].condition
-        if stop is None or not self._stands or not _can_change(condition):
+        if stop is None or self._look.uses_motors or not _can_change(condition):
             return
         before = _nearest(body, range(k - 1, -1, -1))
         after = _nearest(body, range(k + 1, len(body)))
@@ -121,7 +124,7 @@ class LateConditions:
                 if values["fix"]:
                     values |= self._instead(body, move, branch)
                 if place == "move" or not pauses:
-                    self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
+                    self._look.report(codes.IDLE_STOP, stop.span, **values)
                 return
         again = before if isinstance(before, ir.Move) else after
         if (
@@ -132,7 +135,7 @@ class LateConditions:
         ):
             values = {"found": self._source[stop.span], "next": ""}
             values["again"] = self._source[again.span]
-            self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
+            self._look.report(codes.IDLE_STOP, stop.span, **values)
 
     def _idle(self, stop: ir.Stop, move: ir.Move, place: str, branch: ir.If) -> dict[str, str]:
         """Return the words for an S before or after a move, with a repair where one is sure."""
@@ -141,7 +144,7 @@ class LateConditions:
         comes = comes_true(condition, move.direction, self._kit)
         if move.direction == "B" and self._distance_in(condition) is not None:
             comes = False  # what is behind the robot is not seen
-        asked = written_condition(self._source, branch.arms[0].span, "IF") if comes else ""
+        asked = self._look.condition(branch.arms[0].span, "IF") if comes else ""
         values = {"found": found, "move": "", "next": "", place: written}
         values["fix"] = f"{written} UNTIL({asked})" if asked else ""
         if not comes:
@@ -214,3 +217,44 @@ def _only_stop(branch: ir.If) -> ir.Stop | None:
 def _is_talk(statement: ir.Statement) -> bool:
     is_wait = isinstance(statement, ir.Move) and statement.direction == "W"
     return is_wait or isinstance(statement, (ir.Read, ir.Show, ir.Beep))
+
+
+def unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
+    """Warn of each M of a body that the robot does not do for a while."""
+    source = look.source
+    for k, motors in enumerate(body):
+        if not isinstance(motors, ir.Motors) or _is_still(motors):
+            continue
+        rest = (body[at] for at in range(k + 1, len(body)))
+        after = next((each for each in rest if not isinstance(each, _TAKE_NO_TIME)), None)
+        if isinstance(after, ir.If) and all(map(_takes_no_time, (after, *rest))):
+            after = None
+        if isinstance(after, ir.Motors) and after[:2] == motors[:2]:
+            continue  # they are set again to the same
+        values = {"found": source[motors.span]}
+        if isinstance(after, (ir.Motors, ir.Stop)) or (
+            isinstance(after, ir.Move) and after.direction != "W" and after.until is None
+        ):
+            values["next"] = source[after.span]
+        elif after is not None or not around.is_last:
+            continue
+        left, right = known_value(motors.left) or 0, known_value(motors.right) or 0
+        if left in _TIMES and right in _POWERS:
+            values["time"] = as_text(left)
+            values["move"] = f"F({as_text(left)}, {as_text(right)})"
+        look.report(codes.UNSEEN_MOTORS, motors.span, **values)
+
+
+def _takes_no_time(statement: ir.Statement) -> bool:
+    """Also an IF that is over at once, whatever the answer is."""
+    if not isinstance(statement, ir.If):
+        return isinstance(statement, _TAKE_NO_TIME)
+    bodies = (statement.otherwise, *(arm.body for arm in statement.arms))
+    return all(
+        isinstance(each, ir.Stop) or _takes_no_time(each) for body in bodies for each in body
+    )
+
+
+def _is_still(motors: ir.Motors) -> bool:
+    """`M(0, 0)` is a way to stop."""
+    return not known_value(motors.left) and not known_value(motors.right)

@@ -1,0 +1,120 @@
+"""The conversation with a person beside a robot: it does something, and they say what they saw.
+
+The self-test and the trim ask their questions here: each is asked, and said, in one way.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import NamedTuple
+
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.event_printer import EventPrinter
+from tiniscript.cli.robot.program_upload import follow_line
+from tiniscript.cli.terminal import asking
+from tiniscript.cli.texts import say_aside, text
+from tiniscript.link.outcomes import Event
+from tiniscript.link.trim import Trim
+
+TURNING = 60  # percent, while the person looks at a motor
+YES = 1
+NOTHING, AGAIN = 5, 6  # answers of `turned`
+MOTORS = {"left": f"M({TURNING}, 0)", "right": f"M(0, {TURNING})"}
+
+
+class NoPerson(Exception):
+    """Nobody answers."""
+
+
+class Turned(NamedTuple):
+    """What a person saw of a motor: which wheel turned, if any, and which way."""
+
+    wheel: str
+    is_forward: bool
+
+
+SEEN = (Turned("left", True), Turned("left", False), Turned("right", True), Turned("right", False))
+STILL = Turned("", False)
+
+
+class Conversation:
+    """`is_asking`: a person is there. Who does not answer once is not asked again."""
+
+    def __init__(self, connection: Connection, is_asking: bool = True) -> None:
+        self.connection = connection
+        self.language = connection.language
+        self.is_asking = is_asking
+
+    def answer(self, key: str, **values: str) -> str:
+        """Ask, and return the line that is typed. Raises NoPerson."""
+        if not self.is_asking:
+            raise NoPerson
+        found = asking.answer(text(key, self.language).format(**values))
+        if not found:
+            self.is_asking = False
+            print(file=sys.stderr)
+            raise NoPerson
+        return found.strip()
+
+    def choice(self, key: str, high: int, **values: str) -> int:
+        """Ask until the answer is a number from 1 to `high`. Raises NoPerson."""
+        while True:
+            found = self.answer(key, **values)
+            if found.isascii() and found.isdigit() and 1 <= int(found[:9]) <= high:
+                return int(found)
+            say_aside("ask_number", self.language, high=high)
+
+    def does(self, line: str) -> list[int]:
+        """Let the robot do a line now; return what it showed. Raises CommandError."""
+        values: list[int] = []
+        told: list[str] = []
+
+        def hold(event: Event) -> bool:
+            if event.name == "SHOW":
+                values.append(event.value)
+            return event.name in ("SHOW", "DONE")
+
+        printer = EventPrinter(self.language, out=told.append, err=told.append)
+        if follow_line(self.connection, line, printer, hold):
+            raise CommandError(3, "plain", said=" ".join(told))
+        return values
+
+    def saw(self, line: str, key: str, again: int, **values: str) -> int:
+        """Let the robot do a line, and ask what the person saw; `again` shows it once more."""
+        found = again
+        while found == again:
+            if not self.is_asking:
+                raise NoPerson
+            self.does(line)
+            found = self.choice(key, again, **values)
+        return found
+
+    def lift(self) -> None:
+        self.answer("ask_lift")
+
+    def turned(self, side: str) -> Turned:
+        """Turn the motor of a side; return what the person saw. Raises NoPerson, CommandError."""
+        key = "ask_turned" if side == "left" else "ask_turned_other"
+        found = self.saw(f"{MOTORS[side]}; W(1); M(0, 0)", key, AGAIN)
+        return STILL if found == NOTHING else SEEN[found - 1]
+
+
+def as_seen(before: Trim, left: Turned, right: Turned) -> Trim | None:
+    """Return the trim with which each wheel turns forward for its side.
+
+    With `before`, the motor of the left side turned the one wheel, that of the right side the
+    other. None where both turned the same, or one turned none.
+    """
+    if {left.wheel, right.wheel} != {"left", "right"}:
+        return None
+    was_reversed = (before.is_left_reversed, before.is_right_reversed)
+    reversed_now = {
+        seen.wheel: was != (not seen.is_forward)
+        for seen, was in zip((left, right), was_reversed, strict=True)
+    }
+    return before._replace(
+        is_exchanged=before.is_exchanged != (left.wheel == "right"),
+        is_left_reversed=reversed_now["left"],
+        is_right_reversed=reversed_now["right"],
+    )

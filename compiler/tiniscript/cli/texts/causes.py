@@ -1,0 +1,45 @@
+"""The sentences of a finding, whoever has found it: the doctor, or the self-test."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from tiniscript.cli.texts import has_text, text
+from tiniscript.doctor.findings import CAUSES, Finding
+from tiniscript.link.messages import RESETS
+
+
+class Sentences(NamedTuple):
+    """What was found, how that was seen, and the next step; nothing where there is none."""
+
+    what: str
+    seen: str
+    then: str
+
+
+def said(finding: Finding, language: str, values: Mapping[str, str] | None = None) -> Sentences:
+    """Return what is said of a finding; `values`: instead of its own."""
+    filled = dict(finding.values if values is None else values)
+    if filled.get("reset") in dict(RESETS):
+        filled["reset"] = text(f"reset_{filled['reset']}", language)
+    cause, row = finding.cause, CAUSES[finding.cause]
+    seen, then = f"seen_{cause}", f"next_{row.then or cause}"
+    if cause == "busy" and not filled["by"]:
+        seen = "seen_busy_unknown"
+    if filled.get("count") == "1" and has_text(f"{seen}_once"):
+        seen += "_once"
+    if cause == "no_permission" and not filled["group"]:
+        seen, then = "seen_no_permission_other", "next_no_permission_other"
+    if cause in ("no_port", "charging_cable") and filled.get("ports"):
+        seen, then = "seen_no_port_others", "next_no_port_others"
+    if cause == "other_sketch" and not filled["said"]:
+        seen = "seen_other_sketch_silent"
+    # a part that is looked at whole has no `seen`, and one that is right no next step
+    keys = f"found_{cause}", seen if has_text(seen) else "", then if has_text(then) else ""
+    return Sentences(*(text(key, language).format(**filled) if key else "" for key in keys))
+
+
+def label(finding: Finding, language: str) -> str:
+    """Return the name of the part of a robot that a finding is about: `sensor DISTANCE`."""
+    return text(f"part_{finding.part}", language).format(**finding.values)

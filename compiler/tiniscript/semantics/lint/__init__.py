@@ -1,0 +1,115 @@
+"""The lint: warnings about a program that has no mistakes, never mistakes.
+
+`TABLE` has all of them: the codes, where each is looked for, and what finds it there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple, get_args
+
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code, Diagnostic
+from tiniscript.semantics import ir
+from tiniscript.semantics.lint import conditions, moves, numbers, tasks, useless
+from tiniscript.semantics.lint.look import Around, Look
+from tiniscript.syntax.lexer import Scan
+
+# Where a warning is looked for, if not at statements of a type.
+PROGRAM, TASKS, BODY, STATEMENT = "program", "tasks", "body", "statement"
+
+
+class Row(NamedTuple):
+    """What reports these codes. Asked once for the PROGRAM, or for its TASKS if there are any: of
+    the `Look`; for each BODY and each STATEMENT, or each of a type: of it and what is around it."""
+
+    codes: tuple[Code, ...]
+    at: str | type
+    find: Callable[..., None]
+
+
+TABLE = (
+    # numbers that nobody means
+    Row((codes.WILL_FAULT,), STATEMENT, numbers.will_fault),
+    Row(
+        (codes.MOVE_OF_NO_TIME, codes.WILL_FAULT, codes.SWAPPED, codes.LONG_TIME,
+         codes.LITTLE_POWER, codes.ZERO_BEFORE, codes.CUT_VALUE),
+        ir.Move, numbers.of_move,
+    ),
+    Row((codes.SWAPPED,), ir.Move, numbers.swapped_names),
+    Row((codes.MOVE_OF_NO_TIME, codes.LONG_TIME, codes.CUT_VALUE), ir.Beep, numbers.of_beep),
+    Row((codes.NEVER_REPEATS, codes.ROUNDED_TIMES), ir.Loop, numbers.of_times),
+    # conditions whose answer does not come
+    Row((codes.FROZEN_UNTIL, codes.TURNED_ROUND, codes.EXACT, codes.KNOWN_ANSWER),
+        ir.Move, conditions.of_until),
+    Row((codes.FROZEN_WHILE, codes.KNOWN_ANSWER), ir.While, conditions.of_while),
+    Row((codes.FROZEN_WHILE, codes.LATE_ARM, codes.EXACT, codes.KNOWN_ANSWER),
+        ir.If, conditions.of_if),
+    Row((codes.FROZEN_WHILE,), ir.Show, conditions.of_show),
+    # what comes of a move
+    Row((codes.LATE_CHECK, codes.IDLE_STOP), BODY, moves.late_conditions),
+    Row((codes.UNSEEN_MOTORS,), BODY, moves.unseen_motors),
+    # what is written for nothing
+    Row((codes.NEVER_REACHED,), BODY, useless.never_reached),
+    Row((codes.EMPTY_BLOCK,), BODY, useless.empty_blocks),
+    Row((codes.BUSY_LOOP,), ir.Loop, useless.busy_loop),
+    Row((codes.BUSY_LOOP,), ir.While, useless.busy_loop),
+    Row((codes.UNUSED_VARIABLE,), PROGRAM, useless.unused_variables),
+    Row((codes.UNUSED_READING,), PROGRAM, useless.unused_readings),
+    Row((codes.UNUSED_DEF,), PROGRAM, useless.unused_defs),
+    Row((codes.IN_A_NOTE,), PROGRAM, useless.in_notes),
+    # tasks
+    Row((codes.NO_MOTORS,), TASKS, tasks.kept_motors),
+    Row((codes.TASK_DONE_ONCE, codes.WHEN_GOES_ON), TASKS, tasks.brief_tasks),
+)  # fmt: skip
+
+
+_STATEMENTS = (*get_args(ir.Statement), ir.Task)
+_ROWS: dict[str | type, list[Row]] = {
+    at: [row for row in TABLE if row.at == at or (row.at == STATEMENT and at in _STATEMENTS)]
+    for at in (PROGRAM, TASKS, BODY, *_STATEMENTS)
+}
+
+
+def lint(program: ir.Program, kit: Kit, source: Source, scanned: Scan) -> list[Diagnostic]:
+    """Return the warnings for a program that has no mistakes, of this text and these tokens."""
+    look = Look(program, kit, source, scanned)
+    for procedure in program.procedures:
+        _look_at(procedure.body, Around(is_repeated=True), look)
+    for task in program.tasks:
+        for row in _ROWS[ir.Task]:
+            row.find(task, Around(), look)
+        _look_at(task.body, Around(is_repeated=task.look is not None), look)
+    _look_at(program.body, Around(is_last=True), look)
+    for row in (*_ROWS[PROGRAM], *(_ROWS[TASKS] if program.tasks else ())):
+        row.find(look)
+    return look.found
+
+
+def _look_at(body: ir.Body, around: Around, look: Look) -> None:
+    for row in _ROWS[BODY]:
+        row.find(body, around, look)
+    for statement in body:
+        for row in _ROWS[type(statement)]:
+            row.find(statement, around, look)
+        inner = ir.bodies(statement)
+        if inner:
+            inside = _inside(statement, around, is_last=statement is body[-1])
+            for each in inner:
+                _look_at(each, inside, look)
+
+
+def _inside(statement: ir.Statement, around: Around, is_last: bool) -> Around:
+    """Return what the bodies of a statement are in; `is_last`: no other stands behind it."""
+    asks = isinstance(statement, (ir.If, ir.While))
+    inside = around._replace(
+        loop=None,
+        is_last=around.is_last and isinstance(statement, ir.If) and is_last,
+        asked=around.asked | ir.named("SENSOR", [statement] if asks else []),
+    )
+    if not isinstance(statement, (ir.Loop, ir.While)):
+        return inside
+    outermost = around.outermost or statement
+    return inside._replace(loop=statement, is_repeated=True, outermost=outermost)

@@ -1,0 +1,172 @@
+"""Warns of tasks: of two that drive at once, and of one that is over where another was meant.
+
+The lower of two waits, or never gets the motors; that is not said where a task lets the motors go
+now and then, as far as that can be seen. `TASK;BEEP(0.2, 440);W(1);END_TASK` waits before nothing,
+and behind `WHEN(DISTANCE < 10);S;END_WHEN` a loop drives on.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import partial
+
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.semantics import ir
+from tiniscript.semantics.lint.look import Look
+from tiniscript.semantics.optimizer import known_value
+
+_HEAD = r"(?i)WHEN[ \t]*(\(.*\))[ \t]*(?=$|[;\r\n]|//)"
+_TAKES_NO_TIME = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call)
+
+
+def kept_motors(look: Look) -> None:
+    """Warn of each task that waits for a higher TASK, or never drives again."""
+    program = look.program
+    motors = _Motors(program)
+    all_of = partial(ir.with_calls, procedures=program.procedures)
+    higher = [each.body for each in program.tasks if each.look is not None]
+    tasks = [each for each in program.tasks if each.look is None]
+    lower = [*(each.body for each in tasks), program.body]
+    for task in tasks:
+        del lower[0]
+        is_stopped = any(isinstance(each, ir.Stop) for body in higher for each in all_of(body))
+        if not is_stopped and motors.are_kept(task.body):
+            line = str(look.source.position(task.span.start)[0])
+            for body in lower:
+                waiting = next(filter(_drives, all_of(_endless(body))), None)
+                if waiting is not None:
+                    look.report(codes.NO_MOTORS, waiting.span, line=line)
+            return
+        higher.append(task.body)
+    _take_turns([each.body for each in tasks], look)
+
+
+def _take_turns(tasks: list[ir.Body], look: Look) -> None:
+    """`TASK;F(4, 60);END_TASK;TASK;R(4, 60);END_TASK`: they take turns, and make no curve."""
+    begin = [body[0] for body in (*tasks, look.program.body) if body and _drives(body[0])]
+    if len(begin) < 2 or not tasks[0] or begin[0] is not tasks[0][0]:
+        return
+    first = look.source[begin[0].span]
+    for each in begin[1:]:
+        look.report(codes.NO_MOTORS, each.span, first=first, both="M(60, 30);W(4)")
+
+
+class _Motors:
+    def __init__(self, program: ir.Program) -> None:
+        self._procedures = program.procedures
+
+    def are_kept(self, body: ir.Body) -> bool:
+        """Whether a task surely drives for ever at its end, and never lets the motors go there."""
+        rest = _endless(body)
+        if not any(
+            isinstance(each, ir.Motors) or (_drives(each) and _lasts(each)) for each in rest
+        ):
+            return False
+        return self._repeated(rest, False) is not None or self._repeated(rest, True) is True
+
+    def _after(self, body: ir.Body, wants: bool) -> bool | None:
+        """Return whether the motors are wanted behind a body, None where it may let them go."""
+        found: bool | None = wants
+        for each in body:
+            if found is None or isinstance(each, ir.Break):
+                return None
+            if isinstance(each, ir.Motors):
+                found = True
+            elif isinstance(each, ir.Stop) or _drives(each):
+                found = False
+            elif isinstance(each, (ir.Move, ir.Beep)):
+                found = found or None
+            elif isinstance(each, ir.Call):
+                found = self._after(self._procedures[each.procedure].body, found)
+            elif isinstance(each, ir.If):
+                arms = [self._after(arm, found) for arm in ir.bodies(each)]
+                found = None if None in arms else all(arms)
+            elif isinstance(each, (ir.Loop, ir.While)):
+                found = self._repeated(each.body, found)
+        return found
+
+    def _repeated(self, body: ir.Body, wants: bool) -> bool | None:
+        once = self._after(body, wants)
+        if once is None or self._after(body, once) is None:
+            return None
+        takes_time = once or any(map(_lasts, body))  # else a turn of it waits for 1 ms
+        return wants and once if takes_time else None
+
+
+def brief_tasks(look: Look) -> None:
+    """Warn of a TASK that is done once, and of a WHEN whose S lasts no longer than its answer."""
+    program = look.program
+    lower = [program.body, *(each.body for each in program.tasks if each.look is None)]
+    driving = [
+        body[-1] for body in lower
+        if any(map(_drives, ir.with_calls(_endless(body), program.procedures)))
+    ]  # fmt: skip
+    for task in program.tasks:
+        done = [*ir.with_calls(task.body, program.procedures)]
+        if task.look is None:
+            if task.body and _is_pause(task.body[-1]) and not any(map(_repeats, done)):
+                look.found.append(_done_once(task, look.source))
+        elif driving and known_value(task.look.condition) is None:
+            is_brief = all(isinstance(each, _TAKES_NO_TIME) for each in done)
+            if is_brief and any(isinstance(each, ir.Stop) for each in done):
+                _goes_on(task, driving[0], look)
+
+
+def _is_pause(statement: ir.Statement) -> bool:
+    is_move = isinstance(statement, ir.Move) and statement.power is None
+    return is_move and statement.until is None  # type: ignore[union-attr]
+
+
+def _repeats(statement: ir.Statement) -> bool:
+    return isinstance(statement, (ir.Loop, ir.While))
+
+
+def _done_once(task: ir.Task, source: Source) -> Diagnostic:
+    """It says to write a loop around all of it, on lines of its own where the TASK has them."""
+    text = source[task.span]
+    end = re.search(r"\w+\Z", text)
+    assert end is not None
+    behind, before = task.word.end, task.span.start + end.start()
+    between = "\n" if "\n" in text else ";"
+    edits = (Edit(Span(behind, behind), f"{between}LOOP(FOREVER)"),
+             Edit(Span(before, before), f"END_LOOP{between}"))  # fmt: skip
+    return Diagnostic(codes.TASK_DONE_ONCE, task.word, {}, None, Repair(edits, False))
+
+
+def _goes_on(task: ir.Task, driving: ir.Statement, look: Look) -> None:
+    head = re.match(_HEAD, look.source[task.span])
+    values = {"line": str(look.source.position(driving.span.start)[0])}
+    if head is not None:
+        ended = f"IF{head[1]};BREAK;ENDIF" if isinstance(driving, ir.Loop) else f"UNTIL{head[1]}"
+        values["ended"] = ended
+    # a DEF that is called may have it
+    stops = [each for each in task.body if isinstance(each, (ir.Stop, ir.Call))]
+    stop = min(stops, key=lambda each: isinstance(each, ir.Call))
+    look.report(codes.WHEN_GOES_ON, stop.span, **values)
+
+
+def _endless(body: ir.Body) -> ir.Body:
+    """Return what a body does for ever at its end: a move, or what a loop repeats."""
+    last = body[-1] if body else None
+    if isinstance(last, ir.Loop) and last.times is None:
+        return last.body
+    is_move = isinstance(last, ir.Move) and last.time is None and last.until is None
+    return body[-1:] if is_move else ()
+
+
+def _drives(statement: ir.Statement) -> bool:
+    return isinstance(statement, ir.Motors) or (
+        isinstance(statement, ir.Move) and statement.power is not None
+    )
+
+
+def _lasts(statement: ir.Statement) -> bool:
+    """Whether a statement surely takes time."""
+    if not isinstance(statement, (ir.Move, ir.Beep)):
+        return False
+    if isinstance(statement, ir.Move) and (statement.time is None or statement.until is not None):
+        return statement.until is None
+    assert statement.time is not None
+    return (known_value(statement.time) or 0) > 0

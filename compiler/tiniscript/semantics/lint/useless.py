@@ -1,0 +1,228 @@
+"""Warns of what is written for nothing: the robot never does it, or nothing comes of it.
+
+Instructions behind an endless loop or in a note, a DEF that nobody calls, a variable or a reading
+that nobody uses, a loop that only repeats, a block with nothing inside.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import pairwise, takewhile
+
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import BLOCK_ENDS, WORDS, said_of
+from tiniscript.diagnostics import codes
+from tiniscript.semantics import ir
+from tiniscript.semantics.lint.look import Around, Look
+from tiniscript.semantics.named_values import use_of
+from tiniscript.semantics.optimizer import known_value
+from tiniscript.syntax.cursor import AT_END
+from tiniscript.syntax.lexer import NEWLINE, Token
+
+_LASTING = (ir.Move, ir.Beep, ir.Motors)
+_NOTE_BEHIND = r"[ \t;]{0,99}//"
+MANY = 12  # instructions that an example has
+_CALL = r"(?:[FBLRM]|BEEP)\(\s*-?[0-9.]+\s*,\s*-?[0-9.]+\s*\)|W\(\s*[0-9.]+\s*\)"
+# Few programs have notes: these are not compiled before there are some.
+_CALLS = rf"(?i)/+\s*(?:{_CALL})(?:[;\s]*(?:{_CALL}|STOP|S))*[;\s]*"
+_CALL_IN_IT = rf"(?i)(?:{_CALL})|STOP|S"
+LONGEST = 200  # characters of a note that is looked at
+
+
+# -- what is never done ----------------------------------------------------------------------
+
+
+def never_reached(body: ir.Body, around: Around, look: Look) -> None:
+    """What stands behind a loop without an end, or behind BREAK."""
+    for before, after in pairwise(body):
+        if not ir.goes_on((before,)):
+            values = {"found": look.source[after.span].split("\n")[0]}
+            if isinstance(before, ir.Loop):
+                values["line"] = str(look.source.position(before.span.start)[0])
+            elif isinstance(before, ir.Break):
+                values["ends"] = "BREAK"
+            look.report(codes.NEVER_REACHED, after.span, **values)
+            return
+
+
+def in_notes(look: Look) -> None:
+    """`F(2, 80)//R(1, 60)`: instructions that stand in a note.
+
+    Only a note that is a row of calls with numbers, or that has such a call behind a `;`, is taken
+    for a slip, and only behind an instruction, where a `;` would do: a whole line may be set aside,
+    and behind a header or `SI|` a note tells what comes.
+    """
+    source, tokens = look.source, look.scan.tokens
+    short = [each for each in look.scan.comments if len(each.text) <= LONGEST]
+    if all(each.kind in AT_END for each in tokens):
+        _all_of_it(short, look)
+        return
+    rows = [each for each in short if re.fullmatch(_CALLS, each.text) or swallowed(each.text)]
+    is_ping = [each.text for each in tokens[:2]] == ["PING", "|"]
+    depth = k = 0
+    for note in rows:
+        while tokens[k].start < note.start:
+            depth += (tokens[k].kind == "(") - (tokens[k].kind == ")")
+            k += 1
+        begin = max(source.text.rfind(sign, 0, note.start) for sign in "\r\n") + 1
+        if depth or not source.text[begin : note.start].strip(" \t;"):
+            continue
+        if _ends_instruction(tokens, k) and not is_ping:
+            rest = "; ".join(swallowed(note.text))
+            said = rest or note.text.strip("/; \t")
+            look.report(codes.IN_A_NOTE, note.span, found=said, rest=rest)
+
+
+def _all_of_it(notes: Sequence[Token], look: Look) -> None:
+    """`// I go F(1, 80); W(2)`, where the program is nothing but notes."""
+    for note in notes:
+        rest = "; ".join(re.findall(_CALL, note.text, re.IGNORECASE))
+        if rest:
+            look.report(codes.IN_A_NOTE, note.span, found=rest, rest=rest)
+            return
+
+
+def swallowed(note: str) -> list[str]:
+    """Return the instructions behind the words of a note: `// voy; W(2) // compro`.
+
+    None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
+    """
+    first, *others = (each.strip() for each in re.split(r";|//", note.removeprefix("//")))
+    found = [each for each in others if re.fullmatch(_CALL_IN_IT, each)]
+    is_row = all(each in found or not set("()") & set(each) for each in (first, *others))
+    is_row = is_row and bool(found) and found != ["S"] * len(found)
+    return found if is_row and first else []
+
+
+def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
+    """Whether what stands before the token at `end` is an instruction, and no header nor `SI|`."""
+    k = end - 1
+    while k >= 0 and tokens[k].kind == ";":
+        k -= 1
+    if k < 0 or tokens[k].kind == "|":
+        return False
+    depth = 0
+    while k >= 0 and (depth or tokens[k].kind not in (";", "|", NEWLINE)):
+        depth += (tokens[k].kind == ")") - (tokens[k].kind == "(")
+        k -= 1
+    known = WORDS.get(tokens[k + 1].text)
+    return known is None or known.role.name not in ("start", "block", "arm")
+
+
+# -- blocks ----------------------------------------------------------------------------------
+
+
+def busy_loop(loop: ir.Loop | ir.While, around: Around, look: Look) -> None:
+    """`WHILE(TRUE);X = DISTANCE;END_WHILE`: it never ends, and nothing in it takes time."""
+    procedures = look.program.procedures
+    if (
+        look.program.tasks  # there each turn of a loop takes time
+        or not _is_forever(loop)
+        or ir.loops_end(loop.body)
+        or any(isinstance(each, _LASTING) for each in ir.with_calls(loop.body, procedures))
+    ):
+        return
+    word = "LOOP(FOREVER)" if isinstance(loop, ir.Loop) else "WHILE"
+    head = Span(loop.span.start, loop.span.start + len(word))
+    look.report(codes.BUSY_LOOP, head, word=word)
+
+
+def _is_forever(loop: ir.Loop | ir.While) -> bool:
+    if isinstance(loop, ir.Loop):
+        return loop.times is None
+    return known_value(loop.condition) == 1
+
+
+def empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
+    """`LOOP(4)`, `END_LOOP`, and the moves below: beside what was probably meant to be in it.
+
+    Nothing is said of an endless LOOP or a WHILE, which wait, nor of a block with a note inside or
+    behind its end.
+    """
+    source = look.source
+    for k, statement in enumerate(body):
+        if not _is_empty(statement):
+            continue
+        text = source[statement.span]
+        is_noted = re.compile(_NOTE_BEHIND).match(source.text, statement.span.end)
+        if "//" in text or is_noted:
+            continue
+        word = "IF" if isinstance(statement, ir.If) else "LOOP"
+        span = Span(statement.span.start, statement.span.start + _end_of_head(text))
+        behind = _said(body[k + 1 :], source)
+        before = [] if behind else _said(body[k - 1 :: -1] if k else (), source)[::-1]
+        if not behind and not before:
+            continue
+        shown, end = " ".join(source[span].split()), BLOCK_ENDS[word]
+        values = {"head": shown, "end": end}
+        for name, rows in (("example", behind), ("before", before)):
+            if 0 < len(rows) <= MANY:
+                values[name] = "; ".join((shown, *rows, end))
+        look.report(codes.EMPTY_BLOCK, span, **values)
+
+
+def _end_of_head(text: str) -> int:
+    """Return the place behind the brackets of a header at the beginning of a right text."""
+    depth = 0
+    for k, sign in enumerate(text):
+        depth += (sign == "(") - (sign == ")")
+        if sign == ")" and not depth:
+            return k + 1
+    return len(text)
+
+
+def _is_empty(statement: ir.Statement) -> bool:
+    if isinstance(statement, ir.Loop):
+        return statement.times is not None and not statement.body
+    if isinstance(statement, ir.If):
+        return len(statement.arms) == 1 and not statement.arms[0].body and not statement.has_else
+    return False
+
+
+def _said(statements: Sequence[ir.Statement], source: Source) -> list[str]:
+    """Return the instructions at the beginning of a row that are no blocks, as written."""
+    plain = takewhile(
+        lambda each: not isinstance(each, (ir.If, ir.Loop, ir.While, ir.Break)), statements
+    )
+    return [source[each.span] for each in plain if not isinstance(each, ir.Read)]
+
+
+# -- what nobody uses ------------------------------------------------------------------------
+
+
+def unused_variables(look: Look) -> None:
+    program = look.program
+    used = ir.named("VARIABLE", look.statements)
+    owners = {k: procedure for procedure in program.procedures for k in procedure.values}
+    for statement in look.statements:
+        if isinstance(statement, ir.Assign) and statement.variable not in used:
+            used.add(statement.variable)  # said once
+            name = program.variables[statement.variable]
+            device = name if said_of(name, "device") else ""
+            values = {"name": name, "device": device, "example": use_of(name)}
+            if statement.variable in owners:
+                values["own"] = owners[statement.variable].name
+            look.report(codes.UNUSED_VARIABLE, statement.span, **values)
+
+
+def unused_readings(look: Look) -> None:
+    """`SI|DISTANCE`, where nothing asks for the distance: it is measured, and nobody sees it."""
+    asked = ir.named("SENSOR", look.statements)
+    for statement in look.statements:
+        if isinstance(statement, ir.Read) and statement.sensor not in asked:
+            asked.add(statement.sensor)  # said once
+            name = look.kit.sensors[statement.sensor].name
+            look.report(codes.UNUSED_READING, statement.span, name=name, fix=f"SHOW({name})")
+
+
+def unused_defs(look: Look) -> None:
+    called = {each.procedure for each in look.statements if isinstance(each, ir.Call)}
+    for number, procedure in enumerate(look.program.procedures):
+        if number not in called:
+            span = Span(procedure.span.start, procedure.span.start + len("DEF"))
+            values = {"name": procedure.name}
+            if procedure.values:
+                names = ", ".join(look.program.variables[k] for k in procedure.values)
+                values["usage"] = f"{procedure.name}({names})"
+            look.report(codes.UNUSED_DEF, span, **values)
