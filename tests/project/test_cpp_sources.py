@@ -98,6 +98,31 @@ def test_each_header_is_read_once(path: Path) -> None:
     assert code_of(path).split()[:2] == ["#pragma", "once"]
 
 
+def names_in(mangled: str) -> list[str]:
+    """Return the names in a name of the linker: `8Receiver4keepEhj` has `Receiver` and `keep`."""
+    found, at = [], 0
+    while digits := re.match(r"\d+", mangled[at:]):
+        at += len(digits[0]) + int(digits[0])
+        found.append(mangled[at - int(digits[0]) : at])
+    return found
+
+
+def test_what_the_linker_places_by_name_has_that_name() -> None:
+    """Else a function that was called otherwise lies somewhere, and its calls take more flash."""
+    code = "\n".join(map(code_of, sorted((SOURCES / "src").rglob("*.[chS]*"))))
+    order = (SOURCES / "src" / "boards" / "avr" / "order.ld").read_text(encoding="utf-8")
+    mangled = re.findall(r"\*\(\.text\._ZNK?10tiniscript(?:12_GLOBAL__N_1)?(\d\w+)", order)
+    assert len(mangled) > 100
+    for each in mangled:
+        *outer, name = names_in(each)
+        places = [code]
+        if outer:
+            kind = outer[0]
+            begun = rf"(?:class|struct) {kind}\b[^;{{]*\{{.*?\n\}};|\b{kind}::[^;]*?\("
+            places = re.findall(begun, code, re.DOTALL)
+        assert any(re.search(rf"\b{name}\b", place) for place in places), each
+
+
 @pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 def test_each_header_compiles_alone_without_a_warning(tmp_path: Path) -> None:
     """Twice in a file: the second time says nothing."""

@@ -57,7 +57,7 @@ UPSTREAM: dict[str, set[str]] = {
     "flash": {"base.files", "base.languages", "robots"},
     "link": {"base.version", "base.files", "base.source", "base.languages", "bytecode"},
     "conformance": {"bytecode", "link"},
-    "doctor": {"base.files", "bytecode", "flash", "link"},
+    "doctor": {"base.files", "base.version", "bytecode", "flash", "link"},
     "virtual": {*SHARED, "bytecode", "vm", "robots", "link"},
     # of the syntax its tokens: which words a program uses
     "lessons": {*SHARED, "bytecode", "syntax", "vm", "robots", "link", "virtual"},

@@ -82,7 +82,7 @@ def _rows(found: list[Finding], language: str) -> list[str]:
         rows.append(
             text("selftest_row", language).format(mark=mark, what=label(each, language), said=what)
         )
-        if then and each.verdict != OK:
+        if then:
             rows.append(text("selftest_next", language).format(then=then))
     return rows
 
