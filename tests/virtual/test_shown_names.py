@@ -74,7 +74,7 @@ def test_values_of_tasks_that_wait_for_the_line_have_the_names_of_their_shows(
     desk = Desk(kind, baud)
     desk.send(SEVERAL)
     found = desk.shown(60_000)
-    assert {value: name for value, name in found} == NAMES
+    assert dict(found) == NAMES
     assert all(NAMES[value] == name for value, name in found)
     assert [value for value, _ in found].count(3) == 5
 
