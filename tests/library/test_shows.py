@@ -39,7 +39,8 @@ def names(text: str) -> list[str]:
         ("SHOW(// how far\n  DISTANCE // or near\n  + 1)", "DISTANCE + 1"),
         ("// café\r\nSHOW(TIME)", "TIME"),
         # what says no more than the value itself
-        ("SHOW(12.5)", ""), ("SHOW(-3)", ""), ("SHOW(TRUE)", ""), ("SHOW(((2)))", "((2))"),
+        ("SHOW(12.5)", ""), ("SHOW(-3)", ""), ("SHOW(.5)", ""), ("SHOW(TRUE)", ""),
+        ("SHOW(5-3)", "5 - 3"), ("SHOW(((2)))", "((2))"), ("SHOW(NOT TRUE)", "NOT TRUE"),
     ],
 )  # fmt: skip
 def test_a_value_is_called_as_the_expression_of_its_show(text: str, expected: str) -> None:

@@ -6,6 +6,7 @@ has no name, and neither has a plain number.
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -15,10 +16,10 @@ from tiniscript.library import source_map
 from tiniscript.library.source_map import Map, MapLocation
 from tiniscript.link.outcomes import ShownEvent
 from tiniscript.syntax.formatter import instruction_text, pieces_of
-from tiniscript.syntax.lexer import NUMBER, scan
+from tiniscript.syntax.lexer import scan
 
 _BEGIN, _END = "SHOW(", ")"
-_PLAIN = ("TRUE", "FALSE", "-")
+_PLAIN = re.compile(r"-?[\d.]+|TRUE|FALSE|")
 
 
 class Show(NamedTuple):
@@ -84,9 +85,9 @@ def expression_of(places: Map, place: MapLocation) -> str:
         return ""
     pieces = pieces_of(scan("\n".join(lines)))
     tokens = pieces[0].tokens if len(pieces) == 1 else []
-    values = tokens[2:-1]
-    if all(each.kind is NUMBER or each.text in _PLAIN for each in values):
+    if not tokens:
         return ""
     text = printable(instruction_text(tokens))
     is_show = text.startswith(_BEGIN) and text.endswith(_END)
-    return text.removeprefix(_BEGIN).removesuffix(_END) if is_show else ""
+    text = text.removeprefix(_BEGIN).removesuffix(_END)
+    return text if is_show and not _PLAIN.fullmatch(text) else ""
