@@ -31,7 +31,7 @@ from tiniscript.cli.robot.classroom import Classroom, Listener
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import Member
 from tiniscript.link.messages import STATUSES
-from tiniscript.link.payloads import ShowEvent
+from tiniscript.link.outcomes import ShownEvent
 from tiniscript.link.port_connection import now_ms
 from tiniscript.link.requests import Reply
 from tiniscript.link.transports.broker import ROOT, Access, Broker, Present
@@ -199,7 +199,7 @@ def test_values_are_collected(room: Class, tmp_path: Path) -> None:
     assert len({each["port"] for each in values}) == 2, done
     with (tmp_path / "rows.csv").open(encoding="utf-8", newline="") as file:
         first, *rows = csv.reader(file)
-    assert first == ["robot", "id", "ms", "event", "value"]
+    assert first == ["robot", "id", "ms", "event", "value", "name"]
     shows = {(row[0], row[1], row[4]) for row in rows if row[3] == "SHOW"}
     assert shows == {("tinibot", f"{seed:08x}", "5") for seed in SEEDS}
     assert len([row for row in rows if row[3] == "SHOW"]) == len(values)
@@ -209,10 +209,10 @@ def test_the_times_of_all_robots_count_from_one_start() -> None:
     printed: list[str] = []
     listener = Listener(True, None)
     began_ms = now_ms()
-    shown = ShowEvent(5000, False)
+    shown = ShownEvent(5000, False)
 
     def listen(robot: int, after_ms: int) -> None:
-        def watch(_: float | None) -> Iterator[tuple[int, ShowEvent]]:
+        def watch(_: float | None) -> Iterator[tuple[int, ShownEvent]]:
             yield began_ms + after_ms, shown
             yield began_ms + after_ms + 100, shown
             raise KeyboardInterrupt

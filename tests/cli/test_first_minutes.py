@@ -22,8 +22,8 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.live_state import Known
 from tiniscript.library.other_robots import named_among
 from tiniscript.link import known_ports, ports
-from tiniscript.link.outcomes import Event, MissedEvent
-from tiniscript.link.payloads import DoneEvent, ShowEvent
+from tiniscript.link.outcomes import Event, MissedEvent, ShownEvent
+from tiniscript.link.payloads import DoneEvent
 from tiniscript.robots import given
 from tiniscript.virtual import directory
 from tiniscript.virtual.directory import Running
@@ -173,7 +173,7 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
         assert inside("doctor", "--identify", "--port", local).code == 0
         assert found.port in inside("doctor", "--ports").out
         done = inside("live", "-", "--port", found.port, data=b"X = 5;SHOW(X)\nS\n")
-        assert (done.code, done.out) == (0, "SHOW 5\n")
+        assert (done.code, done.out) == (0, "X 5\n")
         lines = found.until("DONE") + found.until("DONE")
         assert sum("SHOW" in line for line in lines) == 1, "what live keeps is not printed"
     assert "socket" not in inside("doctor", "--ports").out
@@ -326,7 +326,7 @@ def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture
     for before in (0, 1, 2):  # of the program's own, by chance
         catch = Catch(("X", "Y"), known, EventPrinter("en"), says_done=False)
         for value in (*[MARK] * before, MARK, MARK, 7):
-            assert catch.hold(ShowEvent(value, 0))
+            assert catch.hold(ShownEvent(value, 0))
         assert catch.hold(DoneEvent(1))
         assert {name: each.value for name, each in known.values.items()} == {"X": MARK, "Y": 7}
         assert capsys.readouterr().out == "SHOW -2147483.648\n" * before
@@ -334,8 +334,8 @@ def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture
 
 
 def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> None:
-    def show(value: int) -> ShowEvent:
-        return ShowEvent(value, 0)
+    def show(value: int) -> ShownEvent:
+        return ShownEvent(value, 0)
 
     known = Known(robots.load("tinibot").kit)
     for end in ("STOPPED", "DONE"):

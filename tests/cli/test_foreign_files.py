@@ -146,8 +146,9 @@ def test_a_picture_and_rows(tmp_path: Path) -> None:
 def test_rows_of_a_monitor(pty_robot: PtyRobot, tmp_path: Path) -> None:
     rows, letter = tmp_path / "rows.csv", tmp_path / "letter.csv"
     letter.write_bytes(b"a;b\n1;2\n")
+    rows.write_bytes(b"ms,event,value\n5,SHOW,1\n")  # of an older tsc
     for _ in range(2):
         assert on(pty_robot, "monitor", "--csv", rows, "--max-time", "1").code == 0
-        assert rows.read_bytes() == b"ms,event,value\n"
+        assert rows.read_bytes() == b"ms,event,value,name\n"
     on(pty_robot, "monitor", "--csv", letter, "--max-time", "1").gives(2, "tsc has not made it")
     assert letter.read_bytes() == b"a;b\n1;2\n"

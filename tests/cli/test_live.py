@@ -41,8 +41,7 @@ def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "live", "-", data="\n".join(lines).encode())
     assert done.code == 1  # the fault ends it
     assert done.out.splitlines() == [
-        "TELL: known from now on.", "SHOW 30.5", "SHOW 31.5", "SHOW 31.5", "SHOW TRUE",
-        "SHOW -31.5",
+        "TELL: known from now on.", "X 30.5", "X 31.5", "X 31.5", "READY TRUE", "-X -31.5",
     ]  # fmt: skip
     assert "DIVIDE_BY_ZERO" in done.err
 
@@ -68,14 +67,14 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     assert not pty_robot.moves
     see("tini> ", 4)
     terminal.type("SHOW(SPEED)\n")
-    see("SHOW 55")
+    see("SPEED 55")
     see("tini> ", 5)
     terminal.type("LOOP(2)\n")
     see("....> ")
     terminal.type("\x03")  # the block is dropped
     see("tini> ", 6)
     terminal.type("LOOP(2)\nSHOW(SPEED + 1)\nEND_LOOP\n")
-    see("SHOW 56", 2)
+    see("SPEED + 1 56", 2)
     see("tini> ", 7)
     terminal.screen.reset()
     terminal.type("help\n")

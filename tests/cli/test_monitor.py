@@ -30,7 +30,8 @@ def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path
     events = [json.loads(line) for line in done.out.splitlines()]
     assert [event["event"] for event in events] == ["SHOW", "SHOW", "FAULT"]
     assert [row.split(",")[1:] for row in rows.read_text(encoding="utf-8").splitlines()] == [
-        ["event", "value"], ["SHOW", "1.5"], ["SHOW", "TRUE"], ["FAULT", "DIVIDE_BY_ZERO"],
+        ["event", "value", "name"], ["SHOW", "1.5", ""], ["SHOW", "TRUE", ""],
+        ["FAULT", "DIVIDE_BY_ZERO", ""],
     ]  # fmt: skip
 
 

@@ -25,7 +25,12 @@ def test_upload_runs_the_program_and_stays_until_it_ends(
     done = on(pty_robot, "upload", program).gives(0, "")
     receipt, *rest = done.out.splitlines()
     assert receipt == f"{program} -> tinibot ({pty_robot.port})   SI: running"
-    assert rest == ["SHOW 43.5", "SHOW TRUE", "Done.", "Saved. It starts with the button."]
+    assert rest == [
+        "DISTANCE + 1.5 43.5",
+        "SHOW TRUE",
+        "Done.",
+        "Saved. It starts with the button.",
+    ]
     assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 

@@ -263,7 +263,7 @@ def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
     done = inside("upload", "--virtual", "-e", text, "--hurry", "max", "--faults", "3")
     assert done.code == 0  # what a radio has written into the line is said, too
     assert done.out.splitlines()[1:3] in (
-        ["SHOW 40", "Done."],
+        ["TIME 40", "Done."],
         ["Done.", "Saved. It starts with the button."],
     )
 
@@ -276,7 +276,7 @@ def test_upload_and_live_say_what_they_say_of_any_robot() -> None:
     assert "The virtual robot drove 0 cm" in done.err
     done = inside("live", "--virtual", "F(0.1, 80);SHOW(BATTERY)", "--robot", "liner",
                    "--sensor", "BATTERY=7.4").gives(0)  # fmt: skip
-    assert done.out.startswith("SHOW 7.4\nDone.\nThe virtual robot drove 5 cm")
+    assert done.out.startswith("BATTERY 7.4\nDone.\nThe virtual robot drove 5 cm")
 
 
 def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path) -> None:

@@ -9,9 +9,13 @@ import pytest
 from tests.machines.wired import Wired
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tiniscript import robots
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import checksum, unpack
+from tiniscript.library import source_map
+from tiniscript.library.shows import Finder
 from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
 from tiniscript.link.messages import KEY_OWNER, SAVED_STORED
+from tiniscript.link.outcomes import Event, ShownEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.link.trim import Pace, Trim, told
@@ -28,6 +32,9 @@ NAMES = {
 MOTORS = [name for name in NAMES if "left" in name or "right" in name]
 OFF = dict.fromkeys(MOTORS, "low")
 FORWARD = OFF | {"left": "pwm", "right": "pwm", "left forward": "high", "right forward": "high"}
+SHOWS = """SI|ONE = 1; TWO = 2; THREE = 3; LOOP(8); SHOW(THREE); END_LOOP
+TASK; LOOP(8); SHOW(ONE); END_LOOP; END_TASK
+TASK; LOOP(8); W(0.001); SHOW(TWO); END_LOOP; END_TASK"""
 AWAY = "SI|F(70, 80)"
 CABLE = 4  # a cause in docs/develop/link.md
 LIVE_CYCLES = 2160  # from the last byte of a frame to the pins: 135 us in three of four
@@ -259,3 +266,21 @@ def test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset(uno: Uno) -> None
     uno.run_ms(300)
     assert greeted(keys, 3) == YOUR_OWN
     assert greeted(None, 4) == OF_ANOTHER
+
+
+def test_what_tasks_show_is_of_their_own_shows(uno: Uno) -> None:
+    """All of them wait for the wire, which takes 18 ms for each value."""
+    found = compile_text(SHOWS, KIT)
+    places, wired = source_map.made(found.source, found.places), computer(uno)
+    finder = Finder({checksum(found.image): places})
+    assert wired.until(wired.session.upload(unpack(found.image))) == OK
+    events: list[Event] = []
+    while not any(event.name == "DONE" for event in events):
+        wired.run(20)
+        events += wired.session.events()
+    shown = [each for each in events if isinstance(each, ShownEvent)]
+    names = {1: "ONE", 2: "TWO", 3: "THREE"}
+    for event in shown:
+        show = finder.of(event)
+        assert show and show.text == names[event.value // 1000], event
+    assert [sum(each.value == 1000 * k for each in shown) for k in names] == [8, 8, 8]

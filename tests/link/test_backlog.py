@@ -9,8 +9,8 @@ from contextlib import closing
 import pytest
 
 from tests.support.waiting import until
-from tiniscript.link.outcomes import KEPT, Backlog, MissedEvent, StartedEvent, Told
-from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent
+from tiniscript.link.outcomes import KEPT, Backlog, MissedEvent, ShownEvent, StartedEvent, Told
+from tiniscript.link.payloads import DoneEvent, FaultEvent
 from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.session import Session
 
@@ -100,7 +100,7 @@ def test_what_a_socket_has_is_heard_in_one_piece(monkeypatch: pytest.MonkeyPatch
 
 
 def shown(number: int) -> Told:
-    return number, ShowEvent(number, 0)
+    return number, ShownEvent(number, 0)
 
 
 def test_what_the_robot_does_is_kept_before_what_it_shows() -> None:
@@ -111,7 +111,7 @@ def test_what_the_robot_does_is_kept_before_what_it_shows() -> None:
     found = [backlog.take()[1] for _ in range(len(backlog))]
     assert [each.name for each in found[:3]] == ["MISSED", "STARTED", "SHOW"]
     assert found[-1].name == "FAULT" and len(found) == KEPT + 1
-    assert found[-2] == ShowEvent(10 * KEPT - 1, 0), "the newest is there"
+    assert found[-2] == ShownEvent(10 * KEPT - 1, 0), "the newest is there"
     assert found[0] == MissedEvent(10 * KEPT + 2 - KEPT)
     assert len(backlog) == 0
 

@@ -12,8 +12,8 @@ from typing import cast
 import pytest
 
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.outcomes import LOOK_S, ConnectionLost
-from tiniscript.link.payloads import EmptyReply, ShowEvent
+from tiniscript.link.outcomes import LOOK_S, ConnectionLost, ShownEvent
+from tiniscript.link.payloads import EmptyReply
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing import protocol, shared_connection
 from tiniscript.link.sharing.protocol import JsonMessage, MessageReader
@@ -23,7 +23,7 @@ from tiniscript.link.sharing.shared_connection import DEAF_S, SharedConnection
 LONG_S = 20 * DEAF_S
 ANSWER = {"id": 1, "status": OK, "detail": 0, "heard": 9, "is_echoed": False, "boot": 0,
           "values": {}}  # fmt: skip
-SHOWN = {"event": "SHOW", "ms": 5, "values": protocol.of_event(ShowEvent(5, 0))}
+SHOWN = {"event": "SHOW", "ms": 5, "values": protocol.of_event(ShownEvent(5, 0))}
 
 
 class Holder:

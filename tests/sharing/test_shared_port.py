@@ -148,7 +148,7 @@ def test_monitor_shows_what_live_does_and_not_its_bookkeeping(
     assert live.process.stdin and live.process.stdout
     live.process.stdin.write(b"X = 3; SHOW(X)\nX = X + 1\nSHOW(X)\n")
     done = live.ended()
-    assert [line for line in done.out.splitlines() if line != "Done."] == ["SHOW 3", "SHOW 4"]
+    assert [line for line in done.out.splitlines() if line != "Done."] == ["X 3", "X 4"]
     assert monitor.process.stdout
     rows = [json.loads(monitor.process.stdout.readline()) for _ in range(5)]
     assert [(row["event"], row.get("value")) for row in rows] == [

@@ -16,7 +16,8 @@ from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.shared_pty_robot import Shared
 from tests.support.waiting import HANGS_S
 from tiniscript import __version__
-from tiniscript.link.payloads import DoneEvent, ShowEvent
+from tiniscript.link.outcomes import ShownEvent
+from tiniscript.link.payloads import DoneEvent
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.server import CLIENTS, FULL_BYTES
@@ -101,7 +102,7 @@ def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
         found = reader.put(peer.recv(65536))
         count = 50 * FULL_BYTES // 60
         for k in range(count):
-            shared.server._on_events([(k, ShowEvent(k, 0))])
+            shared.server._on_events([(k, ShownEvent(k, 0))])
         shared.server._on_events([(count, DoneEvent(9))])
         assert "SHOW 1" in on(pty_robot, "live", "SHOW(1)").out
         while not any(message.get("event") == "DONE" for message in found):

@@ -120,14 +120,14 @@ def test_a_program_and_a_line_are_sent_and_run(page: Page, robot: PtyRobot) -> N
     before = len(robot.did)
     page.click("#link_upload")
     said(page, "Done.")
-    assert page.locator("#link_shown").inner_text() == "2.5\nTRUE"
+    assert page.locator("#link_shown").inner_text() == "2.5\n1 < 2 TRUE"
     assert "MOTORS 80 80" in robot.did[before:]
     page.click("#link_send")
     said(page, f"program {compile(text).checksum:08x}, ")
     page.fill("#link_line", "SHOW(6 * 7)")
     page.keyboard.press("Enter")
     said(page, "Done.")
-    assert page.locator("#link_shown").inner_text() == "42"
+    assert page.locator("#link_shown").inner_text() == "6 * 7 42"
     page.fill("#link_line", "F(2, 500)")
     page.keyboard.press("Enter")
     said(page, "Try: ")
@@ -329,6 +329,22 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
     said(second, "tsc studio was started again meanwhile,")
     assert [each for each in pages.wrong if "403" not in each] == []
     pages.wrong.clear()
+
+
+def test_what_the_robot_shows_has_the_name_of_its_show(page: Page) -> None:
+    """Also beside another text; a line of the same code has its own names."""
+    shown = page.locator("#link_shown")
+    write(page, "X = 3;\nSHOW(X);\nSHOW(DISTANCE < -1);\nSHOW(x);\nW(1)")
+    page.click("#link_upload")
+    said(page, "The robot has it")
+    write(page, "S")
+    said(page, "Done.")
+    assert shown.inner_text() == "X (line 2) 3\nDISTANCE < -1 FALSE\nX (line 4) 3"
+    for line in ("NEAR = 4; SHOW(NEAR)", "FAR = 4; SHOW(FAR)"):
+        page.fill("#link_line", line)
+        page.keyboard.press("Enter")
+        said(page, "Done.")
+        shown.filter(has_text=f"{line.split()[0]} 4").wait_for()
 
 
 def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:

@@ -104,6 +104,17 @@ def test_the_buzzer_is_heard_unless_it_is_muted_or_there_is_none(listening: Page
     assert page.evaluate("window.heard") == [550]
 
 
+def test_each_show_of_a_run_has_a_row_of_its_own(page: Page) -> None:
+    run(page, "X = 2; SHOW(X * X); X = 3; SHOW(X * X)\nSHOW(7); SHOW(X)")
+    rows = page.locator("#values > div").evaluate_all(
+        "rows => rows.map((row) => [...row.children].map((cell) => cell.textContent).join(': '))"
+    )
+    assert rows[-4:] == [
+        "SHOW(X * X) (line 1:8): 4", "SHOW(X * X) (line 1:28): 9", "SHOW: 7", "SHOW(X): 3",
+    ]  # fmt: skip
+    assert "SHOW 9" in (page.locator("#trace").text_content() or ""), "values alone"
+
+
 def test_no_sound_is_open_at_rest(pages: Pages) -> None:
     """An open one works all the time, and empties a battery. To close it, a page waits."""
     page = pages.blank(is_alone=True)

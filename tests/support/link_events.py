@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from tiniscript.link.outcomes import Event, LostEvent, StartedEvent
-from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent, StoppedEvent
+from tiniscript.link.outcomes import Event, LostEvent, ShownEvent, StartedEvent
+from tiniscript.link.payloads import DoneEvent, FaultEvent, StoppedEvent
 
 EVENTS: tuple[Event, ...] = (
-    ShowEvent(7, 0),
+    ShownEvent(7, 0),
     FaultEvent(1, 2, 0, 0),
     StoppedEvent(1),
     DoneEvent(1),

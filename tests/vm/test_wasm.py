@@ -14,21 +14,24 @@ from tests.machines import Senses
 from tests.project.test_directions import imported_by
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
-from tests.support.cpp_checks import check_round, run_late
+from tests.support.cpp_checks import check_round, run_late, some_task_programs
 from tests.support.kits import KITS
 from tiniscript import compile_text, robots
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
-from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.opcodes import BY_NAME, ISA_MAJOR, ISA_MINOR
 from tiniscript.cli.commands import run
 from tiniscript.library import install_advice
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.runner import AnyMachine
-from tiniscript.vm.state import WAITING
+from tiniscript.vm.state import DONE, FAULT, WAITING
+from tiniscript.vm.tasks import machine_of
+from tiniscript.vm.wasm import WasmMachine
 from tools.builds import wasm
 
 needs_zig = pytest.mark.skipif(bool(wasm.missing()), reason=wasm.missing() or "there is a compiler")
 KIT = robots.load("tinibot").kit
+SHOWS = [BY_NAME[name].code for name in ("SHOW", "SHOW_YES_NO")]
 
 
 # -- the module ---------------------------------------------------------------------------------
@@ -295,3 +298,42 @@ def test_what_a_robot_raises_comes_out() -> None:
     machine = WasmImage(compiled.image, KITS[0][1]).machine(compiled.code, Broken())
     with pytest.raises(OSError, match="no motors"):
         machine.tick(0, 10)
+
+
+class Narrow(Slow):
+    """Its wire has room for each third value; it notes which SHOW each is of, refused ones too."""
+
+    machine: Machine | WasmMachine
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.shown: list[tuple[int, bool]] = []
+
+    def read(self, sensor: int) -> int | None:
+        return (sensor - 1) * 2_147_483_000
+
+    def show(self, value: int, is_yes_no: bool) -> bool:
+        is_taken = super().show(value, is_yes_no)
+        self.shown.append((self.machine.shown_at, is_taken))
+        return is_taken
+
+
+def test_both_machines_say_which_show_a_value_is_of() -> None:
+    """Of random tasks, whose values wait while others go on."""
+    from tiniscript.vm.wasm import WasmImage
+
+    kit, waited = KITS[0][1], 0
+    for image, senses in some_task_programs(0, 60):
+        code, found = unpack(image).code, []
+        for make in (machine_of, WasmImage(image, kit).machine):
+            robot = Narrow()
+            machine = robot.machine = make(code, robot, len(kit.sensors), senses.seed)
+            now_ms = 0
+            while now_ms < senses.max_ms and machine.tick(now_ms, 1000) not in (DONE, FAULT):
+                now_ms += 1
+            found.append((robot.said, robot.shown))
+        assert found[0] == found[1], image.hex()
+        shown = found[0][1]
+        assert all(code[at] in SHOWS for at, _ in shown), image.hex()
+        waited += sum(not is_taken for _, is_taken in shown)
+    assert waited > 100

@@ -103,7 +103,7 @@ def phone(command: str, language: str) -> str:
 
 def hand(command: str) -> str:
     """Return what a robot before something shows when a guide asks it for the distance."""
-    [line, said] = re.findall(r'tsc live "(SHOW\(.*?\))"\n(SHOW \d+)', _text(GUIDES["en"]))[0]
+    [line, said] = re.findall(r'tsc live "(SHOW\(.*?\))"\n(\w+ \d+)', _text(GUIDES["en"]))[0]
     world, scale = before(int(said.split()[1])), 4.0
     way = driven(f"SI|{line}", "tinibot", world, 200)
     front, wall = (PAD + x * scale for x in (way.points[0][0] + FRONT, world.width_cm))

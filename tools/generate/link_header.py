@@ -30,7 +30,11 @@ def header(command: str) -> str:
         for name, number in messages.STATUSES.items()
     ]
     parts = (
-        constants(("kLinkMajor", messages.MAJOR), ("kLinkMinor", messages.MINOR))
+        constants(
+            ("kLinkMajor", messages.MAJOR),
+            ("kLinkMinor", messages.MINOR),
+            ("kShowPlaceMinor", messages.SHOW_PLACE_MINOR),
+        )
         + constants_of(
             messages, "SMALL_FRAME", "LARGE_FRAME", "LARGE_WINDOW", "HEAD_BYTES",
             "CRC_BYTES", "REPLY", "SEALED", "NAME_BYTES", "MOST_BALANCE", "MOST_LEAST",

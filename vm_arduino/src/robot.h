@@ -21,7 +21,8 @@ bool robot_read(uint8_t sensor, int32_t* value);
 // Starts a sound of 31 to 20000 hertz; it ends by itself.
 void robot_beep(uint16_t hertz, uint32_t duration_ms);
 
-// Sends a value. False: there is no room, and the machine tries again.
+// Sends a value; `Machine::shown_at` says where its SHOW is. False: there is no room, and the machine
+// tries again.
 bool robot_show(int32_t value, bool is_yes_no);
 
 // Sets an actuator; the robot rounds and limits the value to its range.

@@ -16,13 +16,15 @@ class Event(NamedTuple):
     """What a robot did at `time_ms`: MOTORS, READ, BEEP, SHOW, SET, DONE, FAULT or LIMIT.
 
     `values` are percent for MOTORS, hertz and milliseconds for BEEP, the number of the device
-    and thousandths for READ and SET, thousandths for SHOW; `text` is what a trace prints.
+    and thousandths for READ and SET, thousandths for SHOW; `text` is what a trace prints; `at` is
+    where a SHOW is in the code, if the robot tells it.
     """
 
     time_ms: int
     what: str
     values: tuple[int, ...]
     text: str
+    at: int = -1
 
     def __str__(self) -> str:
         return f"{self.time_ms} {self.text}"

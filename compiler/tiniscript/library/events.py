@@ -11,6 +11,7 @@ from tiniscript.base.source import printable
 from tiniscript.library import source_map
 from tiniscript.library.endings import DONE, FAULT
 from tiniscript.library.runs import Fault, Value, fault_of
+from tiniscript.library.shows import Finder
 from tiniscript.library.source_map import Map
 from tiniscript.link.names import cause_name, fault_name
 from tiniscript.link.outcomes import Event
@@ -20,7 +21,7 @@ class RobotEvent(NamedTuple):
     """An event of a robot, `ms` milliseconds after the connection was made, by the wall clock.
 
     name      values
-    SHOW      value
+    SHOW      value; name: the expression, line and column of its SHOW, if the text is known
     STARTED   checksum of the program
     DONE      none
     FAULT     fault: its name; offset in the code; line and column, if the text is known
@@ -48,6 +49,7 @@ class Reader:
 
     def __init__(self) -> None:
         self.maps: dict[int, Map] = {}
+        self._shows = Finder(self.maps)
         self._began_ms = int(monotonic() * 1000)
 
     def told(self, time_ms: int, event: Event) -> RobotEvent | None:
@@ -55,6 +57,9 @@ class Reader:
         found: dict[str, Value] = {}
         if event.name == "SHOW":
             found = {"value": value_of(event.value, bool(event.is_yes_no))}
+            show = self._shows.of(event)
+            if show is not None:
+                found |= {"name": show.text, "line": show.line, "column": show.column}
         elif event.name == "STARTED":
             found = {"checksum": event.program}
         elif event.name == "FAULT":

@@ -68,7 +68,8 @@ WIFI_STATES = (
 
 
 MAJOR = 2  # if it differs, robot and computer understand only each other's HELLO
-MINOR = 0  # grows when messages, statuses or features are added
+MINOR = 1  # grows when messages, statuses or features are added
+SHOW_PLACE_MINOR = 1  # a computer from this version on takes a SHOW with its place
 
 # Bytes of a frame before COBS. A large one has a 0 behind its head, so that its first byte on the
 # wire is 4 at most. Any robot takes small ones; HELLO says whether it takes large ones, and how many
@@ -87,6 +88,7 @@ CHALLENGE_BYTES = 8
 TAG_BYTES = 8
 PLACE_BYTES = 6  # of a reply to PING: where a program is (16 bits), and which (its checksum)
 NOISE_BYTES = 2  # of both discs
+SHOW_PLACE_BYTES = 3  # of a SHOW: its run, and where its instruction is (16 bits)
 COUNTER_BYTES = 4
 
 
@@ -261,7 +263,8 @@ MESSAGES = (
              "next:u16", "Begins a longer program: what its image's header says before its checksum."),
     _message(23, "ABORT", True, "", "", "Drops the program that was begun."),
     # events: a robot sends these without being asked
-    _message(32, "SHOW", False, "", "value:i32 is_yes_no:u8", "A value that a program shows."),
+    _message(32, "SHOW", False, "", f"value:i32 is_yes_no:u8 place:rest=0..{SHOW_PLACE_BYTES}",
+             "A value that a program shows. `place`: its run, and where its SHOW is."),
     _message(33, "FAULT", False, "", "run:u8 fault:u8 at:u16 program:u32",
              "The program has ended with a fault."),
     _message(34, "STOPPED", False, "", "cause:u8", "The robot was stopped: it has a new epoch. Repeated: it is still stopped."),

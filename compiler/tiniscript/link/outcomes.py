@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Iterable
 from typing import Literal, NamedTuple, get_args
 
-from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent, StoppedEvent
+from tiniscript.link.payloads import DoneEvent, FaultEvent, StoppedEvent
 
 # Outcomes that the session produces. UNKEPT: of a key; UNPROVEN: whoever answers does not seal, and
 # our key says that the robot does; OTHER_ROBOT: another one answers than the one of our key, whose
@@ -18,6 +18,20 @@ from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent, StoppedEv
 LOST, CANCELLED, UNKEPT, UNPROVEN, OTHER_ROBOT = -1, -2, -3, -4, -5
 MIDWAY = 1  # detail of CANCELLED: it was under way, and the robot may have done it before
 LOOK_S = 0.1  # between two checks for events: Windows handles Ctrl-C only then
+
+
+class ShownEvent(NamedTuple):
+    """A program has shown a value, with the SHOW at byte `at` of its code.
+
+    `program` is the checksum of its image; `at` is -1 where that is not known.
+    """
+
+    value: int
+    is_yes_no: int
+    run: int = 0
+    program: int = 0
+    at: int = -1
+    name: Literal["SHOW"] = "SHOW"
 
 
 class TextEvent(NamedTuple):
@@ -87,7 +101,7 @@ class LeftEvent(NamedTuple):
 
 
 Event = (
-    ShowEvent
+    ShownEvent
     | FaultEvent
     | StoppedEvent
     | DoneEvent

@@ -116,10 +116,11 @@ class WifiReply(NamedTuple):
 
 
 class ShowEvent(NamedTuple):
-    """A value that a program shows."""
+    """A value that a program shows. `place`: its run, and where its SHOW is."""
 
     value: int
     is_yes_no: int
+    place: bytes
     name: Literal["SHOW"] = "SHOW"
 
 

@@ -1,15 +1,22 @@
 """The state of the robot, as known from its replies and events.
 
-Knows which run is ours, which has ended, and where a program was last. Knows no frame and no time,
-and sends no request.
+Knows which run is ours, which has ended, which program runs and where it was last. Knows no frame
+and no time, and sends no request.
 """
 
 from __future__ import annotations
 
 import struct
+from typing import NamedTuple
 
-from tiniscript.link.messages import PLACE_BYTES, STATE_IDLE, STATE_RUNNING, STATE_STOPPED
-from tiniscript.link.outcomes import Event, PlaceEvent
+from tiniscript.link.messages import (
+    PLACE_BYTES,
+    SHOW_PLACE_BYTES,
+    STATE_IDLE,
+    STATE_RUNNING,
+    STATE_STOPPED,
+)
+from tiniscript.link.outcomes import Event, PlaceEvent, ShownEvent
 from tiniscript.link.payloads import (
     DoneEvent,
     FaultEvent,
@@ -17,12 +24,35 @@ from tiniscript.link.payloads import (
     PingReply,
     ReceiptReply,
     SentReply,
+    ShowEvent,
     StatusReply,
     StoppedEvent,
 )
 
 _PLACE = struct.Struct("<HI")
-assert _PLACE.size == PLACE_BYTES
+_SHOW_PLACE = struct.Struct("<BH")
+assert (_PLACE.size, _SHOW_PLACE.size) == (PLACE_BYTES, SHOW_PLACE_BYTES)
+
+
+class _Run(NamedTuple):
+    """A run is one of its epoch: a robot that was reset counts its runs anew."""
+
+    epoch: int
+    number: int
+
+
+class Unnamed(NamedTuple):
+    """A value that has arrived, in an epoch; its program is not looked up yet."""
+
+    show: ShowEvent
+    epoch: int
+
+    @property
+    def _run(self) -> _Run | None:
+        """The run, or None of an older robot, which does not tell it."""
+        if len(self.show.place) != SHOW_PLACE_BYTES:
+            return None
+        return _Run(self.epoch, self.show.place[0])
 
 
 def lost_packets(status: StatusReply) -> int:
@@ -40,6 +70,8 @@ class RobotState:
         self.is_cut = False  # a reset has ended it
         self._event_seq: int | None = None
         self._place: PlaceEvent | None = None  # the last one that was told
+        self._known: tuple[_Run, int] | None = None  # the newest run whose program is known
+        self._asked: _Run | None = None  # the newest one that was asked about
 
     @property
     def is_running(self) -> bool:
@@ -54,6 +86,7 @@ class RobotState:
         self.is_cut = self._is_going or self._is_asked
         self._is_going = self._is_asked = False
         self._event_seq = self.run = self._ended = self._place = None
+        self._known = self._asked = None
 
     def missed(self, seq: int) -> int:
         """Take the number of an event; return how many events before it are missing."""
@@ -66,8 +99,10 @@ class RobotState:
             return False
         return values.state <= STATE_RUNNING or self.run not in (None, values.run)
 
-    def learn(self, values: SentReply) -> bool:
-        """Take a reply; return whether it tells of the end of our run, of which no event has."""
+    def learn(self, values: SentReply, epoch: int) -> bool:
+        """Take a reply of an epoch; return whether it tells of the end of our run, of which no
+        event has."""
+        self._learn_program(values, epoch)
         if isinstance(values, ReceiptReply):
             self.run = values.run
         if not isinstance(values, (HelloReply, PingReply, StatusReply)):
@@ -79,6 +114,36 @@ class RobotState:
             return False
         self._is_going, self._is_asked = False, True
         return True
+
+    # Which program's SHOW a value is of. Replies and events come in their order: no value of an
+    # earlier run comes behind a reply that names a later one.
+
+    def _learn_program(self, values: SentReply, epoch: int) -> None:
+        if isinstance(values, ReceiptReply):
+            self._known = _Run(epoch, values.run), values.program
+        elif isinstance(values, PingReply) and len(values.place) == PLACE_BYTES:
+            self._known = _Run(epoch, values.run), _PLACE.unpack(values.place)[1]
+        elif isinstance(values, (HelloReply, PingReply, StatusReply)):
+            # `program` of STATUS is the one that the robot holds, which need not be what runs
+            if self._known is not None and self._known[0] != (epoch, values.run):
+                self._known = None
+
+    def must_ask(self, value: Unnamed) -> bool:
+        """Whether only the robot knows the program of a value, and was not asked. It is now."""
+        run = value._run
+        if run is None or run == self._asked or (self._known and self._known[0] == run):
+            return False
+        self._asked = run
+        return True
+
+    def named(self, value: Unnamed) -> ShownEvent:
+        """Return a value as the event that it is: with its program and its SHOW, if both are
+        known."""
+        number, is_yes_no, place, _ = value.show
+        if self._known is None or value._run != self._known[0]:
+            return ShownEvent(number, is_yes_no)
+        run, at = _SHOW_PLACE.unpack(place)
+        return ShownEvent(number, is_yes_no, run, self._known[1], at)
 
     def has_ended(self, run: int | None) -> bool:
         """Return whether it is known how a run has ended: it was told then, and is told once."""

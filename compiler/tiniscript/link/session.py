@@ -13,6 +13,7 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
+from itertools import takewhile
 from typing import Any, NamedTuple, TypeVar
 
 from tiniscript.bytecode.image import isa_of
@@ -60,6 +61,7 @@ from tiniscript.link.payloads import (
     PingReply,
     ReceiptReply,
     SentReply,
+    ShowEvent,
     StatusReply,
     StoppedEvent,
 )
@@ -75,7 +77,7 @@ from tiniscript.link.requests import (
     reply_of,
     single,
 )
-from tiniscript.link.robot_state import RobotState
+from tiniscript.link.robot_state import RobotState, Unnamed
 from tiniscript.link.round_trips import RoundTrips
 from tiniscript.link.sealing import SEALED_ALONE, UNSEALED, Sealing
 from tiniscript.link.sender import Sender
@@ -85,6 +87,7 @@ HEARTBEAT_MS = 200  # between two frames while a program runs
 IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise
 SILENT_MS = DEAD_MAN_MS + 200  # after a lost link nothing but a stop is sent, and a little longer
 DEAF_MS = 3000  # a heartbeat without an answer for this time means that the link is lost
+ASKS_PLACE = b"\1"  # of a PING: where is your program?
 MOST_SHOWN = 5  # times that a key is shown again for one request
 _STALE = STATUSES["STALE"]
 _WAITING = (STATUSES["BUSY"], STATUSES["HOLD_BUTTON"])  # asked again: the robot is not ready
@@ -165,12 +168,13 @@ class Session(Requester):
         self._sealing = Sealing()
         self._state = RobotState()
         self._handshake = Handshake(nonce, kit, isa, self._state, keys, lambda: self._epoch, place)
-        self._events: list[Event] = []
+        self._events: list[Event | Unnamed] = []
         self._waiting: deque[PendingExchange[Any]] = deque()
         self._pending: PendingExchange[Any] | None = None
         self._trips = RoundTrips(baud)
         self._transmission = Transmission(self._trips)
         self._orphan: int | None = None  # the run of a client that has gone
+        self._asks_program: PendingExchange[PingReply] | None = None  # of values that wait for it
         self._told_epoch: int | None = None  # that has begun with the stop that was told last
 
     @property
@@ -294,9 +298,16 @@ class Session(Requester):
         return None if heartbeat_ms is None else self._talked_ms + heartbeat_ms
 
     def events(self) -> list[Event]:
-        """Return the events since the last call."""
-        found, self._events = self._events, []
-        return found
+        """Return the events since the last call. Values wait until the robot has said which program
+        runs, if it is asked; nothing else waits behind them."""
+        asked = self._asks_program
+        waiting = 0
+        if asked is not None and asked.outcome is None:
+            behind = takewhile(lambda each: isinstance(each, Unnamed), reversed(self._events))
+            waiting = sum(1 for _ in behind)
+        count = len(self._events) - waiting
+        found, self._events = self._events[:count], self._events[count:]
+        return [self._state.named(each) if isinstance(each, Unnamed) else each for each in found]
 
     # -- what is sent -----------------------------------------------------------------------------
 
@@ -514,8 +525,9 @@ class Session(Requester):
                 self._state.clear()
             if message.name == "STOP" and self._pending and self._pending.halts:
                 self._tell_stop(StoppedEvent(_BY_MESSAGE))
-            has_ended = self._state.learn(values)
-            self._events += self._state.moved(values)
+            has_ended = self._state.learn(values, frame.epoch)
+            if self.tells_places:
+                self._events += self._state.moved(values)
             if has_ended and not is_other and isinstance(values, StatusReply):
                 self._tell_end(values)
             elif has_ended or (is_other and self._handshake.is_open):
@@ -656,10 +668,13 @@ class Session(Requester):
         except Malformed:
             self.damaged += 1
             return
-        event = EVENTS[message.name](**values)
         missed = self._state.missed(frame.seq)
         if missed:
             self._events.append(MissedEvent(missed))
+        if message.name == ShowEvent._field_defaults["name"]:
+            self._take_value(Unnamed(ShowEvent(**values), frame.epoch))
+            return
+        event = EVENTS[message.name](**values)
         if isinstance(event, StoppedEvent):
             if not frame.is_sealed and self._handshake.is_doubted:
                 self._ask_for_proof(event)
@@ -682,6 +697,23 @@ class Session(Requester):
         self._state.take(event)
         if not is_told:
             self._events.append(event)
+
+    def _take_value(self, value: Unnamed) -> None:
+        """Tell a value. If nobody here has started its run the robot is asked which program it is,
+        unless that would have to wait."""
+        event = self._state.named(value)
+        self._events.append(value if event.at < 0 else event)
+        is_free = not self._waiting and (self._pending is None or self._pending.is_own)
+        if not (is_free and self._handshake.is_open and self._has_places):
+            return
+        if self._state.must_ask(value):
+            ask = self._handshake.with_key(lambda: ping(ASKS_PLACE))
+            self._asks_program = PendingExchange(ask, DEAF_MS, is_own=True)
+            self._waiting.append(self._asks_program)
+
+    @property
+    def _has_places(self) -> bool:
+        return self.robot is not None and bool(self.robot.values.features & PLACES)
 
     def _confirms(self, event: StoppedEvent, frame: Frame) -> bool:
         """Whether the stop that is under way has stopped the robot, or has found it stopped.
@@ -747,8 +779,8 @@ class Session(Requester):
 
     def _heartbeat(self) -> Exchange[PingReply]:
         """Ping, and ask where the program is, if that is wanted and the robot tells it."""
-        asks = self.tells_places and self.robot and self.robot.values.features & PLACES
-        return self._handshake.with_key(lambda: ping(b"\1" if asks else b""))
+        asks = ASKS_PLACE if self.tells_places and self._has_places else b""
+        return self._handshake.with_key(lambda: ping(asks))
 
     def _finish(self, pending: PendingExchange[Any], outcome: Reply[Any]) -> None:
         pending.outcome = outcome

@@ -19,6 +19,7 @@ from tiniscript.diagnostics.rendering import Message, message
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compile_source, for_robot, text_of
 from tiniscript.library.named_robot import name_in, robot_of
+from tiniscript.library.shows import Show, Shows
 from tiniscript.library.text_fitting import misfits
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.text_levels import level_of
@@ -49,7 +50,8 @@ class Variable(NamedTuple):
 
 class Checked(NamedTuple):
     """`image` is empty where the program has mistakes. `places` say for each instruction from
-    which offset on which range of the text it comes from; `variables` are in the order of their
+    which offset on which range of the text it comes from, `shows` which of them are SHOWs with a
+    name, by offset; `variables` are in the order of their
     numbers; `start` is SI, SB or PING, or nothing where there are mistakes; `robot` is the one that
     it was compiled for, which the text names where `names_robot`."""
 
@@ -57,6 +59,7 @@ class Checked(NamedTuple):
     code_bytes: int
     findings: tuple[Finding, ...]
     places: tuple[source_map.MapLocation, ...]
+    shows: tuple[tuple[int, Show], ...] = ()
     variables: tuple[Variable, ...] = ()
     start: str = ""
     robot: str = ""
@@ -71,12 +74,18 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     findings = _findings(found, language)
     names_robot = name_in(data) is not None
     if not found.is_right or found.program is None:
-        return Checked(b"", 0, findings, (), (), "", profile.name, names_robot)
+        return Checked(b"", 0, findings, (), (), (), "", profile.name, names_robot)
     kinds = ir.are_yes_no(found.program, profile.kit)
     variables = tuple(map(Variable, found.program.variables, kinds))
-    places = source_map.made(found.source, found.places).places
-    return Checked(found.image, len(found.code), findings, places, variables,
+    places = source_map.made(found.source, found.places)
+    return Checked(found.image, len(found.code), findings, places.places, _shows(places), variables,
                    found.program.start, profile.name, names_robot)  # fmt: skip
+
+
+def _shows(places: source_map.Map) -> tuple[tuple[int, Show], ...]:
+    shows = Shows(places)
+    found = ((place.offset, shows.at(place.offset)) for place in places.places)
+    return tuple((offset, show) for offset, show in found if show)
 
 
 def repair(data: bytes, robot: str, which: int) -> tuple[Change, ...]:

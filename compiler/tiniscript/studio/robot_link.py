@@ -206,6 +206,8 @@ class RobotLink:
         found: Json = {"event": event.name}
         if event.name == "SHOW":
             found["value"] = value_text(event.value, bool(event.is_yes_no))
+            if event.at >= 0:
+                found |= {"at": event.at, "program": f"{event.program:08x}"}
         elif event.name == "FAULT":
             found |= {"fault": fault_name(event.fault), "at": event.at,
                       "program": f"{event.program:08x}"}  # fmt: skip

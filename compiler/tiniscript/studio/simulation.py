@@ -174,7 +174,7 @@ class Simulation:
             "variables": [value / ONE for value in robot.watched.variables(self.marks.variables)],
             "readings": [{"value": value / ONE, "text": device.text(value)}
                          for device, value in zip(kit.sensors, readings, strict=True)],
-            "events": [[event.time_ms, event.text] for event in robot.take_events()],
+            "events": [[event.time_ms, event.text, event.at] for event in robot.take_events()],
         }  # fmt: skip
 
     def _until(self, is_over: Callable[[], bool]) -> None:

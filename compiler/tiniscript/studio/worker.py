@@ -39,6 +39,7 @@ def _check(fields: Answer, data: bytes) -> Answer:
             {**each.message._asdict(), "may_repair": each.may_repair} for each in found.findings
         ],
         "places": found.places,
+        "shows": [[offset, *show] for offset, show in found.shows],
         "variables": [each._asdict() for each in found.variables],
         "start": found.start,
         "robot": found.robot,

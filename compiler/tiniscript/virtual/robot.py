@@ -238,9 +238,10 @@ class VirtualRobot:
         self._at(now_ms)
         self._traced.beep(hertz, duration_ms)
 
-    def show(self, now_ms: int, value: int, is_yes_no: int) -> None:
+    def show(self, now_ms: int, value: int, is_yes_no: int, at: int) -> None:
         self._at(now_ms)
         self._traced.show(value, bool(is_yes_no))
+        self._traced.events[-1] = self._traced.events[-1]._replace(at=at)
 
     def set(self, now_ms: int, actuator: int, value: int) -> None:
         self._at(now_ms)

@@ -13,6 +13,7 @@ from tiniscript.vm.handlers import STAY, Step, stopped
 
 CLOCK_MS = 2**32  # where a machine's clock wraps around
 LATE_MS = 20  # later than this, a program's own clock no longer catches up
+SHOW_BYTES = 1  # of its instruction
 FOREVER = -1  # the time of a move that only its UNTIL ends
 
 Powers = tuple[int, int]  # left and right, in percent
@@ -48,7 +49,10 @@ class Robot(Protocol):
         """Start a sound; it ends by itself."""
 
     def show(self, value: int, is_yes_no: bool) -> bool:
-        """Send a value; return FALSE while there is no room: the machine tries again."""
+        """Send a value; return FALSE while there is no room: the machine tries again.
+
+        The machine's `shown_at` says where its SHOW is.
+        """
 
     def set(self, actuator: int, value: int) -> None:
         """Set an actuator; the robot rounds and limits the value to its range."""
@@ -88,6 +92,7 @@ class Execution:
         self.task = task
         self.now_ms = now_ms
         self.status = RUNNING
+        self.shown_at = 0  # where the SHOW is whose value the robot gets
 
     @property
     def wake_ms(self) -> int:
@@ -115,6 +120,7 @@ class Execution:
 
     def show(self, value: int, is_yes_no: bool, after: int) -> int:
         """Send the value that is on the stack."""
+        self.shown_at = after - SHOW_BYTES
         if not self.robot.show(value, is_yes_no):
             return STAY
         self.task.stack.pop()

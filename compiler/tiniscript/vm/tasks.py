@@ -22,6 +22,7 @@ from tiniscript.vm.state import (
     LATE_MS,
     PAUSE,
     RUNNING,
+    SHOW_BYTES,
     WAITING,
     Powers,
     Robot,
@@ -177,6 +178,7 @@ class TaskMachine(Machine):
         self.me, self.in_turn = task, True
         self.task.counters[:], self.task.calls[:] = task.counters, task.calls
         if task.unsent is not None:
+            self.shown_at = task.pc - SHOW_BYTES
             if not self.robot.show(*task.unsent):
                 self._end_turn()
                 return
@@ -255,6 +257,7 @@ class TaskMachine(Machine):
         if self.is_first:  # before all others it waits for room
             return super().show(value, is_yes_no, after)
         self.task.stack.pop()
+        self.shown_at = after - SHOW_BYTES
         if self.robot.show(value, is_yes_no):
             return after
         self.me.unsent = value, is_yes_no

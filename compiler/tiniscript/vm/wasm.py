@@ -148,3 +148,8 @@ class WasmMachine:
     def at(self) -> int:
         """Where the instruction that runs, or has faulted, begins."""
         return self._image.call("at")
+
+    @property
+    def shown_at(self) -> int:
+        """Where the SHOW is whose value the robot gets."""
+        return self._image.call("shown_at")

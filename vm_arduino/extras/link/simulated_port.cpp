@@ -195,6 +195,8 @@ void port_release() {
 }
 
 uint16_t port_run_at() { return port.at; }
+
+uint16_t port_shown_at() { return port.at; }
 const uint8_t* port_run_image() { return bytes_of(port.run_image); }
 
 uint16_t port_image_length() { return static_cast<uint16_t>(port.held.size()); }

@@ -150,3 +150,6 @@ tini_exported("fault") uint32_t module_fault() { return static_cast<uint32_t>(ma
 
 // Where the instruction that runs, or has faulted, begins.
 tini_exported("at") uint32_t module_at() { return machine.at(); }
+
+// Where the SHOW is whose value the host gets.
+tini_exported("shown_at") uint32_t module_shown_at() { return machine.shown_at(); }

@@ -8,6 +8,7 @@
 #include "../../src/robot.h"
 
 #include "../../src/firmware/firmware.h"
+#include "../../src/link/port.h"
 #include "../../src/store/layout.h"
 #include "../../src/store/nvm.h"
 #include "../../src/text/kit_words.h"
@@ -66,6 +67,7 @@ struct Note {
   uint32_t what;
   int32_t first;
   int32_t second;
+  int32_t third;
 };
 
 enum What : uint32_t {
@@ -92,9 +94,9 @@ int32_t reading;
 
 uint32_t now_ms() { return static_cast<uint32_t>(now_us / 1000); }
 
-void note(What what, int32_t first = 0, int32_t second = 0) {
+void note(What what, int32_t first = 0, int32_t second = 0, int32_t third = 0) {
   if (noted == kNotes) host_look();
-  notes[noted++] = {now_ms(), what, first, second};
+  notes[noted++] = {now_ms(), what, first, second, third};
 }
 
 void receive() {
@@ -224,7 +226,7 @@ namespace tiniscript {
 
 bool watched_show(int32_t value, bool is_yes_no) {
   const bool is_taken = robot_show(value, is_yes_no);
-  if (is_taken) note(kShow, value, is_yes_no);
+  if (is_taken) note(kShow, value, is_yes_no, port_shown_at());
   return is_taken;
 }
 

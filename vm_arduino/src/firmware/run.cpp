@@ -174,6 +174,8 @@ void firmware_on_part(Transport transport) {
 
 uint16_t port_run_at() { return machine.at(); }
 
+uint16_t port_shown_at() { return machine.shown_at(); }
+
 const uint8_t* port_run_image() { return run_image; }
 
 // The image may not contain its checksum yet.

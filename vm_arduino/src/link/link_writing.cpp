@@ -27,6 +27,14 @@ constexpr uint8_t kSmallFetch = kSmallFrame - kHeadBytes - kCrcBytes - 3;
 
 static_assert(sizeof(Identity) == 13 && sizeof(RobotStatus) == 17, "they are as they are sent");
 
+// What SHOW sends; an older computer takes no more than `is_yes_no`.
+struct tini_packed Shown {
+  int32_t value;
+  bool is_yes_no;
+  uint8_t run;
+  uint16_t at;
+};
+
 template <class Type>
 uint8_t byte_of(Type value) {
   return static_cast<uint8_t>(value);
@@ -80,9 +88,10 @@ bool Link::show(int32_t value, bool is_yes_no) {
     return true;
   }
   if (separate()) return false;
+  static_assert(sizeof(Shown) == kShownBytes, "it is as it is sent");
+  const Shown shown = {value, is_yes_no, port_status().run, port_shown_at()};
   begin_event(Message::kShow);
-  put_all(&value, sizeof value);
-  put(is_yes_no);
+  put_all(&shown, shown_bytes_);
   close();
   return true;
 }

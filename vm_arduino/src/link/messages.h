@@ -14,7 +14,8 @@
 namespace tiniscript {
 
 constexpr uint8_t kLinkMajor = 2;
-constexpr uint8_t kLinkMinor = 0;
+constexpr uint8_t kLinkMinor = 1;
+constexpr uint8_t kShowPlaceMinor = 1;
 constexpr uint8_t kSmallFrame = 63;
 constexpr uint8_t kLargeFrame = 250;
 constexpr uint8_t kLargeWindow = 4;
@@ -93,7 +94,7 @@ enum class Message : uint8_t {
   kWifi = 21,  // Sets, forgets or reports the robot's WiFi: `step` of WIFI_STEPS. Only sealed. OK as for NAME.
   kBegin = 22,  // Begins a longer program: what its image's header says before its checksum.
   kAbort = 23,  // Drops the program that was begun.
-  kShow = 32,  // A value that a program shows.
+  kShow = 32,  // A value that a program shows. `place`: its run, and where its SHOW is.
   kFault = 33,  // The program has ended with a fault.
   kStopped = 34,  // The robot was stopped: it has a new epoch. Repeated: it is still stopped.
   kDone = 35,  // The program has ended.

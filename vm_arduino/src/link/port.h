@@ -157,6 +157,9 @@ void port_release();
 // What runs: where it is, the byte of its code with which the instruction begins that runs or
 // waits, and its image. Only while something runs.
 uint16_t port_run_at();
+
+// Where the SHOW is whose value is shown now. Only while something is.
+uint16_t port_shown_at();
 const uint8_t* port_run_image();
 
 // The length of the image that the robot holds.

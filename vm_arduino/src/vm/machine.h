@@ -51,6 +51,10 @@ class Machine : public Scheduler {
   // The begin of the instruction that runs or has faulted.
   uint16_t at() const { return at_; }
 
+  // Where the SHOW is whose value `robot_show` gets, also if it gets it again: it is a byte, and a
+  // task goes on behind it.
+  uint16_t shown_at() const { return static_cast<uint16_t>(task_.pc - 1); }
+
   // When the machine has work again, while the program waits; of tasks it may be at once, or was.
   uint32_t wake_ms() const;
 

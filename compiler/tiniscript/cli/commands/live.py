@@ -24,8 +24,7 @@ from tiniscript.library import source_map
 from tiniscript.library.compiling import kit_of, naming
 from tiniscript.library.known_kits import lacking
 from tiniscript.library.other_robots import is_other_robots
-from tiniscript.link.outcomes import Event
-from tiniscript.link.payloads import ShowEvent
+from tiniscript.link.outcomes import Event, ShownEvent
 from tiniscript.link.requests import SHORT_BYTES, short_bytes
 from tiniscript.robots.profile import Robot
 
@@ -147,7 +146,8 @@ class Repl:
         source_map.remember(found.compiled.image, places)  # tsc doctor names a fault's line later
         kit = kit_of(found.compiled, self.connection.profile)
         reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))
-        printer = printer_of(self.connection, places=places)
+        program = reply.values.program
+        printer = printer_of(self.connection, False, places, program, found.whole)
         catch = Catch(found.shown, self.known, printer, is_last)
         simulator = self.connection.simulator
         if simulator is not None:
@@ -262,7 +262,7 @@ class Catch:
         self.known = known
         self.printer = printer
         self.says_done = says_done
-        self.held: list[ShowEvent] = []
+        self.held: list[ShownEvent] = []
 
     def hold(self, event: Event) -> bool:
         if event.name == "SHOW":
@@ -295,7 +295,7 @@ class Catch:
             self.printer.tell(0, event)
 
 
-def _is_mark(event: ShowEvent) -> bool:
+def _is_mark(event: ShownEvent) -> bool:
     return event.value == MARK and not event.is_yes_no
 
 

@@ -50,5 +50,5 @@ def _watch(
             board.draw_plot(int(monotonic() * 1000))
         if found is not None:
             if board is not None:
-                board.take(*found)
+                board.take(*found, printer.name_of)
             printer.tell(*found)

@@ -102,7 +102,7 @@ def _upload(
         began_s = monotonic()  # before anything else is loaded or told
     finally:
         progress.end()
-    printer = printer_of(connection, options.json, ready.places)
+    printer = printer_of(connection, options.json, ready.places, values.program)
     recorder = None
     if options.record is not None:
         from tiniscript.cli.robot.recorder import Recorder

@@ -16,9 +16,10 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.cli.texts import has_text, text
 from tiniscript.library import source_map
+from tiniscript.library.shows import Finder, Show
 from tiniscript.library.source_map import Map
 from tiniscript.link.names import cause_name, fault_name
-from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import Event, ShownEvent
 
 
 def fault_sentence(number: int, at: int, program: int, places: Map | None, language: str) -> str:
@@ -43,7 +44,9 @@ def _err(line: str) -> None:
 class EventPrinter:
     """Prints events. `has_times`: each with the milliseconds since `began_ms`, else the first.
 
-    `rows` gets the cells of each, for a CSV file. `out` and `err` replace `print` while a picture
+    `places` is the map of the program that is followed, `program` its checksum, and `whole` its map
+    with what a person has not typed, if there is such a thing. `rows` gets the
+    cells of each event, for a CSV file. `out` and `err` replace `print` while a picture
     is on the terminal. JSON lines also get the fields of `about`.
     """
 
@@ -53,16 +56,21 @@ class EventPrinter:
         is_json: bool = False,
         has_times: bool = False,
         places: Map | None = None,
-        rows: Callable[[int, str, str], None] | None = None,
+        rows: Callable[[int, str, str, str], None] | None = None,
         out: Callable[[str], None] | None = None,
         err: Callable[[str], None] | None = None,
         about: Mapping[str, object] | None = None,
         began_ms: int | None = None,
+        program: int | None = None,
+        whole: Map | None = None,
     ) -> None:
         self.language = language
         self.is_json = is_json
         self.has_times = has_times
         self.places = places
+        shown = whole or places
+        self.shows = Finder({} if shown is None or program is None else {program: shown})
+        self.has_lines = whole is None  # whose numbers a person knows
         self.rows = rows
         self.out = out or _out
         self.err = err or _err
@@ -74,8 +82,7 @@ class EventPrinter:
             self.began_ms = time_ms
         since_ms = time_ms - self.began_ms
         if event.name == "SHOW":
-            value = event.value, bool(event.is_yes_no)
-            self.say(since_ms, "SHOW", value_text(*value), value=value_of(*value))
+            self._tell_value(since_ms, event)
         elif event.name == "DONE":
             self.say(since_ms, "DONE", "", text("robot_done", self.language))
         elif event.name == "FAULT":
@@ -94,6 +101,29 @@ class EventPrinter:
             said = text("robot_text", self.language).format(said=words)
             self.say(since_ms, "TEXT", no_formula(words), said, text=words)
 
+    def name_of(self, event: ShownEvent) -> str:
+        """Return the name of a value, by which it is told from the values of all other SHOWs."""
+        show = self.shows.of(event)
+        if show is None:
+            return ""
+        place = f"{show.line}:{show.column}" if show.shares_line else str(show.line)
+        return self._placed(show, place)
+
+    def _placed(self, show: Show, place: str) -> str:
+        if not (show.shares_text and self.has_lines):
+            return show.text
+        return text("shown_line", self.language).format(what=show.text, line=place)
+
+    def _tell_value(self, since_ms: int, event: ShownEvent) -> None:
+        value = event.value, bool(event.is_yes_no)
+        what, show = value_text(*value), self.shows.of(event)
+        if show is None:
+            self.say(since_ms, "SHOW", what, value=value_of(*value))
+            return
+        said = f"{self._placed(show, str(show.line))} {what}"
+        self.say(since_ms, "SHOW", what, said, self.name_of(event), value=value_of(*value),
+                 name=show.text, line=show.line, column=show.column)  # fmt: skip
+
     def _tell_fault(self, since_ms: int, number: int, at: int, program: int) -> None:
         fault = fault_name(number)
         said = fault_sentence(number, at, program, self.places, self.language)
@@ -104,12 +134,13 @@ class EventPrinter:
                  program=f"{program:08x}", **more)  # fmt: skip
 
     def say(
-        self, since_ms: int, name: str, what: str, said: str = "", /, is_bad: bool = False,
-        **fields: object,
+        self, since_ms: int, name: str, what: str, said: str = "", cell: str = "", /,
+        is_bad: bool = False, **fields: object,
     ) -> None:  # fmt: skip
-        """Print an event: `said`, or its name and its values. JSON gets the fields."""
+        """Print an event: `said`, or its name and its values. JSON gets the fields, a row the
+        `cell` that says which SHOW it was."""
         if self.rows is not None:
-            self.rows(since_ms, name, what)
+            self.rows(since_ms, name, what, no_formula(cell))
         if self.is_json:
             times = {"ms": since_ms} if self.has_times else {}
             self.out(json.dumps({**times, "event": name, **self.about, **fields}))
@@ -121,11 +152,15 @@ class EventPrinter:
 
 
 def printer_of(
-    connection: Connection, is_json: bool = False, places: Map | None = None
+    connection: Connection,
+    is_json: bool = False,
+    places: Map | None = None,
+    program: int | None = None,
+    whole: Map | None = None,
 ) -> EventPrinter:
     """Return the printer of a connection's events, above the picture of its virtual robot."""
     simulator = connection.simulator
-    if simulator is None:
-        return EventPrinter(connection.language, is_json, places=places)
-    out, err = simulator.say, simulator.complain
-    return EventPrinter(connection.language, is_json, places=places, out=out, err=err)
+    out, err = (None, None) if simulator is None else (simulator.say, simulator.complain)
+    return EventPrinter(
+        connection.language, is_json, places=places, out=out, err=err, program=program, whole=whole
+    )

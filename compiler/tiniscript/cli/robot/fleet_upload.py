@@ -46,7 +46,7 @@ def _upload(
         member.print(json.dumps(receipt))
     runs = program_upload.is_running(ready, options)
     member.tell("crew_running" if runs and not options.detach else "crew_saving")
-    printer = MemberPrinter(connection, ready, member, options.json)
+    printer = MemberPrinter(connection, ready, member, options.json, values.program)
     saving = Saving(connection, printer, values)
     code = program_upload.follow_run(connection, ready, saving, options, printer)
     if not runs or options.detach:
@@ -63,16 +63,18 @@ def _upload(
 class MemberPrinter(EventPrinter):
     """Prints the events of one of many robots. `end` is the end of its program, in one line."""
 
-    def __init__(self, connection: Connection, ready: Ready, member: Member, is_json: bool) -> None:
+    def __init__(
+        self, connection: Connection, ready: Ready, member: Member, is_json: bool, program: int
+    ) -> None:
         about = {"port": connection.port}
         super().__init__(connection.language, is_json, places=ready.places, about=about,
-                         out=member.print)  # fmt: skip
+                         out=member.print, program=program)  # fmt: skip
         self.member = member
         self.end = ""
 
     def say(
-        self, since_ms: int, name: str, what: str, said: str = "", /, is_bad: bool = False,
-        **fields: object,
+        self, since_ms: int, name: str, what: str, said: str = "", cell: str = "", /,
+        is_bad: bool = False, **fields: object,
     ) -> None:  # fmt: skip
         line = said or f"{name} {what}"
         if name == "SHOW":
@@ -80,6 +82,6 @@ class MemberPrinter(EventPrinter):
         elif name != "SAVED":
             self.end = "  ".join(each.strip() for each in line.splitlines())
         if self.is_json:
-            super().say(since_ms, name, what, said, is_bad=is_bad, **fields)
+            super().say(since_ms, name, what, said, cell, is_bad=is_bad, **fields)
         elif name == "SHOW" and not sys.stderr.isatty():  # there is no table
             self.out(f"{self.member.name} ({self.member.target.port}): {line}")

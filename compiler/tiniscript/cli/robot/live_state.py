@@ -16,7 +16,9 @@ from tiniscript.base.source import Source, Span
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
 from tiniscript.cli.robot.bookkeeping import MARK
 from tiniscript.diagnostics import codes
+from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compile_text
+from tiniscript.library.source_map import Map
 from tiniscript.semantics.ir import Assign, walk
 from tiniscript.syntax import ast
 from tiniscript.syntax.lexer import WORD, scan
@@ -35,7 +37,8 @@ class Line(NamedTuple):
     """A compiled line: `shown` are the variables whose values it shows after the mark.
 
     `defs` are the DEFs in it, which are known once it is done; `does_nothing`: it has nothing
-    but DEFs; `forgets`: it sets variables, but has no room to show them.
+    but DEFs; `forgets`: it sets variables, but has no room to show them. `whole` is the map of the
+    line with the DEFs and variables before it.
     """
 
     compiled: Compiled
@@ -43,6 +46,7 @@ class Line(NamedTuple):
     defs: dict[str, str]
     does_nothing: bool = False
     forgets: bool = False
+    whole: Map | None = None
 
 
 def header(text: str) -> str:
@@ -94,8 +98,10 @@ class Known:
             behind = "".join(f"\nSHOW({name})" for name in (as_text(MARK), *shown))
             full = compile_text(f"{before}{body}{behind}", self.kit)
             if full.is_right and len(full.code) <= room:
-                return Line(_behind(full, len(before), len(before + body)), shown, own)
-        return Line(_behind(plain, len(before)), (), own, forgets=bool(shown))
+                line = _behind(full, len(before), len(before + body))
+                return Line(line, shown, own, whole=_map_of(full, len(before + body)))
+        line = _behind(plain, len(before))
+        return Line(line, (), own, forgets=bool(shown), whole=_map_of(plain, len(before + body)))
 
     def _before(self, text: str, own: dict[str, str]) -> tuple[str, str]:
         """Return the variables and the DEFs that a line needs, as text."""
@@ -123,6 +129,15 @@ def _assigned(compiled: Compiled, start: int) -> tuple[str, ...]:
         if isinstance(each, Assign) and each.span.start >= start
     }
     return tuple(program.variables[number] for number in sorted(numbers))
+
+
+def _map_of(compiled: Compiled, end: int) -> Map:
+    """Return the map of the text up to `end`; what is behind comes from nowhere."""
+    nowhere = Span(end, end)
+    places = (
+        each if each.span.end <= end else each._replace(span=nowhere) for each in compiled.places
+    )
+    return source_map.made(compiled.source, places)
 
 
 def _behind(compiled: Compiled, start: int, end: int | None = None) -> Compiled:

@@ -94,7 +94,7 @@ class Recorder:
         self._is_over = False
         self._rows = Rows(name, (json.dumps(head) + "\n").encode(), "unwritable_more --record")
 
-    def add(self, _: int, name: str, what: str) -> None:
+    def add(self, _: int, name: str, what: str, __: str = "") -> None:
         """Add an event as `EventPrinter` tells it, at the time at which it came here."""
         if self._is_over or name not in ("SHOW", *ENDS):
             return

@@ -1,12 +1,15 @@
-"""`tsc monitor --plot`: the values that a robot shows, as a curve that moves with the time.
+"""`tsc monitor --plot`: the values that a robot shows, as curves that move with the time.
 
-Drawn below what is printed. Knows values and times; the terminal is known by `screen`.
+There is one for each SHOW of its program, by its name. Drawn below what is printed. Knows values
+and times; the terminal is known by `screen`.
 """
 
 from __future__ import annotations
 
 import time
 from collections import deque
+from collections.abc import Callable
+from itertools import chain
 
 from rich.text import Text
 
@@ -14,16 +17,18 @@ from tiniscript.base.fixed_point import as_text
 from tiniscript.cli.terminal import FRAME_S
 from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, layered
 from tiniscript.cli.terminal.screen import Screen
-from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import Event, ShownEvent
 
 SECONDS = 30  # from the left edge to the right one
 ROWS = 12  # at most
-KEPT = 5000  # values, the newest
+KEPT = 5000  # values of a curve, the newest
+STYLES = ("cyan", "magenta", "yellow", "green", "blue", "red")  # of curves; so many there are
+NAMELESS = "SHOW"  # the curve of all values without a name
 STEPS = 4  # between the marks of the axis, about
 
 
 class Board(Screen):
-    """The terminal while values come: what is told, and below it the curve."""
+    """The terminal while values come: what is told, and below it the curves."""
 
     def __init__(self, waiting: str) -> None:
         super().__init__()
@@ -37,15 +42,18 @@ class Board(Screen):
     def __exit__(self, *_: object) -> None:
         self.end()
 
-    def take(self, time_ms: int, event: Event) -> None:
+    def take(self, time_ms: int, event: Event, name_of: Callable[[ShownEvent], str]) -> None:
         if event.name == "SHOW":
-            self.plot.take(time_ms, event.value, bool(event.is_yes_no))
+            self.plot.take(time_ms, event.value, bool(event.is_yes_no), name_of(event))
 
     def draw_plot(self, now_ms: int) -> None:
-        """Draw the curve as it is now, where the last frame is over."""
+        """Draw the curves as they are now, where the last frame is over."""
         if time.monotonic() - self.drawn_s >= FRAME_S:
             self.drawn_s = time.monotonic()
             self.draw(self.plot, now_ms)
+
+
+Values = deque[tuple[int, int]]  # when, and thousandths
 
 
 class Plot:
@@ -54,51 +62,80 @@ class Plot:
     def __init__(self, waiting: str = "") -> None:
         self.waiting = waiting
         self.now_ms = 0
-        self.values: deque[tuple[int, int]] = deque(maxlen=KEPT)  # when, and thousandths
+        self.curves: dict[str, Values] = {}  # by name, in the order of their first values
+        self.styles: dict[str, str] = {}
         self.margin = 0  # columns of the labels
 
-    def take(self, time_ms: int, value: int, is_yes_no: bool) -> None:
+    def take(self, time_ms: int, value: int, is_yes_no: bool, name: str = "") -> None:
         self.now_ms = time_ms
-        self.values.append((time_ms, value * 1000 if is_yes_no else value))
+        name = name or NAMELESS
+        if name not in self.curves:
+            self._add(name)
+        self.curves[name].append((time_ms, value * 1000 if is_yes_no else value))
+
+    def _add(self, name: str) -> None:
+        """Begin a curve; where all styles are taken, the one without a value for longest ends."""
+        if len(self.curves) == len(STYLES):
+            oldest = min(self.curves, key=lambda each: self.curves[each][-1][0])
+            del self.curves[oldest], self.styles[oldest]
+        self.curves[name] = deque(maxlen=KEPT)
+        self.styles[name] = next(each for each in STYLES if each not in self.styles.values())
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
-        """Return at most `height` lines of at most `width` columns: a title and the curve."""
+        """Return at most `height` lines of at most `width` columns: a title and the curves."""
         width -= 2  # the ^C of the terminal stands behind the last line
         begin_ms = now_ms - SECONDS * 1000
-        while len(self.values) > 1 and self.values[1][0] < begin_ms:
-            self.values.popleft()
-        known = [value for _, value in self.values]
+        for values in self.curves.values():
+            while len(values) > 1 and values[1][0] < begin_ms:
+                values.popleft()
+        known = [value for _, value in chain.from_iterable(self.curves.values())]
         low, high, step = scale(min(known, default=0), max(known, default=1000))
         rows = min(ROWS, height - 1)
         ticks = [as_text(value) for value in range(low, high + 1, step)]
         self.margin = max(self.margin, *(len(each) + 1 for each in ticks))  # it never jumps back
         margin = self.margin
         columns = width - margin
-        newest = as_text(known[-1]) if known else self.waiting
-        title = Text(f"── SHOW {newest} ".ljust(width - 6, "─") + f" {SECONDS} s ", style="dim")
-        title.truncate(max(1, width))
+        title = self._title(width)
         if rows < 2 or columns < 4:
             return [title]
-        canvas = self._curve(columns, rows, begin_ms, low, high)
+        canvases = [
+            (self._curve(values, columns, rows, begin_ms, low, high), self.styles[name])
+            for name, values in self.curves.items()
+        ] or [(Canvas(columns, rows), "")]
         found = [title]
         marks = {
             round((high - value) / (high - low) * (rows - 1)): as_text(value)
             for value in range(low, high + 1, step)
         }
-        for row, curve in enumerate(layered([(canvas, "cyan")])):
+        for row, curve in enumerate(layered(canvases)):
             label = marks.get(row, "")
             found.append(Text(f"{label:>{margin - 1}} ", style="dim").append_text(curve))
         return found
 
-    def _curve(self, columns: int, rows: int, begin_ms: float, low: int, high: int) -> Canvas:
-        """Return the curve: each value holds until the next one."""
+    def _title(self, width: int) -> Text:
+        """Return the names with their newest values, each in the colour of its curve."""
+        title = Text("── ", style="dim")
+        for name, values in self.curves.items():
+            style = f"not dim {self.styles[name]}" if len(self.curves) > 1 else ""
+            title.append(f"{name} {as_text(values[-1][1])}", style).append("  ")
+        if self.curves:
+            title.right_crop(1)
+        else:
+            title.append(f"{NAMELESS} {self.waiting} ")
+        end = f" {SECONDS} s "
+        title.append("─" * (width - 6 - title.cell_len) + end)
+        title.truncate(max(1, width))
+        return title
+
+    def _curve(
+        self, values: Values, columns: int, rows: int, begin_ms: float, low: int, high: int
+    ) -> Canvas:
+        """Return a curve: each value holds until the next one."""
         canvas = Canvas(columns, rows)
-        if not self.values:
-            return canvas
         right, bottom = ACROSS * columns - 1, DOWN * rows - 1
         before: int | None = None
-        ends = [*[time_ms for time_ms, _ in self.values][1:], begin_ms + SECONDS * 1000]
-        for (time_ms, value), end_ms in zip(self.values, ends, strict=True):
+        ends = [*[time_ms for time_ms, _ in values][1:], begin_ms + SECONDS * 1000]
+        for (time_ms, value), end_ms in zip(values, ends, strict=True):
             x, end = (
                 round(min(1.0, max(0.0, (each - begin_ms) / (SECONDS * 1000))) * right)
                 for each in (time_ms, end_ms)

@@ -68,7 +68,7 @@ class Picture:
         self.widest = [0, 0]  # columns of values and units, so far
 
     def take(self, event: Event) -> None:
-        self.now_ms, what, values, said = event
+        self.now_ms, what, values, said, _ = event
         if what == "MOTORS":
             self.sketch.set_motors(self.now_ms, *values)
         elif what == "READ":

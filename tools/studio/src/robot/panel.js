@@ -21,6 +21,7 @@ import { pageState } from '../page/page_state.js';
 import { called, currentLanguage, text } from '../page/texts.js';
 import { LINK, robotOf } from '../page/words.js';
 import { whole } from '../writing/messages.js';
+import { nameOfShow, showAt } from '../writing/shows.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
 /** @import { About, Answer, RobotEvent, Transport } from './transport.js' */
@@ -37,6 +38,7 @@ import { whole } from '../writing/messages.js';
 // The keys of robots that this browser keeps: the text of a file of keys, as `tsc set owner --list` writes it. Who uses
 // this browser uses them; the page gives them to no one but the robot's session.
 const KEYS = 'tiniscript.link.keys';
+const KNOWN = 20;
 const WORD_MS = 2000; // after which it is said that the robot has not answered yet
 
 export class RobotPanel {
@@ -50,6 +52,8 @@ export class RobotPanel {
   #choices = [];
   /** @type {{program: string, places: Checked['places'], of: Checked} | null} */
   #sent = null;
+  /** The newest programs and lines that were sent, by checksum: what they show is named. @type {Map<string, Checked>} */
+  #known = new Map();
   #speech = new Speech();
   #stopping = new Stopping(this.#speech);
   #list = element('link_port', HTMLSelectElement);
@@ -280,6 +284,7 @@ export class RobotPanel {
       return;
     }
     this.#speech.begin('say_sending');
+    this.#know(program);
     this.#ask({ do: 'upload', image: program.image, robot: pageState.robotName.value, runs }, (answer) => {
       const { program: sum = '', saved = 'MEMORY' } = answer;
       this.#sent = { program: sum, places: program.places, of: program };
@@ -300,6 +305,7 @@ export class RobotPanel {
       this.#speech.tell(whole(mistake));
       return;
     }
+    this.#know(found);
     await this.#ask({ do: 'live', image: found.image, robot }, () => this.#speech.say('say_line'));
   }
 
@@ -345,7 +351,7 @@ export class RobotPanel {
 
   /** @param {RobotEvent} event */
   #onEvent(event) {
-    if (event.event === 'SHOW') this.#speech.add(String(event.value));
+    if (event.event === 'SHOW') this.#speech.add([this.#nameOf(event), event.value].filter(Boolean).join(' '));
     else if (event.event === 'TEXT') this.#speech.add(text('say_text', { said: shown(String(event.text)) }));
     else if (event.event === 'MISSED') this.#speech.add(text('say_missed', { count: Number(event.count) }));
     else if (event.event === 'DONE') this.#speech.say('say_done');
@@ -358,6 +364,21 @@ export class RobotPanel {
       // A page that is hidden keeps the words why it stopped the robot.
       if (this.#stopping.isOpen || document.visibilityState !== 'hidden') this.#stopping.confirm(String(event.cause));
     }
+  }
+
+  /** @param {Checked} program before its robot may show anything */
+  #know(program) {
+    this.#known.delete(program.program);
+    this.#known.set(program.program, program);
+    for (const [oldest] of this.#known) if (this.#known.size > KNOWN) this.#known.delete(oldest);
+  }
+
+  /** The name of a value; nothing where its program is not one of this page. @param {RobotEvent} event */
+  #nameOf({ program = '', at }) {
+    const seen = pageState.checked.value;
+    const of = this.#known.get(program) ?? (program && seen?.program === program ? seen : undefined);
+    const show = of && showAt(of, at);
+    return show ? nameOfShow(show, show[1], false) : '';
   }
 
   /** The robot is silent. */

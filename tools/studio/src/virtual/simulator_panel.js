@@ -5,6 +5,7 @@ import { element, hide, say } from '../page/elements.js';
 import { faultSaid } from '../page/faults.js';
 import { download } from '../page/files.js';
 import { offsetsOf, rangeAt } from '../writing/parts.js';
+import { nameOfShow, showAt } from '../writing/shows.js';
 import { dialPicture, offer, pictured } from '../page/pictures.js';
 import { made } from '../page/made.js';
 import { Plot } from './plot.js';
@@ -48,7 +49,10 @@ export class SimulatorPanel {
   #sounds = new Sounds();
   #where = new Where();
   #bumps = 0; // that were seen
-  #shown = ''; // what SHOW has shown last
+  /** What each SHOW has shown last. @type {Map<string, string>} */
+  #shown = new Map();
+  /** Whose run it is. @type {Pick<Checked, 'places' | 'shows'>} */
+  #program = { places: [], shows: [] };
   #wasStopped = false;
   #note = '';
   #told = ''; // of the trace
@@ -317,7 +321,8 @@ export class SimulatorPanel {
     this.#bumps = 0;
     this.#arena.begin(this.#world.shapes, pageState.robotName.value, this.#world.goals);
     this.#plot.begin();
-    this.#shown = '';
+    this.#shown.clear();
+    this.#program = program;
     this.#places = program.places;
     this.#variables = program.variables;
     this.#findStops();
@@ -404,15 +409,17 @@ export class SimulatorPanel {
       this.#sounds.beep(Number(hertz), Number(lasts_ms) / 1000 / this.#simulator.speed);
     }
     if (state.began_ms === null) return;
-    const shown = state.events.findLast(([, what]) => what.startsWith('SHOW '));
-    if (shown) {
-      this.#shown = shown[1].slice('SHOW '.length);
-      this.#arena.say(this.#shown, shown[0]);
+    for (const [at_ms, what, at] of state.events) {
+      if (!what.startsWith('SHOW ')) continue;
+      const value = what.slice('SHOW '.length);
+      const show = showAt(this.#program, at);
+      this.#shown.set(show ? nameOfShow(show, `SHOW(${show[1]})`, true) : 'SHOW', value);
+      this.#arena.say(value, at_ms);
     }
     this.#plot.add(state.now_ms - state.began_ms, [
       ...devicesOf(pageState.robotName.value, 'sensor').map((device, k) => ({ name: nameOf(device), value: numberOf(state.readings[k]?.text) })),
       ...this.#variables.map(({ name, is_yes_no }, k) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[k])) : state.variables[k] })),
-      { name: 'SHOW', value: numberOf(this.#shown) },
+      ...[...this.#shown].map(([name, value]) => ({ name, value: numberOf(value) })),
     ]);
   }
 
@@ -460,7 +467,7 @@ export class SimulatorPanel {
       [text('bumps'), state ? String(state.bumps) : '–'],
       ...devicesOf(pageState.robotName.value, 'sensor').map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–', partOf(device, state?.readings[k]?.value)]),
       ...this.#variables.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
-      ...(this.#shown ? [['SHOW', this.#shown]] : []),
+      ...this.#shown,
     ];
     const place = element('values', HTMLElement);
     while (place.children.length > rows.length) place.lastElementChild?.remove();

@@ -99,6 +99,9 @@ class TiniPlayer {
   tiniscript::Fault fault() const { return fault_; }
   uint16_t fault_at() const { return machine_.at(); }
 
+  // Where the SHOW is whose value `show` gets now.
+  uint16_t shown_at() const { return machine_.shown_at(); }
+
   TiniRobot* robot() const { return robot_; }
   const TiniKit& kit() const { return *kit_; }
   uint8_t* memory() const { return memory_; }

@@ -168,6 +168,7 @@ void port_end() { only->prepare_upload(); }
 void port_stop(uint8_t fault) { only->stop(fault); }
 void port_release() { only->release(); }
 uint16_t port_run_at() { return only->at(); }
+uint16_t port_shown_at() { return only->shown_at(); }
 const uint8_t* port_run_image() { return only->run_image(); }
 uint16_t port_image_length() { return image_length(only->held()); }
 

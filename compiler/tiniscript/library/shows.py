@@ -1,0 +1,93 @@
+"""Which SHOW of a program's text has shown a value: its expression names the value.
+
+Two programs with the same code have one map, the newest. A value whose program is not known here
+has no name, and neither has a plain number.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from tiniscript.base.source import printable
+from tiniscript.library import source_map
+from tiniscript.library.source_map import Map, MapLocation
+from tiniscript.link.outcomes import ShownEvent
+from tiniscript.syntax.formatter import instruction_text, pieces_of
+from tiniscript.syntax.lexer import scan
+
+_BEGIN, _END = "SHOW(", ")"
+_PLAIN = re.compile(r"-?[\d.]+|TRUE|FALSE|")
+
+
+class Show(NamedTuple):
+    """A SHOW of a text: its expression as the formatter writes it, and where it begins, from 1.
+
+    `shares_text`: another one has the same expression; `shares_line`: on the same line, too.
+    """
+
+    text: str
+    line: int
+    column: int
+    shares_text: bool = False
+    shares_line: bool = False
+
+
+class Shows:
+    """The SHOWs of a program. The copies of a DEF, one for each task, have one."""
+
+    def __init__(self, places: Map) -> None:
+        self._places = places
+        found = {place[1:]: expression_of(places, place) for place in places.places}
+        named = {place: text for place, text in found.items() if text}
+        texts = Counter(named.values())
+        lines = Counter((text, place[0]) for place, text in named.items())
+        self._shows = {
+            place: Show(text, *place[:2], texts[text] > 1, lines[text, place[0]] > 1)
+            for place, text in named.items()
+        }
+
+    def at(self, offset: int) -> Show | None:
+        """Return the SHOW whose instruction is at `offset`, if it has a name."""
+        place = self._places.at(offset)
+        return None if place is None else self._shows.get(place[1:])
+
+
+class Finder:
+    """Finds the SHOW of a value. `own` has the maps of programs that are known here, by checksum;
+    those of others are in the cache."""
+
+    def __init__(self, own: Mapping[int, Map] | None = None) -> None:
+        self._own = {} if own is None else own
+        self._found: tuple[int, int, Shows] | None = None  # run, program
+
+    def of(self, event: ShownEvent) -> Show | None:
+        if event.at < 0:
+            return None
+        if self._found is None or self._found[:2] != (event.run, event.program):
+            places = self._own.get(event.program) or source_map.recall(event.program)
+            if places is None:
+                return None
+            self._found = event.run, event.program, Shows(places)
+        return self._found[2].at(event.at)
+
+
+def expression_of(places: Map, place: MapLocation) -> str:
+    """Return the expression of a SHOW; nothing for another instruction, or for a plain number."""
+    lines = list(places.lines[place.line - 1 : place.end_line])
+    if not lines:
+        return ""
+    lines[-1] = lines[-1][: place.end_column - 1]
+    lines[0] = lines[0][place.column - 1 :]
+    if not lines[0].upper().startswith("SHOW"):
+        return ""
+    pieces = pieces_of(scan("\n".join(lines)))
+    tokens = pieces[0].tokens if len(pieces) == 1 else []
+    if not tokens:
+        return ""
+    text = printable(instruction_text(tokens))
+    is_show = text.startswith(_BEGIN) and text.endswith(_END)
+    text = text.removeprefix(_BEGIN).removesuffix(_END)
+    return text if is_show and not _PLAIN.fullmatch(text) else ""

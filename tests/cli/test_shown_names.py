@@ -1,0 +1,157 @@
+"""What a robot shows has the name of its SHOW, wherever a command prints, draws or writes it."""
+
+from __future__ import annotations
+
+import csv
+import json
+import signal
+from pathlib import Path
+
+import pytest
+
+from tests.library.test_source_map import compiled, mapped
+from tests.support.command import Command
+from tests.support.pty_robot import PtyRobot, on
+from tiniscript.base import files
+from tiniscript.bytecode.disassembly import rows
+from tiniscript.bytecode.image import checksum
+from tiniscript.cli.robot.event_printer import EventPrinter
+from tiniscript.cli.terminal.plot import STYLES, Plot
+from tiniscript.library.events import Reader
+from tiniscript.link.outcomes import ShownEvent
+
+LOOPS = "LOOP(FOREVER); SHOW({}); W(0.05); END_LOOP"
+
+
+def shown(out: str) -> list[str]:
+    """Return the names of the values in JSON lines, nothing for one without."""
+    events = [json.loads(line) for line in out.splitlines()]
+    return [each.get("name", "") for each in events if each["event"] == "SHOW"]
+
+
+def forget_maps() -> None:
+    for path in (files.cache_folder() / "maps").glob("*.json"):
+        path.unlink()
+
+
+def test_upload_names_what_its_program_shows(pty_robot: PtyRobot) -> None:
+    pty_robot.ask(lambda robot: robot.sense(20_000, 60_000, 12_500))
+    text = "SI|SHOW(DISTANCE); SHOW(light_r-light_l)\nSHOW(7)\nSHOW(DISTANCE)"
+    done = on(pty_robot, "upload", "-e", text).gives(0)
+    assert done.out.splitlines()[1:5] == [
+        "DISTANCE (line 1) 12.5", "LIGHT_R - LIGHT_L -40", "SHOW 7", "DISTANCE (line 3) 12.5",
+    ]  # fmt: skip
+    done = on(pty_robot, "upload", "-e", text, "--lang", "es").gives(0)
+    assert "DISTANCE (línea 3) 12.5\n" in done.out
+    done = on(pty_robot, "upload", "-e", text, "--json").gives(0)
+    events = [json.loads(line) for line in done.out.splitlines()]
+    assert [each for each in events if each["event"] == "SHOW"] == [
+        {"event": "SHOW", "value": 12.5, "name": "DISTANCE", "line": 1, "column": 4},
+        {"event": "SHOW", "value": -40, "name": "LIGHT_R - LIGHT_L", "line": 1, "column": 20},
+        {"event": "SHOW", "value": 7},
+        {"event": "SHOW", "value": 12.5, "name": "DISTANCE", "line": 3, "column": 1},
+    ]
+
+
+def test_monitor_knows_a_program_by_its_checksum(pty_robot: PtyRobot, tmp_path: Path) -> None:
+    """In the middle of its run; one that nobody here has sent has no names.
+
+    Neither has what the robot still tells a client of before, until it has answered this one.
+    """
+    upload = ("upload", "-e", "SI|" + LOOPS.format("TIME > 1"), "--detach")
+    on(pty_robot, *upload).gives(0)
+    sheet = tmp_path / "rows.csv"
+    done = on(pty_robot, "monitor", "--json", "--csv", sheet, "--max-time", "1").gives(0)
+    names = shown(done.out)
+    known = names[names.index("TIME > 1") :]
+    assert len(known) > 5 and set(known) == {"TIME > 1"} and not any(names[: -len(known)])
+    with sheet.open(encoding="utf-8", newline="") as file:
+        head, *table = csv.reader(file)
+    assert head == ["ms", "event", "value", "name"]
+    assert [row[3] for row in table if row[1] == "SHOW"] == names
+    forget_maps()
+    done = on(pty_robot, "monitor", "--max-time", "1").gives(0)
+    values = {line.split(" ", 1)[1] for line in done.out.splitlines()}
+    assert values == {"SHOW TRUE"}
+    on(pty_robot, "stop").gives(0)
+
+
+def test_monitor_follows_the_program_of_the_button_and_one_that_replaces_it(
+    pty_robot: PtyRobot,
+) -> None:
+    on(pty_robot, "upload", "-e", "SB|SHOW(LIGHT_R + 1); W(1)").gives(0)
+    monitor = Command("monitor", "--port", pty_robot.port, "--json")
+    assert monitor.process.stderr
+    monitor.process.stderr.readline()  # it watches
+    pty_robot.push()
+    monitor.until('"name": "LIGHT_R + 1"')
+    for expression in ("LIGHT_L + 2", "DISTANCE + 3"):
+        assert expression in on(pty_robot, "live", f"SHOW({expression})").gives(0).out
+        monitor.until(f'"name": "{expression}"')
+    monitor.signal(signal.SIGINT)
+    monitor.ended().gives(0)
+
+
+def event(text: str, number: int, program: int | None = None) -> ShownEvent:
+    """Return the event of a SHOW of a text, by its place among them."""
+    found = compiled(text)
+    places = [row.offset for row in rows(found.code) if row.text.startswith("SHOW")]
+    return ShownEvent(
+        2000, 0, 1, checksum(found.image) if program is None else program, places[number]
+    )
+
+
+def test_two_on_one_line_are_told_apart_in_a_table() -> None:
+    text = "X = 1; SHOW(-X); SHOW(-X)"
+    said: list[str] = []
+    table: list[tuple[object, ...]] = []
+    found = compiled(text)
+    printer = EventPrinter(
+        "en", places=mapped(found), program=checksum(found.image), out=said.append,
+        rows=lambda *cells: table.append(cells),
+    )  # fmt: skip
+    for number in range(2):
+        printer.tell(0, event(text, number))
+    printer.tell(0, event(text, 0, program=1))
+    assert said == ["-X (line 1) 2", "-X (line 1) 2", "SHOW 2"]
+    assert [row[3] for row in table] == ["'-X (line 1:8)", "'-X (line 1:18)", ""]
+
+
+def test_the_library_names_values() -> None:
+    found = compiled("SHOW(DISTANCE)")
+    reader = Reader()
+    told = reader.told(0, event("SHOW(DISTANCE)", 0, program=5))
+    assert told and dict(told.values) == {"value": 2}
+    reader.maps[checksum(found.image)] = mapped(found)
+    told = reader.told(0, event("SHOW(DISTANCE)", 0))
+    assert told and dict(told.values) == {"value": 2, "name": "DISTANCE", "line": 1, "column": 1}
+
+
+def test_each_name_has_a_curve_of_its_own() -> None:
+    plot = Plot()
+    for k in range(40):
+        plot.take(k * 100, 1000 * k, False, "DISTANCE")
+        plot.take(k * 100, 500, False, "LIGHT_R - LIGHT_L")
+    lines = plot.lines(90, 12, 4000)
+    assert lines[0].plain.startswith("── DISTANCE 39  LIGHT_R - LIGHT_L 0.5 ──")
+    assert lines[0].cell_len <= 88
+    styles = {str(span.style) for line in lines[1:] for span in line.spans}
+    assert {"cyan", "magenta"} <= styles
+    plot.take(4000, 0, False)
+    assert "SHOW 0" in plot.lines(90, 12, 4000)[0].plain
+
+
+@pytest.mark.parametrize("width", [3, 20, 79])
+def test_no_more_curves_than_colours(width: int) -> None:
+    """The one whose last value is oldest ends first; nobody else changes the colour."""
+    plot = Plot()
+    names = [f"X + {k}" for k in range(len(STYLES))]
+    for k, name in enumerate(names):
+        plot.take(k, 1000, False, name)
+    before = dict(plot.styles)
+    plot.take(100, 1000, False, names[0])
+    plot.take(200, 1000, True, "TIME > 1")
+    assert [*plot.curves] == [names[0], *names[2:], "TIME > 1"]
+    assert plot.styles["TIME > 1"] == before[names[1]]
+    assert {name: plot.styles[name] for name in names[2:]} == {n: before[n] for n in names[2:]}
+    assert all(line.cell_len <= width for line in plot.lines(width, 9, 300))

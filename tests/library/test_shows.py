@@ -1,0 +1,118 @@
+"""Which SHOW of a text has shown a value, and what it is called."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.library.test_source_map import compiled, mapped
+from tiniscript.base import files
+from tiniscript.bytecode.disassembly import rows
+from tiniscript.bytecode.image import checksum
+from tiniscript.library import source_map
+from tiniscript.library.shows import Finder, Show, Shows
+from tiniscript.library.source_map import Map, MapLocation
+from tiniscript.link.outcomes import ShownEvent
+
+
+def shown(text: str) -> list[Show | None]:
+    """Return the SHOW of each instruction that shows, in the order of the code."""
+    found = compiled(text)
+    shows = Shows(mapped(found))
+    return [shows.at(row.offset) for row in rows(found.code) if row.text.startswith("SHOW")]
+
+
+def names(text: str) -> list[str]:
+    return ["" if each is None else each.text for each in shown(text)]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("SHOW(DISTANCE)", "DISTANCE"),
+        ("show( light_r-light_l )", "LIGHT_R - LIGHT_L"),
+        ("X = 1; SHOW(-X)", "-X"),
+        ("SHOW((DISTANCE + 1) * 2)", "(DISTANCE + 1) * 2"),
+        ("SHOW(NOT(DISTANCE < 10) AND TRUE)", "NOT (DISTANCE < 10) AND TRUE"),
+        ("SHOW(MAX(LIGHT_L,.5))", "MAX(LIGHT_L, 0.5)"),
+        ("SHOW(// how far\n  DISTANCE // or near\n  + 1)", "DISTANCE + 1"),
+        ("// café\r\nSHOW(TIME)", "TIME"),
+        # what says no more than the value itself
+        ("SHOW(12.5)", ""), ("SHOW(-3)", ""), ("SHOW(.5)", ""), ("SHOW(TRUE)", ""),
+        ("SHOW(5-3)", "5 - 3"), ("SHOW(((2)))", "((2))"), ("SHOW(NOT TRUE)", "NOT TRUE"),
+    ],
+)  # fmt: skip
+def test_a_value_is_called_as_the_expression_of_its_show(text: str, expected: str) -> None:
+    assert names(text) == [expected]
+
+
+def test_each_show_has_its_own_instruction_between_others() -> None:
+    text = "SI|SHOW(1); SHOW(DISTANCE); X = 2; SHOW(7); IF(X > 1); SHOW(X * 2); ENDIF; SHOW(TIME)"
+    assert names(text) == ["", "DISTANCE", "", "X * 2", "TIME"]
+
+
+def test_shows_of_one_expression_are_told_apart_by_their_lines() -> None:
+    found = shown("SHOW(TIME)\nSHOW( time ); SHOW(LIGHT_L); SHOW(LIGHT_L)\nSHOW(LIGHT_R)")
+    assert found == [
+        Show("TIME", 1, 1, shares_text=True),
+        Show("TIME", 2, 1, shares_text=True),
+        Show("LIGHT_L", 2, 15, shares_text=True, shares_line=True),
+        Show("LIGHT_L", 2, 30, shares_text=True, shares_line=True),
+        Show("LIGHT_R", 3, 1),
+    ]
+
+
+def test_the_copies_of_a_def_are_one_show() -> None:
+    tasks = "TASK; TELL(2); END_TASK\nTASK; TELL(3); END_TASK"
+    text = f"DEF TELL(X); SHOW(X); END_DEF\nTELL(1)\n{tasks}"
+    assert shown(text) == [Show("X", 1, 14)] * 3
+
+
+def test_a_map_that_is_not_of_its_text_names_nothing() -> None:
+    places = tuple(MapLocation(k, *at) for k, at in enumerate(
+        [(9, 1, 9, 5), (1, 1, 0, 0), (1, 1, 1, 5), (1, 6, 1, 9), (1, 1, 2, 3), (1, 90, 1, 99)]
+    ))  # fmt: skip
+    shows = Shows(Map("", ("SHOW(X; é", "SHOW"), places))
+    assert [shows.at(k) for k in range(len(places) + 1)] == [None] * (len(places) + 1)
+    assert Shows(Map("", (), ())).at(0) is None
+
+
+# -- of which program -----------------------------------------------------------------------------
+
+
+def event(program: int, at: int, run: int = 1) -> ShownEvent:
+    return ShownEvent(1000, 0, run, program, at)
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(files, "cache_folder", lambda: tmp_path)
+
+
+@pytest.mark.usefixtures("cache")
+def test_a_program_is_found_by_its_checksum_alone() -> None:
+    mine, theirs = compiled("SHOW(DISTANCE)"), compiled("SHOW(LIGHT_R)")
+    at = rows(mine.code)[-1].offset
+    finder = Finder({checksum(mine.image): mapped(mine)})
+    assert finder.of(event(checksum(mine.image), at)) == Show("DISTANCE", 1, 1)
+    other = event(checksum(theirs.image), at, run=2)
+    assert finder.of(other) is None, "nobody here has it"
+    source_map.remember(theirs.image, mapped(theirs))
+    assert finder.of(other) == Show("LIGHT_R", 1, 1), "it came into the cache later"
+    assert finder.of(event(checksum(mine.image), at, run=3)) == Show("DISTANCE", 1, 1)
+    assert finder.of(event(checksum(mine.image), -1)) is None
+    assert Finder().of(ShownEvent(1000, 0)) is None, "of an older robot"
+
+
+@pytest.mark.usefixtures("cache")
+def test_the_same_code_of_another_text_is_called_as_that_text_says() -> None:
+    first, second = compiled("NEAR = TIME; SHOW(NEAR)"), compiled("FAR = TIME; SHOW(FAR)")
+    assert first.image == second.image
+    program, at = checksum(first.image), rows(first.code)[-1].offset
+    maps = {program: mapped(first)}
+    finder = Finder(maps)
+    names = [finder.of(event(program, at))]
+    maps[program] = mapped(second)
+    names += [finder.of(event(program, at)), finder.of(event(program, at, run=2))]
+    assert [each and each.text for each in names] == ["NEAR", "NEAR", "FAR"], "until its next run"

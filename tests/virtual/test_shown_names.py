@@ -1,0 +1,117 @@
+"""What robots show names the SHOW that it is of, also where it had to wait for the wire."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.library.test_source_map import mapped
+from tests.support.rows import each_row
+from tests.support.virtual_robot import robot_in
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import checksum, unpack
+from tiniscript.library.shows import Finder
+from tiniscript.library.source_map import Map
+from tiniscript.link.outcomes import ShownEvent
+from tiniscript.link.requests import OK
+from tiniscript.virtual import worlds
+from tiniscript.virtual.computer import Computer
+
+KINDS = ("tinibot", "tinibot2", "grabber", "tinibot32")  # each has a firmware of its own
+SLOW = 2400  # bauds: a value needs 70 ms
+ONE = "SI|A = 1; LOOP(4); SHOW(A); SHOW(A + 1); END_LOOP; SHOW(A + 2)"
+DEFS = "SI|DEF TELL(V); SHOW(V); END_DEF; TELL(1); TASK; TELL(1); END_TASK"
+SEVERAL = """SI|ONE = 1; TWO = 2; THREE = 3
+LOOP(5); SHOW(THREE); END_LOOP
+TASK; LOOP(5); SHOW(ONE); END_LOOP; END_TASK
+TASK; LOOP(5); SHOW(TWO); W(0.001); SHOW(TWO + 2); END_LOOP; END_TASK
+TASK; LOOP(3); SHOW(5 * ONE); F(0.1, 50); END_LOOP; END_TASK"""
+NAMES = {1: "ONE", 2: "TWO", 3: "THREE", 4: "TWO + 2", 5: "5 * ONE"}
+
+
+class Desk:
+    """A robot, a computer on its line, and the texts of what it has sent."""
+
+    def __init__(self, robot: str, baud: int) -> None:
+        self.robot = robot_in(worlds.load("free"), robot, baud=baud)
+        self.computer = Computer(self.robot, 1)
+        self.maps: dict[int, Map] = {}
+        self.finder = Finder(self.maps)
+
+    def send(self, text: str) -> None:
+        found = compile_text(text, robots.load(self.robot.profile.name).kit)
+        assert found.is_right and found.image
+        self.maps[checksum(found.image)] = mapped(found)
+        request = self.computer.session.upload(unpack(found.image), runs=True)
+        assert self.computer.until(request).status == OK
+
+    def shown(self, limit_ms: int) -> list[tuple[int, str]]:
+        """Return values and their names, until a program ends or for so long."""
+        found: list[tuple[int, str]] = []
+        for _ in range(limit_ms):
+            self.computer.wait(1)
+            for event in self.computer.session.events():
+                if event.name == "DONE":
+                    return found
+                if isinstance(event, ShownEvent):
+                    show = self.finder.of(event)
+                    found.append((event.value // 1000, "" if show is None else show.text))
+        return found
+
+
+@each_row("kind", KINDS)
+@pytest.mark.parametrize("baud", [0, SLOW])
+def test_values_of_one_task_have_the_names_of_their_shows(kind: str, baud: int) -> None:
+    desk = Desk(kind, baud)
+    desk.send(ONE)
+    assert desk.shown(30_000) == [(1, "A"), (2, "A + 1")] * 4 + [(3, "A + 2")]
+
+
+@each_row("kind", KINDS)
+@pytest.mark.parametrize("baud", [0, SLOW, 9600])
+def test_values_of_tasks_that_wait_for_the_line_have_the_names_of_their_shows(
+    kind: str, baud: int
+) -> None:
+    desk = Desk(kind, baud)
+    desk.send(SEVERAL)
+    found = desk.shown(60_000)
+    assert dict(found) == NAMES
+    assert all(NAMES[value] == name for value, name in found)
+    assert [value for value, _ in found].count(3) == 5
+
+
+@each_row("kind", KINDS)
+def test_the_copies_of_a_def_have_one_name(kind: str) -> None:
+    desk = Desk(kind, SLOW)
+    desk.send(DEFS)
+    assert desk.shown(30_000) == [(1, "V")] * 2
+
+
+@each_row("kind", KINDS)
+@pytest.mark.parametrize("stops", [False, True])
+def test_what_follows_a_program_that_waits_to_show_has_names_of_its_own(
+    kind: str, stops: bool
+) -> None:
+    """Both have their SHOWs at the same places."""
+    desk = Desk(kind, SLOW)
+    desk.send("SI|NEAR = 1; LOOP(FOREVER); SHOW(NEAR); END_LOOP")
+    before = desk.shown(700)
+    assert before and set(before) == {(1, "NEAR")}
+    if stops:
+        desk.computer.session.stop(desk.robot.now_ms)
+        before += desk.shown(1500)
+    desk.send("SI|FAR = 2; LOOP(3); SHOW(FAR); END_LOOP")
+    found = desk.shown(10_000)
+    assert [each for each in found if each[0] == 2] == [(2, "FAR")] * 3
+    assert {*before, *found} == {(1, "NEAR"), (2, "FAR")}
+
+
+@each_row("kind", KINDS)
+def test_the_robot_s_own_trace_says_the_same(kind: str) -> None:
+    desk = Desk(kind, 0)
+    desk.send(SEVERAL)
+    desk.shown(60_000)
+    [places] = desk.maps.values()
+    for event in desk.robot.take_events():
+        if event.what == "SHOW":
+            at = places.at(event.at)
+            assert at and NAMES[event.values[0] // 1000] in places.line(at.line)
