@@ -38,7 +38,7 @@ def header(command: str) -> str:
             "AGAIN_MS", "KEY_BYTES", "CHALLENGE_BYTES", "TAG_BYTES", "AUTHORITY_MS",
             "LONG_MS", "CLAIM_MS", "FORGET_MS", "NETWORK_BYTES",
             "WIFI_TEXT_BYTES", "PASSWORD_BYTES", "LEAST_PASSWORD", "CLASS_BYTES",
-            "BROKER_PLACE_BYTES", "BROKER_NAME_BYTES", "TRUST_BYTES",
+            "BROKER_PLACE_BYTES", "BROKER_NAME_BYTES", "TRUST_BYTES", "MOST_PAD", "HOLD_MS",
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),

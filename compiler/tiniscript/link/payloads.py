@@ -32,7 +32,7 @@ class HelloReply(NamedTuple):
 
 
 class PingReply(NamedTuple):
-    """What is in the reply to PING."""
+    """What is in the reply to PING, KEYS."""
 
     state: int
     run: int
@@ -182,4 +182,5 @@ REPLIES: dict[str, type[SentReply]] = {
     "WIFI": WifiReply,
     "BEGIN": NextReply,
     "ABORT": EmptyReply,
+    "KEYS": PingReply,
 }

@@ -39,6 +39,12 @@
 #define tiniscript_reads_defs
 #endif
 
+// Lines of text that are words of a remote control, KEY_A and the like: an ATmega328P has no room for
+// them. It takes KEYS.
+#ifdef tiniscript_reads_defs
+#define tiniscript_reads_keys
+#endif
+
 // An ATmega328P reads a program where the one is that it holds; tiniscript_no_draft is for tests of
 // that. Others have room for both.
 #if (!defined(__AVR__) || defined(__AVR_ATmega2560__)) && !defined(tiniscript_no_draft)
@@ -105,6 +111,12 @@ constexpr bool kReadsDefs = true;
 #else
 constexpr bool kReadsDefs = false;
 #define tini_with_defs static
+#endif
+
+#if defined(tiniscript_reads_keys) && !defined(tiniscript_without_text)
+constexpr bool kReadsKeys = true;
+#else
+constexpr bool kReadsKeys = false;
 #endif
 
 #ifdef tiniscript_has_draft
