@@ -89,9 +89,10 @@ def _length_row(request: Message | None) -> str:
     if request is None:
         return "    {kUnknownRequest, 0},  // retired\n"
     lengths = _length_range(request.request)
-    if request.name in messages.OF_RADIO:
-        least, most = lengths.split(", ")
-        lengths = f"kHasTransports ? {least} : kUnknownRequest, kHasTransports ? {most} : 0"
+    for names, has in ((messages.OF_RADIO, "kHasTransports"), (messages.OF_REMOTE, "kHasRemote")):
+        if request.name in names:
+            least, most = lengths.split(", ")
+            lengths = f"{has} ? {least} : kUnknownRequest, {has} ? {most} : 0"
     return f"    {{{lengths}}},  // {request.name}\n"
 
 

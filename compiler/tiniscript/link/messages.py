@@ -279,7 +279,8 @@ MESSAGES = (
 )
 FIRST_ACTING = 6
 RETIRED = (10, 13)  # a request that is LF or CR on the wire could be the end of a line
-OF_RADIO = ("WIFI",)  # requests that only robots with WiFi know
+OF_RADIO = ("WIFI",)  # requests that only robots with WiFi know,
+OF_REMOTE = ("KEYS",)  # and only those with a remote control
 FIRST_EVENT = 32
 # Replies with the same fields share a type: its name, and its fields.
 SHARED_REPLIES = {

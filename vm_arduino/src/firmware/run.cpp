@@ -207,7 +207,11 @@ int32_t remote_reading(uint8_t number) {
 #endif
   const RemoteKeys* const said = link.remote();
   if (said == nullptr) return 0;
-  if (number < kRemoteKeys) return said->keys >> number & 1;
+  if (number < kRemoteKeys) {
+    uint8_t keys = said->keys;
+    for (; number != 0; number--) keys = static_cast<uint8_t>(keys >> 1);
+    return keys & uint8_t{1};
+  }
   return said->pad[number - kRemoteKeys] * int32_t{1000};
 }
 

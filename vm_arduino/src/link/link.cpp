@@ -241,7 +241,7 @@ tini_noinline void Link::handle(uint8_t end) {
   }
   said_.status = number_of(refusal);
   if (refusal == Answer::kOk) {
-    if (type >= kFirstActing && type != static_cast<uint8_t>(Message::kKeys)) {
+    if (type >= kFirstActing && (!kHasRemote || type != static_cast<uint8_t>(Message::kKeys))) {
       console_.drop();  // it may use the same memory
     }
     said_.status = answer(static_cast<Message>(type), payload, length);
@@ -262,6 +262,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       return set_wifi(payload, length);
 #endif
     case Message::kKeys:
+      if (!kHasRemote) break;
       found = hold(*reinterpret_cast<const RemoteKeys*>(payload));
       if (found == Answer::kOk) said_.detail = length;
       break;
@@ -349,9 +350,10 @@ Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
   return port_tune(*reinterpret_cast<const Tuning*>(payload), has_pace);
 }
 
+#ifdef tiniscript_has_remote
 // The newest word of a remote control counts, until kHoldMs are over.
 Answer Link::hold(const RemoteKeys& said) {
-  if (said.keys >> kRemoteKeys != 0) return Answer::kBadValue;
+  if (said.keys >= 1 << kRemoteKeys) return Answer::kBadValue;
   const int8_t* way = said.pad;
   do {
     if (static_cast<uint8_t>(*way + kMostPad) > 2 * kMostPad) return Answer::kBadValue;
@@ -360,6 +362,7 @@ Answer Link::hold(const RemoteKeys& said) {
   left_ms_[kHold] = kHoldMs;
   return Answer::kOk;
 }
+#endif
 
 uint8_t Link::hello(const uint8_t* payload) {
   const bool is_new = !is_open_ || !same_bytes(&nonce_, payload + kHelloNonceAt);

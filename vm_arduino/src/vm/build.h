@@ -39,9 +39,15 @@
 #define tiniscript_reads_defs
 #endif
 
-// Lines of text that are words of a remote control, KEY_A and the like: an ATmega328P has no room for
-// them. It takes KEYS.
-#ifdef tiniscript_reads_defs
+// A remote control takes about 250 bytes of flash and 39 of RAM. Of robots with an ATmega328P an Uno has
+// it where it has tasks; a Nano lacks the flash, a robot with discs the RAM.
+#if !defined(__AVR_ATmega328P__) || \
+    (defined(tiniscript_with_tasks) && !defined(tiniscript_with_discs))
+#define tiniscript_has_remote
+#endif
+
+// Lines of text that are its words, KEY_A and the like: an ATmega328P has no room for them.
+#if defined(tiniscript_has_remote) && defined(tiniscript_reads_defs)
 #define tiniscript_reads_keys
 #endif
 
@@ -113,10 +119,10 @@ constexpr bool kReadsDefs = false;
 #define tini_with_defs static
 #endif
 
-#if defined(tiniscript_reads_keys) && !defined(tiniscript_without_text)
-constexpr bool kReadsKeys = true;
+#ifdef tiniscript_has_remote
+constexpr bool kHasRemote = true;
 #else
-constexpr bool kReadsKeys = false;
+constexpr bool kHasRemote = false;
 #endif
 
 #ifdef tiniscript_has_draft
