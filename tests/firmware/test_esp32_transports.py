@@ -479,3 +479,35 @@ def test_lines_wait_while_what_they_are_answered_is_not_taken(make: Make) -> Non
     talk(robot, [(end, who)], 9000)
     assert b"lost" not in who.heard and who.heard.rstrip().endswith(b"// DONE")
     assert overrun(robot) == 0
+
+
+def pressing(robot: Esp32Robot, ends: Ends, who: Session, keys: int = 1) -> str:
+    return ended(robot, ends, who.press(keys))
+
+
+def test_keys_come_from_who_drives_or_from_anybody_where_nobody_does() -> None:
+    """They make nobody the driver."""
+    robot = booted()
+    first, second = session(1, robot), session(2, robot)
+    ends: Ends = [(None, first), (LowEnergy(robot), second)]
+    assert pressing(robot, ends, first) == "OK"
+    assert pressing(robot, ends, second, 2) == "OK"
+    assert uploaded(robot, ends, first) == "OK", "nobody was the driver"
+    assert pressing(robot, ends, second) == "OTHER_DRIVER"
+    assert pressing(robot, ends, first, 4) == "OK"
+    first.stop(robot.now_ms)
+    talk(robot, ends, AUTHORITY_MS + 500)
+    assert pressing(robot, ends, second) == "OK"
+    assert uploaded(robot, ends, first) == "OK", "nor is he who has pressed last"
+
+
+def test_keys_end_no_upload_of_somebody_else() -> None:
+    robot = booted()
+    first, second = session(1, robot), session(2, robot)
+    ends: Ends = [(None, first), (LowEnergy(robot), second)]
+    assert ended(robot, ends, second.hello()) == "OK"
+    long = first.upload(image_of("SI|" + "F(0.01, 80);" * 2500), saves=False)
+    said = 0
+    while long.outcome is None:
+        said += ended(robot, ends, second.press(1 + said % 2)) in ("OK", "OTHER_DRIVER")
+    assert long.outcome.status == 0 and said > 3

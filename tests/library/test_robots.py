@@ -42,6 +42,18 @@ def virtual() -> Iterator[tiniscript.VirtualRobotConnection]:
         yield robot
 
 
+def test_keys_are_pressed_and_others_are_refused(
+    virtual: tiniscript.VirtualRobotConnection,
+) -> None:
+    virtual.press("UP", "A", x=-100, y=100)
+    virtual.press()
+    for key in ("C", "up", "KEY_UP"):
+        with fails(tiniscript.UsageError, "bad_key"):
+            virtual.press(key)
+    with fails(tiniscript.UsageError, "bad_number"):
+        virtual.press(x=101)
+
+
 def test_a_program_runs_there_and_tells_what_it_shows(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:

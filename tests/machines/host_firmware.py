@@ -104,6 +104,10 @@ class HostFirmware(Process):
         """Let the sensors say so many thousandths."""
         self.ask(b"V", pack(f"<{len(readings)}i", *readings))
 
+    def remote(self) -> tuple[int, ...]:
+        """Return what a program would read: KEY_UP to KEY_B, PAD_X and PAD_Y."""
+        return unpack("<8i", self.ask(b"K", b""))
+
     def discs(self, cm: int, degrees: int, left: int = 0, right: int = 0) -> None:
         """Put discs on both wheels; what they go between two edges is as a robot's header says it.
 

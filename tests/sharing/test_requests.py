@@ -37,6 +37,7 @@ ASKED = (
     Asked("allow_text", (True,)), Asked("name", (b"A",)), Asked("name", (b"A" * 16,)),
     Asked("trim", (b"",)), Asked("trim", (b"\1\2\3",)), Asked("start", (True,)),
     Asked("live", (b"\x44", 7)), Asked("join", (HOME,)),
+    Asked("press", (0x3F, -100, 100, 0)), Asked("press", (0, 0, 0, 0)),
     Asked("join", (Network(b"N" * 32, b"p" * 63, True),)),
     Asked("join", (Network(b"N", b"p" * 8, False),)),
     Asked("use_broker", (BROKER,)), Asked("use_broker", (None,)), Asked("use_broker", (NAMED,)),
@@ -69,6 +70,8 @@ BAD: tuple[dict[str, Any], ...] = (
     of("join", Network(b"N", b"p" * 7, False)), of("join", Network(b"N", b"p" * 64, False)),
     of("join", Network(b"N\0", b"a password", False)),
     of("join", Network(b"N", b"a pass\0word", False)), of("join", HOME, is_access_point=None),
+    of("press", 0x40), of("press", -1), of("press", 1, 101), of("press", 0, 0, -101),
+    of("press", 1, x="1"), of("press", 1, y=None),
     of("use_broker", BROKER, port=0), of("use_broker", BROKER, port=1 << 16),
     of("use_broker", BROKER, address=""), of("use_broker", BROKER, password="61" * 64),
     *(of("use_broker", NAMED, **{key: value}) for key, value in (
@@ -98,3 +101,9 @@ def test_a_client_of_2_0_names_no_needs() -> None:
     session = Mock()
     asked_for(message, 700)(session)
     assert session.upload.call_args.args[0] == IMAGE
+
+
+def test_who_presses_keys_is_not_for_the_client_to_say() -> None:
+    session = Mock()
+    asked_for(of("press", 1, 0, 0, 9), 700, 2)(session)
+    assert session.press.call_args.args == (1, 0, 0, 2)

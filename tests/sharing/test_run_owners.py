@@ -19,7 +19,7 @@ from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.requests import OK, Reply
 from tiniscript.link.sharing import registry
-from tiniscript.link.sharing.requests import ClientRequests
+from tiniscript.link.sharing.requests import ClientRequest, ClientRequests
 from tiniscript.link.sharing.server import Server
 from tiniscript.link.sharing.shared_connection import SharedConnection, joined
 
@@ -182,3 +182,20 @@ def test_a_run_that_begins_while_its_server_leaves_is_stopped(
         client.close()
     assert line.stops == is_stopped
     assert line.is_closed
+
+
+def test_each_client_presses_keys_of_its_own_and_lets_go_when_it_leaves(
+    line: FakeLine, command: SharedConnection
+) -> None:
+    def pressed() -> list[tuple[object, object]]:
+        messages = [cast(ClientRequest[Any], each).message for each in line.asked]
+        return [(each["speaker"], each["keys"]) for each in messages]
+
+    command.do(lambda requests: requests.press(1))
+    until(lambda: len(line.asked) == 1, "the first word arrives")
+    with closing(cast(SharedConnection, joined(PORT, "live"))) as other:
+        other.do(lambda requests: requests.press(2))
+        until(lambda: len(line.asked) == 2, "the second word arrives")
+    until(lambda: len(line.asked) == 3, "the second client has left")
+    assert pressed() == [(1, 1), (2, 2), (2, 0)]
+    assert line.stops == 0 and line.halted == []

@@ -42,7 +42,7 @@ def header(command: str) -> str:
             "AGAIN_MS", "KEY_BYTES", "CHALLENGE_BYTES", "TAG_BYTES", "AUTHORITY_MS",
             "LONG_MS", "CLAIM_MS", "FORGET_MS", "NETWORK_BYTES",
             "WIFI_TEXT_BYTES", "PASSWORD_BYTES", "LEAST_PASSWORD", "CLASS_BYTES",
-            "BROKER_PLACE_BYTES", "BROKER_NAME_BYTES", "TRUST_BYTES",
+            "BROKER_PLACE_BYTES", "BROKER_NAME_BYTES", "TRUST_BYTES", "MOST_PAD", "HOLD_MS",
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),
@@ -93,9 +93,10 @@ def _length_row(request: Message | None) -> str:
     if request is None:
         return "    {kUnknownRequest, 0},  // retired\n"
     lengths = _length_range(request.request)
-    if request.name in messages.OF_RADIO:
-        least, most = lengths.split(", ")
-        lengths = f"kHasTransports ? {least} : kUnknownRequest, kHasTransports ? {most} : 0"
+    for names, has in ((messages.OF_RADIO, "kHasTransports"), (messages.OF_REMOTE, "kHasRemote")):
+        if request.name in names:
+            least, most = lengths.split(", ")
+            lengths = f"{has} ? {least} : kUnknownRequest, {has} ? {most} : 0"
     return f"    {{{lengths}}},  // {request.name}\n"
 
 

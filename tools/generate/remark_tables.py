@@ -80,14 +80,14 @@ def rows(language: str, is_small: bool = False) -> list[str]:
 def _unsaid() -> set[tuple[str, str]]:
     """Return what a robot of the smallest level never says.
 
-    Its own level is the only one, it has no place for words that it does not read, and with discs
-    on its wheels it reads no text.
+    Its own level is the only one, it has no place for words that it does not read, nor for lines of
+    keys, and with discs on its wheels it reads no text.
     """
     levels = {("remark", f"LEVEL_{name.upper()}") for name in LEVELS if name != SMALLEST}
     assert "DEF" in LEVELS[SMALLEST].lacks
     words = {("problem", name) for name in OF_DEFS}
     faults = {("fault", name) for _, name, _ in FAULTS if name.startswith("STUCK")}
-    return levels | words | faults
+    return levels | words | faults | {("remark", "NO_KEYS")}
 
 
 def texts(command: str) -> str:

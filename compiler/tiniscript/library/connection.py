@@ -28,10 +28,12 @@ from tiniscript.library.refusing import refusal
 from tiniscript.library.runs import whole, within
 from tiniscript.link import known_ports, ports
 from tiniscript.link.connection import Requester
-from tiniscript.link.messages import STATE_RUNNING
+from tiniscript.link.messages import MOST_PAD, REMOTE_KEYS, STATE_RUNNING
 from tiniscript.link.names import saved_name
-from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import CANCELLED, LOST, Event
 from tiniscript.link.payloads import ReceiptReply
+from tiniscript.link.remote import pressed
+from tiniscript.link.requests import OK
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory
 
@@ -219,6 +221,25 @@ class RobotConnection:
             raise RobotError("still_running", self.language, {"seconds": f"{timeout:g}"})
         self._await_saving()
         return self._ending
+
+    def press(self, *keys: str, x: int = 0, y: int = 0) -> None:
+        """Hold these keys of a remote control ("UP", "DOWN", "LEFT", "RIGHT", "A", "B") and its pad
+        so, in percent to the right and up, and nothing else.
+
+        It counts for half a second: press anew before. Without keys all are let go. Returns when
+        the robot has it, or has not answered in time. Raises RobotError where it takes none.
+        """
+        self._check_open()
+        for way, percent in (("x", x), ("y", y)):
+            whole(way, percent, -MOST_PAD, MOST_PAD, self.language)
+        for key in keys:
+            if key not in REMOTE_KEYS:
+                values = {"found": printable(repr(key)), "known": ", ".join(REMOTE_KEYS)}
+                raise UsageError("bad_key", self.language, values)
+        held = pressed(keys, x, y)
+        reply = self._client.wait(self._client.do(lambda session: session.press(*held)))
+        if reply.status not in (OK, CANCELLED, LOST):
+            raise self._client.failure(reply)
 
     def stop(self) -> None:
         """Stop the robot now; return when it has confirmed the stop. Raises StopNotConfirmed."""

@@ -99,6 +99,14 @@ class Requester:
     def fetch(self) -> PendingRequest[FetchedImage]:
         return self._ask("fetch", FetchedImage)
 
+    def press(
+        self, keys: int = 0, x: int = 0, y: int = 0, speaker: int = 0
+    ) -> PendingRequest[EmptyReply]:
+        """Hold these keys of a remote control (a bit for each of REMOTE_KEYS) and its pad so, and
+        nothing else. Who has said nothing for half a second holds nothing: say it anew before.
+        """
+        return self._ask("press", EmptyReply, keys=keys, x=x, y=y, speaker=speaker)
+
     def identify(self) -> PendingRequest[EmptyReply]:
         return self._ask("identify", EmptyReply)
 

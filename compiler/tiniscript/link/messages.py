@@ -126,10 +126,12 @@ MODES = (
 
 # What a robot is able to do and who may drive it, in one number of the reply to HELLO. A robot whose
 # firmware is older has 0.
-TEXT_LEVEL, PLACES, OWNERS, OWNED, TEXT_ALLOWED = 0x0003, 0x0008, 0x0010, 0x0020, 0x0040
+TEXT_LEVEL, REMOTE, PLACES, OWNERS, OWNED = 0x0003, 0x0004, 0x0008, 0x0010, 0x0020
+TEXT_ALLOWED = 0x0040
 YOURS, BY_TEACHER, SEALS, WIFI_RESTS = 0x0080, 0x0100, 0x0200, 0x0400
 FEATURES = (
     (TEXT_LEVEL, "TEXT_LEVEL", "Which level of text the robot reads, a number of the table below."),
+    (REMOTE, "REMOTE", "Its programs read KEY_UP and what else a remote control says: KEYS."),
     (PLACES, "PLACES", "It reports where its program is when PING asks."),
     (OWNERS, "OWNERS", "The robot knows owners."),
     (OWNED, "OWNED", "It has an owner."),
@@ -147,6 +149,11 @@ FEATURES = (
         "Its WiFi is off, after three restarts in a row soon after WiFi began.",
     ),
 )
+# What a remote control says: the keys that are held, a bit for each, and where its pad is, in percent
+# to the right and up. It counts for so long: an older word of a client that has gone moves nothing.
+REMOTE_KEYS = ("UP", "DOWN", "LEFT", "RIGHT", "A", "B")
+MOST_PAD = 100
+HOLD_MS = 500
 # The keys of a robot: `which` of CLAIM and AUTHENTICATE.
 KEYS = (
     (
@@ -220,6 +227,7 @@ def _message(number: int, name: str, acts: bool, request: str, reply: str, meani
 # The robot's memory has these records too: `port.h`.
 _IDENTITY = "kit:u16 id:u32 nonce:u32 features:u16 reset:u8"
 _STATUS = "state:u8 run:u8 program:u32 length:u16 slot:u8 saved:u8 fault:u8 fault_at:u16 fault_program:u32"
+_PULSE = f"state:u8 run:u8 place:rest=0..{PLACE_BYTES}"
 _RECEIPT = "program:u32 run:u8 slot:u8 saved:u8"
 
 # fmt: off
@@ -229,7 +237,7 @@ MESSAGES = (
              "major:u8 minor:u8 isa_major:u8 isa_minor:u8 largest:u8 window:u8 " + _IDENTITY + " room:u16 "
              + _STATUS + " name:rest=0..16",
              "Begins a session. The same `nonce` again is the same session."),
-    _message(2, "PING", False, "asks:rest=0..1", f"state:u8 run:u8 place:rest=0..{PLACE_BYTES}",
+    _message(2, "PING", False, "asks:rest=0..1", _PULSE,
              "Are you there? Also the heartbeat. With any byte: and where is your program?"),
     _message(3, "STATUS", False, "",
              _STATUS + f" damaged:u8 dropped:u8 framing:u8 overrun:u8 noise:rest=0..{NOISE_BYTES}",
@@ -262,6 +270,8 @@ MESSAGES = (
     _message(22, "BEGIN", True, "mode:u8 isa_major:u8 isa_minor:u8 start:u8 header_length:u8 devices:u16 code_length:u16",
              "next:u16", "Begins a longer program: what its image's header says before its checksum."),
     _message(23, "ABORT", True, "", "", "Drops the program that was begun."),
+    _message(24, "KEYS", True, "keys:u8 x:i8 y:i8", _PULSE,
+             "What a remote control says now: a bit for each key that is held, and its pad. Also a heartbeat."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", f"value:i32 is_yes_no:u8 place:rest=0..{SHOW_PLACE_BYTES}",
              "A value that a program shows. `place`: its run, and where its SHOW is."),
@@ -272,10 +282,12 @@ MESSAGES = (
 )
 FIRST_ACTING = 6
 RETIRED = (10, 13)  # a request that is LF or CR on the wire could be the end of a line
-OF_RADIO = ("WIFI",)  # requests that only robots with WiFi know
+OF_RADIO = ("WIFI",)  # requests that only robots with WiFi know,
+OF_REMOTE = ("KEYS",)  # and only those with a remote control
 FIRST_EVENT = 32
 # Replies with the same fields share a type: its name, and its fields.
 SHARED_REPLIES = {
+    "PingReply": _fields(_PULSE, STATUS_BYTES),
     "ReceiptReply": _fields(_RECEIPT),
     "NextReply": _fields("next:u16"),
     "EmptyReply": (),
@@ -311,6 +323,7 @@ STATUSES = {
     "OTHER_DRIVER": 91,
     "UNOWNED": 92,
     "UNREADABLE": 93,
+    "NO_REMOTE": 94,
 }
 # The meaning of the number after a status other than OK. Statuses not listed here have 0.
 DETAILS = {

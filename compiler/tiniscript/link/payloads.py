@@ -32,7 +32,7 @@ class HelloReply(NamedTuple):
 
 
 class PingReply(NamedTuple):
-    """What is in the reply to PING."""
+    """What is in the reply to PING, KEYS."""
 
     state: int
     run: int
@@ -183,4 +183,5 @@ REPLIES: dict[str, type[SentReply]] = {
     "WIFI": WifiReply,
     "BEGIN": NextReply,
     "ABORT": EmptyReply,
+    "KEYS": PingReply,
 }

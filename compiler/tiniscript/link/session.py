@@ -66,6 +66,7 @@ from tiniscript.link.payloads import (
     StoppedEvent,
 )
 from tiniscript.link.receiver import Receiver
+from tiniscript.link.remote import Pressed, RemoteControl, has_remote
 from tiniscript.link.requests import (
     OK,
     TAKEN,
@@ -92,9 +93,10 @@ MOST_SHOWN = 5  # times that a key is shown again for one request
 _STALE = STATUSES["STALE"]
 _WAITING = (STATUSES["BUSY"], STATUSES["HOLD_BUTTON"])  # asked again: the robot is not ready
 _BY_SEQUENCE, _BY_MESSAGE = 1, 2  # causes of a stopped robot: the stop sequence, STOP
-_PREPARING = ("STOP", "CLEAR", "AUTHENTICATE", "BEGIN", "DATA", "ABORT")
+_PREPARING = ("STOP", "CLEAR", "AUTHENTICATE", "BEGIN", "DATA", "ABORT", "KEYS")
 _DOING = [each.name for each in MESSAGES
           if FIRST_ACTING <= each.number < FIRST_EVENT and each.name not in _PREPARING]  # fmt: skip
+_HEARTBEATS = ("PING", "KEYS")
 _STARTING = ("PROGRAM", "COMMIT", "LIVE", "START")  # a run may begin with each
 _END_RUNS = ("upload", "live", "start", "undo")  # a robot ends what runs when it hears of them
 T = TypeVar("T")
@@ -111,12 +113,14 @@ class PendingExchange(PendingRequest[T]):
         is_own: bool = False,
         ends_runs: bool = False,
         halts: bool = False,
+        presses: bool = False,
     ) -> None:
         self.limit_ms, self.starts, self.ends_runs = limit_ms, starts, ends_runs
         self.exchange = exchange
         self.deadline_ms = 0
         self.is_own = is_own  # made by the session itself
         self.halts = halts  # the run of a client that has gone
+        self.presses = presses  # keys of a remote control
         self.is_void = False  # it was asked for before a stop: nothing more of it is done
         self.answered_ms = 0  # when the robot has answered last
         self.waits_for = 0  # the robot's last answer, where it was one of _WAITING, or 0
@@ -127,12 +131,13 @@ class PendingExchange(PendingRequest[T]):
 
     @property
     def wanted(self) -> PendingExchange[Any]:
-        """The exchange itself, or the one for which a key is shown or a run is ended first."""
+        """The exchange itself, or the one before which something else is done first."""
         return self if self.resumes is None else self.resumes.pending
 
 
 class Interrupted(NamedTuple):
-    """An exchange whose request goes on when a key was shown again, or a run is ended."""
+    """An exchange whose request goes on when a key was shown again, or a run is ended, or keys
+    were pressed."""
 
     pending: PendingExchange[Any]
     transmission: Transmission
@@ -165,6 +170,9 @@ class Session(Requester):
         self._stop = StopSequence()
         self._is_lost = False  # the link is, and nothing was sent since
         self._talked_ms = 0  # when something was sent, or while nothing runs, answered
+        self._unheard_ms: int | None = None  # since when no heartbeat is answered
+        self._remote = RemoteControl()
+        self._has_pressed = False  # last, so what waits has its turn
         self._sealing = Sealing()
         self._state = RobotState()
         self._handshake = Handshake(nonce, kit, isa, self._state, keys, lambda: self._epoch, place)
@@ -261,6 +269,7 @@ class Session(Requester):
         if self._is_lost and now_ms < self._talked_ms + SILENT_MS:
             return b""
         self._is_lost = False
+        self._press_next(now_ms)
         if not self._transmission.is_under_way:
             self._next_pending(now_ms)
         if not self._transmission.is_under_way:
@@ -271,6 +280,9 @@ class Session(Requester):
             return b""
         if not self._transmission.is_due(now_ms):
             return b""
+        if self._transmission.is_of("KEYS"):
+            keys = BY_NAME["KEYS"].request
+            self._transmission.fill(written(keys, self._remote.say(now_ms)))
         seal = self._transmission.seal
         if seal is not None and seal.is_spent:
             self._authenticate_again(now_ms)
@@ -279,6 +291,8 @@ class Session(Requester):
             self._lose(now_ms)
             return b""
         self._talked_ms = now_ms
+        if self._unheard_ms is None and any(map(self._transmission.is_of, _HEARTBEATS)):
+            self._unheard_ms = now_ms
         if any(map(self._transmission.is_of, _DOING)):
             self._pending.is_midway = True
         if seal is not None:
@@ -289,13 +303,17 @@ class Session(Requester):
         """Return when to call `poll` next if nothing arrives, or None."""
         if self._stop.due_ms is not None:
             return self._stop.due_ms
+        if self._is_lost and (self._waiting or self._remote.due_ms() is not None):
+            return self._talked_ms + SILENT_MS
+        times = [self._remote.due_ms() if self._may_press() else None]
         if self._transmission.is_under_way:
             assert self._pending
-            return min(self._transmission.due_ms, self._pending.deadline_ms)
-        if self._waiting:
-            return self._talked_ms + SILENT_MS if self._is_lost else 0
-        heartbeat_ms = self._heartbeat_ms()
-        return None if heartbeat_ms is None else self._talked_ms + heartbeat_ms
+            times += [self._transmission.due_ms, self._pending.deadline_ms]
+        elif self._waiting:
+            return 0
+        elif (heartbeat_ms := self._heartbeat_ms()) is not None:
+            times.append(self._talked_ms + heartbeat_ms)
+        return min((each for each in times if each is not None), default=None)
 
     def events(self) -> list[Event]:
         """Return the events since the last call. Values wait until the robot has said which program
@@ -311,14 +329,69 @@ class Session(Requester):
 
     # -- what is sent -----------------------------------------------------------------------------
 
+    def _may_press(self) -> bool:
+        """Whether keys may be pressed before what is sent next, or in place of a heartbeat. They do
+        not overtake a frame that is under way, which would be out of turn when it is sent again.
+        """
+        pending = self._pending
+        if pending is None or self._is_heartbeat():
+            return not (self._waiting and self._has_pressed)
+        if pending.resumes is not None or pending.presses:
+            return False
+        return not self._transmission.is_sent and not self._transmission.is_of("AUTHENTICATE")
+
+    def _is_heartbeat(self) -> bool:
+        """Whether a heartbeat is under way, or keys, before which nothing else is."""
+        pending = self._pending
+        is_alone = pending is not None and pending.is_own and pending.resumes is None
+        return is_alone and any(map(self._transmission.is_of, _HEARTBEATS))
+
+    def _press_next(self, now_ms: int) -> None:
+        """Send what is held now, if that is due; a word that was not answered is not sent again."""
+        if self._transmission.is_of("KEYS") and self._transmission.is_late(now_ms):
+            self._trips.double()
+            self._remote.miss()
+            self._end_press()
+        if not self._may_press() or not self._remote.is_due(now_ms):
+            return
+        keys = self._handshake.open_then(self._keys)
+        press = PendingExchange(keys, DEAF_MS, is_own=True, presses=True)
+        if self._pending is not None and not self._is_heartbeat():
+            press.resumes = Interrupted(self._pending, self._transmission)
+        self._pending, self._has_pressed = press, True
+        press.deadline_ms = self._deaf_at(now_ms)
+        self._advance(None, now_ms)
+
+    def _keys(self) -> Exchange[PingReply]:
+        """Send what is held: `poll` says what that is."""
+        assert self.robot
+        if not has_remote(self.robot):
+            return Reply(STATUSES["NO_REMOTE"])
+        return (yield from single(Request("KEYS", self._remote.word()), PingReply))
+
+    def _end_press(self) -> None:
+        """Go on with what was under way before a key was pressed."""
+        assert self._pending
+        resumes, self._pending = self._pending.resumes, None
+        self._transmission.end()
+        if resumes is not None:
+            self._go_on(resumes)
+
+    def _deaf_at(self, now_ms: int) -> int:
+        """Return when the link is lost, if no heartbeat is answered before."""
+        if now_ms - self._talked_ms > 2 * HEARTBEAT_MS:
+            self._unheard_ms = None  # nothing was sent for a while
+        return (now_ms if self._unheard_ms is None else self._unheard_ms) + DEAF_MS
+
     def _next_pending(self, now_ms: int) -> None:
         if self._waiting:
-            self._pending = self._waiting.popleft()
+            self._pending, self._has_pressed = self._waiting.popleft(), False
         else:
             heartbeat_ms = self._heartbeat_ms()
             if heartbeat_ms is None or now_ms < self._talked_ms + heartbeat_ms:
                 return
-            self._pending = PendingExchange(self._heartbeat(), DEAF_MS, is_own=True)
+            limit_ms = self._deaf_at(now_ms) - now_ms
+            self._pending = PendingExchange(self._heartbeat(), limit_ms, is_own=True)
         self._pending.deadline_ms = now_ms + self._pending.limit_ms
         self._advance(None, now_ms)
 
@@ -355,10 +428,12 @@ class Session(Requester):
     ) -> None:
         self._pending = None
         self._transmission.end()
+        if pending.presses:
+            self._remote.answer(outcome)
         if pending.resumes is None:
             self._finish(pending, outcome)
             self._end_orphan(now_ms)
-        elif pending.halts:
+        elif pending.halts or pending.presses:
             self._go_on(pending.resumes)
         else:
             self._resume(pending.resumes, outcome, now_ms)
@@ -396,8 +471,11 @@ class Session(Requester):
         """
         pending, transmission = self._pending, self._transmission
         assert pending
-        pending.shown += 1
         self._sealing.seal = None
+        if transmission.is_of("KEYS"):
+            self._end_press()  # it is not said again: before the next word a key is shown
+            return
+        pending.shown += 1
         self._transmission = Transmission(self._trips)
         if pending.shown > MOST_SHOWN:  # told to its exchange, that might do it again
             pending.exchange.close()
@@ -475,7 +553,7 @@ class Session(Requester):
 
     def _lose_seal(self, frame: Frame, now_ms: int) -> None:
         """The robot does not know our seal. Anybody may say so: nothing is done twice for that."""
-        if self._pending:
+        if self._pending and not self._pending.presses:
             self._pending.wanted.may_be_done = True
         if frame.epoch == self._epoch:
             self._authenticate_again(now_ms)
@@ -487,6 +565,8 @@ class Session(Requester):
 
     def _take_reply(self, frame: Frame, now_ms: int) -> None:
         if not self._transmission.is_answered_by(frame):
+            if frame.is_sealed or self._sealing.seal is None:
+                self._note_late(frame)
             return  # a second answer
         if self._transmission.seal is not None and not frame.is_sealed:
             self._lose_seal(frame, now_ms)
@@ -499,6 +579,7 @@ class Session(Requester):
         if self._pending and reply.status not in (OK, *TAKEN):
             self._pending.is_midway = False  # it was refused
         self._transmission.learn(frame, now_ms)
+        self._unheard_ms = None
         if not self.is_running:
             self._talked_ms = now_ms  # who asks again after an answer finds the line free
         if (
@@ -536,6 +617,12 @@ class Session(Requester):
         if self._state.is_cut:
             self._state.is_cut = False
             self._events.append(RestartedEvent())
+
+    def _note_late(self, frame: Frame) -> None:
+        """An answer to an earlier word of a remote control: the robot is there."""
+        if frame.number == BY_NAME["KEYS"].number:
+            self._unheard_ms = None
+            self._remote.hear()
 
     # An epoch ends with a stop, a fault or a reset, or when another session begins. A stop alone
     # voids what was asked for before it.
@@ -591,6 +678,7 @@ class Session(Requester):
 
     def _void(self) -> None:
         """The robot was stopped: do nothing that was asked for before. Questions are answered."""
+        self._remote.let_go()
         for waiting in self._waiting:
             waiting.wanted.is_void = True
         if self._pending is not None:
@@ -758,6 +846,11 @@ class Session(Requester):
 
     # -- exchanges --------------------------------------------------------------------------------
 
+    def press(
+        self, keys: int = 0, x: int = 0, y: int = 0, speaker: int = 0
+    ) -> PendingRequest[EmptyReply]:
+        return self._remote.press(speaker, Pressed(keys, x, y))
+
     def _ask(
         self, name: str, kind: type[T], starts: bool = False, /, **given: object
     ) -> PendingExchange[T]:
@@ -805,6 +898,7 @@ class Session(Requester):
             with suppress(StopIteration):  # nothing of it is under way: it learns that
                 pending.exchange.send(Reply(CANCELLED))
         self._transmission.end()
+        self._unheard_ms = None
         pending.outcome = Reply(pending.waits_for if is_there else LOST)
         if pending.is_own:
             self._close()
@@ -818,6 +912,7 @@ class Session(Requester):
         man's time goes by, from the last frame on.
         """
         self._is_lost = True
+        self._remote.let_go(LOST)
         self._handshake.is_open = False
         self._state.clear()
         self._events.append(LostEvent())
@@ -829,6 +924,8 @@ class Session(Requester):
             wanted.outcome = Reply(status, MIDWAY if is_midway else 0)
         self._pending = self._orphan = self._handshake.doubted = None
         self._transmission.end()
+        self._unheard_ms = None
+        self._remote.let_go(status)
         self._cancel_waiting(status)
 
     def _cancel_waiting(self, status: int) -> None:

@@ -71,6 +71,11 @@ class Transmission:
             )
             self.epoch = epoch
 
+    def fill(self, payload: bytes) -> None:
+        """Send this, of which no byte was sent."""
+        assert self.frame is not None and not self.is_sent
+        self.frame = self.frame._replace(payload=payload)
+
     def end(self) -> None:
         self.frame = None
 
@@ -84,6 +89,10 @@ class Transmission:
 
     def is_due(self, now_ms: int) -> bool:
         return self.is_under_way and now_ms >= self.due_ms
+
+    def is_late(self, now_ms: int) -> bool:
+        """Return whether its answer has not come in time."""
+        return self.is_sent and self.is_due(now_ms)
 
     def is_answered_by(self, frame: Frame) -> bool:
         """Return whether a reply belongs to this request; others are repeated answers."""

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../../src/firmware/firmware.h"
+#include "../../src/firmware/remote.h"
 #include "../../src/firmware/trim.h"
 #include "../../src/link/frames.h"
 #include "../../src/robot.h"
@@ -232,6 +233,13 @@ void answer_codes(RequestReader*, Writer* answer) {
   table.codes.clear();
 }
 
+// K: what a program would read of a remote control.
+void answer_remote(RequestReader*, Writer* answer) {
+  for (uint8_t k = 0; k < kRemoteReadings; k++) {
+    answer->u32(static_cast<uint32_t>(remote_reading(k)));
+  }
+}
+
 // G: puts discs on both wheels; they stand somewhere, in thousandths of the way between two edges.
 void answer_discs(RequestReader* request, Writer*) {
   table.discs.cm = request->u32();
@@ -399,6 +407,7 @@ const Answers answers = {
     {'C', answer_codes},
     {'T', answer_trim},
     {'G', answer_discs},
+    {'K', answer_remote},
     {'O', answer_wheels},
     {'H', answer_held},
 };

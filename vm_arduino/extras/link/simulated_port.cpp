@@ -148,6 +148,7 @@ uint8_t* port_text_room(uint16_t* room) {
 }
 
 bool port_may_prepare_upload(bool) { return !port.is_busy; }
+bool port_reads_keys() { return false; }
 
 bool port_text_is_beside(bool) { return false; }
 

@@ -76,6 +76,8 @@ void firmware_await_stop(Transport transport, bool is_there) {
 
 Answer port_may_drive(uint8_t type) { return link.may_drive(type); }
 
+bool port_may_press() { return link.may_press(); }
+
 #else
 
 void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {

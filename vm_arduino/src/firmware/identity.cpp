@@ -35,7 +35,8 @@ void begin_identity(const BootInfo& boot_info) {
   identity.kit = board_kit();
   identity.nonce = boot_info.seed;
   identity.reset = boot_info.reset;
-  identity.features = static_cast<uint8_t>(kRobotTextLevel) | kPlaces;
+  identity.features =
+      static_cast<uint8_t>(kRobotTextLevel) | (kHasRemote ? kRemote : 0) | kPlaces;
   device_info.sensors = board_sensors();
   device_info.actuators = board_actuators();
 }

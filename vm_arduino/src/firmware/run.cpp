@@ -11,6 +11,7 @@
 #include "guide.h"
 #include "persistence.h"
 #include "program.h"
+#include "remote.h"
 #include "state.h"
 #include "trim.h"
 
@@ -24,6 +25,9 @@ Flag<Bit::kMayStart>
     may_start;  // the button is down and nothing ran or was stopped since: its release starts
 Flag<Bit::kStartDue> is_start_due;  // the button was released, but the program was not available
 bool has_motors_on;
+#ifdef tiniscript_reads_keys
+bool reads_keys;  // the program that runs has read some
+#endif
 Flag<Bit::kPrepared> is_prepared;  // machine and board are reset for a program
 
 // Records a fault.
@@ -77,6 +81,10 @@ void begin_run(const uint8_t* image) {
   run_image = image;
   is_start_due = false;
   may_start = false;
+  link.let_go();
+#ifdef tiniscript_reads_keys
+  reads_keys = false;
+#endif
   guide_begin();
   robot_status.state = State::kRunning;
   robot_status.run++;
@@ -190,6 +198,24 @@ bool firmware_runs(Place* place) {
 }
 
 // -- what a program asks ------------------------------------------------------------------------
+
+#ifdef tiniscript_reads_keys
+bool port_reads_keys() { return reads_keys && is_running(); }
+#endif
+
+int32_t remote_reading(uint8_t number) {
+#ifdef tiniscript_reads_keys
+  reads_keys = true;
+#endif
+  const RemoteKeys* const said = link.remote();
+  if (said == nullptr) return 0;
+  if (number < kRemoteKeys) {
+    uint8_t keys = said->keys;
+    for (; number != 0; number--) keys = static_cast<uint8_t>(keys >> 1);
+    return keys & uint8_t{1};
+  }
+  return said->pad[number - kRemoteKeys] * int32_t{1000};
+}
 
 #ifdef tiniscript_has_discs
 

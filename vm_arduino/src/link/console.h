@@ -10,6 +10,7 @@
 
 #include "../text/reader.h"
 #include "../text/remarks.h"
+#include "key_line.h"
 #include "receiver.h"
 
 namespace tiniscript {
@@ -17,8 +18,8 @@ namespace tiniscript {
 class Console {
  public:
   // What a line asks of the link: to stop the robot, to end what runs, to start the program that
-  // was read.
-  enum class Act : uint8_t { kNone, kStop, kEnd, kStart };
+  // was read, to hold keys.
+  enum class Act : uint8_t { kNone, kStop, kEnd, kStart, kHold };
 
   // Passes the time. `silence_left_ms`: until a second has passed without a byte of any kind, or 0.
   void pass(uint16_t passed_ms, uint16_t silence_left_ms);
@@ -59,6 +60,12 @@ class Console {
   // The program that was read: its image, without a header.
   const Reader& reader() const { return reader_; }
   uint8_t* image() const { return image_; }
+
+#ifdef tiniscript_reads_keys
+  // The keys to hold. Who presses some is told once that no program `reads` them.
+  const RemoteKeys& keys() const { return keys_; }
+  void note_keys(bool reads, bool is_heard);
+#endif
 
   // Sets the answer that is due. Writes it as a line of at most kWireBytes and returns its length.
   void say(Remark remark) { remark_ = remark; }
@@ -116,6 +123,14 @@ class Console {
   bool is_silent_;     // a second has passed
   bool is_due_;
   bool has_mark_;      // a typed stop waits behind
+#ifdef tiniscript_reads_keys
+  bool take_keys();
+
+  KeyLine key_line_;
+  RemoteKeys keys_;
+  uint16_t before_ms_;   // the patience that was left when this line began
+  bool has_told_keys_;
+#endif
   Reader reader_;
 };
 

@@ -241,7 +241,9 @@ tini_noinline void Link::handle(uint8_t end) {
   }
   said_.status = number_of(refusal);
   if (refusal == Answer::kOk) {
-    if (type >= kFirstActing) console_.drop();  // it may use the same memory
+    if (type >= kFirstActing && (!kHasRemote || type != static_cast<uint8_t>(Message::kKeys))) {
+      console_.drop();  // it may use the same memory
+    }
     said_.status = answer(static_cast<Message>(type), payload, length);
   }
   if ((is_next && keeps_answer(type)) || (is_hello && said_.status == kIsFine)) {
@@ -259,6 +261,11 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
 #ifdef tiniscript_transports
       return set_wifi(payload, length);
 #endif
+    case Message::kKeys:
+      if (!kHasRemote) break;
+      found = hold(*reinterpret_cast<const RemoteKeys*>(payload));
+      if (found == Answer::kOk) said_.detail = length;
+      break;
     case Message::kPing:
       said_.detail = length;
       break;
@@ -342,6 +349,20 @@ Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
   if (!has_pace && length != sizeof(Trim)) return Answer::kBadLength;
   return port_tune(*reinterpret_cast<const Tuning*>(payload), has_pace);
 }
+
+#ifdef tiniscript_has_remote
+// The newest word of a remote control counts, until kHoldMs are over.
+Answer Link::hold(const RemoteKeys& said) {
+  if (said.keys >= 1 << kRemoteKeys) return Answer::kBadValue;
+  const int8_t* way = said.pad;
+  do {
+    if (static_cast<uint8_t>(*way + kMostPad) > 2 * kMostPad) return Answer::kBadValue;
+  } while (++way != said.pad + 2);
+  remote_ = said;
+  left_ms_[kHold] = kHoldMs;
+  return Answer::kOk;
+}
+#endif
 
 uint8_t Link::hello(const uint8_t* payload) {
   const bool is_new = !is_open_ || !same_bytes(&nonce_, payload + kHelloNonceAt);

@@ -12,6 +12,7 @@
 #include "../vm/build.h"
 #include "frames.h"
 #include "messages.h"
+#include "port.h"
 #include "receiver.h"
 #include "seal.h"
 
@@ -86,6 +87,17 @@ class Link {
   // Whether the run ends when no frame arrives.
   bool is_attached() const { return is_attached_; }
 
+  // What the remote control of this session says, or nullptr: nothing that still counts. It lets all
+  // go, and for how long it counts.
+#ifdef tiniscript_has_remote
+  const RemoteKeys* remote() const { return left_ms_[kHold] != 0 ? &remote_ : nullptr; }
+  void let_go() { left_ms_[kHold] = 0; }
+  uint16_t remote_ms() const { return left_ms_[kHold]; }
+#else
+  static const RemoteKeys* remote() { return nullptr; }
+  static void let_go() {}
+#endif
+
   // Ends the authority of the session.
   void expire();
 
@@ -119,6 +131,7 @@ class Link {
   void give_way() {
     image_ = nullptr;
     is_attached_ = is_ready_ = false;
+    let_go();
     console_.drop();
   }
 
@@ -158,9 +171,9 @@ class Link {
 
   // Times that run down to 0: until a client without frames no longer counts as listening, until
   // STOPPED is sent again, until a second of silence has passed, until text may follow the last
-  // frame; and, as `kListen`, since a sealed frame.
-  enum Time : uint8_t { kListen, kAgain, kSilence, kFrameSent, kSealHeard };
-  static constexpr uint8_t kTimes = kMaySeal ? kSealHeard + 1 : kSealHeard;
+  // frame, until the remote control says nothing any more; and, as `kListen`, since a sealed frame.
+  enum Time : uint8_t { kListen, kAgain, kSilence, kFrameSent, kHold, kSealHeard };
+  static constexpr uint8_t kTimes = kMaySeal ? kSealHeard + 1 : kHasRemote ? kSealHeard : kHold;
 
   // Rights of the session, one bit each: it has a challenge, it has asked for a claim, the button
   // has confirmed that. And the robot was stopped with the teacher's key.
@@ -192,6 +205,11 @@ class Link {
   void handle(uint8_t end);
   uint8_t answer(Message message, const uint8_t* payload, uint8_t length);
   Answer set_trim(const uint8_t* payload, uint8_t length);
+#ifdef tiniscript_has_remote
+  Answer hold(const RemoteKeys& said);
+#else
+  static Answer hold(const RemoteKeys&) { return Answer::kOk; }
+#endif
   uint8_t hello(const uint8_t* payload);
   uint8_t take_short(bool is_live, const uint8_t* payload, uint8_t length);
   uint8_t fill(Use use, const uint8_t* payload, uint8_t length);
@@ -348,6 +366,9 @@ class Link {
 #endif
 #ifdef tiniscript_transports
   bool has_halted_;
+#endif
+#ifdef tiniscript_has_remote
+  RemoteKeys remote_;  // what the remote control has said last
 #endif
   uint32_t nonce_;  // of the session
   uint8_t challenge_[kChallengeBytes];

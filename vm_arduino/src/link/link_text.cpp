@@ -29,6 +29,12 @@ void Link::talk() {
   if (act == Console::Act::kStop) halt(Cause::kText);
   if (act == Console::Act::kEnd) port_end();
   if (act == Console::Act::kStart) console->say(start_text(*console));
+#ifdef tiniscript_reads_keys
+  if (act == Console::Act::kHold) {
+    if (port_may_press()) hold(console->keys());
+    console->note_keys(port_reads_keys(), is_listened_to());
+  }
+#endif
   due_ &= static_cast<uint8_t>(~kDueText);
   if (console->has_answer()) due_ |= kDueText;
 }

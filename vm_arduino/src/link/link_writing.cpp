@@ -134,6 +134,7 @@ void Link::reply() {
       describe();
       break;
     case Message::kPing:
+    case Message::kKeys:
       put_all(&robot_status, kPulseBytes);
       if (byte_of(said_.detail) != 0 && robot_status.state == State::kRunning) {
         put16(port_run_at());

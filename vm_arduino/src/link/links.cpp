@@ -154,6 +154,18 @@ bool Links::confirm_claim() {
   return found != nullptr && found->confirm_claim();
 }
 
+void Links::let_go() {
+  for (Link& link : links_) link.let_go();
+}
+
+const RemoteKeys* Links::remote() const {
+  const Link* found = links_;
+  for (const Link& link : links_) {
+    if (link.remote_ms() > found->remote_ms()) found = &link;
+  }
+  return found->remote();
+}
+
 bool Links::show(int32_t value, bool is_yes_no) {
   uint8_t place = driver_;
   for (uint8_t each = 0; place == kNobody && each < kTransports; each++) {
@@ -216,9 +228,15 @@ Answer Links::may_drive(uint8_t type) {
   }
   if (type == number_of(Message::kClear) && is_held_back_ && is_teacher()) return Answer::kOk;
   if (driver_ != current_ && keeps_wheel()) return Answer::kOtherDriver;
+  if (type == number_of(Message::kKeys)) return Answer::kOk;
   is_asking_ = true;
   is_asking_by_text_ = is_text;
   return Answer::kOk;
+}
+
+bool Links::may_press() const {
+  if (is_network(static_cast<Transport>(current_))) return false;
+  return driver_ == current_ || !keeps_wheel();
 }
 
 bool Links::take_text_memory() {

@@ -36,6 +36,10 @@ class Links {
   bool is_attached() const;
   void expire();
   bool confirm_claim();
+  void let_go();
+
+  // The newest word of a remote control, or nullptr.
+  const RemoteKeys* remote() const;
 
   // To who drives; if nobody does, to the first that listens.
   bool show(int32_t value, bool is_yes_no);
@@ -56,6 +60,9 @@ class Links {
   // Whether the current request (its type, or 0 for a line of text) may be done; else why not. Its
   // session drives from now on, if it is a request of who drives and is not refused.
   Answer may_drive(uint8_t type);
+
+  // Whether a line of text may press keys now.
+  bool may_press() const;
 
   // Whether the current session drives already.
   bool is_driving() const { return driver_ == current_; }

@@ -30,6 +30,7 @@ const uint8_t kRequestBytes[][2] tini_progmem = {
     {kHasTransports ? 1 : kUnknownRequest, kHasTransports ? 33 : 0},  // WIFI
     {9, 9},  // BEGIN
     {0, 0},  // ABORT
+    {kHasRemote ? 3 : kUnknownRequest, kHasRemote ? 3 : 0},  // KEYS
 };
 
 }  // namespace tiniscript

@@ -49,6 +49,8 @@ constexpr uint8_t kClassBytes = 16;
 constexpr uint8_t kBrokerPlaceBytes = 6;
 constexpr uint8_t kBrokerNameBytes = 96;
 constexpr uint16_t kTrustBytes = 2048;
+constexpr uint8_t kMostPad = 100;
+constexpr uint16_t kHoldMs = 500;
 
 // How a program starts, in one byte.
 constexpr uint8_t kStartBits = 3;
@@ -63,6 +65,7 @@ constexpr uint8_t kRightReversed = 4;
 
 // What the robot is able to do and who may drive it, in one number.
 constexpr uint8_t kTextLevel = 3;
+constexpr uint8_t kRemote = 4;
 constexpr uint8_t kPlaces = 8;
 constexpr uint8_t kOwners = 16;
 constexpr uint8_t kOwned = 32;
@@ -94,6 +97,7 @@ enum class Message : uint8_t {
   kWifi = 21,  // Sets, forgets or reports the robot's WiFi: `step` of WIFI_STEPS. Only sealed. OK as for NAME.
   kBegin = 22,  // Begins a longer program: what its image's header says before its checksum.
   kAbort = 23,  // Drops the program that was begun.
+  kKeys = 24,  // What a remote control says now: a bit for each key that is held, and its pad. Also a heartbeat.
   kShow = 32,  // A value that a program shows. `place`: its run, and where its SHOW is.
   kFault = 33,  // The program has ended with a fault.
   kStopped = 34,  // The robot was stopped: it has a new epoch. Repeated: it is still stopped.
@@ -102,7 +106,7 @@ enum class Message : uint8_t {
 
 // Requests are the numbers from 1 up to this one; from kFirstActing on they act.
 constexpr uint8_t kFirstActing = 6;
-constexpr uint8_t kLastRequest = 23;
+constexpr uint8_t kLastRequest = 24;
 
 // How long the payload of each request may be, from the first one on: least and most.
 // What this robot does not know has kUnknownRequest as its least.
@@ -142,6 +146,9 @@ constexpr uint8_t kBeginStartAt = 3;
 constexpr uint8_t kBeginHeaderLengthAt = 4;
 constexpr uint8_t kBeginDevicesAt = 5;
 constexpr uint8_t kBeginCodeLengthAt = 7;
+constexpr uint8_t kKeysKeysAt = 0;
+constexpr uint8_t kKeysXAt = 1;
+constexpr uint8_t kKeysYAt = 2;
 
 // What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.
 enum class Answer : uint8_t {
@@ -171,6 +178,7 @@ enum class Answer : uint8_t {
   kOtherDriver = 91,  // Somebody else drives the robot, over another connection.
   kUnowned = 92,  // The robot has no owner, and over WiFi only one with an owner drives.
   kUnreadable = 93,  // The robot cannot read its memory, so it does not know whose it is: nobody drives it.
+  kNoRemote = 94,  // The robot's firmware has no remote control: no KEY_UP, no PAD_X.
 };
 
 enum class State : uint8_t {

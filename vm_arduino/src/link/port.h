@@ -70,6 +70,14 @@ struct tini_packed Tuning {
   Pace pace;
 };
 
+// What a remote control says, as KEYS has it: a bit for each key that is held, and its pad, in percent
+// to the right and up.
+constexpr uint8_t kRemoteKeys = 6;
+struct tini_packed RemoteKeys {
+  uint8_t keys;
+  int8_t pad[2];
+};
+
 constexpr uint8_t kFaultBytes = 7;     // of a RobotStatus, from `fault` on
 constexpr uint8_t kFeaturesBytes = 2;  // of an Identity, from `features` on
 constexpr uint8_t kMoreByTeacher = kByTeacher >> 8;
@@ -184,6 +192,16 @@ Answer port_may_drive(uint8_t type);
 #else
 inline Answer port_may_drive(uint8_t) { return Answer::kOk; }
 #endif
+
+// Whether a line of text may press keys now, which asks for nothing else.
+#ifdef tiniscript_transports
+bool port_may_press();
+#else
+inline bool port_may_press() { return true; }
+#endif
+
+// Whether the program that runs has read what a remote control says.
+bool port_reads_keys();
 
 #ifdef tiniscript_transports
 // What the robot says of its WiFi, or of its broker. `address` is as four bytes in their order.

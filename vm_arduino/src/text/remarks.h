@@ -40,6 +40,7 @@ enum class Remark : uint8_t {
   kEnter = 24,  // End the line with Enter (\n)
   kNoZero = 25,  // Lines end with Enter, not with 0
   kStartedAgain = 26,  // Started again
+  kNoKeys = 27,  // No program reads keys
 };
 
 }  // namespace tiniscript

@@ -23,8 +23,8 @@ constexpr uint8_t text_of(Remark remark) {
 }
 constexpr uint8_t name_of_fault(uint8_t fault) {
   return static_cast<uint8_t>(
-      fault > 66 ? 67 : fault < 64 ? fault + 57
-                             : fault - 64 + 64);
+      fault > 66 ? 68 : fault < 64 ? fault + 58
+                             : fault - 64 + 65);
 }
 
 // A code is the end of a text, a pair, or a letter from kFirstLetter on, in ASCII.

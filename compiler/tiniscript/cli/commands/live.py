@@ -12,20 +12,23 @@ from tiniscript.base import files
 from tiniscript.base.words import WORDS, said_of
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.robot import own_kit
+from tiniscript.cli.robot import own_kit, remote_keys
 from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.description import introduced
 from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
 from tiniscript.cli.robot.live_state import Known, Line, Value, header, open_ends
-from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
+from tiniscript.cli.robot.remote_keys import TerminalRemote
+from tiniscript.cli.robot.run_monitor import INTERRUPTED, RunMonitor, stop_and_say
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.library import source_map
 from tiniscript.library.compiling import kit_of, naming
 from tiniscript.library.known_kits import lacking
 from tiniscript.library.other_robots import is_other_robots
+from tiniscript.library.refusing import lacks_remote
+from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import Event, ShownEvent
-from tiniscript.link.requests import SHORT_BYTES, short_bytes
+from tiniscript.link.requests import SHORT_BYTES, Reply, short_bytes
 from tiniscript.robots.profile import Robot
 
 PROMPT = "tini> "
@@ -37,6 +40,8 @@ def run(options: Namespace, language: str) -> int:
     if options.line is not None and options.text is not None:
         raise CommandError(2, "two_programs")
     line: str | None = options.text if options.line is None else options.line
+    if options.keys and (line == "-" or not sys.stdin.isatty()):
+        raise CommandError(2, "keys_no_terminal")
     robot = inputs.robot(options, language)
 
     known = Known(robot.kit)
@@ -44,6 +49,8 @@ def run(options: Namespace, language: str) -> int:
         return 1
     with Connection(options, robot, language) as connection:
         talk = Repl(connection, known, options)
+        if options.keys:
+            return talk.steer(line)
         if line is None and sys.stdin.isatty():
             return talk.prompt()
         talk.meet()
@@ -97,6 +104,7 @@ class Repl:
         self.options = options
         self.language = connection.language
         self.known = known
+        self.remote: TerminalRemote | None = None
 
     def meet(self) -> None:
         """Send HELLO to the robot, and use its kit. Raises CommandError if none answers."""
@@ -113,6 +121,8 @@ class Repl:
         found = _compiled(line, self.known, robot, self.language, is_last, room)
         if found is None:
             return 1
+        if lacks_remote(found.compiled.code, self.known.kit, self.connection.device_info):
+            raise self.connection.failure(Reply(STATUSES["NO_REMOTE"]))
         try:
             code = 0 if found.does_nothing else self._run(found, is_last)
         except KeyboardInterrupt:
@@ -154,11 +164,37 @@ class Repl:
             simulator.watch()
         quiet = self.connection.quiet.then(self.connection.text("line_runs"))
         look = quiet.look if simulator is None else None  # its picture shows that
+        monitor = RunMonitor(self.connection, printer, catch.hold, look)
+        if self.remote is not None:
+            monitor.look, monitor.look_s = self.remote.look, remote_keys.LOOK_S
         try:
-            return RunMonitor(self.connection, printer, catch.hold, look).follow(reply.values.run)
+            return monitor.follow(reply.values.run)
         finally:
             if simulator is not None:
                 simulator.unwatch()
+
+    def steer(self, line: str | None) -> int:
+        """Drive what a line reads of a remote control, or the program that runs, by the keys of
+        the terminal; return the exit code."""
+        self.meet()
+        with TerminalRemote(self.connection) as self.remote:
+            self.connection.say("live_keys")
+            code = self._attend() if line is None else self.do(line, is_last=True)
+            return 0 if self.remote.has_quit and code == INTERRUPTED else code
+
+    def _attend(self) -> int:
+        """Pass keys on and print events, until somebody leaves, which stops the robot."""
+        assert self.remote is not None
+        simulator = self.connection.simulator
+        if simulator is not None:
+            simulator.watch()
+        try:
+            while not self._says_time_over():
+                self._tell_meanwhile(remote_keys.LOOK_S)
+                self.remote.look()
+            return 0
+        except KeyboardInterrupt:
+            return stop_and_say(self.connection)
 
     def all_of(self, file: Iterable[str]) -> int:
         """Run lines from a file until one fails."""
@@ -230,13 +266,14 @@ class Repl:
         except CommandError as failure:
             print(failure.sentence(self.language), file=sys.stderr)
 
-    def _tell_meanwhile(self) -> None:
+    def _tell_meanwhile(self, limit_s: float = 0) -> None:
         """Print the robot's events since the last line.
 
         The next line reports a lost robot, if it is still lost.
         """
         printer, bookkeeping = EventPrinter(self.language), Bookkeeping()
-        while (found := self.connection.event(0)) is not None:
+        while (found := self.connection.event(limit_s)) is not None:
+            limit_s = 0
             if not bookkeeping.hides(found[1]):
                 printer.tell(*found)
 

@@ -18,7 +18,7 @@ from tiniscript.library.endings import Follower, end_of
 from tiniscript.library.errors import RobotError
 from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
-from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import LOOK_S, Event
 from tiniscript.link.payloads import ReceiptReply, StatusReply
 from tiniscript.link.requests import Reply
 
@@ -29,7 +29,7 @@ DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
 class RunMonitor:
     """Prints the events of a run until it ends. `hold` returns True for an event to keep back.
 
-    `look` is called repeatedly meanwhile.
+    `look` is called repeatedly meanwhile, every `look_s` at least.
     """
 
     def __init__(
@@ -38,11 +38,13 @@ class RunMonitor:
         printer: EventPrinter,
         hold: Callable[[Event], bool] | None = None,
         look: Callable[[], None] | None = None,
+        look_s: float = LOOK_S,
     ) -> None:
         self.connection = connection
         self.printer = printer
         self.hold = hold
         self.look = look
+        self.look_s = look_s
 
     def follow(self, run: int) -> int:
         """Wait for the end of a run; return the exit code.
@@ -51,7 +53,7 @@ class RunMonitor:
         """
         follower = Follower(run)
         while True:
-            found = self.connection.event()
+            found = self.connection.event(self.look_s)
             if self.look is not None:
                 self.look()
             if self.connection.is_time_over:

@@ -152,6 +152,7 @@ OPTIONS: tuple[Option, ...] = (
     # the program
     Option("-e", "compile check run show fmt upload lesson class", TEXT, A_TEXT, "texts", repeats=True),
     Option("-e", "live", TEXT, A_TEXT, "text"),
+    Option("--keys", "live"),
     # files
     Option("-o", "compile", IMAGE, A_FILE, "output"),
     Option("--text", "compile"),

@@ -19,6 +19,7 @@ from tiniscript.link.messages import (
     PASSWORD_BYTES,
     TRIM_BYTES,
 )
+from tiniscript.link.remote import Pressed
 from tiniscript.link.sharing import protocol
 from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
 from tiniscript.link.wifi import BrokerSettings, Network, Tls
@@ -59,12 +60,19 @@ def _fields(given: Mapping[str, object]) -> JsonMessage:
     return fields
 
 
-def asked_for(message: JsonMessage, limit_ms: int) -> Callable[[Requester], PendingRequest[Any]]:
-    """Return the function that makes a message's request to a session. Raises BadMessage."""
+def asked_for(
+    message: JsonMessage, limit_ms: int, speaker: int = 0
+) -> Callable[[Requester], PendingRequest[Any]]:
+    """Return the function that makes a message's request to a session. Raises BadMessage.
+
+    `speaker` is who presses keys.
+    """
     name = protocol.field(message, "do", str)
     if name not in _GIVEN:
         raise BadMessage
     given = _GIVEN[name](message)
+    if name == "press":
+        given += (speaker,)
 
     def limited(session: Requester) -> PendingRequest[Any]:
         request: PendingRequest[Any] = getattr(session, name)(*given)
@@ -93,6 +101,13 @@ def _bytes(message: JsonMessage, name: str, least: int, most: int) -> bytes:
     if not least <= len(data) <= most:
         raise BadMessage
     return data
+
+
+def _pressed(message: JsonMessage) -> tuple[object, ...]:
+    pressed = Pressed(*(protocol.number(message, name) for name in Pressed._fields))
+    if not pressed.is_sound:
+        raise BadMessage
+    return pressed
 
 
 def _trim(message: JsonMessage) -> bytes:
@@ -161,6 +176,7 @@ _GIVEN: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
         ("hello", "ping", "status", "clear", "fetch", "undo", "identify", "hold_back", "wifi",
          "forget_wifi", "broker"), lambda message: (),
     ),
+    "press": _pressed,
     "name": lambda message: (_bytes(message, "name", 1, NAME_BYTES),),
     "trim": lambda message: (_trim(message),),
     "claim": lambda message: (_below(message, "which", len(KEYS)),),

@@ -57,6 +57,7 @@ class ConnectedClient:
         self.greeting = b""  # the bytes that have arrived so far
         self.heard_s = monotonic()  # before the greeting: when it connected
         self.messages = protocol.MessageReader(protocol.LINE_BYTES)
+        self.speaker = 0  # its number, once it presses keys
         self.requests: dict[int, ServedRequest] = {}
         self.out = bytearray()
         self.missed = 0  # number of events
@@ -94,6 +95,7 @@ class Server:
         self._wire.setblocking(False)
         self._told: deque[Told] = deque()
         self._clients: list[ConnectedClient] = []
+        self._speakers = 0
         self._owner: tuple[ConnectedClient, int] | None = None  # of the current run
         self._left_requests: list[ServedRequest] = []  # of clients that have left
         self._is_closing = False
@@ -262,7 +264,10 @@ class Server:
         if message["do"] == "hello" and robot and self._line.session.is_open:  # already known
             self._tell_outcome(client, number, Reply(OK, 0, robot.values))
             return
-        make = asked_for(message, limit_ms)
+        if message["do"] == "press" and not client.speaker:
+            self._speakers += 1
+            client.speaker = self._speakers
+        make = asked_for(message, limit_ms, client.speaker)
         if self._is_latched() and message["do"] in _STARTING:
             self._tell_outcome(client, number, Reply(CANCELLED))
             return
@@ -360,6 +365,8 @@ class Server:
         for request in client.requests.values():
             self._line.withdraw(request.pending)
             self._left_requests.append(request)
+        if client.speaker:
+            self._line.do(lambda session: session.press(speaker=client.speaker))
         if self._owner is not None and self._owner[0] is client:
             self._end_run()
         self._tell_own_command(client, LeftEvent)

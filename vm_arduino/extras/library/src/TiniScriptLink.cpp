@@ -213,6 +213,7 @@ uint8_t* port_text_room(uint16_t*) { return nullptr; }
 bool port_text_is_beside(bool) { return false; }
 bool port_may_prepare_upload(bool) { return true; }
 void port_take_text(uint8_t*, bool) {}
+bool port_reads_keys() { return false; }
 const uint8_t* robot_words() { return no_words; }
 uint16_t robot_language() { return 0; }
 

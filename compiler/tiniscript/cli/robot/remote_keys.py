@@ -1,0 +1,106 @@
+"""A terminal as a remote control: the arrow keys, a and b, until q or Ctrl-C.
+
+A terminal says nothing of a key that is let go. It repeats one that is held, the first time after
+250 ms or more: so a first press holds it longer than a repeat. Knows the clock.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from time import monotonic
+
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.terminal.keys import Keys
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.messages import STATUSES
+from tiniscript.link.outcomes import CANCELLED, LOST
+from tiniscript.link.payloads import EmptyReply
+from tiniscript.link.remote import NOTHING, Pressed, has_remote, pressed
+from tiniscript.link.requests import OK, Reply
+
+FIRST_S, REPEAT_S = 0.7, 0.15  # for which a press holds a key
+SAY_S = 0.1  # what is held is said so often: after half a second of silence nothing is
+LOOK_S = 0.02  # between two looks at the keys
+_QUIT = ("q", "Q", "\x04")
+_ARROWS = {"A": "UP", "B": "DOWN", "C": "RIGHT", "D": "LEFT"}
+_WINDOWS_ARROWS = {"H": "UP", "P": "DOWN", "M": "RIGHT", "K": "LEFT"}
+_LETTERS = ("A", "B")
+_BEGUN = r"\x1b(?:[\[O][0-9;]*)?"  # a key of several characters may come in two pieces
+_FOUND = re.compile(r"\x1b[\[O][0-9;]*([A-Za-z~])|[\0\xe0](.)|(.)", re.DOTALL)
+_IS_BEGUN = re.compile(_BEGUN + (r"\Z|[\0\xe0]\Z" if sys.platform == "win32" else r"\Z"))
+
+
+class HeldKeys:
+    """Which keys are held, as far as a terminal tells."""
+
+    def __init__(self) -> None:
+        self._until_s: dict[str, float] = {}
+        self._begun = ""
+
+    def take(self, typed: str, now_s: float) -> bool:
+        """Take what was typed; return whether somebody wants to leave."""
+        text, at = self._begun + typed, 0
+        self._begun = ""
+        while at < len(text):
+            if _IS_BEGUN.match(text, at):
+                self._begun = text[at:]
+                return False
+            found = _FOUND.match(text, at)
+            assert found
+            at = found.end()
+            arrow, windows, letter = found.groups()
+            if letter in _QUIT:
+                return True
+            name = _ARROWS.get(arrow) or _WINDOWS_ARROWS.get(windows)
+            if letter is not None and letter.upper() in _LETTERS:
+                name = letter.upper()
+            if name:
+                self._press(name, now_s)
+        return False
+
+    def _press(self, name: str, now_s: float) -> None:
+        is_repeat = now_s < self._until_s.get(name, now_s)
+        self._until_s[name] = now_s + (REPEAT_S if is_repeat else FIRST_S)
+
+    def held(self, now_s: float) -> Pressed:
+        return pressed(name for name, until_s in self._until_s.items() if now_s < until_s)
+
+
+class TerminalRemote:
+    """Says what is held to the robot, while somebody looks. Raises KeyboardInterrupt for q."""
+
+    def __init__(self, connection: Connection) -> None:
+        self.has_quit = False
+        self._connection = connection
+        self._keys = Keys()
+        self._held = HeldKeys()
+        self._said, self._said_s = NOTHING, 0.0
+        self._request: PendingRequest[EmptyReply] | None = None
+
+    def __enter__(self) -> TerminalRemote:
+        if not has_remote(self._connection.device_info):
+            raise self._connection.failure(Reply(STATUSES["NO_REMOTE"]))
+        self._keys.__enter__()
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self._keys.__exit__(*raised)
+
+    def look(self) -> None:
+        """Pass on what is held. Raises CommandError where the robot takes no keys from here."""
+        now_s = monotonic()
+        if self._held.take(self._keys.pressed(), now_s):
+            self.has_quit = True
+            raise KeyboardInterrupt
+        self._refuse()
+        held = self._held.held(now_s)
+        if held == self._said and (held == NOTHING or now_s - self._said_s < SAY_S):
+            return
+        self._said, self._said_s = held, now_s
+        self._request = self._connection.do(lambda session: session.press(*held))
+
+    def _refuse(self) -> None:
+        outcome = None if self._request is None else self._request.outcome
+        if outcome is not None and outcome.status not in (OK, CANCELLED, LOST):
+            raise self._connection.failure(outcome)

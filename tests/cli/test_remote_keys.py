@@ -1,0 +1,64 @@
+"""A terminal as a remote control: what is held, where nobody says that a key is let go."""
+
+from __future__ import annotations
+
+import pytest
+
+from tiniscript.cli.robot.remote_keys import FIRST_S, REPEAT_S, HeldKeys
+from tiniscript.link.remote import NOTHING, pressed
+
+UP, LEFT = "\x1b[A", "\x1b[D"
+KEYS = (
+    (UP, "UP"), ("\x1b[B", "DOWN"), ("\x1b[C", "RIGHT"), (LEFT, "LEFT"), ("\x1bOA", "UP"),
+    ("\x1bOD", "LEFT"), ("\x1b[1;2A", "UP"), ("a", "A"), ("A", "A"), ("b", "B"), ("B", "B"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("typed", "name"), KEYS)
+def test_a_first_press_holds_for_long_and_a_repeat_briefly(typed: str, name: str) -> None:
+    keys, held = HeldKeys(), pressed([name])
+    assert not keys.take(typed, 10.0)
+    assert keys.held(10.0) == keys.held(10.0 + FIRST_S - 0.01) == held
+    assert keys.held(10.0 + FIRST_S) == NOTHING
+    for k in range(20):  # a terminal repeats it after 0.66 s, 25 times a second
+        assert keys.held(20.66 + k / 25 - 0.01) == (held if k else NOTHING)
+        keys.take(typed, 20.66 + k / 25)
+    last = 20.66 + 19 / 25
+    assert keys.held(last + REPEAT_S - 0.01) == held
+    assert keys.held(last + REPEAT_S) == NOTHING
+
+
+def test_a_held_key_is_held_without_a_gap_from_the_first_press_on() -> None:
+    for delay_s in (0.25, 0.5, 0.66):
+        keys = HeldKeys()
+        keys.take(UP, 0.0)
+        now_s = 0.0
+        while now_s < 2.0:
+            if now_s >= delay_s:
+                keys.take(UP, now_s)
+            for _ in range(4):
+                assert keys.held(now_s) == pressed(["UP"]), (delay_s, now_s)
+                now_s += 0.01
+
+
+@pytest.mark.parametrize("cut", [1, 2])
+def test_a_key_that_comes_in_two_pieces(cut: int) -> None:
+    keys = HeldKeys()
+    keys.take("a" + UP[:cut], 0.0)
+    assert keys.held(0.1) == pressed(["A"])
+    keys.take(UP[cut:] + LEFT, 0.1)
+    assert keys.held(0.2) == pressed(["A", "UP", "LEFT"])
+
+
+@pytest.mark.parametrize("typed", ["\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "\x1bx", "é"])
+def test_what_is_no_key_of_a_remote_control_holds_nothing(typed: str) -> None:
+    keys = HeldKeys()
+    assert not keys.take(typed + "\x1b", 0.0)
+    assert not keys.take("b", 0.1) and keys.held(0.1) in (NOTHING, pressed(["B"]))
+    assert not keys.take("b", 0.2)
+    assert keys.held(0.2) == pressed(["B"])
+
+
+@pytest.mark.parametrize("typed", ["q", "Q", "\x04", UP + "q", "aaaq"])
+def test_who_wants_to_leave(typed: str) -> None:
+    assert HeldKeys().take(typed, 0.0)

@@ -1,0 +1,158 @@
+"""Lines of text that are words of a remote control: KEY_A, KEY, PAD 30 -20.
+
+An Uno has no room for them: it reads them as any other line.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.firmware.test_button_states import SmallRobot
+from tests.firmware.test_host_firmware import KIT, computer
+from tests.firmware.test_text import typed
+from tests.link.test_remote_control import NONE, readings
+from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
+from tests.support.owners import Keys, Owned
+from tiniscript.link.messages import HOLD_MS
+from tiniscript.link.remote import Pressed, pressed
+from tiniscript.link.requests import OK
+
+TOLD = "// No program reads keys"
+DRIVES = "SI|F(9,50)"
+UP, A = pressed(["UP"]), pressed(["A"])
+
+
+def booted(kind: type[HostFirmware] = HostFirmware) -> HostFirmware:
+    robot = kind(KIT)
+    robot.wait(300)
+    return robot
+
+
+WORDS = (
+    ("KEY_UP", UP), ("KEY_DOWN", pressed(["DOWN"])), ("KEY_LEFT", pressed(["LEFT"])),
+    ("KEY_RIGHT", pressed(["RIGHT"])), ("KEY_A", A), ("KEY_B", pressed(["B"])),
+    ("key_a", A), ("  Key_A ;", A), ("KEY", Pressed()), ("PAD 30 -20", Pressed(0, 30, -20)),
+    ("pad  -100   100", Pressed(0, -100, 100)), ("PAD 0 0", Pressed()),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
+@pytest.mark.parametrize(("line", "held"), WORDS)
+def test_a_line_holds_what_it_says_for_half_a_second(
+    line: str, held: Pressed, kind: type[HostFirmware]
+) -> None:
+    robot = booted(kind)
+    typed(robot, "KEY_LEFT\n")
+    assert typed(robot, line + "\n") == []
+    assert robot.remote() == readings(held)
+    robot.wait(HOLD_MS - 40)
+    assert robot.remote() == readings(held)
+    robot.wait(40)
+    assert robot.remote() == NONE and robot.did == []
+
+
+@pytest.mark.parametrize("line", [
+    "KEY_C", "KEY_", "KEYS", "KEY_AB", "KEY_A B", "KEY A", "PAD", "PAD 1", "PAD 101 0",
+    "PAD 0 -101", "PAD 1 2 3", "PAD 300 0", "PAD - 1", "PAD1 2", "PAD 1000000000 0",
+    "PAD 0 0 0 0 0 0 0 0",
+    "SI|KEY_A", "KEY = 5", "PADX = 3",
+])  # fmt: skip
+def test_any_other_line_is_read_as_before(line: str) -> None:
+    robot = booted()
+    typed(robot, "KEY_A\n")
+    typed(robot, line + "\n")
+    robot.wait(HOLD_MS)
+    assert robot.remote() == NONE
+
+
+def test_who_presses_is_told_once_that_no_program_reads_it() -> None:
+    robot = booted()
+    assert typed(robot, "KEY_UP\n", 1500) == [TOLD]
+    assert typed(robot, "KEY_UP\n" * 3, 1500) == []
+    typed(robot, DRIVES + "\n", 1500)
+    assert typed(robot, "KEY_UP\n", 1500) == []
+    robot.remote()  # as a program that reads it
+    assert typed(robot, "KEY_UP\n", 1500) == []
+    typed(robot, "S\n", 2500)
+    assert typed(robot, "KEY_UP\n", 1500) == [TOLD]
+
+
+def test_a_key_that_is_said_every_300_ms_at_9600_baud_does_not_flicker() -> None:
+    robot = booted()
+    line = b"KEY_UP\r\n"
+    robot.latched_while(20, line, is_spread=True)
+    for _ in range(40):
+        for _ in range(28):
+            robot.wait(10)
+            assert robot.remote() == readings(UP)
+        robot.latched_while(20, line, is_spread=True)
+
+
+def test_they_end_nothing_start_nothing_and_work_beside_a_live() -> None:
+    for kind in (HostFirmware, SmallRobot):
+        robot, session = kind(KIT), computer()
+        robot.wait(100)
+        assert robot.until(session, session.live(image_of("F(2, 80)").code)) == OK
+        robot.talk(session, 100)
+        robot.did.clear()
+        for _ in range(4):
+            session.receive(robot.wait(20, b"KEY_A\n"), robot.now_ms)
+            assert robot.remote() == readings(A), kind
+            robot.talk(session, 250)
+        assert robot.did == [] and session.is_running
+
+
+def test_in_an_open_block_the_line_is_the_programs() -> None:
+    robot = booted()
+    assert typed(robot, "SI|LOOP(2)\nKEY_A\n", 100) != [] or robot.remote() == NONE
+    assert robot.remote() == NONE
+
+
+@pytest.mark.parametrize("how", ["text", "zeros", "button"])
+def test_behind_a_stop_they_count_as_silence_and_release_nothing(how: str) -> None:
+    """Who goes on holding a key types a program a second later."""
+    robot = booted()
+    typed(robot, DRIVES + "\n", 100)
+    assert "MOTORS 50 50" in robot.did[-1]
+    if how == "text":
+        typed(robot, "S\n", 20)
+    elif how == "zeros":
+        robot.wait(20, bytes(4))
+        robot.wait(1500)  # text comes again
+        typed(robot, "KEY_UP\n", 20)
+    else:
+        robot.push()
+    for _ in range(5):
+        typed(robot, "KEY_UP\n", 290)
+    assert robot.is_latched
+    robot.did.clear()
+    typed(robot, "SI|F(1,30)\n", 100)
+    assert any("MOTORS 30 30" in line for line in robot.did)
+
+
+def test_a_wrong_line_costs_no_more_while_a_key_is_held() -> None:
+    """What is left of its program is ignored until a second of silence: keys are silence."""
+    robot = booted()
+    typed(robot, "SI|FOO\n", 10)
+    for _ in range(5):
+        typed(robot, "KEY_UP\n", 290)
+    typed(robot, "F(1,30)\n", 100)
+    assert any("MOTORS 30 30" in line for line in robot.did)
+
+
+def test_text_that_may_not_drive_presses_nothing() -> None:
+    table, keys = Owned(), Keys()
+    table.claimed(keys)
+    table.robot.wait(3000)
+    typed(table.robot, "KEY_A\n", 1500)
+    assert table.robot.remote() == NONE
+
+
+def test_a_thousand_lines_in_a_burst() -> None:
+    robot = booted()
+    robot.wait(10, b"KEY_B\n" * 1000)
+    robot.wait(1000)
+    typed(robot, "KEY_A\n", 20)
+    assert robot.remote() == readings(A)
+    assert robot.did == []

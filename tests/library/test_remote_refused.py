@@ -1,0 +1,53 @@
+"""A program that reads a remote control is refused before a robot without one gets a byte of it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.link.test_session import DESCRIPTION
+from tiniscript import robots
+from tiniscript.bytecode.image import pack, unpack
+from tiniscript.bytecode.opcodes import BY_NAME
+from tiniscript.library.refusing import lacks_remote, reads_remote, refusal
+from tiniscript.link.messages import PLACES, REMOTE, STATUSES
+from tiniscript.link.payloads import HelloReply
+from tiniscript.link.requests import DeviceInfo, described
+from tiniscript.link.statuses import sentence
+
+ROBOT = robots.load("tinibot")
+OWN = len(ROBOT.kit.sensors)
+READ, PUSH_SENSOR, PUSH_READ = (BY_NAME[name].code for name in ("READ", "PUSH_SENSOR", "PUSH_READ"))
+
+
+def info(features: int) -> DeviceInfo:
+    values = {**DESCRIPTION, "kit": ROBOT.kit.fingerprint, "features": features}
+    return described(HelloReply(**values))  # type: ignore[arg-type]
+
+
+CODES = {
+    "none": (b"", False),
+    "its own": (bytes((READ, OWN - 1)), False),
+    "the first key": (bytes((READ, OWN)), True),
+    "kept": (bytes((READ, 0, PUSH_SENSOR, OWN + 7)), True),
+    "in an expression": (bytes((PUSH_READ, OWN + 3)), True),
+    "in one byte": (bytes((BY_NAME[f"READ_{OWN}"].code,)), True),
+    "its own in one byte": (bytes((BY_NAME[f"READ_{OWN - 1}"].code,)), False),
+}
+
+
+@pytest.mark.parametrize("name", CODES)
+def test_which_code_reads_a_remote_control(name: str) -> None:
+    code, does = CODES[name]
+    assert reads_remote(code, ROBOT.kit) == does
+    assert lacks_remote(code, ROBOT.kit, info(PLACES)) == does
+    assert not lacks_remote(code, ROBOT.kit, info(PLACES | REMOTE))
+
+
+def test_the_refusal_says_what_to_do() -> None:
+    image = unpack(pack("SI", 0, bytes((READ, OWN))))
+    refused = refusal(image, ROBOT, info(PLACES))
+    assert refused is not None and refused.status == STATUSES["NO_REMOTE"]
+    assert refusal(image, ROBOT, info(PLACES | REMOTE)) is None
+    for language in ("en", "es", "pt"):
+        said, advice = sentence(refused.status, 0, language)
+        assert "KEY_UP" in said and "tsc firmware" in advice and "Nano" in advice

@@ -1,0 +1,500 @@
+"""Keys of a remote control, from who holds them to what a program reads: the newest word, and none
+that is older than the release of a key.
+
+A word is KEYS; what a program reads is asked of the robot's own firmware.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from struct import pack
+
+import pytest
+
+from tests.link.test_session import greeted as described
+from tests.link.test_unsent_requests import greeted, image
+from tests.machines.host_firmware import HostFirmware
+from tests.support.owners import KIT, Keys, Owned
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import (
+    BY_NAME,
+    HOLD_MS,
+    REMOTE,
+    STATE_RUNNING,
+    STATE_STOPPED,
+    STATUS_NAMES,
+    STATUSES,
+    written,
+)
+from tiniscript.link.outcomes import CANCELLED, LOST
+from tiniscript.link.remote import NOTHING, Pressed, pressed
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+UP, LEFT, A = (pressed([name]) for name in ("UP", "LEFT", "A"))
+DRIVES = "SI|F(FOREVER, 40)\nTASK\nW(1)\nEND_TASK"
+KEYS = BY_NAME["KEYS"]
+LIVE = BY_NAME["LIVE"]
+
+
+def readings(held: Pressed) -> tuple[int, ...]:
+    return (*(held.keys >> key & 1 for key in range(6)), held.x * 1000, held.y * 1000)
+
+
+NONE = readings(NOTHING)
+
+
+class Hand:
+    """Somebody who holds keys, says so every 100 ms, and at each change at once."""
+
+    def __init__(self, session: Session, robot: HostFirmware) -> None:
+        self.session, self.robot = session, robot
+        self.held = NOTHING
+        self.loses: Callable[[], bool] = lambda: False  # the line, a packet
+        self.words: list[tuple[int, Pressed]] = []  # that were sent
+        self.outcomes: list[int] = []
+        self._requests = [session.press()]
+        self._said_ms = 0
+
+    def holds(self, held: Pressed) -> None:
+        self.held = held
+        self._say()
+
+    def _say(self) -> None:
+        self._said_ms = self.robot.now_ms
+        self._requests.append(self.session.press(*self.held))
+
+    def talk(self, milliseconds: int) -> None:
+        robot, session = self.robot, self.session
+        for _ in range(milliseconds):
+            if self.held != NOTHING and robot.now_ms - self._said_ms >= 100:
+                self._say()
+            data = session.poll(robot.now_ms)
+            for packet in data.split(b"\0"):
+                frame = decoded(packet)
+                if frame is not None and frame.number == KEYS.number:
+                    self._note(frame)
+            sent = robot.step(b"" if data and self.loses() else data)
+            if sent and not self.loses():
+                session.receive(sent, robot.now_ms)
+        over = [each.outcome.status for each in self._requests if each.outcome is not None]
+        self.outcomes += over
+        self._requests = [each for each in self._requests if each.outcome is None]
+
+    def _note(self, frame: Frame) -> None:
+        keys, x, y = frame.payload
+        word = Pressed(keys, x - (x & 0x80) * 2, y - (y & 0x80) * 2)
+        assert word == self.held, "a word that is older than what is held"
+        self.words.append((frame.seq, word))
+
+
+def hand() -> Hand:
+    return Hand(*greeted())
+
+
+def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
+    one = hand()
+    for held in (UP, Pressed(0, 100, -100), pressed(["UP", "B"], -1, 30), NOTHING, A, NOTHING):
+        one.holds(held)
+        one.talk(40)
+        assert one.robot.remote() == readings(held)
+        one.talk(700)
+        assert one.robot.remote() == readings(held)
+    assert set(one.outcomes) <= {OK, CANCELLED}
+    assert [event.name for event in one.session.events()] == []
+
+
+def test_a_word_every_200_ms_while_something_is_held_and_none_while_nothing_is() -> None:
+    one = hand()
+    one.talk(3000)
+    assert one.words == []
+    one.holds(UP)
+    one.talk(2001)
+    assert len(one.words) == 11
+    one.holds(NOTHING)
+    one.talk(3000)
+    assert len(one.words) == 12
+    numbers = [seq for seq, _ in one.words]
+    assert len(set(numbers)) == len(numbers), "no word is sent twice"
+
+
+def test_words_alone_keep_an_attached_program_alive() -> None:
+    one = hand()
+    assert one.robot.until(one.session, one.session.upload(image(DRIVES), saves=False)) == OK
+    one.session.sends_heartbeat = lambda: False
+    one.holds(UP)
+    one.talk(3000)
+    assert one.robot.did[-1].endswith("MOTORS 40 40")
+    one.holds(NOTHING)
+    one.talk(1100)
+    assert one.robot.did[-1].endswith("FAULTED"), "and nothing else does"
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
+    """Whenever it is lost: 300 times in all."""
+    rng = random.Random(seed)
+    one = hand()
+    for _ in range(100):
+        one.loses = lambda: False
+        one.holds(rng.choice([UP, pressed(["A", "LEFT"]), Pressed(0, 50, -50)]))
+        one.talk(rng.randint(60, 400))
+        assert one.robot.remote() == readings(one.held)
+        one.loses = lambda: True
+        one.talk(HOLD_MS)
+        assert one.robot.remote() == NONE
+        one.loses = lambda: False
+        one.holds(NOTHING)
+        one.talk(250)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
+    """What is held is mostly read, and what was let go is never read later than 0.5 s after."""
+    rng = random.Random(seed)
+    one = hand()
+    read = looks = 0
+    for _ in range(40):
+        one.loses = lambda: rng.random() < 0.3
+        one.holds(rng.choice([UP, A, pressed(["DOWN", "B"], 10, 20)]))
+        one.talk(300)
+        for _ in range(20):
+            one.talk(50)
+            looks += 1
+            read += one.robot.remote() == readings(one.held)
+        one.holds(NOTHING)
+        one.talk(HOLD_MS)
+        for _ in range(10):
+            assert one.robot.remote() == NONE
+            one.talk(20)
+    assert read > 0.9 * looks, (read, looks)
+    assert one.session.is_open
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_keys_that_change_all_the_time_on_a_bad_line(seed: int) -> None:
+    """`Hand` looks at each word: it is what is held when it is sent."""
+    rng = random.Random(seed)
+    one = hand()
+    one.loses = lambda: rng.random() < 0.3
+    for _ in range(300):
+        one.holds(Pressed(rng.randrange(64), rng.randint(-100, 100), rng.randint(-100, 100)))
+        one.talk(rng.randint(1, 60))
+    one.loses = lambda: False
+    one.talk(250)
+    assert one.robot.remote() == readings(one.held)
+
+
+def test_who_falls_silent_holds_nothing() -> None:
+    """A command that hangs, while its session still talks."""
+    session, robot = greeted()
+    session.press(*UP)
+    robot.talk(session, HOLD_MS - 50)
+    assert robot.remote() == readings(UP)
+    robot.talk(session, 100)
+    assert robot.remote() == NONE
+
+
+def test_two_who_press_on_one_line() -> None:
+    """All their keys, and the pad of who moved his last; who goes lets his go."""
+    session, robot = greeted()
+    session.press(*UP, 1)
+    session.press(A.keys, 10, 20, 2)
+    robot.talk(session, 100)
+    assert robot.remote() == readings(pressed(["UP", "A"], 10, 20))
+    session.press(UP.keys, -5, 0, 1)
+    robot.talk(session, 100)
+    assert robot.remote() == readings(pressed(["UP", "A"], -5, 0))
+    session.press(speaker=1)
+    robot.talk(session, 100)
+    assert robot.remote() == readings(pressed(["A"], 10, 20))
+
+
+@pytest.mark.parametrize("text", ["SI|SHOW(1)", "SI|" + "SHOW(1);" * 60], ids=["short", "long"])
+def test_an_upload_beside_keys_is_done_and_the_keys_are_read_afterwards(text: str) -> None:
+    one = hand()
+    one.holds(UP)
+    one.talk(100)
+    request = one.session.upload(image(text))
+    while request.outcome is None:
+        one.talk(1)
+        one.holds(random.Random(one.robot.now_ms).choice([UP, A, LEFT]))
+        assert one.robot.now_ms < 30_000
+    assert request.outcome.status == OK
+    one.talk(250)
+    assert one.robot.remote() == readings(one.held)
+
+
+def test_keys_that_never_rest_leave_others_their_turn() -> None:
+    one = hand()
+    requests = []
+    for k in range(1500):
+        if k % 100 == 0:
+            requests.append(one.session.status())
+        one.holds(Pressed(0, k % 101, 0))
+        one.talk(1)
+    assert len(requests) == 15
+    assert all(each.outcome and each.outcome.status == OK for each in requests)
+    assert len(one.words) > 20
+
+
+def test_keys_go_between_the_tries_of_a_request_that_waits() -> None:
+    """A name that is kept as soon as the motors stand."""
+    one = hand()
+    assert one.robot.until(one.session, one.session.upload(image(DRIVES), saves=False)) == OK
+    name = one.session.name(b"Ana")
+    one.talk(300)
+    for held in (UP, NOTHING, A, NOTHING):
+        one.holds(held)
+        one.talk(60)
+        assert one.robot.remote() == readings(held)
+    while name.outcome is None:
+        one.talk(1)
+    assert name.outcome.status == STATUSES["SAVING"]
+    assert len(one.words) == 4
+
+
+# -- stops and starts ---------------------------------------------------------------------------
+
+
+def test_a_stop_lets_all_go_and_keys_release_nothing_behind_it() -> None:
+    one = hand()
+    assert one.robot.until(one.session, one.session.upload(image(DRIVES), saves=False)) == OK
+    one.holds(UP)
+    one.talk(300)
+    one.session.stop(one.robot.now_ms)
+    one.held = NOTHING
+    one.talk(300)
+    assert one.robot.is_latched
+    did = len(one.robot.did)
+    one.holds(UP)
+    one.talk(2000)
+    assert one.robot.is_latched and len(one.robot.did) == did
+    status = one.session.status()
+    assert one.robot.until(one.session, status) == OK
+    assert status.outcome and status.outcome.values.state == STATE_STOPPED
+
+
+@pytest.mark.parametrize("how", ["button", "zeros", "text"])
+def test_a_stop_by_somebody_else_voids_what_is_held(how: str) -> None:
+    """It is held again once it is said again."""
+    one = hand()
+    session, robot = one.session, one.robot
+    assert robot.until(session, session.upload(image(DRIVES), saves=False)) == OK
+    session.press(*UP)
+    robot.talk(session, 60)
+    assert robot.remote() == readings(UP)
+    if how == "button":
+        robot.push()
+    else:
+        robot.step(bytes(4) if how == "zeros" else b"\r\nS\r\n")
+    robot.talk(session, 1000)  # it hears of the stop
+    begins_with_nothing_held(session, robot)
+    robot.talk(session, HOLD_MS)
+    assert robot.remote() == NONE
+    session.press(*UP)
+    robot.talk(session, 60)
+    assert robot.remote() == readings(UP)
+
+
+def test_a_program_begins_with_nothing_held() -> None:
+    one = hand()
+    one.holds(UP)
+    one.talk(60)
+    assert one.robot.remote() == readings(UP)
+    begins_with_nothing_held(one.session, one.robot)
+    one.talk(250)
+    assert one.robot.remote() == readings(UP)
+
+
+def begins_with_nothing_held(session: Session, robot: HostFirmware) -> None:
+    request, run = session.live(image("W(9)").code), robot.codes()
+    for _ in range(500):
+        session.receive(robot.step(session.poll(robot.now_ms)), robot.now_ms)
+        if robot.codes():
+            assert robot.remote() == NONE
+            return
+    raise AssertionError((request.outcome, run))
+
+
+def test_a_lost_link_and_one_that_is_found_again() -> None:
+    one = hand()
+    one.holds(UP)
+    one.talk(60)
+    one.loses = lambda: True
+    one.talk(6000)
+    assert LOST in one.outcomes and "LOST" in [event.name for event in one.session.events()]
+    one.loses = lambda: False
+    one.talk(3000)
+    assert one.robot.remote() == readings(UP), "who goes on pressing is heard again"
+
+
+# -- who may -------------------------------------------------------------------------------------
+
+
+def test_an_older_robot_is_told_nothing() -> None:
+    session = described()
+    request = session.press(*UP)
+    assert session.poll(10) == b""
+    assert request.outcome and request.outcome.status == STATUSES["NO_REMOTE"]
+    newer = described(features=REMOTE)
+    newer.press(*UP)
+    frame = decoded(newer.poll(10).strip(b"\0"))
+    assert frame and frame.number == KEYS.number and frame.payload == bytes((1, 0, 0))
+
+
+@pytest.mark.parametrize("defines", [(), ("tiniscript_without_seals",)], ids=["seals", "none"])
+def test_only_who_may_run_a_line_presses_keys_of_a_robot_with_an_owner(
+    defines: tuple[str, ...],
+) -> None:
+    table, keys = Owned(defines=defines), Keys()
+    table.claimed(keys)
+    stranger = Session(9, 9600, KIT.fingerprint)
+    assert table.robot.until(stranger, stranger.hello()) == OK
+    refused = stranger.press(*UP)
+    assert table.robot.until(stranger, refused) == STATUSES["NOT_OWNER"]
+    assert table.robot.remote() == NONE
+    owner = table.session(keys, nonce=4)
+    assert table.robot.until(owner, owner.hello()) == OK
+    assert table.robot.until(owner, owner.press(*UP)) == OK
+    assert table.robot.remote() == readings(UP)
+    table.robot.wait(5000)  # the robot knows its seal no more
+    owner.press(*A)
+    table.robot.talk(owner, 400)
+    owner.press(*A)
+    table.robot.talk(owner, 200)
+    assert table.robot.remote() == readings(A)
+
+
+# -- frames --------------------------------------------------------------------------------------
+
+
+class Wire:
+    """Who writes frames by hand, each with the next number."""
+
+    def __init__(self) -> None:
+        self.session, self.robot = greeted()
+        self.seq = self.session._seq
+        self.epoch = self.session._epoch
+
+    def frame(self, name: str, payload: bytes, epoch: int | None = None) -> bytes:
+        self.seq = (self.seq + 1) & 0xFF
+        number = BY_NAME[name].number
+        return b"\0" + encoded(
+            Frame(number, self.seq, self.epoch if epoch is None else epoch, payload)
+        )
+
+    def keys(self, held: Pressed, epoch: int | None = None) -> bytes:
+        return self.frame("KEYS", written(KEYS.request, held._asdict()), epoch)
+
+    def answer(self, sent: bytes) -> str:
+        """Return the status of the last answer."""
+        found = [decoded(packet) for packet in self.robot.wait(60, sent).split(b"\0")]
+        replies = [each for each in found if each is not None and each.is_reply]
+        return STATUS_NAMES[replies[-1].payload[0]]
+
+
+@pytest.mark.parametrize(
+    "payload", [b"\x40\0\0", b"\xff\0\0", b"\0\x65\0", b"\0\0\x9b", b"\0\x80\0"]
+)
+def test_what_is_out_of_range_is_refused_and_changes_nothing(payload: bytes) -> None:
+    wire = Wire()
+    assert wire.answer(wire.keys(UP)) == "OK"
+    assert wire.answer(wire.frame("KEYS", payload)) == "BAD_VALUE"
+    assert wire.robot.remote() == readings(UP)
+    assert wire.answer(wire.frame("KEYS", payload + b"\0")) == "BAD_LENGTH"
+
+
+def test_a_word_of_an_earlier_epoch_is_stale() -> None:
+    wire = Wire()
+    late = wire.keys(UP)
+    wire.robot.wait(10, bytes(4))
+    assert wire.answer(late) == "STALE"
+    assert wire.robot.remote() == NONE
+    assert wire.answer(wire.keys(UP, wire.epoch + 1)) == "OK"
+    assert wire.robot.is_latched
+
+
+def test_a_word_that_comes_twice_counts_once() -> None:
+    """A repeated one is answered, and presses no key again."""
+    wire = Wire()
+    word = wire.keys(UP)
+    assert wire.answer(word) == "OK"
+    assert wire.answer(wire.keys(NOTHING)) == "OK"
+    assert wire.answer(word) == "STALE"
+    assert wire.robot.remote() == NONE
+    last = wire.keys(A)
+    assert wire.answer(last) == "OK"
+    wire.robot.wait(HOLD_MS - 100)
+    assert wire.answer(last) == "OK"
+    wire.robot.wait(100)
+    assert wire.robot.remote() == NONE
+
+
+@pytest.mark.parametrize("cut", range(1, 14))
+def test_a_word_in_two_reads_and_at_9600_baud(cut: int) -> None:
+    wire = Wire()
+    word = wire.keys(pressed(["B"], -100, 100))
+    wire.robot.wait(30, word[:cut])
+    wire.robot.wait(30, word[cut:])
+    assert wire.robot.remote() == readings(pressed(["B"], -100, 100))
+    slow = wire.keys(LEFT)
+    wire.robot.latched_while(len(slow) + 5, slow, is_spread=True)
+    assert wire.robot.remote() == readings(LEFT)
+
+
+def test_a_thousand_words_in_a_burst() -> None:
+    """Some are dropped, the last one that is heard counts, and the robot is as before."""
+    wire = Wire()
+    burst = b"".join(wire.keys(Pressed(k % 64, 0, 0)) for k in range(1000))
+    wire.robot.wait(10, burst)
+    assert wire.answer(wire.keys(A)) == "OK"
+    assert wire.robot.remote() == readings(A)
+    wire.robot.wait(HOLD_MS)
+    assert wire.robot.remote() == NONE
+
+
+def test_keys_between_the_pieces_of_a_program() -> None:
+    """They end no upload, and it ends them no more than any other."""
+    wire = Wire()
+    made = image("SI|" + "SHOW(1);" * 30)
+    begin = bytes((0x10, *made.isa, 0, 15)) + pack("<HH", made.devices, len(made.code))
+    assert wire.answer(wire.frame("BEGIN", begin)) == "OK"
+    rest = bytes([made.needs]) + made.code
+    for at in range(0, len(rest), 40):
+        assert wire.answer(wire.keys(UP)) == "OK"
+        piece = at.to_bytes(2, "little") + rest[at : at + 40]
+        assert wire.answer(wire.frame("DATA", piece)) == "OK"
+    assert wire.answer(wire.keys(UP)) == "OK"
+    assert wire.robot.remote() == readings(UP)
+    commit = made.checksum.to_bytes(4, "little")
+    wire.robot.wait(60, wire.frame("COMMIT", commit))
+    assert wire.session.status() is not None
+    assert any("FINISHED" in line for line in wire.robot.did)
+
+
+def test_keys_drop_no_open_block_of_text() -> None:
+    """Another request does: it may need the memory."""
+    for sent, is_there in ((None, True), ("KEYS", True), ("NAME", False)):
+        wire = Wire()
+        wire.robot.wait(1500)  # text comes again
+        wire.robot.wait(50, b"SI|LOOP(1)\r\nF(0.1, 50)\r\n")
+        if sent is not None:
+            payload = b"\1\0\0" if sent == "KEYS" else b"Ana"
+            assert wire.answer(wire.frame(sent, payload)) in ("OK", "SAVING")
+        wire.robot.wait(1500)
+        wire.robot.wait(50, b"END_LOOP\r\n")
+        wire.robot.wait(300)
+        assert any("MOTORS 50 50" in line for line in wire.robot.did) == is_there, sent
+
+
+def test_the_reply_says_where_the_program_is() -> None:
+    wire = Wire()
+    program = image("SI|W(5)")
+    wire.robot.wait(60, wire.frame("PROGRAM", b"\x10" + program.code))
+    sent = wire.robot.wait(60, wire.keys(UP))
+    found = [decoded(packet) for packet in sent.split(b"\0")]
+    reply = next(each for each in found if each is not None and each.number == KEYS.number)
+    assert reply.payload[:2] == bytes((0, STATE_RUNNING))
+    assert int.from_bytes(reply.payload[5:9], "little") == program.checksum

@@ -1,0 +1,39 @@
+// A line of text that is a word of a remote control: KEY_A, KEY or PAD 30 -20, in any case.
+//
+// Known before any program is read, so that it needs no memory of one. Knows no robot.
+
+#pragma once
+
+#include <stdint.h>
+
+#include "../vm/build.h"
+#include "port.h"
+
+namespace tiniscript {
+
+class KeyLine {
+ public:
+  void begin() { length_ = 0; }
+  bool is_empty() const { return length_ == 0; }
+
+  void put(uint8_t byte) {
+    if (length_ < kMost) bytes_[length_] = byte;
+    if (length_ <= kMost) length_++;
+  }
+
+  // Whether the line is such a word; what it says.
+  bool read(RemoteKeys* said);
+
+ private:
+  static constexpr uint8_t kMost = 16;  // PAD -100 -100, and some blanks
+
+  bool takes(const char* word);
+  bool take_way(int8_t* way);
+  void skip_blanks();
+
+  const uint8_t* at_;
+  uint8_t length_;
+  uint8_t bytes_[kMost + 1];
+};
+
+}  // namespace tiniscript
