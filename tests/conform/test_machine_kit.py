@@ -210,7 +210,7 @@ def test_each_instruction_runs() -> None:
         kit = kit_of(case)
         code = loaded(case.image, kit).code
         robot = TracedRobot(kit, Lists(kit, case.readings))
-        runs = machine_of(code, robot, len(kit.sensors), case.seed)
+        runs = machine_of(code, robot, len(kit.readings), case.seed)
         for _ in range(10_000):
             status = runs.tick(robot.now_ms, 1)
             seen.add([*code, 0][runs.at])

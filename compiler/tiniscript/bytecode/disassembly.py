@@ -68,7 +68,7 @@ def disassemble(
 
 def _names(row: Row, kit: Kit) -> list[str]:
     assert row.op is not None
-    devices = {"sensor": kit.sensors, "actuator": kit.actuators}
+    devices = {"sensor": kit.readings, "actuator": kit.actuators}
     kinds = [each.kind.name for each in row.op.operands]
     named = list(zip(kinds, row.operands, strict=True))
     if row.op.implied is not None:

@@ -225,6 +225,7 @@ TASK_DONE_ONCE = _warning("TS833")
 WHEN_GOES_ON = _warning("TS834")
 UNUSED_READING = _warning("TS840")
 CUT_VALUE = _warning("TS841")
+GIVES_WAY = _warning("TS842")
 
 
 def in_order(found: list[Diagnostic]) -> list[Diagnostic]:

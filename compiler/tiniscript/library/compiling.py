@@ -25,6 +25,7 @@ from tiniscript.semantics.checker import check
 from tiniscript.semantics.empty_blocks import empty_blocks
 from tiniscript.semantics.lint import lint
 from tiniscript.semantics.optimizer import optimized
+from tiniscript.syntax.later_words import given_way, in_program
 from tiniscript.syntax.parser import ENOUGH, parse
 
 
@@ -69,13 +70,14 @@ def _with_findings(found: Compiled, kit: Kit) -> Compiled:
     from tiniscript.recovery.usage import with_usage
 
     read = cache(lambda text: analyzed(text, kit))  # a repair that was tried is read on
+    its = in_program(found.source.text, kit)
 
     def told_of(it: Compiled, rounds: int) -> Compiled:
         told: list[codes.Diagnostic] = []
         if rounds:
-            told, edits = findings(it.source, it.diagnostics, lambda to: read(to).diagnostics, kit)
+            told, edits = findings(it.source, it.diagnostics, lambda to: read(to).diagnostics, its)
         if not told:
-            told = with_usage(it.diagnostics, it.source, kit)
+            told = with_usage(it.diagnostics, it.source, its)
         elif len(told) <= ENOUGH:
             rest = read(applied(it.source.text, edits))
             # The warnings of what is left come when it is repaired.
@@ -85,7 +87,7 @@ def _with_findings(found: Compiled, kit: Kit) -> Compiled:
 
     told = told_of(found, ROUNDS)
     honest = without_wrong(told.diagnostics, told.source.text, lambda to: read(to).diagnostics)
-    kept = with_sample(conserving(honest, told.source.text, kit), told.source.text, kit)
+    kept = with_sample(conserving(honest, told.source.text, its), told.source.text, its)
     at = [pointed(each, found.source) for each in kept]
     return told._replace(diagnostics=codes.in_order(at))
 
@@ -94,6 +96,7 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and what is wrong with it; no repair is vouched for."""
     source = Source(text, name)
     parsed = parse(source)
+    kit = in_program(text, kit)
     checked = check(source, parsed.program, kit)
     found = [*parsed.diagnostics, *checked.diagnostics]
     if not any(diagnostic.is_mistake for diagnostic in found):
@@ -103,6 +106,8 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
             from tiniscript.semantics.notes import in_notes
 
             found += in_notes(parsed.scan.comments, parsed.scan.tokens, source)
+        if kit.given:
+            found += given_way(parsed.scan.tokens, kit, source)
     return Compiled(source, codes.in_order(found), checked.program)
 
 
@@ -176,7 +181,7 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
         place = Span(len(text), len(text))
         diagnostic = codes.Diagnostic(codes.CODE_TOO_LONG, place, over)
         return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
-    verdict = verify(lowered.code, len(kit.sensors), len(kit.actuators))
+    verdict = verify(lowered.code, len(kit.readings), len(kit.actuators))
     devices = kit.hash_of_used(verdict.uses)
     image = pack(program.start, devices, lowered.code, needs=verdict.needs)
     return compiled._replace(lowered=program, code=lowered.code, places=lowered.places,

@@ -5,15 +5,15 @@ Knows the table of `vm_arduino/src/text/kit_words.h`.
 
 from __future__ import annotations
 
-from tiniscript.base.kit import Kit
+from tiniscript.base.kit import REMOTE, Kit
 
 LAST_LETTER = 0x80  # marks the last letter of a word
-_YES_NO, _ACTUATOR = 1, 2
+_YES_NO, _ACTUATOR, _GIVES_WAY = 1, 2, 4
 _GOES, _TURNS = 1, 2
 
 
 def kit_words(kit: Kit) -> bytes:
-    """Return the table of a kit: its sensors, its actuators, a 0, and whether it goes and turns."""
+    """Return the table of a kit: its sensors, its actuators, its remote, a 0, whether it goes, turns."""
     table = bytearray()
     for device in kit.sensors:
         table += packed(device.name) + bytes((_YES_NO * device.is_yes_no,))
@@ -21,6 +21,8 @@ def kit_words(kit: Kit) -> bytes:
         table += packed(device.name) + bytes((_ACTUATOR | _YES_NO * device.is_yes_no,))
         if not device.is_yes_no:
             table += packed_range(device.low, device.high)
+    for device in REMOTE if kit.has_remote else ():
+        table += packed(device.name) + bytes((_GIVES_WAY | _YES_NO * device.is_yes_no,))
     return bytes((*table, 0, _GOES * bool(kit.speed) | _TURNS * bool(kit.turn)))
 
 

@@ -205,7 +205,7 @@ class InvariantConditions:
         if not held:
             return
         name = self._program.variables[variables[0]]
-        sensor = next(k for k, each in enumerate(self._kit.sensors) if each.name == held[name])
+        sensor = next(k for k, each in enumerate(self._kit.readings) if each.name == held[name])
         used = self._used_in(outermost)
         if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & used:
             return  # it is shown beside what is measured now, or the rounds need it
@@ -304,7 +304,7 @@ class InvariantConditions:
         asked = [term.op for term in condition]
         if asked != ["SENSOR", "NUMBER", "NUMBER", "SUB", "EQ"]:
             return
-        device = self._kit.sensors[condition[0].value]
+        device = self._kit.readings[condition[0].value]
         first, second = (term.value for term in condition[1:3])
         if not device.is_yes_no and first - second < device.low <= first < second <= device.high:
             name, low, high = device.name, as_text(device.low), as_text(device.high)
@@ -331,7 +331,7 @@ class InvariantConditions:
 
         Nothing where it is none to write, as where a move in this direction never makes it true.
         """
-        numbers = {device.name: k for k, device in enumerate(self._kit.sensors)}
+        numbers = {device.name: k for k, device in enumerate(self._kit.readings)}
         asking = tuple(
             ir.Term("SENSOR", numbers[held[self._program.variables[term.value]]])
             if term.op == "VARIABLE"
@@ -353,7 +353,7 @@ class InvariantConditions:
             if len(value) != 1 or value[0].op != "SENSOR":
                 return {}
             name = self._program.variables[variable]
-            held[name] = self._kit.sensors[value[0].value].name
+            held[name] = self._kit.readings[value[0].value].name
         return held
 
     def _report(self, code: Code, span: Span, **values: str) -> None:

@@ -182,6 +182,6 @@ def _unused_readings(
     for statement in statements:
         if isinstance(statement, ir.Read) and statement.sensor not in asked:
             asked.add(statement.sensor)  # said once
-            name = kit.sensors[statement.sensor].name
+            name = kit.readings[statement.sensor].name
             values = {"name": name, "fix": f"SHOW({name})"}
             yield Diagnostic(codes.UNUSED_READING, statement.span, values)

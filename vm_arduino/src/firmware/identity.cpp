@@ -2,6 +2,7 @@
 
 #include "../link/frames.h"
 #include "../link/text_level.h"
+#include "../robot.h"
 #include "../store/layout.h"
 #include "../vm/small.h"
 #include "firmware.h"
@@ -36,7 +37,7 @@ void begin_identity(const BootInfo& boot_info) {
   identity.nonce = boot_info.seed;
   identity.reset = boot_info.reset;
   identity.features = static_cast<uint8_t>(kRobotTextLevel) | kPlaces;
-  device_info.sensors = board_sensors();
+  device_info.sensors = readings_of(board_sensors());
   device_info.actuators = board_actuators();
 }
 

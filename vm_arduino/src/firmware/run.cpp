@@ -11,6 +11,7 @@
 #include "guide.h"
 #include "persistence.h"
 #include "program.h"
+#include "remote.h"
 #include "state.h"
 #include "trim.h"
 
@@ -58,7 +59,7 @@ void go_on() {
 
 // The part of starting a run that does not depend on the program: done while nothing runs.
 void prepare() {
-  for (uint8_t k = 0; k < board_sensors(); k++) board_readings()[k] = 0;
+  for (uint8_t k = 0; k < readings_of(board_sensors()); k++) board_readings()[k] = 0;
   board_forget();
   machine.prepare();
   is_prepared = true;
@@ -72,7 +73,7 @@ void begin_run(const uint8_t* image) {
   const uint16_t length = get16(image + kCodeLengthAt);  // in this order fewer registers are saved
   const uint8_t* const code = image + image[kHeaderLengthAt];
   const uint32_t time_ms = now_ms;
-  machine.start_prepared(code, length, board_readings(), board_sensors(),
+  machine.start_prepared(code, length, board_readings(), readings_of(board_sensors()),
                          (time_ms ^ port_identity().nonce) | 1, time_ms);
   run_image = image;
   is_start_due = false;
@@ -188,6 +189,8 @@ bool firmware_runs(Place* place) {
 }
 
 // -- what a program asks ------------------------------------------------------------------------
+
+int32_t remote_reading(uint8_t) { return 0; }
 
 #ifdef tiniscript_has_discs
 

@@ -13,13 +13,14 @@ namespace tiniscript {
 // Bits of what stands behind the letters of a device.
 constexpr uint8_t kDeviceIsYesNo = 1;
 constexpr uint8_t kDeviceIsActuator = 2;
+constexpr uint8_t kDeviceGivesWay = 4;  // to a name of the program
 constexpr uint8_t kRangeBytes = 8;
 
 // Bits behind the table.
 constexpr uint8_t kKitGoes = 1;
 constexpr uint8_t kKitTurns = 2;
 
-// The sensors and then the actuators, in flash: the letters of each, 0x80 in the last one; what it
+// The sensors, the actuators, and then what a remote control says, in flash: the letters of each, 0x80 in the last one; what it
 // is; behind an actuator that is a number its least and its largest value, thousandths of 32 bits,
 // little-endian. A 0 ends the table; behind it bits say whether the kit says how fast it goes and
 // turns.

@@ -106,7 +106,8 @@ class Reader {
   uint8_t find(const uint8_t* table, uint8_t unmark);
   uint8_t open_word();
   bool matches(const uint8_t** entry, bool in_flash);
-  bool find_in_kit();
+  void find_in_kit();
+  bool is_free() const;
   void find_name();
   void add_name(uint8_t info, uint8_t more);
 
@@ -206,6 +207,7 @@ class Reader {
   uint16_t value_kinds_;    // a bit for each, the last one lowest: whether it is a yes/no
   SensorBits read_;         // that are surely read
   SensorBits known_;        // the same, and those that this instruction has read
+  SensorBits asked_;        // that have been read anywhere
   uint8_t variables_;
   uint8_t blocks_;
 

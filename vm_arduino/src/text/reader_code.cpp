@@ -106,6 +106,7 @@ void Reader::read_first(uint8_t sensor) {
   const SensorBits bit = static_cast<SensorBits>(SensorBits{1} << sensor);
   if ((known_ & bit) != 0) return;
   known_ |= bit;
+  asked_ |= bit;
   if (sensor < kShorts) {
     insert(static_cast<uint8_t>(byte_of(Op::kRead0) + sensor));
   } else {

@@ -17,7 +17,8 @@ void Reader::end_word() {
     }
     return token(word);
   }
-  if (!find_in_kit()) find_name();
+  find_name();
+  if (found_ == 0) find_in_kit();
   token(kNameToken);
 }
 
@@ -61,7 +62,7 @@ uint8_t Reader::find_unknown(const uint8_t* table) {
   return problem_ == Problem::kUnknownWord && length_ == 0 ? find(table, 0) : uint8_t{255};
 }
 
-bool Reader::find_in_kit() {
+void Reader::find_in_kit() {
   const uint8_t* entry = robot_words();
   uint8_t sensors = 0;
   uint8_t actuators = 0;
@@ -69,6 +70,7 @@ bool Reader::find_in_kit() {
     const bool is_found = matches(&entry, true);
     const uint8_t device = flash_byte(entry++);
     uint8_t found = static_cast<uint8_t>(kIsSensor | (device & kDeviceIsYesNo));
+    if ((device & kDeviceGivesWay) != 0) found |= kGivesWay;
     uint8_t number = sensors++;
     if ((device & kDeviceIsActuator) != 0) {
       found ^= kIsSensor | kIsActuator;
@@ -79,11 +81,15 @@ bool Reader::find_in_kit() {
       found_ = found;
       number_ = number;
       entry_ = entry;
-      return true;
+      return;
     }
     if (device == kDeviceIsActuator) entry += kRangeBytes;
   }
-  return false;
+}
+
+// Whether the word may become a name of the program.
+bool Reader::is_free() const {
+  return found_ == 0 || ((found_ & kGivesWay) != 0 && (asked_ >> number_ & 1) == 0);
 }
 
 void Reader::find_name() {

@@ -60,6 +60,7 @@ constexpr uint8_t kIsActuator = 4;
 constexpr uint8_t kIsVariable = 8;
 constexpr uint8_t kIsDef = 16;
 constexpr uint8_t kIsGone = 32;  // a value of another DEF
+constexpr uint8_t kGivesWay = 64;  // a sensor, if it has not been asked before
 
 // Among the operators that wait: open brackets, with the opcode of their function. The second
 // argument of a function has kSecond, and kBase is behind all.

@@ -75,7 +75,7 @@ class Reader:
         self.brackets = 0
         self.is_way = False  # of the instruction whose brackets have been read
         self.one_too_many: Span | None = None  # the first bracket behind MOST_BRACKETS
-        self.sensors = {each.name: k for k, each in enumerate(kit.sensors)}
+        self.sensors = {each.name: k for k, each in enumerate(kit.readings)}
         self.actuators = {each.name: k for k, each in enumerate(kit.actuators)}
         self.variables: dict[str, int] = {}
         self.own: dict[str, int] = {}  # the values of the DEF that is open
