@@ -27,7 +27,7 @@ from tiniscript.bytecode.opcodes import CONTROL_ROLES
 from tiniscript.bytecode.verify import RULES
 from tiniscript.robots import DEFAULT, load
 
-SENSORS, ACTUATORS = 3, 2
+SENSORS, ACTUATORS = 11, 2
 NEEDY = {spec_tables.ESCAPE} | {
     code for code, row in spec_tables.instructions().items() if row.name in verifier.OF_TASKS
 }

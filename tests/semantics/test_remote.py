@@ -46,7 +46,7 @@ def told(compiled: Compiled) -> list[str]:
 
 def test_the_contract_has_eight_in_this_order() -> None:
     keys = ["KEY_UP", "KEY_DOWN", "KEY_LEFT", "KEY_RIGHT", "KEY_A", "KEY_B"]
-    assert NAMES == [*keys, "PAD_X", "PAD_Y"]
+    assert [*keys, "PAD_X", "PAD_Y"] == NAMES
     assert [device.is_yes_no for device in REMOTE] == [True] * 6 + [False] * 2
     assert {(each.low, each.high) for each in REMOTE[6:]} == {(-100 * ONE, 100 * ONE)}
 
@@ -293,4 +293,4 @@ def test_a_stick_at_rest_may_be_asked_for() -> None:
     """It reads exactly 0 then, and hardly ever another number that is asked for."""
     assert not compile_text("IF(PAD_X = 0);SHOW(1);ENDIF", TINIBOT).diagnostics
     assert told(compile_text("IF(PAD_X = 50);SHOW(1);ENDIF", TINIBOT)) == [codes.EXACT.number]
-    assert NUMBER == REMOTE[-1].kind
+    assert REMOTE[-1].kind == NUMBER

@@ -15,7 +15,6 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.robots.text_levels import CODE_BYTES, LONGEST_WORD, Level
 from tiniscript.semantics.ir import Program, are_yes_no
 from tiniscript.semantics.task_copies import users
-from tiniscript.syntax.later_words import in_program
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse
 
@@ -37,7 +36,7 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
         place = _first_behind(plain, limit)
         found.append(_too_many(codes.LEVEL_CODE, place, level, plain.length, limit))
         return found
-    reader = Reader(tokens, in_program(source.text, kit), level.sensor_bytes)
+    reader = Reader(tokens, kit, level.sensor_bytes)
     reader.program()
     if reader.one_too_many is not None:
         values = {"level": level.name, "limit": str(MOST_BRACKETS)}

@@ -13,7 +13,7 @@ _GOES, _TURNS = 1, 2
 
 
 def kit_words(kit: Kit) -> bytes:
-    """Return the table of a kit: its sensors, its actuators, its remote, a 0, whether it goes, turns."""
+    """Return the table: sensors, actuators, the remote control, a 0, and whether it goes and turns."""
     table = bytearray()
     for device in kit.sensors:
         table += packed(device.name) + bytes((_YES_NO * device.is_yes_no,))

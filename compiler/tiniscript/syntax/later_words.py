@@ -23,8 +23,13 @@ def in_program(text: str, kit: Kit) -> Kit:
     """Return the kit as a program has it: without the words that have given way there."""
     if not _MAY_BE.search(text):
         return kit
+    return among(scan(text).tokens, kit)
+
+
+def among(tokens: Sequence[Token], kit: Kit) -> Kit:
+    """Return the kit as a program with these tokens has it."""
     later = {each.name for each in kit.readings}.difference(kit.names)
-    given = later.intersection(own_words(scan(text).tokens))
+    given = later.intersection(own_words(tokens))
     return kit._replace(given=frozenset(given)) if given else kit
 
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../../src/firmware/firmware.h"
+#include "../../src/firmware/remote.h"
 #include "../../src/firmware/trim.h"
 #include "../../src/link/frames.h"
 #include "../../src/robot.h"
