@@ -99,6 +99,13 @@ def test_disassembly_and_its_beginnings(case: Case) -> None:
         compare([code[:length] for length in range(len(code) + 1)], SENSORS, actuators)
 
 
+@pytest.mark.parametrize("code", ["92 39 93 39", "8b 39", "9a 9f"])
+def test_a_sensor_in_an_instruction_of_one_byte(code: str) -> None:
+    """PUSH_READ_3, PUSH_SENSOR_3 and READ_7, of a kit with 3 that reads no remote control."""
+    assert compare([bytes.fromhex(code)], 3) == {RULES["NO_SUCH_DEVICE"][0]}
+    assert compare([bytes.fromhex(code)], 8) == {0}
+
+
 def test_codes_of_up_to_two_bytes() -> None:
     compare(bytes(each) for size in range(3) for each in product(range(256), repeat=size))
 

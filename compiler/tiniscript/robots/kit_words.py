@@ -8,7 +8,7 @@ from __future__ import annotations
 from tiniscript.base.kit import REMOTE, Kit
 
 LAST_LETTER = 0x80  # marks the last letter of a word
-_YES_NO, _ACTUATOR, _GIVES_WAY = 1, 2, 4
+_YES_NO, _SENSOR, _ACTUATOR, _GIVES_WAY = 1, 2, 4, 8
 _GOES, _TURNS = 1, 2
 
 
@@ -16,13 +16,13 @@ def kit_words(kit: Kit) -> bytes:
     """Return the table: sensors, actuators, the remote control, a 0, and whether it goes and turns."""
     table = bytearray()
     for device in kit.sensors:
-        table += packed(device.name) + bytes((_YES_NO * device.is_yes_no,))
+        table += packed(device.name) + bytes((_SENSOR | _YES_NO * device.is_yes_no,))
     for device in kit.actuators:
         table += packed(device.name) + bytes((_ACTUATOR | _YES_NO * device.is_yes_no,))
         if not device.is_yes_no:
             table += packed_range(device.low, device.high)
     for device in REMOTE if kit.has_remote else ():
-        table += packed(device.name) + bytes((_GIVES_WAY | _YES_NO * device.is_yes_no,))
+        table += packed(device.name) + bytes((_GIVES_WAY | _SENSOR | _YES_NO * device.is_yes_no,))
     return bytes((*table, 0, _GOES * bool(kit.speed) | _TURNS * bool(kit.turn)))
 
 

@@ -10,10 +10,11 @@
 
 namespace tiniscript {
 
-// Bits of what stands behind the letters of a device.
-constexpr uint8_t kDeviceIsYesNo = 1;
-constexpr uint8_t kDeviceIsActuator = 2;
-constexpr uint8_t kDeviceGivesWay = 4;  // to a name of the program
+// Bits of what stands behind the letters of a device; the reader says with them what a name is.
+constexpr uint8_t kIsYesNo = 1;
+constexpr uint8_t kIsSensor = 2;
+constexpr uint8_t kIsActuator = 4;
+constexpr uint8_t kGivesWay = 8;  // a sensor, to a name of the program if it has not been asked before
 constexpr uint8_t kRangeBytes = 8;
 
 // Bits behind the table.
@@ -32,7 +33,7 @@ uint16_t robot_language();
 
 // Returns what is behind a device, from what it is on.
 inline const uint8_t* behind_device(const uint8_t* device) {
-  const bool has_range = flash_byte(device) == kDeviceIsActuator;
+  const bool has_range = flash_byte(device) == kIsActuator;
   return device + 1 + (has_range ? kRangeBytes : 0);
 }
 

@@ -107,7 +107,8 @@ class Reader {
   uint8_t open_word();
   bool matches(const uint8_t** entry, bool in_flash);
   void find_in_kit();
-  bool is_free() const;
+  SensorBits ask();
+  bool is_free();
   void find_name();
   void add_name(uint8_t info, uint8_t more);
 
@@ -158,7 +159,7 @@ class Reader {
   void emit_number(bool is_minus);
   void link(uint8_t* ends);
   void resolve(uint8_t at);
-  void read_first(uint8_t sensor);
+  void read_first();
   tini_noinline void insert(uint8_t byte);
   void push(uint8_t byte);
   uint8_t pop();

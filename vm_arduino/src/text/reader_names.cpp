@@ -69,27 +69,28 @@ void Reader::find_in_kit() {
   while (flash_byte(entry) != 0) {
     const bool is_found = matches(&entry, true);
     const uint8_t device = flash_byte(entry++);
-    uint8_t found = static_cast<uint8_t>(kIsSensor | (device & kDeviceIsYesNo));
-    if ((device & kDeviceGivesWay) != 0) found |= kGivesWay;
-    uint8_t number = sensors++;
-    if ((device & kDeviceIsActuator) != 0) {
-      found ^= kIsSensor | kIsActuator;
-      sensors--;
-      number = actuators++;
-    }
+    const uint8_t number = (device & kIsActuator) != 0 ? actuators++ : sensors++;
     if (is_found) {
-      found_ = found;
+      found_ = device;
       number_ = number;
       entry_ = entry;
       return;
     }
-    if (device == kDeviceIsActuator) entry += kRangeBytes;
+    if (device == kIsActuator) entry += kRangeBytes;
   }
 }
 
-// Whether the word may become a name of the program.
-bool Reader::is_free() const {
-  return found_ == 0 || ((found_ & kGivesWay) != 0 && (asked_ >> number_ & 1) == 0);
+// Notes that the sensor that was named has been asked, and returns its bit.
+tini_noinline SensorBits Reader::ask() {
+  const SensorBits bit = static_cast<SensorBits>(SensorBits{1} << number_);
+  asked_ |= bit;
+  return bit;
+}
+
+// Whether the word may become a name of the program; then nobody asks it.
+bool Reader::is_free() {
+  const SensorBits before = asked_;
+  return found_ == 0 || ((found_ & kGivesWay) != 0 && (ask() & before) == 0);
 }
 
 void Reader::find_name() {

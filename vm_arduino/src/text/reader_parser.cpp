@@ -186,9 +186,7 @@ Problem Reader::after_name(uint8_t token) {
   if (kReadsDefs && found == kIsDef) return begin_call(token);
   if (!ends(token)) return Problem::kSeparator;
   emit_numbered(byte_of(Op::kRead), byte_of(Op::kRead0), number_);
-  const SensorBits bit = static_cast<SensorBits>(SensorBits{1} << number_);
-  read_ |= bit;
-  asked_ |= bit;
+  read_ |= ask();
   return Problem::kNone;
 }
 
