@@ -7,6 +7,8 @@
 
 #include <stdint.h>
 
+#include "vm/build.h"
+
 namespace tiniscript {
 
 // Sets both motors, -100 to 100 percent.
@@ -17,7 +19,7 @@ void robot_off();
 
 // How many readings programs have of a kit with so many sensors: where there is room, those of a
 // remote control come behind them. A set of readings has 16 bits on an Uno.
-constexpr uint8_t kRemoteRoom = 8;
+constexpr uint8_t kRemoteRoom = kHasRemote ? 8 : 0;
 constexpr uint8_t readings_of(uint8_t sensors) {
   return sensors > kRemoteRoom ? sensors : static_cast<uint8_t>(sensors + kRemoteRoom);
 }

@@ -14,6 +14,11 @@ _GOES, _TURNS = 1, 2
 
 def kit_words(kit: Kit) -> bytes:
     """Return the table: sensors, actuators, the remote control, a 0, and whether it goes and turns."""
+    return own_words(kit) + remote_words(kit) + end_of_words(kit)
+
+
+def own_words(kit: Kit) -> bytes:
+    """Return the words of the profile: its sensors and actuators."""
     table = bytearray()
     for device in kit.sensors:
         table += packed(device.name) + bytes((_SENSOR | _YES_NO * device.is_yes_no,))
@@ -21,9 +26,20 @@ def kit_words(kit: Kit) -> bytes:
         table += packed(device.name) + bytes((_ACTUATOR | _YES_NO * device.is_yes_no,))
         if not device.is_yes_no:
             table += packed_range(device.low, device.high)
+    return bytes(table)
+
+
+def remote_words(kit: Kit) -> bytes:
+    """Return the words of the remote control."""
+    table = bytearray()
     for device in REMOTE if kit.has_remote else ():
         table += packed(device.name) + bytes((_GIVES_WAY | _SENSOR | _YES_NO * device.is_yes_no,))
-    return bytes((*table, 0, _GOES * bool(kit.speed) | _TURNS * bool(kit.turn)))
+    return bytes(table)
+
+
+def end_of_words(kit: Kit) -> bytes:
+    """Return a 0, and whether the kit says how fast it goes and turns."""
+    return bytes((0, _GOES * bool(kit.speed) | _TURNS * bool(kit.turn)))
 
 
 def packed(word: str) -> bytes:

@@ -150,7 +150,7 @@ void robot_off() {
 }
 
 bool robot_read(uint8_t sensor, int32_t* value) {
-  if (sensor < kBoardSensors) return read_sensor(sensor, value);
+  if (!kHasRemote || sensor < kBoardSensors) return read_sensor(sensor, value);
   *value = remote_reading(static_cast<uint8_t>(sensor - kBoardSensors));
   return true;
 }

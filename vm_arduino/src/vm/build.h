@@ -39,6 +39,13 @@
 #define tiniscript_reads_defs
 #endif
 
+// A remote control takes about 250 bytes of flash and 39 of RAM. Of robots with an ATmega328P an Uno has
+// it where it has tasks; a Nano lacks the flash, a robot with discs the RAM.
+#if !defined(__AVR_ATmega328P__) || \
+    (defined(tiniscript_with_tasks) && !defined(tiniscript_with_discs))
+#define tiniscript_has_remote
+#endif
+
 // An ATmega328P reads a program where the one is that it holds; tiniscript_no_draft is for tests of
 // that. Others have room for both.
 #if (!defined(__AVR__) || defined(__AVR_ATmega2560__)) && !defined(tiniscript_no_draft)
@@ -105,6 +112,12 @@ constexpr bool kReadsDefs = true;
 #else
 constexpr bool kReadsDefs = false;
 #define tini_with_defs static
+#endif
+
+#ifdef tiniscript_has_remote
+constexpr bool kHasRemote = true;
+#else
+constexpr bool kHasRemote = false;
 #endif
 
 #ifdef tiniscript_has_draft
