@@ -18,8 +18,8 @@ from tiniscript.base.kit import Kit
 from tiniscript.conformance.kit import FORM, VERSION, cases_in
 from tools.generate.machine_kit import Run, answer_of, case_of, lines_of, runs
 
-AVR_BYTES = 700  # of an image
-AVR_DEVICES = 16, 4  # sensors and actuators, at most: `kMostSensors` of the chip's runner
+AVR_BYTES = 620  # of an image
+AVR_DEVICES = 14, 4  # sensors and actuators, at most: `kMostSensors` of the chip's runner
 
 
 @lru_cache(maxsize=1)

@@ -158,7 +158,7 @@ BREAKS = [
     ("machine", "            self.wait_to(self.passed + 1)",
      "            self.wait_to(self.passed + 1)\n            self.clock = self.now", "late: "),
     ("machine", "        while self.is_slow(number, self.passed)",
-     "        while self.is_slow(number, self.passed) and number", "programs: "),
+     "        while self.is_slow(number, self.passed) and number", "late: "),
     ("verifier", "m.depth <= 16", "m.depth <= 17", "refused: "),
     ("verifier", "<= 32, TOO_DEEP", "<= 33, TOO_DEEP", "refused: "),
     ("verifier", "and inner.kind == IF), BAD_TARGET", "), BAD_TARGET", "refused: "),
