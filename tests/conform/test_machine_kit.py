@@ -230,7 +230,8 @@ def kit_of(case: MachineCase) -> Kit:
             continue
         kind, unit, low, high = rest
         devices[what].append(Device(name, kind, unit, int(low), int(high)))
-    return Kit(tuple(devices["sensor"]), tuple(devices["actuator"]), **speeds)
+    sensors, actuators = (tuple(found) for found in devices.values())
+    return Kit(sensors, actuators, speeds["speed"], speeds["turn"])
 
 
 def test_names_are_unique_and_each_refusal_is_there() -> None:

@@ -21,10 +21,11 @@ from tiniscript.bytecode.image import ImageRefused, unpack
 from tiniscript.bytecode.verify import Refused, loaded
 from tiniscript.codegen.text.line import plain_code
 from tiniscript.diagnostics import codes
-from tiniscript.library.compiling import Compiled, compile_text
+from tiniscript.library.compiling import Compiled, compile_text, for_robot
 from tiniscript.library.runs import run
 from tiniscript.studio import block_reading
 from tiniscript.vm.runner import run as run_code
+from tiniscript.vm.tasks import machine_of
 
 TINIBOT = robots.load("tinibot").kit
 NAMES = [device.name for device in REMOTE]
@@ -100,8 +101,8 @@ def test_a_kit_with_room_has_them_on_both_machines(count: int) -> None:
         "0 READ KEY_B TRUE", "0 SET LAMP TRUE", "0 READ PAD_Y -3", "0 SHOW -3", "0 DONE",
     ]  # fmt: skip
     code = unpack(made.image).code
-    for machine in ({}, {"machine_of": WasmImage(made.image, kit).machine}):
-        *events, _ = run_code(code, kit, Senses(kit, senses), **machine)
+    for machine in (machine_of, WasmImage(made.image, kit).machine):
+        *events, _ = run_code(code, kit, Senses(kit, senses), machine_of=machine)
         assert [str(each) for each in events] == want
 
 
@@ -128,7 +129,8 @@ def test_the_check_of_a_profile_says_that_it_has_no_room(
     done = tsc("firmware", "--board", path, "-o", tmp_path / "own.h")
     assert done.code == 0 and ("more than 8 sensors" in done.err) == is_told, done
     header = (tmp_path / "own.h").read_text(encoding="utf-8")
-    count = len(re.findall("0x", re.search("kDeviceHashes.*", header)[0]))  # type: ignore[index]
+    (hashes,) = re.findall(r"(?s)kDeviceHashes\[\].*?\};", header)
+    count = hashes.count("0x")
     assert count == 3 + more + 2 + (0 if is_told else 8)
 
 
@@ -273,6 +275,27 @@ def test_a_run_takes_their_readings(tsc: Tsc) -> None:
 def test_a_sketch_has_none(tsc: Tsc) -> None:
     tsc("show", "--arduino", "-e", "SHOW(KEY_A)").gives(2, "no remote control")
     assert tsc("show", "--arduino", "-e", "KEY_A = 1;SHOW(KEY_A)").code == 0
+
+
+@pytest.mark.parametrize(("robot", "has"), [("tinibot", True), ("grabber", True), ("liner", False),
+                                            ("tinibot2", False), ("tinibot32", True)])  # fmt: skip
+def test_a_robot_without_room_for_it_is_told_before_anything_is_sent(
+    tsc: Tsc, robot: str, has: bool
+) -> None:
+    """A Nano, and an Uno with discs; what sends nothing takes the program."""
+    text = "SHOW(1)\nF(1, 50) UNTIL(KEY_A)\n"
+    for verb in (("compile", "--text"), ("upload", "--virtual")) if not has else ():
+        done = tsc(*verb, "-e", text, "--robot", robot)
+        assert (
+            done.code == 1 and "TS319" in done.err + done.out and "line 2:" in done.err + done.out
+        )
+    for verb in (("check",), ("show",), ("run", "--max-time", "0.1")):
+        assert tsc(*verb, "-e", text, "--robot", robot).code == 0
+    profile = robots.load(robot)
+    made = for_robot(compile_text(text, profile.kit), profile)
+    assert made.is_right == has and bool(made.image) == has
+    mine = for_robot(compile_text("KEY_A = 1;SHOW(KEY_A)", profile.kit), profile)
+    assert mine.is_right and mine.image
 
 
 def test_the_example_runs_and_is_that_of_the_documents() -> None:

@@ -167,7 +167,7 @@ def limit_table() -> str:
 
 
 def device_table() -> str:
-    rows = []
+    rows: list[tuple[object, ...]] = []
     for name in KITS:
         kit = robots.load(name).kit
         many, read = len(kit.sensors), len(kit.readings)

@@ -194,6 +194,7 @@ NO_WAYS = _mistake("TS315")
 TOO_MANY_PARAMETERS = _mistake("TS316")
 TOO_MANY_COPIES = _mistake("TS317")
 LEVEL_VALUES = _mistake("TS318")
+NO_REMOTE = _mistake("TS319")
 # what a teacher would say
 ROUNDED = _warning("TS801")
 NEVER_REACHED = _warning("TS802")

@@ -125,14 +125,17 @@ def fitting(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
 
 
 def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
-    """Return `compiled`, with a mistake and no image where the robot lacks tasks or ways it has.
+    """Return `compiled`, with a mistake and no image where the robot lacks what it uses.
 
     For what is about to be sent to a robot, a virtual one too.
     """
     program, verdict = compiled.program, compiled.verdict
-    if program is None or verdict is None or not verdict.needs or not compiled.is_right:
+    if program is None or verdict is None or not compiled.is_right:
         return compiled
-    from tiniscript.library.known_kits import lacks
+    asks_remote = robot.kit.asks_remote(verdict.uses)
+    if not verdict.needs and not asks_remote:
+        return compiled
+    from tiniscript.library.known_kits import has_remote, lacks
 
     needed = (
         (codes.NO_TASKS, TASKS, program.tasks[0].word if program.tasks else None),
@@ -143,11 +146,22 @@ def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
         for code, need, span in needed
         if span is not None and lacks(need, robot)
     ]
+    if asks_remote and not has_remote(robot):
+        lacking.append(_no_remote(compiled, robot))
     if not lacking:
         return compiled
     return compiled._replace(
         diagnostics=codes.in_order([*compiled.diagnostics, *lacking]), image=b""
     )
+
+
+def _no_remote(compiled: Compiled, robot: Robot) -> codes.Diagnostic:
+    """Return the mistake of a program that asks a remote control which the robot does not have."""
+    from tiniscript.bytecode.disassembly import devices_of, rows
+
+    first = next(row for row in rows(compiled.code) if robot.kit.asks_remote(devices_of(row)))
+    span = max(place for place in compiled.places if place.offset <= first.offset).span
+    return codes.Diagnostic(codes.NO_REMOTE, span, {"robot": robot.name})
 
 
 def compile_text(text: str, kit: Kit, name: str = "", optimize: bool = True) -> Compiled:

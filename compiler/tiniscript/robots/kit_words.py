@@ -13,7 +13,7 @@ _GOES, _TURNS = 1, 2
 
 
 def kit_words(kit: Kit) -> bytes:
-    """Return the table: sensors, actuators, the remote control, a 0, and whether it goes and turns."""
+    """Return the table: the devices of the kit, a 0, and whether it goes and turns."""
     return own_words(kit) + remote_words(kit) + end_of_words(kit)
 
 
