@@ -284,13 +284,13 @@ def test_a_robot_without_room_for_it_is_told_before_anything_is_sent(
 ) -> None:
     """A Nano, and an Uno with discs; what sends nothing takes the program."""
     text = "SHOW(1)\nF(1, 50) UNTIL(KEY_A)\n"
-    for verb in (("compile", "--text"), ("upload", "--virtual")) if not has else ():
-        done = tsc(*verb, "-e", text, "--robot", robot)
-        assert (
-            done.code == 1 and "TS319" in done.err + done.out and "line 2:" in done.err + done.out
-        )
-    for verb in (("check",), ("show",), ("run", "--max-time", "0.1")):
-        assert tsc(*verb, "-e", text, "--robot", robot).code == 0
+    of = ("-e", text, "--robot", robot)
+    for sends in (["compile", "--text"], ["upload", "--virtual"]) if not has else []:
+        done = tsc(*sends, *of)
+        assert done.code == 1 and "TS319" in done.err + done.out
+        assert "line 2:" in done.err + done.out
+    for verb in (["check"], ["show"], ["run", "--max-time", "0.1"]):
+        assert tsc(*verb, *of).code == 0
     profile = robots.load(robot)
     made = for_robot(compile_text(text, profile.kit), profile)
     assert made.is_right == has and bool(made.image) == has
