@@ -209,7 +209,7 @@ def test_disassembly_of_anything_reads_back() -> None:
 
 def test_a_disassembly_names_the_devices_that_the_kit_has() -> None:
     kit = robots.load("tinibot").kit
-    names = [sensor.name for sensor in kit.sensors]
+    names = [sensor.name for sensor in kit.readings]
     code = unpack(compile_text("; ".join(f"SHOW({name})" for name in names), kit).image).code
     remarks = (line.partition(" ; ")[2] for line in disassemble(code, kit=kit).splitlines())
     assert [each for each in remarks if each] == names

@@ -158,7 +158,7 @@ BREAKS = [
     ("machine", "            self.wait_to(self.passed + 1)",
      "            self.wait_to(self.passed + 1)\n            self.clock = self.now", "late: "),
     ("machine", "        while self.is_slow(number, self.passed)",
-     "        while self.is_slow(number, self.passed) and number", "programs: "),
+     "        while self.is_slow(number, self.passed) and number", "late: "),
     ("verifier", "m.depth <= 16", "m.depth <= 17", "refused: "),
     ("verifier", "<= 32, TOO_DEEP", "<= 33, TOO_DEEP", "refused: "),
     ("verifier", "and inner.kind == IF), BAD_TARGET", "), BAD_TARGET", "refused: "),
@@ -210,7 +210,7 @@ def test_each_instruction_runs() -> None:
         kit = kit_of(case)
         code = loaded(case.image, kit).code
         robot = TracedRobot(kit, Lists(kit, case.readings))
-        runs = machine_of(code, robot, len(kit.sensors), case.seed)
+        runs = machine_of(code, robot, len(kit.readings), case.seed)
         for _ in range(10_000):
             status = runs.tick(robot.now_ms, 1)
             seen.add([*code, 0][runs.at])
@@ -230,7 +230,8 @@ def kit_of(case: MachineCase) -> Kit:
             continue
         kind, unit, low, high = rest
         devices[what].append(Device(name, kind, unit, int(low), int(high)))
-    return Kit(tuple(devices["sensor"]), tuple(devices["actuator"]), **speeds)
+    sensors, actuators = (tuple(found) for found in devices.values())
+    return Kit(sensors, actuators, speeds["speed"], speeds["turn"])
 
 
 def test_names_are_unique_and_each_refusal_is_there() -> None:

@@ -34,7 +34,7 @@ uint8_t program[kHeaderBytes + kProgramBytes + kEndBytes] = {
 
 Image image;
 Machine machine;
-int32_t readings[kBoardSensors];
+int32_t readings[readings_of(kBoardSensors)];
 bool is_accepted;
 bool is_running;
 bool may_start;  // the button went down while nothing ran: its release starts
@@ -43,7 +43,7 @@ void start(uint32_t now_ms) {
   board_forget();
   motors_release();
   for (int32_t& reading : readings) reading = 0;
-  machine.start(image.code, image.code_length, readings, kBoardSensors, now_ms | 1, now_ms);
+  machine.start(image.code, image.code_length, readings, readings_of(kBoardSensors), now_ms | 1, now_ms);
   is_running = true;
   board_light(false);
 }
@@ -88,7 +88,7 @@ void setup() {
   is_accepted =
       code_length <= kProgramBytes &&
       unpack(program, kHeaderBytes + code_length, &image) == Refusal::kNone &&
-      verify(image.code, code_length, kBoardSensors, kBoardActuators, &devices,
+      verify(image.code, code_length, readings_of(kBoardSensors), kBoardActuators, &devices,
              image.needs).rule ==
           Rule::kNone &&
       check_devices(image, devices) == Refusal::kNone;

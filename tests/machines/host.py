@@ -205,8 +205,8 @@ def run_request(
     """Return the request to run an image or code with this kit, these senses and limits."""
     limits = (senses.max_ms, senses.max_steps, senses.seed, begin_ms)
     hashes = iter(kit.hashes)
-    parts = [pack("<IIII", *limits), bytes((len(kit.sensors),))]
-    for sensor in kit.sensors:
+    parts = [pack("<IIII", *limits), bytes((len(kit.readings),))]
+    for sensor in kit.readings:
         values = senses.readings.get(sensor.name, ())
         parts += [_named(sensor, next(hashes)), pack(f"<H{len(values)}i", len(values), *values)]
     parts.append(bytes((len(kit.actuators),)))

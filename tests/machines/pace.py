@@ -35,7 +35,7 @@ class Pace(NamedTuple):
 
     def packed(self, kit: Kit) -> bytes:
         """Return it as the request of a machine in C++ begins with it."""
-        names = [sensor.name for sensor in kit.sensors]
+        names = [sensor.name for sensor in kit.readings]
         slow = sum(1 << names.index(name) for name in self.slow)
         return pack("<5I", self.every_ms, slow, self.period_ms, self.from_ms, self.to_ms)
 
@@ -65,7 +65,7 @@ class PacedRobot(TracedRobot):
         self.was_slow = False  # in this call
 
     def read(self, sensor: int) -> int | None:
-        if self.pace.is_slow(self.kit.sensors[sensor].name, self.now_ms):
+        if self.pace.is_slow(self.kit.readings[sensor].name, self.now_ms):
             self.was_slow = True
             return None
         return super().read(sensor)
@@ -74,7 +74,7 @@ class PacedRobot(TracedRobot):
 def trace_at(pace: Pace, machine_of: MachineOf, image: bytes, kit: Kit, senses: Senses) -> str:
     """Return the trace of an image, which is verified, of a machine that is called at this pace."""
     robot = PacedRobot(pace, kit, senses)
-    machine = machine_of(image[HEADER_BYTES:], robot, len(kit.sensors), senses.seed)
+    machine = machine_of(image[HEADER_BYTES:], robot, len(kit.readings), senses.seed)
     while True:
         robot.was_slow = False
         status = machine.tick(robot.now_ms, BUDGET)

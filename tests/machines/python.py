@@ -32,5 +32,5 @@ def run_python(image: bytes, kit: Kit, senses: Senses) -> str:
 
 def lists_of(kit: Kit, senses: Senses) -> Lists:
     """Return the readings by the number of the sensor."""
-    names = [device.name for device in kit.sensors]
+    names = [device.name for device in kit.readings]
     return Lists(kit, {names.index(name): values for name, values in senses.readings.items()})

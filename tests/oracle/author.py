@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tests.oracle.author_values import LONG, SMALL, VALUES, WIDE, Tokens, ValueAuthor, plain
+from tests.oracle.author_values import LONG, SMALL, WIDE, Tokens, ValueAuthor, plain
 from tests.oracle.words import MAX_CALLS, MAX_DEFS, MAX_NESTING, MAX_STACK, MAX_VARIABLES
 
 
@@ -81,8 +81,8 @@ class Author(ValueAuthor):
         return tokens
 
     def read(self) -> None:
-        if self.kit.sensors:
-            self.say(self.rng.choice(self.kit.sensors).name)
+        if self.sensors:
+            self.say(self.rng.choice(self.sensors).name)
 
     def set(self) -> None:
         if self.kit.actuators:
@@ -281,7 +281,7 @@ class Author(ValueAuthor):
         count = self.rng.choice((0, 0, 0, 1, 1, 2, 3, 4))
         if len(self.variables) + self.given + count > MAX_VARIABLES:
             return []
-        return [each for name in self.rng.sample(VALUES, count) for each in (",", name)]
+        return [each for name in self.rng.sample(self.values, count) for each in (",", name)]
 
     @property
     def has_room(self) -> bool:

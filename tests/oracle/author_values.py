@@ -37,9 +37,13 @@ class ValueAuthor:
         self.kit = kit
         self.page: list[Tokens] = []
         self.left = 0  # instructions still to write
-        taken = {device.name for device in (*kit.sensors, *kit.actuators)}
-        self.names = [name for name in VARIABLES if name not in taken]
-        self.free_defs = [name for name in PROCEDURES if name not in taken]
+        taken = {device.name for device in (*kit.readings, *kit.actuators)}
+        remote = [device.name for device in kit.readings[len(kit.sensors) :]]
+        own = rng.sample(remote, min(len(remote), rng.choice((0, 0, 0, 1, 2, 4))))  # give way
+        self.sensors = [device for device in kit.readings if device.name not in own]
+        self.names = [name for name in VARIABLES if name not in taken] + own[::3]
+        self.free_defs = [name for name in PROCEDURES if name not in taken] + own[1::3]
+        self.values = [*VALUES, *own[2::3]]
         self.taken = taken | set(VARIABLES) | set(PROCEDURES)
         self.variables: dict[str, bool] = {}
         self.counters: set[str] = set()
@@ -77,7 +81,7 @@ class ValueAuthor:
     def named(self, is_yes_no: bool) -> Tokens | None:
         """A variable or a sensor of the kind, if there is one."""
         variables = [name for name, kind in self.variables.items() if kind == is_yes_no]
-        sensors = [sensor.name for sensor in self.kit.sensors if sensor.is_yes_no == is_yes_no]
+        sensors = [sensor.name for sensor in self.sensors if sensor.is_yes_no == is_yes_no]
         names = variables if variables and (self.chance(0.5) or not sensors) else sensors
         return [self.rng.choice(names)] if names else None
 

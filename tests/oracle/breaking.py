@@ -11,6 +11,7 @@ _WORDS = (
     "IF", "ELSE", "ELSEIF", "ENDIF", "LOOP", "END_LOOP", "WHILE", "END_WHILE", "BREAK", "DEF",
     "END_DEF", "UNTIL", "FOREVER", "SI", "SB", "|", "PING", "TRUE", "AND", "NOT", "X", "DISTANCE",
     "TIME", "5", "100.4", "2147483.648", "-", "RANDOM", "(", ")", ",", ";", "\n", "TASK",
+    "KEY_A", "PAD_X",
 )  # fmt: skip
 
 

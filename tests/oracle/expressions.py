@@ -18,11 +18,16 @@ class ExpressionParser:
     def __init__(self, text: str, kit: Kit) -> None:
         self.tokens = tokens_of(text)
         self.at = 0
-        self.sensors = {device.name: device for device in kit.sensors}
+        self.sensors = {device.name: device for device in reversed(kit.readings)}
         self.actuators = {device.name: device for device in kit.actuators}
         self.variables: dict[str, bool] = {}
         self.defs: dict[str, list[Statement]] = {}
-        self.text = Text(self.tokens, {each.name for each in kit.sensors if each.is_yes_no})
+        self.text = Text(self.tokens, {each.name for each in kit.readings if each.is_yes_no})
+        own = {device.name for device in (*kit.sensors, *kit.actuators)}
+        for device in kit.readings:
+            if device.name not in own and self.text.gives_way(device.name):
+                del self.sensors[device.name]
+                self.text.sensors.discard(device.name)
         self.open_def = ""  # the DEF that is being read
         self.own: dict[str, bool] = {}  # its values: is it a yes/no value
         self.in_task = False  # a TASK or WHEN is being read

@@ -34,7 +34,7 @@ def run(
     Readings are in thousandths, 0 or 1 for yes/no. Wrong use is a ValueError. `is_slow` says
     whether a sensor is not ready at a time; the program goes on at multiples of `every_ms`.
     """
-    ranges = {device.name: (device.low, device.high) for device in kit.sensors}
+    ranges = {device.name: (device.low, device.high) for device in kit.readings}
     for name, values in sensors.items():
         if name not in ranges:
             raise ValueError(f"no sensor {name}")

@@ -51,6 +51,19 @@ class Text:
         """Whether an instruction begins with this token."""
         return at == 0 or self.tokens[at - 1].kind == "newline" or self.tokens[at - 1].text in ";|"
 
+    def gives_way(self, name: str) -> bool:
+        """Whether a word of the remote control is a name of the program, by its first place."""
+        at = next((k for k, token in enumerate(self.tokens) if token.text == name), None)
+        if at is None:
+            return False
+        if self.tokens[at - 1].text == "DEF" and at > 0:
+            return True
+        if name in self.around[at].values:  # it stands in the brackets: before the body
+            return True
+        is_set = self.begins(at) and self.tokens[at + 1].text == "="
+        value = self.tokens[at + 2 : self.end(at + 2)] if is_set else []
+        return is_set and all(token.text != name for token in value)
+
     def assigned_outside(self, name: str) -> bool:
         """Whether a variable of the whole program has this name."""
         return any(

@@ -252,7 +252,7 @@ class Run:
     def read(self, number: int) -> int:
         while self.is_slow(number, self.passed):  # nothing of the instruction has happened
             self.wait_to(self.passed + 1)
-        sensor = self.kit.sensors[number]
+        sensor = self.kit.readings[number]
         values = self.readings.get(sensor.name) or (0,)
         count = self.taken.get(number, 0)
         self.taken[number] = count + 1

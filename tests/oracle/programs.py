@@ -40,7 +40,7 @@ def program(rng: random.Random, kit: Kit, ways: bool = False) -> str:
 def senses(rng: random.Random, kit: Kit) -> dict[str, list[int]]:
     """Readings in thousandths for some of the sensors, each within its range."""
     found: dict[str, list[int]] = {}
-    for device in kit.sensors:
+    for device in kit.readings:
         if rng.random() < 0.25:
             continue
         readings: list[int] = []

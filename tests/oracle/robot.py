@@ -95,7 +95,7 @@ class Robot:
 
     def read(self, name: str) -> None:
         """Takes a reading of a sensor and keeps it."""
-        device = next(device for device in self.kit.sensors if device.name == name)
+        device = next(device for device in self.kit.readings if device.name == name)
         values = self.sensors.get(name) or (0,)
         count = self.taken.get(name, 0)
         self.taken[name] = count + 1

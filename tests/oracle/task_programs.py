@@ -8,7 +8,7 @@ TIMES = ("0", "0.001", "0.005", "0.01", "0.02", "0.03", "0.04", "0.05", "0.1", "
 WAYS = ("0", "0.001", "0.3", "0.45", "1", "2", "3.6", "-1 + N")
 POWERS = ("0", "10", "20", "50", "60", "100")
 SIDES = ("-50", "0", "20", "40")
-SENSORS = ("DISTANCE", "LIGHT_L")
+SENSORS = ("DISTANCE", "LIGHT_L", "PAD_X")
 VARIABLES = ("A", "N")
 YES_NO = "Q"  # a value of a DEF
 MOST_TASKS = 4
@@ -134,7 +134,17 @@ class TaskAuthor:
         if numbers and rng.random() < 0.5:
             return rng.choice(numbers)
         return rng.choice(
-            ("TIME", "A", "N", "A + 1", "N - 1", "DISTANCE", "RANDOM(0, 3)", str(rng.randint(0, 9)))
+            (
+                "TIME",
+                "A",
+                "N",
+                "A + 1",
+                "N - 1",
+                "DISTANCE",
+                "PAD_X",
+                "RANDOM(0, 3)",
+                str(rng.randint(0, 9)),
+            )
         )
 
     def condition(self) -> str:
@@ -151,6 +161,7 @@ class TaskAuthor:
                 f"TIME >= {begin} AND TIME < {begin + 0.06:.2f}",
                 "DISTANCE < 15",
                 "DISTANCE < 15 OR LIGHT_L > 500",
+                "KEY_A",
                 "N > 1",
                 "A = N",
             )
@@ -162,7 +173,9 @@ def task_program(rng: random.Random, ways: bool = False) -> tuple[str, dict[str,
     text = TaskAuthor(rng, ways).program()
     distances = [1000 * rng.choice((5, 9, 50)) for _ in range(rng.randint(0, 6))]
     lights = [1000 * rng.choice((0, 600)) for _ in range(rng.randint(0, 4))]
-    return text, {"DISTANCE": distances, "LIGHT_L": lights}
+    keys = [rng.randint(0, 1) for _ in range(rng.randint(0, 6))]
+    pad = [1000 * rng.choice((-100, 0, 3)) for _ in range(rng.randint(0, 4))]
+    return text, {"DISTANCE": distances, "LIGHT_L": lights, "KEY_A": keys, "PAD_X": pad}
 
 
 class RivalAuthor(TaskAuthor):

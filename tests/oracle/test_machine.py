@@ -49,7 +49,7 @@ def codes(seed: int, count: int) -> Iterator[tuple[bytes, int, dict[str, list[in
     for number in range(count):
         which = number % 2
         theirs, kit = KITS[which]
-        sizes = len(kit.sensors), len(kit.actuators)
+        sizes = len(kit.readings), len(kit.actuators)
         if rng.random() < 0.5:
             code = compile_text(programs.program(rng, theirs), kit).code
         else:

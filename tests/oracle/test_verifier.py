@@ -27,7 +27,7 @@ from tiniscript.bytecode.opcodes import CONTROL_ROLES
 from tiniscript.bytecode.verify import RULES
 from tiniscript.robots import DEFAULT, load
 
-SENSORS, ACTUATORS = 3, 2
+SENSORS, ACTUATORS = 11, 2
 NEEDY = {spec_tables.ESCAPE} | {
     code for code, row in spec_tables.instructions().items() if row.name in verifier.OF_TASKS
 }
@@ -97,6 +97,13 @@ def test_disassembly_and_its_beginnings(case: Case) -> None:
     code = assemble(case.parts["bytecode"])
     for actuators in (0, ACTUATORS):
         compare([code[:length] for length in range(len(code) + 1)], SENSORS, actuators)
+
+
+@pytest.mark.parametrize("code", ["92 39 93 39", "8b 39", "9a 9f"])
+def test_a_sensor_in_an_instruction_of_one_byte(code: str) -> None:
+    """PUSH_READ_3, PUSH_SENSOR_3 and READ_7, of a kit with 3 that reads no remote control."""
+    assert compare([bytes.fromhex(code)], 3) == {RULES["NO_SUCH_DEVICE"][0]}
+    assert compare([bytes.fromhex(code)], 8) == {0}
 
 
 def test_codes_of_up_to_two_bytes() -> None:

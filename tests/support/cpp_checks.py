@@ -101,7 +101,7 @@ def check_codes(machine: Process, seed: int, count: int) -> Counter[str]:
     rng = random.Random(seed)
     oracle_kit, kit = KITS[seed % 2]
     seen: Counter[str] = Counter()
-    sizes = len(kit.sensors), len(kit.actuators)
+    sizes = len(kit.readings), len(kit.actuators)
     codes = list(random_codes(seed, count))
     accepted = compare_verdicts(machine, codes, *sizes)
     for number, code in enumerate(accepted):
@@ -127,7 +127,7 @@ def run_late(
 ) -> str:
     """Return the trace of Python's machine where the tick after each wait comes so late."""
     robot = TracedRobot(kit, lists_of(kit, senses))
-    machine = machine_of(unpack(image).code, robot, len(kit.sensors), senses.seed)
+    machine = machine_of(unpack(image).code, robot, len(kit.readings), senses.seed)
     for late in late_ms:
         status = machine.tick(robot.now_ms, LATE_BUDGET)
         if status != WAITING or machine.wake_ms - robot.now_ms >= NEVER_MS:

@@ -30,7 +30,7 @@ def image_for(code: bytes, kit: Kit, start: str = "SI") -> bytes:
     """Return the image of code for a robot; where its verifier refuses it, any one."""
     needs = needs_of(code)
     try:
-        uses = verify(code, len(kit.sensors), len(kit.actuators)).uses
+        uses = verify(code, len(kit.readings), len(kit.actuators)).uses
     except Refused:
         return pack(start, 0, code, needs=needs)
     return pack(start, kit.hash_of_used(uses), code, needs=needs)

@@ -184,7 +184,7 @@ def check_same(found: Compiled, kit: Kit, senses: Senses) -> None:
     """The plain code of a program passes the verifier and does what its other code does."""
     assert found.program is not None
     made = plain_code(found.program)
-    verify(made.code, len(kit.sensors), len(kit.actuators))
+    verify(made.code, len(kit.readings), len(kit.actuators))
     short = "_FAR" not in disassemble(made.code)
     assert (made.length == len(made.code)) == short
     if short:

@@ -91,7 +91,7 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
     if answer.is_program != right:
         assert answer.is_program and takes_more(data, kit), f"{answer}\n{data!r}"
     if answer.is_program:
-        verify(answer.code, len(kit.sensors), len(kit.actuators))
+        verify(answer.code, len(kit.readings), len(kit.actuators))
     return answer
 
 

@@ -85,7 +85,7 @@ def check_broken(seed: int) -> None:
         assert not compiled.is_right or reads_more(text), f"seed {seed}, oracle refuses:\n{text}"
     else:
         assert compiled.is_right, f"seed {seed}, oracle accepts:\n{text}"
-        verify(compiled.code, len(kit.sensors), len(kit.actuators))
+        verify(compiled.code, len(kit.readings), len(kit.actuators))
 
 
 def reads_more(text: str) -> bool:
@@ -122,7 +122,7 @@ def test_the_compiler_never_makes_what_verify_refuses(part: int) -> None:
         oracle_kit, kit = KITS[seed % len(KITS)]
         compiled = compile_text(programs.program(rng, oracle_kit), kit, optimize=seed % 3 > 0)
         assert compiled.is_right
-        verify(compiled.code, len(kit.sensors), len(kit.actuators))
+        verify(compiled.code, len(kit.readings), len(kit.actuators))
 
 
 def check_both(seed: int) -> None:

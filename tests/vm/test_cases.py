@@ -104,7 +104,7 @@ def test_disassembly_runs_or_is_refused(
     if "refused" in case.parts:
         robot, _ = robot_and_senses(case)
         with pytest.raises(Refused) as refused:
-            verify(code, len(robot.kit.sensors), len(robot.kit.actuators))
+            verify(code, len(robot.kit.readings), len(robot.kit.actuators))
         error = refused.value
         expect(case, "refused", f"{error.number} {error.name} at {error.offset:04x}\n", request)
         return

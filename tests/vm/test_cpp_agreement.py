@@ -64,7 +64,7 @@ def test_disassembly_has_the_same_verdict(case: Case) -> None:
     code = assemble(case.parts["bytecode"])
     beginnings = [code[:length] for length in range(len(code) + 1)]
     for needs in (0, TASKS, GO, EVERYTHING):
-        compare_verdicts(host(), beginnings, len(kit.sensors), len(kit.actuators), needs)
+        compare_verdicts(host(), beginnings, len(kit.readings), len(kit.actuators), needs)
 
 
 def test_length_of_code() -> None:

@@ -46,7 +46,7 @@ def _run_emulated(name: str, image: bytes, kit: Kit, senses: Senses) -> Ran:
     return emulated(name).run(image, kit, senses)
 
 
-CHIPS = {name: Chip(avr.missing(), partial(avr.ran_on, name), 700) for name in avr.BUILT}
+CHIPS = {name: Chip(avr.missing(), partial(avr.ran_on, name), 620) for name in avr.BUILT}
 CHIPS |= {name: Chip(emulator_missing(name), partial(_run_emulated, name)) for name in chips.CHIPS}
 
 

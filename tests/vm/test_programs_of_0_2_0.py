@@ -16,6 +16,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tiniscript import ProgramError, check, robots, run
+from tiniscript.base.kit import KIT_WORDS_SINCE
 from tiniscript.base.words import SINCE, WORDS
 
 FILE = Path(__file__).with_name("programs_of_0_2_0.txt")
@@ -65,6 +66,17 @@ def test_they_compile_still_and_do_the_same() -> None:
         if found != old.said:
             changed.append((old.text, old.said, found))
     assert not changed, f"{len(changed)}, the first: {changed[0]}"
+
+
+def test_a_newer_word_of_the_kit_gives_way_and_a_warning_says_so() -> None:
+    """Each of these words is a name in one of them."""
+    named = set()
+    for old in programs():
+        told = [each for each in check(old.text, old.robot) if each.code == "TS842"]
+        if told:
+            assert all(each.severity == "warning" for each in told)
+            named |= {each.message.split()[0] for each in told}
+    assert named == KIT_WORDS_SINCE.keys()
 
 
 def test_of_those_with_a_newer_word_as_a_name_it_is_told_since_when() -> None:

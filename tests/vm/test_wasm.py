@@ -265,7 +265,7 @@ def test_a_slow_robot_and_any_beginning(begin_ms: int, budget: int) -> None:
     found = []
     for make in (Machine, loaded.machine):
         robot = Slow()
-        machine: AnyMachine = make(compiled.code, robot, len(kit.sensors), 1, begin_ms)
+        machine: AnyMachine = make(compiled.code, robot, len(kit.readings), 1, begin_ms)
         now_ms, seen = begin_ms, []
         for _ in range(200):
             status = machine.tick(now_ms, budget)

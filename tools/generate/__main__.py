@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tiniscript import robots
 from tiniscript.base import limits
-from tiniscript.base.kit import DEVICES
+from tiniscript.base.kit import DEVICES, Kit
 from tiniscript.bytecode import image, opcodes, verify
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import ProfileRefused, Robot
@@ -167,13 +167,17 @@ def limit_table() -> str:
 
 
 def device_table() -> str:
-    rows = []
+    rows: list[tuple[object, ...]] = []
     for name in KITS:
         kit = robots.load(name).kit
-        many = len(kit.sensors)
-        for k, (line, hashed) in enumerate(zip(kit.lines(), kit.hashes, strict=True)):
-            number = k if k < many else k - many
-            rows.append((f"`{name}`", number, f"`{line.rstrip()}`", f"`{hashed:04x}`"))
+        many, read = len(kit.sensors), len(kit.readings)
+        for k, (line, hashed) in enumerate(zip(kit.device_lines(), kit.hashes, strict=True)):
+            if not many <= k < read:
+                number = k if k < many else k - read
+                rows.append((f"`{name}`", number, f"`{line.rstrip()}`", f"`{hashed:04x}`"))
+    remote = Kit(())  # the same for every robot, behind its n sensors
+    for k, (line, hashed) in enumerate(zip(remote.device_lines(), remote.hashes, strict=True)):
+        rows.append(("every robot", f"n + {k}", f"`{line.rstrip()}`", f"`{hashed:04x}`"))
     return table(("kit of", "number", "line", "hash"), rows)
 
 

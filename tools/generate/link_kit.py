@@ -63,7 +63,7 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
         if image.devices or len(code) > MOST_BYTES or any(word in words for word in OTHERWISE):
             continue
         robot = TracedRobot(run.kit, int)
-        machine = Machine(code, robot, len(run.kit.sensors))
+        machine = Machine(code, robot, len(run.kit.readings))
         while (status := machine.tick(robot.now_ms, STEPS)) == WAITING:
             robot.now_ms = machine.wake_ms
             if robot.now_ms > LONGEST_MS:
@@ -93,7 +93,7 @@ def refusals(runs: list[Run]) -> Iterator[dict[str, object]]:
     """Return code that is refused in the same way whatever devices there are."""
     for run in runs:
         code = run.image[HEADER_BYTES:]
-        found = {verdict(code, 0), verdict(code, 255), verdict(code, len(TINIBOT.sensors))}
+        found = {verdict(code, 0), verdict(code, 255), verdict(code, len(TINIBOT.readings))}
         if len(found) > 1 or "" in found or len(code) > MOST_BYTES:
             continue
         rule, at = found.pop().split()

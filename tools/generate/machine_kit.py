@@ -126,12 +126,12 @@ def runs() -> Iterator[Run]:
 def lines_of(kit: Kit) -> list[str]:
     """Return the devices of a kit, and how fast it is where that is known."""
     speeds = ("speed", kit.speed), ("turn", kit.turn)
-    return [*kit.lines(), *(f"{name} {value}" for name, value in speeds if value)]
+    return [*kit.device_lines(), *(f"{name} {value}" for name, value in speeds if value)]
 
 
 def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
     """Return a case as the file has it."""
-    names = [device.name for device in run.kit.sensors]
+    names = [device.name for device in run.kit.readings]
     begin, every_ms = run.when
     return {
         "name": run.name,
@@ -161,7 +161,7 @@ class SlowRobot(TracedRobot):
         self.was_slow = False  # in this call
 
     def read(self, sensor: int) -> int | None:
-        period_ms, from_ms, to_ms = self.slow.get(self.kit.sensors[sensor].name, (1, 0, 0))
+        period_ms, from_ms, to_ms = self.slow.get(self.kit.readings[sensor].name, (1, 0, 0))
         if from_ms <= self.now_ms % period_ms < to_ms:
             self.was_slow = True
             return None
@@ -183,7 +183,7 @@ def answer_of(
     begin, every_ms = run.when
     every = chain(every_ms, repeat(every_ms[-1]))
     robot = SlowRobot(run)
-    machine = machine_of(code, robot, len(run.kit.sensors), run.senses.seed, begin)
+    machine = machine_of(code, robot, len(run.kit.readings), run.senses.seed, begin)
     calls = 0  # at the same time
     while calls < CALLS:
         robot.was_slow = False
@@ -432,7 +432,7 @@ def random_programs() -> Iterator[Run]:
             yield run._replace(
                 name=f"{run.name} (called every 7 ms, time wraps around)", when=SELDOM
             )
-            sensors = tuple(each.name for each in program.kit.sensors)
+            sensors = tuple(each.name for each in program.kit.readings)
             yield run.at(Pace(OFTEN[seed % len(OFTEN)], sensors, 130, 20, 90))
 
 

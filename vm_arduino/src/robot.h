@@ -7,6 +7,8 @@
 
 #include <stdint.h>
 
+#include "vm/build.h"
+
 namespace tiniscript {
 
 // Sets both motors, -100 to 100 percent.
@@ -14,6 +16,13 @@ void robot_motors(int8_t left, int8_t right);
 
 // Turns the motors off: the program has ended or faulted.
 void robot_off();
+
+// How many readings programs have of a kit with so many sensors: where there is room, those of a
+// remote control come behind them. A set of readings has 16 bits on an Uno.
+constexpr uint8_t kRemoteRoom = kHasRemote ? 8 : 0;
+constexpr uint8_t readings_of(uint8_t sensors) {
+  return sensors > kRemoteRoom ? sensors : static_cast<uint8_t>(sensors + kRemoteRoom);
+}
 
 // Puts a reading into `*value`. False: it is not available yet, and the machine asks again.
 bool robot_read(uint8_t sensor, int32_t* value);
@@ -50,7 +59,7 @@ void robot_go_on(int8_t left, int8_t right);
 enum class Going : uint8_t { kOn, kThere, kStuck = 4, kStuckLeft, kStuckRight };
 Going robot_going(int32_t* rest);
 
-// The hash of a device of the kit by its number: first the sensors, then the actuators.
+// The hash of a device of the kit by its number: first all readings, then the actuators.
 // `bytecode_spec.md` defines it.
 uint16_t robot_device_hash(uint16_t device);
 

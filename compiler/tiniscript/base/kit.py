@@ -1,4 +1,4 @@
-"""What programs see of a robot: its sensors and actuators, and how fast it is.
+"""What programs see of a robot: its sensors and actuators, its remote control, and how fast it is.
 
 Knows names, order, kinds, units and ranges, and the fingerprints and hashes made of them. Knows no
 pins and no files: `robots` reads those.
@@ -45,16 +45,57 @@ class Device(NamedTuple):
         return value_text(value, self.is_yes_no)
 
 
+# What a remote control says to every robot with a link.
+REMOTE = (
+    *(
+        Device(f"KEY_{each}", YES_NO, "", 0, 1)
+        for each in ("UP", "DOWN", "LEFT", "RIGHT", "A", "B")
+    ),
+    *(Device(f"PAD_{each}", NUMBER, "", -100_000, 100_000) for each in ("X", "Y")),
+)
+# What stands on its keys, in every language.
+REMOTE_SIGNS = dict(zip((device.name for device in REMOTE), "↑↓←→AB↔↕", strict=True))
+OWN_BESIDE_REMOTE = 8  # sensors at most: sets of readings have 16 bits
+
+# Words of kits that are younger than 0.2: they give way to a program's own names.
+KIT_WORDS_SINCE = {device.name: "0.3" for device in REMOTE}
+
+
 class Kit(NamedTuple):
     """`speed` and `turn` are thousandths of a centimetre and of a degree in a second at 100 %.
 
-    0: not known, and programs have no moves by the one or the other.
+    0: not known, and programs have no moves by the one or the other. `given` are the words that
+    have given way to one program's own.
     """
 
     sensors: tuple[Device, ...]
     actuators: tuple[Device, ...] = ()
     speed: int = 0
     turn: int = 0
+    given: frozenset[str] = frozenset()
+
+    @property
+    def has_remote(self) -> bool:
+        """Whether there is room for the readings of a remote control."""
+        return len(self.sensors) <= OWN_BESIDE_REMOTE
+
+    @property
+    def readings(self) -> tuple[Device, ...]:
+        """Return all that a program can read, by their numbers: the sensors, then the remote.
+
+        What is called otherwise there, or a word of the profile, has no name.
+        """
+        if not self.has_remote:
+            return self.sensors
+        taken = self.given.union(self.names) & KIT_WORDS_SINCE.keys()
+        if not taken:
+            return (*self.sensors, *REMOTE)
+        return (*self.sensors, *(each._replace(name="") if each.name in taken else each
+                                 for each in REMOTE))  # fmt: skip
+
+    def asks_remote(self, uses: Sequence[tuple[str, int]]) -> bool:
+        """Whether code that uses these devices reads a remote control; a use is as below."""
+        return any(what == "sensor" and k >= len(self.sensors) for what, k in uses)
 
     def go_ms(self, way: int, power: int, turns: bool) -> int:
         """Return how long a move takes that goes, or `turns`, so many thousandths.
@@ -75,13 +116,13 @@ class Kit(NamedTuple):
 
     @property
     def fingerprint(self) -> int:
-        """Return 16 bits, never 0, that change with everything that a program can see."""
+        """Return 16 bits, never 0, that change with everything that a profile says to programs."""
         return _hash_of("".join(self.lines()))
 
     @property
     def hashes(self) -> tuple[int, ...]:
-        """Return 16 bits, never 0, for each device: the sensors, then the actuators."""
-        return tuple(map(_hash_of, self.lines()))
+        """Return 16 bits, never 0, for each device: the readings, then the actuators."""
+        return tuple(map(_hash_of, self.device_lines()))
 
     def hash_of_used(self, uses: Sequence[tuple[str, int]]) -> int:
         """Return the hash of the devices that code uses, in its order; 0 for none.
@@ -96,16 +137,24 @@ class Kit(NamedTuple):
             found <<= 1
             if found > 0xFFFF:
                 found ^= 0x10000 | DEVICES_POLYNOMIAL
-            found ^= hashes[number + (0 if what == "sensor" else len(self.sensors))]
+            found ^= hashes[number + (0 if what == "sensor" else len(self.readings))]
         return found
 
     def lines(self) -> list[str]:
+        """Return what the profile says of each device, as it is hashed."""
+        return [*_lines("sensor", self.sensors), *_lines("actuator", self.actuators)]
+
+    def device_lines(self) -> list[str]:
         """Return what a program can see of each device, as it is hashed."""
-        return [
-            f"{what} {device.name} {device.kind} {device.unit} {device.low} {device.high}\n"
-            for what, devices in (("sensor", self.sensors), ("actuator", self.actuators))
-            for device in devices
-        ]
+        remote = REMOTE if self.has_remote else ()
+        return [*_lines("sensor", (*self.sensors, *remote)), *_lines("actuator", self.actuators)]
+
+
+def _lines(what: str, devices: Sequence[Device]) -> list[str]:
+    return [
+        f"{what} {device.name} {device.kind} {device.unit} {device.low} {device.high}\n"
+        for device in devices
+    ]
 
 
 def _hash_of(text: str) -> int:

@@ -44,8 +44,8 @@ class Senses:
 
     def __init__(self, kit: Kit, lists: Mapping[int, Sequence[int]]) -> None:
         """`lists` maps the number of a sensor to its readings, in thousandths."""
-        self.lists = [list(lists.get(i, ())) or [0] for i in range(len(kit.sensors))]
-        self.taken = [0] * len(kit.sensors)
+        self.lists = [list(lists.get(i, ())) or [0] for i in range(len(kit.readings))]
+        self.taken = [0] * len(kit.readings)
 
     def __call__(self, sensor: int) -> int:
         values = self.lists[sensor]
@@ -74,7 +74,7 @@ class TracedRobot:
 
     def read(self, sensor: int) -> int | None:
         value = self.senses(sensor)
-        device = self.kit.sensors[sensor]
+        device = self.kit.readings[sensor]
         self.say("READ", (sensor, value), f"READ {device.name} {device.text(value)}")
         return value
 

@@ -58,7 +58,7 @@ def disassemble(
     lines = []
     for row in rows(code):
         text = row.text
-        names = [] if kit is None or row.op is None else _names(row, kit)
+        names = [] if kit is None else _names(row, kit)
         remark = "  ".join([*names, *([remarks[row.offset]] if remarks and row.offset in remarks
                                       else [])])  # fmt: skip
         line = f"{row.offset:04x}  {row.data.hex(' '):<{_BYTES_WIDTH}} {text}"
@@ -66,17 +66,21 @@ def disassemble(
     return "".join(line.rstrip() + "\n" for line in lines)
 
 
-def _names(row: Row, kit: Kit) -> list[str]:
-    assert row.op is not None
-    devices = {"sensor": kit.sensors, "actuator": kit.actuators}
+def devices_of(row: Row) -> list[tuple[str, int]]:
+    """Return the devices that an instruction names: "sensor" or "actuator", and its number."""
+    if row.op is None:
+        return []
     kinds = [each.kind.name for each in row.op.operands]
     named = list(zip(kinds, row.operands, strict=True))
     if row.op.implied is not None:
         named.append((row.op.implied.kind.name, row.op.implied.value))
+    return [(kind, value) for kind, value in named if kind in ("sensor", "actuator")]
+
+
+def _names(row: Row, kit: Kit) -> list[str]:
+    devices = {"sensor": kit.readings, "actuator": kit.actuators}
     return [
-        devices[kind][value].name
-        for kind, value in named
-        if kind in devices and value < len(devices[kind])
+        devices[kind][value].name for kind, value in devices_of(row) if value < len(devices[kind])
     ]
 
 

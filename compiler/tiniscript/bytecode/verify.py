@@ -431,7 +431,7 @@ def loaded(data: bytes, kit: Kit, has: int = EVERYTHING) -> Image:
 
 def check(image: Image, kit: Kit) -> Verdict:
     """Return what the code of an image needs. Raises Refused, or ImageRefused."""
-    verdict = verify(image.code, len(kit.sensors), len(kit.actuators), image.needs)
+    verdict = verify(image.code, len(kit.readings), len(kit.actuators), image.needs)
     ours = kit.hash_of_used(verdict.uses)
     if image.devices != ours:
         raise ImageRefused("OTHER_KIT", theirs=f"{image.devices:04x}", ours=f"{ours:04x}")

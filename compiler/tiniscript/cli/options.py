@@ -198,16 +198,16 @@ def thousandths(
 
 def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, list[int]]:
     """Return the readings that `--sensor NAME=1,2,3` say, by the sensor's number."""
-    sensors = robot.kit.sensors
+    sensors = robot.kit.readings
     names = [device.name for device in sensors]
     lists: dict[int, list[int]] = {}
     for each in texts:
         name, equals, values = each.partition("=")
         name = name.strip().upper()
-        if name not in names:
-            known = ", ".join(names) or text("no_sensors", language)
+        if not name or name not in names:
+            known = ", ".join(filter(None, names)) or text("no_sensors", language)
             raise CommandError(2, "no_sensor", robot=robot.name, found=name or each, known=known,
-                          near=_near(name, names))  # fmt: skip
+                          near=_near(name, [*filter(None, names)]))  # fmt: skip
         number = names.index(name)
         device = sensors[number]
         if not equals or not values.strip():

@@ -194,6 +194,7 @@ NO_WAYS = _mistake("TS315")
 TOO_MANY_PARAMETERS = _mistake("TS316")
 TOO_MANY_COPIES = _mistake("TS317")
 LEVEL_VALUES = _mistake("TS318")
+NO_REMOTE = _mistake("TS319")
 # what a teacher would say
 ROUNDED = _warning("TS801")
 NEVER_REACHED = _warning("TS802")
@@ -225,6 +226,7 @@ TASK_DONE_ONCE = _warning("TS833")
 WHEN_GOES_ON = _warning("TS834")
 UNUSED_READING = _warning("TS840")
 CUT_VALUE = _warning("TS841")
+GIVES_WAY = _warning("TS842")
 
 
 def in_order(found: list[Diagnostic]) -> list[Diagnostic]:

@@ -159,7 +159,7 @@ def _known(robot: Robot) -> dict[str, tuple[str, ...]]:
     """Return what a criterion may name, by `Kind.words`."""
     sensors = tuple(device.name for device in robot.kit.sensors)
     return {
-        "word": (*WORDS, *sensors),
+        "word": (*WORDS, *(device.name for device in robot.kit.readings)),
         "event": EVENTS,
         "block": BLOCKS,
         "value": (*sensors, TIME),

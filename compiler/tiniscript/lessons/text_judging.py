@@ -104,7 +104,8 @@ def _asked(
     asked = kept.question(called, is_turned, ending)
     if asked is None:
         return finding
-    sensors = [device.name for device in robots.load(lesson.robot).kit.sensors]
+    kit = robots.load(lesson.robot).kit
+    sensors = [device.name for device in kit.readings]
     named = [word for word in [*asked.inside, *words] if word in sensors]
     key = f"{'turned' if is_turned else 'still'}/{'ever' if asked.is_ever else 'question'}"
     what = (*named, sensors[0])[0]

@@ -24,6 +24,7 @@ from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
 from tiniscript.semantics.lint import lint
 from tiniscript.semantics.optimizer import optimized
+from tiniscript.syntax.later_words import given_way, in_program
 from tiniscript.syntax.parser import ENOUGH, parse
 
 
@@ -68,13 +69,14 @@ def _with_findings(found: Compiled, kit: Kit) -> Compiled:
     from tiniscript.recovery.usage import with_usage
 
     read = cache(lambda text: analyzed(text, kit))  # a repair that was tried is read on
+    its = in_program(found.source.text, kit)
 
     def told_of(it: Compiled, rounds: int) -> Compiled:
         told: list[codes.Diagnostic] = []
         if rounds:
-            told, edits = findings(it.source, it.diagnostics, lambda to: read(to).diagnostics, kit)
+            told, edits = findings(it.source, it.diagnostics, lambda to: read(to).diagnostics, its)
         if not told:
-            told = with_usage(it.diagnostics, it.source, kit)
+            told = with_usage(it.diagnostics, it.source, its)
         elif len(told) <= ENOUGH:
             rest = read(applied(it.source.text, edits))
             # The warnings of what is left come when it is repaired.
@@ -84,7 +86,7 @@ def _with_findings(found: Compiled, kit: Kit) -> Compiled:
 
     told = told_of(found, ROUNDS)
     honest = without_wrong(told.diagnostics, told.source.text, lambda to: read(to).diagnostics)
-    kept = with_sample(conserving(honest, told.source.text, kit), told.source.text, kit)
+    kept = with_sample(conserving(honest, told.source.text, its), told.source.text, its)
     at = [pointed(each, found.source) for each in kept]
     return told._replace(diagnostics=codes.in_order(at))
 
@@ -93,10 +95,13 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and what is wrong with it; no repair is vouched for."""
     source = Source(text, name)
     parsed = parse(source)
+    kit = in_program(text, kit)
     checked = check(source, parsed.program, kit)
     found = [*parsed.diagnostics, *checked.diagnostics]
     if not any(diagnostic.is_mistake for diagnostic in found):
         found += lint(checked.program, kit, source, parsed.scan)
+        if kit.given:
+            found += given_way(parsed.scan.tokens, kit, source)
     return Compiled(source, codes.in_order(found), checked.program)
 
 
@@ -114,14 +119,17 @@ def fitting(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
 
 
 def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
-    """Return `compiled`, with a mistake and no image where the robot lacks tasks or ways it has.
+    """Return `compiled`, with a mistake and no image where the robot lacks what it uses.
 
     For what is about to be sent to a robot, a virtual one too.
     """
     program, verdict = compiled.program, compiled.verdict
-    if program is None or verdict is None or not verdict.needs or not compiled.is_right:
+    if program is None or verdict is None or not compiled.is_right:
         return compiled
-    from tiniscript.library.known_kits import lacks
+    asks_remote = robot.kit.asks_remote(verdict.uses)
+    if not verdict.needs and not asks_remote:
+        return compiled
+    from tiniscript.library.known_kits import has_remote, lacks
 
     needed = (
         (codes.NO_TASKS, TASKS, program.tasks[0].word if program.tasks else None),
@@ -132,11 +140,22 @@ def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
         for code, need, span in needed
         if span is not None and lacks(need, robot)
     ]
+    if asks_remote and not has_remote(robot):
+        lacking.append(_no_remote(compiled, robot))
     if not lacking:
         return compiled
     return compiled._replace(
         diagnostics=codes.in_order([*compiled.diagnostics, *lacking]), image=b""
     )
+
+
+def _no_remote(compiled: Compiled, robot: Robot) -> codes.Diagnostic:
+    """Return the mistake of a program that asks a remote control which the robot does not have."""
+    from tiniscript.bytecode.disassembly import devices_of, rows
+
+    first = next(row for row in rows(compiled.code) if robot.kit.asks_remote(devices_of(row)))
+    span = max(place for place in compiled.places if place.offset <= first.offset).span
+    return codes.Diagnostic(codes.NO_REMOTE, span, {"robot": robot.name})
 
 
 def compile_text(text: str, kit: Kit, name: str = "", optimize: bool = True) -> Compiled:
@@ -170,7 +189,7 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
         place = Span(len(text), len(text))
         diagnostic = codes.Diagnostic(codes.CODE_TOO_LONG, place, over)
         return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
-    verdict = verify(lowered.code, len(kit.sensors), len(kit.actuators))
+    verdict = verify(lowered.code, len(kit.readings), len(kit.actuators))
     devices = kit.hash_of_used(verdict.uses)
     image = pack(program.start, devices, lowered.code, needs=verdict.needs)
     return compiled._replace(lowered=program, code=lowered.code, places=lowered.places,

@@ -72,6 +72,13 @@ def lacks(needs: int, robot: Robot) -> bool:
     return bool(needs & ~has)
 
 
+def has_remote(robot: Robot) -> bool:
+    """Return whether the robot's firmware has a remote control: a Nano lacks the flash, an Uno with
+    discs the memory."""
+    chip = CHIPS[robot.board.chip]
+    return bool(chip.has & TASKS) and not (robot.board.discs and chip.name == "uno")
+
+
 def lacking(needs: int, robot: Robot) -> str:
     """Return the name of the text that says what the firmware lacks of `needs`, or nothing."""
     if lacks(needs & TASKS, robot):

@@ -142,8 +142,8 @@ def cpp_machine(image: Image, robot: Robot) -> MachineOf:
 
 def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int, list[int]]:
     """Return readings in thousandths, by sensor number. Raises UsageError."""
-    devices = robot.kit.sensors
-    numbers = {device.name: number for number, device in enumerate(devices)}
+    devices = robot.kit.readings
+    numbers = {device.name: number for number, device in enumerate(devices) if device.name}
     lists: dict[int, list[int]] = {}
     for name, readings in sensors.items():
         number = numbers.get(str(name).upper())
@@ -189,7 +189,7 @@ def _event(event: Event, kit: Kit) -> TraceEvent:
         is_yes_no = event.text.endswith(("TRUE", "FALSE"))
         values = {"value": value_of(numbers[0], is_yes_no)}
     elif event.what in ("READ", "SET"):
-        what, devices = {"READ": ("sensor", kit.sensors), "SET": ("actuator", kit.actuators)}[
+        what, devices = {"READ": ("sensor", kit.readings), "SET": ("actuator", kit.actuators)}[
             event.what
         ]
         device = devices[numbers[0]]

@@ -163,7 +163,7 @@ class _Said:
         self.names = Names(lines, kit)
         self.tokens = [each for line in lines for each in (*self._joined(line), _END)]
         # what has no unit counts something of its own: 50 % of light is no 50
-        self.units = {each.name: each.unit or each.name for each in kit.sensors} | {"TIME": "s"}
+        self.units = {each.name: each.unit or each.name for each in kit.readings} | {"TIME": "s"}
         self.units |= self._units_of_names()
         self.words: Counter[str] = Counter()  # that it surely says
         self.meant: Counter[str] = Counter()  # that it may say

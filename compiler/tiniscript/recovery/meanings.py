@@ -308,8 +308,10 @@ class Names:
     """The names of one program, by a look at its tokens; `label` is what rewrites match."""
 
     def __init__(self, lines: Sequence[Sequence[Lexeme]], kit: Kit) -> None:
-        self.sensors = frozenset(each.name for each in kit.sensors)
-        self.asked = {each.name: each for each in kit.sensors if not each.is_yes_no}
+        readings = [each for each in kit.readings if each.name]
+        self.sensors = frozenset(each.name for each in readings)
+        self.measuring = tuple(sorted(each.name for each in kit.sensors))
+        self.asked = {each.name: each for each in readings if not each.is_yes_no}
         self.actuators = {each.name: each for each in kit.actuators}
         told = [_names_of(tuple(line)) for line in lines]
         self.in_brackets = {name for each in told for name in each.in_brackets}

@@ -429,6 +429,6 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "made_up": lambda gaps: made_up(_calls(gaps.part)),
     "until": lambda gaps: f" {_rest(gaps, 't')}".rstrip(),
     "behind": lambda gaps: _rest(gaps, "w"), "orders": _orders,
-    "sensors": lambda gaps: ", ".join(sorted(gaps.part.names.sensors)),
+    "sensors": lambda gaps: ", ".join(gaps.part.names.measuring),
     "distance": lambda gaps: "DISTANCE" if "DISTANCE" in gaps.part.names.sensors else "",
 }  # fmt: skip

@@ -7,11 +7,12 @@ Knows the names that `vm_arduino/src/boards` uses. Opens no files. All numbers a
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from textwrap import wrap
 
 from tiniscript.base.kit import Device, Kit
 from tiniscript.robots.driver import SIDES, ActuatorDriver, Part, PinTexts, SensorDriver
 from tiniscript.robots.drivers import actuator_of, discs_of, motors_of, sensor_of
-from tiniscript.robots.kit_words import kit_words
+from tiniscript.robots.kit_words import end_of_words, own_words, remote_words
 from tiniscript.robots.ledc import channels_of
 from tiniscript.robots.ports import AVRS, ESP32S
 from tiniscript.robots.profile import Robot, Wiring, language_number
@@ -94,9 +95,11 @@ class Header(Part):
             f"constexpr uint8_t kBoardActuators = {len(kit.actuators)};",
             f"constexpr uint32_t kBoardSpeed = {kit.speed};",
             f"constexpr uint32_t kBoardTurn = {kit.turn};",
-            f"constexpr uint16_t kDeviceHashes[] tini_progmem = {{{_hashes(kit)}}};",
+            "constexpr uint16_t kDeviceHashes[] tini_progmem = {",
+            *_with_remote(*_hashes(kit)),
+            "};",
             "constexpr uint8_t kKitWords[] tini_progmem = {",
-            *_rows(kit_words(kit)),
+            *_with_remote(*map(_bytes, (own_words(kit), remote_words(kit), end_of_words(kit)))),
             "};",
             f"constexpr uint16_t kMaxRunSeconds = {board.max_run_seconds};",
             "",
@@ -186,15 +189,29 @@ class Header(Part):
         ]
 
 
-def _hashes(kit: Kit) -> str:
-    """Return the hashes of the sensors, then of the actuators. C++ has no empty array."""
-    return ", ".join(f"0x{each:04x}" for each in kit.hashes or (0,))
+def _hashes(kit: Kit) -> tuple[list[str], list[str], list[str]]:
+    """Return those of the sensors, of the remote control, and of the actuators."""
+    found = [f"0x{each:04x}," for each in kit.hashes]
+    first, last = len(kit.sensors), len(kit.readings)
+    actuators = found[last:]
+    if not first and not actuators:
+        actuators = ["0x0000,"]  # C++ has no empty array
+    return found[:first], found[first:last], actuators
 
 
-def _rows(data: bytes) -> list[str]:
-    """Return bytes of an array, at most 16 in a row."""
-    rows = [data[k : k + 16] for k in range(0, len(data), 16)]
-    return [f"    {' '.join(f'0x{each:02x},' for each in row)}" for row in rows]
+def _bytes(data: bytes) -> list[str]:
+    return [f"0x{each:02x}," for each in data]
+
+
+def _with_remote(before: Sequence[str], remote: Sequence[str], behind: Sequence[str]) -> list[str]:
+    """Return the rows of an array, some of them only where there is a remote control."""
+    condition = ["#ifdef tiniscript_has_remote", *_in_rows(remote), "#endif"] if remote else []
+    return [*_in_rows(before), *condition, *_in_rows(behind)]
+
+
+def _in_rows(values: Sequence[str]) -> list[str]:
+    """Return the values of an array, as many in a row as fit."""
+    return wrap(" ".join(values), 100, initial_indent="    ", subsequent_indent="    ")
 
 
 def _switch(function: str, argument: str, cases: Sequence[str], last: str) -> list[str]:

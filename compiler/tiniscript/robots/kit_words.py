@@ -5,23 +5,41 @@ Knows the table of `vm_arduino/src/text/kit_words.h`.
 
 from __future__ import annotations
 
-from tiniscript.base.kit import Kit
+from tiniscript.base.kit import REMOTE, Kit
 
 LAST_LETTER = 0x80  # marks the last letter of a word
-_YES_NO, _ACTUATOR = 1, 2
+_YES_NO, _SENSOR, _ACTUATOR, _GIVES_WAY = 1, 2, 4, 8
 _GOES, _TURNS = 1, 2
 
 
 def kit_words(kit: Kit) -> bytes:
-    """Return the table of a kit: its sensors, its actuators, a 0, and whether it goes and turns."""
+    """Return the table: the devices of the kit, a 0, and whether it goes and turns."""
+    return own_words(kit) + remote_words(kit) + end_of_words(kit)
+
+
+def own_words(kit: Kit) -> bytes:
+    """Return the words of the profile: its sensors and actuators."""
     table = bytearray()
     for device in kit.sensors:
-        table += packed(device.name) + bytes((_YES_NO * device.is_yes_no,))
+        table += packed(device.name) + bytes((_SENSOR | _YES_NO * device.is_yes_no,))
     for device in kit.actuators:
         table += packed(device.name) + bytes((_ACTUATOR | _YES_NO * device.is_yes_no,))
         if not device.is_yes_no:
             table += packed_range(device.low, device.high)
-    return bytes((*table, 0, _GOES * bool(kit.speed) | _TURNS * bool(kit.turn)))
+    return bytes(table)
+
+
+def remote_words(kit: Kit) -> bytes:
+    """Return the words of the remote control."""
+    table = bytearray()
+    for device in REMOTE if kit.has_remote else ():
+        table += packed(device.name) + bytes((_GIVES_WAY | _SENSOR | _YES_NO * device.is_yes_no,))
+    return bytes(table)
+
+
+def end_of_words(kit: Kit) -> bytes:
+    """Return a 0, and whether the kit says how fast it goes and turns."""
+    return bytes((0, _GOES * bool(kit.speed) | _TURNS * bool(kit.turn)))
 
 
 def packed(word: str) -> bytes:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import HIGHEST, as_text
-from tiniscript.base.kit import NUMBER, Device, Kit
+from tiniscript.base.kit import NUMBER, REMOTE, Device, Kit
 from tiniscript.base.words import OTHER_WAY, concept_of
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.syntax.operators import SIGN_OF
@@ -41,7 +41,7 @@ def comparison(condition: Expression, kit: Kit) -> Comparison | None:
         first, second, sign = second, first, _MIRRORED[sign]
     if first.op not in ("SENSOR", "TIME") or second.op != "NUMBER":
         return None
-    device = TIME if first.op == "TIME" else kit.sensors[first.value]
+    device = TIME if first.op == "TIME" else kit.readings[first.value]
     return Comparison(device, sign, second.value)
 
 
@@ -65,9 +65,13 @@ def is_aside(way: str) -> bool:
 
 
 def is_between(device: Device, number: int) -> bool:
-    """Whether a number is one of very many that a sensor may read, and not the last."""
+    """Whether a number is one of very many that a sensor may read, and not the last.
+
+    A stick that nobody holds reads 0.
+    """
     is_fine = not device.is_yes_no and device.high - device.low >= MANY_VALUES
-    return is_fine and device.low < number < device.high
+    is_rest = number == 0 and device in REMOTE
+    return is_fine and device.low < number < device.high and not is_rest
 
 
 def answer_of(compared: Comparison) -> str:
@@ -121,7 +125,7 @@ def comes_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
     It is none where a distance changes the other way, where it asks for exactly one of very many
     numbers, and where its answer is always the same.
     """
-    left = sum(term.op == "SENSOR" and is_distance(kit.sensors[term.value]) for term in condition)
+    left = sum(term.op == "SENSOR" and is_distance(kit.readings[term.value]) for term in condition)
     is_sure = all(term.op != "NOT" for term in condition)
     for compared in _parts(condition, kit):
         if answer_of(compared) or (compared.op == "EQ" and is_between(*compared[::2])):
@@ -153,4 +157,4 @@ def _parts(condition: Expression, kit: Kit) -> Iterator[Comparison]:
 def _devices(part: Expression, kit: Kit) -> Iterator[Device]:
     for term in part:
         if term.op in ("SENSOR", "TIME"):
-            yield TIME if term.op == "TIME" else kit.sensors[term.value]
+            yield TIME if term.op == "TIME" else kit.readings[term.value]

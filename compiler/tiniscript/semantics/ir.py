@@ -231,7 +231,7 @@ def are_yes_no(program: Program, kit: Kit) -> list[bool]:
         if last.op == "VARIABLE":
             copies.append(statement)
         elif last.op == "SENSOR":
-            found[statement.variable] = kit.sensors[last.value].is_yes_no
+            found[statement.variable] = kit.readings[last.value].is_yes_no
         else:
             found[statement.variable] = last.op in _YES_NO
     known = -1

@@ -42,8 +42,10 @@ class Scope:
         self.source = source
         self.kit = kit
         self.diagnostics: list[Diagnostic] = []
-        self.names = {device.name: Name("sensor", i) for i, device in enumerate(kit.sensors)}
-        self.yes_no_sensors = frozenset(each.name for each in kit.sensors if each.is_yes_no)
+        self.names = {
+            device.name: Name("sensor", i) for i, device in enumerate(kit.readings) if device.name
+        }
+        self.yes_no_sensors = frozenset(each.name for each in kit.readings if each.is_yes_no)
         for i, device in enumerate(kit.actuators):
             self.names[device.name] = Name("actuator", i)
         self._first = {each.name: each for each in reversed(_assignments(parsed.body))}

@@ -37,7 +37,7 @@ _LEAVES = {"TRUE": Term("YES_NO", 1), "FALSE": Term("YES_NO", 0), "TIME": Term("
 class Types:
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
-        self.kit = scope.kit
+        self.readings = scope.kit.readings
         self.of_variables: list[str] = []
         self.nothing = Value((Term("YES_NO", 0),), ANY, 1, ())
 
@@ -88,7 +88,7 @@ class Types:
             value_type, term = self.of_variables[name.number], Term("VARIABLE", name.number)
         elif name.what == "sensor":
             sensors.append(name.number)
-            value_type = YES_NO if self.kit.sensors[name.number].is_yes_no else NUMBER
+            value_type = YES_NO if self.readings[name.number].is_yes_no else NUMBER
             term = Term("SENSOR", name.number)
         else:
             said = {"device": part.value} if name.what == "actuator" else {}

@@ -171,7 +171,7 @@ class WrongCalls:
             said["value"] = (is_yes_no and yes_no_of(value.upper())) or value
             self.scope.report(codes.ACTUATOR_SET, node.name_span, None, **said)
             return
-        if value.isdecimal() and looks_ahead(self.scope.kit.sensors[device.number]):
+        if value.isdecimal() and looks_ahead(self.scope.kit.readings[device.number]):
             until = f"UNTIL({node.name} < {value})"
             said |= {"until": until, "example": f"F(5, 60) {until}"}
             behind = self.scope.source.text[node.span.end : node.span.end + _NEAR]

@@ -134,7 +134,7 @@ class WrongValues:
         if other is not None and other.end - other.start <= 80:
             asked = self.scope.source[Span(other.start, other.end)]
             before, behind = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
-            is_sensor = found.upper() in (each.name for each in self.scope.kit.sensors)
+            is_sensor = found.upper() in (each.name for each in self.scope.kit.readings)
             if other.start < operand.start and before and not is_sensor:
                 values = {"fix": f"{before[0]} {found}"}
             elif behind and found.isidentifier():

@@ -9,7 +9,8 @@ from typing import Any
 
 from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
-from tiniscript.base.languages import languages
+from tiniscript.base.kit import REMOTE, REMOTE_SIGNS, Device
+from tiniscript.base.languages import languages, text
 from tiniscript.base.limits import PARAMETERS
 from tiniscript.base.words import WORDS
 from tiniscript.library import opening
@@ -36,6 +37,7 @@ def description() -> dict[str, Any]:
             if word.role.is_offered
         ],
         "most_parameters": PARAMETERS,
+        "remote": _remote(),
         "robots": [_robot(robots.load(name)) for name in robots.names()],
         "link": {
             "stop_bytes": STOP_BYTES,
@@ -69,19 +71,35 @@ def _robot(profile: Robot) -> dict[str, Any]:
         "outline": [[point.x, point.y] for point in Hull(profile.body).outline(Pose(0, 0, 0))],
         "places": {name: place._asdict() for name, place in profile.body.places.items()},
         "devices": [
-            {
-                "text": device.name,
-                "role": role,
-                "example": _example(device.name, role, device.is_yes_no),
-                "unit": device.unit,
-                "is_yes_no": device.is_yes_no,
-                "arguments": [_range(device.low, device.high, "0")],
-                "labels": {each: profile.labels[each][device.name] for each in languages()},
-            }
+            _device(device, role, {each: profile.labels[each][device.name] for each in languages()})
             for role, devices in (("sensor", kit.sensors), ("actuator", kit.actuators))
             for device in devices
         ],
     }
+
+
+def _device(device: Device, role: str, labels: dict[str, str]) -> dict[str, Any]:
+    return {
+        "text": device.name,
+        "role": role,
+        "example": _example(device.name, role, device.is_yes_no),
+        "unit": device.unit,
+        "is_yes_no": device.is_yes_no,
+        "arguments": [_range(device.low, device.high, "0")],
+        "labels": labels,
+    }
+
+
+def _remote() -> list[dict[str, Any]]:
+    """Return what a remote control says, to every robot here."""
+    found = []
+    for device in REMOTE:
+        key = "remote_key" if device.is_yes_no else "remote_pad"
+        labels = {
+            each: f"{text('studio', key, each)} {REMOTE_SIGNS[device.name]}" for each in languages()
+        }
+        found.append(_device(device, "sensor", labels))
+    return found
 
 
 def _range(low: int, high: int, sample: str) -> dict[str, Any]:

@@ -104,6 +104,7 @@ class VirtualRobot:
         self.actuators: dict[int, int] = {}  # the current value of each
         self._traced = TracedRobot(profile.kit, self._noticed)
         self._ended = ""  # how the program has ended, as far as it is known
+        self._remote = 0  # what the firmware has heard, of the reading that it takes
         self._began_ms = 0  # when it was switched on
         self._firmware = self._switched_on(POWER_ON, memory)
 
@@ -230,8 +231,10 @@ class VirtualRobot:
         self._at(now_ms)
         return self.wheels.edges(self.now_ms) if self.wheels else 0
 
-    def read(self, now_ms: int, sensor: int) -> int:
+    def read(self, now_ms: int, sensor: int, remote: int) -> int:
+        """Return a reading; `remote` is what the firmware has heard from a remote control."""
         self._at(now_ms)
+        self._remote = remote
         return self._traced.read(sensor) or 0
 
     def beep(self, now_ms: int, hertz: int, duration_ms: int) -> None:
@@ -326,7 +329,7 @@ class VirtualRobot:
     def _noticed(self, sensor: int) -> int:
         if self.wheels:
             self.wheels.go_on(self.now_ms)
-        return self.sensing.read(sensor, self.driving.go_on(self.now_ms))
+        return self.sensing.read(sensor, self.driving.go_on(self.now_ms), self._remote)
 
     def _settle(self) -> None:
         """Report how a program has ended: only now is it known whether it ended by itself."""

@@ -54,7 +54,7 @@ def run(
     time passing: it ends loops that take no time.
     """
     robot = TracedRobot(kit, senses)
-    machine = machine_of(code, robot, len(kit.sensors), seed)
+    machine = machine_of(code, robot, len(kit.readings), seed)
     before = 0  # instructions that ran before the clock last moved
     while True:
         left = max_steps - (machine.steps - before)

@@ -66,7 +66,7 @@ class WasmImage:
         refusal = self.call("unpack", len(data))
         if refusal:
             raise ImageRefused(_REFUSAL_NAMES[refusal])
-        rule = self.call("verify", len(kit.sensors), len(kit.actuators))
+        rule = self.call("verify", len(kit.readings), len(kit.actuators))
         if rule:
             raise Refused(_RULE_NAMES[rule], self.call("refused_at"))
         refusal = self.call("compare")

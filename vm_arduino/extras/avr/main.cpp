@@ -13,7 +13,7 @@ namespace tiniscript {
 
 namespace {
 
-constexpr size_t kImageBytes = 700;
+constexpr size_t kImageBytes = 620;
 
 uint8_t image_bytes[kImageBytes + kEndBytes];
 

@@ -10,7 +10,7 @@
 namespace tiniscript {
 
 #ifdef __AVR__
-constexpr uint8_t kMostSensors = 8;
+constexpr uint8_t kMostSensors = 14;
 constexpr uint8_t kMostActuators = 4;
 #else  // more than a profile may have
 constexpr uint8_t kMostSensors = 255;

@@ -131,10 +131,10 @@ void answer_begin(RequestReader* request, Writer*) {
   boot_info.seed = request->u32();
   table.max_run_ms = request->u32();
   table.write_ticks = request->u8();
-  table.hashes.resize(static_cast<size_t>(table.sensors + table.actuators));
+  table.hashes.resize(static_cast<size_t>(readings_of(table.sensors) + table.actuators));
   for (uint16_t& hash : table.hashes) hash = request->u16();
   table.readings.resize(table.sensors);
-  table.kept.resize(table.sensors);
+  table.kept.resize(readings_of(table.sensors));
   table.memory = request->text();
   table.words = request->text();
   table.language = request->u16();
@@ -297,7 +297,9 @@ uint16_t board_edges(bool is_right) {
 void robot_off() { turn(0, 0); }
 
 bool robot_read(uint8_t sensor, int32_t* value) {
-  *value = table.readings[sensor];
+  *value = sensor < table.sensors
+               ? table.readings[sensor]
+               : remote_reading(static_cast<uint8_t>(sensor - table.sensors));
   return true;
 }
 
@@ -345,7 +347,7 @@ void board_release() {
   uint16_t devices;
   const Verdict verdict = 
       verify(reinterpret_cast<const uint8_t*>(table.code.data()), table.code.size(),
-             table.sensors, table.actuators, &devices, kNeeds);
+             readings_of(table.sensors), table.actuators, &devices, kNeeds);
   if (verdict.rule != Rule::kNone) {
     say("UNVERIFIED", static_cast<int32_t>(verdict.rule), verdict.offset);
   }

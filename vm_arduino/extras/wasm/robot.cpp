@@ -8,6 +8,7 @@
 #include "../../src/robot.h"
 
 #include "../../src/firmware/firmware.h"
+#include "../../src/firmware/remote.h"
 #include "../../src/link/port.h"
 #include "../../src/store/layout.h"
 #include "../../src/store/nvm.h"
@@ -150,7 +151,8 @@ uint16_t board_edges(bool is_right) {
 void robot_off() {}  // `board_stop` says it
 
 bool robot_read(uint8_t sensor, int32_t* value) {
-  note(kRead, sensor);
+  const bool is_own = sensor < own.sensors;
+  note(kRead, sensor, is_own ? 0 : remote_reading(static_cast<uint8_t>(sensor - own.sensors)));
   host_look();
   *value = reading;
   return true;
@@ -236,7 +238,7 @@ bool watched_show(int32_t value, bool is_yes_no) {
 tini_exported("memory_at") uint8_t* module_memory() { return memory; }
 tini_exported("memory_bytes") uint32_t module_memory_bytes() { return kMemoryBytes; }
 
-// The hashes of the kit's devices, those of sensors first, to be filled before `begin`.
+// The hashes of the kit's devices, those of readings first, to be filled before `begin`.
 tini_exported("hashes") uint16_t* module_hashes() { return hashes; }
 
 // The words of the kit as `robot_words` says them, to be filled before `begin`, and how many bytes

@@ -4,6 +4,7 @@
 
 #include "board.h"
 
+#include "../firmware/remote.h"
 #include "../robot.h"
 #include "../text/kit_words.h"
 #include "analog.h"
@@ -25,7 +26,7 @@ constexpr uint16_t kSteadyUs = 50000;  // a change of the STATE pin counts after
 bool is_connected;
 uint16_t agreed_us;  // when the STATE pin last agreed with `is_connected`
 uint8_t seen_ms;     // lowest bits of the clock at the last look
-int32_t readings[kBoardSensors];
+int32_t readings[readings_of(kBoardSensors)];
 
 }  // namespace
 
@@ -148,7 +149,11 @@ void robot_off() {
   sound_off();
 }
 
-bool robot_read(uint8_t sensor, int32_t* value) { return read_sensor(sensor, value); }
+bool robot_read(uint8_t sensor, int32_t* value) {
+  if (!kHasRemote || sensor < kBoardSensors) return read_sensor(sensor, value);
+  *value = remote_reading(static_cast<uint8_t>(sensor - kBoardSensors));
+  return true;
+}
 
 void robot_beep(uint16_t hertz, uint32_t duration_ms) { sound_start(hertz, duration_ms); }
 

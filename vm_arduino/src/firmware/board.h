@@ -18,7 +18,7 @@ struct BootInfo {
 };
 
 // The board's kit; on an AVR the compiler knows all of these. `board_readings` are the last
-// readings of the sensors, `board_max_run_ms` is the longest run without a dead-man timer.
+// readings, of a remote control, too, `board_max_run_ms` is the longest run without a dead-man timer.
 uint16_t board_kit();
 uint8_t board_sensors();
 uint8_t board_actuators();

@@ -2,6 +2,7 @@
 
 #include "../link/frames.h"
 #include "../link/text_level.h"
+#include "../robot.h"
 #include "../store/layout.h"
 #include "../vm/small.h"
 #include "firmware.h"
@@ -37,7 +38,7 @@ void begin_identity(const BootInfo& boot_info) {
   identity.reset = boot_info.reset;
   identity.features =
       static_cast<uint8_t>(kRobotTextLevel) | (kHasRemote ? kRemote : 0) | kPlaces;
-  device_info.sensors = board_sensors();
+  device_info.sensors = readings_of(board_sensors());
   device_info.actuators = board_actuators();
 }
 

@@ -1,6 +1,7 @@
 #include "program.h"
 
 #include "../link/frames.h"
+#include "../robot.h"
 #include "../store/nvm.h"
 #include "../vm/flags.h"
 #include "../vm/image.h"
@@ -95,7 +96,7 @@ bool load_program() {
   const uint16_t bytes = held_bytes();
   if (!store.fetch_first(Area::kProgram, program, bytes)) return false;
   for (uint8_t k = 0; k < kEndBytes; k++) program[bytes + k] = static_cast<uint8_t>(Op::kEnd);
-  if (admit(program, board_sensors(), board_actuators()).refusal == 0) {
+  if (admit(program, readings_of(board_sensors()), board_actuators()).refusal == 0) {
     is_whole = true;
   } else {
     // falls back to the program before it, or to none

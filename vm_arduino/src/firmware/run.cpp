@@ -62,7 +62,7 @@ void go_on() {
 
 // The part of starting a run that does not depend on the program: done while nothing runs.
 void prepare() {
-  for (uint8_t k = 0; k < board_sensors(); k++) board_readings()[k] = 0;
+  for (uint8_t k = 0; k < readings_of(board_sensors()); k++) board_readings()[k] = 0;
   board_forget();
   machine.prepare();
   is_prepared = true;
@@ -76,7 +76,7 @@ void begin_run(const uint8_t* image) {
   const uint16_t length = get16(image + kCodeLengthAt);  // in this order fewer registers are saved
   const uint8_t* const code = image + image[kHeaderLengthAt];
   const uint32_t time_ms = now_ms;
-  machine.start_prepared(code, length, board_readings(), board_sensors(),
+  machine.start_prepared(code, length, board_readings(), readings_of(board_sensors()),
                          (time_ms ^ port_identity().nonce) | 1, time_ms);
   run_image = image;
   is_start_due = false;

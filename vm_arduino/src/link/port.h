@@ -84,7 +84,7 @@ constexpr uint8_t kMoreByTeacher = kByTeacher >> 8;
 constexpr uint8_t kMoreSeals = kSeals >> 8;
 constexpr uint8_t kMoreWifiRests = kWifiRests >> 8;
 
-// The number of devices of the kit, and the robot's name.
+// How many readings and actuators its programs have, and the robot's name.
 struct DeviceInfo {
   uint8_t sensors;
   uint8_t actuators;

@@ -106,7 +106,9 @@ class Reader {
   uint8_t find(const uint8_t* table, uint8_t unmark);
   uint8_t open_word();
   bool matches(const uint8_t** entry, bool in_flash);
-  bool find_in_kit();
+  void find_in_kit();
+  SensorBits ask();
+  bool is_free();
   void find_name();
   void add_name(uint8_t info, uint8_t more);
 
@@ -157,7 +159,7 @@ class Reader {
   void emit_number(bool is_minus);
   void link(uint8_t* ends);
   void resolve(uint8_t at);
-  void read_first(uint8_t sensor);
+  void read_first();
   tini_noinline void insert(uint8_t byte);
   void push(uint8_t byte);
   uint8_t pop();
@@ -206,6 +208,7 @@ class Reader {
   uint16_t value_kinds_;    // a bit for each, the last one lowest: whether it is a yes/no
   SensorBits read_;         // that are surely read
   SensorBits known_;        // the same, and those that this instruction has read
+  SensorBits asked_;        // that have been read anywhere
   uint8_t variables_;
   uint8_t blocks_;
 

@@ -102,8 +102,9 @@ void Reader::link(uint8_t* ends) {
 }
 
 // Puts a reading before the code of this instruction, unless it has one.
-void Reader::read_first(uint8_t sensor) {
-  const SensorBits bit = static_cast<SensorBits>(SensorBits{1} << sensor);
+void Reader::read_first() {
+  const uint8_t sensor = number_;
+  const SensorBits bit = ask();
   if ((known_ & bit) != 0) return;
   known_ |= bit;
   if (sensor < kShorts) {

@@ -17,7 +17,8 @@ void Reader::end_word() {
     }
     return token(word);
   }
-  if (!find_in_kit()) find_name();
+  find_name();
+  if (found_ == 0) find_in_kit();
   token(kNameToken);
 }
 
@@ -61,29 +62,35 @@ uint8_t Reader::find_unknown(const uint8_t* table) {
   return problem_ == Problem::kUnknownWord && length_ == 0 ? find(table, 0) : uint8_t{255};
 }
 
-bool Reader::find_in_kit() {
+void Reader::find_in_kit() {
   const uint8_t* entry = robot_words();
   uint8_t sensors = 0;
   uint8_t actuators = 0;
   while (flash_byte(entry) != 0) {
     const bool is_found = matches(&entry, true);
     const uint8_t device = flash_byte(entry++);
-    uint8_t found = static_cast<uint8_t>(kIsSensor | (device & kDeviceIsYesNo));
-    uint8_t number = sensors++;
-    if ((device & kDeviceIsActuator) != 0) {
-      found ^= kIsSensor | kIsActuator;
-      sensors--;
-      number = actuators++;
-    }
+    const uint8_t number = (device & kIsActuator) != 0 ? actuators++ : sensors++;
     if (is_found) {
-      found_ = found;
+      found_ = device;
       number_ = number;
       entry_ = entry;
-      return true;
+      return;
     }
-    if (device == kDeviceIsActuator) entry += kRangeBytes;
+    if (device == kIsActuator) entry += kRangeBytes;
   }
-  return false;
+}
+
+// Notes that the sensor that was named has been asked, and returns its bit.
+tini_noinline SensorBits Reader::ask() {
+  const SensorBits bit = static_cast<SensorBits>(SensorBits{1} << number_);
+  if (kHasRemote) asked_ |= bit;
+  return bit;
+}
+
+// Whether the word may become a name of the program; then nobody asks it.
+bool Reader::is_free() {
+  const SensorBits before = asked_;
+  return found_ == 0 || (kHasRemote && (found_ & kGivesWay) != 0 && (ask() & before) == 0);
 }
 
 void Reader::find_name() {

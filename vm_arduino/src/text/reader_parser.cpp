@@ -161,7 +161,7 @@ Problem Reader::after_name(uint8_t token) {
   state_ = kInstruction;
   target_ = number_;
   if (token == token_of(Op::kEq)) {
-    if (found == 0) {
+    if (is_free()) {
       if (variables_ == kVariables) return before(Problem::kLimit);
       target_ = variables_;
       add_name(variables_, 0);
@@ -186,7 +186,7 @@ Problem Reader::after_name(uint8_t token) {
   if (kReadsDefs && found == kIsDef) return begin_call(token);
   if (!ends(token)) return Problem::kSeparator;
   emit_numbered(byte_of(Op::kRead), byte_of(Op::kRead0), number_);
-  read_ |= static_cast<SensorBits>(SensorBits{1} << number_);
+  read_ |= ask();
   return Problem::kNone;
 }
 

@@ -4,6 +4,7 @@
 
 #include "../vm/bytecode.h"
 #include "../vm/small.h"
+#include "kit_words.h"
 #include "reader.h"
 #include "words.h"
 
@@ -53,13 +54,10 @@ enum Wanted : uint8_t {
 // Whether an argument is just a number.
 enum Shape : uint8_t { kNoPlain, kFresh, kMinusFirst, kPlain };
 
-// What a name is; the lowest bit says whether it is a yes/no.
-constexpr uint8_t kIsYesNo = 1;
-constexpr uint8_t kIsSensor = 2;
-constexpr uint8_t kIsActuator = 4;
-constexpr uint8_t kIsVariable = 8;
-constexpr uint8_t kIsDef = 16;
-constexpr uint8_t kIsGone = 32;  // a value of another DEF
+// What a name is that is no device.
+constexpr uint8_t kIsVariable = 16;
+constexpr uint8_t kIsDef = 32;
+constexpr uint8_t kIsGone = 64;  // a value of another DEF
 
 // Among the operators that wait: open brackets, with the opcode of their function. The second
 // argument of a function has kSecond, and kBase is behind all.

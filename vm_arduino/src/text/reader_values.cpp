@@ -105,7 +105,7 @@ void Reader::number() {
 Problem Reader::name_value() {
   const uint8_t number = number_;
   if ((found_ & kIsSensor) != 0) {
-    read_first(number);
+    read_first();
     emit_numbered(byte_of(Op::kPushSensor), byte_of(Op::kPushSensor0), number);
   } else if ((found_ & kIsVariable) != 0 && number != variables_) {
     emit_numbered(byte_of(Op::kPushVar), byte_of(Op::kPushVar0), number);

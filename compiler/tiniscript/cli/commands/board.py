@@ -6,9 +6,10 @@ import os.path
 from argparse import Namespace
 from pathlib import Path
 
+from tiniscript.base.kit import OWN_BESIDE_REMOTE
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts import say, text
+from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import Robot
 
@@ -17,6 +18,8 @@ SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the plac
 
 def run(options: Namespace, language: str) -> int:
     robot = wired(options, language).speaking(language)
+    if not robot.kit.has_remote:
+        say_aside("board_no_remote", language, robot=robot.name, most=str(OWN_BESIDE_REMOTE))
     header = firmware.header([robot], "tsc firmware --board, from a robot profile.")
     if not outputs.put(options.output, header.encode()):
         return 0

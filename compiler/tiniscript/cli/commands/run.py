@@ -50,7 +50,7 @@ def run(options: Namespace, language: str) -> int:
         ending = _print(events)
     sys.stdout.flush()
     for sensor in sorted(read.difference(lists)):
-        device = robot.kit.sensors[sensor]
+        device = robot.kit.readings[sensor]
         values = {"sensor": device.name, "zero": device.text(0), "readings": _readings(device)}
         say_aside("read_nothing", language, **values)
     if ending.what != "FAULT":

@@ -50,6 +50,9 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     assert compiled.program is not None
     if compiled.program.tasks:
         raise CommandError(2, "sketch_no_tasks", file=inputs.shown(given.name))
+    assert compiled.verdict is not None
+    if robot.kit.asks_remote(compiled.verdict.uses):
+        raise CommandError(2, "sketch_no_remote", file=inputs.shown(given.name))
     if any(map(is_open_way, every(compiled.program))):
         raise CommandError(2, "sketch_no_ways", file=inputs.shown(given.name))
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()

@@ -13,6 +13,7 @@ from rich.cells import cell_len, set_cell_size
 from rich.text import Text
 
 from tiniscript.base.fixed_point import as_text
+from tiniscript.base.kit import REMOTE_SIGNS
 from tiniscript.base.trace import Ending, Event
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.cli.terminal.sketch import Sketch
@@ -57,7 +58,7 @@ class Picture:
     def __init__(self, robot: Robot, language: str) -> None:
         self.robot = robot
         self.language = language
-        self.labels = robot.labels[language]
+        self.labels = {**REMOTE_SIGNS, **robot.labels[language]}
         self.sketch = Sketch(robot)
         self.now_ms = 0  # when the newest event was
         self.readings: dict[int, int] = {}
@@ -125,7 +126,7 @@ class Picture:
             (text("motor_left", language), str(left), "%", _bar(left)),
             (text("motor_right", language), str(right), "%", _bar(right)),
         ]
-        for devices, values in ((kit.sensors, self.readings), (kit.actuators, self.settings)):
+        for devices, values in ((kit.readings, self.readings), (kit.actuators, self.settings)):
             for number in sorted(values):
                 name, unit = devices[number].name, devices[number].unit
                 rows.append((name, devices[number].text(values[number]), unit, self.labels[name]))

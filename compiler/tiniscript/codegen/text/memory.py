@@ -19,6 +19,7 @@ from tiniscript.bytecode.opcodes import SHORTS
 from tiniscript.codegen.lower_expression import push_bytes
 from tiniscript.syntax.blocks import ENDS
 from tiniscript.syntax.cursor import AT_END
+from tiniscript.syntax.later_words import among
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, MINUS, NOT, OPEN
 
@@ -75,7 +76,7 @@ class Reader:
         self.brackets = 0
         self.is_way = False  # of the instruction whose brackets have been read
         self.one_too_many: Span | None = None  # the first bracket behind MOST_BRACKETS
-        self.sensors = {each.name: k for k, each in enumerate(kit.sensors)}
+        self.sensors = {each.name: k for k, each in enumerate(among(tokens, kit).readings)}
         self.actuators = {each.name: k for k, each in enumerate(kit.actuators)}
         self.variables: dict[str, int] = {}
         self.own: dict[str, int] = {}  # the values of the DEF that is open

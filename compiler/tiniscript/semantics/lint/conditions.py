@@ -184,7 +184,7 @@ class _Conditions:
         if not held:
             return
         name = self._program.variables[variables[0]]
-        sensor = next(k for k, each in enumerate(self._kit.sensors) if each.name == held[name])
+        sensor = next(k for k, each in enumerate(self._kit.readings) if each.name == held[name])
         used = self._look.variables.used_in(outermost)
         if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & used:
             return  # it is shown beside what is measured now, or the rounds need it
@@ -260,7 +260,7 @@ class _Conditions:
         asked = [term.op for term in condition]
         if asked != ["SENSOR", "NUMBER", "NUMBER", "SUB", "EQ"]:
             return
-        device = self._kit.sensors[condition[0].value]
+        device = self._kit.readings[condition[0].value]
         first, second = (term.value for term in condition[1:3])
         if not device.is_yes_no and first - second < device.low <= first < second <= device.high:
             name, low, high = device.name, as_text(device.low), as_text(device.high)
@@ -287,7 +287,7 @@ class _Conditions:
 
         Nothing where it is none to write, as where a move in this direction never makes it true.
         """
-        numbers = {device.name: k for k, device in enumerate(self._kit.sensors)}
+        numbers = {device.name: k for k, device in enumerate(self._kit.readings)}
         asking = tuple(
             ir.Term("SENSOR", numbers[held[self._program.variables[term.value]]])
             if term.op == "VARIABLE"

@@ -106,7 +106,7 @@ class Variables:
             if len(value) != 1 or value[0].op != "SENSOR":
                 return {}
             name = self._program.variables[variable]
-            held[name] = self._kit.sensors[value[0].value].name
+            held[name] = self._kit.readings[value[0].value].name
         return held
 
     def held_in(self, loop: ir.Loop | ir.While, variables: list[int]) -> dict[str, str]:

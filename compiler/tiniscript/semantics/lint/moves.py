@@ -80,12 +80,12 @@ class _LateConditions:
             return
         if move.direction == "F" and self._is_blind(move, LONG_STEP):
             sign = OPPOSITES[SIGN_OF[condition[2].op]]
-            device, number = self._kit.sensors[sensor], condition[1].value
+            device, number = self._kit.readings[sensor], condition[1].value
             if looks_ahead(device) and device.low < number <= device.high:
                 self._late(move, sensor, f"{device.name} {sign} {as_text(number)}")
 
     def _late(self, move: ir.Move, sensor: int, asked: str) -> None:
-        name = self._kit.sensors[sensor].name
+        name = self._kit.readings[sensor].name
         written = self._source[move.span]
         values = {
             "word": move.direction,
@@ -181,7 +181,7 @@ class _LateConditions:
     def _distance_in(self, condition: ir.Expression) -> int | None:
         """Return the first sensor of a distance that a condition looks at."""
         for op, value in condition:
-            if op == "SENSOR" and is_distance(self._kit.sensors[value]):
+            if op == "SENSOR" and is_distance(self._kit.readings[value]):
                 return value
         return None
 

@@ -119,7 +119,7 @@ def _measured(move: Move, kit: Kit, text: str) -> list[Diagnostic]:
         return [Diagnostic(codes.LONG_TIME, move.span, values)]
     # `F(DISTANCE - 5, 60)`
     is_sum = all(part.op in ("SENSOR", "NUMBER", "ADD", "SUB") for part in time)
-    sensors = [kit.sensors[part.value] for part in time if part.op == "SENSOR"]
+    sensors = [kit.readings[part.value] for part in time if part.op == "SENSOR"]
     if not is_sum or len(sensors) != 1 or sensors[0].unit not in _LENGTHS:
         return []
     name = sensors[0].name

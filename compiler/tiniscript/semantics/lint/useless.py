@@ -212,7 +212,7 @@ def unused_readings(look: Look) -> None:
     for statement in look.statements:
         if isinstance(statement, ir.Read) and statement.sensor not in asked:
             asked.add(statement.sensor)  # said once
-            name = look.kit.sensors[statement.sensor].name
+            name = look.kit.readings[statement.sensor].name
             look.report(codes.UNUSED_READING, statement.span, name=name, fix=f"SHOW({name})")
 
 

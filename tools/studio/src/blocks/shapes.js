@@ -6,7 +6,7 @@ import { LineField, NameField, NumberField, UnitField } from './fields.js';
 import { CALL, DEF } from './own_words.js';
 import { rangeOf } from './places.js';
 import { called } from '../page/texts.js';
-import { devicesOf, KINDS, nameOf, onBlock, tipOf } from '../page/words.js';
+import { devicesOf, KINDS, nameOf, onBlock, REMOTE, tipOf } from '../page/words.js';
 
 /** @import { Place, Kind } from '../page/words.js' */
 
@@ -70,7 +70,7 @@ class DeviceField extends Blockly.FieldDropdown {
   constructor(role) {
     /** @this {any} */
     super(function () {
-      const rows = devices(role).map((device) => /** @type {[string, string]} */ ([nameOf(device), device.text]));
+      const rows = [...devices(role), ...(role === 'sensor' ? REMOTE : [])].map((device) => /** @type {[string, string]} */ ([nameOf(device), device.text]));
       const kept = /** @type {any} */ (this).kept;
       if (kept && !rows.some(([, name]) => name === kept)) rows.push([kept, kept]);
       return rows.length ? rows : [['?', '?']];
@@ -294,7 +294,7 @@ export function defineBlocks() {
 /** @param {Blockly.Block} block of a device */
 function deviceTip(block) {
   const name = block.getFieldValue('WORD');
-  const device = [...devices('sensor'), ...devices('actuator')].find((each) => each.text === name);
+  const device = [...devices('sensor'), ...REMOTE, ...devices('actuator')].find((each) => each.text === name);
   const label = device && `${name}: ${called(device.labels)}${device.unit ? ` (${device.unit})` : ''}.`;
   return [label, tipOf(block.type)].filter(Boolean).join(' ');
 }

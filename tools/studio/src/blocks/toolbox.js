@@ -14,6 +14,7 @@ export const LEVELS = /** @type {Level[]} */ (['few', 'usual', 'all']);
 
 const MOST_NAMES = 6; // of a program, in a group
 const AHEAD = 'DISTANCE'; // of a robot that looks ahead
+const ASKED_REMOTE = ['KEY_A', 'PAD_Y']; // the field of each offers the others
 
 /** @param {number} value */
 function number(value) {
@@ -98,6 +99,7 @@ function groups(used) {
       ...sensors.map((name) => /** @type {[Level, Item]} */ (['few', item('sensor', [], name)])),
       ...actuators.map((device) => /** @type {[Level, Item]} */ (['few', item('set', device.is_yes_no ? [] : [0], device.text)])),
       ...(measured ? [/** @type {[Level, Item]} */ (['usual', item('read', [], measured.text)])] : []),
+      ...ASKED_REMOTE.map((name) => /** @type {[Level, Item]} */ (['usual', item('sensor', [], name)])),
     ]],
     ['decide', [
       ['few', comparison()], ['usual', { ...item('logic'), fields: { WORD: 'AND' } }],

@@ -21,6 +21,9 @@ export function robotOf(name) {
   return ROBOTS.find((each) => each.name === name);
 }
 
+/** What a remote control says to every robot: read as sensors are. */
+export const REMOTE = description.remote;
+
 /** @param {string} robot @param {string} role `sensor` or `actuator` */
 export function devicesOf(robot, role) {
   return robotOf(robot)?.devices.filter((device) => device.role === role) ?? [];
@@ -36,7 +39,7 @@ const WORDS = new Map(
   ROBOTS.map((robot) => [
     robot.name,
     new Map(
-      [...description.words, ...robot.devices].map((word) => [word.text, /** @type {Word} */ (word)]),
+      [...description.words, ...REMOTE, ...robot.devices].map((word) => [word.text, /** @type {Word} */ (word)]),
     ),
   ]),
 );

@@ -1,0 +1,319 @@
+"""What a remote control says, as programs read it, and the words of kits that give way."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.machines.text_reader import NO_DEFS, TextReader
+from tests.support.casefile import ROOT
+from tests.support.command import Tsc
+from tests.vm.test_programs_of_0_2_0 import programs
+from tiniscript import robots
+from tiniscript.base import kit as kits
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import KIT_WORDS_SINCE, NUMBER, REMOTE, YES_NO, Device, Kit
+from tiniscript.base.trace import Senses
+from tiniscript.bytecode.disassembly import disassemble
+from tiniscript.bytecode.image import ImageRefused, unpack
+from tiniscript.bytecode.verify import Refused, loaded
+from tiniscript.codegen.text.line import plain_code
+from tiniscript.diagnostics import codes
+from tiniscript.library.compiling import Compiled, compile_text, for_robot
+from tiniscript.library.runs import run
+from tiniscript.studio import block_reading
+from tiniscript.vm.runner import run as run_code
+from tiniscript.vm.tasks import machine_of
+
+TINIBOT = robots.load("tinibot").kit
+NAMES = [device.name for device in REMOTE]
+MINE = "OWN_NAME"
+
+
+def kit_of(count: int) -> Kit:
+    """Return a kit with so many sensors and one lamp."""
+    sensors = tuple(Device(f"S{k}", YES_NO, "", 0, 1) for k in range(count))
+    return Kit(sensors, (Device("LAMP", YES_NO, "", 0, 1),))
+
+
+def told(compiled: Compiled) -> list[str]:
+    return [each.code.number for each in compiled.diagnostics]
+
+
+# -- what programs of before see of it ----------------------------------------------------------
+
+
+def test_the_contract_has_eight_in_this_order() -> None:
+    keys = ["KEY_UP", "KEY_DOWN", "KEY_LEFT", "KEY_RIGHT", "KEY_A", "KEY_B"]
+    assert [*keys, "PAD_X", "PAD_Y"] == NAMES
+    assert [device.is_yes_no for device in REMOTE] == [True] * 6 + [False] * 2
+    assert {(each.low, each.high) for each in REMOTE[6:]} == {(-100 * ONE, 100 * ONE)}
+
+
+def test_a_program_that_asks_none_of_them_has_the_image_that_it_had(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Byte for byte that of a robot without a remote control."""
+    texts = [old for old in programs() if not re.search("(?i)KEY_|PAD_", old.text)]
+    assert len(texts) > 300
+
+    def images() -> list[tuple[bytes, bytes]]:
+        found = []
+        for old in texts:
+            made = compile_text(old.text, robots.load(old.robot).kit)
+            plain = b"" if made.program is None else plain_code(made.program).code
+            found.append((made.image, plain if made.is_right else b""))
+        return found
+
+    now = images()
+    assert sum(map(bool, now)) > 300
+    monkeypatch.setattr(kits, "OWN_BESIDE_REMOTE", -1)
+    assert TINIBOT.readings == TINIBOT.sensors
+    assert images() == now
+
+
+# -- where they are -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", robots.names())
+def test_they_come_behind_the_sensors_of_each_robot(name: str) -> None:
+    kit = robots.load(name).kit
+    made = compile_text("; ".join(f"SHOW({each})" for each in NAMES), kit)
+    assert made.is_right and made.verdict is not None
+    first = len(kit.sensors)
+    uses = dict.fromkeys(made.verdict.uses)
+    assert [*uses] == [("sensor", first + k) for k in range(8)]
+    rows = [row.partition(" ; ")[2] for row in disassemble(made.code, kit=kit).splitlines()]
+    assert [*dict.fromkeys(each for each in rows if each)] == NAMES
+
+
+@pytest.mark.parametrize("count", [0, 1, 7, 8])
+def test_a_kit_with_room_has_them_on_both_machines(count: int) -> None:
+    from tiniscript.vm.wasm import WasmImage
+
+    kit = kit_of(count)
+    made = compile_text("LAMP(KEY_B);SHOW(PAD_Y)", kit)
+    assert made.is_right, told(made)
+    senses = {count + 5: [1], count + 7: [-3 * ONE]}
+    want = [
+        "0 READ KEY_B TRUE", "0 SET LAMP TRUE", "0 READ PAD_Y -3", "0 SHOW -3", "0 DONE",
+    ]  # fmt: skip
+    code = unpack(made.image).code
+    for machine in (machine_of, WasmImage(made.image, kit).machine):
+        *events, _ = run_code(code, kit, Senses(kit, senses), machine_of=machine)
+        assert [str(each) for each in events] == want
+
+
+@pytest.mark.parametrize("count", [9, 16, 32])
+def test_a_kit_without_room_has_none_of_them(count: int) -> None:
+    kit = kit_of(count)
+    assert kit.readings == kit.sensors and kit.hashes == kit_of(count).hashes
+    for name in NAMES:
+        assert told(compile_text(f"SHOW({name})", kit)) == [codes.UNKNOWN_NAME.number]
+        made = compile_text(f"{name} = 1;SHOW({name})", kit)
+        assert made.is_right and not made.diagnostics
+
+
+@pytest.mark.parametrize(("more", "is_told"), [(5, False), (6, True)])
+def test_the_check_of_a_profile_says_that_it_has_no_room(
+    tsc: Tsc, tmp_path: Path, more: int, is_told: bool
+) -> None:
+    text = (Path(robots.__file__).parent / "grabber.toml").read_text(encoding="utf-8")
+    own = "".join(f'[[kit.sensors]]\nname = "S{k}"\nkind = "yes/no"\n\n' for k in range(more))
+    wired = (f'[board.sensors.S{k}]\ndriver = "digital"\npin = {36 + k}\n' for k in range(more))
+    path = tmp_path / "my.toml"
+    profile = text.replace("[[kit.sensors]]", f"{own}[[kit.sensors]]", 1)
+    path.write_text("\n".join([profile, *wired]), encoding="utf-8")
+    done = tsc("firmware", "--board", path, "-o", tmp_path / "own.h")
+    assert done.code == 0 and ("more than 8 sensors" in done.err) == is_told, done
+    header = (tmp_path / "own.h").read_text(encoding="utf-8")
+    (hashes,) = re.findall(r"(?s)kDeviceHashes\[\].*?\};", header)
+    count = hashes.count("0x")
+    assert count == 3 + more + 2 + (0 if is_told else 8)
+
+
+@pytest.mark.parametrize("is_actuator", [False, True])
+def test_a_word_of_the_profile_stays_what_it_is_there(is_actuator: bool) -> None:
+    """A robot of before may have a sensor or a lamp that is called so."""
+    device = Device("KEY_A", YES_NO, "", 0, 1)
+    kit = Kit((), (device,)) if is_actuator else Kit((device,))
+    made = compile_text("KEY_A(TRUE)" if is_actuator else "SHOW(KEY_A)", kit)
+    assert made.is_right and made.verdict is not None
+    assert made.verdict.uses == (("actuator" if is_actuator else "sensor", 0),)
+    wanted = codes.ACTUATOR_SET if is_actuator else codes.SENSOR_SET
+    assert told(compile_text("KEY_A = TRUE", kit)) == [wanted.number]
+    other = compile_text("SHOW(KEY_B)", kit)
+    assert other.verdict is not None
+    assert other.verdict.uses == (("sensor", 5 if is_actuator else 6),)
+
+
+def test_an_image_is_refused_where_its_numbers_mean_something_else() -> None:
+    image = compile_text("SHOW(KEY_UP)", TINIBOT).image
+    assert loaded(image, TINIBOT).devices == TINIBOT.hashes[3]
+    with pytest.raises(ImageRefused, match="OTHER_KIT"):
+        loaded(image, robots.load("liner").kit)  # where it is BATTERY
+    with pytest.raises(Refused, match="NO_SUCH_DEVICE"):
+        loaded(compile_text("SHOW(PAD_Y)", TINIBOT).image, kit_of(9))
+
+
+# -- names of before ----------------------------------------------------------------------------
+
+GIVES_WAY = {
+    "a variable": "{n} = 3;LOOP({n});S;END_LOOP",
+    "set in a DEF": "DEF DO_IT;{n} = 3;SHOW({n});END_DEF;DO_IT;SHOW({n})",
+    "set where nothing comes": "IF(FALSE);{n} = 3;ENDIF;SHOW({n})",
+    "set in a task": "TASK;{n} = TRUE;LED_IS = {n};SHOW(LED_IS);END_TASK",
+    "over two lines": "SI|{n} = (1 +\n 2)\nSHOW({n})",
+    "behind a note that names it": "// {n} is mine\n{n} = 3;SHOW({n})",
+    "a DEF": "DEF {n};S;END_DEF;{n}",
+    "a DEF with a value": "DEF {n}(A);SHOW(A);END_DEF;{n}(2)",
+    "a value of a DEF": "DEF DO_IT({n});{n} = {n} + 1;SHOW({n});END_DEF;DO_IT(3)",
+    "the last value of a DEF": "DEF DO_IT(A,\n {n});SHOW(A - {n});END_DEF;DO_IT(3, 4)",
+    "a value of two DEFs": "DEF ONE({n});SHOW({n});END_DEF;DEF TWO({n});ONE({n});END_DEF;TWO(3)",
+}
+STAYS = {
+    "asked before": ("IF({q});S;ENDIF;{n} = 0", [codes.SENSOR_SET]),
+    "a reading before": ("{n};{n} = 0", [codes.SENSOR_SET]),
+    "watched before": ("F(1, 50) UNTIL({q});{n} = 0", [codes.SENSOR_SET]),
+    "set with itself": ("{n} = {n}", [codes.SENSOR_SET]),
+    "set with itself on the next line": ("{n} = (\n{n})", [codes.SENSOR_SET]),
+    "asked, then a DEF": ("SHOW({n});DEF {n};S;END_DEF", [codes.NAME_TAKEN]),
+    "asked, then a value": (
+        "SHOW({n});DEF DO_IT({n});SHOW({n});END_DEF;DO_IT(1)", [codes.PARAMETER_TAKEN],
+    ),
+}  # fmt: skip
+
+
+def written(text: str, name: str) -> str:
+    question = name if name.startswith("KEY") else f"{name} > 0"
+    return text.format(n=name, q=question)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("role", GIVES_WAY)
+def test_what_compiled_before_compiles_still(role: str, name: str) -> None:
+    """With a warning where the name first stands, and with the code of any other name."""
+    text = written(GIVES_WAY[role], name)
+    made = compile_text(text, TINIBOT)
+    assert made.is_right, told(made)
+    warned = [each for each in made.diagnostics if each.code is codes.GIVES_WAY]
+    place = re.search(rf"{name}", re.sub("//.*", lambda it: " " * len(it[0]), text))
+    assert place is not None
+    assert [each.span for each in warned] == [place.span()]
+    assert warned[0].values["since"] == KIT_WORDS_SINCE[name] == "0.3"
+    assert made.image == compile_text(text.replace(name, MINE), TINIBOT).image
+    assert compile_text(text.lower(), TINIBOT).image == made.image
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("role", STAYS)
+def test_what_was_no_name_before_is_the_remote_control(role: str, name: str) -> None:
+    text, wanted = STAYS[role]
+    made = compile_text(written(text, name), TINIBOT)
+    assert told(made) == [each.number for each in wanted]
+
+
+@pytest.mark.parametrize("name", ["DISTANCE", "LIGHT_L"])
+def test_a_word_of_0_2_0_never_gives_way(name: str) -> None:
+    mistakes = {"a variable": codes.SENSOR_SET, "a DEF": codes.NAME_TAKEN,
+                "a value of a DEF": codes.PARAMETER_TAKEN}  # fmt: skip
+    for role, code in mistakes.items():
+        assert code.number in told(compile_text(GIVES_WAY[role].format(n=name), TINIBOT))
+
+
+def test_a_name_is_the_programs_own_in_the_whole_of_it() -> None:
+    made = compile_text("DEF DO_IT(KEY_A);SHOW(KEY_A);END_DEF;DO_IT(1);IF(KEY_A);S;ENDIF", TINIBOT)
+    assert told(made) == [codes.UNKNOWN_NAME.number]
+    made = compile_text("KEY_A = 1;IF(KEY_B);SHOW(KEY_A);ENDIF", TINIBOT)
+    assert made.is_right and made.verdict is not None and made.verdict.uses == (("sensor", 8),)
+
+
+@pytest.mark.parametrize("flags", [(), NO_DEFS])
+def test_a_robot_reads_them_as_tsc_does(flags: tuple[str, ...]) -> None:
+    """Each role, each name: the reader makes the code that the model has, or refuses it, too."""
+    reader = TextReader(TINIBOT, flags=flags)
+    texts = [*GIVES_WAY.values(), *(text for text, _ in STAYS.values()), "SHOW({n})", "{n}",
+             "W(1) UNTIL({q})", "{n} = 0;SHOW({n} + 1);{n} = 3"]  # fmt: skip
+    read = 0
+    for text in (written(each, name) for each in texts for name in NAMES):
+        if flags and ("DEF" in text or "TASK" in text):
+            continue
+        made = compile_text(text, TINIBOT)
+        answer = reader.read(text.encode())
+        assert answer.is_program == made.is_right, (text, answer)
+        if made.is_right:
+            assert made.program is not None
+            assert answer.code == plain_code(made.program).code, text
+            read += 1
+    assert read > 50
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"), [("SHOW(KEY_A)", "SENSOR"), ("KEY_A = 1;SHOW(KEY_A)", "NAME")]
+)
+def test_a_block_of_a_name_is_that_of_a_variable(text: str, kind: str) -> None:
+    show = block_reading.read(text, TINIBOT).body[-1]
+    assert show.values == (((kind, "KEY_A"),),)
+
+
+# -- the command --------------------------------------------------------------------------------
+
+
+def test_a_run_takes_their_readings(tsc: Tsc) -> None:
+    text = "WHILE(NOT KEY_UP);SHOW(PAD_X);W(0.1);END_WHILE"
+    done = tsc("run", "-e", text, "--sensor", "KEY_UP=FALSE,TRUE", "--sensor", "pad_x=-12.5")
+    want = ["READ KEY_UP FALSE", "READ PAD_X -12.5", "SHOW -12.5"]
+    assert done.out.split("\n")[:-1] == [
+        *(f"0 {each}" for each in want), "100 READ KEY_UP TRUE", "100 DONE",
+    ]  # fmt: skip
+    tsc("run", "-e", text, "--sensor", "PAD_X=101").gives(2, "-100 to 100")
+    tsc("run", "-e", text, "--sensor", "KEY_UPP=TRUE").gives(2, "KEY_UP")
+
+
+def test_a_sketch_has_none(tsc: Tsc) -> None:
+    tsc("show", "--arduino", "-e", "SHOW(KEY_A)").gives(2, "no remote control")
+    assert tsc("show", "--arduino", "-e", "KEY_A = 1;SHOW(KEY_A)").code == 0
+
+
+@pytest.mark.parametrize(("robot", "has"), [("tinibot", True), ("grabber", True), ("liner", False),
+                                            ("tinibot2", False), ("tinibot32", True)])  # fmt: skip
+def test_a_robot_without_room_for_it_is_told_before_anything_is_sent(
+    tsc: Tsc, robot: str, has: bool
+) -> None:
+    """A Nano, and an Uno with discs; what sends nothing takes the program."""
+    text = "SHOW(1)\nF(1, 50) UNTIL(KEY_A)\n"
+    of = ("-e", text, "--robot", robot)
+    for sends in (["compile", "--text"], ["upload", "--virtual"]) if not has else []:
+        done = tsc(*sends, *of)
+        assert done.code == 1 and "TS319" in done.err + done.out
+        assert "line 2:" in done.err + done.out
+    for verb in (["check"], ["show"], ["run", "--max-time", "0.1"]):
+        assert tsc(*verb, *of).code == 0
+    profile = robots.load(robot)
+    made = for_robot(compile_text(text, profile.kit), profile)
+    assert made.is_right == has and bool(made.image) == has
+    mine = for_robot(compile_text("KEY_A = 1;SHOW(KEY_A)", profile.kit), profile)
+    assert mine.is_right and mine.image
+
+
+def test_the_example_runs_and_is_that_of_the_documents() -> None:
+    text = (ROOT / "examples" / "remote.ts").read_text(encoding="utf-8")
+    shown = run(text, sensors={"PAD_Y": 60, "PAD_X": [0, 20], "KEY_A": [False, True, False]},
+                max_time=0.06)  # fmt: skip
+    assert str(shown).split("\n")[:-1] == [
+        "0 READ PAD_Y 60", "0 READ PAD_X 0", "0 MOTORS 60 60", "0 READ KEY_A FALSE",
+        "20 READ KEY_A TRUE", "20 BEEP 440 200", "50 READ PAD_Y 60", "50 READ PAD_X 20",
+        "50 MOTORS 80 40", "60 LIMIT",
+    ]  # fmt: skip
+    program = text.partition("SI|")[2]
+    for path in (ROOT / "docs").glob("*/language.md"):
+        assert f"SI|{program}```" in path.read_text(encoding="utf-8")
+
+
+def test_a_stick_at_rest_may_be_asked_for() -> None:
+    """It reads exactly 0 then, and hardly ever another number that is asked for."""
+    assert not compile_text("IF(PAD_X = 0);SHOW(1);ENDIF", TINIBOT).diagnostics
+    assert told(compile_text("IF(PAD_X = 50);SHOW(1);ENDIF", TINIBOT)) == [codes.EXACT.number]
+    assert REMOTE[-1].kind == NUMBER
