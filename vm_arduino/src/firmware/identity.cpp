@@ -37,8 +37,6 @@ void begin_identity(const BootInfo& boot_info) {
   identity.nonce = boot_info.seed;
   identity.reset = boot_info.reset;
   identity.features = static_cast<uint8_t>(kRobotTextLevel) | kPlaces;
-  device_info.sensors = readings_of(board_sensors());
-  device_info.actuators = board_actuators();
 }
 
 void make_identity() { identity.id = identity.nonce; }
@@ -104,6 +102,10 @@ bool firmware_radio_name(RadioName* name) {
 Identity& port_identity() { return identity; }
 
 const DeviceInfo& port_device_info() { return device_info; }
+
+uint8_t port_readings() { return readings_of(board_sensors()); }
+
+uint8_t port_actuators() { return board_actuators(); }
 
 const Tuning& port_tuning() { return tuning; }
 
