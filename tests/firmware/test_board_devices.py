@@ -253,6 +253,22 @@ def test_a_reading_of_the_last_program_is_none_of_the_next() -> None:
     assert board.motors(START + 310)[0] == f"pwm {80 * 653 >> 8}"
 
 
+@pytest.mark.parametrize("name", ["tinibot", "liner", "grabber"])
+def test_a_remote_control_is_read_behind_the_sensors_of_the_kit(name: str) -> None:
+    robot = on_board(name, "mega")
+    board = started(robot, "SI|IF(KEY_DOWN AND NOT KEY_A);M(PAD_X, PAD_Y);ENDIF;W(5)")
+    board.ran(START + 50)
+    found = [each for each in board.motors(START + 40) if each.startswith("pwm")]
+    assert found == [f"pwm {60 * 653 >> 8}", f"pwm {70 * 653 >> 8}"]
+
+
+def test_a_board_without_room_for_a_remote_control_refuses_a_program_that_reads_it() -> None:
+    for text, moves in (("SI|M(60, PAD_Y);W(5)", False), ("SI|M(60, 70);W(5)", True)):
+        board = started(robots.load("tinibot"), text)  # an Uno without tasks
+        board.ran(START + 50)
+        assert (f"pwm {60 * 653 >> 8}" in board.motors(START + 40)) == moves
+
+
 @pytest.mark.parametrize("name", ["tinibot", "grabber"])
 def test_interrupts_are_never_off_for_long(name: str) -> None:
     """The link must not lose a byte: at 115,200 baud two of them take 174 us."""

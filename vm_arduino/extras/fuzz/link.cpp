@@ -134,8 +134,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   Input input(data, size);
   port = SimulatedPort();
   port.room = 389;
-  port.device_info.sensors = 3;
-  port.device_info.actuators = 1;
+  port.sensors = 3;
+  port.actuators = 1;
   port.hashes = {1, 2, 3, 4};
   port.words = {0, kKitGoes | kKitTurns};
   receiver = Receiver();

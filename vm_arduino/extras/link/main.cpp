@@ -31,9 +31,9 @@ void answer_begin(RequestReader* request, Writer*) {
   port = SimulatedPort();
   port.room = request->u16();
   port.identity.kit = request->u16();
-  port.device_info.sensors = request->u8();
-  port.device_info.actuators = request->u8();
-  port.hashes.resize(static_cast<size_t>(port.device_info.sensors + port.device_info.actuators));
+  port.sensors = request->u8();
+  port.actuators = request->u8();
+  port.hashes.resize(static_cast<size_t>(port.sensors + port.actuators));
   port.identity.id = 0x54696e69;
   port.identity.reset = Reset::kPower;
   const uint8_t name[] = {'T', 'i', 'n', 'i'};

@@ -63,6 +63,8 @@ std::string sealed(std::string image) {
 namespace tiniscript {
 
 const DeviceInfo& port_device_info() { return port.device_info; }
+uint8_t port_readings() { return port.sensors; }
+uint8_t port_actuators() { return port.actuators; }
 Identity& port_identity() { return port.identity; }
 const RobotStatus& port_status() { return port.robot_status; }
 const Tuning& port_tuning() { return port.tuning; }

@@ -11,6 +11,8 @@
 struct SimulatedPort {
   tiniscript::Identity identity = {};
   tiniscript::DeviceInfo device_info = {};
+  uint8_t sensors = 0;
+  uint8_t actuators = 0;
   tiniscript::RobotStatus robot_status = {};
   tiniscript::Tuning tuning = {};
   uint8_t keys[2][tiniscript::kKeyBytes] = {};

@@ -38,8 +38,6 @@ void begin_identity(const BootInfo& boot_info) {
   identity.reset = boot_info.reset;
   identity.features =
       static_cast<uint8_t>(kRobotTextLevel) | (kHasRemote ? kRemote : 0) | kPlaces;
-  device_info.sensors = readings_of(board_sensors());
-  device_info.actuators = board_actuators();
 }
 
 void make_identity() { identity.id = identity.nonce; }
@@ -105,6 +103,10 @@ bool firmware_radio_name(RadioName* name) {
 Identity& port_identity() { return identity; }
 
 const DeviceInfo& port_device_info() { return device_info; }
+
+uint8_t port_readings() { return readings_of(board_sensors()); }
+
+uint8_t port_actuators() { return board_actuators(); }
 
 const Tuning& port_tuning() { return tuning; }
 

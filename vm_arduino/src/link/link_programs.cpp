@@ -111,9 +111,8 @@ uint8_t Link::fill(Use use, const uint8_t* payload, uint8_t length) {
 tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, uint8_t length,
                                  bool is_other_kit) {
   uint16_t devices;
-  const DeviceInfo& device_info = port_device_info();
-  const uint8_t sensors = is_other_kit ? 0 : device_info.sensors;
-  const uint8_t actuators = is_other_kit ? 0 : device_info.actuators;
+  const uint8_t sensors = is_other_kit ? 0 : port_readings();
+  const uint8_t actuators = is_other_kit ? 0 : port_actuators();
   const Verdict verdict = verify(code, length, sensors, actuators, &devices, kNeeds);
   if (verdict.rule == Rule::kNoSuchDevice && is_other_kit) {
     return refuse(Answer::kWrongKit, port_identity().kit);
@@ -184,8 +183,7 @@ uint8_t Link::commit(const uint8_t* payload) {
   image_ = nullptr;
   copy_bytes(payload + kCommitChecksumAt, image + kChecksumAt, kChecksumBytes);
   checksum_ = get32(image + kChecksumAt);
-  const DeviceInfo& device_info = port_device_info();
-  const Admission found = admit(image, device_info.sensors, device_info.actuators);
+  const Admission found = admit(image, port_readings(), port_actuators());
   if (found.refusal == static_cast<uint8_t>(Refusal::kOtherKit)) {
     return refuse(Answer::kWrongKit, port_identity().kit);
   }

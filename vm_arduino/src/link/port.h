@@ -84,15 +84,18 @@ constexpr uint8_t kMoreByTeacher = kByTeacher >> 8;
 constexpr uint8_t kMoreSeals = kSeals >> 8;
 constexpr uint8_t kMoreWifiRests = kWifiRests >> 8;
 
-// How many readings and actuators its programs have, and the robot's name.
+// The robot's name.
 struct DeviceInfo {
-  uint8_t sensors;
-  uint8_t actuators;
   uint8_t name_length;
   uint8_t name[kNameBytes];
 };
 
 const DeviceInfo& port_device_info();
+
+// How many readings and actuators programs have.
+uint8_t port_readings();
+uint8_t port_actuators();
+
 Identity& port_identity();
 const RobotStatus& port_status();
 const Tuning& port_tuning();

@@ -44,8 +44,6 @@ TiniLink::TiniLink(TiniPlayer* player, const char* name, uint32_t id)
 
 void TiniLink::begin(uint32_t random) {
   const TiniKit& kit = player_->kit();
-  info_.sensors = kit.sensors;
-  info_.actuators = kit.actuators;
   identity_.kit = kit.fingerprint();
   identity_.nonce = random;
   identity_.features = kPlaces;
@@ -153,6 +151,8 @@ bool TiniLink::rename(const uint8_t* name, uint8_t length) {
 namespace tiniscript {
 
 const DeviceInfo& port_device_info() { return only->device_info(); }
+uint8_t port_readings() { return only->kit().sensors; }
+uint8_t port_actuators() { return only->kit().actuators; }
 Identity& port_identity() { return only->identity(); }
 const RobotStatus& port_status() { return only->status(); }
 LineErrors port_line_errors() { return {0, 0}; }

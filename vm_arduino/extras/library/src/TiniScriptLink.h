@@ -47,6 +47,7 @@ class TiniLink {
   const uint8_t* held() const { return player_->memory(); }
   uint16_t room() const;
   const tiniscript::DeviceInfo& device_info() const { return info_; }
+  const TiniKit& kit() const { return player_->kit(); }
   tiniscript::Identity& identity() { return identity_; }
   const tiniscript::RobotStatus& status() const { return status_; }
 
