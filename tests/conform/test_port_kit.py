@@ -62,7 +62,7 @@ def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
     done = tsc("doctor", "--conform", "--port", pty_robot.port).gives(0)
     count = len(all_checks(link_kit()))
     assert count > 200
-    assert done.out == f"{count} of {count} checks agree. Kit 1, link 2.0, bytecode 2.1.\n"
+    assert done.out == f"{count} of {count} checks agree. Kit 1, link 2.1, bytecode 2.1.\n"
     assert not any("MOTORS" in row and row != "MOTORS 0 0" for row in pty_robot.did)
 
 
@@ -156,7 +156,7 @@ def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
 def test_json_names_the_checks(pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "doctor", "--conform", "--only", "link: PING", "--json")
     assert json.loads(done.out) == {
-        "version": "1", "link": "2.0", "isa": "2.1",
+        "version": "1", "link": "2.1", "isa": "2.1",
         "cases": 1, "agree": 1, "differ": 0, "found": [],
     }  # fmt: skip
 

@@ -102,6 +102,7 @@ void port_stop(uint8_t fault) { sink = fault; }
 void port_release() { sink = 0; }
 uint16_t port_image_length() { return sink; }
 uint16_t port_run_at() { return sink; }
+uint16_t port_shown_at() { return sink; }
 const uint8_t* port_run_image() { return bytes; }
 Answer port_image_byte(uint16_t offset, uint8_t* byte) { *byte = offset; return (Answer)sink; }
 uint8_t* port_text_memory(uint16_t*, bool* has_room) { *has_room = sink; return bytes; }
