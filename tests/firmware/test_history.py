@@ -93,7 +93,7 @@ LINES = (
     "SI|F(0.1, 80);SHOW(3)", "SI|X = 2;SHOW(X)", "SB|B(0.2, 40)", "F(0.1, 30)", "FOO(1)", "F(1,",
     "HELP", "PING|CHECK_CONNECTION", "SI|LOOP(2)", "W(0.05)", "END_LOOP", "LOOP(2)", "S", "stop",
     "SI|F(1,500)", "AT", "+OK", "SI|W(9)", "// note", "", "IF(TRUE)", "S // all",
-    "SI|X = 1.234567", "SI|DEF A", "END_DEF", "SI|" + "BEEP(0.001, 97);" * 9, "FOO(1)", "FOO(2)",
+    "SI|X = 1.234567", "SI|IF(TRUE)", "SI|LOOP(2);W(0.01)", "SI|DEF A", "END_DEF", "SI|" + "BEEP(0.001, 97);" * 9, "FOO(1)", "FOO(2)",
 )  # fmt: skip
 ENDS = ("\n", "\n", "\r\n", "")
 TEXT = tuple(piece for piece in PIECES if b"\0" not in piece)
@@ -105,6 +105,7 @@ HARMLESS = (b" ", b"\t", b";", b"\xef\xbb\xbf", b"AT", b"AT+NAMEx", b"OK+CONN", 
             b"SI|X = TRUE", b"SI|CM = 1", b"SB|BEEP(0.001, 97)", b"SI|F(1 80)")  # fmt: skip
 WITH_SETUP = tuple(line for line in LINES if "|" in line)
 STOPS = (bytes(4), b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0)), b"\0S\n", b"S\n")
+TYPED_STOP = b"\nSI|W(9)\nS\n"  # it ends an open block, in which S would be an instruction
 
 
 class Scene:
@@ -327,6 +328,8 @@ def behind(rng: random.Random, before: str) -> Behind:
     if before == "whole lines":
         return Behind(b"", 0, False, rng.choice((1, 2, 4)), True, True)
     waits = (30, 60, 300, 1100, UNHEARD_MS)
+    if before == "lines" and rng.random() < 0.6:
+        return Behind(TYPED_STOP, rng.choice((1, 100, 200, 700, 1300)), False, 3, True)
     if before == "lines":
         waits = (1100, 1100, 1300, 2500)
     elif is_typed:
@@ -351,7 +354,7 @@ def stopped(scene: Scene, how: Behind) -> None:
         robot.wait(how.wait_ms)
     elif not scene.told:
         robot.wait(300, b"//\n")
-    if how.is_typed and 0 < how.wait_ms < FORGETS_MS:
+    if how.is_typed and how.stop not in (b"", TYPED_STOP) and how.wait_ms < FORGETS_MS:
         robot.wait(1200, b"\n")  # that lines end here is known
     robot.did.clear()
     scene.told.clear()
@@ -405,7 +408,7 @@ def check(seed: int, kind: str, before: str) -> str:
         stopped(each, how)
         found.append(all_seen(each, how, random.Random(drawn_alike)))
     assert found[0] == found[1], f"{history}\n{how}\n{first_difference(*found)}"
-    return "typed" if how.is_typed else "asked"
+    return "it moves" if any("MOTORS" in str(each) for each in found[0]) else "it stands"
 
 
 def first_difference(found: Sequence[object], wanted: Sequence[object]) -> str:
@@ -420,12 +423,12 @@ KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallR
 
 
 @pytest.mark.sampled("part")
-@pytest.mark.parametrize("part", range(20))
+@pytest.mark.parametrize("part", range(10))
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("before", BEFORE)
 def test_a_robot_is_as_its_twin(before: str, kind: str, part: int) -> None:
-    found = Counter(check(seed, kind, before) for seed in range(part * 20, part * 20 + 20))
-    assert sum(found.values()) == 20
+    found = Counter(check(seed, kind, before) for seed in range(part * 10, part * 10 + 10))
+    assert found["it moves"] > 1, found
 
 
 def check_all(seed: int) -> None:

@@ -125,8 +125,6 @@ uint8_t record_bytes(uint8_t slot) { return slot < kFirstOwnerSlot ? kRecordByte
 
 tini_noinline void Store::boot() {
   for (uint8_t& held : held_) held = kNothing;
-  length_ = 0;
-  at_ = 0;
   state_ = StoreState::kSettling;
   is_busy_ = true;
   step_ = kLooking;
