@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import random
 import re
-from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -93,7 +92,8 @@ LINES = (
     "SI|F(0.1, 80);SHOW(3)", "SI|X = 2;SHOW(X)", "SB|B(0.2, 40)", "F(0.1, 30)", "FOO(1)", "F(1,",
     "HELP", "PING|CHECK_CONNECTION", "SI|LOOP(2)", "W(0.05)", "END_LOOP", "LOOP(2)", "S", "stop",
     "SI|F(1,500)", "AT", "+OK", "SI|W(9)", "// note", "", "IF(TRUE)", "S // all",
-    "SI|X = 1.234567", "SI|IF(TRUE)", "SI|LOOP(2);W(0.01)", "SI|DEF A", "END_DEF", "SI|" + "BEEP(0.001, 97);" * 9, "FOO(1)", "FOO(2)",
+    "SI|X = 1.234567", "SI|IF(TRUE)", "SI|LOOP(2);W(0.01)", "SI|DEF A", "END_DEF", "FOO(1)",
+    "FOO(2)", "SI|" + "BEEP(0.001, 97);" * 9,
 )  # fmt: skip
 ENDS = ("\n", "\n", "\r\n", "")
 TEXT = tuple(piece for piece in PIECES if b"\0" not in piece)
@@ -327,7 +327,7 @@ def behind(rng: random.Random, before: str) -> Behind:
     is_typed = "lines" in before or (before == "anything" and rng.random() < 0.5)
     if before == "whole lines":
         return Behind(b"", 0, False, rng.choice((1, 2, 4)), True, True)
-    waits = (30, 60, 300, 1100, UNHEARD_MS)
+    waits: tuple[int, ...] = (30, 60, 300, 1100, UNHEARD_MS)
     if before == "lines" and rng.random() < 0.6:
         return Behind(TYPED_STOP, rng.choice((1, 100, 200, 700, 1300)), False, 3, True)
     if before == "lines":
@@ -389,7 +389,8 @@ def new_memory() -> bytes:
     return robot.memory()
 
 
-def check(seed: int, kind: str, before: str) -> str:
+def check(seed: int, kind: str, before: str) -> int:
+    """Compare a robot with its twin; return how much there was to be seen."""
     rng = random.Random(f"{seed} {kind} {before}")
     write_ms = rng.choice((3.4, 3.4, 12))
     scene = Scene(KINDS[kind], new_memory(), write_ms)
@@ -408,7 +409,7 @@ def check(seed: int, kind: str, before: str) -> str:
         stopped(each, how)
         found.append(all_seen(each, how, random.Random(drawn_alike)))
     assert found[0] == found[1], f"{history}\n{how}\n{first_difference(*found)}"
-    return "it moves" if any("MOTORS" in str(each) for each in found[0]) else "it stands"
+    return len(found[0])
 
 
 def first_difference(found: Sequence[object], wanted: Sequence[object]) -> str:
@@ -427,8 +428,8 @@ KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallR
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("before", BEFORE)
 def test_a_robot_is_as_its_twin(before: str, kind: str, part: int) -> None:
-    found = Counter(check(seed, kind, before) for seed in range(part * 10, part * 10 + 10))
-    assert found["it moves"] > 1, found
+    seen = [check(seed, kind, before) for seed in range(part * 10, part * 10 + 10)]
+    assert sum(seen) > 20 and min(seen) > 0, seen
 
 
 def check_all(seed: int) -> None:

@@ -54,8 +54,8 @@ def check(seed: int) -> str:
     trim, pace = Known(TRIMS[0][:3]), Known(TRIMS[0][3:])
     owner = Known(FREE)
     told = "all is kept"
-    for _ in range(rng.randint(2, 9)):
-        what = rng.choice(("worn", "name", "name", "trim", "program", "claim", "fault"))
+    for _ in range(rng.randint(4, 14)):
+        what = rng.choice((*["worn"] * 5, "name", "name", "trim", "program", "claim", "fault"))
         if what == "worn":
             low, high = rng.choice(SLOTS)
             place = low + rng.randrange(4) if rng.random() < 0.5 else rng.randrange(low, high)
@@ -114,7 +114,7 @@ def check(seed: int) -> str:
 @pytest.mark.parametrize("part", range(10))
 def test_what_is_said_of_what_is_kept_is_true(part: int) -> None:
     found = Counter(check(seed) for seed in range(part * 30, part * 30 + 30))
-    assert found["it says what is not kept"] > 2 and found["all is kept"] > 2, found
+    assert found["it says what is not kept"] > 1 and found["all is kept"] > 1, found
 
 
 if __name__ == "__main__":

@@ -330,8 +330,9 @@ void Store::finish() {
   uint8_t slot = slot_;
   const StoreState state = state_;
   if (state == StoreState::kSaving) {
-    // Without its first mark a slot does not count, however worn the memory is.
-    if (nvm_read(plus(place_, kLastNeeded)) != (generation_ ^ kMarkOf)) {
+    // Without generation and first mark a slot does not count, however worn the memory is.
+    if (nvm_read(place_) != generation_ ||
+        nvm_read(plus(place_, kLastNeeded)) != (generation_ ^ kMarkOf)) {
       state_ = StoreState::kFailed;
     } else {
       held_[slot] = generation_;
