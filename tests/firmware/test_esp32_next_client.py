@@ -97,6 +97,29 @@ def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -
     assert owners_time(robot, make, keys) <= usual_ms + 30  # a stop is released first
 
 
+@pytest.mark.parametrize("make", PLACES[:2])
+@pytest.mark.parametrize("typed", [b"OK+CONN", b"\0si|", b"SI|LOOP(2)", b"FOO(1)\n"])
+def test_nobody_is_told_what_another_one_has_typed(make: Make, typed: bytes) -> None:
+    robot, _ = owned(Keys())
+    talk(robot, [], AUTHORITY_MS)
+    talk(robot, [(end := make(robot), Bytes(typed))], 2)
+    end.leave()
+    talk(robot, [], 1)
+    talk(robot, [(make(robot), other := Bytes(b"\0"))], 4000)
+    assert other.heard == b""
+
+
+@pytest.mark.parametrize("make", PLACES[:2])
+def test_zeros_of_two_clients_are_no_stop(make: Make) -> None:
+    robot, owner = owned(Keys())
+    assert uploaded(robot, [(None, owner)], owner, AWAY) == "OK"
+    talk(robot, [(None, owner), (end := make(robot), Bytes(b"\0\0\0"))], 2)
+    end.leave()
+    talk(robot, [(None, owner)], 2)
+    talk(robot, [(None, owner), (make(robot), Bytes(b"\0"))], 100)
+    assert happened(robot)[-1] == "MOTORS 80 80"
+
+
 # -- who is silent ------------------------------------------------------------------------------
 
 

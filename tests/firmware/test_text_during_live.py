@@ -63,3 +63,20 @@ def test_a_stop_that_is_typed_stops_either(kind: type[HostFirmware], text: str) 
     robot, session = running(kind, 130)
     assert types(robot, session, text, 300)[0] == "MOTORS 0 0"
     assert robot.is_latched
+
+
+@pytest.mark.parametrize("text", [b"\0\0si|\0", b"SI|LOOP(2)\n", b"FOO(1)\n\0"])
+@pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
+def test_a_program_shows_values_while_an_answer_in_text_waits(
+    kind: type[HostFirmware], text: bytes
+) -> None:
+    """It waits for as long as a client is heard, which may be for ever."""
+    robot, session = kind(KIT), computer()
+    robot.wait(100)
+    assert robot.until(session, session.ping()) == OK
+    session.receive(robot.wait(450, text), robot.now_ms)
+    image = image_of("SI|LOOP(9);M(40, 40);SHOW(1);W(0.1);END_LOOP")
+    assert robot.until(session, session.upload(image, saves=False)) == OK
+    robot.talk(session, 1500)
+    assert [event.name for event in session.events()].count("SHOW") == 9
+    assert robot.did[-1].endswith("FINISHED")

@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -67,7 +68,7 @@ struct Tabletop {
   bool is_low = false;  // the supply
   bool writes_mark = false;
   uint8_t measures = 0;    // of it, each fourth says something
-  uint16_t dead = 0xffff;  // an address of the memory whose byte never changes
+  std::set<uint16_t> dead;  // addresses of the memory whose bytes never change
   bool has_set = false;    // an actuator, and no stop since
   bool has_hung = false;
   Place hung = {};
@@ -219,8 +220,8 @@ void answer_memory(RequestReader*, Writer* answer) { answer->text(table.memory);
 // L: whether the supply is too low.
 void answer_supply(RequestReader* request, Writer*) { table.is_low = request->u8() != 0; }
 
-// D: selects a byte of the memory that never changes.
-void answer_dead(RequestReader* request, Writer*) { table.dead = request->u16(); }
+// D: a byte of the memory never changes any more.
+void answer_dead(RequestReader* request, Writer*) { table.dead.insert(request->u16()); }
 
 // V: sets the readings of the sensors.
 void answer_readings(RequestReader* request, Writer*) {
@@ -392,7 +393,7 @@ void nvm_write(uint16_t place, uint8_t value) {
     table.log += "MARK while a motor is on\n";
   }
   if (table.writes_mark && table.is_low) table.log += "MARK while the supply is low\n";
-  if (place != table.dead) table.memory[place] = static_cast<char>(value);
+  if (table.dead.count(place) == 0) table.memory[place] = static_cast<char>(value);
   table.busy_ticks = table.write_ticks;
 }
 

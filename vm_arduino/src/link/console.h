@@ -51,11 +51,8 @@ class Console {
   void pick_up() { is_talking_ = true; }
   void hang_up() { is_talking_ = false; }
 
-  // Nobody is connected any more: whether the lines of whoever comes next end is not known.
-  void forget_client() {
-    hang_up();
-    left_ms_[kEnds] = 0;
-  }
+  // Nobody is connected any more: whoever comes next begins anew.
+  void forget_client() { *this = Console(); }
 
   // The program that was read: its image, without a header.
   const Reader& reader() const { return reader_; }

@@ -81,7 +81,9 @@ tini_noinline void Link::confirm(Cause cause) {
 bool Link::show(int32_t value, bool is_yes_no) {
   const bool is_heard = is_listened_to();
   if (!is_heard && !console_.is_talking()) return true;
-  if (left_ != 0 || due_ != 0) return false;
+  // An answer in text waits until no frames come: a value for a client does not wait for that.
+  const uint8_t first = is_heard ? static_cast<uint8_t>(~kDueText) : 0xff;
+  if (left_ != 0 || (due_ & first) != 0) return false;
   if (!is_heard) {
     if (left_ms_[kFrameSent] != 0) return false;
     show_text(value, is_yes_no);

@@ -222,11 +222,17 @@ void Receiver::lose_line() {
   text_.put_last(kLineCut);
 }
 
+// What waits is nobody's any more, but a stop.
 void Receiver::disconnect() {
-  if (line_ >= Line::kSome) cut_line();
-  begin_line();
-  state_ = State::kText;
-  is_cut_ = false;
+  bool is_stop = has_mark();
+  for (uint8_t k = 0; k < kWindow; k++) is_stop |= waiting_[k] == Waiting::kFrame && may_stop_[k];
+  const Cause cause = is_stop ? Cause::kText : due_stop_;
+  const uint8_t damaged = damaged_;
+  const uint8_t dropped = dropped_;
+  *this = Receiver();
+  due_stop_ = cause;
+  damaged_ = damaged;
+  dropped_ = dropped;
 }
 
 bool Receiver::take_text(uint8_t* byte) {

@@ -87,6 +87,9 @@ constexpr uint16_t kStarts[] tini_progmem = {place_of(0), place_of(1), place_of(
                                              place_of(4), place_of(5), place_of(6), place_of(7)};
 static_assert(sizeof kStarts == kSlots * sizeof(uint16_t), "each slot begins somewhere");
 
+// The mark without which what was saved does not count: where all of them are one write, the last.
+constexpr uint8_t kLastNeeded = kWritesStopTheChip ? kMarks : 1;
+
 uint16_t start_of(uint8_t slot) { return flash_word(kStarts + slot); }
 
 uint16_t plus(uint16_t place, uint16_t more) { return static_cast<uint16_t>(place + more); }
@@ -122,8 +125,6 @@ uint8_t record_bytes(uint8_t slot) { return slot < kFirstOwnerSlot ? kRecordByte
 
 tini_noinline void Store::boot() {
   for (uint8_t& held : held_) held = kNothing;
-  length_ = 0;
-  at_ = 0;
   state_ = StoreState::kSettling;
   is_busy_ = true;
   step_ = kLooking;
@@ -329,7 +330,9 @@ void Store::finish() {
   uint8_t slot = slot_;
   const StoreState state = state_;
   if (state == StoreState::kSaving) {
-    if (kWritesStopTheChip && nvm_read(plus(place_, kMarks)) != (generation_ ^ kMarkOf)) {
+    // Without generation and first mark a slot does not count, however worn the memory is.
+    if (nvm_read(place_) != generation_ ||
+        nvm_read(plus(place_, kLastNeeded)) != (generation_ ^ kMarkOf)) {
       state_ = StoreState::kFailed;
     } else {
       held_[slot] = generation_;

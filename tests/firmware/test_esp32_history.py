@@ -1,0 +1,212 @@
+"""An ESP32 whose clients have come, asked for anything and gone is as one just switched on.
+
+Owners, strangers and people connect over any of its transports, two at once, ask and type and
+leave in the middle of it. Then all are gone, and a twin with the same memory is switched on: from
+here on whoever comes gets the same from both.
+
+`python -m tests.firmware.test_esp32_history 200` tries more.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import pytest
+
+from tests.firmware.test_esp32_next_client import PLACES, with_wrong_key
+from tests.firmware.test_esp32_transports import Make
+from tests.firmware.test_esp32_wifi import joined, remote, school_in_reach
+from tests.firmware.test_history import first_difference, told_of, without_counts
+from tests.machines.esp32 import Esp32Robot, Kept
+from tests.support.campaign import each_seed, wanted
+from tests.support.esp32_radio import Bytes, Client, End, talk
+from tests.support.images import image_of
+from tests.support.owners import Keys
+from tests.text.test_bytes_around import PIECES
+from tiniscript.link.authority import RobotKey
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.messages import AUTHORITY_MS, LISTEN_MS, STOP_BYTES
+from tiniscript.link.session import Session
+
+SHORT = "SI|F(0.1, 80);SHOW(2);B(0.1, 30)"
+LONG = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
+ASKS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
+    "hello": lambda who: who.hello(),
+    "ping": lambda who: who.ping(),
+    "clear": lambda who: who.clear(),
+    "trim?": lambda who: who.trim(),
+    "identify": lambda who: who.identify(),
+    "a live line": lambda who: who.live(image_of(SHORT).code),
+    "a program": lambda who: who.upload(image_of(SHORT), saves=False),
+    "a long program": lambda who: who.upload(image_of(LONG), saves=False),
+    "a detached one": lambda who: who.upload(image_of(LONG), saves=False, is_detached=True),
+    "a network": lambda who: who.wifi(),
+    "a broker": lambda who: who.broker(),
+    "a claim": lambda who: who.claim(0),
+    "text": lambda who: who.allow_text(False),
+}
+LINES = (b"SI|F(0.1, 80);SHOW(3)\n", b"F(0.1, 30)\n", b"FOO(1)\n", b"HELP\n", b"SI|LOOP(2)\n",
+         b"SI|F(1", b"S\n", b"PING|CHECK_CONNECTION\n", b"SB|B(0.2, 40)\n")  # fmt: skip
+# What is told of the program in memory, which none has saved.
+OF_MEMORY = ("program", "length", "slot", "saved")
+MAKES: list[Make | None] = [None, *PLACES]  # None: the cable
+NETWORK = 3  # which has several places
+OVER_MS = max(LISTEN_MS, AUTHORITY_MS) + 1200
+
+
+@lru_cache(maxsize=1)
+def at_school() -> tuple[Kept, RobotKey]:
+    """Return what a robot with an owner and a network keeps, and the owner's key."""
+    keys = Keys()
+    robot, _ = joined(keys)
+    robot.wait(2000)
+    return robot.kept(), keys.found[0]
+
+
+class Guest(NamedTuple):
+    end: End | None  # None: the cable
+    who: Client
+    what: str
+    place: int
+
+
+class Scene:
+    """A robot, and all who are connected."""
+
+    def __init__(self, kept: Kept) -> None:
+        self.robot = Esp32Robot(kept=kept)
+        school_in_reach(self.robot)
+        self.robot.wait(500)
+        self.guests: list[Guest] = []
+        self.places = [0]  # where somebody was
+        self.nonce = 10
+
+    def new(self, what: str) -> Client:
+        self.nonce += 1
+        keys = Keys()
+        keys.found = [at_school()[1]]
+        if what == "owner":
+            return remote(self.robot, keys, self.nonce)
+        if what == "thief":
+            return with_wrong_key(self.robot, keys, self.nonce)
+        return remote(self.robot, None, self.nonce) if what == "stranger" else Bytes()
+
+    def come(self, place: int, what: str) -> Guest | None:
+        """Let somebody connect, over a radio or the cable, unless its place is taken."""
+        if place != NETWORK and any(each.place == place for each in self.guests):
+            return None
+        make = MAKES[place]
+        guest = Guest(make and make(self.robot), self.new(what), what, place)
+        self.guests.append(guest)
+        self.places.append(place)
+        self.talk(3)
+        return guest
+
+    def talk(self, milliseconds: int, flags: int = 0) -> None:
+        talk(self.robot, [(end, who) for end, who, *_ in self.guests], milliseconds, flags)
+
+    def leave(self, guest: Guest) -> None:
+        self.guests.remove(guest)
+        if guest.end is not None:
+            guest.end.leave()
+        self.talk(3)
+
+
+WITHOUT_THIEF = ("owner", "owner", "stranger", "person")
+WHO = (*WITHOUT_THIEF, "thief")
+
+
+def a_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
+    """Somebody comes, goes, asks or types.
+
+    Where the twin comes soon, nobody asks for what goes on without him, nor over the cable: that he
+    has gone nobody sees there.
+    """
+    what = rng.randrange(8)
+    if what == 0 or not scene.guests:
+        scene.come(rng.randrange(is_soon, 4), rng.choice(WHO))
+        return
+    guest = rng.choice(scene.guests)
+    if what == 1:
+        scene.leave(guest)
+    elif what == 2:
+        scene.talk(rng.choice((30, 300, 1200)))
+    elif what == 3 and rng.random() < 0.3:
+        scene.talk(1, rng.choice((1, 2)))
+        scene.talk(60)
+    elif isinstance(guest.who, Bytes):
+        guest.who.said = rng.choice((rng.choice(LINES), rng.choice(PIECES), bytes(STOP_BYTES)))
+        scene.talk(rng.choice((2, 30, 300)))
+    elif isinstance(guest.who, Session):
+        but = {"identify"} if is_soon else set()
+        but |= {"a claim"} if guest.what == "stranger" else set()
+        ASKS[rng.choice([each for each in ASKS if each not in but])](guest.who)
+        scene.talk(rng.choice((1, 5, 30, 300)))
+
+
+def seen(scene: Scene, first: int, rng: random.Random) -> list[object]:
+    """Let somebody come to a place, and mostly another one, too; return all that can be seen."""
+    robot = scene.robot
+    found: list[object] = []
+    robot.did.clear()
+    scene.nonce = 100
+    guests: list[Guest] = []
+    for place in {first: 0, rng.randrange(4): 0}:
+        guest = scene.come(place, rng.choice(WITHOUT_THIEF))
+        assert guest
+        guests.append(guest)
+    for _ in range(rng.choice((2, 4))):
+        begun_ms, who = robot.now_ms, rng.choice(guests).who
+        name, request = "", None
+        if isinstance(who, Session):
+            name = rng.choice([each for each in ASKS if each != "a claim"])
+            request = ASKS[name](who)
+        elif isinstance(who, Bytes):
+            who.said = rng.choice(LINES)
+        scene.talk(rng.choice((100, 400, 1500)))
+        found.append((name, told_of(request, *OF_MEMORY)))
+        for _, each, *_ in guests:
+            if isinstance(each, Session):
+                found.append([without_counts(event) for event in each.events()])
+        rows = (line.split(" ", 1) for line in robot.did)
+        found.append([(int(ms) - begun_ms, what) for ms, what in rows])
+        robot.did.clear()
+    scene.talk(1200)  # an answer in text waits behind a frame that told nobody of the stop
+    said = [each.heard for _, each, *_ in guests if isinstance(each, Bytes)]
+    return [*found, [sorted(re.findall(rb"// [^\r\n]*\r\n", each)) for each in said]]
+
+
+def check(seed: int) -> str:
+    rng = random.Random(seed)
+    scene = Scene(at_school()[0])
+    wait_ms = rng.choice((3, 30, 300, OVER_MS))
+    for _ in range(rng.choice((2, 4, 8, 16))):
+        a_step(scene, rng, wait_ms < OVER_MS)
+    did = scene.robot.did[:]
+    scene.talk(1, 2)
+    while scene.guests:
+        scene.leave(scene.guests[0])
+    both = [scene, Scene(scene.robot.kept())]
+    drawn_alike, place = rng.random(), rng.choice(scene.places)
+    found = []
+    for each in both:
+        each.robot.wait(5, bytes(STOP_BYTES))
+        each.robot.wait(wait_ms)
+        found.append(seen(each, place, random.Random(drawn_alike)))
+    assert found[0] == found[1], f"{did}\n{wait_ms}\n{first_difference(*found)}"
+    return "at once" if wait_ms < OVER_MS else "later"
+
+
+@pytest.mark.sampled("part", keep=2)
+@pytest.mark.parametrize("part", range(20))
+def test_a_robot_is_as_its_twin(part: int) -> None:
+    for seed in range(part * 5, part * 5 + 5):
+        check(seed)
+
+
+if __name__ == "__main__":
+    each_seed(check, wanted(200, 10_000))

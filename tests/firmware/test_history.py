@@ -1,0 +1,442 @@
+"""What a robot was told and what it went through leaves nothing but what it keeps.
+
+Computers and people do anything with a robot: they ask for everything, give up in the middle of it,
+type lines and parts of lines, push the button, pull the cable. Then it is stopped, and its twin is
+switched on: a robot with the same memory. From here on both do the same, whatever is asked of them.
+
+`python -m tests.firmware.test_history 2000` tries more.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import pytest
+
+from tests.firmware.test_host_firmware import KIT
+from tests.firmware.test_second_time import READINGS, SmallRobot, drawn, without_readings
+from tests.machines.host_firmware import HostFirmware
+from tests.support.campaign import each_seed, wanted
+from tests.support.images import image_of
+from tests.text.test_bytes_around import PIECES
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.messages import BY_NAME
+from tiniscript.link.outcomes import TextEvent
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+Asks = Callable[[Session, random.Random], PendingRequest[Any]]
+PRESSED, RELEASED, STALLED, UNPLUGGED, SURE = 1, 2, 4, 8, 32
+LONG = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
+SHORT = "SI|F(0.1, 80);SHOW(2);B(0.1, 30)"
+TRIMS = ((0, 0, 0), (1, 0, 0), (0, 30, 0), (6, -20, 25), (9, 0, 0))
+NO_ZERO = b"// Lines end with Enter, not with 0\r\n"
+LOST = b"// The old program is lost.\r\n"
+UNHEARD_MS = 4200  # then no client is listened to any more
+RUNS_MS = 700
+IDENTIFIES_MS = 3300
+FORGETS_MS = 65_000  # then nobody knows whether lines end here
+
+
+def starts(rng: random.Random) -> str:
+    """Return a program that begins at once."""
+    return "SI|" + rng.choice((SHORT[3:], LONG[3:], drawn(rng)))
+
+
+def sensible(rng: random.Random) -> str:
+    """Return a program of the size of a line, with no readings."""
+    return "SI|" + without_readings(rng.choice((SHORT[3:], "BEEP(0.001, 31);M(20, 30);W(0.2)")))
+
+
+# -- what can be asked and typed ----------------------------------------------------------------
+
+# Of these none changes what a robot keeps.
+ASKS: dict[str, Asks] = {
+    "hello": lambda session, rng: session.hello(),
+    "ping": lambda session, rng: session.ping(),
+    "status": lambda session, rng: session.status(),
+    "clear": lambda session, rng: session.clear(),
+    "trim?": lambda session, rng: session.trim(),
+    "a live line": lambda session, rng: session.live(image_of(sensible(rng)).code),
+    "a program": lambda session, rng: session.upload(image_of(sensible(rng), KIT), saves=False),
+    "a long program": lambda session, rng: session.upload(image_of(LONG, KIT), saves=False),
+    "a program for the button": lambda session, rng: session.upload(
+        image_of("SB|" + SHORT[3:], KIT), runs=False, saves=False
+    ),
+    "a program that goes on alone": lambda session, rng: session.upload(
+        image_of(sensible(rng), KIT), saves=False, is_detached=True
+    ),
+}
+MORE: dict[str, Asks] = {
+    "identify": lambda session, rng: session.identify(),
+    "any program": lambda session, rng: session.upload(image_of(starts(rng), KIT), saves=False),
+    "a saved program": lambda session, rng: session.upload(image_of(starts(rng), KIT)),
+    "a waiting program": lambda session, rng: session.upload(
+        image_of("SB|" + drawn(rng), KIT), runs=False
+    ),
+    "undo": lambda session, rng: session.undo(),
+    "name": lambda session, rng: session.name(rng.choice((b"Pia", b"x", b"sixteen letters!"))),
+    "trim": lambda session, rng: session.trim(bytes(k % 256 for k in rng.choice(TRIMS))),
+}
+# Of the program that a robot holds: it may be another one than the one that it has saved.
+HELD: dict[str, Asks] = {
+    "start": lambda session, rng: session.start(),
+    "fetch": lambda session, rng: session.fetch(),
+}
+LINES = (
+    "SI|F(0.1, 80);SHOW(3)", "SI|X = 2;SHOW(X)", "SB|B(0.2, 40)", "F(0.1, 30)", "FOO(1)", "F(1,",
+    "HELP", "PING|CHECK_CONNECTION", "SI|LOOP(2)", "W(0.05)", "END_LOOP", "LOOP(2)", "S", "stop",
+    "SI|F(1,500)", "AT", "+OK", "SI|W(9)", "// note", "", "IF(TRUE)", "S // all",
+    "SI|X = 1.234567", "SI|IF(TRUE)", "SI|LOOP(2);W(0.01)", "SI|DEF A", "END_DEF", "FOO(1)",
+    "FOO(2)", "SI|" + "BEEP(0.001, 97);" * 9,
+)  # fmt: skip
+ENDS = ("\n", "\n", "\r\n", "")
+TEXT = tuple(piece for piece in PIECES if b"\0" not in piece)
+# Behind these another line with its SETUP word is read at once, as it would be alone.
+HARMLESS = (b" ", b"\t", b";", b"\xef\xbb\xbf", b"AT", b"AT+NAMEx", b"OK+CONN", b"+CONNECTED", b"F",
+            b"x", b"1", b"// note", b"~1234ABCD", b"\x1b[A", b"\x1b", b"\x7f", b"\xff",
+            b"\xc3", b"x" * 300, b"FOO(1)", b"SI|FOO()", b"SI|F(1,500)", b"SB|9",
+            b"END_LOOP", b"HELP", b"SI|X = 3", b"SI|X = 1;SHOW(1.5)", b"PING|CHECK_CONNECTION",
+            b"SI|X = TRUE", b"SI|CM = 1", b"SB|BEEP(0.001, 97)", b"SI|F(1 80)")  # fmt: skip
+WITH_SETUP = tuple(line for line in LINES if "|" in line)
+STOPS = (bytes(4), b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0)), b"\0S\n", b"S\n")
+TYPED_STOP = b"\nSI|W(9)\nS\n"  # it ends an open block, in which S would be an instruction
+
+
+class Scene:
+    """A robot, with whoever talks to it."""
+
+    def __init__(self, kind: type[HostFirmware], memory: bytes, write_ms: float) -> None:
+        self.robot = kind(KIT, memory, write_ms=write_ms)
+        self.robot.sense(*READINGS)
+        self.robot.wait(300)
+        self.nonce = 0
+        self.session = self.next_session()
+        self.is_down = False  # the button
+        self.has_faulted = False
+        self.is_saved = True  # the program that it holds
+        self.told: list[object] = []  # all that can be seen
+
+    def next_session(self) -> Session:
+        self.nonce += 1
+        self.session = Session(self.nonce, 9600, KIT.fingerprint)
+        return self.session
+
+    def note(self, what: str, begun_ms: int, said: bytes = b"") -> None:
+        """Note what a step has brought; times count from its beginning."""
+        self.has_faulted |= any(line.endswith("FAULTED") for line in self.robot.did)
+        rows = (line.split(" ", 1) for line in self.robot.did)
+        self.told.append((what, [(int(ms) - begun_ms, done) for ms, done in rows]))
+        lines = re.findall(rb"// [^\r\n]*\r\n", said)
+        lines = [line for line in lines if line != NO_ZERO]  # it comes late
+        self.told += [line for line in lines if self.is_saved or line != LOST]
+        heard = (event for event in self.session.events() if not isinstance(event, TextEvent))
+        self.told += [without_counts(event) for event in heard]
+        if self.is_saved:
+            self.told.append(self.robot.is_lit)
+        self.robot.did.clear()
+
+    def ask(self, name: str, make: Asks, rng: random.Random, most_ms: int = 20_000) -> None:
+        """Ask for something, and give up after a while."""
+        begun_ms = self.robot.now_ms
+        request = make(self.session, rng)
+        while request.outcome is None and self.robot.now_ms < begun_ms + most_ms:
+            self.robot.talk(self.session, 1)
+        self.told.append((name, told_of(request, *(() if self.is_saved else ("slot", "saved")))))
+        self.note(name, begun_ms)
+
+    def talk(self, milliseconds: int) -> None:
+        begun_ms = self.robot.now_ms
+        self.robot.talk(self.session, milliseconds)
+        self.note("talks", begun_ms)
+
+    def say(self, data: bytes, wait_ms: int) -> None:
+        begun_ms = self.robot.now_ms
+        said = self.robot.latched_while(max(1, len(data)), data, is_spread=True)[0]
+        said += self.robot.wait(wait_ms)
+        self.note(f"says {data!r}", begun_ms, said)
+
+    def press(self, milliseconds: int) -> None:
+        begun_ms = self.robot.now_ms
+        self.robot.talk(self.session, 1, PRESSED)
+        self.robot.talk(self.session, milliseconds)
+        self.robot.talk(self.session, 1, RELEASED)
+        self.robot.talk(self.session, RUNS_MS)
+        self.note("a press", begun_ms)
+
+
+COUNTS = ("run", "damaged", "dropped", "nonce", "reset", "count", "epoch")
+
+
+def told_of(request: PendingRequest[Any] | None, *but: str) -> object:
+    """Return what somebody was told who has asked for something."""
+    if request is None or request.outcome is None:
+        return None
+    outcome = request.outcome
+    return outcome.status, without_counts(outcome.values, *but) if outcome.status == OK else None
+
+
+def without_counts(values: Any, *but: str) -> object:
+    """Return values without some, and without what is counted since the robot was switched on."""
+    if not hasattr(values, "_asdict"):
+        return values
+    return [(name, each) for name, each in values._asdict().items() if name not in (*COUNTS, *but)]
+
+
+# -- what comes before --------------------------------------------------------------------------
+
+
+def a_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+    """Ask for something; mostly wait for its end."""
+    name = rng.choice([*asks])
+    if rng.random() < 0.3:
+        scene.next_session()
+    scene.ask(name, asks[name], rng, rng.choice((1, 4, 15, 50, 5000, 5000)))
+    scene.robot.talk(scene.session, rng.choice((0, 1, 30, 300)))
+
+
+def half_a_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+    """The line breaks in a frame, mostly near to its end; somebody else goes on."""
+    name = rng.choice([*asks])
+    robot, session = scene.robot, scene.session
+    asks[name](session, rng)
+    for _ in range(rng.choice((1, 2, 3, 4, 9))):
+        data = session.poll(robot.now_ms)
+        if data:
+            session.receive(robot.step(data[: -rng.choice((1, 1, 2, 4, 6, len(data)))]), 0)
+    if rng.random() < 0.7:
+        scene.next_session()
+    robot.wait(rng.choice((1, 30, 1100)))
+    scene.told.append(f"half of {name}")
+
+
+def a_line(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+    for _ in range(rng.choice((1, 1, 3))):
+        text = rng.choice(LINES)
+        if rng.random() < 0.2:
+            text = text[: rng.randrange(len(text) + 1)]
+        scene.say((text + rng.choice(ENDS)).encode(), rng.choice((0, 20, 300, 1100, 2500)))
+
+
+def a_whole_line(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+    data = b"".join(rng.choices(HARMLESS, k=rng.choice((1, 1, 2, 3))))
+    scene.say(data + rng.choice((b"\n", b"\r", b"\r\n")), 20)
+    scene.say(rng.choice((b"", b"\0")) + b"//\n", 300)  # no frame has begun
+
+
+def pieces(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+    scene.say(b"".join(rng.choices(TEXT, k=rng.randint(1, 4))), rng.choice((0, 5, 300, 1100)))
+
+
+def noise(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+    data = b"".join(rng.choices(PIECES, k=rng.randint(1, 4)))
+    if rng.random() < 0.3:
+        frame = encoded(Frame(rng.randrange(1, 25), rng.randrange(256), 0, rng.randbytes(9)))
+        data = b"\0" + frame[: rng.randrange(len(frame) + 1)]
+    scene.say(data, rng.choice((0, 5, 300, 1100)))
+
+
+def the_button(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+    """It goes down, or up again."""
+    scene.is_down = not scene.is_down
+    scene.robot.talk(scene.session, 1, PRESSED if scene.is_down else RELEASED)
+    if scene.is_down and rng.random() < 0.5:
+        scene.robot.talk(scene.session, 35)
+        scene.robot.talk(scene.session, 1, SURE)
+    scene.robot.talk(scene.session, rng.choice((0, 40, 300, 1200)))
+
+
+def the_supply(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+    """It is too low for a while, in which something is to be saved."""
+    scene.robot.supply(True)
+    for _ in range(rng.choice((1, 2))):
+        a_request(scene, rng, MORE)
+        scene.robot.talk(scene.session, rng.choice((0, 700)))
+    if rng.random() < 0.5:
+        scene.robot.supply(False)
+
+
+def the_rest(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+    """A stall, a cable, a stop, silence."""
+    what = rng.randrange(4)
+    if what < 2:
+        scene.robot.step(flags=(STALLED, UNPLUGGED)[what])
+    elif what == 2:
+        scene.session.stop(scene.robot.now_ms)
+        scene.robot.talk(scene.session, rng.choice((1, 5, 100)))
+    else:
+        scene.robot.wait(rng.choice((30, 1100, UNHEARD_MS)))
+
+
+class Before(NamedTuple):
+    """Steps, what is asked in them, and whether they change what is kept."""
+
+    steps: tuple[Callable[[Scene, random.Random, dict[str, Asks]], None], ...]
+    asks: dict[str, Asks]
+    saves: bool
+
+
+BEFORE = {
+    "anything": Before(
+        (a_request, a_request, half_a_request, a_line, noise, the_button, the_supply, the_rest),
+        {**ASKS, **MORE, **HELD}, True),
+    "requests": Before((a_request, half_a_request, noise, the_button, the_rest), ASKS, False),
+    "whole lines": Before((a_whole_line,), {}, False),
+    "lines": Before((a_line, a_line, a_line, pieces, the_button), {}, False),
+}  # fmt: skip
+
+
+def settled(scene: Scene, saves: bool) -> bytes:
+    """Let go of everything, and wait until what is to be kept is; return it."""
+    robot = scene.robot
+    robot.supply(False)
+    if scene.is_down:
+        robot.step(flags=RELEASED)
+        scene.is_down = False
+    if saves:
+        robot.wait(2, bytes(4))
+        robot.wait(IDENTIFIES_MS)
+    memory = robot.memory()
+    while saves and robot.now_ms < 200_000:
+        robot.wait(800)
+        if robot.memory() == memory:
+            break
+        memory = robot.memory()
+    return memory
+
+
+# -- what comes behind --------------------------------------------------------------------------
+
+
+class Behind(NamedTuple):
+    stop: bytes
+    wait_ms: int
+    is_cut: bool  # an upload before: the robot holds what it has saved
+    steps: int
+    is_typed: bool
+    is_going_on: bool = False  # nothing has stopped it
+
+
+def behind(rng: random.Random, before: str) -> Behind:
+    """Return how a robot is stopped. A person who types comes when no client is heard any more."""
+    is_typed = "lines" in before or (before == "anything" and rng.random() < 0.5)
+    if before == "whole lines":
+        return Behind(b"", 0, False, rng.choice((1, 2, 4)), True, True)
+    waits: tuple[int, ...] = (30, 60, 300, 1100, UNHEARD_MS)
+    if before == "lines" and rng.random() < 0.6:
+        return Behind(TYPED_STOP, rng.choice((1, 100, 200, 700, 1300)), False, 3, True)
+    if before == "lines":
+        waits = (1100, 1100, 1300, 2500)
+    elif is_typed:
+        waits = (UNHEARD_MS, 6000, FORGETS_MS)
+    # In an open block S is an instruction of it. Behind frames it waits, as it may be one of them.
+    stops = STOPS if before == "anything" else STOPS[:2]
+    is_cut = before != "lines" and rng.random() < 0.6
+    return Behind(rng.choice(stops), rng.choice(waits), is_cut, rng.choice((1, 2, 3, 5)), is_typed)
+
+
+def stopped(scene: Scene, how: Behind) -> None:
+    """The robot and its twin are told the same."""
+    robot = scene.robot
+    scene.is_saved = how.is_cut
+    if how.is_cut:
+        scene.nonce = 500
+        session = scene.next_session()
+        session.upload(image_of(LONG, KIT))
+        robot.talk(session, 12)
+    if not how.is_going_on:
+        robot.wait(2, how.stop)
+        robot.wait(how.wait_ms)
+    elif not scene.told:
+        robot.wait(300, b"//\n")
+    if how.is_typed and how.stop not in (b"", TYPED_STOP) and how.wait_ms < FORGETS_MS:
+        robot.wait(1200, b"\n")  # that lines end here is known
+    robot.did.clear()
+    scene.told.clear()
+    scene.nonce = 1000
+    scene.next_session()
+
+
+def all_seen(scene: Scene, how: Behind, rng: random.Random) -> list[object]:
+    """Ask for things; return all that can be seen."""
+    asks = {**ASKS, **MORE, **(HELD if how.is_cut else {})}
+    if not how.is_cut:
+        for name in ("undo", "status", "hello"):
+            del asks[name]
+    for count in range(how.steps):
+        if how.is_typed:
+            text = rng.choice(WITH_SETUP if how.is_going_on and count == 0 else LINES)
+            scene.say((text + rng.choice(ENDS)).encode(), rng.choice((0, 30, RUNS_MS, 2600, 5200)))
+        elif how.is_cut and rng.random() < 0.2:
+            scene.press(rng.choice((40, 300)))
+        else:
+            name = rng.choice([*asks])
+            scene.ask(name, asks[name], rng)
+            scene.talk(RUNS_MS)
+    return scene.told
+
+
+@lru_cache(maxsize=1)
+def new_memory() -> bytes:
+    """Return what a robot keeps that nobody has talked to."""
+    robot = HostFirmware(KIT)
+    robot.wait(1000)
+    return robot.memory()
+
+
+def check(seed: int, kind: str, before: str) -> int:
+    """Compare a robot with its twin; return how much there was to be seen."""
+    rng = random.Random(f"{seed} {kind} {before}")
+    write_ms = rng.choice((3.4, 3.4, 12))
+    scene = Scene(KINDS[kind], new_memory(), write_ms)
+    for _ in range(rng.choice((1, 2, 4, 8))):
+        rng.choice(BEFORE[before].steps)(scene, rng, BEFORE[before].asks)
+    scene.talk(0)
+    saves = BEFORE[before].saves or scene.has_faulted
+    memory = settled(scene, saves)
+    assert saves or memory == new_memory()
+    history = scene.told[:]
+    how = behind(rng, before)
+    twin = Scene(KINDS[kind], memory, write_ms)
+    drawn_alike = rng.random()
+    found = []
+    for each in (scene, twin):
+        stopped(each, how)
+        found.append(all_seen(each, how, random.Random(drawn_alike)))
+    assert found[0] == found[1], f"{history}\n{how}\n{first_difference(*found)}"
+    return len(found[0])
+
+
+def first_difference(found: Sequence[object], wanted: Sequence[object]) -> str:
+    """Return what two have in common, and what only the first one has then."""
+    alike = 0
+    while found[alike : alike + 1] == wanted[alike : alike + 1]:
+        alike += 1
+    return f"{found[:alike]}\n{found[alike:][:4]}\nnot\n{wanted[alike:][:4]}"
+
+
+KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallRobot}
+
+
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(10))
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("before", BEFORE)
+def test_a_robot_is_as_its_twin(before: str, kind: str, part: int) -> None:
+    seen = [check(seed, kind, before) for seed in range(part * 10, part * 10 + 10)]
+    assert sum(seen) > 20 and min(seen) > 0, seen
+
+
+def check_all(seed: int) -> None:
+    for kind in KINDS:
+        for before in BEFORE:
+            check(seed, kind, before)
+
+
+if __name__ == "__main__":
+    each_seed(check_all, wanted(2000, 10_000))

@@ -1,0 +1,121 @@
+"""A memory that is ten years old: whatever bytes of it no longer change, what a robot says of what
+it keeps is true, and who needs none of them notices nothing.
+
+`python -m tests.firmware.test_worn_memory 2000` tries more.
+"""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Sequence
+from struct import pack
+
+import pytest
+
+from tests.firmware.test_host_firmware import held
+from tests.firmware.test_persistence import bytes_of
+from tests.support.campaign import each_seed, wanted
+from tests.support.images import image_of
+from tests.support.owners import Keys, Owned, owner_of
+from tiniscript.link.authority import FREE, YOUR_OWN
+from tiniscript.link.messages import SAVED_STORED
+
+NAMES = (b"x", b"Pia", b"OLD", b"sixteen letters!")
+TRIMS = [pack("<BbBHHHH", *row) for row in ((0, 0, 0, 0, 0, 0, 0), (1, 5, 7, 11, 30, 70, 260),
+                                            (0, -9, 30, 10, 31, 71, 261))]  # fmt: skip
+# Where `layout.h` puts both slots of each: from where to where. Four bytes say whether it counts.
+IDENTITY, FAULT = ((4, 35), (35, 66)), ((66, 97), (97, 128))
+PROGRAM, KEYS = ((128, 536), (576, 984)), ((536, 576), (984, 1024))
+SLOTS = (*IDENTITY, *FAULT, *PROGRAM, *KEYS)
+
+
+class Known:
+    """What a robot has said to keep of one thing, and what it may keep instead."""
+
+    def __init__(self, first: object) -> None:
+        self.may_be = [first]
+
+    def asked(self, what: object, is_kept: bool) -> None:
+        self.may_be = [what] if is_kept else [*self.may_be, what]
+
+
+def worn_of(worn: set[int], slots: Sequence[tuple[int, int]]) -> int:
+    """Return how many of the slots have worn bytes."""
+    return sum(any(low <= place < high for place in worn) for low, high in slots)
+
+
+def check(seed: int) -> str:
+    rng = random.Random(seed)
+    table, keys = Owned(seed=seed | 1), Keys()
+    robot, session = table.robot, table.session(keys)
+    worn: set[int] = set()
+    name, program = Known(b""), Known(b"")
+    trim, pace = Known(TRIMS[0][:3]), Known(TRIMS[0][3:])
+    owner = Known(FREE)
+    told = "all is kept"
+    for _ in range(rng.randint(4, 14)):
+        what = rng.choice((*["worn"] * 5, "name", "name", "trim", "program", "claim", "fault"))
+        if what == "worn":
+            low, high = rng.choice(SLOTS)
+            place = low + rng.randrange(4) if rng.random() < 0.5 else rng.randrange(low, high)
+            robot.wear_out(place)
+            worn.add(place)
+            continue
+        if what == "program":
+            text = f"SB|F(1, {rng.randint(10, 99)})" + ";B(0.1, 60)" * rng.choice((0, 30))
+            status = table.outcome(session, session.upload(image_of(text)))
+            assert status == "OK", f"{seed} {status}"
+            robot.talk(session, 3500)
+            saved = robot.done(session, session.status()).saved
+            is_kept = saved == SAVED_STORED
+            program.asked(bytes_of(text), is_kept)
+        elif what == "claim":
+            if owner.may_be != [FREE]:
+                continue
+            status = table.claim(session)
+            is_kept = status == "OK"
+            owner.asked(YOUR_OWN, is_kept)
+        elif what == "fault":
+            robot.until(session, session.upload(image_of("SI|X = 0;SHOW(1 / X)"), saves=False))
+            robot.talk(session, 600)
+            continue
+        else:
+            asked = rng.choice(NAMES if what == "name" else TRIMS)
+            request = session.name(asked) if what == "name" else session.trim(asked)
+            status = table.outcome(session, request)
+            is_kept = status == "OK"
+            if what == "name":
+                name.asked(asked, is_kept)
+            else:
+                trim.asked(asked[:3], is_kept)
+                pace.asked(asked[3:], is_kept)
+        slots = {"program": PROGRAM, "claim": KEYS}.get(what, (*IDENTITY, *FAULT))
+        if not is_kept:
+            told = "it says what is not kept"
+            assert worn_of(worn, slots), f"{seed} {what} {worn}"
+    robot.talk(session, 1000)
+    again = Owned(robot.memory())
+    later = again.session(keys, nonce=9)
+    whose = owner_of(again, later)
+    # A robot that cannot keep who it is has no key of anybody.
+    assert whose in owner.may_be or worn_of(worn, IDENTITY) == 2, f"{seed} {worn}"
+    assert later.robot and later.robot.name.encode() in name.may_be, f"{seed} {worn} {later.robot}"
+    found = again.robot.done(later, later.trim())
+    assert found.pace in pace.may_be, f"{seed} {worn}"
+    assert pack("<BbB", *found[:3]) in trim.may_be, f"{seed} {worn}"
+    has_program = again.robot.done(later, later.status()).length != 0
+    image = held(again.robot, later) if has_program else b""
+    assert image in program.may_be, f"{seed} {worn}"
+    return told
+
+
+@pytest.mark.sampled("part", keep=2)
+@pytest.mark.parametrize("part", range(10))
+def test_what_is_said_of_what_is_kept_is_true(part: int) -> None:
+    found = Counter(check(seed) for seed in range(part * 30, part * 30 + 30))
+    assert found["it says what is not kept"] > 1 and found["all is kept"] > 1, found
+
+
+if __name__ == "__main__":
+    each_seed(check, wanted(2000, 10_000))
