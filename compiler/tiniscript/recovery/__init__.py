@@ -1,6 +1,7 @@
 """Reads what was meant by a wrong program. People are told of one that it reads wholly and surely.
 
 Six concepts, a module each: concept tokens (`concepts`, with a lexicon for each language),
-rewrites (`rewrites`, with the table `rows`), slots, blocks, candidates (`search`), explanations.
+rewrites (`rewrites`, with the table `rows`), slots, blocks, candidates (`search`), explanations
+(`slips` says what is wrong with one instruction, `explanation` what with a text).
 `findings` says what people are told; `suggestions` and `usage` of what no repair reads.
 """
