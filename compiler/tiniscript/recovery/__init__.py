@@ -3,5 +3,6 @@
 Six concepts, a module each: concept tokens (`concepts`, with a lexicon for each language),
 rewrites (`rewrites`, with the table `rows`), slots, blocks, candidates (`search`), explanations
 (`slips` says what is wrong with one instruction, `explanation` what with a text).
-`findings` says what people are told; `suggestions` and `usage` of what no repair reads.
+`findings` says what people are told; `suggestions` and `usage` of what no repair reads;
+`consequences` and `dedupe` what is not told beside it.
 """

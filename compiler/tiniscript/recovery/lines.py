@@ -130,8 +130,7 @@ def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list
 
 @lru_cache(concepts.REMEMBERED)
 def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Reading]:
-    has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
-    setup = list(tokens[:2]) if has_setup else []
+    setup = concepts.setup_of(tokens)
     readings = _Search(names).read(list(tokens[len(setup) :]), is_quick)
     whole = [each._replace(tokens=[*setup, *each.tokens]) for each in readings]
     told = ((each, right(each.tokens, names)) for each in whole)

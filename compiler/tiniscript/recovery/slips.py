@@ -17,7 +17,16 @@ from tiniscript.base.source import Edit, Span
 from tiniscript.base.words import BLOCK_ENDS, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
-from tiniscript.recovery.concepts import ENDED, SOME_END, Lexeme, lexemes, meant_by, said_of, texts
+from tiniscript.recovery.concepts import (
+    ENDED,
+    SOME_END,
+    Lexeme,
+    lexemes,
+    meant_by,
+    said_of,
+    setup_of,
+    texts,
+)
 from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.writing import laid_out
 from tiniscript.syntax.lexer import NUMBER, WORD
@@ -407,8 +416,7 @@ def instructions(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
 
 def without_setup(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
     """Return the instructions of a line, without `SI|`."""
-    has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
-    return [each for each in instructions(tokens[2:] if has_setup else tokens) if each]
+    return [each for each in instructions(tokens[len(setup_of(tokens)) :]) if each]
 
 
 def written(tokens: Sequence[Lexeme]) -> str:
