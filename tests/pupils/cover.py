@@ -2,9 +2,10 @@
 
 python -m tests.pupils.cover    chooses them again, in some minutes, and writes `cover.txt`
 
-A commit is tested with these; `python -m tools.campaign pupils`, or `--whole`, takes all. They are
-to be chosen again when programs come and go, or when the code that judges them has changed so much
-that a fiftieth of its branches may be others: a test says so.
+A commit is tested with these; `python -m tools.campaign pupils`, or `--whole`, takes all. What
+`--accept` pins first is one of them, too. They are to be chosen again when other programs come and
+go, or when the code that judges them has changed so much that a fiftieth of its branches may be
+others: a test says so.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from tests.support.casefile import ROOT
 PACKAGE = ROOT / "compiler" / "tiniscript"
 JUDGES = ("recovery/*.py", "diagnostics/*.py", "semantics/checker.py", "syntax/*.py")
 LIST = FOLDER / "cover.txt"
-HEAD = re.compile(r"# \d+ of \d+ programs reach the same \d+ branches; (\d+) forks, (\w+)")
+HEAD = re.compile(r"# \d+ of \d+ programs reach the same (\d+) branches; (\d+) forks, (\w+)")
 OTHER = 50  # one of so many forks may be new
 Branch = tuple[str, int, int]
 _FORKS = (ast.If, ast.IfExp, ast.For, ast.While, ast.BoolOp, ast.comprehension, ast.ExceptHandler)
@@ -51,19 +52,46 @@ def forks(sources: Iterable[str]) -> int:
 
 def head(chosen: int, branches: int, programs: Sequence[str]) -> str:
     its_forks = forks(path.read_text(encoding="utf-8") for path in judges())
-    names = name_of("".join(sorted(map(name_of, programs))))
+    return _head(chosen, branches, programs, its_forks)
+
+
+def _head(chosen: int, branches: int, programs: Sequence[str], its_forks: int) -> str:
     return (f"# {chosen} of {len(programs)} programs reach the same {branches} branches; "
-            f"{its_forks} forks, {names}")  # fmt: skip
+            f"{its_forks} forks, {_name_of_all(programs)}")  # fmt: skip
+
+
+def _name_of_all(programs: Sequence[str]) -> str:
+    return name_of("".join(sorted(map(name_of, programs))))
+
+
+def add(new: Sequence[str], programs: Sequence[str]) -> None:
+    """Take new programs into the list of chosen ones, until all are chosen again."""
+    first, *rows = LIST.read_text(encoding="utf-8").splitlines()
+    written = HEAD.match(first)
+    if (
+        not new
+        or not written
+        or written[3] != _name_of_all([it for it in programs if it not in new])
+    ):
+        return  # others have come or gone
+    rows += map(_row, new)
+    first = _head(len(rows), int(written[1]), programs, int(written[2]))
+    LIST.write_text("\n".join((first, *rows)) + "\n", encoding="utf-8")
+    covered.cache_clear()
+
+
+def _row(program: str) -> str:
+    return f"{name_of(program)} {program.splitlines()[0].strip()}"
 
 
 def stale(written: str, now: str) -> str:
     """Return why programs are to be chosen again; nothing where they need not."""
     before, after = HEAD.match(written), HEAD.match(now)
     assert before and after, "its first line says of what it is"
-    if before[2] != after[2]:
+    if before[3] != after[3]:
         return "programs have come or gone"
-    moved = abs(int(after[1]) - int(before[1]))
-    return "the code has other branches" if moved * OTHER > int(before[1]) else ""
+    moved = abs(int(after[2]) - int(before[2]))
+    return "the code has other branches" if moved * OTHER > int(before[2]) else ""
 
 
 def reached(programs: Sequence[Entry]) -> list[frozenset[Branch]]:
@@ -124,8 +152,7 @@ def main() -> None:
     found = reached(programs)
     taken = chosen(found, [k for k, each in enumerate(programs) if each in known])
     first = head(len(taken), len(frozenset().union(*found)), [each.program for each in programs])
-    texts = (programs[k].program for k in taken)
-    rows = (f"{name_of(text)} {text.splitlines()[0].strip()}" for text in texts)
+    rows = (_row(programs[k].program) for k in taken)
     LIST.write_text("\n".join((first, *rows)) + "\n", encoding="utf-8")
     covered.cache_clear()
     print(first[2:].partition(";")[0] + ".")

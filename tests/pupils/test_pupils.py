@@ -7,11 +7,13 @@ python -m pytest tests/pupils --whole     takes all programs, and not the few of
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
+from tests.pupils import cover
 from tests.pupils.corpus import Entry, check, entries, found_in, write
-from tests.pupils.cover import LIST, chosen, forks, head, stale
+from tests.pupils.cover import LIST, add, chosen, forks, head, stale
 from tests.support.rows import go_through
 from tiniscript.base.source import Edit, Source, applied
 from tiniscript.diagnostics import codes
@@ -79,6 +81,20 @@ def test_they_are_chosen_again_when_others_may_be_needed() -> None:
     assert stale(before, little) == "" and stale(before, much) == "the code has other branches"
 
 
+def test_a_new_program_is_tested_until_they_are_chosen_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written = tmp_path / "cover.txt"
+    monkeypatch.setattr(cover, "LIST", written)
+    written.write_text(head(0, 5, ["S", "F"]) + "\n")
+    new = "B\nS"
+    add([new], ["S", "F", new])
+    row = f"{cover.name_of(new)} B"
+    assert written.read_text().splitlines() == [head(1, 5, ["S", "F", new]), row]
+    add(["L"], ["S", "L"])
+    assert not stale(written.read_text(), head(1, 5, ["S", "F", new])), "others have gone, too"
+
+
 def test_few_reach_what_all_reach() -> None:
     steps = ([1], [1, 2], [2], [3, 1], [1, 3])
     sets = [frozenset(("", k, k) for k in each) for each in steps]
@@ -92,6 +108,9 @@ def test_the_corpus_is_as_it_was(
     found = [found_in(each) for each in programs]
     if request.config.getoption("--accept"):
         write(found)
+        pairs = zip(programs, found, strict=True)
+        new = [now.program for was, now in pairs if now.said and not was.said]
+        add(new, [each.program for each in programs])
         return
     changed = [(old, new) for old, new in zip(programs, found, strict=True) if old != new]
     assert not changed, f"{len(changed)} of {len(found)}, the first: {changed[0]}"
