@@ -1,11 +1,16 @@
 """Wrong programs as pupils write them, and what is said of each.
 
-They are in the files `*.txt` here. Below a program stands a row for each message,
+They are in `en.txt`, `es.txt` and `pt.txt`, by the language of their words; those with words of
+TiniScript alone are in `en.txt`. Below a program stands a row for each message,
 `> 1 TS012 F(1.5, 80)`: its line, its code and what to try, in Spanish. Behind `>=` that is what
 `tsc check --fix` makes of the line, or of the part of it that is named: `>= 1 TS036 SI|  for  SI-`.
 `=3 F(1, 80)` is another line that it changes; where it changes how many lines there are, all that
 it makes stands there, each line behind a `=`. None has spaces at its end. A program of which
-nothing is said has a `>` alone below it, and so has a new one until `--accept` writes what is said.
+nothing is said has a `>` alone below it; so has a new one until `--accept` writes what is said.
+
+Where its writer said it, `>? forward for two seconds` is what a program was to do, `>! F(2, 80)`
+what is written for that in TiniScript. `cover.txt` names the programs that each commit is tested
+with: `cover.py` says how they are chosen.
 """
 
 from __future__ import annotations
@@ -23,28 +28,33 @@ from tiniscript.diagnostics.rendering import message
 from tiniscript.library.compiling import compile_source
 
 FOLDER = Path(__file__).parent
+LANGUAGES = ("en", "es", "pt")
+INTENT, MEANT = ">? ", ">! "
 FOR = "  for  "
 PART = re.compile(r"((?:(?![>=]).*\n)+)((?:>.*\n)*)((?:=.*\n)*)")
 
 
 class Entry(NamedTuple):
-    """`file` is the name of the file that has the program."""
+    """`language` names the file that has the program; `asides` are the rows of what was meant."""
 
-    file: str
+    language: str
     program: str
     said: tuple[str, ...]
     mended: str | None
+    asides: tuple[str, ...] = ()
 
 
 @cache
 def entries() -> tuple[Entry, ...]:
     found = []
-    for file in sorted(FOLDER.glob("*.txt")):
-        for part in PART.findall(file.read_text(encoding="utf-8")):
-            program, said, changed = (each.split("\n")[:-1] for each in part)
+    for language in LANGUAGES:
+        for part in PART.findall((FOLDER / f"{language}.txt").read_text(encoding="utf-8")):
+            program, rows, changed = (each.split("\n")[:-1] for each in part)
+            asides = tuple(row for row in rows if row.startswith((INTENT, MEANT)))
+            said = [row for row in rows if row not in asides]
             messages = tuple(row.partition(" ")[2].partition(FOR)[0] for row in said if row != ">")
             mended = _mended(program, said, changed)
-            found.append(Entry(file.name, "\n".join(program), messages, mended))
+            found.append(Entry(language, "\n".join(program), messages, mended, asides))
     return tuple(found)
 
 
@@ -97,20 +107,21 @@ def found_in(entry: Entry) -> Entry:
     mended = fixed(program, check).text
     said = tuple(f"{each.line} {each.code} {each.fix}".rstrip() for each in messages)
     kept = "\n".join(line.rstrip() for line in mended.split("\n"))  # as the file keeps it
-    return Entry(entry.file, program, said, kept or None if mended != program else None)
+    return entry._replace(said=said, mended=kept or None if mended != program else None)
 
 
 def write(found: list[Entry]) -> None:
-    for file in {entry.file for entry in found}:
-        rows = [row for entry in found if entry.file == file for row in _rows(entry)]
-        (FOLDER / file).write_text("\n".join(rows) + "\n", encoding="utf-8")
+    for language in {entry.language for entry in found}:
+        rows = [row for entry in found if entry.language == language for row in _rows(entry)]
+        (FOLDER / f"{language}.txt").write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
 def _rows(entry: Entry) -> list[str]:
     """Return a program and what is said of it, as the file has them."""
     said = [f"> {each}" for each in entry.said]
+    above = [entry.program, *entry.asides]
     if entry.mended is None:
-        return [entry.program, *(said or [">"])]
+        return [*above, *(said or [">"])]
     program, mended = entry.program.split("\n"), entry.mended.split("\n")
     pairs = enumerate(zip(program, mended, strict=False), 1)
     changed = {number: new for number, (old, new) in pairs if old.rstrip() != new}
@@ -126,5 +137,5 @@ def _rows(entry: Entry) -> list[str]:
             del changed[int(number)]
     rows = [f"={number} {line}".rstrip() for number, line in changed.items()]
     if _mended(program, marked, rows) == entry.mended:
-        return [entry.program, *marked, *rows]
-    return [entry.program, *said, *(f"= {line}".rstrip() for line in mended)]
+        return [*above, *marked, *rows]
+    return [*above, *said, *(f"= {line}".rstrip() for line in mended)]

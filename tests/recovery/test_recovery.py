@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from functools import partial
+from itertools import count
 
 import pytest
 
@@ -10,12 +12,14 @@ from tests.pupils.corpus import entries
 from tests.pupils.test_damage import programs
 from tests.support.rows import each_row
 from tiniscript import robots
+from tiniscript.base import languages
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span
+from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.lessons import catalogue
 from tiniscript.library.compiling import analyzed
-from tiniscript.recovery import lines, rewrites, rows
+from tiniscript.recovery import lines, rewrites, rows, slips
 from tiniscript.recovery.explanation import explained
 from tiniscript.recovery.meanings import Lexeme, Names, lexemes
 from tiniscript.recovery.search import Candidate, Recovery
@@ -23,7 +27,7 @@ from tiniscript.syntax.outline import Failure
 
 KITS = [robots.load(name).kit for name in ("tinibot", "grabber", "liner")]
 KIT = robots.load(robots.DEFAULT).kit
-_F = "F(time, power)"
+_F, _MOVE = "F(time, power)", "F(2, 80)"
 ROWS: list[rewrites.SignRow | rewrites.Row] = [*rewrites.of_signs(), *rewrites.of_tokens()]
 
 
@@ -70,21 +74,17 @@ def is_whole(line: list[Lexeme]) -> bool:
     return signs.count("(") == signs.count(")") and signs[3:4] != ["="]
 
 
-def slip(*values: str) -> dict[str, str]:
-    names = ("found", "right", "before", "word", "usage", "fix")
-    return dict(zip(names, values, strict=True))
-
-
 @pytest.mark.parametrize(
     ("wrong", "code", "values", "edit"),
     [
-        ("F(2 80)", "TS017", slip("F(2 80)", ",", "F(2", "F", _F, "F(2, 80)"),
-         Edit(Span(3, 3), ",")),
-        ("S\navanzar(2, 80)", "TS102", slip("avanzar", "F", "", "F", _F, "F(2, 80)"),
+        ("F(2 80)", "TS017", {"usage": _F, "fix": _MOVE}, Edit(Span(3, 3), ",")),
+        ("S\navanzar(2, 80)", "TS102",
+         {"found": "avanzar", "right": "F", "usage": _F, "takes": "", "fix": _MOVE},
          Edit(Span(2, 9), "F")),
-        ("SI|robot.forward(2, 80)", "TS102", slip("robot.forward", "F", "", "F", _F, "F(2, 80)"),
+        ("SI|robot.forward(2, 80)", "TS102",
+         {"found": "robot.forward", "right": "F", "usage": _F, "takes": "", "fix": _MOVE},
          Edit(Span(3, 16), "F")),
-        ("F(2, 80 %)", "TS049", slip("80 %", "F(2, 80)", "F(2, 80", "F", _F, "F(2, 80)"),
+        ("F(2, 80 %)", "TS049", {"found": "80 %", "right": _MOVE, "fix": _MOVE},
          Edit(Span(7, 9), "")),
     ],
 )  # fmt: skip
@@ -95,7 +95,30 @@ def test_an_explanation_has_a_slip_and_its_edits(
     assert found is not None
     (said,) = explained(wrong, found)
     assert (said.code, said.edits) == (CODES[code], [edit])
-    assert values.items() <= said.values.items()
+    assert said.values_as(said.code) == {**values, "whole": ""}
+
+
+ASKED_FOR = {codes.BAD_NAME: {"found"}, codes.NAME_WITH_SPACE: {"found"}}  # by `dedupe`
+OTHERS_SAY = (codes.ARGUMENT_COUNT, codes.WRONG_END)  # the checker, or the block: some of it
+OF_BLOCKS = {"whole", "line", "lines", "times", "ends"}
+
+
+@each_row("code", [pytest.param(code, id=code.number) for code in slips.NAMED])
+def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
+    """Of a slip each value is made that a text names, and none that no text does."""
+    named = {*slips.NAMED[code].split()}
+    asked = []
+    for part in ("message", "try"):
+        text = languages.found("messages", f"{code.number}/{part}", "en")
+        for k in count(2):
+            if text is None:
+                break
+            asked.append({*re.findall(r"\{@?(\w+)\}", text)})
+            text = languages.found("messages", f"{code.number}/{part}/{k}", "en")
+    assert named <= set().union(*asked) | ASKED_FOR.get(code, set())
+    own = {"found", "right", "before", "word", "usage", "fix", "letter", "takes"}
+    whole = [each & own for each in asked if each <= own | OF_BLOCKS]
+    assert code in OTHERS_SAY or set().union(*whole) <= named
 
 
 def test_a_line_is_searched_once_for_the_same_names() -> None:

@@ -5,11 +5,27 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, TypeVar
 
 import pytest
 
 Test = Callable[..., None]
+Row = TypeVar("Row")
+
+
+def go_through(
+    test: Callable[[Row], None], rows: Iterable[Row], name: Callable[[Row], str] = repr
+) -> None:
+    """Test each row, and tell of each one that fails: like `each_row`, of rows of this run."""
+    wrong: dict[str, Exception] = {}
+    for row in rows:
+        try:
+            test(row)
+        except Exception as why:  # of any kind: the other rows are to be seen, too
+            wrong[name(row)] = why
+    if wrong:
+        said = (f"{row}: {type(why).__name__}: {why}" for row, why in wrong.items())
+        raise AssertionError("\n\n".join(said)) from next(iter(wrong.values()))
 
 
 def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
@@ -25,15 +41,10 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
     def made(test: Test) -> Test:
         @functools.wraps(test)
         def whole(**given: Any) -> None:
-            wrong: dict[str, Exception] = {}
-            for row in sets:
-                try:
-                    test(**given, **dict(zip(wanted, row.values, strict=True)))
-                except Exception as why:  # of any kind: the other rows are to be seen, too
-                    wrong[str(row.id or repr(row.values))] = why
-            if wrong:
-                said = (f"{row}: {type(why).__name__}: {why}" for row, why in wrong.items())
-                raise AssertionError("\n\n".join(said)) from next(iter(wrong.values()))
+            def one(row: Any) -> None:
+                test(**given, **dict(zip(wanted, row.values, strict=True)))
+
+            go_through(one, sets, lambda row: str(row.id or repr(row.values)))
 
         signature = inspect.signature(test)
         left = [each for name, each in signature.parameters.items() if name not in wanted]

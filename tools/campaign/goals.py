@@ -90,6 +90,8 @@ GOALS: tuple[Goal, ...] = (
          "stops", 10_000, 500, "tests.firmware.test_typed_stops {count} --seed {seed}", _code("@"), 1000),
     Goal("rows", "Tests that each commit only samples pass with every row: chips, random programs and codes.",
          "runs of all rows", 1, 1, "pytest tests -m sampled --whole -n 2 --dist worksteal", ("compiler", "vm_arduino", "tests")),
+    Goal("pupils", "What is said of wrong programs as pupils write them is what it was, each repair helps and keeps the numbers, and all that is offered compiles.",
+         "runs of all programs", 1, 1, "pytest tests/pupils tests/semantics/test_offered.py --whole -n 2 --dist worksteal", (*_COMPILER, *_code("recovery", "diagnostics", "languages"), "tests/pupils")),
     Goal("fuzz-machine", f"No image harms the machine: what the verifier accepts runs without BAD_CODE ({FUZZ}).",
          "inputs", 100_000_000, 5_000_000, "tests.fuzz.harnesses machine {count} --seed {seed}", (*_code("@vm"), "tests/fuzz")),
     Goal("fuzz-link", f"No bytes harm the receiver, the link or the reader of text ({FUZZ}).",

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from tiniscript.base.source import Edit, Source, Span, applied
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
+from tiniscript.recovery.consequences import without_consequences
 from tiniscript.syntax.lexer import QUOTES
 
 MANY = 6  # calls that an example has
@@ -25,11 +26,8 @@ _ONCE = _WITH_LINES | {
 
 
 def dedupe(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
-    """Return diagnostics without those that say the same as one before."""
-    if any(each.code is codes.CASES for each in found):  # braces and breaks go with them
-        found = [each for each in found if each.code not in (codes.BRACES, codes.BREAK_OUTSIDE)]
-    asked = [each.span.start for each in found if each.code is codes.QUESTION_BEHIND]
-    found = [each for each in found if not _is_asked_behind(each, asked, source)]
+    """Return diagnostics without those that follow from others, or say the same as one before."""
+    found = without_consequences(found, source)
     meant = {
         it.values.get("found") for it in found if it.values.get("near") or it.values.get("first")
     }
@@ -53,14 +51,6 @@ def dedupe(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
             )
         groups.setdefault((code, key), []).append(each)
     return codes.in_order([_together(same, source) for same in groups.values()])
-
-
-def _is_asked_behind(found: Diagnostic, asked: Sequence[int], source: Source) -> bool:
-    """Whether what ends `F(FOREVER, 60) WHILE(DISTANCE > 9)` is told of as a question behind it."""
-    start = found.span.start
-    return found.code is codes.FOREVER_NEEDS_UNTIL and any(
-        start < each and not {*source.text[start:each]} & {*";\r\n"} for each in asked
-    )
 
 
 def _unquotes(found: Diagnostic, source: Source) -> bool:

@@ -7,7 +7,7 @@ if they were made, so that no consequence of a mistake is reported.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
@@ -16,28 +16,22 @@ from tiniscript.base.spelling import nearest
 from tiniscript.base.words import MOVES, UNIT_OF, WAYS, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
-from tiniscript.diagnostics.fixing import is_better
-from tiniscript.recovery import lines, rows
+from tiniscript.recovery import rows, slips
 from tiniscript.recovery.conserved import difference
 from tiniscript.recovery.explanation import Explanation, explained, trimmed
-from tiniscript.recovery.meanings import Names, lexemes, plain
+from tiniscript.recovery.meanings import lexemes, plain
 from tiniscript.recovery.search import Candidate, Recovery
-from tiniscript.recovery.setup import setup
+from tiniscript.recovery.setup import SEAL, Check, beginning, other_word
 from tiniscript.recovery.suggestions import suggested
 from tiniscript.recovery.usage import with_usage
-from tiniscript.recovery.writing import in_one_line, laid_out, without_note
+from tiniscript.recovery.writing import in_one_line, laid_out
 
 LONGEST = 4_000  # characters of a text that is read as a whole
 # Codes whose sentence names what is right.
 _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OTHER_ASSIGNMENT)
 _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
-_FIRST_NUMBERS = (1, 10, 100)
-_CALL = re.compile(r"(?i)\s*(?:[FBLRMW]|BEEP)\s*\(")
-_BEGUN, _ROW = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
-_NUMBER = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
 _SET = re.compile(r"(\w+) = -?[0-9.]+")
 _UNIT = re.compile(r"[^\d\s.]+$")
-Check = Callable[[str], Sequence[Diagnostic]]
 
 
 class Findings(NamedTuple):
@@ -50,70 +44,35 @@ class Findings(NamedTuple):
 def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit) -> Findings:
     """Return what is wrong with a text that can be read, or with words behind its instructions.
 
-    `found` is what the parser and the checker, which `check` asks, say of the text.
+    `found` is what the parser and the checker, which `check` asks, say of the text. It is read from
+    its beginning, then as a whole, surely; then the words behind instructions; then by guesses.
     """
-    said = setup(source.text)
-    if said and said.repair:
-        after = check(applied(source.text, said.repair.edits))
-        is_call = _CALL.match(source.text, said.repair.edits[0].span.end) is not None
-        if is_call or is_better(after, found, said.repair.edits):
-            return _with_edits([said])
-    if aside := _titles(source, kit) or _numbers(source):
-        return _with_edits(aside)
-    begun = next((each for each in found if each.code is codes.SETUP_UNKNOWN), None)
-    first = lexemes(source.text[:LONGEST].lstrip().partition("\n")[0])[:1]
-    is_sealed = "~" in source.text  # what has a checksum is copied again
-    if begun and not (is_sealed or (first and first[0].text in ("SI", "SB"))):  # another word
+    if told := beginning(source, found, check, kit):
+        return _with_edits(told)
+    if begun := other_word(source, found):
         return Findings(with_usage([begun], source, kit), [Edit(begun.span, "SI")])
-    text = source.text.replace("\r\n", "\n")
-    text = source.text.replace("\r", "\n") if "\r" in text else text  # a line ends with one alone
-    recovery = None
-    if len(text) <= LONGEST and not is_sealed:
-        recovery = Recovery(text, kit, lambda to: _mistakes(found if to == text else check(to)))
-    if recovery and (repaired := _meant(source, found, recovery, is_sure=True)):
-        return _with_edits(repaired)
-    told = suggested(source.text, kit)
+    recovery = _recovery(source.text, found, check, kit)
+    if recovery and (told := _meant(source, found, recovery, is_sure=True)):
+        return _with_edits(told)
+    behind = suggested(source.text, kit)
     if recovery:  # what is behind an instruction belongs to it by its sign: `X = 20 x 3`
-        told = [each for each in told if not recovery.has_signs(each.passed.span.start)]
-    if told:
-        return Findings([each.diagnostic for each in told], [each.passed for each in told])
+        behind = [each for each in behind if not recovery.has_signs(each.passed.span.start)]
+    if behind:
+        return Findings([each.diagnostic for each in behind], [each.passed for each in behind])
     return _with_edits(_meant(source, found, recovery, is_sure=False) if recovery else [])
+
+
+def _recovery(written: str, found: Sequence[Diagnostic], check: Check, kit: Kit) -> Recovery | None:
+    """Return the readings of a text; nothing for a long one, or one that is copied again."""
+    text = written.replace("\r\n", "\n")
+    text = written.replace("\r", "\n") if "\r" in text else text  # a line ends with one alone
+    if len(text) > LONGEST or SEAL in text:
+        return None
+    return Recovery(text, kit, lambda to: _mistakes(found if to == text else check(to)))
 
 
 def _with_edits(told: list[Diagnostic]) -> Findings:
     return Findings(told, [edit for each in told if each.repair for edit in each.repair.edits])
-
-
-def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
-    """Return lines before `SI|` that are none of a program: its title, who wrote it."""
-    begun = _BEGUN.search(source.text)
-    told: list[Diagnostic] = []
-    for row in _ROW.finditer(source.text[: begun.start() if begun else 0]):
-        title = without_note(row[0])[0].strip()
-        words = lexemes(title)
-        if not words:
-            continue
-        is_set = said_of(words[0].text, "set") or title.lower().startswith("#define")
-        if is_set or lines.is_right(words, Names([], kit)) or "(" in title or "{" in title:
-            return []
-        span, fix = Span(row.start(), row.start() + len(title)), f"// {title}"
-        values = {"command": title} if words[0].text == "TSC" else {"fix": fix}
-        told.append(Diagnostic(codes.PROSE, span, values, span, Repair((Edit(span, fix),), False)))
-    return told
-
-
-def _numbers(source: Source) -> list[Diagnostic]:
-    """Return numbers that count the lines: `1 F(1, 50)`, `2 S`."""
-    numbers = [*_NUMBER.finditer(source.text)]
-    counted = [int(each[1]) for each in numbers]
-    is_counting = len(counted) > 1 and counted[0] in _FIRST_NUMBERS
-    if not is_counting or counted != [*range(counted[0], counted[-1] + 1, counted[0])]:
-        return []
-    return [
-        Diagnostic(codes.LINE_NUMBER, Span(*each.span(1)), {"found": each[1]}, None,
-                   Repair((Edit(Span(*each.span()), ""),), True))
-        for each in numbers
-    ]  # fmt: skip
 
 
 def _meant(
@@ -172,33 +131,41 @@ def _carried(found: Diagnostic, text: str) -> Diagnostic:
 
 def _either(found: Diagnostic, told: Explanation, others: Sequence[Explanation]) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
-    other = next((each.values["fix"] for each in others if each.place == told.place), "")
-    if not other or other == found.values.get("fix"):
+    other = next((each.fix for each in others if each.place == told.place), "")
+    if not other or other == told.fix:
         return found
     return found._replace(values={**found.values, "rival": other})
 
 
 def _diagnostic(told: Explanation, meant: Candidate, found: Sequence[Diagnostic]) -> Diagnostic:
-    code, values = told.code, told.values
-    is_said = code is not codes.ASKED_BEHIND or "BREAK" in meant.text.upper()  # how often
+    is_said = told.code is not codes.ASKED_BEHIND or "BREAK" in meant.text.upper()  # how often
     is_sure = meant.is_applied or (meant.is_whole and told.is_sure)
     repair = Repair(tuple(told.edits), is_said and is_sure)
-    if not meant.has_sure_blocks and "FOREVER" not in values.get("fix", ""):
-        values |= {"whole": ""}  # where it ends is a guess
-    if code in _WITH_RIGHT and not values["right"]:
-        has_bracket = "(" in values.get("before", "") + values["found"]
-        code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
-    was, right = values.get("found", ""), values.get("right", "")
-    if code is codes.OTHER_LANGUAGE and nearest(was.upper(), [right]):
-        code, values = codes.UNKNOWN_WORD, {**values, "found": was.upper(), "near": right}
+    if not meant.has_sure_blocks and "FOREVER" not in told.fix:
+        told.gaps["whole"] = ""  # where it ends is a guess
+    code, values = _in_words(told)
     asked = codes.ARGUMENT_COUNT if code is codes.OTHER_CALL else code
     counted = (each for each in found if each.code is asked)
     for each in counted if asked in _AS_CHECKED else ():
         if told.place.start <= each.span.start < told.place.end:
-            code, values = each.code, {**each.values, "fix": values.get("fix", "")}
-            return Diagnostic(code, each.span, values, told.place, repair)
-    code = codes.OTHER_CALL if code in _AS_CHECKED[:2] else code  # its values are not counted
+            values = {**each.values, "fix": told.fix}
+            return Diagnostic(each.code, each.span, values, told.place, repair)
+    if code in _AS_CHECKED[:2]:  # its values are not counted
+        code, values = codes.OTHER_CALL, told.values_as(codes.OTHER_CALL)
     return Diagnostic(code, told.span, values, told.place, repair)
+
+
+def _in_words(told: Explanation) -> tuple[Code, dict[str, str]]:
+    """Return the code of the sentence that has a word for what is told, and its values."""
+    code, slip = told.code, told.slip
+    if slip and code in _WITH_RIGHT and not slips.right_of(slip):
+        has_bracket = "(" in slips.before_it(slip) + slips.found_in(slip)
+        code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
+    values = told.values_as(code)
+    if code is codes.OTHER_LANGUAGE and nearest(values["found"].upper(), [values["right"]]):
+        code, near = codes.UNKNOWN_WORD, values["right"]
+        values |= {"found": values["found"].upper(), "near": near}
+    return code, values
 
 
 def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:

@@ -17,7 +17,7 @@ from tiniscript.base.spelling import nearest
 from tiniscript.base.words import FUNCTIONS, MOVES, WAYS, WORDS, concept_of, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
-from tiniscript.recovery import rewrites, rows
+from tiniscript.recovery import meanings, rewrites, rows
 from tiniscript.recovery.meanings import (
     CALLED,
     KNOWN,
@@ -142,8 +142,7 @@ def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list
 
 @lru_cache(REMEMBERED)
 def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Reading]:
-    has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
-    setup = list(tokens[:2]) if has_setup else []
+    setup = meanings.setup_of(tokens)
     readings = _Search(names).read(list(tokens[len(setup) :]), is_quick)
     whole = [each._replace(tokens=[*setup, *each.tokens]) for each in readings]
     told = ((each, right(each.tokens, names)) for each in whole)

@@ -114,6 +114,12 @@ def texts(tokens: Iterable[Lexeme]) -> tuple[str, ...]:
     return tuple(token.text for token in tokens)
 
 
+def setup_of(tokens: Sequence[Lexeme]) -> Sequence[Lexeme]:
+    """Return the `SI|` that a line begins with, or nothing."""
+    is_begun = texts(tokens[1:2]) == ("|",) and tokens[0].text in ("SI", "SB")
+    return tokens[:2] if is_begun else tokens[:0]
+
+
 def closed(tokens: Sequence[Lexeme], start: int) -> int:
     """Return where the brackets end that begin at a token, 0 where they do not."""
     depth = 0

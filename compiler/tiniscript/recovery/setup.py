@@ -1,18 +1,51 @@
-"""How a program begins: what stands for `SI|` or `SB|` in its first line. Knows no other line."""
+"""How a program begins: what stands for its `SI|`, above it, or before each of its lines."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Sequence
 
-from tiniscript.base.source import Edit, Span
-from tiniscript.base.words import WORDS
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Edit, Source, Span, applied
+from tiniscript.base.words import WORDS, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.recovery import rows
-from tiniscript.recovery.meanings import plain
+from tiniscript.diagnostics.fixing import is_better
+from tiniscript.recovery import lines, rows
+from tiniscript.recovery.meanings import Names, lexemes, plain
 from tiniscript.recovery.writing import without_note
 
+SEAL = "~"  # begins a checksum: what has one is copied again
+_LONGEST = 4_000  # characters of a first line that are read
+_FIRST_NUMBERS = (1, 10, 100)
+_CALL = re.compile(r"(?i)\s*(?:[FBLRMW]|BEEP)\s*\(")
+_BEGUN, _ROW = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
+_NUMBER = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
 _INSIDE = re.compile(r"(?:[^()]|\([^()]*\))*(?=\))")  # brackets that are open before it
+
+
+Check = Callable[[str], Sequence[Diagnostic]]
+
+
+def beginning(
+    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
+) -> list[Diagnostic]:
+    """Return what is told of a text by the way that it begins: with it the rest is read."""
+    said = setup(source.text)
+    if said and said.repair:
+        after = check(applied(source.text, said.repair.edits))
+        is_call = _CALL.match(source.text, said.repair.edits[0].span.end) is not None
+        if is_call or is_better(after, found, said.repair.edits):
+            return [said]
+    return _titles(source, kit) or _numbers(source)
+
+
+def other_word(source: Source, found: Sequence[Diagnostic]) -> Diagnostic | None:
+    """Return what is told of a word before the bar that is no `SI`."""
+    first = lexemes(source.text[:_LONGEST].lstrip().partition("\n")[0])[:1]
+    is_own = SEAL in source.text or (first and first[0].text in ("SI", "SB"))
+    told = (each for each in found if each.code is codes.SETUP_UNKNOWN)
+    return None if is_own else next(told, None)
 
 
 def setup(text: str) -> Diagnostic | None:
@@ -28,8 +61,7 @@ def setup(text: str) -> Diagnostic | None:
     is_own = head in ("SI", "SB")
     is_begun = is_own and (not rest or sign in rows.BARS)
     is_apart = match.end() > match.end("head")
-    is_sealed = "~" in line[end:]  # what has a checksum is copied again
-    if is_sealed or not (is_begun or _begins(rest, sign, is_apart)):
+    if SEAL in line[end:] or not (is_begun or _begins(rest, sign, is_apart)):
         return None
     head_meant = head if is_own else "SI"
     fix = head_meant + "|"
@@ -55,3 +87,35 @@ def _begins(rest: str, sign: str, is_apart: bool) -> bool:
         return bool(sign) and after in ("=", "(")
     is_apart = is_apart and (after is not None or known.role.is_call or word == "DEF")
     return known.role.begins and (bool(sign) or after == "(" or is_apart)
+
+
+def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
+    """Return lines before `SI|` that are none of a program: its title, who wrote it."""
+    begun = _BEGUN.search(source.text)
+    told: list[Diagnostic] = []
+    for row in _ROW.finditer(source.text[: begun.start() if begun else 0]):
+        title = without_note(row[0])[0].strip()
+        words = lexemes(title)
+        if not words:
+            continue
+        is_set = said_of(words[0].text, "set") or title.lower().startswith("#define")
+        if is_set or lines.is_right(words, Names([], kit)) or "(" in title or "{" in title:
+            return []
+        span, fix = Span(row.start(), row.start() + len(title)), f"// {title}"
+        values = {"command": title} if words[0].text == "TSC" else {"fix": fix}
+        told.append(Diagnostic(codes.PROSE, span, values, span, Repair((Edit(span, fix),), False)))
+    return told
+
+
+def _numbers(source: Source) -> list[Diagnostic]:
+    """Return numbers that count the lines: `1 F(1, 50)`, `2 S`."""
+    numbers = [*_NUMBER.finditer(source.text)]
+    counted = [int(each[1]) for each in numbers]
+    is_counting = len(counted) > 1 and counted[0] in _FIRST_NUMBERS
+    if not is_counting or counted != [*range(counted[0], counted[-1] + 1, counted[0])]:
+        return []
+    return [
+        Diagnostic(codes.LINE_NUMBER, Span(*each.span(1)), {"found": each[1]}, None,
+                   Repair((Edit(Span(*each.span()), ""),), True))
+        for each in numbers
+    ]  # fmt: skip

@@ -44,7 +44,13 @@ from tiniscript.recovery.meanings import (
 )
 from tiniscript.recovery.orders import block, condition_in, made_up, orders, written
 from tiniscript.recovery.worded import worded
-from tiniscript.recovery.writing import laid_out, shortened, tokens_of, without_note
+from tiniscript.recovery.writing import (
+    instruction_at,
+    laid_out,
+    shortened,
+    tokens_of,
+    without_note,
+)
 from tiniscript.syntax.free_names import in_place_of
 from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD, Token, scan
 from tiniscript.syntax.operators import COMPARISONS
@@ -61,7 +67,6 @@ _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END
 _TOP = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
-_PIECE = re.compile(r"[^;|{}]*")
 _CALL = re.compile(r"(\w{3,})\s*\([^()]*\w[^()]*\)")
 _LONG_HEAD = 100  # characters of a DEF before the name of a value
 _TAUGHT = re.compile(r"(?i)\bDEF\s+(\w+[ \t]*\([^()\n]*)?$")
@@ -71,9 +76,6 @@ _FOREVER_BEHIND = re.compile(r"(?i)([FBLR])\s*\(([^(),]+),\s*FOREVER\s*\)(\s*UNT
 _TURNED = re.compile(r"(?im)\b[FBLR]\s*\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)(?!\s*UNTIL)")
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
-_OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
-_NOT_TOP = (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP)
-_OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
 _BEGINS = (";", "newline", "|")  # what an instruction begins behind
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _WANTED = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
@@ -85,35 +87,18 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     """Return what is wrong with a text, in words that say how it is written."""
     text = _Text(source, kit)
     text.lacks_loop = [it.values["right"] for it in found if it.code is codes.NOT_OPEN] == ["LOOP"]
-    if any(each.code is codes.NEVER_ENDS for each in found):
-        found = [each for each in found if each.code not in _NOT_TOP]
     found = text.with_name(found)
     told: list[Diagnostic] = []
     for each in found[:_MANY]:
         say = _SAYS.get(each.code) if each.repair is None else None
         told.append((say(_Usage(text, each)) if say else None) or each)
-    is_near = text.lacks_loop and any(it.values.get("near", "")[:4] == "LOOP" for it in told)
-    has_no_ends = is_near or any(it.code in (codes.BRACES, codes.DOTS) for it in told)
-    is_unread = any(it.code is codes.SPANISH_IF or it.values.get("right") == "ELSE" for it in told)
-    reserved = {each.values["word"] for each in told if each.code is codes.RESERVED}
-    unknown = {text.piece(it.span) for it in told if it.code in _OF_ITS_WORD}
     parts = [it for it in told if it.values.get("part")]
     if parts and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
         part = {"part": parts[0].values["part"]}
         told = [it._replace(values={**it.values, **part}) for it in told if it not in parts]
     if any("usage" in each.values for each in told if each.code is codes.OUT_OF_RANGE):
         told += text.turned()
-    renamed = {edit.span for it in told if it.code is codes.RESERVED and it.repair
-               for edit in it.repair.edits[1:]}  # fmt: skip
-    return [
-        each
-        for each in (*told, *found[_MANY:])
-        if each.span not in renamed
-        and (each.code is not codes.NO_VALUE or each.values.get("word") not in reserved)
-        and (each.code is not codes.UNIT_PLACE or text.piece(each.span) not in unknown)
-        and not (has_no_ends and each.code in _OF_ENDS)
-        and not (is_unread and each.code is codes.NOT_OPEN and each.values["right"] == "IF")
-    ]
+    return [*told, *found[_MANY:]]
 
 
 class _Text:
@@ -122,14 +107,6 @@ class _Text:
         self.names = Names([*map(tokens_of, source.text.split("\n"))], kit)
         self.begun = "".join(re.findall(r"\A\s*(S[IB])\s*\|", source.text.upper()))
         self.lacks_loop = False  # an END_LOOP is left for a header
-
-    def piece(self, span: Span) -> Span:
-        """Return the instruction around a place: between the separators of its line."""
-        row, column = self.source.position(span.start)
-        body = without_note(self.source.line_text(row))[0]
-        own = next(it for it in _PIECE.finditer(body) if it.end() >= min(column - 1, len(body)))
-        begin = span.start - column + 1 + own.end() - len(own[0].lstrip())
-        return Span(begin, begin + len(own[0].strip()))
 
     def turned(self) -> list[Diagnostic]:
         """Return moves with the power before the time, as another call of the text has them."""
@@ -157,8 +134,9 @@ class _Text:
     def with_name(self, found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
         """Return diagnostics in which the one DEF without a name has that of an unknown call."""
         nameless = [each for each in found if each.code is codes.DEF_NEEDS_NAME]
-        called = (each.values["found"] for each in found if each.code is codes.UNKNOWN_WORD
-                  and len(lexemes(self.source[self.piece(each.span)])) == 1)  # fmt: skip
+        unknown = (each for each in found if each.code is codes.UNKNOWN_WORD)
+        wholes = ((it, self.source[instruction_at(it.span, self.source)]) for it in unknown)
+        called = (it.values["found"] for it, whole in wholes if len(lexemes(whole)) == 1)
         name = next(called, "") if len(nameless) == 1 else ""
         if not name:
             return found
@@ -176,7 +154,7 @@ class _Usage:
         self.source = text.source
         self.names = text.names
         self.found = found
-        self.piece = text.piece(found.span)
+        self.piece = instruction_at(found.span, text.source)
         self.is_first = found.span.start == self.piece.start
         self.behind_it = text.source.text[found.span.end :]
         self.tokens = lexemes(self.source[self.piece])

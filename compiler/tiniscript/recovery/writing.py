@@ -1,10 +1,11 @@
-"""Text of tokens again: as it was written, with what was changed in it, or laid out anew."""
+"""Text of tokens again: as it was written, with its changes, or laid out anew; and of a place."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
+from tiniscript.base.source import Source, Span
 from tiniscript.recovery.meanings import Lexeme, lexemes, made, plain
 from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
@@ -12,6 +13,7 @@ from tiniscript.syntax.lexer import NUMBER, WORD, Token
 LONGEST_BLOCK = 160  # characters of one that a message shows
 PLAIN_SIGNS = str.maketrans("“”„‘’", '"""\'\'')
 PLAIN_SIGNS |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese keyboards
+_PIECE = re.compile(r"[^;|{}]*")
 _NOTE = re.compile(r"(?i)(?<!\bSI)(?<!\bSB)//")
 
 
@@ -70,3 +72,12 @@ def shortened(text: str) -> str:
     """Return text that fits into a message."""
     text = " ".join(text.split())
     return text if len(text) <= 40 else text[:37] + "..."
+
+
+def instruction_at(span: Span, source: Source) -> Span:
+    """Return the instruction around a place: between the separators of its line."""
+    row, column = source.position(span.start)
+    body = without_note(source.line_text(row))[0]
+    own = next(it for it in _PIECE.finditer(body) if it.end() >= min(column - 1, len(body)))
+    begin = span.start - column + 1 + own.end() - len(own[0].lstrip())
+    return Span(begin, begin + len(own[0].strip()))

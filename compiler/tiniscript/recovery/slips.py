@@ -1,0 +1,423 @@
+"""Slips: how an instruction differs from what it becomes, its code, and what a message says of it.
+
+A message names few things of a slip: `NAMED` says which, by code, `_VALUES` how each is written.
+Knows no block and no sentence of any language.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Sequence
+from difflib import SequenceMatcher
+from itertools import pairwise
+from typing import NamedTuple
+
+from tiniscript.base.source import Edit, Span
+from tiniscript.base.words import BLOCK_ENDS, WORDS
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code
+from tiniscript.recovery.lines import BRACES, Step
+from tiniscript.recovery.meanings import (
+    ENDED,
+    SOME_END,
+    Lexeme,
+    lexemes,
+    meant_by,
+    said_of,
+    setup_of,
+    texts,
+)
+from tiniscript.recovery.writing import laid_out
+from tiniscript.syntax.lexer import NUMBER, WORD
+
+OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
+# What the message of a code names, and what it offers: of two codes `dedupe` asks for `found`, too.
+NAMED: dict[Code, str] = {
+    **dict.fromkeys((codes.DECIMAL_COMMA, codes.SEMICOLON_INSIDE, codes.ARGUMENT_COUNT,
+                     codes.UNTIL_ALONE, codes.FOREVER_NOT_HERE, codes.CHAINED, codes.EXTRA_CLOSE,
+                     codes.SPANISH_IF, codes.LOOP_COUNTS, codes.ASKED_BEHIND,
+                     codes.CHOICE_IN_VALUE, codes.SET_TOGETHER), "fix"),
+    **dict.fromkeys((codes.ODD_CHARACTER, codes.NOT_AN_INSTRUCTION, codes.EXTRA_WORD,
+                     codes.OTHER_ASSIGNMENT, codes.SIGN_BETWEEN, codes.REPEATED,
+                     codes.QUESTION_BEHIND), "found fix"),
+    **dict.fromkeys((codes.SETUP_TWICE, codes.LINE_NUMBER, codes.NEEDLESS_FRAME, codes.PASTED),
+                    "found"),
+    **dict.fromkeys((codes.OTHER_SIGN, codes.END_SPLIT, codes.BRACES, codes.UNIT),
+                    "found right fix"),
+    **dict.fromkeys((codes.OTHER_NOTE, codes.END_ALONE, codes.WRONG_END, codes.NAME_WITH_SPACE),
+                    "found right"),
+    **dict.fromkeys((codes.QUOTE, codes.SEVERAL_ORDERS), "right fix"),
+    **dict.fromkeys((codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.MISSING_CLOSE),
+                    "before fix"),
+    **dict.fromkeys((codes.MISSING_OPEN, codes.OTHER_CALL), "word usage fix"),
+    **dict.fromkeys((codes.NO_VALUE, codes.NAMED_ARGUMENT, codes.GROUPED), "word fix"),
+    codes.BAD_NAME: "found word right",
+    codes.BAD_NUMBER: "found right letter fix",
+    codes.EMPTY_BRACKETS: "word",
+    codes.MISSING_COMMA: "usage fix",
+    codes.MISSING_SIGN: "before found fix",
+    codes.MISSING_VALUE: "before found usage fix",
+    codes.NO_BRACKETS_HERE: "word right fix",
+    codes.OTHER_LANGUAGE: "found right usage takes fix",
+    codes.UNTIL_NOT_HERE: "word example",
+}  # fmt: skip
+
+
+class Change(NamedTuple):
+    """An instruction, or a line: `place` becomes `after` by these rewrites."""
+
+    place: Span
+    edit: Edit
+    steps: Sequence[Step]
+    before: Sequence[Lexeme]
+    after: Sequence[Lexeme]
+
+
+class Slip(NamedTuple):
+    """Where a rewrite changes `old` into `new` first: from `start` on, `found` becomes `right`.
+
+    With all rewrites `was`, of one instruction or several, becomes `now`. `parts` are the
+    instructions to show of the `line` that it becomes, and where there are more than before, the
+    first one ends at `until` in `now`.
+    """
+
+    code: Code
+    old: Sequence[Lexeme]
+    new: Sequence[Lexeme]
+    start: int
+    found: Sequence[Lexeme]
+    right: Sequence[Lexeme]
+    was: Sequence[Lexeme]
+    now: Sequence[Lexeme]
+    line: Sequence[Lexeme]
+    parts: Sequence[Sequence[Lexeme]]
+    until: int | None
+
+
+def values_of(slip: Slip, code: Code) -> dict[str, str]:
+    """Return what a message with this code says of a slip."""
+    return {name: _VALUES[name](slip) for name in NAMED.get(code, "").split()}
+
+
+def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
+    """Return what is wrong with an instruction that is told with a code, of a rewrite if of one."""
+    is_of_step = step is not None and code is not codes.OTHER_NOTE
+    old, new = (step.before, step.after) if step and is_of_step else (change.before, change.after)
+    if "WHEN" in texts(change.after):  # what the steps took for an IF
+        old, new = (
+            [it._replace(text="WHEN") if it.text == "IF" else it for it in line]
+            for line in (old, new)
+        )
+    told, fix = without_setup(change.before), without_setup(change.after)
+    head, tail = alike([*map(texts, told)], [*map(texts, fix)])
+    was, now = (
+        [each for part in parts[head : len(parts) - tail] for each in part] for parts in (told, fix)
+    )
+    start, found, right = first_difference(old, new)
+    has_end = bool(head) and any(each.text in ENDED for each in now)
+    parts = fix[0 if has_end else head : len(fix) - tail]
+    until = len(fix[head]) if len(told) < len(fix) else None
+    slip = Slip(code, old, new, start, found, right, was, now, change.after, parts, until)
+    return _EXACTLY[code](slip) if code in _EXACTLY else slip
+
+
+# -- which code ---------------------------------------------------------------------------------
+
+
+def code_of(change: Change) -> tuple[Code, Step | None]:
+    """Return with which code a change is told, and the rewrite that it is told of."""
+    _, _, steps, before, after = change
+    fewer = Counter(texts(before)) - Counter(texts(after))
+    more = {*texts(after)} - {*texts(before)}
+    if "SI" in fewer and "IF" in more:
+        return codes.SPANISH_IF, None
+    dropped = {each for each in fewer if {each, meant_by(each)} & {*ENDED}}
+    if dropped and not more and fewer.keys() <= dropped | {";"}:
+        return codes.EXTRA_WORD, None
+    return _code_of_steps(change) if steps else (_code_of_words(before, after), None)
+
+
+def _code_of_steps(change: Change) -> tuple[Code, Step]:
+    """Return the code of the rewrite that says most: rather another word than a sign."""
+    _, _, steps, before, after = change
+    words, new = {*texts(before)}, {*texts(after)}
+    own = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
+    own.sort(key=lambda it: (it.code is not codes.ASKED_BEHIND, it.code is codes.OTHER_SIGN))
+    if own and own[0].code in (codes.ASKED_BEHIND, codes.UNTIL_NOT_HERE):
+        return own[0].code, own[0]
+    lost = (each.text for each in before if each.kind is WORD and each.text not in new)
+    foreign = next((each for each in lost if meant_by(each) in new - words), "")
+    translated = next((it for it in steps if it.code is codes.OTHER_LANGUAGE), None)
+    if translated and (foreign or not own):
+        is_said = foreign or "(" in words or "(" not in new or before[0].text not in new
+        return codes.OTHER_LANGUAGE if is_said else codes.MISSING_OPEN, translated
+    if foreign:
+        changed = (it for it in own if foreign in {*texts(it.before)} - {*texts(it.after)})
+        return codes.OTHER_LANGUAGE, next(changed, own[0])
+    right = first_difference(own[0].before, own[0].after)[2]
+    is_comma = own[0].code is codes.OTHER_CALL and texts(right) == (",",)
+    return codes.MISSING_COMMA if is_comma else own[0].code, own[0]
+
+
+def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
+    """Return the code of what no rewrite made: a brace, an end, a letter with an accent."""
+    if {*texts(before)} & {*BRACES}:
+        return codes.BRACES
+    source = "".join(each.source or "" for each in before)
+    if not source.isascii():
+        has_word = any(each.kind is WORD and not (each.source or "").isascii() for each in before)
+        return codes.BAD_NAME if has_word else codes.OTHER_SIGN
+    _, found, right = first_difference(before, after)
+    if len(found) == len(right) == 1 and {*texts(found), *texts(right)} <= {*ENDED}:
+        return codes.WRONG_END
+    ends = [each.text for each in before if said_of(each.text, "end")]
+    if ends and ends[-1] not in texts(after):
+        is_end = bool({*texts(after)} & {*BLOCK_ENDS.values()})
+        return codes.END_ALONE if is_end else codes.EXTRA_WORD
+    return codes.NEVER_ENDS
+
+
+# -- what was found, where a code knows better than the first difference ------------------------
+
+
+def _foreign(slip: Slip) -> Slip:
+    """A word of another language, with what belongs to it: `bot.forward`, FOR of `FOR I = 1 TO`."""
+    old, start, found, right = slip.old, slip.start, slip.found, slip.right
+    with_next = old[start : start + len(found) + 1]
+    has_dot = texts(found[-1:]) == (".",)
+    if has_dot and not right:
+        found, right = with_next, slip.new[start : start + 1]
+    elif not right and start and old[start - 1].text != "|":
+        found, right = [old[start - 1], *found], [old[start - 1]]
+    elif has_dot:
+        found = with_next
+    cut = next((k for k, it in enumerate(found) if it.text in ("=", "(")), len(found))
+    is_set = cut < len(found) and found[cut].text == "="
+    found = found[: cut - is_set] or found
+    if right and found and all(said_of(each.text, "filler") for each in found):
+        named = [each for each in old if meant_by(each.text) == right[0].text]
+        found = named[:1] or found  # `oi robô, anda`
+    return slip._replace(found=found, right=right)
+
+
+def _torn(slip: Slip) -> Slip:
+    """A number in two pieces: the sign that goes, and the piece behind it."""
+    end = slip.start + len(slip.found)
+    return slip if slip.right else slip._replace(found=slip.old[end - 1 : end + 1])
+
+
+def _measured(slip: Slip) -> Slip:
+    """The first number that has a unit, and is changed."""
+    pairs = pairwise(slip.old[max(0, slip.start - 1) :])
+    units = (
+        [number, unit] for number, unit in pairs
+        if number.kind is NUMBER and (said_of(unit.text, "unit") or unit.text == "%")
+    )  # fmt: skip
+    return slip._replace(found=next(units, slip.found))
+
+
+def _header(slip: Slip) -> Slip:
+    headers = [each for each in (*slip.old, *slip.new) if each.text in BLOCK_ENDS]
+    return slip._replace(found=headers[:1] or slip.found)
+
+
+def _sign_alone(slip: Slip) -> Slip:
+    """The sign of `DISTÂNCIA := 5`, without its name."""
+    signs = [each for each in slip.found if each.kind is not WORD]
+    return slip._replace(found=signs or slip.found)
+
+
+_EXACTLY: dict[Code, Callable[[Slip], Slip]] = {
+    codes.OTHER_LANGUAGE: _foreign, codes.BAD_NUMBER: _torn, codes.UNIT: _measured,
+    codes.QUESTION_BEHIND: _header, codes.OTHER_ASSIGNMENT: _sign_alone,
+}  # fmt: skip
+
+
+# -- what a message says ------------------------------------------------------------------------
+
+
+def found_in(slip: Slip) -> str:
+    """Return what is wrong, as it was written: all of the instruction where a sign is missing."""
+    code, found = slip.code, slip.found
+    if _lacks_behind(slip):
+        return written(slip.old[slip.start : slip.start + 1])
+    is_sign = code is codes.OTHER_ASSIGNMENT  # `X 5`: else it is missing
+    is_all = code is codes.REPEATED or (code is codes.OTHER_SIGN and not slip.right)
+    was = written(slip.was if is_all or not (found or is_sign) else found)
+    if code is codes.LINE_NUMBER and was[:1] == "_":
+        return "_"
+    if code in (codes.OTHER_LANGUAGE, codes.EXTRA_WORD):
+        return was.strip("; ")
+    if code is codes.OTHER_NOTE:
+        return re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
+    return was
+
+
+def _lacks_behind(slip: Slip) -> bool:
+    """Whether something is missing between two words, which are named."""
+    is_between = slip.code in (codes.MISSING_VALUE, codes.MISSING_SIGN)
+    return is_between and not slip.found and slip.start > 0
+
+
+def right_of(slip: Slip) -> str:
+    """Return how that is written in TiniScript."""
+    shown = _shown(slip)
+    now = laid_out(slip.right) or shown
+    now = shown if now == SOME_END and shown in ENDED else now  # of a block, whose end is known
+    if slip.code is codes.OTHER_LANGUAGE:
+        now = _word_in(now)
+    return f"{now} )" if now.endswith("(") else now
+
+
+def _word_in(text: str) -> str:
+    """Return the one word that a text is about: LOOP of `I = 0;LOOP(5)`, F of `va F`."""
+    heads = (part for part in text.split(";") if re.split(r"\W", part)[0] in OF_BLOCKS)
+    text = re.split("[()]", next(heads, text), maxsplit=1)[0]
+    text = next((each for each in text.split() if each in WORDS), text)
+    return text if text in WORDS else meant_by(text) or text  # of `bot.forward`
+
+
+def before_it(slip: Slip) -> str:
+    """Return what is right of the instruction before the slip."""
+    if _lacks_behind(slip):
+        return written(slip.old[slip.start - 1 : slip.start])
+    kept = written(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
+    if slip.code is codes.HEADER_SEPARATOR and (not kept or lexemes(kept)[0].text not in OF_BLOCKS):
+        begun = (part for part in without_setup(slip.line) if part[0].text in OF_BLOCKS)
+        return laid_out(next(begun)) if kept else slip.now[0].text  # `CADA VEZ QUE … S`
+    return kept
+
+
+def _shown(slip: Slip) -> str:
+    """Return the instructions that a change makes."""
+    return ";".join(laid_out(part) for part in slip.parts) or laid_out(slip.line)
+
+
+def fix_of(slip: Slip) -> str:
+    """Return what is offered: those instructions, or `SI|` alone where its sign was another."""
+    right = right_of(slip) if slip.code is codes.OTHER_SIGN else ""
+    return f"{right}|" if right in ("SI", "SB") else _shown(slip)
+
+
+def _word(slip: Slip) -> str:
+    """Return the word that is told of: the one before its brackets, else the first one."""
+    word = _WORD_OF.get(slip.code, _first_word)(slip)
+    is_def = slip.code is codes.EMPTY_BRACKETS and "DEF" in texts(slip.line)
+    return f"DEF {word}" if is_def else word
+
+
+def _first_word(slip: Slip) -> str:
+    return _known(slip.now)
+
+
+def _known(tokens: Sequence[Lexeme]) -> str:
+    words = [each.text for each in tokens if each.kind is WORD]
+    return next((each for each in words if each in WORDS), "".join(words[:1]))
+
+
+def _called(slip: Slip) -> str:
+    """The word before the empty brackets."""
+    behind = texts(slip.old[slip.start :])
+    if "(" not in behind[slip.start == 0 :]:
+        return _first_word(slip)
+    return slip.old[slip.start + behind.index("(") - 1].text
+
+
+def _grouping(slip: Slip) -> str:
+    """The header whose brackets have instructions in them, nothing for brackets of no header."""
+    if slip.start and slip.old[slip.start - 1].text == ";":
+        return ""
+    return next((each.text for each in slip.new if each.text in ("LOOP", "WHILE", "IF")), "")
+
+
+def _accented(slip: Slip) -> str:
+    """The word of the language that has an accent, nothing for a name."""
+    return next((each.text for each in slip.old[slip.start :][:1] if each.text in WORDS), "")
+
+
+def _opened(slip: Slip) -> str:
+    """The word that gets its bracket."""
+    for word, sign in pairwise(slip.new):
+        if sign.text == "(" and sign.source is None and word.kind is WORD:
+            return word.text
+    return _first_word(slip)
+
+
+def _from_there(slip: Slip) -> str:
+    return _known(slip.old[slip.start :])
+
+
+_WORD_OF: dict[Code, Callable[[Slip], str]] = {
+    codes.EMPTY_BRACKETS: _called, codes.GROUPED: _grouping, codes.BAD_NAME: _accented,
+    codes.MISSING_OPEN: _opened, codes.NO_VALUE: _from_there, codes.NO_BRACKETS_HERE: _from_there,
+}  # fmt: skip
+
+
+def _usage(slip: Slip) -> str:
+    word = _word(slip)
+    return WORDS[word].usage if word in WORDS else ""
+
+
+def _letter(slip: Slip) -> str:
+    """Return the letter that stands in a number in the place of a digit."""
+    was, now = found_in(slip), right_of(slip)
+    letters = {each for each in was if each.isalpha()} - {*now} if len(was) == len(now) else set()
+    return letters.pop() if len(letters) == 1 else ""
+
+
+def _takes(slip: Slip) -> str:
+    """Return the usage, where what is offered has more numbers than were written."""
+    given, needed = (sum(each.kind is NUMBER for each in it) for it in (slip.was, slip.now))
+    said = WORDS.get(right_of(slip))  # `avanza 2 s 3 veces`: F
+    usage = said.usage if said and said.arguments else _usage(slip)
+    return usage if needed > given else ""
+
+
+_VALUES: dict[str, Callable[[Slip], str]] = {
+    "found": found_in, "right": right_of, "before": before_it, "word": _word, "usage": _usage,
+    "fix": fix_of, "example": fix_of, "letter": _letter, "takes": _takes,
+}  # fmt: skip
+
+
+# -- tokens -------------------------------------------------------------------------------------
+
+
+def alike(old: Sequence[object], new: Sequence[object]) -> tuple[int, int]:
+    """Return how much two texts, or two lines, have alike at their beginning and at their end."""
+    most = min(len(old), len(new))
+    head = next((k for k in range(most) if old[k] != new[k]), most)
+    most -= head
+    return head, next((k for k in range(most) if old[-1 - k] != new[-1 - k]), most)
+
+
+def first_difference(
+    before: Sequence[Lexeme], after: Sequence[Lexeme]
+) -> tuple[int, Sequence[Lexeme], Sequence[Lexeme]]:
+    """Return where two lines differ first, and what stands there in each of them."""
+    old = [each.text if (each.source or "").isascii() else each.source for each in before]
+    matched = SequenceMatcher(None, old, texts(after), autojunk=False)
+    for kind, start, end, begin, stop in matched.get_opcodes():
+        if kind != "equal":
+            return start, before[start:end], after[begin:stop]
+    return 0, before, after
+
+
+def instructions(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
+    """Return the instructions of a line; what is between two separators is one."""
+    found: list[list[Lexeme]] = [[]]
+    for token in tokens:
+        if token.text == ";":
+            found.append([])
+        else:
+            found[-1].append(token)
+    return found
+
+
+def without_setup(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
+    """Return the instructions of a line, without `SI|`."""
+    return [each for each in instructions(tokens[len(setup_of(tokens)) :]) if each]
+
+
+def written(tokens: Sequence[Lexeme]) -> str:
+    return "".join((each.space or "") + (each.source or each.text) for each in tokens).strip()

@@ -1,0 +1,162 @@
+"""Few programs of the corpus that reach each branch which all of them reach.
+
+python -m tests.pupils.cover    chooses them again, in some minutes, and writes `cover.txt`
+
+A commit is tested with these; `python -m tools.campaign pupils`, or `--whole`, takes all. What
+`--accept` pins first is one of them, too. They are to be chosen again when other programs come and
+go, or when the code that judges them has changed so much that a fiftieth of its branches may be
+others: a test says so.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import heapq
+import re
+from collections.abc import Iterable, Sequence
+from functools import cache
+from pathlib import Path
+
+from tests.pupils.corpus import FOLDER, Entry, check, entries, found_in
+from tests.support.casefile import ROOT
+
+PACKAGE = ROOT / "compiler" / "tiniscript"
+JUDGES = ("recovery/*.py", "diagnostics/*.py", "semantics/checker.py", "syntax/*.py")
+LIST = FOLDER / "cover.txt"
+HEAD = re.compile(r"# \d+ of \d+ programs reach the same (\d+) branches; (\d+) forks, (\w+)")
+OTHER = 50  # one of so many forks may be new
+Branch = tuple[str, int, int]
+_FORKS = (ast.If, ast.IfExp, ast.For, ast.While, ast.BoolOp, ast.comprehension, ast.ExceptHandler)
+
+
+@cache
+def covered() -> tuple[Entry, ...]:
+    """Return the entries that each commit is tested with."""
+    names = {row.partition(" ")[0] for row in LIST.read_text(encoding="utf-8").splitlines()}
+    return tuple(entry for entry in entries() if name_of(entry.program) in names)
+
+
+def name_of(program: str) -> str:
+    return hashlib.sha256(program.encode()).hexdigest()[:8]
+
+
+def judges() -> list[Path]:
+    return sorted(path for each in JUDGES for path in PACKAGE.glob(each))
+
+
+def forks(sources: Iterable[str]) -> int:
+    """Return at how many places of the code it is asked where to go on."""
+    return sum(isinstance(node, _FORKS) for text in sources for node in ast.walk(ast.parse(text)))
+
+
+def head(chosen: int, branches: int, programs: Sequence[str]) -> str:
+    its_forks = forks(path.read_text(encoding="utf-8") for path in judges())
+    return _head(chosen, branches, programs, its_forks)
+
+
+def _head(chosen: int, branches: int, programs: Sequence[str], its_forks: int) -> str:
+    return (f"# {chosen} of {len(programs)} programs reach the same {branches} branches; "
+            f"{its_forks} forks, {_name_of_all(programs)}")  # fmt: skip
+
+
+def _name_of_all(programs: Sequence[str]) -> str:
+    return name_of("".join(sorted(map(name_of, programs))))
+
+
+def add(new: Sequence[str], programs: Sequence[str]) -> None:
+    """Take new programs into the list of chosen ones, until all are chosen again."""
+    first, *rows = LIST.read_text(encoding="utf-8").splitlines()
+    written = HEAD.match(first)
+    if (
+        not new
+        or not written
+        or written[3] != _name_of_all([it for it in programs if it not in new])
+    ):
+        return  # others have come or gone
+    rows += map(_row, new)
+    first = _head(len(rows), int(written[1]), programs, int(written[2]))
+    LIST.write_text("\n".join((first, *rows)) + "\n", encoding="utf-8")
+    covered.cache_clear()
+
+
+def _row(program: str) -> str:
+    return f"{name_of(program)} {program.splitlines()[0].strip()}"
+
+
+def stale(written: str, now: str) -> str:
+    """Return why programs are to be chosen again; nothing where they need not."""
+    before, after = HEAD.match(written), HEAD.match(now)
+    assert before and after, "its first line says of what it is"
+    if before[3] != after[3]:
+        return "programs have come or gone"
+    moved = abs(int(after[2]) - int(before[2]))
+    return "the code has other branches" if moved * OTHER > int(before[2]) else ""
+
+
+def reached(programs: Sequence[Entry]) -> list[frozenset[Branch]]:
+    """Return which branches each program reaches, when it is checked and repaired."""
+    from coverage import Coverage
+
+    files = [str(path) for path in judges()]
+    measured = Coverage(data_file=None, branch=True, include=files, config_file=False)
+    found = []
+    for entry in programs:
+        check.cache_clear()
+        measured.erase()
+        measured.start()
+        try:
+            found_in(entry)
+        finally:
+            measured.stop()
+        data = measured.get_data()
+        found.append(frozenset(
+            (file, *arc) for file in data.measured_files() for arc in data.arcs(file) or ()
+        ))  # fmt: skip
+    return _branches(found)
+
+
+def _branches(found: Sequence[frozenset[Branch]]) -> list[frozenset[Branch]]:
+    """Return of the steps from line to line those that might have gone elsewhere."""
+    ways: dict[tuple[str, int], set[int]] = {}
+    for file, start, end in frozenset().union(*found):
+        ways.setdefault((file, start), set()).add(end)
+    is_branch = {at for at, ends in ways.items() if len(ends) > 1}
+    return [frozenset(each for each in arcs if each[:2] in is_branch) for arcs in found]
+
+
+def chosen(found: Sequence[frozenset[Branch]], before: Iterable[int] = ()) -> list[int]:
+    """Return the numbers of few sets that have together what all have.
+
+    Each time the one that adds most; of two, rather one of `before`, so that little changes.
+    """
+    kept, left = set(before), set().union(*found)
+    heap = [(-len(each), k not in kept, k) for k, each in enumerate(found)]
+    heapq.heapify(heap)
+    taken = []
+    while left:
+        _, is_new, k = heapq.heappop(heap)
+        adds = -len(found[k] & left)
+        if heap and (adds, is_new, k) > heap[0]:
+            heapq.heappush(heap, (adds, is_new, k))
+            continue
+        taken.append(k)
+        left -= found[k]
+    return sorted(taken)
+
+
+def main() -> None:
+    programs = entries()
+    known = set(covered()) if LIST.exists() else set()
+    found_in(programs[0])  # what is loaded and made once is nobody's branch
+    found = reached(programs)
+    taken = chosen(found, [k for k, each in enumerate(programs) if each in known])
+    first = head(len(taken), len(frozenset().union(*found)), [each.program for each in programs])
+    rows = (_row(programs[k].program) for k in taken)
+    LIST.write_text("\n".join((first, *rows)) + "\n", encoding="utf-8")
+    covered.cache_clear()
+    print(first[2:].partition(";")[0] + ".")
+
+
+if __name__ == "__main__":
+    main()
