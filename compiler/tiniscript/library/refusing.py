@@ -28,7 +28,7 @@ def refusal(image: Image, profile: Robot, robot: DeviceInfo) -> Reply[Any] | Non
 
 def lacks_remote(code: bytes, kit: Kit, robot: DeviceInfo) -> bool:
     """Return whether code for this kit reads a remote control, which the robot does not have."""
-    return not has_remote(robot) and reads_remote(code, kit)
+    return reads_remote(code, kit) and not has_remote(robot)
 
 
 def reads_remote(code: bytes, kit: Kit) -> bool:
