@@ -33,7 +33,6 @@ def header(command: str) -> str:
         constants(
             ("kLinkMajor", messages.MAJOR),
             ("kLinkMinor", messages.MINOR),
-            ("kShowPlaceMinor", messages.SHOW_PLACE_MINOR),
         )
         + constants_of(
             messages, "SMALL_FRAME", "LARGE_FRAME", "LARGE_WINDOW", "HEAD_BYTES",

@@ -69,7 +69,6 @@ WIFI_STATES = (
 
 MAJOR = 2  # if it differs, robot and computer understand only each other's HELLO
 MINOR = 1  # grows when messages, statuses or features are added
-SHOW_PLACE_MINOR = 1  # a computer from this version on takes a SHOW with its place
 
 # Bytes of a frame before COBS. A large one has a 0 behind its head, so that its first byte on the
 # wire is 4 at most. Any robot takes small ones; HELLO says whether it takes large ones, and how many

@@ -372,8 +372,6 @@ uint8_t Link::hello(const uint8_t* payload) {
   if (is_new) forget_answer();
   is_open_ = true;
   copy_bytes(payload + kHelloNonceAt, reinterpret_cast<uint8_t*>(&nonce_), sizeof nonce_);
-  const bool takes_place = payload[kHelloMinorAt] >= kShowPlaceMinor;
-  shown_bytes_ = takes_place ? kShownBytes : kPlacelessBytes;
   isa_[0] = payload[kHelloIsaMajorAt];
   isa_[1] = payload[kHelloIsaMinorAt];
   is_other_kit_ = get16(payload + kHelloKitAt) != port_identity().kit;

@@ -165,10 +165,6 @@ class Link {
   static constexpr uint8_t kDueDone = 8;
   static constexpr uint8_t kDueText = 16;
 
-  // The payload of SHOW, with its place and without.
-  static constexpr uint8_t kShownBytes = 8;
-  static constexpr uint8_t kPlacelessBytes = 5;
-
   // Times that run down to 0: until a client without frames no longer counts as listening, until
   // STOPPED is sent again, until a second of silence has passed, until text may follow the last
   // frame, until the remote control says nothing any more; and, as `kListen`, since a sealed frame.
@@ -325,7 +321,6 @@ class Link {
   uint8_t epoch_;
   uint8_t damaged_;    // number of damaged frames
   uint8_t due_;        // what is due to be sent
-  uint8_t shown_bytes_;  // of a SHOW to this client
   uint8_t isa_[2];     // of the client's programs, major and minor
   bool is_open_;       // there is a session
   bool is_other_kit_;  // the client's programs are for another kit

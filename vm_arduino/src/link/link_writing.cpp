@@ -27,7 +27,7 @@ constexpr uint8_t kSmallFetch = kSmallFrame - kHeadBytes - kCrcBytes - 3;
 
 static_assert(sizeof(Identity) == 13 && sizeof(RobotStatus) == 17, "they are as they are sent");
 
-// What SHOW sends; an older computer takes no more than `is_yes_no`.
+// What SHOW sends.
 struct tini_packed Shown {
   int32_t value;
   bool is_yes_no;
@@ -90,10 +90,9 @@ bool Link::show(int32_t value, bool is_yes_no) {
     return true;
   }
   if (separate()) return false;
-  static_assert(sizeof(Shown) == kShownBytes, "it is as it is sent");
   const Shown shown = {value, is_yes_no, port_status().run, port_shown_at()};
   begin_event(Message::kShow);
-  put_all(&shown, shown_bytes_);
+  put_all(&shown, sizeof shown);
   close();
   return true;
 }

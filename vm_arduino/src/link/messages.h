@@ -15,7 +15,6 @@ namespace tiniscript {
 
 constexpr uint8_t kLinkMajor = 2;
 constexpr uint8_t kLinkMinor = 1;
-constexpr uint8_t kShowPlaceMinor = 1;
 constexpr uint8_t kSmallFrame = 63;
 constexpr uint8_t kLargeFrame = 250;
 constexpr uint8_t kLargeWindow = 4;
