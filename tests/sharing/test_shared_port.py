@@ -131,7 +131,7 @@ def test_a_client_may_have_chosen_another_robot(pty_robot: PtyRobot) -> None:
     assert command.process.stderr
     command.process.stderr.readline()  # it watches
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
-    assert "SHOW 42" in on(pty_robot, "live", "SHOW(DISTANCE)").out
+    assert "DISTANCE 42" in on(pty_robot, "live", "SHOW(DISTANCE)").out
     on(pty_robot, "live", "GRIPPER(90)", "--robot", "grabber").gives(3, "--robot tinibot")
     on(pty_robot, "upload", "-e", "SHOW(LINE_L)", "--robot", "liner").gives(3, "--robot tinibot")
     command.signal(signal.SIGINT)
