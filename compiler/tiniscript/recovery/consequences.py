@@ -20,6 +20,7 @@ _FOLLOW: dict[Code, tuple[Code, ...]] = {
     codes.NEVER_ENDS: (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP),
 }  # fmt: skip
 _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
+_MANY = 30  # of which it is looked at: each goes through its row
 
 
 def without_consequences(told: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
@@ -55,9 +56,11 @@ def _uses_of_a_reserved_word(told: Sequence[Diagnostic], _: Source) -> Iterator[
 
 
 def _units_of_an_unknown_word(told: Sequence[Diagnostic], source: Source) -> Iterator[Diagnostic]:
-    unknown = {instruction_at(it.span, source) for it in told if it.code in _OF_ITS_WORD}
-    for each in told:
-        if each.code is codes.UNIT_PLACE and instruction_at(each.span, source) in unknown:
+    unknown = [each.span.start for each in told if each.code in _OF_ITS_WORD]
+    units = [each for each in told if each.code is codes.UNIT_PLACE]
+    for each in units[:_MANY] if unknown else ():
+        start, end = instruction_at(each.span, source)
+        if any(start <= place < end for place in unknown):
             yield each
 
 
