@@ -212,7 +212,7 @@ def test_damaged_images_are_refused_by_name(tsc: Tsc, tmp_path: Path, verb: str)
          f"refused: {target} is for version 1.0 of the machine, this is 2.1. "
          "Compile the program again.\n"),
         (pack("SI", 0, b"\xff"), "21"),
-        (pack("SI", 0, b"\x38\x09"), "24"),
+        (pack("SI", 0, b"\x38\x0b"), "24"),  # READ s11
         (pack("SI", 0, b"\x39"), "25"),
     ):  # fmt: skip
         target.write_bytes(data)

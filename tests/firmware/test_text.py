@@ -27,7 +27,7 @@ from tests.support.campaign import each_seed, wanted
 from tests.support.command import OBSTACLE
 from tests.support.images import image_of
 from tiniscript import robots
-from tiniscript.base.kit import NUMBER, Device, Kit
+from tiniscript.base.kit import NUMBER, REMOTE, Device, Kit
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME, SAVED_STORED, STATE_RUNNING, STATUSES
 from tiniscript.link.payloads import StatusReply
@@ -572,7 +572,8 @@ def test_help_with_a_device_of_a_long_name(letters: int) -> None:
     answers = typed(robot, "HELP\n", 2000)
     assert max(map(len, answers)) <= LINE_LETTERS
     words = [word for answer in answers for word in answer.removeprefix("// ").split()]
-    assert words[-2:] == ["DISTANCE", "A" * min(letters, LINE_LETTERS - len("// "))]
+    own = ["DISTANCE", "A" * min(letters, LINE_LETTERS - len("// "))]
+    assert words[-10:] == [*own, *(device.name for device in REMOTE)]
 
 
 @pytest.mark.parametrize("seed", range(4))

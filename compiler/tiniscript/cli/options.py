@@ -205,7 +205,9 @@ def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, lis
         name, equals, values = each.partition("=")
         name = name.strip().upper()
         if not name or name not in names:
-            known = ", ".join(filter(None, names)) or text("no_sensors", language)
+            known = ", ".join(each.name for each in robot.kit.sensors) or text(
+                "no_sensors", language
+            )
             raise CommandError(2, "no_sensor", robot=robot.name, found=name or each, known=known,
                           near=_near(name, [*filter(None, names)]))  # fmt: skip
         number = names.index(name)

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
-from tiniscript.base.kit import Kit
+from tiniscript.base.kit import KIT_WORDS_SINCE, Kit
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.base.source import Source, Span, Unreadable, applied, decode
 from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_of, pack
@@ -24,7 +24,6 @@ from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
 from tiniscript.semantics.lint import lint
 from tiniscript.semantics.optimizer import optimized
-from tiniscript.syntax.later_words import given_way, in_program
 from tiniscript.syntax.parser import ENOUGH, parse
 
 
@@ -69,7 +68,7 @@ def _with_findings(found: Compiled, kit: Kit) -> Compiled:
     from tiniscript.recovery.usage import with_usage
 
     read = cache(lambda text: analyzed(text, kit))  # a repair that was tried is read on
-    its = in_program(found.source.text, kit)
+    its = _kit_in(found.source.text, kit)
 
     def told_of(it: Compiled, rounds: int) -> Compiled:
         told: list[codes.Diagnostic] = []
@@ -95,14 +94,26 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and what is wrong with it; no repair is vouched for."""
     source = Source(text, name)
     parsed = parse(source)
-    kit = in_program(text, kit)
+    kit = _kit_in(text, kit)
     checked = check(source, parsed.program, kit)
     found = [*parsed.diagnostics, *checked.diagnostics]
     if not any(diagnostic.is_mistake for diagnostic in found):
         found += lint(checked.program, kit, source, parsed.scan)
         if kit.given:
+            from tiniscript.syntax.later_words import given_way
+
             found += given_way(parsed.scan.tokens, kit, source)
     return Compiled(source, codes.in_order(found), checked.program)
+
+
+def _kit_in(text: str, kit: Kit) -> Kit:
+    """Return the kit as a program has it: without the words that have given way there."""
+    written = text.upper()
+    if not any(word in written for word in KIT_WORDS_SINCE):
+        return kit
+    from tiniscript.syntax.later_words import in_program
+
+    return in_program(text, kit)
 
 
 def fitting(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:

@@ -148,7 +148,9 @@ def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int
     for name, readings in sensors.items():
         number = numbers.get(str(name).upper())
         if number is None:
-            known = ", ".join(numbers) or sentence("no_sensors", language, {})
+            known = ", ".join(each.name for each in robot.kit.sensors) or sentence(
+                "no_sensors", language, {}
+            )
             values = {"robot": robot.name, "found": printable(str(name), 60), "known": known}
             raise UsageError("no_sensor", language, values)
         several = readings if isinstance(readings, Iterable) else [readings]

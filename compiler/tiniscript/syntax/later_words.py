@@ -6,7 +6,6 @@ its own words, too.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from tiniscript.base.kit import KIT_WORDS_SINCE, Kit
@@ -16,13 +15,9 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.syntax.free_names import numbered
 from tiniscript.syntax.lexer import END, NEWLINE, WORD, Token, scan
 
-_MAY_BE = re.compile(rf"(?i)\b(?:{'|'.join(KIT_WORDS_SINCE)})\b")
-
 
 def in_program(text: str, kit: Kit) -> Kit:
     """Return the kit as a program has it: without the words that have given way there."""
-    if not _MAY_BE.search(text):
-        return kit
     return among(scan(text).tokens, kit)
 
 
