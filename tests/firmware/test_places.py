@@ -44,7 +44,7 @@ def asked(robot: HostFirmware, seq: int, epoch: int) -> tuple[int, int, bytes]:
 def places(image: Image, begun_ms: int, sensed: int) -> Iterator[int]:
     """Yield where the machine in Python is, each millisecond from its begin on."""
     robot = TracedRobot(KIT, lambda sensor: sensed)
-    machine = Machine(image.code, robot, len(KIT.sensors), now_ms=begun_ms)
+    machine = Machine(image.code, robot, len(KIT.readings), now_ms=begun_ms)
     now_ms = begun_ms
     while machine.tick(now_ms, 1000) == "waiting":
         yield machine.at

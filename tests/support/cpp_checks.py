@@ -270,7 +270,7 @@ def slow_run(image: bytes, senses: Senses, not_ready: int, late_ms: int = 0) -> 
     step_ms = late_ms + 1
     robot = SlowRobot(KIT, lists_of(KIT, senses))
     robot.not_ready = not_ready
-    machine = machine_of(unpack(image).code, robot, len(KIT.sensors), senses.seed)
+    machine = machine_of(unpack(image).code, robot, len(KIT.readings), senses.seed)
     end = ""
     while not end:
         status = machine.tick(robot.now_ms, LATE_BUDGET)

@@ -159,7 +159,7 @@ def test_code_that_changed_after_it_was_verified(chip: str) -> None:
     """It ends in BAD_CODE at each edge, and not too early."""
     kit, senses = kit_of(SENSORS), Senses(max_ms=100, max_steps=100)
     endings = set()
-    for code, caught in changed_code(SENSORS):
+    for code, caught in changed_code(len(kit.readings)):
         if code not in LENIENT:
             want = "DONE" if caught is None else "BAD_CODE"
             said = avr.answer(chip, b"U" + run_request(code, kit, senses))
@@ -184,7 +184,7 @@ def test_loops_count_beyond_65535(chip: str) -> None:
 @some_chips(avr.MEGA)
 def test_variables_behind_a_border_of_256_bytes(chip: str, tmp_path: Path) -> None:
     """Some of those that short and long instructions use lie there, others before it."""
-    names = [f"V{k}" for k in range(8)]
+    names = [f"V{k}" for k in range(32)]
     text = "".join(f"{name} = {k}; {name} = {name} + 1; " for k, name in enumerate(names))
     image = compile_text(text + "; ".join(f"SHOW({name})" for name in names), KITS[0][1]).image
     assert same_on_the_chip(chip, image, KITS[0][1], Senses()) == "0 DONE"

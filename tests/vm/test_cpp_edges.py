@@ -240,7 +240,7 @@ def test_code_that_changed_after_it_was_verified() -> None:
     # a robot may say that it has more sensors than a machine remembers
     for many in (3, DEVICES - 1, DEVICES, DEVICES + 1, 2 * DEVICES):
         kit = kit_of(many)
-        for code, caught in changed_code(min(many, DEVICES)):
+        for code, caught in changed_code(min(len(kit.readings), DEVICES)):
             ran = host().run_unverified(code, kit, Senses(max_ms=100, max_steps=100))
             ending = ran.trace.splitlines()[-1].split()[-1]
             wanted = "DONE" if caught is None else "BAD_CODE"

@@ -56,7 +56,7 @@ class SlowRobot(TracedRobot):
 
 def machine_for(text: str, robot: TracedRobot, senses: Senses) -> Machine:
     code = compile_text(text, KIT).code
-    return machine_of(code, robot, len(KIT.sensors), senses.seed)
+    return machine_of(code, robot, len(KIT.readings), senses.seed)
 
 
 def trace_with(text: str, robot: TracedRobot, senses: Senses, budget: int) -> list[str]:

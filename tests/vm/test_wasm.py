@@ -327,7 +327,7 @@ def test_both_machines_say_which_show_a_value_is_of() -> None:
         code, found = unpack(image).code, []
         for make in (machine_of, WasmImage(image, kit).machine):
             robot = Narrow()
-            machine = robot.machine = make(code, robot, len(kit.sensors), senses.seed)
+            machine = robot.machine = make(code, robot, len(kit.readings), senses.seed)
             now_ms = 0
             while now_ms < senses.max_ms and machine.tick(now_ms, 1000) not in (DONE, FAULT):
                 now_ms += 1
