@@ -174,7 +174,6 @@ SIGNS = r"""
 (?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))|(?<=\d)[|¿?!"]+(?=\s*\))
     | `` | TS005 | applied
     | F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
-\bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$))) | `W(\1)` | TS015 | applied | S; W2.5) => S; W(2.5)
 ^\s*(?:(?:paso|step|linea|line)\s*\d+\s*[.):-]*\s|\d+\s*(?:[.)]|[.):-]+\s))\s*(?=[A-Za-z])
     | `` | TS054 | applied
     | 1) F(2,80)⏎2) S => F(2,80)⏎S
@@ -290,9 +289,6 @@ l=MIN|MAX ( c=@noparen+ ) s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num
     | $l ( $c ) $s $a &o $l ( $c ) $t $b | 1 | TS018 | offered
     | IF(MIN(2, DISTANCE) < 10 OR < 5);S;ENDIF => IF(MIN(2, DISTANCE) < 10 OR MIN(2, DISTANCE) <
     5);S;ENDIF
-l=@val = a=@num or b=@num
-    | $l = $a OR $l = $b | 1 | TS018 | offered
-    | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
 ( s=<|<= n=@num )
     | ( DISTANCE $s $n ) | 1 | TS018 | offered
     | IF(< 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
@@ -366,9 +362,6 @@ v=@name += e=@any+ | $v = $v + $e | 1 | TS050 | applied | X = 1⏎X += 2 => X = 
 ^ v=@name , w=@name = e=@num , f=@num $
     | $v = $e ; $w = $f | 1 | TS050 | applied
     | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
-^ v=@name = e=@num ,? w=@name = f=@num $
-    | $v = $e ; $w = $f | 1 | TS013 | applied
-    | x = 5, y = 80⏎F(x, y) => X = 5;Y = 80⏎F(x, y)
 ^ n=@newname = b=@callw|LOOP r=@any+ $
     | DEF $n ; $b $r | 2 | TS051 | applied
     | BAILE = L(1,60)⏎BAILE => DEF BAILE;L(1, 60);END_DEF⏎BAILE
@@ -378,7 +371,6 @@ v=@name += e=@any+ | $v = $v + $e | 1 | TS050 | applied | X = 1⏎X += 2 => X = 
 ^ ⟨set|declare the? v=@word =|to|is?¦v=@newname is|equal|: to|equal? one?⟩ e=@num $
     | $v = $e | ⟨1¦2⟩ | TS050 | applied
     | ⟨set x to 5¦velocidad es 60⏎F(2, velocidad)⟩ => ⟨x = 5¦velocidad = 60⏎F(2, velocidad)⟩
-= SI|TRUE $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
 a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
 ^ v=@usedname e=@num f=;|$ | $v = $e $f | 3 | TS050 | applied | X 17⏎SHOW(X) => X = 17⏎SHOW(X)
 ^ ⟨add¦subtract⟩ n=@num|@val from|to the? v=@name $
@@ -492,9 +484,6 @@ ELSE ( a=@noparen* s=<|<=|>|>=|=|<> b=@noparen+ )
 h=IF|WHILE|ELSEIF|WHEN < a=@val s=<|<=|>|>=|= b=@num|@val > do|:?
     | &h ( $a $s $b ) | 1 | TS010 | applied
     | si <DISTANCE < 15> entonces⏎S⏎fin => IF(DISTANCE < 15)⏎S⏎ENDIF
-c=IF|WHILE|ELSEIF|UNTIL ( ( a=@noparen* b=@num|@word ) e=;|$
-    | $c ( ( $a $b ) ) $e | 1 | TS016 | applied
-    | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 <asks> ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ )
     | &h ( ( $c ) ⟨AND¦OR⟩ ( $d ) ) | 1 | TS015 | applied
     | IF(DISTANCE > 5) ⟨y¦o⟩ (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) ⟨AND¦OR⟩(LIGHT_R >
@@ -506,9 +495,6 @@ h=IF|WHILE|LOOP|UNTIL|ELSEIF :|.|->|, (
     | IF ( @not:c ) ; ⟨¦¦$b⟩ | ⟨1¦1.2¦1.2⟩ | TS102 | applied
     | unless⟨(distance < 10)⏎¦ distance < 10:⏎¦ distance < 10 ⟩F(1,50)⟨⏎end¦⏎ENDIF¦⟩ => IF(DISTANCE
     >= 10)⟨⏎F(1,50)⏎¦⏎F(1,50)⏎¦;F(1, 50);⟩ENDIF
-<asks> ( c=@any+ ) and ( d=@any+ )
-    | &h ( ( $c ) AND ( $d ) ) | 1 | TS015 | applied
-    | IF(DISTANCE > 5) y (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) AND(LIGHT_R > 9));S;ENDIF
 h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@any+ '}'
     | &h ( $c ) | 1 | TS015 | applied
     | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
@@ -599,9 +585,6 @@ LOOP by? n=@num times|X? ⟨:|,|do|;¦b=@start|'{'¦$⟩
 o=(|,|=|<|>|+|- '|' v=@num|@val c=@noparen* '|'
     | $o ABS ( $v $c ) | 1 | TS010 | offered
     | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
-h=UNTIL|IF|WHILE|WHEN|ELSEIF ( c=@any+ ) o=AND|OR (? d=@any+ )? e=;|$
-    | &h ( $c &o $d ) $e | 1 | TS015 | offered
-    | F(5, 60) UNTIL(LIGHT_L > 9) OR (LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
 ^ a=F|B|L|R|M|W|BEEP ( c=@noparen+ ) WHEN (? q=@cond+ )? ;|:|,? <body> $
     | WHEN ( $q ) ; $b $r ; END_WHEN ; $a ( $c ) | .9 | TS071 | offered
     | F(9, 50) WHEN(DISTANCE < 9) S => WHEN(DISTANCE < 9);S;END_WHEN;F(9, 50)
@@ -650,9 +633,6 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
 ^ v=@name = c=@cond+ ? a=@num|@val : b=@num|@val $
     | IF ( $c ) ; $v = $a ; ELSE ; $v = $b ; ENDIF | 1 | TS069 | applied
     | V = DISTANCE > 20 ? 80 : 30⏎F(1, V) => IF(DISTANCE > 20);V = 80;ELSE;V = 30;ENDIF⏎F(1, V)
-^ w=@callw ( a=@noparen+ , c=@val s=<|> n=@num ? x=@num : y=@num ) $
-    | IF ( $c $s $n ) ; $w ( $a , $x ) ; ELSE ; $w ( $a , $y ) ; ENDIF | 1 | TS069 | offered
-    | F(1, DISTANCE > 20 ? 80 : 40) => IF(DISTANCE > 20);F(1, 80);ELSE;F(1, 40);ENDIF
 ^ q=@val s=<|>|<=|>= n=@num|@val :|do|=|->|=>? b=@start r=@all*
     | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered
     | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
@@ -703,9 +683,6 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
 ^ ⟨n=@num times|X|* :|,|of? <body>¦n=@num *|X|times|LOOP? ( <body> )⟩ $
     | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | ⟨TS062¦TS080⟩ | applied
     | ⟨3 * F(1,50)¦SI|3*(F(1,50))⟩ => ⟨¦SI|⟩LOOP(3);F(1, 50);END_LOOP
-^ every n=@num seconds ,|:|do? <body> $
-    | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered
-    | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
 ^ do|make? b=@start r=@any* n=@num times $
     | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered
     | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
@@ -732,9 +709,6 @@ d=@device ( ⟨lit¦dark¦most¦least⟩ )
     | ⟨ABRIR PINZA¦cerrar la garra¦prende el LED¦apagar el foco⟩ =>
     ⟨GRIPPER(180)¦GRIPPER(0)¦LED(TRUE)¦LED(FALSE)⟩
 # DEF and its calls
-^ DEF n=@word v=@usedname $
-    | DEF $n ( $v ) | 1 | TS015 | applied
-    | DEF LADO X⏎F(X, 50)⏎END_DEF⏎LADO(3) => DEF LADO(X)⏎F(X, 50)⏎END_DEF⏎LADO(3)
 ^ TO n=@word ':' v=@name ⟨¦':' u=@name⟩ $
     | DEF $n ( $v ⟨¦, $u⟩ ) | 1 | TS102 | applied
     | TO SQUARE :SIZE⟨¦ :SPEED⟩⏎F(SIZE, ⟨50¦SPEED⟩)⏎END⏎SQUARE(⟨3¦3, 60⟩) =>
@@ -796,7 +770,6 @@ a=@close ⟨comma¦point then comma⟩ b=@start
 a=@close ⟨+|&|AND|->|'|'¦,⟩ $
     | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | applied
     | F(2, 80)⟨ +¦,⟩⏎R(1, 50) => F(2, 80)⏎R(1, 50)
-a=@close , $ | $a ; | .8 | TS013 | applied | F(2, 80),⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 # words of other languages around a program
 brake | BREAK | 1 | TS102 | offered | LOOP(3)⏎S⏎BRAKE⏎END_LOOP => LOOP(3)⏎S⏎BREAK⏎END_LOOP
 ⟨read ( v=@val )¦^ read the? v=@val $⟩

@@ -189,9 +189,6 @@ SUGGESTIONS = """
     | TS071 | found={s}; fix=WHEN({question});{then};END_WHEN;{c}
     | F(10, 50) WHEN DISTANCE < 15 BEEP(1, 440) => fix=WHEN(DISTANCE < 15);BEEP(1,
     440);END_WHEN;F(10, 50)
-^ c=@cmd s=provided (? q=@cond+ )? $
-    | TS071 | found={s}; fix=IF({question});{c};ENDIF
-    | F(2, 80) si DISTANCE > 10 => fix=IF(DISTANCE > 10);F(2, 80);ENDIF
 ^ c=@move|W s=WHILE (? q=@cond+ )? $
     | TS071 | found={s}; fix={c} UNTIL({contrary})
     | F(2, 80) while DISTANCE > 10 => fix=F(2, 80) UNTIL(DISTANCE <= 10)
@@ -226,9 +223,6 @@ SUGGESTIONS = """
 ^ c=@move s=+|&|AND|then|beside w=BEEP ( v=@noparen+ ) @word* $
     | TS061 | found={s}; both=TASK;{w}({v});END_TASK;{c}
     | F(2, 80) con BEEP(1, 440) => both=TASK;BEEP(1, 440);END_TASK;F(2, 80)
-^ c=@cmd then @word+ $
-    | TS074 | fix={orders}; example={made_up?}
-    | F(1, 80) y luego retrocede => fix=F(1, 80);B(2, 80)
 ^ c=@cmd then @any+ $
     | TS074 | fix={orders}; example={made_up?}
     | F(1, 80) then wait 2 then B(1, 80) => fix=F(1, 80);W(2);B(1, 80)
