@@ -408,6 +408,7 @@ class Names:
         if text not in WORDS:
             found += [_CLASSES[each] for each in lexicon().get(text, ()) if each in _CLASSES]
         found += ["@unit"] if "unit" in said and text not in WORDS else []
+        found += ["@cross"] if text == "X" and not is_own else []
         meant = [each.concept for each in self.meanings(text) if each.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""
         found += [ALIASES[word]] if word in ALIASES else []

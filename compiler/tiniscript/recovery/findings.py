@@ -172,7 +172,7 @@ def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
     """Return a mistake that goes when lines change their places."""
     values = {**found.values, "whole": in_one_line(meant.text)}
     if found.code is codes.WRONG_END:
-        values["swapped"] = found.values["right"]
+        values |= {"swapped": found.values["right"], "apart": ""}
     elif (move := meant.move) is not None:
         values |= {"name": move.name, "line": str(move.before), "last": str(move.last)}
         if found.code is codes.UNKNOWN_WORD:  # `CALL SALTO`, before its DEF

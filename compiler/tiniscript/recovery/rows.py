@@ -10,7 +10,7 @@ sign that would be one of the signs here, `?`, `*` and `+` stand behind what may
 more often. `^` is where an instruction begins: a line, or what follows `SI|`, a `;` or a brace; `$`
 is where one ends. A row of a whole line says `^^` and `$$`. `c=` captures, and `<part>` is a piece
 of PARTS. The cheapest reading is told; 1 is usual.
-Classes: @num @word @val (a value with a name) @name @newname @usedname @def, of which a @defw takes
+Classes: @num @word @val (a value with a name) @cross (X that is no name) @name @newname @usedname @def, of which a @defw takes
 values and a @step does not, @callw (takes values)
 @device (an actuator) @start (begins an instruction) @close (ends one) @unit; a number that is
 @whole, or may be a @time, a @power or an @angle; any token but separators and braces: @any, nor `:`
@@ -100,9 +100,7 @@ SIGNS = r"""
 \b([FBLR])\((\d)\.([1-9]0|100)\) | `\1(\2, \3)` | TS020 | offered | F(2.80) => F(2, 80)
 (?<=[(,\s])😎\s*$ | `8)` | TS010 | offered | W(😎 => W(8)
 (?<=\d)=(?=\s*\))|(?<=\()=(?=\.\d) | `0` | TS076 | offered | F(2, 8=) => F(2, 80)
-((?<=[=,])\s*|(?<=SHOW\())(\w+(?= x )|\d+) ?x ?(\d+)\b
-    | `\1\2 * \3` | TS010 | applied
-    | X = 3x2 => X = 3 * 2
+((?<=[=,])\s*|(?<=SHOW\())(\d+)x(\d+)\b | `\1\2 * \3` | TS010 | applied | X = 3x2 => X = 3 * 2
 (?<=[(,])(\s*)!(?=\s*[,)]) | `\g<1>1` | TS076 | offered | F(!, 80) => F(1, 80)
 (?<=\()l(?=\s*,) | `1` | TS008 | offered | F(l, 80) => F(1, 80)
 (?<=\d) (?=000\b) | `` | TS008 | applied | F(2, 80); SHOW(1 000) => F(2, 80); SHOW(1000)
@@ -217,6 +215,10 @@ SIGNS = r"""
 
 TOKENS = r"""
 # signs that other languages have
+a=@num|@val|) ⟨@cross¦·¦X⟩ b=@num|@val|(
+    | $a * $b | ⟨1¦1¦1.2⟩ | TS010 | ⟨applied¦applied¦offered⟩
+    | ⟨SHOW(DISTANCE X 2)¦SHOW(2 · 3)¦X = 4⏎W(2 x X)⟩ => ⟨SHOW(DISTANCE * 2)¦SHOW(2 * 3)¦X = 4⏎W(2 *
+    X)⟩
 ^ v=⟨@usedname¦@name⟩ == e=@any+ $
     | $v = $e | ⟨0¦1⟩ | ⟨TS010¦TS050⟩ | ⟨first¦first offered⟩
     | X == 5⟨⏎F(X, 80)¦⟩ => X = 5⟨⏎F(X, 80)¦⟩
@@ -508,10 +510,10 @@ h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@any+ '}'
 <asks> c=@cond+ b=@start
     | &h ( $c ) ; $b | 2 | TS014 | applied
     | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
-h=IF|WHILE|LOOP|WHEN ( c=@any+ , <body> ) $
+h=IF|WHILE|LOOP|WHEN ( c=@any+ ⟨,¦;⟩ <body> ) $
     | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied
-    | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
-^ '='⟨?¦⟩ IF ( c=@any+ ⟨,¦;⟩ <body> ⟨,¦;⟩ d=@start s=@all* ) $
+    | SI|IF(DISTANCE < 10⟨,¦;⟩ S) => SI|IF(DISTANCE < 10);S;ENDIF
+^ '='? IF ( c=@any+ ⟨,¦;⟩ <body> ⟨,¦;⟩ d=@start s=@all* ) $
     | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | ⟨.9¦.8⟩ | TS080 | offered
     | ⟨IF(DISTANCE < 10, B(1, 60), ¦=SI(DISTANCE<10;B(1;60);⟩F(1, 60)) => IF(DISTANCE < 10);B(1,
     60);ELSE;F(1, 60);ENDIF
