@@ -23,7 +23,8 @@ _GAPS: dict[Code, tuple[str, ...]] = {
     **dict.fromkeys((codes.MISSING_OPEN, codes.UNIT_PAIR, codes.OTHER_LANGUAGE,
                      codes.QUESTION_BEHIND, codes.NOT_CALLABLE, codes.SWAPPED, codes.ZERO_BEFORE,
                      codes.LATE_CHECK, codes.FROZEN_UNTIL, codes.FROZEN_WHILE, codes.TURNED_ROUND,
-                     codes.EXACT, codes.UNUSED_READING), ("fix",)),
+                     codes.EXACT, codes.UNUSED_READING,
+                     codes.NAME_TAKEN), ("fix",)),
     codes.EMPTY_BRACKETS: ("word",), codes.OUT_OF_RANGE: ("fix", "most"),
     codes.LONG_TIME: ("fix", "way"),
 }  # fmt: skip

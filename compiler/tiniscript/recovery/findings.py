@@ -98,7 +98,7 @@ def _meant(
     is_part = is_sure or not meant.is_whole  # what is read of a part gives up nothing
     if is_part and difference(text, meant.text, recovery.kit).lost:
         told_of = [] if is_sure else [it for it in told_of if _keeps_all(it[1], source, recovery)]
-    others = explained(written, recovery.other) if recovery.other else []
+    others = [each for other in recovery.others for each in explained(written, other)]
     return [_either(_carried(own, source.text), each, others) for each, own in told_of]
 
 
@@ -131,8 +131,9 @@ def _carried(found: Diagnostic, text: str) -> Diagnostic:
 
 def _either(found: Diagnostic, told: Explanation, others: Sequence[Explanation]) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
-    other = next((each.fix for each in others if each.place == told.place), "")
-    if not other or other == told.fix:
+    fixes = (each.fix for each in others if each.place == told.place)
+    other = next((fix for fix in fixes if fix and fix != told.fix), "")
+    if not other:
         return found
     return found._replace(values={**found.values, "rival": other})
 

@@ -434,9 +434,9 @@ c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|U
 ⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num )
     | BEEP ( @ms:b , $a ) | 1 | TS102 | offered
     | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
-a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@power , n=@num u=CM|DEG⟩ )
-    | $a ( $n $u , $p ) | ⟨1¦.9¦1⟩ | TS076 | offered
-    | ⟨B(CM(20), 60)¦F(25, 60 CM)¦R(60, 120 DEG)⟩ => ⟨B(20 CM, 60)¦F(25 CM, 60)¦R(120 DEG, 60)⟩
+a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@num , n=@num u=CM|DEG⟩ )
+    | $a ( $n $u , $p ) | ⟨1¦1¦.9⟩ | TS076 | offered
+    | ⟨B(CM(20), 60)¦F(150, 60 CM)¦R(60, 20 DEG)⟩ => ⟨B(20 CM, 60)¦F(150 CM, 60)¦R(20 DEG, 60)⟩
 ^ BEEP BEEP e=;|$
     | BEEP ( 0.2 , 440 ) ; W ( 0.2 ) ; BEEP ( 0.2 , 440 ) $e | 1 | TS102 | offered
     | bip bip => BEEP(0.2, 440);W(0.2);BEEP(0.2, 440)
@@ -719,6 +719,9 @@ n=@defw a=@num|@val ⟨¦,? b=@num|@val⟩ e=;|$
     | $n ( $a ⟨¦, $b⟩ ) $e | 1 | TS015 | applied
     | DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO ⟨3¦3 60⟩ =>
     DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO(⟨3¦3, 60⟩)
+^ n=@defw = a=@num|@val , b=@num|@val $
+    | $n ( $a , $b ) | 1 | TS015 | offered
+    | DEF LADO(X, Y)⏎F(X, Y)⏎END_DEF⏎LADO = 3, 60 => DEF LADO(X, Y)⏎F(X, Y)⏎END_DEF⏎LADO(3, 60)
 ^ DEF ( n=@word )
     | DEF $n | 1 | TS039 | offered
     | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO

@@ -131,8 +131,7 @@ class _Checker(Scope):
             self.wrong.device_set(node, name)
             return
         if node.name in self.def_names:
-            other = self.wrong.free_name(node.name, self.procedures)
-            self.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=other)
+            self.wrong.def_set(node, self.procedures)
             return
         if node.value is None:
             if name is None:

@@ -180,6 +180,17 @@ class WrongCalls:
                 said |= {"word": used[1].upper(), "used": used[0]}
         self.scope.report(codes.SENSOR_SET, node.name_span, None, **said)
 
+    def def_set(self, node: ast.Assign, procedures: Sequence[ir.Procedure]) -> None:
+        """`SQUARE = 30`, where SQUARE is a DEF with one value: it is called, if no value is."""
+        other = self.free_name(node.name, procedures)
+        known = next((each for each in procedures if each.name == node.name), None)
+        is_value = re.search(rf"(?i)[(,=<>+*/%-][ \t]*{node.name}\b(?![ \t]*\()", self.scope.source.text)
+        if known is None or len(known.values) != 1 or node.value is None or is_value:
+            self.scope.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=other)
+            return
+        fix = f"{node.name}({self.scope.source[node.value.span]})"
+        self.scope.report(codes.NAME_TAKEN, node.span, None, name=node.name, other="", fix=fix)
+
     def free_name(self, name: str, procedures: Sequence[ir.Procedure]) -> str:
         """Return `DANCE_2`, or with the first number of which the text has no name yet."""
         if name not in self._free:
