@@ -7,7 +7,7 @@ if they were made, so that no consequence of a mistake is reported.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
@@ -32,6 +32,8 @@ _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OT
 _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
 _SET = re.compile(r"(\w+) = -?[0-9.]+")
 _UNIT = re.compile(r"[^\d\s.]+$")
+_HEAD = re.compile(r"(?i)\bDEF[ \t]+(\w+)[ \t]*\((?P<values>[^()\n]*)\)")
+_VALUE = re.compile(r"(\w+)[ \t]+(\w+)(?=[ \t]*[,)])")
 
 
 class Findings(NamedTuple):
@@ -91,7 +93,7 @@ def _meant(
     if not told and meant.is_whole:
         misplaced = [each for each in found if each.code in rows.MISPLACED]
         said_of_it = misplaced or [each for each in found if each.is_mistake]
-        return [_moved(each, written, meant) for each in said_of_it][:1]
+        return [_moved(each, written, meant, recovery.kit) for each in said_of_it][:1]
     if not told:
         return []
     told_of = [(each, _diagnostic(each, meant, found)) for each in told]
@@ -112,14 +114,14 @@ def _carried(found: Diagnostic, text: str) -> Diagnostic:
     """Return a mistake of a unit in a variable; moves that take the value get it: `carried`."""
     set_to = _SET.fullmatch(found.values.get("fix", "")) if found.code is codes.UNIT else None
     unit = _UNIT.search(found.values.get("found", ""))
-    said = said_of(plain(unit[0]), "unit") if unit else ()
-    way = next((way for way, its in WAYS.items() if said and its.unit == said[0]), "")
-    if not (set_to and way and found.repair):
-        return found
-    moves = "|".join(move for move in MOVES if UNIT_OF[move] == way)
-    own = rf"(?i)\b(?:{moves})\s*\(\s*{set_to[1]}(?P<unit>)\s*,[^();\n]*\)"
-    uses = [*re.finditer(own, text)]
-    if not uses:
+    way = _way(unit[0]) if unit else ""
+    uses = [*_uses(set_to[1], way).finditer(text)] if set_to and way else []
+    uses = uses or [
+        use
+        for head, use, _ in _in_bodies(text, text)
+        if found.code is codes.UNIT and found.span.start < head.end and found.span.end > head.start
+    ]
+    if not uses or not found.repair:
         return found
     edits = (Edit(Span(*each.span("unit")), f" {way}") for each in uses)
     start, end = uses[0].span()
@@ -127,6 +129,34 @@ def _carried(found: Diagnostic, text: str) -> Diagnostic:
     carried = laid_out(lexemes(f"{text[start:place]} {way}{text[place:end]}"))
     repair = found.repair._replace(edits=(*found.repair.edits, *edits))
     return found._replace(values={**found.values, "carried": carried}, repair=repair)
+
+
+def _way(unit: str) -> str:
+    """Return the word for a unit behind the first value of a move, "" where none is."""
+    said = said_of(plain(unit), "unit")
+    return next((way for way, its in WAYS.items() if said and its.unit == said[0]), "")
+
+
+def _uses(name: str, way: str) -> re.Pattern[str]:
+    """Return the pattern of the moves that go so much of a unit, and have none."""
+    moves = "|".join(move for move in MOVES if UNIT_OF[move] == way)
+    return re.compile(rf"(?i)\b(?:{moves})\s*\(\s*{name}(?P<unit>)\s*,[^();\n]*\)")
+
+
+def _in_bodies(written: str, meant: str) -> Iterator[tuple[Span, re.Match[str], str]]:
+    """Give where a name has a unit in the brackets of a DEF, and the moves that take it, each."""
+    for head in _HEAD.finditer(written):
+        body = re.search(rf"(?is)\bDEF\s+{head[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant)
+        for each in _VALUE.finditer(written, head.start("values"), head.end()):
+            way = _way(each[2])
+            for use in _uses(each[1], way).finditer(meant, *body.span()) if body and way else ():
+                yield Span(*each.span()), use, way
+
+
+def _with_units(written: str, meant: str) -> str:
+    """Return a program in whose DEFs the moves have the units that stood at their values."""
+    edits = [Edit(Span(*it.span("unit")), f" {way}") for _, it, way in _in_bodies(written, meant)]
+    return applied(meant, edits)
 
 
 def _either(found: Diagnostic, told: Explanation, others: Sequence[Explanation]) -> Diagnostic:
@@ -169,9 +199,11 @@ def _in_words(told: Explanation) -> tuple[Code, dict[str, str]]:
     return code, values
 
 
-def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
+def _moved(found: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Diagnostic:
     """Return a mistake that goes when lines change their places."""
-    values = {**found.values, "whole": in_one_line(meant.text)}
+    made = _with_units(text, meant.text)
+    lost = difference(text, made, kit).lost
+    values = {**found.values, "whole": in_one_line(made), "lost": ", ".join(lost)}
     if found.code is codes.WRONG_END:
         values |= {"swapped": found.values["right"], "apart": ""}
     elif (move := meant.move) is not None:
@@ -182,7 +214,7 @@ def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
         values |= {"row": values.pop("last")} if is_one_line else {"first": str(move.first)}
         if move.is_end and move.last > len(text.splitlines()):
             values |= {"open": move.name}  # its end is in no line
-    repair = Repair((trimmed(0, text, meant.text),), meant.is_applied)
+    repair = Repair((trimmed(0, text, made),), meant.is_applied and not lost)
     return found._replace(values=values, repair=repair)
 
 
