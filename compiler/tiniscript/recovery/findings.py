@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, applied, overlap
-from tiniscript.base.spelling import nearest
+from tiniscript.base.spelling import is_slip, nearest
 from tiniscript.base.words import MOVES, UNIT_OF, WAYS, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
@@ -193,8 +193,10 @@ def _in_words(told: Explanation) -> tuple[Code, dict[str, str]]:
         has_bracket = "(" in slips.before_it(slip) + slips.found_in(slip)
         code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
     values = told.values_as(code)
-    if code is codes.OTHER_LANGUAGE and nearest(values["found"].upper(), [values["right"]]):
-        code, near = codes.UNKNOWN_WORD, values["right"]
+    found, near = values.get("found", "").upper(), values.get("right", "")
+    is_near = nearest(found, [near]) or (near in WAYS and is_slip(found, near))
+    if code is codes.OTHER_LANGUAGE and is_near:
+        code = codes.UNKNOWN_WORD
         values |= {"found": values["found"].upper(), "near": near}
     return code, values
 

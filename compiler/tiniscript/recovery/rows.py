@@ -10,7 +10,8 @@ sign that would be one of the signs here, `?`, `*` and `+` stand behind what may
 more often. `^` is where an instruction begins: a line, or what follows `SI|`, a `;` or a brace; `$`
 is where one ends. A row of a whole line says `^^` and `$$`. `c=` captures, and `<part>` is a piece
 of PARTS. The cheapest reading is told; 1 is usual.
-Classes: @num @word @val (a value with a name) @cross (X that is no name) @name @newname @usedname @def, of which a @defw takes
+Classes: @num @word @val (a value with a name) @cross (X that is no name) @like_CM
+@like_DEG (a slip away) @name @newname @usedname @def, of which a @defw takes
 values and a @step does not, @callw (takes values)
 @device (an actuator) @start (begins an instruction) @close (ends one) @unit; a number that is
 @whole, or may be a @time, a @power or an @angle; any token but separators and braces: @any, nor `:`
@@ -399,9 +400,9 @@ RANDOM ( between|from? a=@num to|and|until|- b=@num )
 a=F|B|L|R|W ( RANDOM? b=@num to|and|until|- c=@num e=,|)
     | $a ( RANDOM ( $b , $c ) $e | 1 | TS076 | offered
     | F(1 a 3, 60) => F(RANDOM(1, 3), 60)
-c=@callw ( a=@noparen+ ; b=@noparen+ e=)|$
+c=⟨@callw¦RANDOM|ROUND|MIN|MAX⟩ ( a=@noparen+ ; b=@noparen+ e=)|$
     | $c ( $a , $b ) | 1 | TS019 | applied
-    | F(2;80 => F(2, 80)
+    | ⟨F(2;80¦X = RANDOM(1; 6)⟩ => ⟨F(2, 80)¦X = RANDOM(1, 6)⟩
 a=@callw b=@num ,? c=@num ,|;|and? d=@callw
     | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied
     | F 2,80,R 1,50 => F(2, 80);R(1, 50)
@@ -437,6 +438,9 @@ c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|U
 a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@num , n=@num u=CM|DEG⟩ )
     | $a ( $n $u , $p ) | ⟨1¦1¦.9⟩ | TS076 | offered
     | ⟨B(CM(20), 60)¦F(150, 60 CM)¦R(60, 20 DEG)⟩ => ⟨B(20 CM, 60)¦F(150 CM, 60)¦R(20 DEG, 60)⟩
+a=⟨F|B¦L|R⟩ ( n=@noparen+ @like_⟨CM¦DEG⟩ e=,|;
+    | $a ( $n ⟨CM¦DEG⟩ $e | 1 | TS102 | offered
+    | ⟨F(20 MC, 60)¦L(90 DG, 60)⟩ => ⟨F(20 CM, 60)¦L(90 DEG, 60)⟩
 ^ BEEP BEEP e=;|$
     | BEEP ( 0.2 , 440 ) ; W ( 0.2 ) ; BEEP ( 0.2 , 440 ) $e | 1 | TS102 | offered
     | bip bip => BEEP(0.2, 440);W(0.2);BEEP(0.2, 440)

@@ -221,8 +221,7 @@ class Recovery:
         """Read each instruction of a line alone, where one cannot be read, if it is sure."""
         steps: list[Step] = []
         ends = [k for k, each in enumerate([*tokens, made(";")]) if each.text == ";"]
-        if any(_left_open(tokens[:k]) for k in ends[:-1]):
-            return _UNREAD  # what is in brackets is not alone
+        ends = [k for k in ends if k == len(tokens) or not _left_open(tokens[:k])]
         for start, end in [*pairwise((-1, *ends))][::-1]:
             head, part, tail = tokens[: start + 1], tokens[start + 1 : end], tokens[end:]
             found = lines.read(part, names, is_quick=True)[:1]
