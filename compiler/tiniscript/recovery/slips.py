@@ -395,10 +395,15 @@ def first_difference(
 
 
 def instructions(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
-    """Return the instructions of a line; what is between two separators is one."""
+    """Return the instructions of a line; what is between two separators is one.
+
+    A separator in brackets parts nothing, where all brackets of the line are closed.
+    """
     found: list[list[Lexeme]] = [[]]
+    depth, is_closed = 0, texts(tokens).count("(") == texts(tokens).count(")")
     for token in tokens:
-        if token.text == ";":
+        depth += (token.text == "(") - (token.text == ")")
+        if token.text == ";" and not (is_closed and depth > 0):
             found.append([])
         else:
             found[-1].append(token)
