@@ -61,7 +61,18 @@ def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
         behind = [each for each in behind if not recovery.has_signs(each.passed.span.start)]
     if behind:
         return Findings([each.diagnostic for each in behind], [each.passed for each in behind])
-    return _with_edits(_meant(source, found, recovery, is_sure=False) if recovery else [])
+    told = _meant(source, found, recovery, is_sure=False) if recovery else []
+    return _with_edits(told) if told else _of_blocks(found)
+
+
+def _of_blocks(found: Sequence[Diagnostic]) -> Findings:
+    """Return misspelt words that begin blocks or end them: the rest is read with them.
+
+    Else what is inside would be told of as well.
+    """
+    told = [each for each in found if each.code is codes.UNKNOWN_WORD
+            and each.values.get("near") in slips.OF_BLOCKS]  # fmt: skip
+    return Findings(told, [Edit(each.span, each.values["near"]) for each in told])
 
 
 def _recovery(written: str, found: Sequence[Diagnostic], check: Check, kit: Kit) -> Recovery | None:

@@ -51,7 +51,7 @@ from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
 _DOTS = re.compile(
-    r"(?i)\b(?P<head>(?P<word>IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|DEF[ \t]+(?P<name>\w+))[\s;]*"
+    r"(?i)\b(?P<head>(?P<word>IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|DEF[ \t]+(?P<name>\w+)(?:[ \t]*\([^()\n]*\))?)[\s;]*"
     r"(?P<here>(?:\.[ \t]*){2,}|\u2026)[ \t]*\n?[ \t]*(?P<end>END_?\w+|ELSE\w*)?"
 )
 _MANY_BELOW = 6  # instructions that an example takes into a block
@@ -72,6 +72,8 @@ _TURNED = re.compile(r"(?im)\b[FBLR]\s*\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)(?!\s*U
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
 _OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
+_OF_NAMES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
+_DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
 _NOT_TOP = (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP)
 _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
 _BEGINS = (";", "newline", "|")  # what an instruction begins behind
@@ -111,6 +113,7 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
         if each.span not in renamed
         and (each.code is not codes.NO_VALUE or each.values.get("word") not in reserved)
         and (each.code is not codes.UNIT_PLACE or text.piece(each.span) not in unknown)
+        and not (each.code in _OF_NAMES and text.is_in_wrong_def(each, told))
         and not (has_no_ends and each.code in _OF_ENDS)
         and not (is_unread and each.code is codes.NOT_OPEN and each.values["right"] == "IF")
     ]
@@ -122,6 +125,12 @@ class _Text:
         self.names = Names([*map(tokens_of, source.text.split("\n"))], kit)
         self.begun = "".join(re.findall(r"\A\s*(S[IB])\s*\|", source.text.upper()))
         self.lacks_loop = False  # an END_LOOP is left for a header
+
+    def is_in_wrong_def(self, found: Diagnostic, told: Sequence[Diagnostic]) -> bool:
+        """Whether a name is in the body of a DEF that names no values in its brackets."""
+        starts = (it.span.end for it in told if it.code is codes.PARAMETER_NEEDS_NAME)
+        start = max((it for it in starts if it <= found.span.start), default=-1)
+        return start >= 0 and not _DEF_END.search(self.source.text, start, found.span.start)
 
     def piece(self, span: Span) -> Span:
         """Return the instruction around a place: between the separators of its line."""
@@ -628,7 +637,8 @@ class _Usage:
         right = BLOCK_ENDS[(match["word"] or "DEF").upper()]
         values = {"head": head, "right": right, "out": "" if end else match["here"].strip()}
         below = _row(self.source.text[match.end() :]) if end == right else []
-        calls = [each for each in below if each.upper() == (match["name"] or "").upper()]
+        called = (match["name"] or "").upper()
+        calls = [each for each in below if each.upper().partition("(")[0] == called]
         if inside := [each for each in below if each not in calls]:
             values["example"] = "; ".join((head, *inside, right, *calls))
         return Diagnostic(codes.DOTS, Span(*match.span("here")), values)
