@@ -216,11 +216,18 @@ def _without_until(source: Source, node: ast.Command) -> Span:
 
 _NEXT_QUESTION = re.compile(r"(?i)[\s;]{0,200}IF[ \t]*\(([^()\r\n;]{0,60}[<>=][^()\r\n;]{1,60})\)")
 
+_ASKED = re.compile(r"\b(DISTANCE)[ \t]{0,9}(<=?)[ \t]{0,9}([0-9]+(?:\.[0-9]+)?)\b", re.IGNORECASE)
+
 
 def asked_next(source: Source, span: Span) -> str:
-    """Return the condition of an IF that follows what is at `span`; an example where none does."""
-    found = _NEXT_QUESTION.match(source.text, span.end)
-    return found[1].strip() if found else "DISTANCE < 10"
+    """Return the condition of an IF that follows what is at `span`.
+
+    Else what the program asks of the same sensor, behind it first; else an example.
+    """
+    if found := _NEXT_QUESTION.match(source.text, span.end):
+        return found[1].strip()
+    own = _ASKED.search(source.text, span.end) or _ASKED.search(source.text, 0, span.start)
+    return " ".join(own.groups()) if own else "DISTANCE < 10"
 
 
 _LOW_TONE = 150  # hertz: a note that is no round number, as powers are
