@@ -31,6 +31,7 @@ LONGEST = 4_000  # characters of a text that is read as a whole
 _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OTHER_ASSIGNMENT)
 _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
 _SET = re.compile(r"(\w+) = -?[0-9.]+")
+_CLOSED = re.compile(r"(?:[^()]|\((?:[^()]|\([^()]*\))*\))*")
 _UNIT = re.compile(r"[^\d\s.]+$")
 _HEAD = re.compile(r"(?i)\bDEF[ \t]+(\w+)[ \t]*\((?P<values>[^()\n]*)\)")
 _VALUE = re.compile(r"(\w+)[ \t]+(\w+)(?=[ \t]*[,)])")
@@ -176,7 +177,21 @@ def _either(found: Diagnostic, told: Explanation, others: Sequence[Explanation])
     other = next((fix for fix in fixes if fix and fix != told.fix), "")
     if not other:
         return found
-    return found._replace(values={**found.values, "rival": other})
+    values = {**found.values, "rival": other}
+    if found.code is codes.MISSING_CLOSE:
+        values |= dict(zip(("one", "another"), _in_brackets(told.fix, other), strict=True))
+    return found._replace(values=values)
+
+
+def _in_brackets(one: str, other: str) -> tuple[str, str]:
+    """Return what the brackets hold in which two texts differ first."""
+    apart = slips.alike(one, other)[0]
+    start, depth = apart, 0
+    while start > 0 and depth < 1:
+        start -= 1
+        depth += (one[start] == "(") - (one[start] == ")")
+    inside = [_CLOSED.match(each, start + 1) for each in (one, other)]
+    return inside[0][0] if inside[0] else "", inside[1][0] if inside[1] else ""
 
 
 def _diagnostic(told: Explanation, meant: Candidate, found: Sequence[Diagnostic]) -> Diagnostic:

@@ -314,6 +314,8 @@ class _Checker(Scope):
         if len(arguments) != len(procedure.values):
             self.wrong.call_values(node, procedure, [self.variables[k] for k in procedure.values])
             return
+        if self.wrong.named_values(node, [self.variables[k] for k in procedure.values]):
+            return
         values = [self.types.value(each) for each in arguments]
         for argument, value, number in zip(arguments, values, procedure.values, strict=True):
             wanted = self.types.of_variables[number]

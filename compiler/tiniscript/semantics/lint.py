@@ -20,7 +20,13 @@ from tiniscript.semantics.kept_motors import kept_motors
 from tiniscript.semantics.late_conditions import LateConditions
 from tiniscript.semantics.named_values import use_of
 from tiniscript.semantics.optimizer import fold, known_value, sure_fault
-from tiniscript.semantics.suspicious_values import of_beep, of_move, of_way, swapped_names
+from tiniscript.semantics.suspicious_values import (
+    of_beep,
+    of_move,
+    of_way,
+    swapped_names,
+    swapped_rounds,
+)
 from tiniscript.semantics.unseen_motors import unseen
 
 _LASTING = (ir.Move, ir.Beep, ir.Motors)
@@ -58,6 +64,7 @@ def lint(program: ir.Program, kit: Kit, source: Source) -> list[Diagnostic]:
         _look_at(task.body, look, _Around(is_repeated=task.look is not None))
     _look_at(program.body, look, _Around(is_last=True))
     found = [*look.found, *look.late.found, *look.frozen.found, *swapped_names(program)]
+    found += swapped_rounds(source)
     if program.tasks:
         from tiniscript.semantics.brief_tasks import brief_tasks  # few programs have any
 

@@ -18,6 +18,7 @@ from tiniscript.semantics.ir import Assign, Beep, Expression, Move, Program, eve
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.semantics.ways import way_ms
+from tiniscript.syntax.lexer import NUMBER, WORD, scan
 
 SECOND = 1000  # ms
 LONG_TIME = 20 * SECOND  # a power was meant, where the power is a time
@@ -37,6 +38,7 @@ _ZERO_OF_TURN = re.compile(r"(?i)[LR]\s*\(\s*(0[1-9])\s*,\s*[1-9]")  # `L(03, 60
 # `R(90`, with brackets in a calculation, and what is behind it: the power, and UNTIL.
 _FIRST = re.compile(r"\w+\s*\((\s*(?:[^(),/]|/(?!/)|\((?:[^()]|\([^()]*\))*\))*?)(\s*[,)].*)", re.S)
 _UNTIL = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its condition
+_OF_ROUND = 4  # tokens behind its word, up to the second value
 LITTLE_POWER = 10_000  # thousandths of a percent
 
 
@@ -184,6 +186,30 @@ def of_beep(beep: Beep) -> list[Diagnostic]:
         fix, sound = "", f"BEEP(seconds, {as_text(time)})"
     values = {"time": as_text(time), "fix": fix, "sound": sound}
     return [*found, Diagnostic(codes.LONG_TIME, beep.span, values)]
+
+
+def swapped_rounds(source: Source) -> list[Diagnostic]:
+    """`ROUND(1, DISTANCE)`: a whole number is rounded, to as many decimals as something else."""
+    found: list[Diagnostic] = []
+    if "ROUND" not in source.text.upper():
+        return found
+    tokens = scan(source.text).tokens
+    for k, token in enumerate(tokens[:-_OF_ROUND]):
+        number, comma, start = tokens[k + 2 : k + 2 + _OF_ROUND - 1]
+        is_whole = number.kind is NUMBER and number.text.isdecimal() and comma.kind == ","
+        if token.text != "ROUND" or not is_whole:
+            continue
+        depth, end = 1, k + 4
+        while depth:
+            depth += (tokens[end].kind == "(") - (tokens[end].kind == ")")
+            end += 1
+        if any(each.kind is WORD for each in tokens[k + 4 : end - 1]):
+            value = source[Span(start.start, tokens[end - 2].end)]
+            values = {"number": number.text, "value": value}
+            values["fix"] = f"ROUND({value}, {number.text})"
+            span = Span(token.start, tokens[end - 1].end)
+            found.append(Diagnostic(codes.SWAPPED, span, values))
+    return found
 
 
 def swapped_names(program: Program) -> list[Diagnostic]:

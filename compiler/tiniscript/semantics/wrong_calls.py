@@ -43,6 +43,7 @@ _MOST_POWER = 100
 _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
+_NAMED = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
 _NEAR = 500  # characters behind a value for a sensor in which its use is looked for
 
 
@@ -179,6 +180,20 @@ class WrongCalls:
             if used:  # `DISTANCE = 90;F(DISTANCE, 80)`
                 said |= {"word": used[1].upper(), "used": used[0]}
         self.scope.report(codes.SENSOR_SET, node.name_span, None, **said)
+
+    def named_values(self, node: ast.Command, names: Sequence[str]) -> bool:
+        """Report `SIDE(size=20)`, which names a value of the DEF; return whether it does."""
+        texts = [self.scope.source[each.span] for each in node.arguments or ()]
+        named = [_NAMED.fullmatch(each) for each in texts]
+        given = {it[1].upper(): it[2] for it in named if it}
+        rest = [text for text, it in zip(texts, named, strict=True) if it is None]
+        free = [name for name in names if name not in given]
+        if not given or not given.keys() <= {*names} - {*self.scope.names} or len(free) != len(rest):
+            return False
+        given |= dict(zip(free, rest, strict=True))
+        fix = f"{node.word}({', '.join(given[name] for name in names)})"
+        self.scope.report(codes.NAMED_ARGUMENT, node.span, None, word=node.word, fix=fix)
+        return True
 
     def def_set(self, node: ast.Assign, procedures: Sequence[ir.Procedure]) -> None:
         """`SQUARE = 30`, where SQUARE is a DEF with one value: it is called, if no value is."""
