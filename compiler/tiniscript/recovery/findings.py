@@ -230,7 +230,8 @@ def _in_words(told: Explanation) -> tuple[Code, dict[str, str]]:
 def _moved(found: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Diagnostic:
     """Return a mistake that goes when lines change their places."""
     made = _with_units(text, meant.text)
-    lost = difference(text, made, kit).lost
+    lost = [each for each in difference(text, made, kit).lost
+            if (unit := _UNIT.search(each)) and _way(unit[0])]  # fmt: skip
     values = {**found.values, "whole": in_one_line(made), "lost": ", ".join(lost)}
     if found.code is codes.WRONG_END:
         values |= {"swapped": found.values["right"], "apart": ""}

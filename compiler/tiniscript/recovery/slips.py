@@ -127,7 +127,7 @@ def code_of(change: Change) -> tuple[Code, Step | None]:
     if dropped and not more and fewer.keys() <= dropped | {";"}:
         return codes.EXTRA_WORD, None
     code, step = _code_of_steps(change) if steps else (_code_of_words(before, after), None)
-    if code is codes.EXTRA_WORD and more & {*ENDED}:
+    if code is codes.EXTRA_WORD and more & {*ENDED} and any(said_of(it, "end") for it in fewer):
         return codes.END_ALONE, None  # it is no word too many: it ends a block
     if code is codes.MISSING_OPEN and step and _translated(step):
         return codes.OTHER_LANGUAGE, step
