@@ -1,4 +1,4 @@
-"""Kinds of mistakes, and what is told of each: on one line and on several, in other words, twice."""
+"""Kinds of mistakes, and what is told of each: on one line and on several, in other words."""
 
 from __future__ import annotations
 
@@ -169,7 +169,8 @@ def test_the_unit_of_a_value_of_a_def_goes_into_its_body(
     assert f"{word}(LARGO {way}, 60)" in tried(whole, found) and "lost" not in {
         name for name, value in found.values.items() if value
     }
-    late = between.join(["SI|LADO(30)", *(each.removeprefix("SI|") for each in lines[:3]), lines[4]])
+    body = [each.removeprefix("SI|") for each in lines[:3]]
+    late = between.join(["SI|LADO(30)", *body, lines[4]])
     assert f"{word}(LARGO {way}, 60)" in tried(late, check(late)[0])
 
 

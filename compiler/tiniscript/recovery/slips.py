@@ -244,7 +244,8 @@ def _whole_sign(slip: Slip) -> Slip:
 
 _EXACTLY: dict[Code, Callable[[Slip], Slip]] = {
     codes.OTHER_LANGUAGE: _foreign, codes.BAD_NUMBER: _torn, codes.UNIT: _measured,
-    codes.QUESTION_BEHIND: _header, codes.OTHER_ASSIGNMENT: _sign_alone, codes.OTHER_SIGN: _whole_sign,
+    codes.QUESTION_BEHIND: _header, codes.OTHER_ASSIGNMENT: _sign_alone,
+    codes.OTHER_SIGN: _whole_sign,
 }  # fmt: skip
 
 

@@ -188,7 +188,11 @@ class WrongCalls:
         given = {it[1].upper(): it[2] for it in named if it}
         rest = [text for text, it in zip(texts, named, strict=True) if it is None]
         free = [name for name in names if name not in given]
-        if not given or not given.keys() <= {*names} - {*self.scope.names} or len(free) != len(rest):
+        if (
+            not given
+            or not given.keys() <= {*names} - {*self.scope.names}
+            or len(free) != len(rest)
+        ):
             return False
         given |= dict(zip(free, rest, strict=True))
         fix = f"{node.word}({', '.join(given[name] for name in names)})"
@@ -199,7 +203,8 @@ class WrongCalls:
         """`SQUARE = 30`, where SQUARE is a DEF with one value: it is called, if no value is."""
         other = self.free_name(node.name, procedures)
         known = next((each for each in procedures if each.name == node.name), None)
-        is_value = re.search(rf"(?i)[(,=<>+*/%-][ \t]*{node.name}\b(?![ \t]*\()", self.scope.source.text)
+        as_value = rf"(?i)[(,=<>+*/%-][ \t]*{node.name}\b(?![ \t]*\()"
+        is_value = re.search(as_value, self.scope.source.text)
         if known is None or len(known.values) != 1 or node.value is None or is_value:
             self.scope.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=other)
             return
