@@ -237,7 +237,8 @@ def test_an_end_behind_dots_is_not_missing(head: str, dots: str) -> None:
     end = "END_LOOP" if head == "LOOP(4)" else "END_DEF"
     call = {"DEF PASO": "PASO", "DEF PASO(N)": "PASO(3)"}.get(head, "S")
     text = f"SI|{head} {dots} {end}\nF(1, 60)\nLOOP(2)\n{call}\nEND_LOOP"
-    assert [code for code, _ in told(text)] == ["TS082"]
+    ((code, fix),) = told(text)
+    assert code == "TS082" and ("DEF" in head) == (f"{head}; F(1, 60); {end}" in fix)
 
 
 @pytest.mark.parametrize("between", BETWEEN)

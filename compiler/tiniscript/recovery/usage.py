@@ -637,9 +637,10 @@ class _Usage:
         head, end = match["head"], (match["end"] or "").upper()
         right = BLOCK_ENDS[(match["word"] or "DEF").upper()]
         values = {"head": head, "right": right, "out": "" if end else match["here"].strip()}
-        below = _row(self.source.text[match.end() :]) if end == right else []
         called = (match["name"] or "").upper()
-        calls = [each for each in below if each.upper().partition("(")[0] == called]
+        rest = self.source.text[match.end() :] if end == right else ""
+        below = _row(rest) or (_before_blocks(rest, called) if called else [])
+        calls = [each for each in below if _calls(each, called)]
         if inside := [each for each in below if each not in calls]:
             values["example"] = "; ".join((head, *inside, right, *calls))
         return Diagnostic(codes.DOTS, Span(*match.span("here")), values)
@@ -762,6 +763,18 @@ def _row(text: str) -> list[str]:
     found = [each.strip() for row in rows for each in row if each.strip()]
     is_long = len(found) > _MANY_BELOW or any(map(_IS_BLOCK.match, found))
     return [] if is_long else found
+
+
+def _before_blocks(text: str, name: str) -> list[str]:
+    """Return the instructions before the first block of a text, and before a call of a name."""
+    rows = (without_note(line)[0].split(";") for line in text.split("\n"))
+    found = (each.strip() for row in rows for each in row if each.strip())
+    inside = [*takewhile(lambda it: not _IS_BLOCK.match(it) and not _calls(it, name), found)]
+    return inside if len(inside) <= _MANY_BELOW else []
+
+
+def _calls(instruction: str, name: str) -> bool:
+    return instruction.upper().partition("(")[0].strip() == name
 
 
 def _usage(word: str) -> str:
