@@ -195,9 +195,10 @@ def swapped_rounds(source: Source) -> list[Diagnostic]:
         return found
     tokens = scan(source.text).tokens
     for k, token in enumerate(tokens[:-_OF_ROUND]):
+        if token.text != "ROUND":
+            continue
         number, comma, start = tokens[k + 2 : k + 2 + _OF_ROUND - 1]
-        is_whole = number.kind is NUMBER and number.text.isdecimal() and comma.kind == ","
-        if token.text != "ROUND" or not is_whole:
+        if number.kind is not NUMBER or not number.text.isdecimal() or comma.kind != ",":
             continue
         depth, end = 1, k + 4
         while depth:
