@@ -314,8 +314,12 @@ class _Checker(Scope):
         if len(arguments) != len(procedure.values):
             self.wrong.call_values(node, procedure, [self.variables[k] for k in procedure.values])
             return
-        if self.wrong.named_values(node, [self.variables[k] for k in procedure.values]):
-            return
+        if arguments:
+            from tiniscript.semantics.parameters import names_one  # loaded for its DEF
+
+            names = [self.variables[k] for k in procedure.values]
+            if names_one(node, names) and self.wrong.named_values(node, names):
+                return
         values = [self.types.value(each) for each in arguments]
         for argument, value, number in zip(arguments, values, procedure.values, strict=True):
             wanted = self.types.of_variables[number]

@@ -31,7 +31,7 @@ class Kinds:
         names = {each.name: [it.name for it in each.parameters] for each in defs}
         for node, around in _instructions(parsed.body, None):
             if isinstance(node, ast.Command):
-                if not _names_one(node, names.get(node.word, ())):  # which is told of
+                if not names_one(node, names.get(node.word, ())):  # which is told of
                     self._calls.setdefault(node.word, (node, around))
             elif node.value is not None and _parameter(node.name, around) is None:
                 self._set.setdefault(node.name, _Place(node.value.expression, around))
@@ -68,7 +68,7 @@ class Kinds:
         return _Place(arguments[k].expression, around) if k < len(arguments) else None
 
 
-def _names_one(call: ast.Command, names: Sequence[str]) -> bool:
+def names_one(call: ast.Command, names: Sequence[str]) -> bool:
     """Whether a call names a value of its DEF: `SIDE(size=20)`."""
     asked = (each.expression for each in call.arguments or ())
     return any(it[0].op == "NAME" and it[0].value in names and it[-1].op == "EQ" for it in asked)
