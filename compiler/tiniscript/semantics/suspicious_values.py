@@ -198,7 +198,8 @@ def swapped_rounds(source: Source) -> list[Diagnostic]:
         if token.text != "ROUND":
             continue
         number, comma, start = tokens[k + 2 : k + 2 + _OF_ROUND - 1]
-        if number.kind is not NUMBER or not number.text.isdecimal() or comma.kind != ",":
+        is_whole = number.kind is NUMBER and float(number.text).is_integer()
+        if not is_whole or comma.kind != ",":
             continue
         depth, end = 1, k + 4
         while depth:
