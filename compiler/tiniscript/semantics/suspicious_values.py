@@ -18,7 +18,7 @@ from tiniscript.semantics.ir import Assign, Beep, Expression, Move, Program, eve
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.semantics.ways import way_ms
-from tiniscript.syntax.lexer import NUMBER, WORD, scan
+from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, scan
 
 SECOND = 1000  # ms
 LONG_TIME = 20 * SECOND  # a power was meant, where the power is a time
@@ -193,7 +193,7 @@ def swapped_rounds(source: Source) -> list[Diagnostic]:
     found: list[Diagnostic] = []
     if "ROUND" not in source.text.upper():
         return found
-    tokens = scan(source.text).tokens
+    tokens = [each for each in scan(source.text).tokens if each.kind is not NEWLINE]
     for k, token in enumerate(tokens[:-_OF_ROUND]):
         if token.text != "ROUND":
             continue
