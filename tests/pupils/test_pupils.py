@@ -37,7 +37,9 @@ OTHER_NUMBERS = (
 )
 # A digit for a sign on its key, or turned round; a power; a point between thousands; a sound; a
 # number that counts lines.
-SHIFTED = re.compile(r"[=!\"$%/]|\d\d, \d{3}$|^F8\d$|\^2|\.000$|^4WARD|^W8|^\d+[.)] [A-Za-z]")
+SHIFTED = re.compile(
+    r"[=!\"$%/]|\d\d, \d{3}$|^F8\d$|\^2|\*\* ?2|\.000$|^4WARD|^W8|^\d+[.)] [A-Za-z]"
+)
 CONVERTED = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)|delay|ton[eo]")
 
 

@@ -170,7 +170,7 @@ def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(wrong: str, mad
     [
         ("SIDE = 30 CM\nF(SIDE, 60)", "SIDE = 30 and F(SIDE CM, 60)"),
         ("SIDE = 30 CM\nW(SIDE)", "SIDE = 30 (without 30 CM)"),
-        ("F(25, 60 CM)", "F(25 CM, 60) or F(60 CM, 25)"),
+        ("F(25, 60 CM)", "F(60 CM, 25) or F(25 CM, 60)"),
         ("F(-0.5 M, 60)", "B(50 CM, 60)"),
         ("R(-90 grados, 60)", "L(90 DEG, 60)"),
         ("F(- 2 sec, 60)", "B(2, 60)"),

@@ -36,6 +36,11 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
     return best
 
 
+def is_slip(word: str, of: str) -> bool:
+    """Whether a word is one slip away from another, which may be short: its place says the rest."""
+    return len(word) > 1 and abs(len(word) - len(of)) < 2 and _edits(word, of) == 1
+
+
 def _edits(one: str, other: str) -> int:
     """Return how many slips lead from one word to the other; an exchange of neighbours is one."""
     before_last: list[int] = []

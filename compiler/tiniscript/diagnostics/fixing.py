@@ -23,7 +23,8 @@ _GAPS: dict[Code, tuple[str, ...]] = {
     **dict.fromkeys((codes.MISSING_OPEN, codes.UNIT_PAIR, codes.OTHER_LANGUAGE,
                      codes.QUESTION_BEHIND, codes.NOT_CALLABLE, codes.SWAPPED, codes.ZERO_BEFORE,
                      codes.LATE_CHECK, codes.FROZEN_UNTIL, codes.FROZEN_WHILE, codes.TURNED_ROUND,
-                     codes.EXACT, codes.UNUSED_READING), ("fix",)),
+                     codes.EXACT, codes.UNUSED_READING,
+                     codes.NAME_TAKEN), ("fix",)),
     codes.EMPTY_BRACKETS: ("word",), codes.OUT_OF_RANGE: ("fix", "most"),
     codes.LONG_TIME: ("fix", "way"),
 }  # fmt: skip
@@ -159,7 +160,8 @@ def _told_as_well(
         if it is not told[k]:
             others |= {text[slice(*it.span)].upper()} - {""}
             if overlap(edits, offers[k]):
-                others |= {it.code.number, codes.WRONG_END.number}  # their ends are in one place
+                # their ends are in one place
+                others |= {it.code.number, codes.WRONG_END.number, codes.NOT_OPEN.number}
             elif it.is_mistake and not edits and it.span.start < told[k].span.start:
                 others.add(codes.NOT_OPEN.number)  # its header may be what nobody can read
     return others
@@ -215,7 +217,8 @@ def _without_offer(diagnostic: Diagnostic) -> Diagnostic:
     """Return a diagnostic without the changes that it asks for, and without the words for them."""
     gaps = ("fix", "right") if diagnostic.repair else _GAPS.get(diagnostic.code, ("fix",))
     said = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
-    gone = [said, "whole", "line", "lines", "times"]
+    gone = [said, "whole", "lines", "times"]
+    gone += ["line"] if diagnostic.code is not codes.WRONG_END else []  # of its header
     gone += ["right"] if diagnostic.code is codes.BRACES else []
     values = {gap: "" if gap in gone else value for gap, value in diagnostic.values.items()}
     if said == "near":

@@ -70,7 +70,7 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
     fix = _filled(f"{number}/try", diagnostic.values, lang)
     for gap in _BESIDE:
         if diagnostic.values.get(gap):
-            fix = _filled(f"label/{gap}", {"fix": fix, gap: diagnostic.values[gap]}, lang)
+            fix = _filled(f"label/{gap}", {**diagnostic.values, "fix": fix}, lang)
     return Message(
         number,
         "mistake" if diagnostic.is_mistake else "warning",

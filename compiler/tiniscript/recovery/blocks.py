@@ -253,6 +253,11 @@ class Matching:
                 is_told = bool(self.line.reading.steps) or block.is_translated
                 self.is_sure = self.is_sure and is_told
                 return True
+            comes = next((it for _, it in self.parts() if it.kind == "end"), None)
+            if comes and ENDED.get(comes.word) == block.word:  # the two ends are swapped
+                self.is_sure = False
+                del self.open[len(words) - 1 - words[::-1].index(want)]
+                return True
             if is_inside:
                 self.open.pop()
                 self.is_sure = self.is_sure and (block.is_begun or block.line == k)

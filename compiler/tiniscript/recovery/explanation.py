@@ -220,7 +220,9 @@ class _Explainer:
             if token.text in BLOCK_ENDS:
                 self.open.append(_Block(token.text, k))
             elif token.text in ENDED and self.open:
-                block = self.open.pop()
+                ended = (each for each in self.open[::-1] if each.word == ENDED[token.text])
+                block = next(ended, self.open[-1])  # ends may be crossed
+                self.open.remove(block)
                 closed = closed or (block if block.first < k else None)
                 if block.told and block.told.last > (block.first, 1):
                     block.told.last = max(block.told.last, (k, 1))

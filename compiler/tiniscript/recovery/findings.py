@@ -7,12 +7,12 @@ if they were made, so that no consequence of a mistake is reported.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, applied, overlap
-from tiniscript.base.spelling import nearest
+from tiniscript.base.spelling import is_slip, nearest
 from tiniscript.base.words import MOVES, UNIT_OF, WAYS, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
@@ -31,7 +31,10 @@ LONGEST = 4_000  # characters of a text that is read as a whole
 _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OTHER_ASSIGNMENT)
 _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
 _SET = re.compile(r"(\w+) = -?[0-9.]+")
+_CLOSED = re.compile(r"(?:[^()]|\((?:[^()]|\([^()]*\))*\))*")
 _UNIT = re.compile(r"[^\d\s.]+$")
+_HEAD = re.compile(r"(?i)\bDEF[ \t]+(\w+)[ \t]*\((?P<values>[^()\n]*)\)")
+_VALUE = re.compile(r"(\w+)[ \t]+(\w+)(?=[ \t]*[,)])")
 
 
 class Findings(NamedTuple):
@@ -59,7 +62,18 @@ def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
         behind = [each for each in behind if not recovery.has_signs(each.passed.span.start)]
     if behind:
         return Findings([each.diagnostic for each in behind], [each.passed for each in behind])
-    return _with_edits(_meant(source, found, recovery, is_sure=False) if recovery else [])
+    told = _meant(source, found, recovery, is_sure=False) if recovery else []
+    return _with_edits(told) if told else _of_blocks(found)
+
+
+def _of_blocks(found: Sequence[Diagnostic]) -> Findings:
+    """Return misspelt words that begin blocks or end them: the rest is read with them.
+
+    Else what is inside would be told of as well.
+    """
+    told = [each for each in found if each.code is codes.UNKNOWN_WORD
+            and each.values.get("near") in slips.OF_BLOCKS]  # fmt: skip
+    return Findings(told, [Edit(each.span, each.values["near"]) for each in told])
 
 
 def _recovery(written: str, found: Sequence[Diagnostic], check: Check, kit: Kit) -> Recovery | None:
@@ -91,14 +105,14 @@ def _meant(
     if not told and meant.is_whole:
         misplaced = [each for each in found if each.code in rows.MISPLACED]
         said_of_it = misplaced or [each for each in found if each.is_mistake]
-        return [_moved(each, written, meant) for each in said_of_it][:1]
+        return [_moved(each, written, meant, recovery.kit) for each in said_of_it][:1]
     if not told:
         return []
     told_of = [(each, _diagnostic(each, meant, found)) for each in told]
     is_part = is_sure or not meant.is_whole  # what is read of a part gives up nothing
     if is_part and difference(text, meant.text, recovery.kit).lost:
         told_of = [] if is_sure else [it for it in told_of if _keeps_all(it[1], source, recovery)]
-    others = explained(written, recovery.other) if recovery.other else []
+    others = [each for other in recovery.others for each in explained(written, other)]
     return [_either(_carried(own, source.text), each, others) for each, own in told_of]
 
 
@@ -112,14 +126,14 @@ def _carried(found: Diagnostic, text: str) -> Diagnostic:
     """Return a mistake of a unit in a variable; moves that take the value get it: `carried`."""
     set_to = _SET.fullmatch(found.values.get("fix", "")) if found.code is codes.UNIT else None
     unit = _UNIT.search(found.values.get("found", ""))
-    said = said_of(plain(unit[0]), "unit") if unit else ()
-    way = next((way for way, its in WAYS.items() if said and its.unit == said[0]), "")
-    if not (set_to and way and found.repair):
-        return found
-    moves = "|".join(move for move in MOVES if UNIT_OF[move] == way)
-    own = rf"(?i)\b(?:{moves})\s*\(\s*{set_to[1]}(?P<unit>)\s*,[^();\n]*\)"
-    uses = [*re.finditer(own, text)]
-    if not uses:
+    way = _way(unit[0]) if unit else ""
+    uses = [*_uses(set_to[1], way).finditer(text)] if set_to and way else []
+    uses = uses or [
+        use
+        for head, use, _ in _in_bodies(text, text)
+        if found.code is codes.UNIT and found.span.start < head.end and found.span.end > head.start
+    ]
+    if not uses or not found.repair:
         return found
     edits = (Edit(Span(*each.span("unit")), f" {way}") for each in uses)
     start, end = uses[0].span()
@@ -129,12 +143,55 @@ def _carried(found: Diagnostic, text: str) -> Diagnostic:
     return found._replace(values={**found.values, "carried": carried}, repair=repair)
 
 
+def _way(unit: str) -> str:
+    """Return the word for a unit behind the first value of a move, "" where none is."""
+    said = said_of(plain(unit), "unit")
+    return next((way for way, its in WAYS.items() if said and its.unit == said[0]), "")
+
+
+def _uses(name: str, way: str) -> re.Pattern[str]:
+    """Return the pattern of the moves that go so much of a unit, and have none."""
+    moves = "|".join(move for move in MOVES if UNIT_OF[move] == way)
+    return re.compile(rf"(?i)\b(?:{moves})\s*\(\s*{name}(?P<unit>)\s*,[^();\n]*\)")
+
+
+def _in_bodies(written: str, meant: str) -> Iterator[tuple[Span, re.Match[str], str]]:
+    """Give where a name has a unit in the brackets of a DEF, and the moves that take it, each."""
+    for head in _HEAD.finditer(written):
+        body = re.search(rf"(?is)\bDEF\s+{head[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant)
+        for each in _VALUE.finditer(written, head.start("values"), head.end()):
+            way = _way(each[2])
+            for use in _uses(each[1], way).finditer(meant, *body.span()) if body and way else ():
+                yield Span(*each.span()), use, way
+
+
+def _with_units(written: str, meant: str) -> str:
+    """Return a program in whose DEFs the moves have the units that stood at their values."""
+    edits = [Edit(Span(*it.span("unit")), f" {way}") for _, it, way in _in_bodies(written, meant)]
+    return applied(meant, edits)
+
+
 def _either(found: Diagnostic, told: Explanation, others: Sequence[Explanation]) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
-    other = next((each.fix for each in others if each.place == told.place), "")
-    if not other or other == told.fix:
+    fixes = (each.fix for each in others if each.place == told.place)
+    other = next((fix for fix in fixes if fix and fix != told.fix), "")
+    if not other:
         return found
-    return found._replace(values={**found.values, "rival": other})
+    values = {**found.values, "rival": other}
+    if found.code is codes.MISSING_CLOSE:
+        values |= dict(zip(("one", "another"), _in_brackets(told.fix, other), strict=True))
+    return found._replace(values=values)
+
+
+def _in_brackets(one: str, other: str) -> tuple[str, str]:
+    """Return what the brackets hold in which two texts differ first."""
+    apart = slips.alike(one, other)[0]
+    start, depth = apart, 0
+    while start > 0 and depth < 1:
+        start -= 1
+        depth += (one[start] == "(") - (one[start] == ")")
+    inside = [_CLOSED.match(each, start + 1) for each in (one, other)]
+    return inside[0][0] if inside[0] else "", inside[1][0] if inside[1] else ""
 
 
 def _diagnostic(told: Explanation, meant: Candidate, found: Sequence[Diagnostic]) -> Diagnostic:
@@ -162,17 +219,22 @@ def _in_words(told: Explanation) -> tuple[Code, dict[str, str]]:
         has_bracket = "(" in slips.before_it(slip) + slips.found_in(slip)
         code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
     values = told.values_as(code)
-    if code is codes.OTHER_LANGUAGE and nearest(values["found"].upper(), [values["right"]]):
-        code, near = codes.UNKNOWN_WORD, values["right"]
+    found, near = values.get("found", "").upper(), values.get("right", "")
+    is_near = nearest(found, [near]) or (near in WAYS and is_slip(found, near))
+    if code is codes.OTHER_LANGUAGE and is_near:
+        code = codes.UNKNOWN_WORD
         values |= {"found": values["found"].upper(), "near": near}
     return code, values
 
 
-def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
+def _moved(found: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Diagnostic:
     """Return a mistake that goes when lines change their places."""
-    values = {**found.values, "whole": in_one_line(meant.text)}
+    made = _with_units(text, meant.text)
+    lost = [each for each in difference(text, made, kit).lost
+            if (unit := _UNIT.search(each)) and _way(unit[0])]  # fmt: skip
+    values = {**found.values, "whole": in_one_line(made), "lost": ", ".join(lost)}
     if found.code is codes.WRONG_END:
-        values["swapped"] = found.values["right"]
+        values |= {"swapped": found.values["right"], "apart": ""}
     elif (move := meant.move) is not None:
         values |= {"name": move.name, "line": str(move.before), "last": str(move.last)}
         if found.code is codes.UNKNOWN_WORD:  # `CALL SALTO`, before its DEF
@@ -181,7 +243,7 @@ def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
         values |= {"row": values.pop("last")} if is_one_line else {"first": str(move.first)}
         if move.is_end and move.last > len(text.splitlines()):
             values |= {"open": move.name}  # its end is in no line
-    repair = Repair((trimmed(0, text, meant.text),), meant.is_applied)
+    repair = Repair((trimmed(0, text, made),), meant.is_applied and not lost)
     return found._replace(values=values, repair=repair)
 
 

@@ -13,7 +13,7 @@ from itertools import chain, pairwise
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.spelling import Speller, nearest
+from tiniscript.base.spelling import Speller, is_slip, nearest
 from tiniscript.base.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, lexicon
 from tiniscript.base.words import concept_of as concept_of
 from tiniscript.base.words import said_of as said_of
@@ -418,6 +418,9 @@ class Names:
         if text not in WORDS:
             found += [_CLASSES[each] for each in lexicon().get(text, ()) if each in _CLASSES]
         found += ["@unit"] if "unit" in said and text not in WORDS else []
+        found += ["@cross"] if text == "X" and not is_own else []
+        if "unit" not in said and text not in WORDS and not is_own:
+            found += [f"@like_{way}" for way in WAYS if is_slip(text, way)]
         meant = [each.concept for each in self.meanings(text) if each.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""
         found += [ALIASES[word]] if word in ALIASES else []

@@ -10,7 +10,8 @@ sign that would be one of the signs here, `?`, `*` and `+` stand behind what may
 more often. `^` is where an instruction begins: a line, or what follows `SI|`, a `;` or a brace; `$`
 is where one ends. A row of a whole line says `^^` and `$$`. `c=` captures, and `<part>` is a piece
 of PARTS. The cheapest reading is told; 1 is usual.
-Classes: @num @word @val (a value with a name) @name @newname @usedname @def, of which a @defw takes
+Classes: @num @word @val (a value with a name) @cross (X that is no name) @like_CM
+@like_DEG (a slip away) @name @newname @usedname @def, of which a @defw takes
 values and a @step does not, @callw (takes values)
 @device (an actuator) @start (begins an instruction) @close (ends one) @unit; a number that is
 @whole, or may be a @time, a @power or an @angle; any token but separators and braces: @any, nor `:`
@@ -100,9 +101,7 @@ SIGNS = r"""
 \b([FBLR])\((\d)\.([1-9]0|100)\) | `\1(\2, \3)` | TS020 | offered | F(2.80) => F(2, 80)
 (?<=[(,\s])😎\s*$ | `8)` | TS010 | offered | W(😎 => W(8)
 (?<=\d)=(?=\s*\))|(?<=\()=(?=\.\d) | `0` | TS076 | offered | F(2, 8=) => F(2, 80)
-((?<=[=,])\s*|(?<=SHOW\())(\w+(?= x )|\d+) ?x ?(\d+)\b
-    | `\1\2 * \3` | TS010 | applied
-    | X = 3x2 => X = 3 * 2
+((?<=[=,])\s*|(?<=SHOW\())(\d+)x(\d+)\b | `\1\2 * \3` | TS010 | applied | X = 3x2 => X = 3 * 2
 (?<=[(,])(\s*)!(?=\s*[,)]) | `\g<1>1` | TS076 | offered | F(!, 80) => F(1, 80)
 (?<=\()l(?=\s*,) | `1` | TS008 | offered | F(l, 80) => F(1, 80)
 (?<=\d) (?=000\b) | `` | TS008 | applied | F(2, 80); SHOW(1 000) => F(2, 80); SHOW(1000)
@@ -174,7 +173,6 @@ SIGNS = r"""
 (?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))|(?<=\d)[|¿?!"]+(?=\s*\))
     | `` | TS005 | applied
     | F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
-\bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$))) | `W(\1)` | TS015 | applied | S; W2.5) => S; W(2.5)
 ^\s*(?:(?:paso|step|linea|line)\s*\d+\s*[.):-]*\s|\d+\s*(?:[.)]|[.):-]+\s))\s*(?=[A-Za-z])
     | `` | TS054 | applied
     | 1) F(2,80)⏎2) S => F(2,80)⏎S
@@ -196,6 +194,9 @@ SIGNS = r"""
     | `\1M(\2, \3)` | TS015 | applied
     | M50 -50 => M(50, -50)
 (?<=\d)(?:\)\((?=\d)|['·_=&<]\s*(?=\d+\))) | `,` | TS076 | applied | F(3)(70) => F(3,70)
+([<>=]\s*\d+)\.\s+(?=[A-Za-z]\w*\s*\()
+    | `\1; ` | TS010 | applied
+    | F(5, 60) UNTIL DISTANCE<10. S() => F(5, 60) UNTIL(DISTANCE<10); S
 (?<=\w)\.(?=\() | `` | TS005 | applied | F.(2, 80) => F(2, 80)
 ⟨(?<=[\w)])\s*\.\s*$¦(?<=\))\s*\.\s+(?=\w)⟩
     | `;⟨¦ ⟩` | TS010 | applied
@@ -218,6 +219,10 @@ SIGNS = r"""
 
 TOKENS = r"""
 # signs that other languages have
+a=@num|@val|) ⟨@cross¦·¦X⟩ b=@num|@val|(
+    | $a * $b | ⟨1¦1¦1.2⟩ | TS010 | ⟨applied¦applied¦offered⟩
+    | ⟨SHOW(DISTANCE X 2)¦SHOW(2 · 3)¦X = 4⏎W(2 x X)⟩ => ⟨SHOW(DISTANCE * 2)¦SHOW(2 * 3)¦X = 4⏎W(2 *
+    X)⟩
 ^ v=⟨@usedname¦@name⟩ == e=@any+ $
     | $v = $e | ⟨0¦1⟩ | ⟨TS010¦TS050⟩ | ⟨first¦first offered⟩
     | X == 5⟨⏎F(X, 80)¦⟩ => X = 5⟨⏎F(X, 80)¦⟩
@@ -398,9 +403,9 @@ RANDOM ( between|from? a=@num to|and|until|- b=@num )
 a=F|B|L|R|W ( RANDOM? b=@num to|and|until|- c=@num e=,|)
     | $a ( RANDOM ( $b , $c ) $e | 1 | TS076 | offered
     | F(1 a 3, 60) => F(RANDOM(1, 3), 60)
-c=@callw ( a=@noparen+ ; b=@noparen+ e=)|$
+c=⟨@callw¦RANDOM|ROUND|MIN|MAX⟩ ( a=@noparen+ ; b=@noparen+ e=)|$
     | $c ( $a , $b ) | 1 | TS019 | applied
-    | F(2;80 => F(2, 80)
+    | ⟨F(2;80¦X = RANDOM(1; 6)⟩ => ⟨F(2, 80)¦X = RANDOM(1, 6)⟩
 a=@callw b=@num ,? c=@num ,|;|and? d=@callw
     | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied
     | F 2,80,R 1,50 => F(2, 80);R(1, 50)
@@ -433,9 +438,12 @@ c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|U
 ⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num )
     | BEEP ( @ms:b , $a ) | 1 | TS102 | offered
     | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
-a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@power , n=@num u=CM|DEG⟩ )
-    | $a ( $n $u , $p ) | ⟨1¦.9¦1⟩ | TS076 | offered
-    | ⟨B(CM(20), 60)¦F(25, 60 CM)¦R(60, 120 DEG)⟩ => ⟨B(20 CM, 60)¦F(25 CM, 60)¦R(120 DEG, 60)⟩
+a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@num , n=@num u=CM|DEG⟩ )
+    | $a ( $n $u , $p ) | ⟨1¦1¦.9⟩ | TS076 | offered
+    | ⟨B(CM(20), 60)¦F(150, 60 CM)¦R(60, 20 DEG)⟩ => ⟨B(20 CM, 60)¦F(150 CM, 60)¦R(20 DEG, 60)⟩
+a=⟨F|B¦L|R⟩ ( n=@noparen+ @like_⟨CM¦DEG⟩ e=,|;
+    | $a ( $n ⟨CM¦DEG⟩ $e | 1 | TS102 | offered
+    | ⟨F(20 MC, 60)¦L(90 DG, 60)⟩ => ⟨F(20 CM, 60)¦L(90 DEG, 60)⟩
 ^ BEEP BEEP e=;|$
     | BEEP ( 0.2 , 440 ) ; W ( 0.2 ) ; BEEP ( 0.2 , 440 ) $e | 1 | TS102 | offered
     | bip bip => BEEP(0.2, 440);W(0.2);BEEP(0.2, 440)
@@ -485,9 +493,6 @@ ELSE ( a=@noparen* s=<|<=|>|>=|=|<> b=@noparen+ )
 h=IF|WHILE|ELSEIF|WHEN < a=@val s=<|<=|>|>=|= b=@num|@val > do|:?
     | &h ( $a $s $b ) | 1 | TS010 | applied
     | si <DISTANCE < 15> entonces⏎S⏎fin => IF(DISTANCE < 15)⏎S⏎ENDIF
-c=IF|WHILE|ELSEIF|UNTIL ( ( a=@noparen* b=@num|@word ) e=;|$
-    | $c ( ( $a $b ) ) $e | 1 | TS016 | applied
-    | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 <asks> ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ )
     | &h ( ( $c ) ⟨AND¦OR⟩ ( $d ) ) | 1 | TS015 | applied
     | IF(DISTANCE > 5) ⟨y¦o⟩ (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) ⟨AND¦OR⟩(LIGHT_R >
@@ -512,10 +517,10 @@ h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@any+ '}'
 <asks> c=@cond+ b=@start
     | &h ( $c ) ; $b | 2 | TS014 | applied
     | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
-h=IF|WHILE|LOOP|WHEN ( c=@any+ , <body> ) $
+h=IF|WHILE|LOOP|WHEN ( c=@any+ ⟨,¦;⟩ <body> ) $
     | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied
-    | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
-^ '='⟨?¦⟩ IF ( c=@any+ ⟨,¦;⟩ <body> ⟨,¦;⟩ d=@start s=@all* ) $
+    | SI|IF(DISTANCE < 10⟨,¦;⟩ S) => SI|IF(DISTANCE < 10);S;ENDIF
+^ '='? IF ( c=@any+ ⟨,¦;⟩ <body> ⟨,¦;⟩ d=@start s=@all* ) $
     | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | ⟨.9¦.8⟩ | TS080 | offered
     | ⟨IF(DISTANCE < 10, B(1, 60), ¦=SI(DISTANCE<10;B(1;60);⟩F(1, 60)) => IF(DISTANCE < 10);B(1,
     60);ELSE;F(1, 60);ENDIF
@@ -721,6 +726,9 @@ n=@defw a=@num|@val ⟨¦,? b=@num|@val⟩ e=;|$
     | $n ( $a ⟨¦, $b⟩ ) $e | 1 | TS015 | applied
     | DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO ⟨3¦3 60⟩ =>
     DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO(⟨3¦3, 60⟩)
+^ n=@defw = a=@num|@val , b=@num|@val $
+    | $n ( $a , $b ) | 1 | TS015 | offered
+    | DEF LADO(X, Y)⏎F(X, Y)⏎END_DEF⏎LADO = 3, 60 => DEF LADO(X, Y)⏎F(X, Y)⏎END_DEF⏎LADO(3, 60)
 ^ DEF ( n=@word )
     | DEF $n | 1 | TS039 | offered
     | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO

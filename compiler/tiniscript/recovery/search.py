@@ -221,8 +221,7 @@ class Recovery:
         """Read each instruction of a line alone, where one cannot be read, if it is sure."""
         steps: list[Step] = []
         ends = [k for k, each in enumerate([*tokens, made(";")]) if each.text == ";"]
-        if any(_left_open(tokens[:k]) for k in ends[:-1]):
-            return _UNREAD  # what is in brackets is not alone
+        ends = [k for k in ends if k == len(tokens) or not _left_open(tokens[:k])]
         for start, end in [*pairwise((-1, *ends))][::-1]:
             head, part, tail = tokens[: start + 1], tokens[start + 1 : end], tokens[end:]
             found = lines.read(part, names, is_quick=True)[:1]
@@ -249,16 +248,17 @@ class Recovery:
         return best
 
     @cached_property
-    def other(self) -> Candidate | None:
-        """Return a program that may have been meant as well: it costs about the same."""
+    def others(self) -> Sequence[Candidate]:
+        """Return programs that may have been meant as well: each costs about the same."""
         if not (self.whole and self.whole.is_whole) or self.whole.is_applied:
-            return None
-        for cost, k, rival in self.rivals():
+            return ()
+        found = {self.whole.text: self.whole}
+        for cost, k, rival in self.rivals()[:ALTERNATIVES]:
             readings = [rival if it is self.lines[k] else it.reading for it in self.lines]
-            found = self.candidate(readings, True) if cost < MARGIN else None
-            if found and found.is_whole and found.text != self.whole.text:
-                return found
-        return None
+            other = self.candidate(readings, True) if cost < MARGIN else None
+            if other and other.is_whole:
+                found.setdefault(other.text, other)
+        return [*found.values()][1:]
 
     def candidate(self, readings: list[Reading], has_blocks: bool) -> Candidate | None:
         """Return the program of some readings, None where it is no better than the text."""

@@ -135,7 +135,20 @@ def code_of(change: Change) -> tuple[Code, Step | None]:
     dropped = {each for each in fewer if {each, meant_by(each)} & {*ENDED}}
     if dropped and not more and fewer.keys() <= dropped | {";"}:
         return codes.EXTRA_WORD, None
-    return _code_of_steps(change) if steps else (_code_of_words(before, after), None)
+    code, step = _code_of_steps(change) if steps else (_code_of_words(before, after), None)
+    if code is codes.EXTRA_WORD and more & {*ENDED} and any(said_of(it, "end") for it in fewer):
+        return codes.END_ALONE, None  # it is no word too many: it ends a block
+    if code is codes.MISSING_OPEN and step and _translated(step):
+        return codes.OTHER_LANGUAGE, step
+    return code, step
+
+
+def _translated(step: Step) -> str:
+    """Return the word of a block that a rewrite has put for one of another language."""
+    words = {*texts(step.before)}
+    new = next((it for it in texts(step.after) if it in BLOCK_ENDS), "")
+    is_said = new in map(meant_by, words) or any(said_of(each, "count") for each in words)
+    return new if new not in words and is_said else ""
 
 
 def _code_of_steps(change: Change) -> tuple[Code, Step]:
@@ -228,9 +241,20 @@ def _sign_alone(slip: Slip) -> Slip:
     return slip._replace(found=signs or slip.found)
 
 
+def _whole_sign(slip: Slip) -> Slip:
+    """All of a sign whose first part stays: `**` of `X ** 2`."""
+    k, found, right = slip.start, slip.found, slip.right
+    is_part = 0 < k < len(slip.old) and slip.old[k].space == "" and found[:1] == slip.old[k : k + 1]
+    before = slip.old[k - 1] if is_part else None
+    if before is None or {before.kind, found[0].kind} & {WORD, NUMBER} or before.text in "()":
+        return slip
+    return slip._replace(found=[before, *found], right=[slip.new[k - 1], *right], start=k - 1)
+
+
 _EXACTLY: dict[Code, Callable[[Slip], Slip]] = {
     codes.OTHER_LANGUAGE: _foreign, codes.BAD_NUMBER: _torn, codes.UNIT: _measured,
     codes.QUESTION_BEHIND: _header, codes.OTHER_ASSIGNMENT: _sign_alone,
+    codes.OTHER_SIGN: _whole_sign,
 }  # fmt: skip
 
 
@@ -404,10 +428,15 @@ def first_difference(
 
 
 def instructions(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
-    """Return the instructions of a line; what is between two separators is one."""
+    """Return the instructions of a line; what is between two separators is one.
+
+    A separator in brackets parts nothing, where all brackets of the line are closed.
+    """
     found: list[list[Lexeme]] = [[]]
+    depth, is_closed = 0, texts(tokens).count("(") == texts(tokens).count(")")
     for token in tokens:
-        if token.text == ";":
+        depth += (token.text == "(") - (token.text == ")")
+        if token.text == ";" and not (is_closed and depth > 0):
             found.append([])
         else:
             found[-1].append(token)

@@ -117,10 +117,23 @@ class Trailing:
         """Whether the words may say something: of no instruction, where they are none."""
         if not self.tokens:
             return not lines.is_right(self.row, self.names)
+        if self._is_factor():
+            return False
         has_dots = self.is_later and all(each.text in DOTS for each in self.row)
         kinds = {each.kind for each in self.row}
         has_sign = has_dots or NUMBER in kinds or self.words == "()"
         return WORD in kinds or (has_sign and lines.is_right(self.tokens, self.names))
+
+    def _is_factor(self) -> bool:
+        """Whether the words go on with a value of the instruction: `V = 2 x SIDE`."""
+        signs, values = [each.text for each in self.row[:2]], (self.tokens[-1], *self.row[1:2])
+        is_set = [each.text for each in self.tokens[1:2]] == ["="]
+        return (
+            is_set
+            and signs[0] in ("X", "·")
+            and len(values) > 1
+            and all(it.kind is NUMBER or it.text in self.names.known.values for it in values)
+        )
 
     def labels(self) -> list[str]:
         """Return the classes of the instruction and of each word, as patterns match them."""

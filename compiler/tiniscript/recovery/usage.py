@@ -57,7 +57,8 @@ from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
 _DOTS = re.compile(
-    r"(?i)\b(?P<head>(?P<word>IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|DEF[ \t]+(?P<name>\w+))[\s;]*"
+    r"(?i)\b(?P<head>(?P<word>IF|LOOP|WHILE)[ \t]*\([^()\n]*\)"
+    r"|DEF[ \t]+(?P<name>\w+)(?:[ \t]*\([^()\n]*\))?)[\s;]*"
     r"(?P<here>(?:\.[ \t]*){2,}|\u2026)[ \t]*\n?[ \t]*(?P<end>END_?\w+|ELSE\w*)?"
 )
 _MANY_BELOW = 6  # instructions that an example takes into a block
@@ -76,6 +77,8 @@ _FOREVER_BEHIND = re.compile(r"(?i)([FBLR])\s*\(([^(),]+),\s*FOREVER\s*\)(\s*UNT
 _TURNED = re.compile(r"(?im)\b[FBLR]\s*\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)(?!\s*UNTIL)")
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
+_OF_NAMES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
+_DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
 _BEGINS = (";", "newline", "|")  # what an instruction begins behind
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _WANTED = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
@@ -98,7 +101,11 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
         told = [it._replace(values={**it.values, **part}) for it in told if it not in parts]
     if any("usage" in each.values for each in told if each.code is codes.OUT_OF_RANGE):
         told += text.turned()
-    return [*told, *found[_MANY:]]
+    return [
+        each
+        for each in (*told, *found[_MANY:])
+        if not (each.code in _OF_NAMES and text.is_in_wrong_def(each, told))
+    ]
 
 
 class _Text:
@@ -107,6 +114,12 @@ class _Text:
         self.names = Names([*map(tokens_of, source.text.split("\n"))], kit)
         self.begun = "".join(re.findall(r"\A\s*(S[IB])\s*\|", source.text.upper()))
         self.lacks_loop = False  # an END_LOOP is left for a header
+
+    def is_in_wrong_def(self, found: Diagnostic, told: Sequence[Diagnostic]) -> bool:
+        """Whether a name is in the body of a DEF that names no values in its brackets."""
+        starts = (it.span.end for it in told if it.code is codes.PARAMETER_NEEDS_NAME)
+        start = max((it for it in starts if it <= found.span.start), default=-1)
+        return start >= 0 and not _DEF_END.search(self.source.text, start, found.span.start)
 
     def turned(self) -> list[Diagnostic]:
         """Return moves with the power before the time, as another call of the text has them."""
@@ -605,8 +618,10 @@ class _Usage:
         head, end = match["head"], (match["end"] or "").upper()
         right = BLOCK_ENDS[(match["word"] or "DEF").upper()]
         values = {"head": head, "right": right, "out": "" if end else match["here"].strip()}
-        below = _row(self.source.text[match.end() :]) if end == right else []
-        calls = [each for each in below if each.upper() == (match["name"] or "").upper()]
+        called = (match["name"] or "").upper()
+        rest = self.source.text[match.end() :] if end == right else ""
+        below = _row(rest) or (_before_blocks(rest, called) if called else [])
+        calls = [each for each in below if _calls(each, called)]
         if inside := [each for each in below if each not in calls]:
             values["example"] = "; ".join((head, *inside, right, *calls))
         return Diagnostic(codes.DOTS, Span(*match.span("here")), values)
@@ -729,6 +744,18 @@ def _row(text: str) -> list[str]:
     found = [each.strip() for row in rows for each in row if each.strip()]
     is_long = len(found) > _MANY_BELOW or any(map(_IS_BLOCK.match, found))
     return [] if is_long else found
+
+
+def _before_blocks(text: str, name: str) -> list[str]:
+    """Return the instructions before the first block of a text, and before a call of a name."""
+    rows = (without_note(line)[0].split(";") for line in text.split("\n"))
+    found = (each.strip() for row in rows for each in row if each.strip())
+    inside = [*takewhile(lambda it: not _IS_BLOCK.match(it) and not _calls(it, name), found)]
+    return inside if len(inside) <= _MANY_BELOW else []
+
+
+def _calls(instruction: str, name: str) -> bool:
+    return instruction.upper().partition("(")[0].strip() == name
 
 
 def _usage(word: str) -> str:

@@ -141,8 +141,7 @@ class _Checker(Scope):
             self.wrong.device_set(node, name)
             return
         if node.name in self.def_names:
-            other = self.wrong.free_name(node.name, self.procedures)
-            self.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=other)
+            self.wrong.def_set(node, self.procedures)
             return
         if node.value is None:
             if name is None:
@@ -323,6 +322,12 @@ class _Checker(Scope):
         if len(arguments) != len(procedure.values):
             self.wrong.call_values(node, procedure, [self.variables[k] for k in procedure.values])
             return
+        if arguments:
+            from tiniscript.semantics.parameters import names_one  # loaded for its DEF
+
+            names = [self.variables[k] for k in procedure.values]
+            if names_one(node, names) and self.wrong.named_values(node, names):
+                return
         values = [self.types.value(each) for each in arguments]
         for argument, value, number in zip(arguments, values, procedure.values, strict=True):
             wanted = self.types.of_variables[number]

@@ -27,9 +27,12 @@ class Kinds:
         self._sensors = yes_no_sensors
         self._calls: dict[str, tuple[ast.Command, ast.Def | None]] = {}  # the first of each name
         self._set: dict[str, _Place] = {}  # what each variable gets first
+        defs = (each for each in parsed.body if isinstance(each, ast.Def))
+        names = {each.name: [it.name for it in each.parameters] for each in defs}
         for node, around in _instructions(parsed.body, None):
             if isinstance(node, ast.Command):
-                self._calls.setdefault(node.word, (node, around))
+                if not names_one(node, names.get(node.word, ())):  # which is told of
+                    self._calls.setdefault(node.word, (node, around))
             elif node.value is not None and _parameter(node.name, around) is None:
                 self._set.setdefault(node.name, _Place(node.value.expression, around))
 
@@ -63,6 +66,12 @@ class Kinds:
         call, around = self._calls.get(node.name, (None, None))
         arguments = () if call is None else call.arguments or ()
         return _Place(arguments[k].expression, around) if k < len(arguments) else None
+
+
+def names_one(call: ast.Command, names: Sequence[str]) -> bool:
+    """Whether a call names a value of its DEF: `SIDE(size=20)`."""
+    asked = (each.expression for each in call.arguments or ())
+    return any(it[0].op == "NAME" and it[0].value in names and it[-1].op == "EQ" for it in asked)
 
 
 def _parameter(name: str, around: ast.Def | None) -> int | None:

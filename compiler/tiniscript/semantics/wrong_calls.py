@@ -43,6 +43,7 @@ _MOST_POWER = 100
 _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
+_NAMED = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
 _NEAR = 500  # characters behind a value for a sensor in which its use is looked for
 
 
@@ -180,6 +181,36 @@ class WrongCalls:
                 said |= {"word": used[1].upper(), "used": used[0]}
         self.scope.report(codes.SENSOR_SET, node.name_span, None, **said)
 
+    def named_values(self, node: ast.Command, names: Sequence[str]) -> bool:
+        """Report `SIDE(size=20)`, which names a value of the DEF; return whether it does."""
+        texts = [self.scope.source[each.span] for each in node.arguments or ()]
+        named = [_NAMED.fullmatch(each) for each in texts]
+        given = {it[1].upper(): it[2] for it in named if it}
+        rest = [text for text, it in zip(texts, named, strict=True) if it is None]
+        free = [name for name in names if name not in given]
+        if (
+            not given
+            or not given.keys() <= {*names} - {*self.scope.names}
+            or len(free) != len(rest)
+        ):
+            return False
+        given |= dict(zip(free, rest, strict=True))
+        fix = f"{node.word}({', '.join(given[name] for name in names)})"
+        self.scope.report(codes.NAMED_ARGUMENT, node.span, None, word=node.word, fix=fix)
+        return True
+
+    def def_set(self, node: ast.Assign, procedures: Sequence[ir.Procedure]) -> None:
+        """`SQUARE = 30`, where SQUARE is a DEF with one value: it is called, if no value is."""
+        other = self.free_name(node.name, procedures)
+        known = next((each for each in procedures if each.name == node.name), None)
+        as_value = rf"(?i)[(,=<>+*/%-][ \t]*{node.name}\b(?![ \t]*\()"
+        is_value = re.search(as_value, self.scope.source.text)
+        if known is None or len(known.values) != 1 or node.value is None or is_value:
+            self.scope.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=other)
+            return
+        fix = f"{node.name}({self.scope.source[node.value.span]})"
+        self.scope.report(codes.NAME_TAKEN, node.span, None, name=node.name, other="", fix=fix)
+
     def free_name(self, name: str, procedures: Sequence[ir.Procedure]) -> str:
         """Return `DANCE_2`, or with the first number of which the text has no name yet."""
         if name not in self._free:
@@ -205,11 +236,18 @@ def _without_until(source: Source, node: ast.Command) -> Span:
 
 _NEXT_QUESTION = re.compile(r"(?i)[\s;]{0,200}IF[ \t]*\(([^()\r\n;]{0,60}[<>=][^()\r\n;]{1,60})\)")
 
+_ASKED = re.compile(r"\b(DISTANCE)[ \t]{0,9}(<=?)[ \t]{0,9}([0-9]+(?:\.[0-9]+)?)\b", re.IGNORECASE)
+
 
 def asked_next(source: Source, span: Span) -> str:
-    """Return the condition of an IF that follows what is at `span`; an example where none does."""
-    found = _NEXT_QUESTION.match(source.text, span.end)
-    return found[1].strip() if found else "DISTANCE < 10"
+    """Return the condition of an IF that follows what is at `span`.
+
+    Else what the program asks of the same sensor, behind it first; else an example.
+    """
+    if found := _NEXT_QUESTION.match(source.text, span.end):
+        return found[1].strip()
+    own = _ASKED.search(source.text, span.end) or _ASKED.search(source.text, 0, span.start)
+    return " ".join(own.groups()) if own else "DISTANCE < 10"
 
 
 _LOW_TONE = 150  # hertz: a note that is no round number, as powers are

@@ -9,14 +9,17 @@ from __future__ import annotations
 from typing import NoReturn
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
-from tiniscript.base.source import Span
+from tiniscript.base.source import Edit, Span
 from tiniscript.base.words import FUNCTIONS, UNIT_OF, WAYS, WORDS, Word
 from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.syntax.ast import Argument, Part
 from tiniscript.syntax.cursor import AFTER_VALUE, Cursor
-from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, WORD, Token
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, COMPARISON, MINUS, NOT, OPEN, Postfix
 from tiniscript.syntax.reporter import Failed, Reporter
+
+_ENDS_VALUE = (")", "(", ";", NEWLINE, END)
 
 
 class ExpressionParser:
@@ -255,9 +258,29 @@ class ExpressionParser:
             codes.UNIT_PLACE, span, found=unit, first=first, second=second, example=example
         )
 
+    def no_semicolon(self, bracket: int) -> None:
+        """A `;` between two values, where brackets are closed behind the second one."""
+        cursor = self.cursor
+        tokens, k = cursor.tokens, cursor.i
+        if tokens[k].kind != ";":
+            return
+        value = tokens[k + 1 + (tokens[k + 1].kind == "-")]
+        end = next(j for j in range(k + 1, len(tokens)) if tokens[j].kind in _ENDS_VALUE)
+        if tokens[end].kind != ")" or not (value.kind is NUMBER or _is_name(value)):
+            return
+        cursor.i = end + 1
+        call = Span(tokens[bracket - 1].start, tokens[end].end)
+        fix = f"{cursor.source[Span(call.start, tokens[k].start)].rstrip()}, "
+        fix += cursor.source[Span(tokens[k + 1].start, call.end)]
+        repair = Repair((Edit(tokens[k].span, ","),), False)
+        told = Diagnostic(codes.SEMICOLON_INSIDE, tokens[k].span, {"fix": fix}, call, repair)
+        self.reporter.diagnostics.append(told)
+        raise Failed
+
     def no_close(self, bracket: int) -> NoReturn:
         """In brackets a comma or their end is expected."""
         token, before = self.cursor.inner(), self.cursor.last
+        self.no_semicolon(bracket)
         self.no_unit(token if before.text not in WAYS else before)
         self.no_odd(token)
         if token.kind in (NUMBER, WORD, "(") and not self.ends_above(token):
@@ -266,3 +289,9 @@ class ExpressionParser:
             self.reporter.fail(codes.MISSING_COMMA, token.span, **usage)
         span = self.cursor.tokens[bracket].span
         self.reporter.fail(codes.MISSING_CLOSE, span, before=before.text)
+
+
+def _is_name(token: Token) -> bool:
+    """Whether a token may be a value with a name."""
+    known = WORDS.get(token.text) if token.kind is WORD else None
+    return token.kind is WORD and (known is None or known.role.name == "value")

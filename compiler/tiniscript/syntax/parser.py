@@ -30,7 +30,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from tiniscript.base.source import Source, Span
+from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import BLOCK_ENDS, WORDS, Word
 from tiniscript.diagnostics import codes
 from tiniscript.syntax.ast import Argument, Assign, Break, Command, Parameter, Program
@@ -69,6 +69,8 @@ class Parser:
         self.expressions = ExpressionParser(self.cursor, self.reporter)
         self.variables: set[str] = set()  # those that have been set so far
         self.defs: set[str] = set()  # the names of the DEFs that have begun
+        # The diagnostics of ends that come before those inside them, and how many blocks are open.
+        self.early: list[tuple[int, int]] = []
 
     # -- the program ------------------------------------------------------------------------
 
@@ -275,6 +277,7 @@ class Parser:
             span = self.cursor.span_from(word)
             if block is None or block.word != "IF":
                 self.reporter.report(codes.NOT_OPEN, span, found=word.text, right="IF")
+                self.early = []
             elif block.otherwise is not None:
                 self.reporter.report(codes.AFTER_ELSE, span, found=word.text)
                 block.otherwise.clear()
@@ -291,6 +294,8 @@ class Parser:
         """End the block that a word ends, and those that are still open in it."""
         blocks, begun = self.blocks, ENDS[word.text]
         if not any(each.word == begun for each in blocks.open):
+            if self.crossed(word):
+                return
             around = {}
             if blocks.open:  # it may be the end of that
                 inner = blocks.open[-1]
@@ -298,6 +303,7 @@ class Parser:
                 around = {"around": inner.word, "line": line, "ends": BLOCK_ENDS[inner.word]}
             self.reporter.report(codes.NOT_OPEN, word.span, found=word.text, right=begun, **around)
             return
+        inside = max(k for k, each in enumerate(blocks.open) if each.word == begun)
         while (block := blocks.open[-1]).word != begun:
             line = str(self.cursor.source.position(block.header.start)[0])
             right = BLOCK_ENDS[block.word]
@@ -305,9 +311,24 @@ class Parser:
             last = block.here[-1] if len(block.here) > 1 and block.word != "LOOP" else None
             if last and not isinstance(last, Break):  # nothing comes behind one
                 values["several"] = self.cursor.source[last.span]
+            self.early.append((len(self.reporter.diagnostics), inside))
             self.reporter.report(codes.WRONG_END, word.span, **values)
             blocks.end(word.span)
         blocks.end(word.span)
+
+    def crossed(self, late: Token) -> bool:
+        """Whether an end is that of a block that another end has closed: these two are swapped."""
+        found, depth = self.reporter.diagnostics, len(self.blocks.open)
+        ended = (it for it in self.early if ENDS[found[it[0]].values["right"]] == ENDS[late.text])
+        place = next((it for it in ended if it[1] == depth), None)
+        if place is None:
+            return False
+        self.early.remove(place)
+        k, early = place[0], found[place[0]]
+        edits = (Edit(early.span, late.text), Edit(late.span, early.values["found"]))
+        values = {**early.values, "swapped": late.text, "apart": late.text}
+        found[k] = early._replace(values=values, repair=codes.Repair(edits, False))
+        return True
 
     def argument_of(self, word: Token) -> Argument:
         """Read the `(argument)` of a header, an ELSEIF or an UNTIL."""

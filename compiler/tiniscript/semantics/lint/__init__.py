@@ -39,6 +39,7 @@ TABLE = (
         ir.Move, numbers.of_move,
     ),
     Row((codes.SWAPPED,), ir.Move, numbers.swapped_names),
+    Row((codes.SWAPPED,), PROGRAM, numbers.swapped_rounds),
     Row((codes.MOVE_OF_NO_TIME, codes.LONG_TIME, codes.CUT_VALUE), ir.Beep, numbers.of_beep),
     Row((codes.NEVER_REPEATS, codes.ROUNDED_TIMES), ir.Loop, numbers.of_times),
     # conditions whose answer does not come

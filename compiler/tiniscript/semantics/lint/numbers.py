@@ -19,6 +19,7 @@ from tiniscript.semantics.lint.look import Around, Look
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import fold, known_value, sure_fault
 from tiniscript.semantics.ways import way_ms
+from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD
 
 SECOND = 1000  # ms
 LONG_TIME = 20 * SECOND  # a power was meant, where the power is a time
@@ -38,6 +39,7 @@ _ZERO_OF_TURN = re.compile(r"(?i)[LR]\s*\(\s*(0[1-9])\s*,\s*[1-9]")  # `L(03, 60
 # `R(90`, with brackets in a calculation, and what is behind it: the power, and UNTIL.
 _FIRST = re.compile(r"\w+\s*\((\s*(?:[^(),/]|/(?!/)|\((?:[^()]|\([^()]*\))*\))*?)(\s*[,)].*)", re.S)
 _UNTIL = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its condition
+_OF_ROUND = 4  # tokens behind its word, up to the second value
 LITTLE_POWER = 10_000  # thousandths of a percent
 
 
@@ -206,6 +208,27 @@ def of_beep(beep: Beep, around: Around, look: Look) -> None:
     elif hertz <= LOW_HERTZ:  # `BEEP(440, 80)`: how long it lasts is not said
         fix, sound = "", f"BEEP(seconds, {as_text(time)})"
     look.report(codes.LONG_TIME, beep.span, time=as_text(time), fix=fix, sound=sound)
+
+
+def swapped_rounds(look: Look) -> None:
+    """`ROUND(1, DISTANCE)`: a whole number is rounded, to as many decimals as something else."""
+    tokens = [each for each in look.scan.tokens if each.kind is not NEWLINE]
+    for k, token in enumerate(tokens[:-_OF_ROUND]):
+        if token.text != "ROUND":
+            continue
+        number, comma, start = tokens[k + 2 : k + 2 + _OF_ROUND - 1]
+        is_whole = number.kind is NUMBER and float(number.text).is_integer()
+        if not is_whole or comma.kind != ",":
+            continue
+        depth, end = 1, k + 4
+        while depth:
+            depth += (tokens[end].kind == "(") - (tokens[end].kind == ")")
+            end += 1
+        if any(each.kind is WORD for each in tokens[k + 4 : end - 1]):
+            value = look.source[Span(start.start, tokens[end - 2].end)]
+            fix = f"ROUND({value}, {number.text})"
+            span = Span(token.start, tokens[end - 1].end)
+            look.report(codes.SWAPPED, span, number=number.text, value=value, fix=fix)
 
 
 def swapped_names(move: Move, around: Around, look: Look) -> None:
