@@ -46,6 +46,7 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
     "TS138": {"found": "X2", "known": "tinibot, liner"},
     "TS306": {"limit": "32767", "over": "100"},
     "TS307": BOARD,
+    "TS319": {"robot": "A"},
     "TS308": {"level": "uno", "word": "RANDOM"},
     "TS309": LEVEL,
     "TS310": LEVEL,

@@ -203,7 +203,7 @@ def test_no_advice(text: str) -> None:
 
 
 # By other stages: of a number's text, and of the robot's memory.
-OF_OTHERS = {codes.ROUNDED, codes.BOARD_MAY_BE_TOO_SMALL}
+OF_OTHERS = {codes.ROUNDED, codes.BOARD_MAY_BE_TOO_SMALL, codes.GIVES_WAY}
 
 
 def test_the_table_has_every_warning() -> None:

@@ -88,6 +88,8 @@ Tuning tuning;
 const Tuning& port_tuning() { return tuning; }
 Answer port_tune(const Tuning& other, bool) { tuning = other; return (Answer)sink; }
 const DeviceInfo& port_device_info() { return device_info; }
+uint8_t port_readings() { return sink; }
+uint8_t port_actuators() { return sink; }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return sink; }
 Answer port_undo() { return (Answer)sink; }

@@ -173,6 +173,7 @@ SIGNS = r"""
 (?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))|(?<=\d)[|¿?!"]+(?=\s*\))
     | `` | TS005 | applied
     | F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
+\bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$))) | `W(\1)` | TS015 | applied | S; W2.5) => S; W(2.5)
 ^\s*(?:(?:paso|step|linea|line)\s*\d+\s*[.):-]*\s|\d+\s*(?:[.)]|[.):-]+\s))\s*(?=[A-Za-z])
     | `` | TS054 | applied
     | 1) F(2,80)⏎2) S => F(2,80)⏎S
@@ -493,6 +494,9 @@ ELSE ( a=@noparen* s=<|<=|>|>=|=|<> b=@noparen+ )
 h=IF|WHILE|ELSEIF|WHEN < a=@val s=<|<=|>|>=|= b=@num|@val > do|:?
     | &h ( $a $s $b ) | 1 | TS010 | applied
     | si <DISTANCE < 15> entonces⏎S⏎fin => IF(DISTANCE < 15)⏎S⏎ENDIF
+c=IF|WHILE|ELSEIF|UNTIL ( ( a=@noparen* b=@num|@word ) e=;|$
+    | $c ( ( $a $b ) ) $e | 1 | TS016 | applied
+    | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 <asks> ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ )
     | &h ( ( $c ) ⟨AND¦OR⟩ ( $d ) ) | 1 | TS015 | applied
     | IF(DISTANCE > 5) ⟨y¦o⟩ (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) ⟨AND¦OR⟩(LIGHT_R >
