@@ -50,7 +50,8 @@ def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> 
     press_margin(page, 5)
     page.click("#run")
     for x in (1, 2, 3):
-        page.locator("#values div").filter(has_text="X").get_by_text(str(x), exact=True).wait_for()
+        row = page.locator("#values div").filter(has=page.get_by_text("X", exact=True))
+        row.get_by_text(str(x), exact=True).wait_for()
         held(page, 5)
         assert running(page) == "SHOW(X * X)"
         page.click("#pause")

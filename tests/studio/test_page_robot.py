@@ -33,7 +33,12 @@ FOREVER = "LOOP(FOREVER);\n  F(1, 80);\n  R(1, 60);\nEND_LOOP"
 
 
 def value(page: Page, name: str) -> str:
-    return page.locator("#values div").filter(has_text=name).locator("dd").inner_text()
+    return (
+        page.locator("#values div")
+        .filter(has=page.get_by_text(name, exact=True))
+        .locator("dd")
+        .inner_text()
+    )
 
 
 def running(page: Page) -> str:
