@@ -41,7 +41,7 @@ def steps(text: str, simulation: Simulation, most: int = 100) -> Iterable[str]:
 
 def test_steps_go_through_every_part_and_into_words_of_ones_own() -> None:
     simulation = begun(COUNT, is_held=True)
-    assert simulation.state()["events"] == [[simulation.robot.now_ms, "START"]]
+    assert simulation.state()["events"] == [[simulation.robot.now_ms, "START", -1]]
     assert list(steps(COUNT, simulation)) == STEPS
     assert not simulation.robot.is_running
     text = "DEF HOP;\n  F(0.1, 80);\nEND_DEF;\nHOP;\nSHOW(1)"
@@ -127,7 +127,7 @@ def test_a_stop_ends_a_held_program() -> None:
     simulation.set_breakpoints(())
     simulation.stop()
     state = simulation.state()
-    assert [text for _, text in state["events"]] == ["STOP"]
+    assert [text for _, text, _ in state["events"]] == ["STOP"]
     assert not state["is_held"] and state["at"] is None and state["motors"] == [0, 0]
 
 
