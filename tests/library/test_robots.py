@@ -66,7 +66,7 @@ def test_a_program_runs_there_and_tells_what_it_shows(
     assert [(each.name, each.values) for each in events] == [
         ("STARTED", {"checksum": program.checksum}),
         ("SHOW", {"value": 1.5}),
-        ("SHOW", {"value": True}),
+        ("SHOW", {"value": True, "name": "TRUE AND 1 > 0", "line": 1, "column": 23}),
         ("DONE", {}),
     ]
     assert [each.ms for each in events] == sorted(each.ms for each in events)
