@@ -459,7 +459,7 @@ def check_ways(seed: int) -> str:
 @pytest.mark.parametrize("part", range(PARTS))
 def test_ways_behind_anything_are_as_on_a_fresh_robot(part: int) -> None:
     found = Counter(check_ways(seed) for seed in range(part * 60, (part + 1) * 60))
-    assert found["from where it stood"] > 20 and found["from a move"] > 2, found
+    assert found["from where it stood"] > 20 and found["from a move"] > 0, found
 
 
 def most_ahead(scene: Scene) -> float:

@@ -78,7 +78,7 @@ def check_program(text: str) -> None:
     assert compiled.is_right != any(each.is_mistake for each in compiled.diagnostics)
     if compiled.is_right:
         image = unpack(compiled.image)
-        verify(image.code, len(KIT.sensors), len(KIT.actuators))
+        verify(image.code, len(KIT.readings), len(KIT.actuators))
     source = Source(text, "x.ts")
     for each in compiled.diagnostics:
         for language in languages():

@@ -455,7 +455,7 @@ const PARTS = {
 
 const answers = (found) => ({ ok: true, status: 200, json: async () => found });
 
-const PROGRAM = { image: '00ff', places: [[0, 1, 1, 1, 9]], variables: [{ name: 'X', is_yes_no: false }] };
+const PROGRAM = { image: '00ff', places: [[0, 1, 1, 1, 9]], shows: [[0, 'X', 1, 1, false, false]], variables: [{ name: 'X', is_yes_no: false }] };
 
 /** As the worker's: each picture of it goes on, bumps, says and ends. */
 function virtualRobot(chance, isGood) {
@@ -484,7 +484,7 @@ function virtualRobot(chance, isGood) {
       }
       const duration_ms = isHeld || isStopped ? 0 : request.duration_ms ?? (request.do === 'step' ? 20 : 0);
       now_ms += duration_ms;
-      if (duration_ms && chance() < 0.3) events.push([now_ms, `SHOW ${chance.below(9)}`]);
+      if (duration_ms && chance() < 0.3) events.push([now_ms, `SHOW ${chance.below(9)}`, 0]);
       if (duration_ms && chance() < 0.2) events.push([now_ms, `BEEP 440 ${chance.below(900)}`]);
       if (duration_ms && chance() < 0.2) bumps += 1;
       if (now_ms > ends_ms && does === 'fault') fault = 'STUCK';

@@ -190,7 +190,7 @@ bool fetch_key(uint8_t which, uint8_t* key) {
 
 Answer port_keep_key(uint8_t which, const uint8_t* key) {
   if (!may_keep_keys()) return not_now();
-  for (uint8_t k = 0; k < kKeys; k++) {
+  for (uint8_t k = 0; k < kOwnerKeys; k++) {
     if (!fetch_key(k, record + kKeysAt + k * kKeyRoom)) return not_now();
   }
   copy_bytes(key, record + kKeysAt + which * kKeyRoom, kKeyRoom);

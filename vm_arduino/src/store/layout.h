@@ -48,10 +48,10 @@ constexpr uint8_t kPaceBytes = 8;  // zeros: not measured, as earlier firmware w
 static_assert(kPaceAt + kPaceBytes == kRecordBytes, "fault and pace fill a record");
 
 // The record kOwner is larger: the keys of the robot, zeros where there is none.
-constexpr uint8_t kKeys = 2;
+constexpr uint8_t kOwnerKeys = 2;
 constexpr uint8_t kKeyRoom = 16;
 constexpr uint8_t kKeysAt = kCheckBytes;
-constexpr uint8_t kOwnerBytes = kKeysAt + kKeys * kKeyRoom;
+constexpr uint8_t kOwnerBytes = kKeysAt + kOwnerKeys * kKeyRoom;
 
 // Where the slots begin. During a brown-out some chips write to address 0 by mistake, so nothing is
 // stored there.
