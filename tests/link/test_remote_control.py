@@ -16,6 +16,7 @@ from tests.link.test_session import greeted as described
 from tests.link.test_unsent_requests import greeted, image
 from tests.machines.host_firmware import HostFirmware
 from tests.support.owners import KIT, Keys, Owned
+from tiniscript.base.kit import YES_NO, Device, Kit
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
@@ -342,6 +343,16 @@ def test_an_older_robot_is_told_nothing() -> None:
     newer.press(*UP)
     frame = decoded(newer.poll(10).strip(b"\0"))
     assert frame and frame.number == KEYS.number and frame.payload == bytes((1, 0, 0))
+
+
+@pytest.mark.parametrize("count", [0, 8, 9, 16])
+def test_a_robot_says_that_it_has_one_where_its_kit_leaves_room(count: int) -> None:
+    kit = Kit(tuple(Device(f"S{k}", YES_NO, "", 0, 1) for k in range(count)), ())
+    session, robot = Session(1, 9600, kit.fingerprint), HostFirmware(kit)
+    robot.wait(100)
+    assert robot.until(session, session.hello()) == OK
+    assert session.robot
+    assert bool(session.robot.values.features & REMOTE) == kit.has_remote == (count <= 8)
 
 
 @pytest.mark.parametrize("defines", [(), ("tiniscript_without_seals",)], ids=["seals", "none"])

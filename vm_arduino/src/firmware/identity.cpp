@@ -36,8 +36,8 @@ void begin_identity(const BootInfo& boot_info) {
   identity.kit = board_kit();
   identity.nonce = boot_info.seed;
   identity.reset = boot_info.reset;
-  identity.features =
-      static_cast<uint8_t>(kRobotTextLevel) | (kHasRemote ? kRemote : 0) | kPlaces;
+  const bool has_remote = readings_of(board_sensors()) != board_sensors();
+  identity.features = static_cast<uint8_t>(kRobotTextLevel) | (has_remote ? kRemote : 0) | kPlaces;
 }
 
 void make_identity() { identity.id = identity.nonce; }

@@ -1,7 +1,7 @@
 // What a program reads of a remote control, behind the sensors of its kit.
 //
 // The newest word counts: of the session that drives or, where none does, of any that may. All is let
-// go 0.5 s after it, at a start and at an end.
+// go 0.5 s after it, and at a start.
 
 #pragma once
 
