@@ -88,7 +88,7 @@ def pseudo(source: Catalogue) -> Catalogue:
 def _longer(text: str) -> str:
     """Return a text with accents outside of its gaps, and with more words in its last line."""
     parts = re.split(r"(\{[^{}]*\}|`[^`]*`)", text)
-    parts[::2] = [each.translate(ACCENTS) for each in parts[::2]]
+    parts[::2] = [part.translate(ACCENTS) for part in parts[::2]]
     more = "ñandú " * (len(text.rpartition("\n")[2]) // 3 // 6 + 1)
     return f"{''.join(parts)} {more}".rstrip()
 
@@ -213,7 +213,7 @@ def report(own: Translation) -> int:
         found = own.joined(name)
         path = own.path(name)
         wrong += tell(path, [*check_robot(found)] if name == "robot" else [])
-        there = [each for each in found.entries.values() if each.seen or not each.is_same]
+        there = [entry for entry in found.entries.values() if entry.seen or not entry.is_same]
         entries += there
         stales = [each for each in there if each.is_stale]
         was = "its English text has changed, and so it is said in English"
@@ -221,14 +221,14 @@ def report(own: Translation) -> int:
         if own.language.is_complete:
             empty = [each for each in there if not each.said]
             lacks += tell(path, [(1, f"{each.key} is missing: {each.english}") for each in empty])
-    new = [each for each in entries if each.seen == UNKNOWN]
+    new = [entry for entry in entries if entry.seen == UNKNOWN]
     if new:
         print(f"{own.code}: {len(new)} texts are new. Note of which English texts they are:  "
               f"python -m tools.languages --seen {own.code}")  # fmt: skip
     if stale:
         print(f"{own.code}: {stale} texts are stale. Note of which English texts they are now:  "
               f"python -m tools.languages --seen {own.code} KEY ...")  # fmt: skip
-    asked = [each for each in entries if not each.is_same]
+    asked = [entry for entry in entries if not entry.is_same]
     done = sum(each.is_translated for each in asked)
     print(f"{own.code}: {done} of {len(asked)} texts are translated")
     return wrong + (lacks + stale + len(new) if own.language.is_complete else 0)

@@ -57,8 +57,8 @@ def arrows(graph: Graph) -> Graph:
 def direct(arrows: Graph) -> Graph:
     """Return the arrows without those that a path of others replaces; there is no circle."""
     return {
-        name: {each for each in targets
-               if not any(each in _reached(arrows, other) for other in targets)}
+        name: {target for target in targets
+               if not any(target in _reached(arrows, other) for other in targets)}
         for name, targets in arrows.items()
     }  # fmt: skip
 

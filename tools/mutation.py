@@ -260,7 +260,7 @@ def drawn(modules: Sequence[Module], count: int, seed: int, pattern: str = "*") 
     """Draw mutants in turn from each module, the same ones for the same seed and code."""
     rows = []
     for module in modules:
-        row = [each for each in mutants(module) if Path(each.file).match(pattern)]
+        row = [mutant for mutant in mutants(module) if Path(mutant.file).match(pattern)]
         random.Random(f"{seed} {module.name}").shuffle(row)
         rows.append(row)
     in_turn = [each for turn in zip_longest(*rows) for each in turn if each is not None]
@@ -270,7 +270,9 @@ def drawn(modules: Sequence[Module], count: int, seed: int, pattern: str = "*") 
 def module_of(file: str) -> Module:
     """Return the module that a file is of."""
     return next(
-        each for each in MODULES if any(ROOT / file in ROOT.glob(pattern) for pattern in each.files)
+        module
+        for module in MODULES
+        if any(ROOT / file in ROOT.glob(pattern) for pattern in module.files)
     )
 
 
@@ -284,8 +286,8 @@ def tests_of(file: str) -> list[str]:
         return is_long, -100 * (stem in path.stem) - len(re.findall(rf"\b{stem}\b", text))
 
     found: dict[Path, None] = {}
-    for each in module_of(file).tests:
-        found |= dict.fromkeys(sorted((ROOT / each).rglob("test_*.py")) or [ROOT / each])
+    for test in module_of(file).tests:
+        found |= dict.fromkeys(sorted((ROOT / test).rglob("test_*.py")) or [ROOT / test])
     return [path.relative_to(ROOT).as_posix() for path in sorted(found, key=far)]
 
 

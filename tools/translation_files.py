@@ -110,7 +110,7 @@ class Translation:
             if name == NAMES or own.problems:
                 continue
             for key in own.texts:
-                fitting = {each for each in patterns if fnmatchcase(key, each)}
+                fitting = {pattern for pattern in patterns if fnmatchcase(key, pattern)}
                 unused -= fitting
                 if group := self.paired(name, key):
                     new = (UNKNOWN, *[each.seen for each in group if fitting and each.seen])
@@ -119,7 +119,7 @@ class Translation:
             there = {f"{name} {key}" for key in own.texts}
             for gone in [at for at in self.seen if at.startswith(f"{name} ") and at not in there]:
                 self._note(name, gone.removeprefix(f"{name} "), [])
-        return [each for each in patterns if each in unused]
+        return [pattern for pattern in patterns if pattern in unused]
 
     def put(self, name: str, key: str, group: list[Entry]) -> None:
         """Take what these entries say as the texts of a key."""
@@ -185,13 +185,13 @@ def written(key: str, texts: list[Forms], is_list: bool) -> str:
     """Return the rows of a key."""
     head = key if _BARE.fullmatch(key) else _basic(key)
     if is_list:
-        parts = [quoted(each.get("", "")) for each in texts]
+        parts = [quoted(text.get("", "")) for text in texts]
         row = f"{head} = [{', '.join(parts)}]\n"
         if len(row) <= WIDTH and row.count("\n") == 1:
             return row
         return f"{head} = [\n" + "".join(f"  {part},\n" for part in parts) + "]\n"
     return "".join(f"{head}{'.' * bool(name)}{name} = {quoted(form)}\n"
-                   for each in texts for name, form in each.items())  # fmt: skip
+                   for text in texts for name, form in text.items())  # fmt: skip
 
 
 def quoted(text: str) -> str:

@@ -66,7 +66,7 @@ def _add(made: Catalog, name: str, entry: Entry, forms: tuple[str, ...]) -> None
     own: str | tuple[str, ...] = entry.said.get("", "")
     if entry.plural:
         english = (entry.english, entry.plural)
-        own = tuple(entry.said.get(each, "") for each in forms)
+        own = tuple(entry.said.get(form, "") for form in forms)
     flags = {BRACES} if "{" in entry.english else set()
     message = made.add(
         english, own, context=_context(name, entry.key), auto_comments=entry.notes,

@@ -39,8 +39,8 @@ def table(title: str, head: Sequence[str], rows: Sequence[Sequence[object]]) -> 
 def sizes() -> None:
     ours = [compile_text(text, KIT) for text in PROGRAMS]
     rows: list[tuple[object, ...]] = [
-        ("code_bytes", *(len(each.code) for each in ours)),
-        ("image_bytes", *(len(each.image) for each in ours)),
+        ("code_bytes", *(len(our.code) for our in ours)),
+        ("image_bytes", *(len(our.image) for our in ours)),
     ]
     table("Bytes", ("", "F(5,80)", "LOOP(3) ...", "obstacle"), rows)
 

@@ -190,10 +190,13 @@ def longest(kit: Kit, room: int) -> Image:
 def all_devices(kit: Kit) -> list[str]:
     """Return statements that read each sensor and set each actuator."""
     reads = [
-        f"Y = {each.name}" if each.kind == NUMBER else f"IF({each.name}); Y = 1; ENDIF"
-        for each in kit.sensors
+        f"Y = {sensor.name}" if sensor.kind == NUMBER else f"IF({sensor.name}); Y = 1; ENDIF"
+        for sensor in kit.sensors
     ]
-    sets = [f"{each.name}({'X' if each.kind == NUMBER else 'TRUE'})" for each in kit.actuators]
+    sets = [
+        f"{actuator.name}({'X' if actuator.kind == NUMBER else 'TRUE'})"
+        for actuator in kit.actuators
+    ]
     return [*reads, *sets]
 
 

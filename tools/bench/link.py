@@ -131,7 +131,7 @@ def main() -> int:
         [f"{each.live_us:.0f}" for each in found.values()], str(LIVE_US))  # fmt: skip
     print_stops({f"uno, {baud} baud": each.stop for baud, each in found.items()} | others)
     are_kept = [is_kept(baud, each) for baud, each in found.items()]
-    return int(not all(are_kept) or any(each.us > STOP_US for each in others.values()))
+    return int(not all(are_kept) or any(other.us > STOP_US for other in others.values()))
 
 
 def others_stopped(folder: Path) -> dict[str, stops.Slowest]:

@@ -20,7 +20,7 @@ from tools.uno import Uno
 
 ROBOT = robots.load(robots.DEFAULT)
 SENSOR = "LIGHT_L"  # the one for which the constants are
-_NUMBER = [each.name for each in ROBOT.kit.sensors].index(SENSOR)
+_NUMBER = [sensor.name for sensor in ROBOT.kit.sensors].index(SENSOR)
 SENSOR_PIN = pin(ROBOT, ROBOT.board.sensors[_NUMBER].pins["pin"])
 WORK_MS, SHOW_MS = 10_000, 500
 

@@ -206,7 +206,7 @@ def _drawn(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
         page.wait_for_timeout(FRAMES_MS)
         works += _works_ms(json.loads(browser.stop_tracing())["traceEvents"])
         context.close()
-    slow = [THROTTLED * each for each in works]
+    slow = [THROTTLED * work for work in works]
     late = sum(each > LATE_MS for each in slow)
     yield "work for a picture at 20x, times 4, median", f"{median(slow):.1f} ms", "< 33 ms"
     yield f"pictures whose work, times 4, is over {LATE_MS} ms", f"{late} of {len(slow)}", "0"
@@ -247,9 +247,9 @@ def _stopped(browser: Browser) -> Iterator[tuple[str, str, str]]:
 
 def _works_ms(events: list[dict[str, Any]]) -> list[float]:
     """Return the processor time of the page's main thread from each picture to the next."""
-    draws = [each for each in events if each["name"] == "FireAnimationFrame"]
-    thread = Counter((each["pid"], each["tid"]) for each in draws).most_common(1)[0][0]
-    asked = sorted(each["ts"] for each in draws if (each["pid"], each["tid"]) == thread)
+    draws = [event for event in events if event["name"] == "FireAnimationFrame"]
+    thread = Counter((draw["pid"], draw["tid"]) for draw in draws).most_common(1)[0][0]
+    asked = sorted(draw["ts"] for draw in draws if (draw["pid"], draw["tid"]) == thread)
     works = [0.0] * len(asked)
     for task in events:
         if task["name"] != TASK or task.get("ph") != "X" or (task["pid"], task["tid"]) != thread:

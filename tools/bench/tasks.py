@@ -79,11 +79,11 @@ def parts_of(firmware: Path) -> dict[str, Counter[str]]:
     """Return the bytes of flash and RAM of a firmware, by part."""
     command = ["avr-nm", "-S", "-C", "--radix=d", str(firmware)]
     said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    found: dict[str, Counter[str]] = {part: Counter() for part in PARTS}
+    parts: dict[str, Counter[str]] = {part: Counter() for part in PARTS}
     for size, kind, name in SYMBOL.findall(said):
         part = next(part for part, names in PARTS.items() if re.search(names, name))
-        found[part]["ram" if kind in "bBdD" else "flash"] += int(size)
-    return found
+        parts[part]["ram" if kind in "bBdD" else "flash"] += int(size)
+    return parts
 
 
 def turns_cycles(tasks: int) -> int:

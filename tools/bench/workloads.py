@@ -16,7 +16,7 @@ from tiniscript.bytecode.image import HEADER_BYTES
 from tiniscript.vm.runner import run
 
 KIT = robots.load(robots.DEFAULT).kit
-SENSOR = [each.name for each in KIT.sensors].index("DISTANCE")
+SENSOR = [sensor.name for sensor in KIT.sensors].index("DISTANCE")
 
 
 class Work(NamedTuple):

@@ -74,16 +74,16 @@ def pieces(linked: str) -> tuple[list[Piece], list[Section]]:
         at = sizes.setdefault(pattern, 0)
         sections.append(Section(begin, begin + size, list(sizes).index(pattern), at))
         sizes[pattern] = at + size
-    return [Piece(*each) for each in sizes.items()], sections
+    return [Piece(*item) for item in sizes.items()], sections
 
 
 def calls(disassembled: str, sections: list[Section]) -> list[Call]:
     """Return what leads from one piece to another."""
 
     def place(address: int) -> tuple[int, int] | None:
-        for each in sections:
-            if each.begin <= address < each.end:
-                return each.number, each.at + address - each.begin
+        for section in sections:
+            if section.begin <= address < section.end:
+                return section.number, section.at + address - section.begin
         return None
 
     found = []

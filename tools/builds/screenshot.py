@@ -129,7 +129,7 @@ def take(language: str, scene: str, target: Path) -> None:
     if pages.wrong:
         raise SystemExit(f"the page said {pages.wrong[0]}")
     kept = PngInfo()
-    said = sorted({row.strip() for each in words for row in each.splitlines() if row.strip()})
+    said = sorted({row.strip() for word in words for row in word.splitlines() if row.strip()})
     kept.add_text(KEPT, json.dumps([each for each in said if is_said(each)]))
     _sheet(shots).quantize(COLOURS).save(target, optimize=True, pnginfo=kept)
 
@@ -151,7 +151,7 @@ def _served(scene: str) -> Iterator[tuple[str, str]]:
             while True:
                 for k, token in enumerate(tokens):
                     here = {"do": "here", "text": f"SI|{TURNS[k % len(TURNS)]}", "robot": "tinibot"}
-                    done = [each.name for each in catalogue.folders()[: k % 5]]
+                    done = [folder.name for folder in catalogue.folders()[: k % 5]]
                     room.answer(token, PUPIL, {**here, "lessons": done, "hand": k == HAND})
                 if is_over.wait(1):
                     return
@@ -335,7 +335,7 @@ def stale(language: str, scene: str = "") -> str:
         words = json.loads(str(image.info.get(KEPT, "[]")))
     if not words:
         return f"{path.name} does not say what can be read in it. Take it:  {COMMAND}"
-    gone = [each for each in words if not is_said(each)]
+    gone = [word for word in words if not is_said(word)]
     if gone:
         return f"{path.name} shows “{gone[0]}”, which the page says no more. Take it:  {COMMAND}"
     return ""

@@ -99,7 +99,7 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
 
 def halves_of(found: list[Document]) -> list[str]:
     """Return the languages of the documents, English first."""
-    return [each for each in languages() if any(each in one.sources for one in found)]
+    return [language for language in languages() if any(language in one.sources for one in found)]
 
 
 def _chosen(language: str) -> str:

@@ -107,7 +107,7 @@ def _name(heading: Token, known: dict[str, int]) -> str:
 
 def _to_page(found: re.Match[str], folder: Path, documents: list[Path]) -> str:
     kind, path, anchor = found.group(1), found.group(2), found.group(3) or ""
-    if (folder / path).resolve() in {each.resolve() for each in documents}:
+    if (folder / path).resolve() in {document.resolve() for document in documents}:
         path = path.removesuffix(".md") + ".html"
     elif (folder / path).is_dir():
         path = path.rstrip("/") + "/index.html"

@@ -76,7 +76,7 @@ def main(words: Sequence[str] | None = None) -> int:
     if not options.no_installer and "windows" in systems:
         missing += add_installer(folder, INSTALLER_URL.format(INSTALLER))
     add_texts(folder)
-    titles = ", ".join(SYSTEMS[each].title for each in systems)
+    titles = ", ".join(SYSTEMS[system].title for system in systems)
     add_readme(folder, titles, ", ".join(pythons), missing)
     for each in missing:
         print(f"missing: {each.said(SOURCE)} ({each.why})", file=sys.stderr)

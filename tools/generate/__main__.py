@@ -109,7 +109,7 @@ def image_table() -> str:
 def instruction_table() -> str:
     rows = []
     for op in opcodes.OPS:
-        words = [op.name, *(f"{each.name}:{each.kind.name}" for each in op.operands)]
+        words = [op.name, *(f"{operand.name}:{operand.kind.name}" for operand in op.operands)]
         rows.append(
             (f"`{op.opcode.hex(' ')}`", f"`{' '.join(words)}`", f"`{op.effect}`", op.meaning)
         )

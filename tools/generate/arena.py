@@ -41,7 +41,7 @@ def driven(program: str, robot: str, world: World, lasts_ms: int) -> Way:
     for _ in range(0, lasts_ms, SAMPLE_MS):
         simulation.go(SAMPLE_MS)
         poses.append(simulation.robot.pose)
-    points = [(each.x_cm, each.y_cm) for each in poses]
+    points = [(pose.x_cm, pose.y_cm) for pose in poses]
     begin, end = ([(each.x, each.y) for each in hull.outline(poses[k])] for k in (0, -1))
     simulation.close()
     return Way(bends(points), begin, end)
@@ -52,7 +52,7 @@ def bends(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
     if len(points) < 3:
         return points
     chord = Segment(Point(*points[0]), Point(*points[-1]))
-    off = [distance(chord, *each) for each in points[1:-1]]
+    off = [distance(chord, *point) for point in points[1:-1]]
     k = off.index(max(off)) + 1
     if off[k - 1] < 0.2:
         return [points[0], points[-1]]
@@ -66,7 +66,7 @@ def arena(world: World, way: Way, left: float, top: float, scale: float) -> list
         return left + x * scale, top + (world.height_cm - y) * scale
 
     def row(points: Points) -> str:
-        return " ".join("{:.1f},{:.1f}".format(*at(*each[:2])) for each in points)
+        return " ".join("{:.1f},{:.1f}".format(*at(*point[:2])) for point in points)
 
     def line(points: Points, colour: str, width: float) -> str:
         return (

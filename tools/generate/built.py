@@ -26,7 +26,7 @@ def kept() -> Made:
     """Return how what is kept of these documents is made, by its name in a clone."""
     made = wiring_pages(COMMAND, is_kept=True)
     pages = {name: make for name, make in made.items() if name.startswith(f"docs/{SOURCE}/")}
-    shown = _shown() | {each for make in pages.values() for each in _drawings(make())}
+    shown = _shown() | {drawing for make in pages.values() for drawing in _drawings(make())}
     return pages | {name: make for name, make in made.items() if name in shown}
 
 

@@ -109,7 +109,7 @@ def cpp_file(command: str, name: str, about: Sequence[str], body: str, *includes
     rows += ["//", *(f"// {row}" for row in about)] if about else []
     if name.endswith(".h"):
         rows += ["", "#pragma once", "", "#include <stdint.h>"]
-    rows += ["", *(f'#include "{each}"' if each else "" for each in includes)]
+    rows += ["", *(f'#include "{include}"' if include else "" for include in includes)]
     rows += ["", "// clang-format off", "", "namespace tiniscript {", "", body]
     rows += ["}  // namespace tiniscript", ""]
     return "\n".join(rows)
@@ -185,9 +185,9 @@ def byte_of(kind: opcodes.OperandKind) -> str:
 
 
 def decode_form_of(op: opcodes.Op) -> DecodeForm:
-    jumps = [each.kind.name.startswith(("fwd", "back")) for each in op.operands]
+    jumps = [operand.kind.name.startswith(("fwd", "back")) for operand in op.operands]
     assert not any(jumps[:-1]), "a jump is the last operand"
-    kinds = [byte_of(each.kind) for each in op.operands]
+    kinds = [byte_of(operand.kind) for operand in op.operands]
     if op.implied is not None:
         assert op.size == 1 and op.code % opcodes.SHORTS == op.implied.value
         kinds = [byte_of(op.implied.kind)]
@@ -262,7 +262,7 @@ def tables(command: str) -> str:
         assert op.code < FIRST_FOUR
         entries[op.code] = f"kHasTasks ? {entries[op.code]} : 0"
     with_tasks = {decode_form_of(op) for op in TASK_OPS}
-    assert list(rows)[-len(with_tasks) :] == [each for each in rows if each in with_tasks]
+    assert list(rows)[-len(with_tasks) :] == [row for row in rows if row in with_tasks]
     kinds = {byte_of(kind): kind for kind in opcodes.OPERAND_KINDS.values() if kind.size == 1}
     ranges = [(0, 255) if name == "any" else (kinds[name].low, kinds[name].high) for name in BYTES]
     return "\n".join(

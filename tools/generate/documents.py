@@ -56,9 +56,9 @@ def link_document(document: str) -> str:
 def text_document() -> str:
     """Return `docs/develop/text.md` with the table of levels."""
     rows = [
-        (f"`{each.name}`", ", ".join(f"`{word}`" for word in sorted(each.lacks)) or "nothing",
-         each.room, min(CODE_BYTES, each.room))
-        for each in LEVELS.values()
+        (f"`{level.name}`", ", ".join(f"`{word}`" for word in sorted(level.lacks)) or "nothing",
+         level.room, min(CODE_BYTES, level.room))
+        for level in LEVELS.values()
     ]  # fmt: skip
     made = table(("level", "lacks", "room in bytes", "bytes of code, at most"), rows)
     return spliced(_text("docs/develop/text.md"), "levels", made)
@@ -99,7 +99,7 @@ def language_document(document: str, language: str) -> str:
 
 def list_of_documents(command: str) -> str:
     """Return `docs/README.md`: title and first sentence of each, in all languages side by side."""
-    found = [each for each in documents(ROOT) if each.sources.get(SOURCE) != LIST]
+    found = [document for document in documents(ROOT) if document.sources.get(SOURCE) != LIST]
     shown = [each for each in languages() if any(each in one.sources for one in found)]
 
     def said(key: str) -> list[str]:
@@ -133,7 +133,7 @@ def _about(text: str) -> tuple[str, str]:
     """Return the title of a document, and the sentence that says who reads it, and for what."""
     _, _, body = f"\n{text}".partition("\n# ")
     title, *paragraphs = body.split("\n\n")
-    first = next((each for each in paragraphs if not re.match(r"[\[!<]", each)), "")
+    first = next((paragraph for paragraph in paragraphs if not re.match(r"[\[!<]", paragraph)), "")
     prose = first if re.match(r"\w|`[^`]", first) else ""
     words = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", " ".join(prose.split()))
     return title, re.split(r"(?<=\.)\s", words)[0]
@@ -191,8 +191,8 @@ def _takes(kind: Kind) -> list[str]:
     found = ["`at`"] if kind.places else []
     if kind.words:
         found.append("`what`" if kind.words in WHATS else "`words`")
-    for each in kind.numbers:
-        is_said = each.default is not None and each.default < each.high
-        found.append(f"`{each.key}`" + (f" ({each.default:g})" if is_said else ""))
+    for number in kind.numbers:
+        is_said = number.default is not None and number.default < number.high
+        found.append(f"`{number.key}`" + (f" ({number.default:g})" if is_said else ""))
     found += [f"`{each}`" for each in (*kind.flags, *(AREA if kind.has_area else ()))]
     return found

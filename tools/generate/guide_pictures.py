@@ -56,14 +56,14 @@ DRIVES: dict[str, tuple[str, str, Drives]] = {  # the guide, how its program beg
 def guide_pictures(command: str) -> dict[str, partial[str]]:
     """Return how each picture of `docs/pictures/` is made, by its name. `command` makes them."""
     made = {name: partial(drive, command, *row) for name, row in DRIVES.items()}
-    made |= {f"phone.{each}.svg": partial(phone, command, each) for each in GUIDES}
+    made |= {f"phone.{guide}.svg": partial(phone, command, guide) for guide in GUIDES}
     return made | {"lesson.svg": partial(lesson, command), "hand.svg": partial(hand, command)}
 
 
 def drive(command: str, guide: str, begin: str, drives: Drives) -> str:
     """Return the way of a guide's program in each world."""
     fences = re.findall(r"^```tiniscript\n(.*?)^```", _text(guide), re.M | re.S)
-    [program] = [each for each in fences if each.startswith(begin)]
+    [program] = [fence for fence in fences if fence.startswith(begin)]
     runs = ((world, program.replace("SB|", "SI|"), lasts_ms) for world, lasts_ms in drives)
     return _ways(command, "tinibot", *runs)
 

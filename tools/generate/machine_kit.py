@@ -432,7 +432,7 @@ def random_programs() -> Iterator[Run]:
             yield run._replace(
                 name=f"{run.name} (called every 7 ms, time wraps around)", when=SELDOM
             )
-            sensors = tuple(each.name for each in program.kit.readings)
+            sensors = tuple(reading.name for reading in program.kit.readings)
             yield run.at(Pace(OFTEN[seed % len(OFTEN)], sensors, 130, 20, 90))
 
 

@@ -69,10 +69,12 @@ def rows(language: str, is_small: bool = False) -> list[str]:
     `is_small`: what an ATmega328P never says is empty, so that all others keep their numbers.
     """
     names = [name for _, name, _ in sorted((*FAULTS, *LINK_FAULTS))]
-    rows = [("problem", each) for each in PROBLEMS] + [("remark", each) for each in REMARKS]
+    rows = [("problem", problem) for problem in PROBLEMS] + [
+        ("remark", remark) for remark in REMARKS
+    ]
     unsaid = _unsaid() if is_small else set()
     return [
-        *("" if each in unsaid else said(*each, language) for each in rows),
+        *("" if row in unsaid else said(*row, language) for row in rows),
         *("" if ("fault", each) in unsaid else each for each in names),
     ]
 

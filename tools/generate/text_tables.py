@@ -80,8 +80,8 @@ def ranges() -> list[tuple[int, int]]:
     """Return the ranges of arguments, each once, in the order of their words."""
     found: list[tuple[int, int]] = []
     for word in words_in_order():
-        for each in word.arguments:
-            pair = (each.low, each.high)
+        for argument in word.arguments:
+            pair = (argument.low, argument.high)
             if pair not in found and pair != (LOWEST, HIGHEST) and role_of(word) != "function":
                 found.append(pair)
     return found

@@ -76,7 +76,7 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
         except CannotMake as why:
             return _fail(str(why))
         wrong = list(facts.complaints(clones[0].root))
-        wrong += [each for each in facts.complaints(ROOT) if "not committed" in each]
+        wrong += [complaint for complaint in facts.complaints(ROOT) if "not committed" in complaint]
         for each in wrong:
             _say(each)
         if wrong and not options.as_is:
@@ -132,7 +132,7 @@ def lacks(parts: Sequence[str]) -> str:
 
 def _clones(scratch: Path, url: str, whole_stick: bool) -> list[Clone]:
     """Take the commit into clean folders, whose times, rights and address are the release's."""
-    found = []
+    clones = []
     for number, place in enumerate(PLACES, 1):
         root, parts = scratch / place, scratch / f"parts{number}"
         parts.mkdir()
@@ -146,9 +146,9 @@ def _clones(scratch: Path, url: str, whole_stick: bool) -> list[Clone]:
         if url and facts.with_address(text, url) != text:
             about.write_text(facts.with_address(text, url), encoding="utf-8")
             _commit(root)
-        found.append(Clone(root, parts, facts.version(root), facts.address(root),
+        clones.append(Clone(root, parts, facts.version(root), facts.address(root),
                            facts.epoch(ROOT), number, whole_stick))  # fmt: skip
-    return found
+    return clones
 
 
 def _commit(root: Path) -> None:

@@ -60,9 +60,9 @@ def links(language: str, english: str, others: Iterable[str]) -> list[str]:
     """Return the links on a document to itself in other languages."""
     here = PurePosixPath(name_in(language, english)).parent
     return [
-        f"[{about(each).name}]({Path(os.path.relpath(name_in(each, english), here)).as_posix()})"
-        for each in others
-        if each != language
+        f"[{about(other).name}]({Path(os.path.relpath(name_in(other, english), here)).as_posix()})"
+        for other in others
+        if other != language
     ]
 
 
@@ -70,19 +70,19 @@ def _rows(root: Path, part: str, *files: str, folder: str = "") -> list[Document
     """Return documents whose pages are called as their English files."""
     return [
         Document(
-            folder + ENDING.sub("", PurePosixPath(each).name).lower(), part, sources(root, each)
+            folder + ENDING.sub("", PurePosixPath(file).name).lower(), part, sources(root, file)
         )
-        for each in files
+        for file in files
     ]
 
 
 def _guides(root: Path, part: str, *names: str) -> list[Document]:
-    return _rows(root, part, *(f"{PAGES}{each}.md" for each in names))
+    return _rows(root, part, *(f"{PAGES}{name}.md" for name in names))
 
 
 def _pages(root: Path, *names: str) -> list[Document]:
     """Return pages for developers, which are in English alone."""
-    return _rows(root, "build", *(f"docs/develop/{each}.md" for each in names))
+    return _rows(root, "build", *(f"docs/develop/{name}.md" for name in names))
 
 
 def _files(root: Path, pattern: str) -> list[str]:

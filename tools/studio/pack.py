@@ -46,21 +46,21 @@ def imports_of(source: bytes, name: str, is_package: bool, everywhere: bool) -> 
             skipped |= {each for part in node.body for each in ast.walk(part)}
         elif not everywhere and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             skipped |= set(ast.walk(node))
-    found: set[str] = set()
+    imports: set[str] = set()
     for node in ast.walk(tree):
         if node in skipped:
             continue
         if isinstance(node, ast.Import):
-            found |= {each.name for each in node.names}
+            imports |= {each.name for each in node.names}
         elif isinstance(node, ast.ImportFrom):
             base = node.module or ""
             if node.level:
                 parts = name.split(".") if is_package else name.split(".")[:-1]
                 parts = parts[: len(parts) - node.level + 1]
                 base = ".".join([*parts, *([base] if base else [])])
-            found.add(base)
-            found |= {f"{base}.{each.name}" for each in node.names}
-    return found
+            imports.add(base)
+            imports |= {f"{base}.{each.name}" for each in node.names}
+    return imports
 
 
 class Packer:
@@ -110,8 +110,8 @@ def _stripped(code: CodeType) -> CodeType:
     """Return code without the lines of its source, which are a fifth of it and pack badly."""
     entries, rest = divmod(len(code.co_code) // 2, UNITS)
     lines = bytes([NO_LINES + UNITS - 1] * entries + [NO_LINES + rest - 1] * (rest > 0))
-    constants = tuple(_stripped(each) if isinstance(each, CodeType) else each
-                      for each in code.co_consts)  # fmt: skip
+    constants = tuple(_stripped(constant) if isinstance(constant, CodeType) else constant
+                      for constant in code.co_consts)  # fmt: skip
     return code.replace(co_linetable=lines, co_consts=constants)
 
 

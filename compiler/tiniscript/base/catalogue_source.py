@@ -82,10 +82,10 @@ class Catalogue:
 
     def groups(self) -> dict[str, list[Entry]]:
         """Return the texts of each key, in their order."""
-        found: dict[str, list[Entry]] = {}
+        groups: dict[str, list[Entry]] = {}
         for entry in self.entries.values():
-            found.setdefault(entry.key, []).append(entry)
-        return found
+            groups.setdefault(entry.key, []).append(entry)
+        return groups
 
 
 @dataclass

@@ -76,7 +76,9 @@ def find(name: str) -> str:
         if each in languages():
             return each
     team = code.partition("_")[0]
-    by_team = {about(each).english_name.lower(): each for each in languages()} if team else {}
+    by_team = (
+        {about(language).english_name.lower(): language for language in languages()} if team else {}
+    )
     return by_team.get(team, SOURCE)
 
 
@@ -126,7 +128,11 @@ def keys(name: str) -> list[str]:
 def told_in(name: str, key: str) -> list[str]:
     """Return the languages in which a text is there, the one that is translated first."""
     english = text(name, key, SOURCE)
-    return [each for each in languages() if each == SOURCE or text(name, key, each) != english]
+    return [
+        language
+        for language in languages()
+        if language == SOURCE or text(name, key, language) != english
+    ]
 
 
 def counted(name: str, key: str, count: int, language: str) -> str:
@@ -197,9 +203,9 @@ def kept_files() -> dict[str, bytes]:
     """Return all catalogues as a package has them, by their paths in FOLDER."""
     names = sorted({path.stem for path in FOLDER.glob("*/*.toml") if path.name != ITSELF})
     made: dict[str, Any] = {}
-    for each in languages():
-        made |= {f"{each}/{name}": texts(name, each) for name in names}
-        made[f"{each}/{ITSELF.removesuffix('.toml')}"] = _said(each)
+    for language in languages():
+        made |= {f"{language}/{name}": texts(name, language) for name in names}
+        made[f"{language}/{ITSELF.removesuffix('.toml')}"] = _said(language)
     return {name + KEPT: marshal.dumps(each, KEPT_FORM) for name, each in made.items()}
 
 

@@ -89,7 +89,7 @@ def _form_of(rule: str, names: tuple[object, ...]) -> tuple[str, str]:
     """Return the digit of a form for each number, or why there is none."""
     from gettext import c2py
 
-    if not names or any(each not in PLURALS or names.count(each) > 1 for each in names):
+    if not names or any(name not in PLURALS or names.count(name) > 1 for name in names):
         return "", f"forms: it is no list of some of {', '.join(PLURALS)}"
     try:
         rule_of = c2py(rule)
@@ -142,7 +142,7 @@ def read_own(path: Path) -> Own:
             own.problems.append((row.line, f"{row.key}: it is there twice"))
             continue
         values = row.value if isinstance(row.value, list) else [row.value]
-        texts = [_forms(each) for each in values]
+        texts = [_forms(value) for value in values]
         if row.value is None or "\ufffd" in row.text:
             texts = []
         elif None in texts or not texts:

@@ -70,7 +70,7 @@ def devices_of(row: Row) -> list[tuple[str, int]]:
     """Return the devices that an instruction names: "sensor" or "actuator", and its number."""
     if row.op is None:
         return []
-    kinds = [each.kind.name for each in row.op.operands]
+    kinds = [operand.kind.name for operand in row.op.operands]
     named = list(zip(kinds, row.operands, strict=True))
     if row.op.implied is not None:
         named.append((row.op.implied.kind.name, row.op.implied.value))

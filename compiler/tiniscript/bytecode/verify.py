@@ -280,7 +280,7 @@ class _Verifier:
                 self.refuse("BAD_TARGET")
             if kind == _IF and end == around.end:
                 return  # it shares the block around it
-        if sum(_WORDS[each.kind] for each in self.blocks) + _WORDS[kind] > NEST_WORDS:
+        if sum(_WORDS[block.kind] for block in self.blocks) + _WORDS[kind] > NEST_WORDS:
             self.refuse("TOO_DEEP")
         self.blocks.append(_Block(kind, self.after, end))
         if kind == _COUNT:
@@ -304,7 +304,7 @@ class _Verifier:
 
     def leave(self, kind: str) -> None:
         """Leave the innermost loop; the first that leaves it may say where it ends."""
-        loop = next((each for each in reversed(self.blocks) if each.kind != _IF), None)
+        loop = next((block for block in reversed(self.blocks) if block.kind != _IF), None)
         if loop is None or loop.kind != kind:
             self.refuse("NOT_OPEN")
         if self.target > len(self.code):

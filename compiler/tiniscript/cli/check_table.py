@@ -76,7 +76,7 @@ def _row(found: Found, options: Namespace, robot: Robot, language: str) -> Row:
     else:
         compiled = compiling.compile_input(given, robot, is_strict=False)
     compiled = compiling.for_level(compiled, robot, options.text_level)
-    said = [message(each, compiled.source, language) for each in compiled.diagnostics]
+    said = [message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics]
     said.sort(key=lambda each: each.severity != "mistake")
     return Row(found.name, said, repaired, "")
 

@@ -65,7 +65,7 @@ def _ready(robot: Robot, sources: Sources | None) -> Ready | None:
         return ready.find(ready.title_of(robot), robot.board.chip, sources.digest(robot))
     if robot.name not in robots.names():
         return None
-    files = {(each.title, each.board): each for each in ready.files()}
+    files = {(file.title, file.board): file for file in ready.files()}
     for title in (ready.title_of(robot), robot.name):
         if (title, robot.board.chip) in files:
             return files[title, robot.board.chip]

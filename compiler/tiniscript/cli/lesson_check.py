@@ -149,7 +149,7 @@ class _Marker:
         return Mark(given.name, found.verdict, found.seed, self._said(found.findings), found.run)
 
     def _said(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
-        return tuple((each.kind, sentence(each, self.language)) for each in findings)
+        return tuple((finding.kind, sentence(finding, self.language)) for finding in findings)
 
     def _mistakes(self, compiled: Compiled) -> Iterable[tuple[str, str]]:
         for diagnostic in compiled.diagnostics:
@@ -181,8 +181,8 @@ def _programs(options: Namespace) -> Iterator[tuple[str, Found]]:
     names = list(islice(in_folder(folder, TEXTS), PROGRAMS + 1))
     if len(names) > PROGRAMS:
         raise CommandError(2, "lesson_many", file=inputs.shown(folder), most=str(PROGRAMS))
-    for each in names:
-        yield os.path.relpath(each, folder), read(each)
+    for name in names:
+        yield os.path.relpath(name, folder), read(name)
 
 
 def _name_notes(marks: Sequence[Mark], options: Namespace, language: str) -> None:
@@ -204,7 +204,7 @@ def _is_note(found: Found) -> bool:
     if found.name.lower().endswith(PROGRAM_ENDS) or found.problem is not None:
         return False
     letters = unicodedata.normalize("NFD", Path(found.name).name)
-    plain = "".join(each for each in letters if not unicodedata.combining(each))
+    plain = "".join(letter for letter in letters if not unicodedata.combining(letter))
     if LIKE_NOTES.match(plain) is None:
         return False
 

@@ -205,7 +205,7 @@ def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, lis
         name, equals, values = each.partition("=")
         name = name.strip().upper()
         if not name or name not in names:
-            known = ", ".join(each.name for each in robot.kit.sensors) or text(
+            known = ", ".join(sensor.name for sensor in robot.kit.sensors) or text(
                 "no_sensors", language
             )
             raise CommandError(2, "no_sensor", robot=robot.name, found=name or each, known=known,

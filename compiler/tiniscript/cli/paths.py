@@ -30,10 +30,12 @@ from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import OPTIONS
 
 # Inputs by their name in `Namespace`: the sentence that describes the input.
-READS = {each.name: each.kind.reads for each in OPTIONS if each.kind and each.kind.reads}
+READS = {option.name: option.kind.reads for option in OPTIONS if option.kind and option.kind.reads}
 # Outputs: the name of the option, and the sentence for a file that cannot be written.
 WRITES = {
-    each.name: (each.flags, each.kind.writes) for each in OPTIONS if each.kind and each.kind.writes
+    option.name: (option.flags, option.kind.writes)
+    for option in OPTIONS
+    if option.kind and option.kind.writes
 }
 
 

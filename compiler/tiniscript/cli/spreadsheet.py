@@ -40,7 +40,7 @@ def beginnings() -> tuple[bytes, ...]:
 
     A spreadsheet that has kept such a file may have given it other line ends.
     """
-    empty = [as_csv(table, each, ()) for table in TABLES for each in languages()]
+    empty = [as_csv(table, language, ()) for table in TABLES for language in languages()]
     return (*empty, *(each.replace(b"\n", b"\r\n") for each in empty))
 
 

@@ -60,7 +60,7 @@ def is_help(name: str) -> bool:
 
 def _elsewhere(verb: str) -> str:
     """Return what the same is called elsewhere, in each language."""
-    return " ".join(_plain(said_of(verb, "words", each)) for each in languages())
+    return " ".join(_plain(said_of(verb, "words", language)) for language in languages())
 
 
 def refuse_program(name: str) -> None:
@@ -134,7 +134,7 @@ def _stems(text: str) -> set[str]:
 @cache
 def _idle() -> frozenset[str]:
     """Return words that say nothing of what a command does."""
-    return frozenset(word for each in languages() for word in said("idle", each).split())
+    return frozenset(word for language in languages() for word in said("idle", language).split())
 
 
 def _plain(text: str) -> str:

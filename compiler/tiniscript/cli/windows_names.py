@@ -19,7 +19,7 @@ def has_no_file(path: str) -> bool:
     """Return whether Windows would make no file of this name, or one of another name."""
     rest = ntpath.splitdrive(path)[1].replace("/", "\\")
     parts = [each for each in rest.split("\\") if each not in ("", ".", "..")]
-    return any(_is_impossible(each) for each in parts)
+    return any(_is_impossible(part) for part in parts)
 
 
 def is_device(path: str) -> bool:

@@ -85,7 +85,10 @@ def met(robot: WireRobot) -> Answer:
 def all_checks(kit: LinkKit) -> list[Check]:
     return [
         *LINK_CHECKS,
-        *(Check(f"programs: {each.name}", each.answer(), _program(each)) for each in kit.programs),
+        *(
+            Check(f"programs: {program.name}", program.answer(), _program(program))
+            for program in kit.programs
+        ),
         *(
             Check(f"refused: {each.name}", (f"{each.rule} {each.at}",), _refused(each.code))
             for each in kit.refused

@@ -69,7 +69,7 @@ def fixed(text: str, check: Check) -> Fixed:
     count = 0
     steps = _steps(found)
     while left > 0 and (repairs := next(steps, None)):
-        edits = [edit for each in repairs for edit in each]
+        edits = [edit for repair in repairs for edit in repair]
         changed = applied(text, edits)
         after = check(changed)
         left -= 1
@@ -202,9 +202,9 @@ class _InPlace:
         if begin in range(shown[-1].end):
             shown.append(Span(begin, begin + len(said)))
         return all(
-            each.code.number in others or self._begins_in(others, each.span.start)
-            for each in self.mistakes
-            if any(start <= each.span.start < end for start, end in shown)
+            mistake.code.number in others or self._begins_in(others, mistake.span.start)
+            for mistake in self.mistakes
+            if any(start <= mistake.span.start < end for start, end in shown)
         )
 
     def _begins_in(self, words: Set[str], place: int) -> bool:

@@ -91,4 +91,4 @@ def looks_wireless(port: str, description: str = "") -> bool:
 
 
 def without_driver(adapters: Iterable[Adapter]) -> list[Adapter]:
-    return [each for each in adapters if not each.has_port]
+    return [adapter for adapter in adapters if not adapter.has_port]

@@ -157,9 +157,9 @@ def _opened(
 def _only(found: Computer, virtual: tuple[str, ...]) -> str | None:
     """Return the only port that may be a robot's: of USB or Bluetooth, else of a virtual one."""
     names = [
-        each.port for each in found.ports
-        if "usb" in each.port.lower() or "acm" in each.port.lower()
-        or looks_wireless(each.port, each.description) or found.platform == "win32"
+        port.port for port in found.ports
+        if "usb" in port.port.lower() or "acm" in port.port.lower()
+        or looks_wireless(port.port, port.description) or found.platform == "win32"
     ]  # fmt: skip
     names = names or [*virtual]
     return names[0] if len(names) == 1 else None
@@ -167,7 +167,7 @@ def _only(found: Computer, virtual: tuple[str, ...]) -> str | None:
 
 def _without_port(found: Computer, virtual: tuple[str, ...]) -> tuple[Finding, ...]:
     """Return why there is no port to look at; ports that may be no robot's are named beside."""
-    listed = ", ".join([*(each.port for each in found.ports), *virtual])
+    listed = ", ".join([*(port.port for port in found.ports), *virtual])
     if len(found.ports) > 1:
         return (sure("which_port", ports=listed),)
     absent = _absent(found)

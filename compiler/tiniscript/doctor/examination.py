@@ -118,7 +118,7 @@ def examined(
         findings.append(sure("brown_out"))
     elif row_name(RESETS, hello.reset) == _WATCHDOG or after.fault == _STALL:
         findings.append(sure("hung"))
-    if not any(each.is_wrong for each in findings):
+    if not any(finding.is_wrong for finding in findings):
         name = hello.name.decode("utf-8", "replace")
         whose = expected.names(hello.kit) or f"{hello.kit:04x}"
         values = {
@@ -255,7 +255,7 @@ def _watched(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Restart]:
 def _restarts(restarts: list[Restart]) -> list[Finding]:
     """Return what restarts mean: it was the voltage for sure only where the chip tells it."""
     count = str(len(restarts))
-    driving = [each for each in restarts if each.was_running]
+    driving = [restart for restart in restarts if restart.was_running]
     if driving:
         is_told = any(each.cause == _BROWN_OUT for each in driving)
         return [Finding("motors_restart", is_told, {"count": count, "reset": driving[-1].cause})]

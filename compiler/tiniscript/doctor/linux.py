@@ -23,7 +23,7 @@ def looked(system: System) -> Computer:
 
 
 def _adapters(system: System) -> list[Adapter]:
-    found = []
+    adapters = []
     for name in system.names(USB):
         vendor, product = (
             system.text(f"{USB}/{name}/{each}") or "" for each in ("idVendor", "idProduct")
@@ -32,13 +32,13 @@ def _adapters(system: System) -> list[Adapter]:
         if chip is None:
             continue
         parts = [each for each in system.names(USB) if each.startswith(f"{name}:")]
-        drivers = [system.target(f"{USB}/{each}/driver") for each in parts]
+        drivers = [system.target(f"{USB}/{part}/driver") for part in parts]
         driver = next((each.rpartition("/")[2] for each in drivers if each), "")
         has_port = any(
-            inside.startswith("tty") for each in parts for inside in system.names(f"{USB}/{each}")
+            inside.startswith("tty") for part in parts for inside in system.names(f"{USB}/{part}")
         )
-        found.append(Adapter(chip[0], chip[1], driver, has_port))
-    return found
+        adapters.append(Adapter(chip[0], chip[1], driver, has_port))
+    return adapters
 
 
 def _bluetooth(system: System) -> str:

@@ -13,7 +13,7 @@ from tiniscript.doctor.system import Owner, System
 def looked(system: System) -> Computer:
     ports = system.ports()
     usb = _asked(system, "SPUSBDataType")
-    has_port = any("usb" in each.port.lower() for each in ports)
+    has_port = any("usb" in port.port.lower() for port in ports)
     adapters = None if usb is None else tuple(_adapters(usb, has_port))
     bluetooth, paired = _bluetooth(_asked(system, "SPBluetoothDataType"))
     return Computer(system.platform, tuple(ports), adapters, bluetooth, paired)

@@ -51,16 +51,16 @@ def shown_port(name: str) -> str:
 
 def values_of(finding: Finding) -> dict[str, str]:
     """Return the values of a finding as a report may have them."""
-    found = {}
+    values = {}
     for key, value in finding.values.items():
         if key == "ports":
-            found[key] = ", ".join(shown_port(each) for each in value.split(", "))
+            values[key] = ", ".join(shown_port(each) for each in value.split(", "))
         elif key == "by":
             names = [each if each in PROGRAMS else HIDDEN for each in value.split(", ") if each]
-            found[key] = ", ".join(names)
+            values[key] = ", ".join(names)
         else:
-            found[key] = HIDDEN if key in PRIVATE and value else value
-    return found
+            values[key] = HIDDEN if key in PRIVATE and value else value
+    return values
 
 
 def facts(computer: Computer) -> list[tuple[str, str]]:
@@ -68,13 +68,13 @@ def facts(computer: Computer) -> list[tuple[str, str]]:
     adapters = "?"
     if computer.adapters is not None:
         adapters = ", ".join(
-            f"{each.chip} ({each.driver or ('port' if each.has_port else '-')})"
-            for each in computer.adapters
+            f"{adapter.chip} ({adapter.driver or ('port' if adapter.has_port else '-')})"
+            for adapter in computer.adapters
         )
     modules = "?" if computer.paired is None else str(sum(map(is_module, computer.paired)))
     return [
         ("system", computer.platform),
-        ("ports", ", ".join(shown_port(each.port) for each in computer.ports) or "-"),
+        ("ports", ", ".join(shown_port(port.port) for port in computer.ports) or "-"),
         ("usb", adapters or "-"),
         ("bluetooth", computer.bluetooth),
         ("modules", modules),

@@ -46,10 +46,10 @@ def _chips(said: str) -> list[str]:
 
 def _names(said: str) -> list[str]:
     """Return the names of paired devices: the row behind their number."""
-    found = []
+    names = []
     rows = said.splitlines()
     for number, row in enumerate(rows[:-1]):
         name = _NAME.search(rows[number + 1])
         if _PAIRED.search(row) and name:
-            found.append(name[1])
-    return found
+            names.append(name[1])
+    return names

@@ -111,7 +111,7 @@ def _never_touches(criterion: Criterion, task: Task) -> Finding | None:
         place, within_cm = task.point(criterion), criterion.numbers["within_cm"]
         there = (at.ms for at in between(task.run.track) if math.dist(place, at[1:3]) <= within_cm)
         there_ms = next(there, math.inf)
-        touches = tuple(each for each in touches if each.ms < there_ms)
+        touches = tuple(touch for touch in touches if touch.ms < there_ms)
     if not touches:
         return None
     first = touches[0]
@@ -121,8 +121,8 @@ def _never_touches(criterion: Criterion, task: Task) -> Finding | None:
 
 def _follows(criterion: Criterion, task: Task) -> Finding | None:
     run, within_cm = task.run, criterion.numbers["within_cm"]
-    eyes = [each for each in run.robot.profile.body.places.values() if each.sees == "line"]
-    ahead_cm = sum(each.x_cm for each in eyes) / len(eyes) if eyes else 0.0
+    eyes = [place for place in run.robot.profile.body.places.values() if place.sees == "line"]
+    ahead_cm = sum(eye.x_cm for eye in eyes) / len(eyes) if eyes else 0.0
     segments = [each for line in run.world.lines for each in joined(list(line.points))]
     left = {
         (segment.a.x + (segment.b.x - segment.a.x) * k / n,
@@ -295,7 +295,7 @@ def _stopped_ms(shown: Shown, run: Run) -> int:
 def _beeps(criterion: Criterion, task: Task) -> Finding | None:
     beeps = task.run.beeps
     times, pitches = int(criterion.numbers["times"]), int(criterion.numbers["pitches"])
-    different = len({each.hertz for each in beeps})
+    different = len({beep.hertz for beep in beeps})
     values = {"times": str(times), "found": str(len(beeps)), "pitches": str(pitches),
               "different": str(different)}  # fmt: skip
     if not beeps:
@@ -304,8 +304,8 @@ def _beeps(criterion: Criterion, task: Task) -> Finding | None:
         return Finding("beeps", "beeps/few", values)
     if different < pitches:
         return Finding("beeps", "beeps/pitches", values)
-    seconds = [in_seconds(each.ms) for each in beeps]
-    return _nowhere(criterion, task, [each.pose for each in beeps], values, seconds)
+    seconds = [in_seconds(beep.ms) for beep in beeps]
+    return _nowhere(criterion, task, [beep.pose for beep in beeps], values, seconds)
 
 
 def _blinks(criterion: Criterion, task: Task) -> Finding | None:

@@ -65,8 +65,8 @@ def moving(tokens: Sequence[Token], moves: Collection[str] = MOVES) -> list[int]
 
 def _has_power(tokens: Sequence[Token], at: int) -> bool:
     values = _values(tokens, at)
-    zeros = [len(each) == 1 and each[0].kind == NUMBER and not float(each[0].text)
-             for each in values]  # fmt: skip
+    zeros = [len(value) == 1 and value[0].kind == NUMBER and not float(value[0].text)
+             for value in values]  # fmt: skip
     return not all(zeros) if tokens[at].text == "M" else not any(zeros)
 
 

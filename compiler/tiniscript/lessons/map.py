@@ -26,7 +26,7 @@ def plan(lesson: Lesson, title: str) -> str:
     """Return the drawing, one unit of which is a centimetre. `title` is for who cannot see it."""
     world = lesson.world
     width, height = world.width_cm, world.height_cm
-    moved = {(each.place.part, each.place.number) for each in lesson.variations}
+    moved = {(variation.place.part, variation.place.number) for variation in lesson.variations}
     parts = [_grid(width, height)]
 
     def dash(part: str, number: int) -> str:
@@ -75,29 +75,29 @@ def _grid(width: float, height: float) -> str:
 
 
 def _goals(lesson: Lesson) -> list[str]:
-    found = []
+    goals = []
     for criterion in lesson.criteria:
         if criterion.area and criterion.places[0].part == "start":
-            found.append(_area(criterion, lesson))
+            goals.append(_area(criterion, lesson))
         if criterion.kind not in GOALS or criterion.words:
             continue
         for number, place in enumerate(criterion.places, 1):
             x, y = point_of(place, lesson.world, False)
             y = lesson.world.height_cm - y
             within_cm = criterion.numbers["within_cm"]
-            found.append(
+            goals.append(
                 f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{within_cm:g}" fill="none" stroke="#777"/>'
             )
             if len(criterion.places) > 1:
-                found.append(
+                goals.append(
                     f'<text x="{x:.1f}" y="{y + 3:.1f}" font-size="9" text-anchor="middle"'
                     f' font-family="sans-serif">{number}</text>'
                 )
             elif place.part != "start":
-                found.append(
+                goals.append(
                     f'<path d="M{x:.1f} {y:.1f}v-12l9 3.5l-9 3.5" fill="#fff" stroke="#333"/>'
                 )
-    return found
+    return goals
 
 
 def _area(criterion: Criterion, lesson: Lesson) -> str:

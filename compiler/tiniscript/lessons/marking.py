@@ -94,7 +94,7 @@ class Marking:
             return self._next(run)
         findings = explained(found, self._text, self._lesson, run.ending)
         if findings:
-            said = {each.key for each in findings}
+            said = {finding.key for finding in findings}
             of_text = [each for each in self._of_text if each.key not in said]
             return Outcome(FAILED, self.seed, (*findings, *of_text), run)
         if len(self._seeds) > 1:

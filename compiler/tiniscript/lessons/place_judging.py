@@ -30,7 +30,7 @@ def _is_outside(criterion: Criterion, task: Task, points: Iterable[Point]) -> bo
     if task.mirrored:
         low, high = -high, -low
     x, y = task.point(criterion)
-    return not all(left <= each.x - x <= right and low <= each.y - y <= high for each in points)
+    return not all(left <= point.x - x <= right and low <= point.y - y <= high for point in points)
 
 
 def _ends_in(criterion: Criterion, task: Task) -> Finding | None:

@@ -67,8 +67,8 @@ def read(text: str, world: World, name: str) -> Lesson:
             root.number("noise_percent", 0, MOST_NOISE * ONE) / ONE / 100,
             root.yes_no("mirror", False),
             world,
-            tuple(_variation(each, world) for each in _rows(root, "varies")),
-            tuple(_criterion(each, world, known) for each in _rows(root, "criteria")),
+            tuple(_variation(row, world) for row in _rows(root, "varies")),
+            tuple(_criterion(row, world, known) for row in _rows(root, "criteria")),
         )
         if not lesson.criteria and not root.reasons:
             root.complain("no_criteria", "criteria")
@@ -78,8 +78,8 @@ def read(text: str, world: World, name: str) -> Lesson:
 def read_answers(text: str) -> tuple[list[Answer], list[Answer]]:
     """Return the right answers of a lesson and the typical wrong ones. Raises LessonRefused."""
     with root_of(text, LessonRefused) as root:
-        right = [_answer(each, False) for each in _rows(root, "right")]
-        wrong = [_answer(each, True) for each in _rows(root, "wrong")]
+        right = [_answer(row, False) for row in _rows(root, "right")]
+        wrong = [_answer(row, True) for row in _rows(root, "wrong")]
     return right, wrong
 
 
@@ -110,11 +110,11 @@ def _said(says: Table) -> dict[str, str]:
     gaps = GAP.findall(next(filter(None, texts), ""))
     names = dict.fromkeys([*gaps, "place", *languages(), *OF_SENTENCES])
     values = {each: says.text(each) or "" for each in names if says.has(each)}
-    places = {each: values[each] for each in languages() if each in values}
+    places = {language: values[language] for language in languages() if language in values}
     finding = Finding("", key, values, ByLanguage({SOURCE: values.get("place", ""), **places}))
     says.finish()
     try:
-        return {each: sentence(finding, each) for each in languages()}
+        return {language: sentence(finding, language) for language in languages()}
     except KeyError as lacking:
         name = str(lacking.args[0])
         if name.startswith("said/"):
@@ -126,10 +126,10 @@ def _said(says: Table) -> dict[str, str]:
 
 def _labels(table: Table) -> dict[str, str]:
     """Return a text in each language that it is there in; one must be."""
-    found: ByLanguage[str] = ByLanguage()
+    labels: ByLanguage[str] = ByLanguage()
     for language in [each for each in languages() if table.has(each)] or [SOURCE]:
-        found[language] = table.label(language, LABEL_CHARACTERS, f'{language} = "…"') or ""
-    return found
+        labels[language] = table.label(language, LABEL_CHARACTERS, f'{language} = "…"') or ""
+    return labels
 
 
 def _variation(table: Table, world: World) -> Variation:
@@ -163,7 +163,7 @@ def _known(robot: Robot) -> dict[str, tuple[str, ...]]:
         "event": EVENTS,
         "block": BLOCKS,
         "value": (*sensors, TIME),
-        "sensor": tuple(each for each in sensors if each in robot.body.places),
+        "sensor": tuple(sensor for sensor in sensors if sensor in robot.body.places),
         "switch": tuple(device.name for device in robot.kit.actuators if device.is_yes_no),
     }
 
@@ -180,9 +180,9 @@ def _criterion(table: Table, world: World, known: Mapping[str, tuple[str, ...]])
             )
         return Criterion("", {}, (), (), NO_LABELS)
     has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.has("at"))
-    asked = [each for each in kind.numbers if has_places or each is not WITHIN]
+    asked = [number for number in kind.numbers if has_places or number is not WITHIN]
     numbers = {each.key: _number(table, each) for each in asked}
-    numbers |= {each: float(table.yes_no(each, False)) for each in kind.flags}
+    numbers |= {flag: float(table.yes_no(flag, False)) for flag in kind.flags}
     for low, high in (("low_cm", "high_cm"), ("at_least_cm", "at_most_cm")):
         if low in numbers and numbers[low] > numbers.get(high, numbers[low]):
             table.complain("low_above_high", low, other=table.path_of(high))

@@ -168,7 +168,7 @@ def _uncalled(words: Sequence[str]) -> list[str]:
     while found:
         called |= found
         found = set().union(*(bodies[each] for each in found)) & bodies.keys() - called
-    return [each for each in bodies if each not in called]
+    return [body for body in bodies if body not in called]
 
 
 def _repeated(words: Sequence[str]) -> list[list[str]]:
@@ -214,8 +214,8 @@ def without(word: str, text: str) -> str:
 
 
 def _end_of_block(tokens: Sequence[Token], at: int) -> int:
-    ends = (each.end for each in tokens[at:]
-            if ALIASES.get(each.text, each.text) == BLOCK_ENDS[tokens[at].text])  # fmt: skip
+    ends = (token.end for token in tokens[at:]
+            if ALIASES.get(token.text, token.text) == BLOCK_ENDS[tokens[at].text])  # fmt: skip
     return next(ends, tokens[-1].end)
 
 

@@ -22,9 +22,11 @@ def varied(lesson: Lesson, seed: int) -> World:
     """Return the world of a seed."""
     chance = Random(seed)
     world = lesson.world
-    for each in lesson.variations:
-        dx, dy, turn = (chance.uniform(*span) for span in (each.x_cm, each.y_cm, each.heading))
-        world = _moved(world, each, dx, dy, turn)
+    for variation in lesson.variations:
+        dx, dy, turn = (
+            chance.uniform(*span) for span in (variation.x_cm, variation.y_cm, variation.heading)
+        )
+        world = _moved(world, variation, dx, dy, turn)
     return _mirrored(world) if is_mirrored(lesson, seed) else world
 
 

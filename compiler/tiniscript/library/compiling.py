@@ -186,7 +186,7 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
     program = compiled.program
     if program is None or not compiled.is_right:
         return compiled
-    if program.tasks and any(each.values for each in program.procedures):
+    if program.tasks and any(procedure.values for procedure in program.procedures):
         from tiniscript.semantics.task_copies import separated
 
         program = separated(program)

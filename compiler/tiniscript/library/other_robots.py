@@ -36,7 +36,7 @@ def naming_robots(
 
     `is_chosen`: somebody has chosen it, and what the program names does not count.
     """
-    if not any(each.code in (*_UNKNOWN, OTHER_ROBOT) for each in diagnostics):
+    if not any(diagnostic.code in (*_UNKNOWN, OTHER_ROBOT) for diagnostic in diagnostics):
         return diagnostics
     found = named_among(_others(), diagnostics, text, robot.name, robot.kit)
     return found if is_chosen else [_told(each, text) for each in found]
@@ -99,16 +99,16 @@ def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
 
 def _others() -> dict[str, Kit]:
     """Return the known kits, by the name or the path of their robots."""
-    found: dict[str, Kit] = {}
+    others: dict[str, Kit] = {}
     for name in robots.names():
         kit = robots.load(name).kit
-        if kit not in found.values():  # robots on other boards may have the kit of one
-            found[name] = kit
+        if kit not in others.values():  # robots on other boards may have the kit of one
+            others[name] = kit
     for path, robot in given.profiles():
         try:
             near = min(path, os.path.relpath(path), key=len)
         except ValueError:  # Windows: the path is on another drive
             near = path
         if len(near) <= SHOWN_CHARACTERS and " " not in near:
-            found[near] = robot.kit
-    return found
+            others[near] = robot.kit
+    return others

@@ -182,7 +182,7 @@ def profile_of(robot: str | os.PathLike[str], language: Language) -> Robot:
 
 
 def diagnostics_of(compiled: Compiled, language: Language) -> list[Message]:
-    return [message(each, compiled.source, language) for each in compiled.diagnostics]
+    return [message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics]
 
 
 def remarks(places: Map | None, language: Language) -> dict[int, str]:
@@ -223,8 +223,8 @@ def _program(
     found, profile = _compiled(text, robot, name, language, optimize=optimize)
     diagnostics = tuple(diagnostics_of(found, language))
     if not found.is_right:
-        said = [as_text(message(each, found.source, language), found.source, language)
-                for each in found.diagnostics]  # fmt: skip
+        said = [as_text(message(diagnostic, found.source, language), found.source, language)
+                for diagnostic in found.diagnostics]  # fmt: skip
         error = ProgramError("mistakes", language, said="\n".join(said))
         error.diagnostics = diagnostics
         raise error

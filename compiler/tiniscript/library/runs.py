@@ -148,7 +148,7 @@ def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int
     for name, readings in sensors.items():
         number = numbers.get(str(name).upper())
         if number is None:
-            known = ", ".join(each.name for each in robot.kit.sensors) or sentence(
+            known = ", ".join(sensor.name for sensor in robot.kit.sensors) or sentence(
                 "no_sensors", language, {}
             )
             values = {"robot": robot.name, "found": printable(str(name), 60), "known": known}
@@ -171,12 +171,12 @@ def fault_of(name: str, offset: int, places: Map | None) -> Fault:
 
 def _trace(events: Iterator[Event | Ending], kit: Kit, places: Map | None) -> Trace:
     found: list[TraceEvent] = []
-    for each in events:
-        if not isinstance(each, Ending):
-            found.append(_event(each, kit))
+    for event in events:
+        if not isinstance(event, Ending):
+            found.append(_event(event, kit))
             continue
-        fault = fault_of(each.fault, each.offset, places) if each.what == "FAULT" else None
-        return Trace(tuple(found), each.what, fault, found[-1].ms, each.steps)  # type: ignore[arg-type]
+        fault = fault_of(event.fault, event.offset, places) if event.what == "FAULT" else None
+        return Trace(tuple(found), event.what, fault, found[-1].ms, event.steps)  # type: ignore[arg-type]
     raise AssertionError("a run without an ending")
 
 

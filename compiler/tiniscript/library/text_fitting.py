@@ -30,7 +30,7 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
         for token in tokens
         if token.kind is WORD and (token.text in lacks or len(token.text) > LONGEST_WORD)
     ]
-    if "DEF" not in level.lacks and any(each.values for each in program.procedures):
+    if "DEF" not in level.lacks and any(procedure.values for procedure in program.procedures):
         found += _values(program, kit, level)
     plain = plain_code(program)
     limit = min(CODE_BYTES, level.room)
@@ -52,15 +52,15 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
 
 def _values(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return each DEF that has a value other than a number, or values for several tasks."""
-    found, yes_no = [], are_yes_no(program, kit)
+    values, yes_no = [], are_yes_no(program, kit)
     for procedure, tasks in zip(program.procedures, users(program), strict=True):
         said = {"level": level.name, "name": procedure.name}
         place = Span(procedure.span.start, procedure.span.start + len("DEF"))
         for name in (program.variables[k] for k in procedure.values if yes_no[k]):
-            found.append(Diagnostic(codes.LEVEL_VALUES, place, {**said, "yes_no": name}))
+            values.append(Diagnostic(codes.LEVEL_VALUES, place, {**said, "yes_no": name}))
         if procedure.values and tasks > 1:
-            found.append(Diagnostic(codes.LEVEL_VALUES, place, {**said, "count": str(tasks)}))
-    return found
+            values.append(Diagnostic(codes.LEVEL_VALUES, place, {**said, "count": str(tasks)}))
+    return values
 
 
 def _first_behind(plain: PlainCode, limit: int) -> Span:

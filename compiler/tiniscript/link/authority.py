@@ -150,18 +150,18 @@ def show_keys(
     """
     found: Reply[AuthenticateReply] = Reply(NOT_OWNER)
     keys = [] if ring is None else ring.of_robot(robot.id)
-    for each in sorted(keys, key=_order):
-        if which not in (None, each.which) or (each.is_stale and not is_needed):
+    for key in sorted(keys, key=_order):
+        if which not in (None, key.which) or (key.is_stale and not is_needed):
             continue
-        found = yield from _show(each, robot, nonce, epoch)
+        found = yield from _show(key, robot, nonce, epoch)
         if found.status == STALE:  # a stop or a fault came between: the tag was one of before
-            found = yield from _show(each, robot, nonce, epoch)
+            found = yield from _show(key, robot, nonce, epoch)
         if ring is not None and found.status == OK:
-            now = each._replace(is_pending=False, is_stale=False, seals=_seals(robot) or each.seals)
-            if now != each:
+            now = key._replace(is_pending=False, is_stale=False, seals=_seals(robot) or key.seals)
+            if now != key:
                 ring.settle(now)
         if ring is not None and found.status == WRONG_KEY:
-            ring.refuse(each)  # kept all the same: the robot is not known to have said so
+            ring.refuse(key)  # kept all the same: the robot is not known to have said so
         if found.status != WRONG_KEY:
             break
     return found

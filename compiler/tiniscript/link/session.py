@@ -313,7 +313,7 @@ class Session(Requester):
             return 0
         elif (heartbeat_ms := self._heartbeat_ms()) is not None:
             times.append(self._talked_ms + heartbeat_ms)
-        return min((each for each in times if each is not None), default=None)
+        return min((time for time in times if time is not None), default=None)
 
     def events(self) -> list[Event]:
         """Return the events since the last call. Values wait until the robot has said which program

@@ -131,8 +131,8 @@ def _parts(step: str, text: bytes) -> list[Request]:
 
 def _given(steps: list[Request], last: str) -> Exchange[WifiReply]:
     """Take the steps up to the first that is refused, then the one that has them kept."""
-    for each in steps:
-        reply = yield from requests.single(each, WifiReply)
+    for step in steps:
+        reply = yield from requests.single(step, WifiReply)
         if reply.status != OK:
             return reply
     return (yield from requests.kept(_request(last), WifiReply))

@@ -18,7 +18,7 @@ _CENTIMETRES, _ANY = "10", "50"  # examples of what a sensor sees, and of a vari
 
 
 def is_amount(*words: str) -> bool:
-    return any(said_of(plain(each), "amount") for each in words)
+    return any(said_of(plain(word), "amount") for word in words)
 
 
 def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, str]:

@@ -57,7 +57,7 @@ class _Block:
         self.is_do = is_header and line.is_do
         self.is_translated = line.reading.tokens[item.start].source is None
         self.name = line.reading.tokens[item.start + 1].text if self.word == "DEF" else ""
-        head = [each.text for each in line.reading.tokens[item.start + 1 : item.end]]
+        head = [token.text for token in line.reading.tokens[item.start + 1 : item.end]]
         self.is_endless = head in (["(", "FOREVER", ")"], ["(", "TRUE", ")"])
         self.last: int | None = None  # its last line that is ever done
 
@@ -296,9 +296,9 @@ class Matching:
         """Whether a block may end before its line: at a `;` of the text, or at another block."""
         items = [each for each in self.line.reading.items or () if each.start >= block.start]
         arm = max((k for k, each in enumerate(items) if each.kind == "arm"), default=0)
-        told = [each for each in items[arm:] if each.kind == "do"]
+        told = [item for item in items[arm:] if item.kind == "do"]
         between = self.line.reading.tokens[told[0].end : told[-1].start] if told else []
-        headers = sum(each.kind == "open" and each.word == "IF" for each in items)
+        headers = sum(item.kind == "open" and item.word == "IF" for item in items)
         return headers > 1 or any(each.text == ";" and each.source is not None for each in between)
 
     def parts(self) -> Iterator[tuple[int, Item]]:

@@ -163,7 +163,9 @@ class _Said:
         self.names = Names(lines, kit)
         self.tokens = [each for line in lines for each in (*self._joined(line), _END)]
         # what has no unit counts something of its own: 50 % of light is no 50
-        self.units = {each.name: each.unit or each.name for each in kit.readings} | {"TIME": "s"}
+        self.units = {reading.name: reading.unit or reading.name for reading in kit.readings} | {
+            "TIME": "s"
+        }
         self.units |= self._units_of_names()
         self.words: Counter[str] = Counter()  # that it surely says
         self.meant: Counter[str] = Counter()  # that it may say
@@ -176,7 +178,7 @@ class _Said:
 
     @staticmethod
     def _all_of(lines: Sequence[str]) -> list[str]:
-        return [concept_of(each) or each for line in lines for each in texts(lexemes(line))]
+        return [concept_of(text) or text for line in lines for text in texts(lexemes(line))]
 
     @staticmethod
     def _without_frame(text: str) -> str:
@@ -229,7 +231,9 @@ class _Said:
     def _may_be(self, token: Lexeme) -> set[str]:
         """Return the words of the language that a word may say."""
         found = {self._word(token), concept_of(token.text) or ""}
-        found |= {each.concept for each in self.names.meanings(token.text) if each.cost <= NEAR}
+        found |= {
+            meaning.concept for meaning in self.names.meanings(token.text) if meaning.cost <= NEAR
+        }
         return {"S" if each == "STOP" else each for each in found}
 
     def _read(self) -> None:
@@ -363,7 +367,7 @@ class _Said:
 
     def _slots(self) -> list[str]:
         """Return the unit that a value at each token has by its place, "" for none."""
-        found = [""] * len(self.tokens)
+        slots = [""] * len(self.tokens)
         around: list[list[str]] = [[""]]
         for k, token in enumerate(self.tokens):
             if token.text == "(":
@@ -374,14 +378,14 @@ class _Said:
                 around[-1] = around[-1][1:]
             elif token is _END:
                 around = [[""]]
-            found[k] = around[-1][0]
+            slots[k] = around[-1][0]
         triples = zip(self.tokens, self.tokens[1:], self.tokens[2:], strict=False)
         for k, (one, sign, other) in enumerate(triples):
             if sign.text in _SENSES or sign.text == "=":
-                at = min(k + 3 if other.text == "-" else k + 2, len(found) - 1)
-                found[at] = found[at] or self.units.get(one.text, "")
-                found[k] = found[k] or self.units.get(other.text, "")
-        return found
+                at = min(k + 3 if other.text == "-" else k + 2, len(slots) - 1)
+                slots[at] = slots[at] or self.units.get(one.text, "")
+                slots[k] = slots[k] or self.units.get(other.text, "")
+        return slots
 
     def _arguments(self, k: int) -> list[str]:
         """Return the units of what is in the brackets that begin at a token."""
@@ -390,7 +394,7 @@ class _Said:
             return []
         if word.text not in WORDS or not WORDS[word.text].role.is_call:
             return [""]
-        units = [each.unit for each in WORDS[word.text].arguments]
+        units = [argument.unit for argument in WORDS[word.text].arguments]
         behind = texts(self.tokens[k : closed(self.tokens, k) or k])
         way = UNIT_OF.get(word.text, "")
         if way in behind:
@@ -416,18 +420,18 @@ class _Said:
 
     def negations(self) -> list[str]:
         """Return the words that turn a question round, as they are written."""
-        found = []
+        negations = []
         for k, token in enumerate(self.tokens):
             is_asked = any(self._may_be(each) & ASKING for each in self.tokens[max(0, k - 4) : k])
             is_no = token.text in ("NOT", "!") or bool(said_of(token.text, *_NEGATES))
             is_asked |= bool(said_of(token.text, "unless"))
             if is_no and is_asked and not self.names.is_name(token.text):
-                found.append(token.source or token.text)
-        return found
+                negations.append(token.source or token.text)
+        return negations
 
     def sums(self) -> Counter[str]:
         """Count the signs between two values, of which one at least is no plain number."""
-        found: Counter[str] = Counter()
+        sums: Counter[str] = Counter()
         behind = (*self.tokens[3:], _END)
         for one, sign, other, inner in zip(
             self.tokens, self.tokens[1:], self.tokens[2:], behind, strict=False
@@ -436,8 +440,8 @@ class _Said:
             is_other = self._is_read(inner if other.text == "(" else other)
             is_plain = one.kind is NUMBER and other.kind is NUMBER
             if sign.text in SUMS and is_value and is_other and not is_plain:
-                found[sign.text] += 1
-        return found
+                sums[sign.text] += 1
+        return sums
 
     def _is_read(self, token: Lexeme) -> bool:
         """Whether a token is a number, or a name that has a value."""
@@ -487,7 +491,7 @@ def _amounts(before: _Said, after: _Said) -> Iterator[str]:
                 lost.remove(each)
     yield from (each.written for each in lost)
     units = {unit for it in after.amounts for unit in it.unit.split("/")}
-    units |= {after.units.get(each.text, "") for each in after.tokens}
+    units |= {after.units.get(token.text, "") for token in after.tokens}
     kept = Counter(after.loose)
     yield from (each[1] for each in before.loose if each[0] not in units and not kept[each])
 
@@ -520,7 +524,7 @@ def _runs(text: str) -> Iterator[tuple[float, list[float]]]:
         for last in range(first, min(first + _LONGEST, len(pieces))):
             run = pieces[first : last + 1]
             gaps = [text[a.end() : b.start()] for a, b in pairwise(run)]
-            if not all(_BETWEEN.fullmatch(each) for each in gaps):
+            if not all(_BETWEEN.fullmatch(gap) for gap in gaps):
                 break
             digits = [each[0].translate(_LETTERS) for each in run]
             written = text[run[0].start() : run[-1].end()]
@@ -554,7 +558,7 @@ def _questions(before: _Said, after: _Said) -> Iterator[str]:
     left = _senses(after)
     turners = ({word: said.words[word] for word in _TURNERS} for said in (before, after))
     negated = (before.negations(), after.negations())
-    may_turn = bool(negated[0] or negated[1]) or len({str(each) for each in turners}) > 1
+    may_turn = bool(negated[0] or negated[1]) or len({str(turner) for turner in turners}) > 1
     if asked.total() > left.total() or (asked - left and not may_turn):
         yield from (asked - left) or asked
     elif asked == left and len(negated[0]) > len(negated[1]):  # nothing is turned round instead
@@ -564,7 +568,7 @@ def _questions(before: _Said, after: _Said) -> Iterator[str]:
 
 
 def _senses(said: _Said) -> Counter[str]:
-    found: Counter[str] = Counter()
+    senses: Counter[str] = Counter()
     in_call = [False]
     for one, sign, other in zip(said.tokens, said.tokens[1:], said.tokens[2:], strict=False):
         if sign.text == "(":
@@ -576,5 +580,5 @@ def _senses(said: _Said) -> Counter[str]:
         is_between = one.kind in (WORD, NUMBER) or one.text == ")"
         is_between &= other.kind in (WORD, NUMBER) or other.text in ("(", "-", "+")
         if sign.text in _SENSES and is_between and not in_call[-1] and one.text not in CALLED:
-            found[_SENSES[sign.text]] += 1
-    return found
+            senses[_SENSES[sign.text]] += 1
+    return senses

@@ -57,7 +57,7 @@ def _unquotes(found: Diagnostic, source: Source) -> bool:
     """Whether a repair takes quotation marks out, and does nothing else."""
     edits = found.repair.edits if found.repair else ()
     return bool(edits) and all(
-        not each.text.strip() and {*source[each.span].strip()} <= {*QUOTES} for each in edits
+        not edit.text.strip() and {*source[edit.span].strip()} <= {*QUOTES} for edit in edits
     )
 
 
@@ -91,7 +91,7 @@ def _together(same: Sequence[Diagnostic], source: Source) -> Diagnostic:
         values = {**first.values, "words": words, "fix": "", "example": "; ".join(calls)}
         return first._replace(values=values, place=None, repair=None)
     here, *lines = (str(source.position(each.span.start)[0]) for each in same)
-    lines = [each for each in dict.fromkeys(lines) if each != here]
+    lines = [line for line in dict.fromkeys(lines) if line != here]
     gaps = {"line": "".join(lines[:1]), "lines": ", ".join(lines) if len(lines) > 1 else "",
             "times": "" if lines else str(len(same))}  # fmt: skip
     edits = tuple(edit for each in same if each.repair for edit in each.repair.edits)

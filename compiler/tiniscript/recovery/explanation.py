@@ -118,9 +118,11 @@ class _Explainer:
 
     def is_sure(self, told: Explanation) -> bool:
         """Whether nothing that an explanation changes is a guess."""
-        places = (place for each in told.edits for place in each.span)
+        places = (place for edit in told.edits for place in edit.span)
         lines = {self.program.count("\n", 0, place) for place in places}
-        touched = [each for each in self.changes if lines & {*range(each.first, each.last + 1)}]
+        touched = [
+            change for change in self.changes if lines & {*range(change.first, change.last + 1)}
+        ]
         touched += [self.changes[k] for k in (told.first, *told.opened)]
         text = " ".join(f"{each.text} {self.lines[each.first]}" for each in touched)
         has_blocks = bool({*re.findall(r"\w+|[{}]", text.upper())} & OF_BLOCKS)
@@ -140,7 +142,7 @@ class _Explainer:
 
     def whole(self, first: int, last: tuple[int, int]) -> str:
         """Return what changes become, as one line, nothing where that is long."""
-        *others, text = (each.text for each in self.changes[first : last[0] + 1])
+        *others, text = (change.text for change in self.changes[first : last[0] + 1])
         return in_one_line("\n".join((*others, *text.split("\n")[: last[1]])))
 
     def tell(self, k: int, change: search.Change) -> None:

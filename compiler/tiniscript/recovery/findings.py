@@ -257,14 +257,14 @@ def moved_back(found: Diagnostic, edits: Sequence[Edit], source: Source) -> Diag
     A condition that nobody can read is shown as it is written, and not what it was passed over for.
     """
     values = dict(found.values)
-    for each in edits:
-        if each.text.endswith("(TRUE)") and "TRUE" not in (was := source[each.span].strip()):
-            values = {name: text.replace(each.text, was) for name, text in values.items()}
+    for edit in edits:
+        if edit.text.endswith("(TRUE)") and "TRUE" not in (was := source[edit.span].strip()):
+            values = {name: text.replace(edit.text, was) for name, text in values.items()}
     place = found.place and _before(found.place, edits)
     repair = found.repair
     if repair is not None:
-        own = tuple(Edit(_before(each.span, edits), each.text) for each in repair.edits)
-        passed = [each for each in edits if each.text.isspace()]  # words that nothing may drop
+        own = tuple(Edit(_before(edit.span, edits), edit.text) for edit in repair.edits)
+        passed = [edit for edit in edits if edit.text.isspace()]  # words that nothing may drop
         repair = Repair((), False) if overlap(own, passed) else repair._replace(edits=own)
     return Diagnostic(found.code, _before(found.span, edits), values, place, repair)
 
@@ -272,14 +272,14 @@ def moved_back(found: Diagnostic, edits: Sequence[Edit], source: Source) -> Diag
 def _before(span: Span, edits: Sequence[Edit]) -> Span:
     """Return where a span of the text with edits stood before them; all of one it begins in."""
     start = end = shift = 0
-    for each in sorted(edits):
-        begin = each.span.start + shift
-        behind = begin + len(each.text)
-        shift = behind - each.span.end
+    for edit in sorted(edits):
+        begin = edit.span.start + shift
+        behind = begin + len(edit.text)
+        shift = behind - edit.span.end
         if span.start >= behind:
             start = shift
         elif span.start > begin:
-            start = span.start - each.span.start
+            start = span.start - edit.span.start
         if span.end > begin:
-            end = shift if span.end >= behind else span.end - each.span.end
+            end = shift if span.end >= behind else span.end - edit.span.end
     return Span(span.start - start, max(span.start - start, span.end - end))

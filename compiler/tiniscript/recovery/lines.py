@@ -52,7 +52,7 @@ _CALCULATES = SIGNS | {"°"}  # without it another number would be meant
 _NEEDLESS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
 _PLAIN_DIGITS = 4
 _AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
-_EDGES = {each for each in WORDS if WORDS[each].role.is_of_blocks} | {";", "UNTIL", *BRACES}
+_EDGES = {word for word in WORDS if WORDS[word].role.is_of_blocks} | {";", "UNTIL", *BRACES}
 
 
 class Step(NamedTuple):
@@ -144,7 +144,7 @@ def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list
 def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Reading]:
     setup = meanings.setup_of(tokens)
     readings = _Search(names).read(list(tokens[len(setup) :]), is_quick)
-    whole = [each._replace(tokens=[*setup, *each.tokens]) for each in readings]
+    whole = [reading._replace(tokens=[*setup, *reading.tokens]) for reading in readings]
     told = ((each, right(each.tokens, names)) for each in whole)
     return [each._replace(items=its) for each, its in told if not isinstance(its, Failure)]
 
@@ -159,7 +159,7 @@ class _Search:
     def read(self, tokens: list[Lexeme], is_quick: bool) -> list[Reading]:
         first = self.at_once(Reading(0, tokens, (), True, False))
         readings = self.search(first, QUICK_STATES if is_quick else STATES, self.rewritten)
-        has_words = any(each.kind in (WORD, NUMBER) for each in tokens)
+        has_words = any(token.kind in (WORD, NUMBER) for token in tokens)
         if not is_quick and not readings and has_words and len(tokens) < LONGEST_WITH_SLIPS:
             found = self.search(first, SLIP_STATES, self.with_slips)
             found = [
@@ -302,7 +302,7 @@ class _Search:
 def _is_group(tokens: Sequence[Lexeme], k: int) -> bool:
     """Whether a bracket groups a part of a sum: without it the sum is another one."""
     before = tokens[k - 1].text if k else ""
-    rest = [each.text for each in tokens[k + 1 :]]
+    rest = [token.text for token in tokens[k + 1 :]]
     return tokens[k].text == "(" and before in ("=", *SIGNS) and bool(_CALCULATES & {*rest})
 
 
@@ -327,7 +327,7 @@ def _touches(failure: Failure, start: int, end: int) -> bool:
 
 def _is_long(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
     """Whether the number behind a translated word is rarely meant for seconds: `move(50, 50)`."""
-    numbers = [each for each in tokens[k + 1 : k + 3] if each.kind is NUMBER]
+    numbers = [token for token in tokens[k + 1 : k + 3] if token.kind is NUMBER]
     least = LONG_S if concept in (*MOVES, "BEEP") else MILLISECONDS_FROM
     is_timed = concept in (*MOVES, "BEEP", "W")
     return is_timed and bool(numbers) and float(numbers[0].text) >= least

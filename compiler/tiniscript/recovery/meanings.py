@@ -166,7 +166,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
     parts = word.split("_")
     if (
         len(parts) > 1
-        and (bare := [each for each in parts if not said_of(each, "sensing")]) != parts
+        and (bare := [part for part in parts if not said_of(part, "sensing")]) != parts
     ):
         return meanings("_".join(bare))  # `SENSOR_LUZ_DERECHA`
     alike, near = _speller().alike(word), _speller().near(word)
@@ -181,7 +181,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
 
 def meant_by(word: str) -> str | None:
     """Return the word of the language that a word of another one surely says, misspelt or not."""
-    return next((each.concept for each in meanings(word) if each.cost < NEAR), None)
+    return next((meaning.concept for meaning in meanings(word) if meaning.cost < NEAR), None)
 
 
 def _in_two_words(word: str) -> str | None:
@@ -314,11 +314,11 @@ class Names:
     """The names of one program, by a look at its tokens; `label` is what rewrites match."""
 
     def __init__(self, lines: Sequence[Sequence[Lexeme]], kit: Kit) -> None:
-        readings = [each for each in kit.readings if each.name]
-        self.sensors = frozenset(each.name for each in readings)
-        self.measuring = tuple(sorted(each.name for each in kit.sensors))
-        self.asked = {each.name: each for each in readings if not each.is_yes_no}
-        self.actuators = {each.name: each for each in kit.actuators}
+        readings = [reading for reading in kit.readings if reading.name]
+        self.sensors = frozenset(reading.name for reading in readings)
+        self.measuring = tuple(sorted(sensor.name for sensor in kit.sensors))
+        self.asked = {reading.name: reading for reading in readings if not reading.is_yes_no}
+        self.actuators = {actuator.name: actuator for actuator in kit.actuators}
         told = [_names_of(tuple(line)) for line in lines]
         self.in_brackets = {name for each in told for name in each.in_brackets}
         self.rows = {row for each in told for row in each.rows}
@@ -414,41 +414,41 @@ class Names:
     def _classes_of_word(self, text: str) -> list[str]:
         said = [meaning.split()[0] for meaning in lexicon().get(text, ())]
         is_own = text in self.variables or text in self.defs
-        found = [each for each in said if each.islower() and not is_own]
+        classes = [each for each in said if each.islower() and not is_own]
         if text not in WORDS:
-            found += [_CLASSES[each] for each in lexicon().get(text, ()) if each in _CLASSES]
-        found += ["@unit"] if "unit" in said and text not in WORDS else []
-        found += ["@cross"] if text == "X" and not is_own else []
+            classes += [_CLASSES[each] for each in lexicon().get(text, ()) if each in _CLASSES]
+        classes += ["@unit"] if "unit" in said and text not in WORDS else []
+        classes += ["@cross"] if text == "X" and not is_own else []
         if "unit" not in said and text not in WORDS and not is_own:
-            found += [f"@like_{way}" for way in WAYS if is_slip(text, way)]
+            classes += [f"@like_{way}" for way in WAYS if is_slip(text, way)]
         meant = [each.concept for each in self.meanings(text) if each.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""
-        found += [ALIASES[word]] if word in ALIASES else []
+        classes += [ALIASES[word]] if word in ALIASES else []
         is_name = self.is_name(text)
-        found += meant
-        found += [each for each in ANY if not said_of(text, "do") or each not in _NO_DO]
+        classes += meant
+        classes += [each for each in ANY if not said_of(text, "do") or each not in _NO_DO]
         if text in self.read_as.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
-            found.append("@val")
-            found += ["@measured"] if {word, text} & self.asked.keys() else []
+            classes.append("@val")
+            classes += ["@measured"] if {word, text} & self.asked.keys() else []
         if text in self.defs:
             own = ["@defw", "@callw"] if self.takes(text) else ["@step", "@close"]
-            found += ["@def", "@start", "@startm", *own]
+            classes += ["@def", "@start", "@startm", *own]
         is_device = word in self.actuators or text in self.actuators
         if (word in DONE or is_device) and (not is_name or is_device):
-            found += ["@start", *(["@startm"] if word != "BEEP" else [])]
-            found += ["@callw"] if self.takes(word or text) else ["@close"]
-            found += ["@device"] if is_device else []
+            classes += ["@start", *(["@startm"] if word != "BEEP" else [])]
+            classes += ["@callw"] if self.takes(word or text) else ["@close"]
+            classes += ["@device"] if is_device else []
         if word in STARTS and not is_name:
-            found.append("@start")
-        if "turn" in found and not is_name:
-            found += ["@start", "@startm"]
+            classes.append("@start")
+        if "turn" in classes and not is_name:
+            classes += ["@start", "@startm"]
         if word in ENDED:
-            found.append("@close")
+            classes.append("@close")
         if text in self.variables or (text not in WORDS and not meant):
-            found.append("@name")
-            if "turn" not in found and not re.fullmatch("[FBLRWM][0-9]+", text):
-                found += ["@newname", *(["@usedname"] if text in self.in_brackets else [])]
-        return found
+            classes.append("@name")
+            if "turn" not in classes and not re.fullmatch("[FBLRWM][0-9]+", text):
+                classes += ["@newname", *(["@usedname"] if text in self.in_brackets else [])]
+        return classes
 
 
 def _begun_in(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:

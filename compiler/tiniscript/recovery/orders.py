@@ -46,12 +46,12 @@ class Order(NamedTuple):
 
 
 def written(orders: Sequence[Order]) -> str:
-    return ";".join(each.text for each in orders)
+    return ";".join(order.text for order in orders)
 
 
 def made_up(orders: Sequence[Order]) -> str:
     """Return what no word says: `2 s, 80 %`."""
-    return ", ".join(sorted({sample for each in orders for sample in each.samples}))
+    return ", ".join(sorted({sample for order in orders for sample in order.samples}))
 
 
 def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
@@ -66,11 +66,11 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
         or said_of(after.text, "the")
         or not said_of(after.text, "idle")
     ]  # `o robô` is no OR
-    meant = ["", *(names.meant(each.text) for each in words[1:])]
+    meant = ["", *(names.meant(word.text) for word in words[1:])]
     asks = next((k for k, each in enumerate(meant) if each in ("IF", "WHEN")), 0)
     if asks:
         return _asked_between(orders(words[:asks], names), words[asks:], names)
-    joins = "" if any(each.text == "(" for each in words) else ",."  # `gira(2, 80)` is one
+    joins = "" if any(word.text == "(" for word in words) else ",."  # `gira(2, 80)` is one
     groups = groupby(words, key=lambda it: it.text in (*joins,) or bool(said_of(it.text, "then")))
     for is_between, group in groups:
         part = list(group)
@@ -98,7 +98,7 @@ def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) ->
     if not first or not asked:
         return []
     header, stop, *rest = asked.split(";")
-    number = any(each.kind is NUMBER for each in words)
+    number = any(word.kind is NUMBER for word in words)
     samples = () if number else (f"{NEAR_CM} cm",)
     if stop in ("S", "STOP") and first[-1].word in MOVES and "UNTIL" not in first[-1].text:
         move, made_of = first[-1], first[-1].samples + samples
@@ -205,7 +205,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     tokens = [tokens[0], *_joined(tokens[1:], names)]  # `si no hay` is no ELSE
     while tokens[-1].text in ENDED or said_of(tokens[-1].text, "end"):
         tokens = tokens[:-1]
-    texts = [each.text for each in tokens]
+    texts = [token.text for token in tokens]
     arm = next((k for k, each in enumerate(texts) if names.meant(each) == "ELSE"), len(texts))
     other = orders(tokens[arm + 1 :], names)
     comma = next((k for k in range(2, arm) if texts[k] == "," and word != "LOOP"), 0)
@@ -221,7 +221,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
         place = next((j for j in range(k, arm) if not said_of(texts[j], "filler")), k)
         if said_of(texts[place], "front") and place + 1 < arm:
             continue  # `uma parede na frente, para`
-        is_mixed = any(said_of(each, "then") and not said_of(each, "and") for each in texts[k:])
+        is_mixed = any(said_of(text, "then") and not said_of(text, "and") for text in texts[k:])
         if (word == "LOOP" and is_mixed) or (arm < len(texts) and not other):
             return ""
         parts = [header, written(body), *(["ELSE", written(other)] if other else [])]

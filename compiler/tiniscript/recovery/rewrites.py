@@ -83,7 +83,7 @@ def cells(table: str) -> Iterator[list[str]]:
             parts = [each.split("¦") for each in re.split("[⟨⟩]", row)]
             assert len({*map(len, parts)} - {1}) < 2, row
             for k in range(max(map(len, parts))):
-                one = "".join(each[k % len(each)] for each in parts)
+                one = "".join(part[k % len(part)] for part in parts)
                 yield [cell.strip() for cell in re.split(r"\s\|(?=\s|$)", one, maxsplit=5)]
 
 
@@ -429,7 +429,7 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
                 return [*tokens[:k], name, *tokens[k + len(row) :]], True
     for k, count in product(range(len(tokens)), (3, 2)):
         row = texts(tokens[k : k + count])
-        if len(row) < count or any(each.kind is not WORD for each in tokens[k : k + count]):
+        if len(row) < count or any(token.kind is not WORD for token in tokens[k : k + count]):
             continue
         text = "_".join(row)
         after = tokens[k + count].text if k + count < len(tokens) else ""

@@ -166,7 +166,7 @@ class Recovery:
     def has_signs(self, start: int) -> bool:
         """Whether rewrites of signs alone make the line right that a place is in."""
         at = self.program.count("\n", 0, start)
-        near = (each for each in self.lines if each.steps and each.first <= at <= each.last)
+        near = (line for line in self.lines if line.steps and line.first <= at <= line.last)
         return any(is_right(lexemes(each.body), self.names) for each in near)
 
     def drop_setups(self) -> None:
@@ -211,8 +211,8 @@ class Recovery:
         first = found[0]
         line.rivals = [each for each in found[1:] if each.said != first.said]
         is_close = any(
-            each.is_sure and each.cost < first.cost + MARGIN and _kept(each) >= _kept(first)
-            for each in line.rivals
+            rival.is_sure and rival.cost < first.cost + MARGIN and _kept(rival) >= _kept(first)
+            for rival in line.rivals
         )
         is_sure = first.is_sure and not is_close and not _is_key(tokens, first.tokens)
         line.reading = first._replace(is_sure=is_sure)
@@ -267,8 +267,8 @@ class Recovery:
             return None
         changes = self.changes(readings, blocks)
         has_sure_blocks, move = blocks.is_sure, None
-        is_sure = has_sure_blocks and all(each.is_sure for each in changes)
-        text = "\n".join(each.text for each in changes)
+        is_sure = has_sure_blocks and all(change.is_sure for change in changes)
+        text = "\n".join(change.text for change in changes)
         left = self.mistakes(text)
         if left and set(left) & rows.MISPLACED:
             for moved in ordered(text):
@@ -291,7 +291,7 @@ class Recovery:
 
     def choices(self) -> Iterator[tuple[list[Reading], bool]]:
         """Give what each line may be read as; at last without the blocks of a program."""
-        cheapest = [each.reading for each in self.lines]
+        cheapest = [line.reading for line in self.lines]
         yield cheapest, True
         for _, k, rival in self.rivals()[:ALTERNATIVES]:
             yield [*cheapest[:k], rival, *cheapest[k + 1 :]], True
@@ -322,7 +322,7 @@ class Recovery:
         return found if found.run() else None
 
     def changes(self, readings: Sequence[Reading], blocks: Matching) -> list[Change]:
-        found = []
+        changes = []
         for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True)):
             text = line.source
             if reading is not _UNREAD:
@@ -330,8 +330,8 @@ class Recovery:
                 text = _line(line, reading, edits, tails) + line.note
             text = "\n".join((text, *blocks.behind.get(k, [])))
             steps, is_sure = (*line.steps, *reading.steps), line.is_sure and reading.is_sure
-            found.append(Change(line.first, line.last, text, steps, is_sure))
-        return found
+            changes.append(Change(line.first, line.last, text, steps, is_sure))
+        return changes
 
 
 def _is_key(old: Sequence[Lexeme], new: Sequence[Lexeme]) -> bool:
@@ -352,7 +352,7 @@ def _left_open(tokens: Sequence[Lexeme]) -> int:
 
 
 def _ends(text: str) -> int:
-    return sum(each.text in ENDED for each in lexemes(text))
+    return sum(lexeme.text in ENDED for lexeme in lexemes(text))
 
 
 def _rank(found: Candidate) -> tuple[bool, bool]:
@@ -361,7 +361,7 @@ def _rank(found: Candidate) -> tuple[bool, bool]:
 
 def _kept(reading: Reading) -> int:
     """Return how many tokens of the text are in a reading: one with fewer is no equal rival."""
-    return sum(each.source is not None for each in reading.tokens)
+    return sum(token.source is not None for token in reading.tokens)
 
 
 def _line(line: _Text, reading: Reading, edits: Sequence[Edit], tails: Sequence[str]) -> str:

@@ -110,12 +110,12 @@ def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
 def _numbers(source: Source) -> list[Diagnostic]:
     """Return numbers that count the lines: `1 F(1, 50)`, `2 S`."""
     numbers = [*_NUMBER.finditer(source.text)]
-    counted = [int(each[1]) for each in numbers]
+    counted = [int(number[1]) for number in numbers]
     is_counting = len(counted) > 1 and counted[0] in _FIRST_NUMBERS
     if not is_counting or counted != [*range(counted[0], counted[-1] + 1, counted[0])]:
         return []
     return [
-        Diagnostic(codes.LINE_NUMBER, Span(*each.span(1)), {"found": each[1]}, None,
-                   Repair((Edit(Span(*each.span()), ""),), True))
-        for each in numbers
+        Diagnostic(codes.LINE_NUMBER, Span(*number.span(1)), {"found": number[1]}, None,
+                   Repair((Edit(Span(*number.span()), ""),), True))
+        for number in numbers
     ]  # fmt: skip

@@ -147,7 +147,7 @@ def _translated(step: Step) -> str:
     """Return the word of a block that a rewrite has put for one of another language."""
     words = {*texts(step.before)}
     new = next((it for it in texts(step.after) if it in BLOCK_ENDS), "")
-    is_said = new in map(meant_by, words) or any(said_of(each, "count") for each in words)
+    is_said = new in map(meant_by, words) or any(said_of(word, "count") for word in words)
     return new if new not in words and is_said else ""
 
 
@@ -336,8 +336,8 @@ def _first_word(slip: Slip) -> str:
 
 
 def _known(tokens: Sequence[Lexeme]) -> str:
-    words = [each.text for each in tokens if each.kind is WORD]
-    return next((each for each in words if each in WORDS), "".join(words[:1]))
+    words = [token.text for token in tokens if token.kind is WORD]
+    return next((word for word in words if word in WORDS), "".join(words[:1]))
 
 
 def _called(slip: Slip) -> str:
@@ -445,8 +445,10 @@ def instructions(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
 
 def without_setup(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
     """Return the instructions of a line, without `SI|`."""
-    return [each for each in instructions(tokens[len(setup_of(tokens)) :]) if each]
+    return [
+        instruction for instruction in instructions(tokens[len(setup_of(tokens)) :]) if instruction
+    ]
 
 
 def written(tokens: Sequence[Lexeme]) -> str:
-    return "".join((each.space or "") + (each.source or each.text) for each in tokens).strip()
+    return "".join((token.space or "") + (token.source or token.text) for token in tokens).strip()

@@ -106,7 +106,7 @@ class _Reader:
 
     def _has_one_group(self) -> bool:
         """Whether nothing follows the brackets of the call; what is odd in them is a guess."""
-        signs = [each.text for each in self.words]
+        signs = [word.text for word in self.words]
         for k, (sign, after) in enumerate(pairwise([*signs, ""])):
             rest = self.words[k + 1 :]
             if sign == ")" and any(it.kind in (WORD, NUMBER) or it.text == "(" for it in rest):
@@ -222,7 +222,7 @@ class _Reader:
         word, after = self.text(k), self.text(k + 1)
         names, marked = self.names, said_of(word, "value")
         is_command = word in names.actuators or (word in DONE and word != "BREAK")
-        said = [word] if is_command else [each.concept for each in names.meanings(word)]
+        said = [word] if is_command else [meaning.concept for meaning in names.meanings(word)]
         meant = next((each for each in said if is_command or each in CALLED or each == "S"), None)
         is_before_number = self._is_number(k + 1) or after in ("=", ":")
         if self.command in MOVES and word in _LETTERS and is_before_number:
@@ -270,7 +270,7 @@ class _Reader:
 
     def _is_said(self) -> bool:
         """Whether words say a move, without values and brackets: `avanzar siempre`."""
-        return not self.values and all(each.text != "(" for each in self.words)
+        return not self.values and all(word.text != "(" for word in self.words)
 
     def _is_mark(self, word: str, marked: tuple[str, ...]) -> bool:
         if not marked or word in self.names.known.values or not (self.command or self.is_turn):
@@ -319,7 +319,7 @@ class _Reader:
             samples += [] if own else [f"{its.sample} {its.unit}"]
             texts.append(own or its.sample)
         call = f"{word.text}({','.join(texts)})".replace(",", f" {self.way},", 1)
-        tokens = [made(each.text) for each in lexemes(call)]
+        tokens = [made(lexeme.text) for lexeme in lexemes(call)]
         return Filled(tokens, self.cost, self.is_sure, self.times, tuple(samples))
 
     def _own(self, argument: Argument) -> str:
@@ -335,7 +335,7 @@ class _Reader:
         """Join whole numbers that are halves of decimal ones: `F(1,5,80,0)`, `W(0,5)`."""
         values = self.values
         is_double = len(values) == 2 * count and (count == 2 or self.command == "W")
-        if not is_double or not all(each.text.isdecimal() for each in values):
+        if not is_double or not all(value.text.isdecimal() for value in values):
             return values
         if count == 1 and values[0].text != "0":
             return None

@@ -109,7 +109,7 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
             bare = _COUNTED.sub("", body)  # `2. S`
             is_right = is_right or (bare != body and lines.is_right(lexemes(bare), names))
             above.append(_as_orders(bare.partition("|")[2] or bare, is_right))
-        depth += sum((each.text in BLOCK_ENDS) - (each.text in ENDED) for each in words)
+        depth += sum((word.text in BLOCK_ENDS) - (word.text in ENDED) for word in words)
         start += len(line) + 1
     return found
 
@@ -141,7 +141,7 @@ def _parts(body: str, start: int, around: Around) -> Iterator[Trailing]:
             if not size or not rest:
                 yield Trailing(around, at, tokens, 0, before)
                 break
-            if any(each.text in ASKING for each in tokens[:size]):
+            if any(token.text in ASKING for token in tokens[:size]):
                 is_ended = all(said_of(each.text, "do") for each in rest)  # by a THEN
                 yield Trailing(around, at, tokens if is_ended else tokens[:size], 0, before)
             if not whole(rest, names) or rest[0].text in ("IF", "WHILE"):
@@ -203,7 +203,7 @@ def _suggestion(row: Row, gaps: _Gaps) -> Suggestion:
 
 def _said_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
     """Return the call that words before a condition say, and how many they are."""
-    meant = [names.meant(each.text, NEAR) for each in tokens]
+    meant = [names.meant(token.text, NEAR) for token in tokens]
     asks = next((k for k in range(1, len(tokens)) if meant[k] in ("IF", "WHILE")), 0)
     has_until = meant[asks] == "WHILE"
     call = filled(tokens[:asks], names, has_until, is_order=True) if asks else None
@@ -273,7 +273,7 @@ def _all(gaps: _Gaps, times: str) -> str:
         return ""
     told = [each.strip() for line in (*before, part.call) for each in line.split(";")]
     orders = [each for each in told if each.upper() not in ("", "START")]
-    said = "".join(f"{each};" for each in orders)
+    said = "".join(f"{order};" for order in orders)
     if once := _ONCE.fullmatch("".join(said.split()).upper()):  # F and L of `F; L; F; L`
         orders = orders[: once[1].count(";")]
     if not 0 < len(orders) <= _MOST_BEFORE:
@@ -302,13 +302,13 @@ def _sensor(gaps: _Gaps, k: int) -> str:
 def _measured(gaps: _Gaps) -> str:
     """What words ask with a number of their own: `la pared a 30 cm`."""
     words = gaps.tokens("l")
-    is_said = any(each.kind is WORD and not said_of(each.text, "unit", "in") for each in words)
+    is_said = any(word.kind is WORD and not said_of(word.text, "unit", "in") for word in words)
     return (worded(words, gaps.part.names) or {}).get("asked", "") if is_said else ""
 
 
 def _alone(gaps: _Gaps) -> str:
     """A condition that stands alone, and sets nothing."""
-    signs = {each.text for each in gaps.tokens("s")}
+    signs = {token.text for token in gaps.tokens("s")}
     return laid_out(_asked(gaps, "s")) if signs & {*COMPARISONS} - {"="} else ""
 
 
@@ -321,7 +321,7 @@ def _then(gaps: _Gaps) -> str:
 def _free(gaps: _Gaps) -> str:
     """A name that may get the value before it, which is no other name."""
     names, name = gaps.part.names, plain(gaps["x"])
-    is_name = all(each.kind is WORD for each in gaps.tokens("v"))
+    is_name = all(token.kind is WORD for token in gaps.tokens("v"))
     is_taken = name in names.sensors or name in names.defs or name in names.actuators
     return "" if is_name or is_taken else name
 

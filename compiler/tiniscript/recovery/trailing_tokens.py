@@ -106,12 +106,12 @@ class Trailing:
         known = WORDS.get(meant)
         self.is_arm = known is not None and known.role.is_of_blocks
         self.own = ENDED.get(meant, meant)
-        self.is_asked = any(each.text == "UNTIL" for each in self.tokens)
+        self.is_asked = any(token.text == "UNTIL" for token in self.tokens)
         self.time = _TIME.match(self.call)
         self.power = _POWER.search(self.call)
         kinds = [said_of(it.text, kind) for it in self.row for kind in ("value", "unit", "number")]
         self.has_percent = any("%" in each or each == ("100",) for each in kinds)  # `por ciento`
-        self.numbers = {each.text for each in self.tokens if each.kind is NUMBER}
+        self.numbers = {token.text for token in self.tokens if token.kind is NUMBER}
 
     def is_aside(self) -> bool:
         """Whether the words may say something: of no instruction, where they are none."""
@@ -127,7 +127,7 @@ class Trailing:
     def _is_factor(self) -> bool:
         """Whether the words go on with a value of the instruction: `V = 2 x SIDE`."""
         signs, values = [each.text for each in self.row[:2]], (self.tokens[-1], *self.row[1:2])
-        is_set = [each.text for each in self.tokens[1:2]] == ["="]
+        is_set = [token.text for token in self.tokens[1:2]] == ["="]
         return (
             is_set
             and signs[0] in ("X", "·")
@@ -149,7 +149,7 @@ class Trailing:
                 "@any": True,
                 "@cmd": is_order,
                 "@did": self.tokens[0].text in self.names.defs,
-                "@set": [each.text for each in self.tokens[1:2]] == ["="],
+                "@set": [token.text for token in self.tokens[1:2]] == ["="],
                 "@move": own in MOVES,
                 "@clock": (is_timed or own == "BEEP") and not self.is_asked,
                 "@asked": self.is_asked,

@@ -171,8 +171,8 @@ class _Usage:
         self.is_first = found.span.start == self.piece.start
         self.behind_it = text.source.text[found.span.end :]
         self.tokens = lexemes(self.source[self.piece])
-        self.words = [each.text for each in self.tokens if each.kind is WORD]
-        self.signs = [each.text for each in self.tokens]
+        self.words = [token.text for token in self.tokens if token.kind is WORD]
+        self.signs = [token.text for token in self.tokens]
         self.number = next((it.text for it in self.tokens[1:] if it.kind is NUMBER), "1")
 
     def around(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
@@ -247,7 +247,7 @@ class _Usage:
         first, sign = self.signs[0], "".join(self.signs[1:2])
         if said_of(first, "end") and len(self.words) == len(self.tokens) < _MOST_OF_END:
             named = next(
-                (BLOCK_ENDS.get(self.names.meant(each), "") for each in self.words[1:]), ""
+                (BLOCK_ENDS.get(self.names.meant(word), "") for word in self.words[1:]), ""
             )
             end = named or self.text.end_at(self.piece.start)
             said = self.source[self.piece]
@@ -324,12 +324,12 @@ class _Usage:
         halves = (it for it in degrees if any(said_of(each, it) for each in said))
         angle = degrees.get(next(halves, ""), "")
         is_timed = any(said_of(each, "unit")[:1] not in ((), ("turns",)) for each in self.words)
-        numbers = [each.text for each in self.tokens if each.kind is NUMBER]
+        numbers = [token.text for token in self.tokens if token.kind is NUMBER]
         if len(numbers) == 1 and float(numbers[0]) >= LONG_S and not is_timed:
             angle = numbers[0]  # `SPIN 360`: no time, and no power
         turns = orders(self.tokens, self.names)
         values = laid_out(self.tokens[1:])
-        is_call = all(float(each) <= MOST_POWER for each in numbers)
+        is_call = all(float(number) <= MOST_POWER for number in numbers)
         side = {"L": "left", "R": "right"}.get(way, "")
         if angle and way and not is_timed:
             right = f"{way}({angle} DEG, 60)"
@@ -411,7 +411,7 @@ class _Usage:
 
     def ordered(self) -> dict[str, str]:
         """Return the words of no program that mean an order, and which."""
-        meant = {each: self.names.meant(each) for each in self.words if each not in WORDS}
+        meant = {word: self.names.meant(word) for word in self.words if word not in WORDS}
         return {
             it: its for it, its in meant.items() if its in WORDS and WORDS[its].role.is_instruction
         }
@@ -760,7 +760,9 @@ def _calls(instruction: str, name: str) -> bool:
 
 def _usage(word: str) -> str:
     known = WORDS.get(ALIASES.get(word, word))
-    is_asking = known is not None and [each.name for each in known.arguments] == [QUESTION.name]
+    is_asking = known is not None and [argument.name for argument in known.arguments] == [
+        QUESTION.name
+    ]
     return (known.example if is_asking else known.usage) if known else word
 
 

@@ -19,7 +19,7 @@ _NOTE = re.compile(r"(?i)(?<!\bSI)(?<!\bSB)//")
 
 def laid_out(tokens: Sequence[Lexeme]) -> str:
     """Return a line as the formatter would write it."""
-    line = [Token(each.kind, each.text, 0, 0) for each in tokens]
+    line = [Token(token.kind, token.text, 0, 0) for token in tokens]
     return instruction_text(line) if line else ""
 
 
@@ -64,7 +64,7 @@ def tokens_of(line: str) -> list[Lexeme]:
 def in_one_line(text: str) -> str:
     """Return the instructions of a text, laid out; nothing where they are long for a message."""
     parts = (laid_out(tokens_of(line)).strip("; ") for line in text.split("\n"))
-    whole = "; ".join(each for each in parts if each)
+    whole = "; ".join(part for part in parts if part)
     return whole if len(whole) <= LONGEST_BLOCK else ""
 
 

@@ -39,7 +39,7 @@ def header(wired: Sequence[Robot], made_by: str) -> str:
     ]
     for number, ((defines, *paragraphs), robots) in enumerate(parts.items()):
         names = ", ".join(robot.board.chip for robot in robots)
-        own = [each for each in paragraphs if each not in shared]
+        own = [paragraph for paragraph in paragraphs if paragraph not in shared]
         lines += [f"#{'elif' if number else 'if'} {_condition(robots)}  // {names}", ""]
         lines += [defines, "", *_in_space(own), ""]
     boards = ", ".join(robot.board.chip for robot in wired)
@@ -54,7 +54,7 @@ def header(wired: Sequence[Robot], made_by: str) -> str:
 
 
 def _in_space(paragraphs: Sequence[str]) -> list[str]:
-    more = [line for each in paragraphs for line in (each, "")]
+    more = [line for paragraph in paragraphs for line in (paragraph, "")]
     return [f"namespace {SPACE} {{", "", *more, f"}}  // namespace {SPACE}"]
 
 

@@ -158,12 +158,12 @@ def _read_labels(table: Table, kit: Kit, name: str) -> Mapping[str, Mapping[str,
     known = [each for each in languages() if table.has(each)]
     written = {each: _read_language(table, each, devices) for each in known}
     table.finish()
-    found: ByLanguage[dict[str, str]] = ByLanguage()
+    labels: ByLanguage[dict[str, str]] = ByLanguage()
     for language in dict.fromkeys((SOURCE, *known)):
-        found[language] = {"robot": name, **{device.name: device.name for device in devices}}
+        labels[language] = {"robot": name, **{device.name: device.name for device in devices}}
         for each in (*known, language):
-            found[language].update(written.get(each, {}))
-    return found
+            labels[language].update(written.get(each, {}))
+    return labels
 
 
 def _read_language(table: Table, language: str, devices: Sequence[Device]) -> dict[str, str]:

@@ -50,7 +50,7 @@ def _causes(reasons: Sequence[Reason]) -> list[Reason]:
         is_name_refused |= code.startswith("name_") and parent.startswith("kit.")
         if code in ("unknown_key", "not_in_kit") and values.get("near"):
             meant.add(f"{parent}.{values['near']}".lstrip("."))
-    found = []
+    causes = []
     for code, values in reasons:
         path = values.get("path", "")
         is_meant = any(path == each or path.startswith(f"{each}.") for each in meant)
@@ -59,8 +59,8 @@ def _causes(reasons: Sequence[Reason]) -> list[Reason]:
             continue
         if is_name_refused and (is_device or code == "not_in_kit"):
             continue
-        found.append((code, values))
-    return found
+        causes.append((code, values))
+    return causes
 
 
 def shown(value: object) -> str:

@@ -14,7 +14,7 @@ LONGEST_WORD = 255  # letters of a word that a reader takes
 
 def _block_words(*blocks: str) -> frozenset[str]:
     """Return the words of blocks, and those that end them."""
-    ends = {BLOCK_ENDS[each] for each in blocks}
+    ends = {BLOCK_ENDS[block] for block in blocks}
     return frozenset((*blocks, *ends, *(each for each, end in ALIASES.items() if end in ends)))
 
 

@@ -151,12 +151,12 @@ class Table:
         ):
             self.expect("pairs", key, value)
             return None
-        found = []
+        pairs = []
         for number, (x, y) in enumerate(value, start=1):
             place = f"{key}[{number}]"
             first = self._thousandths(place, x, low, high)
-            found.append((first, self._thousandths(place, y, low, high)))
-        return found
+            pairs.append((first, self._thousandths(place, y, low, high)))
+        return pairs
 
     def table(self, key: str, example: str = "") -> Table:
         """Return the table at `key`. A missing key or another type gives an empty table.
@@ -178,14 +178,14 @@ class Table:
         if not isinstance(value, list):
             self.expect("tables", key, value)
             return []
-        found = []
+        tables = []
         for number, each in enumerate(value, start=1):
             place = f"{key}[{number}]"
             if isinstance(each, dict):
-                found.append(Table(each, self.path_of(place), self.reasons))
+                tables.append(Table(each, self.path_of(place), self.reasons))
             else:
                 self.expect("table", place, each)
-        return found
+        return tables
 
     def expect(self, wanted: str, key: str, value: object) -> None:
         """Complain that `value` has the wrong type; a missing value has its own complaint."""

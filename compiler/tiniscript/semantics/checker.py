@@ -48,7 +48,11 @@ def check(source: Source, parsed: ast.Program, kit: Kit) -> Checked:
     body = checker.body(parsed.body)
     variables, procedures = tuple(checker.variables), tuple(checker.procedures)
     meaning = ir.Program(parsed.start, variables, procedures, body, tuple(checker.tasks))
-    if meaning.tasks and any(each.values for each in procedures) and not checker.diagnostics:
+    if (
+        meaning.tasks
+        and any(procedure.values for procedure in procedures)
+        and not checker.diagnostics
+    ):
         checker.copies_fit(meaning)
     return Checked(meaning, checker.diagnostics)
 
@@ -434,21 +438,21 @@ class _Checker(Scope):
         if len(node.parameters) > PARAMETERS:
             self.report(codes.TOO_MANY_PARAMETERS, node.parameters[PARAMETERS].span,
                         name=node.name, limit=str(PARAMETERS))  # fmt: skip
-        found: list[int] = []
+        parameters: list[int] = []
         for each, kind in zip(node.parameters, self.kinds.of(node), strict=True):
             known = self.names.get(each.name)
             is_free = known is None and each.name not in self.taken_names
-            found.append(self.new_variable(each.name, each.span, kind if is_free else ANY))
+            parameters.append(self.new_variable(each.name, each.span, kind if is_free else ANY))
             if known is None:  # even if it is taken below: that is said once
-                self.names[each.name] = Name("variable", found[-1])
+                self.names[each.name] = Name("variable", parameters[-1])
             if is_free:
                 continue
-            if known is not None and known.what == "variable" and known.number in found:
+            if known is not None and known.what == "variable" and known.number in parameters:
                 self.report(codes.PARAMETER_TWICE, each.span, name=each.name)
             else:
                 other = self.wrong.free_name(each.name, self.procedures)
                 self.report(codes.PARAMETER_TAKEN, each.span, name=each.name, other=other)
-        return found
+        return parameters
 
     def task(self, node: ast.Task, made: list[Statement]) -> None:
         outside = self.apart()

@@ -140,7 +140,7 @@ def comes_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
 
 def asks_if_near(condition: Expression, kit: Kit) -> bool:
     """Whether a part of a condition is `DISTANCE < 20`, of a sensor that looks ahead."""
-    return any(looks_ahead(each.device) and each.op in _LESS for each in _parts(condition, kit))
+    return any(looks_ahead(part.device) and part.op in _LESS for part in _parts(condition, kit))
 
 
 def _parts(condition: Expression, kit: Kit) -> Iterator[Comparison]:

@@ -63,8 +63,8 @@ class _Durations:
     def drives(self, body: ir.Body) -> bool:
         """Whether a body has a move or an S, or calls something that has one."""
         return any(
-            isinstance(each, ir.Stop) or (isinstance(each, ir.Move) and each.power is not None)
-            for each in ir.with_calls(body, self.procedures)
+            isinstance(call, ir.Stop) or (isinstance(call, ir.Move) and call.power is not None)
+            for call in ir.with_calls(body, self.procedures)
         )
 
     def of(self, body: ir.Body) -> Duration:

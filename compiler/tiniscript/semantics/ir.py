@@ -208,13 +208,13 @@ def every(program: Program) -> Iterator[Statement]:
 def first_way(program: Program) -> Span | None:
     """Return where the first move is that goes by centimetres or degrees."""
     moves = (each for each in every(program) if isinstance(each, Move) and each.unit)
-    return min((each.span for each in moves), default=None)
+    return min((move.span for move in moves), default=None)
 
 
 def routines(program: Program) -> tuple[Body, ...]:
     """Return the bodies of the DEFs, those of the tasks, and the main task."""
-    procedures = (each.body for each in program.procedures)
-    return (*procedures, *(each.body for each in program.tasks), program.body)
+    procedures = (procedure.body for procedure in program.procedures)
+    return (*procedures, *(task.body for task in program.tasks), program.body)
 
 
 _YES_NO = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "EQ", "NE"))

@@ -39,7 +39,9 @@ def optimized(program: ir.Program) -> ir.Program:
     pushed in a fraction of the time that a robot takes to calculate it.
     """
     body, tasks = _body(program.body), tuple(_task(task) for task in program.tasks)
-    procedures = [each._replace(body=_body(each.body)) for each in program.procedures]
+    procedures = [
+        procedure._replace(body=_body(procedure.body)) for procedure in program.procedures
+    ]
     done = ir.with_calls(sum((task.body for task in tasks), body), procedures)
     called = {each.procedure for each in done if isinstance(each, ir.Call)}
     used = tuple(each._replace(is_called=k in called) for k, each in enumerate(procedures))

@@ -75,7 +75,7 @@ def names_one(call: ast.Command, names: Sequence[str]) -> bool:
 
 
 def _parameter(name: str, around: ast.Def | None) -> int | None:
-    names = [] if around is None else [each.name for each in around.parameters]
+    names = [] if around is None else [parameter.name for parameter in around.parameters]
     return names.index(name) if name in names else None
 
 

@@ -45,10 +45,14 @@ class Scope:
         self.names = {
             device.name: Name("sensor", i) for i, device in enumerate(kit.readings) if device.name
         }
-        self.yes_no_sensors = frozenset(each.name for each in kit.readings if each.is_yes_no)
+        self.yes_no_sensors = frozenset(
+            reading.name for reading in kit.readings if reading.is_yes_no
+        )
         for i, device in enumerate(kit.actuators):
             self.names[device.name] = Name("actuator", i)
-        self._first = {each.name: each for each in reversed(_assignments(parsed.body))}
+        self._first = {
+            assignment.name: assignment for assignment in reversed(_assignments(parsed.body))
+        }
         self.set_somewhere = self._first.keys()
         self.parsed = parsed
         self.def_names = {each.name for each in parsed.body if isinstance(each, ast.Def)}
@@ -120,17 +124,19 @@ class Scope:
 
 def _assignments(body: Sequence[ast.Instruction]) -> list[ast.Assign]:
     """Return all that set a variable of the whole program, in the order of the text."""
-    found: list[ast.Assign] = []
+    assignments: list[ast.Assign] = []
     for node in body:
         if isinstance(node, ast.Assign):
-            found.append(node)
+            assignments.append(node)
         elif isinstance(node, ast.If):
             for arm in node.arms:
-                found += _assignments(arm.body)
-            found += _assignments(node.otherwise)
+                assignments += _assignments(arm.body)
+            assignments += _assignments(node.otherwise)
         elif isinstance(node, ast.Def):
-            own = {each.name for each in node.parameters}
-            found += (each for each in _assignments(node.body) if each.name not in own)
+            own = {parameter.name for parameter in node.parameters}
+            assignments += (
+                assignment for assignment in _assignments(node.body) if assignment.name not in own
+            )
         elif isinstance(node, (ast.Loop, ast.While, ast.Task)):
-            found += _assignments(node.body)
-    return found
+            assignments += _assignments(node.body)
+    return assignments

@@ -109,7 +109,7 @@ def _owning(program: ir.Program) -> list[bool]:
 
 
 def _copied(procedure: ir.Procedure, its: _Numbers) -> ir.Procedure:
-    values = tuple(its.variables.get(each, each) for each in procedure.values)
+    values = tuple(its.variables.get(value, value) for value in procedure.values)
     return procedure._replace(body=_body(procedure.body, its), values=values)
 
 
@@ -143,7 +143,7 @@ def _statement(statement: ir.Statement, its: _Numbers) -> ir.Statement:
 
 def _expression(terms: ir.Expression, variables: Mapping[int, int]) -> ir.Expression:
     return tuple(
-        each._replace(value=variables.get(each.value, each.value))
-        if each.op == "VARIABLE" else each
-        for each in terms
+        term._replace(value=variables.get(term.value, term.value))
+        if term.op == "VARIABLE" else term
+        for term in terms
     )  # fmt: skip

@@ -37,7 +37,7 @@ def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
 def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     word, span = node.word, node.word_span
     begins = (each for each in WORDS.values() if each.role.begins)
-    commands = [each.text for each in begins if each.text not in ("FOREVER", "SEND")]
+    commands = [begin.text for begin in begins if begin.text not in ("FOREVER", "SEND")]
     near = whole_name(scope, word, scope.def_names) if node.arguments is None else ""
     near = near or scope.near(word, chain(commands, scope.names, scope.def_names))
     is_own = near in scope.set_somewhere or near in scope.def_names
@@ -46,7 +46,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
     letters = [word[0]] if is_held and word[0] in WORDS else shortened(word)
     count = len(node.arguments or ())
-    near = next((each for each in letters if len(WORDS[each].arguments) == count), near)
+    near = next((letter for letter in letters if len(WORDS[letter].arguments) == count), near)
     scope.report(codes.UNKNOWN_WORD, span, None, found=scope.source[span].upper(), near=near)
 
 
@@ -60,7 +60,9 @@ def report_placeholders(scope: Scope, node: ast.Command, word: Word, said: int) 
 
 def report_words_shown(scope: Scope, said: int) -> None:
     """`SHOW(HOLA)`: words are not shown. Changes the diagnostics since `said`."""
-    shown = dict.fromkeys(each.values.get("shown") for each in scope.diagnostics[:ENOUGH])
+    shown = dict.fromkeys(
+        diagnostic.values.get("shown") for diagnostic in scope.diagnostics[:ENOUGH]
+    )
     for k, each in enumerate(scope.diagnostics[said:], said):
         if each.code is codes.UNKNOWN_NAME and not each.values.get("near"):
             name = each.values["found"]
@@ -77,7 +79,7 @@ def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
     """
     if part in names or len(scope.diagnostics) >= ENOUGH:
         return ""
-    found = [each for each in names if part in each.split("_") or _is_shortened(part, each)]
+    found = [name for name in names if part in name.split("_") or _is_shortened(part, name)]
     return found[0] if len(found) == 1 else ""
 
 
@@ -91,9 +93,9 @@ def _wanted(scope: Scope, name: str) -> list[str]:
     if name in scope.wanted:
         return scope.wanted[name]
     body = re.search(rf"(?is)\bDEF\s+{name}\b(.*?)\bEND_?DEF\b", scope.source.text)
-    words = [each.text for each in scan(body[1]).tokens if each.kind is WORD] if body else []
+    words = [token.text for token in scan(body[1]).tokens if token.kind is WORD] if body else []
     known = {*WORDS, *scope.names, *scope.set_somewhere, *scope.def_names}
-    scope.wanted[name] = [*dict.fromkeys(each for each in words if each not in known)]
+    scope.wanted[name] = [*dict.fromkeys(word for word in words if word not in known)]
     return scope.wanted[name]
 
 

@@ -28,7 +28,7 @@ def is_open_way(statement: Statement) -> bool:
     if not isinstance(statement, Move) or not statement.unit:
         return False
     values = (statement.time, statement.power)
-    return any(each is None or known_value(each) is None for each in values)
+    return any(value is None or known_value(value) is None for value in values)
 
 
 def timed(move: Move, kit: Kit) -> Move:

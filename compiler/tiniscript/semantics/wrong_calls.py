@@ -97,7 +97,7 @@ class WrongCalls:
 
     def count(self, word: Word, arguments: Sequence[ast.Argument], span: Span) -> None:
         source = self.scope.source
-        texts = [source[each.span] for each in arguments]
+        texts = [source[argument.span] for argument in arguments]
         values = {
             "usage": word.usage,
             "example": "" if texts else word.example,
@@ -129,7 +129,7 @@ class WrongCalls:
         said["other"] = called + self.scope.source[node.span][len(node.word) :]
         is_early = len(self.scope.diagnostics) < ENOUGH
         pairs = _PAIR.finditer(self.scope.source.text) if is_early else ()
-        others = [each for each in pairs if UNIT_OF[each[1].upper()] != each[3].upper()]
+        others = [pair for pair in pairs if UNIT_OF[pair[1].upper()] != pair[3].upper()]
         for one, other in (others, others[::-1]) if len(others) == 2 else ():
             if one.start() == start and one[2] != other[2] and one[3].upper() != other[3].upper():
                 rest = self.scope.source[Span(unit.end, node.span.end)]
@@ -202,7 +202,7 @@ class WrongCalls:
     def def_set(self, node: ast.Assign, procedures: Sequence[ir.Procedure]) -> None:
         """`SQUARE = 30`, where SQUARE is a DEF with one value: it is called, if no value is."""
         other = self.free_name(node.name, procedures)
-        known = next((each for each in procedures if each.name == node.name), None)
+        known = next((procedure for procedure in procedures if procedure.name == node.name), None)
         as_value = rf"(?i)[(,=<>+*/%-][ \t]*{node.name}\b(?![ \t]*\()"
         is_value = re.search(as_value, self.scope.source.text)
         if known is None or len(known.values) != 1 or node.value is None or is_value:
@@ -216,7 +216,9 @@ class WrongCalls:
         if name not in self._free:
             self._free[name] = (numbered(self.scope.source.text, name), [])
         others, found = self._free[name]
-        k = max(0, sum(each.name == name for each in procedures) - 1)  # these got one already
+        k = max(
+            0, sum(procedure.name == name for procedure in procedures) - 1
+        )  # these got one already
         found += islice(others, max(0, k + 1 - len(found)))
         return found[k]
 
@@ -257,10 +259,11 @@ _ROUND = 50
 def meant(source: Source, node: ast.Command, word: Word) -> dict[str, str]:
     """Return the values of a diagnostic: `fix`, or an example, or none."""
     arguments = node.arguments or ()
-    texts = [source[Span(each.span.start, each.unit.end if each.unit else each.span.end)]
-             for each in arguments]  # fmt: skip
+    texts = [
+        source[Span(it.span.start, it.unit.end if it.unit else it.span.end)] for it in arguments
+    ]
     values: dict[str, str] = {}
-    if len(texts) != 2 or not all(each.is_plain for each in arguments):
+    if len(texts) != 2 or not all(argument.is_plain for argument in arguments):
         return values
     first, second = texts
     is_short = first.replace(".", "", 1).isdecimal() and float(first) < _LONG_TIME_S

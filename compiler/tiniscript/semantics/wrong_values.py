@@ -67,13 +67,13 @@ class WrongValues:
         which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
         sensors = [each for each, its in names if its.what == "sensor"]
         if name == target or name in scope.set_somewhere:
-            if any(each.code is codes.USED_BEFORE_SET and each.values["name"] == name
-                   for each in scope.diagnostics[-ENOUGH:]):  # fmt: skip
+            if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name
+                   for diagnostic in scope.diagnostics[-ENOUGH:]):  # fmt: skip
                 return  # said once
             scope.report_used(name, span, near)
         else:
             near = "" if which or is_variable else near
-            only = next((each for each in sensors if name.startswith(each + "_")), "")
+            only = next((sensor for sensor in sensors if name.startswith(sensor + "_")), "")
             aside = only if is_aside(name.rpartition("_")[2]) else ""
             alike = near if near and near.rstrip(_DIGITS) == base else ""
             near = "" if aside or alike else only or near
@@ -84,7 +84,7 @@ class WrongValues:
             elif is_said and said_of(name + "4", "note") and _TONE_BEFORE.search(before):
                 said = {"pitch": said_of(name + "4", "note")[0]}
             elif not which and not is_variable and said_of(name, "unsensed"):
-                its_own = ", ".join(each.name for each in scope.kit.sensors)
+                its_own = ", ".join(sensor.name for sensor in scope.kit.sensors)
                 said, near = {"unsensed": name, "sensors": its_own}, ""
             elif is_said and said_of(name, "colour"):
                 said = {"colour": name}
@@ -134,7 +134,7 @@ class WrongValues:
         if other is not None and other.end - other.start <= 80:
             asked = self.scope.source[Span(other.start, other.end)]
             before, behind = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
-            is_sensor = found.upper() in (each.name for each in self.scope.kit.readings)
+            is_sensor = found.upper() in (reading.name for reading in self.scope.kit.readings)
             if other.start < operand.start and before and not is_sensor:
                 values = {"fix": f"{before[0]} {found}"}
             elif behind and found.isidentifier():

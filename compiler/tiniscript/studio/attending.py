@@ -60,11 +60,11 @@ class Attending:
             self._was_heard = True
             if stops > self.stops:
                 self._stop(stops)
-            for each in requests:
-                number = each.get("id")
+            for request in requests:
+                number = request.get("id")
                 if type(number) is int and number > self._last:
                     self._last = number
-                    self._asked.append(each)
+                    self._asked.append(request)
             if self.is_latched:
                 self._void()
             self._news = [each for each in self._news if each["number"] > seen]

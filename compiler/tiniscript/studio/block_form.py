@@ -83,11 +83,11 @@ def size_of(form: Form) -> int:
 
 def kinds_in(form: Form) -> set[str]:
     """Return the kinds of a program's blocks; a number alone is in its place already."""
-    found: set[str] = set()
+    kinds: set[str] = set()
     for block in in_order(form.body):
-        found.add(block.kind)
-        found.update(KIND_OF[op] for value in block.values for op, _ in value if op != "NUMBER")
-    return found
+        kinds.add(block.kind)
+        kinds.update(KIND_OF[op] for value in block.values for op, _ in value if op != "NUMBER")
+    return kinds
 
 
 def beginning(form: Form, most: int) -> Form:

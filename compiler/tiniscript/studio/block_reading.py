@@ -42,7 +42,7 @@ def read(text: str, kit: Kit) -> Form:
     grey: set[int] = set()
     for _ in range(ROUNDS):
         source, parsed = _read_without(lines, grey)
-        wrong = [each.span for each in parsed.diagnostics if each.is_mistake]
+        wrong = [diagnostic.span for diagnostic in parsed.diagnostics if diagnostic.is_mistake]
         if not wrong:
             break
         _mark(source, wrong, grey)
@@ -101,14 +101,14 @@ class _Reader:
 
     def _comments(self) -> list[Block]:
         """Return the comments, and grey lines, that stand before the next instruction."""
-        found = []
+        comments = []
         while self._next < len(self._pieces) and not self._pieces[self._next].tokens:
             piece = self._take()
             place = (piece.first_line + 1, 1, piece.first_line + 2, 1)
             grey = self._grey.get(piece.first_line)
             kind, word = ("comment", _note(piece)) if grey is None else ("grey", grey)
-            found.append(Block(kind, word, is_apart=piece.after_blank, place=place))
-        return found
+            comments.append(Block(kind, word, is_apart=piece.after_blank, place=place))
+        return comments
 
     def _body(self, instructions: tuple[Instruction, ...]) -> list[Block]:
         found: list[Block] = []
@@ -134,7 +134,7 @@ class _Reader:
             word = ""
             if isinstance(node, Def):
                 word = node.name
-                values = tuple((("NAME", each.name),) for each in node.parameters)
+                values = tuple((("NAME", parameter.name),) for parameter in node.parameters)
             block = Block(kind.lower(), word, values, bodies)
         last = self._pieces[self._next - 1]
         block = block._replace(
@@ -185,7 +185,7 @@ class _Reader:
         is_known = kind == "call" or (kind in KINDS and len(KINDS[kind].values) == len(arguments))
         if not is_known or (unit is not None and KINDS[kind].units.get(node.word) != unit.op):
             return Block("grey", instruction_text(piece.tokens))
-        return Block(kind, word, tuple(self._value(each) for each in arguments))
+        return Block(kind, word, tuple(self._value(argument) for argument in arguments))
 
     def _value(self, argument: Argument | None) -> Value:
         assert argument is not None, "the line of an unread value is grey"
@@ -237,7 +237,7 @@ def _stack(text: str, kit: Kit) -> Stack | None:
     is_value = text.startswith(LOOSE_VALUE)
     source = Source(f"X {text}" if is_value else text)
     parsed = parse(source)
-    if any(each.is_mistake for each in parsed.diagnostics):
+    if any(diagnostic.is_mistake for diagnostic in parsed.diagnostics):
         return None
     reader = _Reader(source, parsed, kit, {})
     if reader._pieces[:1] and reader._pieces[0].is_setup:

@@ -119,7 +119,7 @@ def line(data: bytes, robot: str, language: str) -> str | Message:
     profile = profile_for(data, robot)
     found = compile_source(data, profile, "", is_strict=True)
     if not found.is_right or found.program is None:
-        mistake = next(each for each in found.diagnostics if each.is_mistake)
+        mistake = next(diagnostic for diagnostic in found.diagnostics if diagnostic.is_mistake)
         return message(mistake, found.source, language)
     level = level_of(profile.board.chip, profile.board.discs is not None)
     lacking = misfits(found.source, found.program, profile.kit, level)

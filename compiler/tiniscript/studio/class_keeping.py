@@ -47,7 +47,7 @@ class Work(NamedTuple):
         text, robot, lessons = found.get("text"), found.get("robot"), found.get("lessons", [])
         if not isinstance(text, str) or robot not in ("", *robots.names()):
             return None
-        if not isinstance(lessons, list) or not all(is_lesson(each) for each in lessons):
+        if not isinstance(lessons, list) or not all(is_lesson(lesson) for lesson in lessons):
             return None
         kept = text[:TEXT_CHARACTERS].encode("utf-8", "replace").decode()  # as the file has it
         return cls(kept, str(robot), tuple(lessons[:MOST_LESSONS]))

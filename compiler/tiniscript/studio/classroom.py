@@ -268,7 +268,7 @@ class Classroom:
         return None
 
     def _of(self, address: str) -> list[Pupil]:
-        return [each for each in self._pupils.values() if each.address == address]
+        return [pupil for pupil in self._pupils.values() if pupil.address == address]
 
     def _works(self, address: str | None = None) -> int:
         """Return how many works the class has, of an address or in all."""
@@ -283,8 +283,8 @@ class Classroom:
 
     def _give_place_away(self, now_s: float, silent_s: float, pupils: list[Pupil]) -> bool:
         """Take the place of the one of these that has been silent longest."""
-        silent = [each for each in pupils
-                  if now_s - each.heard_s > silent_s and self._turn(each) is None]  # fmt: skip
+        silent = [pupil for pupil in pupils
+                  if now_s - pupil.heard_s > silent_s and self._turn(pupil) is None]  # fmt: skip
         if silent:
             self._forget(min(silent, key=lambda each: each.heard_s))
         return bool(silent)
@@ -428,11 +428,11 @@ class Classroom:
             robot.begin(here[0], now_s)
 
     def _waiting(self) -> list[Pupil]:
-        found = [(each.waits, each) for each in self._pupils.values() if each.waits is not None]
+        found = [(pupil.waits, pupil) for pupil in self._pupils.values() if pupil.waits is not None]
         return [each for _, each in sorted(found, key=lambda found: found[0])]
 
     def _turn(self, pupil: Pupil) -> ClassRobot | None:
-        return next((each for each in self._robots if each.pupil is pupil), None)
+        return next((robot for robot in self._robots if robot.pupil is pupil), None)
 
     def _left_s(self, robot: ClassRobot) -> int:
         return max(0, round(self._turn_s - (self._clock() - robot.began_s)))
@@ -525,8 +525,8 @@ class Classroom:
 
     def _begin_anew(self) -> None:
         """Begin another class: nobody is in it, and nothing is kept of the one before."""
-        for each in self._robots:
-            each.take_back()
+        for robot in self._robots:
+            robot.take_back()
         self._pupils.clear()
         self._kept.clear()
         self.code = _new_code()
@@ -541,7 +541,7 @@ class Classroom:
                 "code": self.code,
                 "turn_s": self._turn_s,
                 "places": self._places,
-                "robots": [each.port for each in self._robots],
+                "robots": [robot.port for robot in self._robots],
                 "kept": [
                     {
                         "name": each.name,
@@ -556,13 +556,13 @@ class Classroom:
                 ],
                 "pupils": [
                     {
-                        "token": each.token,
-                        "name": each.name,
-                        "written": each.written,
-                        "address": each.address,
-                        **each.work._asdict(),
+                        "token": pupil.token,
+                        "name": pupil.name,
+                        "written": pupil.written,
+                        "address": pupil.address,
+                        **pupil.work._asdict(),
                     }
-                    for each in self._pupils.values()
+                    for pupil in self._pupils.values()
                 ],
             }
 
@@ -582,8 +582,8 @@ class Classroom:
                     self._keep(found)
             self._goes_on = bool(self._pupils or self._kept)
             if not is_same_lesson:
-                for each in list(self._pupils.values()):
-                    self._forget(each)
+                for pupil in list(self._pupils.values()):
+                    self._forget(pupil)
                 return 0
             for port in kept["robots"] if isinstance(kept.get("robots"), list) else []:
                 with suppress(BadRequest):
@@ -596,7 +596,7 @@ class Classroom:
     def _give(self, given: ClassRobot, is_given: bool) -> None:
         """Give a robot to the class, or take it away."""
         port = same_for_all(given.port)
-        same = [each for each in self._robots if same_for_all(each.port) == port]
+        same = [robot for robot in self._robots if same_for_all(robot.port) == port]
         for each in same:
             if not is_given:
                 each.take_back()
@@ -607,8 +607,8 @@ class Classroom:
             self._robots.append(given)
 
     def _end(self, erases: bool) -> None:
-        for each in self._robots:
-            each.take_back()
+        for robot in self._robots:
+            robot.take_back()
         self._over = "erased" if erases else "kept"
         self._over_s = self._clock()
 
@@ -617,7 +617,7 @@ class Classroom:
         """Whether the class is over and all pages know it that can."""
         with self._lock:
             now_s = self._clock()
-            here = [each for each in self._pupils.values() if now_s - each.heard_s <= QUEUE_S]
+            here = [pupil for pupil in self._pupils.values() if now_s - pupil.heard_s <= QUEUE_S]
             are_told = all(each.knows_end for each in here)
             return bool(self._over) and (are_told or now_s - self._over_s > OVER_S)
 
@@ -661,18 +661,18 @@ class Classroom:
             ],
             "robots": [
                 {
-                    "port": each.port,
-                    "name": each.name,
-                    "pupil": each.pupil.name if each.pupil else "",
-                    "left_s": self._left_s(each) if each.pupil else 0,
+                    "port": robot.port,
+                    "name": robot.name,
+                    "pupil": robot.pupil.name if robot.pupil else "",
+                    "left_s": self._left_s(robot) if robot.pupil else 0,
                 }
-                for each in self._robots
+                for robot in self._robots
             ],
         }
 
     def _pupil(self, request: Json) -> Pupil | None:
         number = request.get("pupil")
-        return next((each for each in self._pupils.values() if each.number == number), None)
+        return next((pupil for pupil in self._pupils.values() if pupil.number == number), None)
 
     def _number(self, token: str) -> int:
         return self._pupils[token].number if token in self._pupils else 0

@@ -31,7 +31,10 @@ def description() -> dict[str, Any]:
                 "text": word.text,
                 "role": word.role.name,
                 "example": word.example,
-                "arguments": [_range(each.low, each.high, each.sample) for each in word.arguments],
+                "arguments": [
+                    _range(argument.low, argument.high, argument.sample)
+                    for argument in word.arguments
+                ],
             }
             for word in WORDS.values()
             if word.role.is_offered
@@ -63,7 +66,7 @@ def _robot(profile: Robot) -> dict[str, Any]:
     kit = profile.kit
     return {
         "name": profile.name,
-        "labels": {each: profile.labels[each]["robot"] for each in languages()},
+        "labels": {language: profile.labels[language]["robot"] for language in languages()},
         "baud": profile.board.baud,
         "speed_cm_s": profile.body.speed_cm_s,
         "wheel_base_cm": profile.body.wheel_base_cm,
@@ -71,7 +74,11 @@ def _robot(profile: Robot) -> dict[str, Any]:
         "outline": [[point.x, point.y] for point in Hull(profile.body).outline(Pose(0, 0, 0))],
         "places": {name: place._asdict() for name, place in profile.body.places.items()},
         "devices": [
-            _device(device, role, {each: profile.labels[each][device.name] for each in languages()})
+            _device(
+                device,
+                role,
+                {language: profile.labels[language][device.name] for language in languages()},
+            )
             for role, devices in (("sensor", kit.sensors), ("actuator", kit.actuators))
             for device in devices
         ],
@@ -96,7 +103,8 @@ def _remote() -> list[dict[str, Any]]:
     for device in REMOTE:
         key = "remote_key" if device.is_yes_no else "remote_pad"
         labels = {
-            each: f"{text('studio', key, each)} {REMOTE_SIGNS[device.name]}" for each in languages()
+            language: f"{text('studio', key, language)} {REMOTE_SIGNS[device.name]}"
+            for language in languages()
         }
         found.append(_device(device, "sensor", labels))
     return found

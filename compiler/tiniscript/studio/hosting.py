@@ -108,10 +108,10 @@ class Hosting:
                 return {}
             before = self._at(port)
             rivals = [each for each in {*before, *([own] if own else ())} if _drives(each)]
-            if not all(each.tab == tab or each.attending.is_half_made for each in rivals):
+            if not all(rival.tab == tab or rival.attending.is_half_made for rival in rivals):
                 return {"failure": "other_tab"}
-            for each in rivals:  # nobody knows of it any more
-                each.leave()
+            for rival in rivals:  # nobody knows of it any more
+                rival.leave()
             if sum(map(_drives, self._by_page.values())) >= MOST_ROBOTS:
                 return {"failure": "too_many"}
             if own is not None:
@@ -204,9 +204,9 @@ def _text(request: Json, name: str, most: int) -> str:
 
 
 def _requests(request: Json) -> list[Json]:
-    found: Any = request.get("asked", [])
-    if not isinstance(found, list) or len(found) > MOST_ASKED:
+    requests: Any = request.get("asked", [])
+    if not isinstance(requests, list) or len(requests) > MOST_ASKED:
         raise BadRequest
-    if not all(isinstance(each, dict) for each in found):
+    if not all(isinstance(each, dict) for each in requests):
         raise BadRequest
-    return found
+    return requests

@@ -70,7 +70,7 @@ def steps(number: int, language: str) -> list[dict[str, Any]]:
                 found[-1][0].append(block)
     found[0][0][:0] = before
     return [
-        {"blocks": [_shown(each) for each in parts], "hint": " ".join(hints)}
+        {"blocks": [_shown(part) for part in parts], "hint": " ".join(hints)}
         for parts, hints in found
     ]
 
@@ -160,7 +160,7 @@ class Check:
 
     def _said(self, verdict: str, seed: int, outcome: Outcome | None = None) -> dict[str, Any]:
         findings = outcome.findings if outcome is not None else ()
-        said = [sentence(each, self._language) for each in findings]
+        said = [sentence(finding, self._language) for finding in findings]
         run = None
         if outcome is not None and outcome.run.ending != ASKS:
             first = findings[0].ms if findings else None

@@ -109,12 +109,12 @@ def _decoded(data: bytes) -> str:
 
 def _fields(line: str, number: int) -> dict[str, object]:
     try:
-        found = json.loads(line)
+        fields = json.loads(line)
     except (ValueError, RecursionError):
-        found = None
-    if not isinstance(found, dict):
+        fields = None
+    if not isinstance(fields, dict):
         raise BadRecording("unreadable", number)
-    return found
+    return fields
 
 
 def _is(form: re.Pattern[str], found: object) -> bool:
@@ -200,7 +200,7 @@ def _since(events: tuple[Recorded, ...], virtual: list[Recorded]) -> tuple[Recor
     if not events or not virtual:
         return events
     late_ms = virtual[0].ms - events[0].ms
-    return tuple(each._replace(ms=each.ms + late_ms) for each in events)
+    return tuple(event._replace(ms=event.ms + late_ms) for event in events)
 
 
 def _is_said(event: Recorded) -> bool:
@@ -210,12 +210,12 @@ def _is_said(event: Recorded) -> bool:
 
 def _shown_sensors(program: ir.Program) -> dict[int, int | None]:
     """Return where each SHOW begins, and the sensor that it shows, if it is one alone."""
-    found: dict[int, int | None] = {}
+    shown_sensors: dict[int, int | None] = {}
     for statement in ir.every(program):
         if isinstance(statement, ir.Show):
             is_one = len(statement.value) == 1 and statement.value[0].op == "SENSOR"
-            found[statement.span.start] = statement.value[0].value if is_one else None
-    return found
+            shown_sensors[statement.span.start] = statement.value[0].value if is_one else None
+    return shown_sensors
 
 
 def _number(event: str) -> int:

@@ -36,11 +36,12 @@ def _check(fields: Answer, data: bytes) -> Answer:
         "program": f"{checksum(found.image):08x}" if found.image else "",
         "bytes": found.code_bytes,
         "findings": [
-            {**each.message._asdict(), "may_repair": each.may_repair} for each in found.findings
+            {**finding.message._asdict(), "may_repair": finding.may_repair}
+            for finding in found.findings
         ],
         "places": found.places,
         "shows": [[offset, *show] for offset, show in found.shows],
-        "variables": [each._asdict() for each in found.variables],
+        "variables": [variable._asdict() for variable in found.variables],
         "start": found.start,
         "robot": found.robot,
         "names_robot": found.names_robot,
@@ -51,7 +52,7 @@ def _check(fields: Answer, data: bytes) -> Answer:
 def _repair(fields: Answer, data: bytes) -> Answer:
     """Return what the button of the finding `which` does; nothing is no button."""
     changes = checking.repair(data, fields["robot"], fields["which"])
-    return {"changes": [each._asdict() for each in changes]}
+    return {"changes": [change._asdict() for change in changes]}
 
 
 def _loose(fields: Answer, data: bytes) -> int:

@@ -29,7 +29,7 @@ def form_of(world: World) -> Form:
     x_cm, y_cm, heading = world.start
     return {
         "name": world.name,
-        "labels": {each: world.labels[each] for each in languages()},
+        "labels": {language: world.labels[language] for language in languages()},
         "width_cm": world.width_cm,
         "height_cm": world.height_cm,
         "has_border": world.has_border,
@@ -37,8 +37,8 @@ def form_of(world: World) -> Form:
         "start": {"x_cm": x_cm, "y_cm": y_cm, "heading": heading},
         "walls": [{"points": _pairs(wall)} for wall in world.walls],
         "boxes": [_box(corners) for corners in world.boxes],
-        "lines": [{"points": _pairs(each.points), "width_cm": each.width_cm}
-                  for each in world.lines],
+        "lines": [{"points": _pairs(line.points), "width_cm": line.width_cm}
+                  for line in world.lines],
         "lamps": [{"x_cm": lamp.place.x, "y_cm": lamp.place.y, "reach_cm": lamp.reach_cm}
                   for lamp in world.lamps],
         "flags": [{"x_cm": flag.place.x, "y_cm": flag.place.y, "reach_cm": flag.reach_cm,

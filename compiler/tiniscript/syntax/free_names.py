@@ -22,7 +22,7 @@ def names_in(text: str) -> frozenset[str]:
 def numbered(text: str, stem: str) -> Iterator[str]:
     """Yield `stem`_2, `stem`_3 … without those that the text has."""
     names = (f"{stem}_{k}" for k in count(2))
-    return (each for each in names if each not in names_in(text))
+    return (name for name in names if name not in names_in(text))
 
 
 def in_place_of(text: str, word: str) -> str:

@@ -23,7 +23,7 @@ def in_program(text: str, kit: Kit) -> Kit:
 
 def among(tokens: Sequence[Token], kit: Kit) -> Kit:
     """Return the kit as a program with these tokens has it."""
-    later = {each.name for each in kit.readings}.difference(kit.names)
+    later = {reading.name for reading in kit.readings}.difference(kit.names)
     given = later.intersection(own_words(tokens))
     return kit._replace(given=frozenset(given)) if given else kit
 
@@ -42,7 +42,7 @@ def given_way(tokens: Sequence[Token], kit: Kit, source: Source) -> list[Diagnos
 def own_words(tokens: Sequence[Token]) -> dict[str, Token]:
     """Return the younger words that a program names something with where they first appear."""
     seen: set[str] = set()
-    found = {}
+    words = {}
     is_begin, is_in_def, depth = True, False, 0
     for k, token in enumerate(tokens):
         kind, text = token.kind, token.text
@@ -51,7 +51,7 @@ def own_words(tokens: Sequence[Token]) -> dict[str, Token]:
             is_named = tokens[k - 1].text == "DEF" if k else False
             is_set = is_begin and tokens[k + 1].kind == "=" and not _uses(text, tokens, k + 2)
             if is_named or is_set or is_in_def:
-                found[text] = token
+                words[text] = token
         if kind == "(":
             depth += 1
             is_in_def = is_in_def or (depth == 1 and k > 1 and tokens[k - 2].text == "DEF")
@@ -60,7 +60,7 @@ def own_words(tokens: Sequence[Token]) -> dict[str, Token]:
         elif kind == ";":
             depth, is_in_def = 0, False  # a bracket that is open there is a mistake
         is_begin = kind in (";", "|") or (kind is NEWLINE and not depth)
-    return found
+    return words
 
 
 def _uses(name: str, tokens: Sequence[Token], k: int) -> bool:

@@ -124,12 +124,12 @@ class _Line(Parser):
         """The block that it ends is on other lines."""
 
     def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
-        found = super().arguments_of(word, known)
-        count = len(found or ())
+        arguments = super().arguments_of(word, known)
+        count = len(arguments or ())
         is_right = len(known.arguments) == count if known else (word.text, count) in self._called
         if not is_right:
             raise Failed
-        return found
+        return arguments
 
     def argument_of(self, word: Token) -> Argument:
         found = super().argument_of(word)

@@ -344,14 +344,14 @@ class Parser:
 
     def no_units(self, arguments: Sequence[Argument]) -> None:
         """CM and DEG stand behind the way of a move alone."""
-        for unit in (each.unit for each in arguments if each.unit is not None):
+        for unit in (argument.unit for argument in arguments if argument.unit is not None):
             self.expressions.wrong_unit(unit.op, Span(unit.start, unit.end))
 
     def no_units_in_call(self, arguments: Sequence[Argument], word: Token) -> None:
         """The unit of a value of a DEF stands in its body."""
-        texts = (self.cursor.source[each.span] for each in arguments)
+        texts = (self.cursor.source[argument.span] for argument in arguments)
         fix = f"{word.text}({', '.join(texts)})"
-        for unit in (each.unit for each in arguments if each.unit is not None):
+        for unit in (argument.unit for argument in arguments if argument.unit is not None):
             self.reporter.report(codes.UNIT_IN_CALL, Span(unit.start, unit.end),
                                  name=word.text, found=unit.op, right=fix)  # fmt: skip
 

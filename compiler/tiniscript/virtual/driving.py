@@ -127,7 +127,9 @@ class Driving:
         centre = self._near_from
         if centre is None or math.dist(centre[:2], pose[:2]) > NEAR_CM:
             least_cm = self.hull.reach_cm + 2 * NEAR_CM
-            self._near = [each for each in self.obstacles if distance(each, *pose[:2]) < least_cm]
+            self._near = [
+                obstacle for obstacle in self.obstacles if distance(obstacle, *pose[:2]) < least_cm
+            ]
             self._near_from = pose
         found = self.hull.contact(pose, self._near)
         return None if found is None or found.gap_cm > NEAR_CM else found

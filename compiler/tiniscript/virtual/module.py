@@ -185,12 +185,12 @@ class Firmware:
         """Return where the program's tasks are that have not ended; none of one without tasks."""
         start = self.call("tasks") // 4
         count = int(self._numbers[start])
-        return [int(each) for each in self._numbers[start + 1 : start + 1 + count]]
+        return [int(number) for number in self._numbers[start + 1 : start + 1 + count]]
 
     def variables(self, count: int) -> list[int]:
         """Return the first variables of the program that runs or has run, in thousandths."""
         start = self.call("variables") // 4
-        return [int(each) for each in self._numbers[start : start + count]]
+        return [int(number) for number in self._numbers[start : start + count]]
 
     @property
     def unheard(self) -> int:

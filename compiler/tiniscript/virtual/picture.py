@@ -91,7 +91,7 @@ class _Sheet:
         self.draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=colour)
 
     def _row(self, points: Sequence[Point | Pose], colour: str, width: float) -> None:
-        places = [self.at(each) for each in points]
+        places = [self.at(point) for point in points]
         self.draw.line(places, fill=colour, width=max(1, round(width)), joint="curve")
 
     def _foot(self, title: str) -> None:
@@ -100,7 +100,7 @@ class _Sheet:
         y = self.image.height - self.foot
         self.draw.text((self.margin, y), title, fill=TEXT, font=font)
         length = max(
-            (each for each in RULERS if each <= self.world.width_cm / 5), default=RULERS[0]
+            (ruler for ruler in RULERS if ruler <= self.world.width_cm / 5), default=RULERS[0]
         )
         right = self.image.width - self.margin
         left = right - length * self.scale

@@ -197,8 +197,8 @@ class VirtualRobot:
 
         These are a run's events, START, STOP, RELEASE of an actuator, and OFF.
         """
-        found, self._traced.events, self._told = self._traced.events, [], 0
-        return found
+        events, self._traced.events, self._told = self._traced.events, [], 0
+        return events
 
     @property
     def pose(self) -> Pose:

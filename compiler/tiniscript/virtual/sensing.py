@@ -102,7 +102,7 @@ class Sensing:
         level = self.world.ambient
         for lamp in self.world.lamps:
             ray = Segment(eye, lamp.place)
-            if any(crosses(ray, each) for each in self.obstacles):
+            if any(crosses(ray, obstacle) for obstacle in self.obstacles):
                 continue
             away = math.dist(eye, lamp.place)
             angle = math.atan2(lamp.place.y - eye.y, lamp.place.x - eye.x) - heading
@@ -127,7 +127,9 @@ class Sensing:
         # most often everything is far away: that is quickly known, and asked many times in a tick
         if self._near is None or self._near[0] != pose:
             reach_cm = self.hull.reach_cm + TOUCH_CM
-            near = [each for each in self.obstacles if distance(each, *pose[:2]) < reach_cm]
+            near = [
+                obstacle for obstacle in self.obstacles if distance(obstacle, *pose[:2]) < reach_cm
+            ]
             self._near = pose, near
         contact = self.hull.contact(pose, self._near[1]) if self._near[1] else None
         if contact is None or contact.gap_cm >= TOUCH_CM:

@@ -67,7 +67,9 @@ class Transports:
     def wait(self, limit_s: float, is_full: bool = False) -> None:
         """Wait until something comes, at most for so long. `is_full`: nothing more is wanted."""
         watched: list[socket.socket | int] = [self._server] if self._has_room() else []
-        watched += [each.peer for each in self._callers if each.is_told or not each.may_enter]
+        watched += [
+            caller.peer for caller in self._callers if caller.is_told or not caller.may_enter
+        ]
         limit_s = min(limit_s, PATIENT_S) if self._callers else limit_s
         if not watched:
             limit_s = min(limit_s, YOUNG_S / 4)
@@ -90,7 +92,7 @@ class Transports:
     def take_stop(self) -> bool:
         """Return whether silence has ended a typed stop of a caller: it stops what runs."""
         now_s = monotonic()
-        return any(each.ends_with_stop(now_s) for each in self._callers)
+        return any(caller.ends_with_stop(now_s) for caller in self._callers)
 
     def _heard(self) -> bytes:
         if self._client is not None:
@@ -129,8 +131,8 @@ class Transports:
 
     def close(self) -> None:
         self._part()
-        for each in self._callers:
-            each.peer.close()
+        for caller in self._callers:
+            caller.peer.close()
         self._server.close()
         for end in (self._ours, self._theirs):
             if end >= 0:

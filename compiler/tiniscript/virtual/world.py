@@ -65,11 +65,11 @@ class World(NamedTuple):
 
     def obstacles(self) -> list[Segment]:
         """Return everything that a robot cannot drive through."""
-        found = [each for wall in self.walls for each in joined(list(wall))]
+        obstacles = [each for wall in self.walls for each in joined(list(wall))]
         for box in self.boxes:
-            found += joined([*box, box[0]])
+            obstacles += joined([*box, box[0]])
         if self.has_border:
             right, top = self.width_cm, self.height_cm
             corners = [Point(0, 0), Point(right, 0), Point(right, top), Point(0, top)]
-            found += joined([*corners, corners[0]])
-        return found
+            obstacles += joined([*corners, corners[0]])
+        return obstacles

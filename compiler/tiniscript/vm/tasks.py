@@ -120,7 +120,7 @@ class TaskMachine(Machine):
     @property
     def wake_ms(self) -> int:
         """Return when the next task is due: it may be at once, or was."""
-        waiting = (each.clock_ms for each in self.tasks if self._waits_for_clock(each))
+        waiting = (task.clock_ms for task in self.tasks if self._waits_for_clock(task))
         return min(waiting, default=self.now_ms + NEVER_MS)
 
     def tick(self, now_ms: int, budget: int) -> str:
@@ -414,13 +414,13 @@ class Start(NamedTuple):
 
 def find_tasks(code: bytes) -> list[Start]:
     """Return the tasks of verified code in their order, without the main one."""
-    found = []
+    tasks = []
     at = 0
     while at < len(code):
         op, at = instruction(code, at)
         if op.name in ("TASK", "WHEN"):
-            found.append(Start(at, op.name == "WHEN"))
-    return found
+            tasks.append(Start(at, op.name == "WHEN"))
+    return tasks
 
 
 does("TASK", "WHEN")(go)

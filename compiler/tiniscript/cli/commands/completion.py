@@ -126,7 +126,7 @@ def _verb(before: list[str]) -> tuple[str, list[str]]:
 def _words_of(kind: Kind, language: str) -> list[tuple[str, str]]:
     """Return the values of a kind that have names, and what they do where that is known."""
     if kind is VERB:
-        return [(each, _short(summary_of(each, "summary", language))) for each in VERBS]
+        return [(verb, _short(summary_of(verb, "summary", language))) for verb in VERBS]
     if kind.name == "port":
         return [(each.port, each.description) for each in ports.listed()]
     named = {"robot": robots.names(), "world": worlds.names(), "chip": BOARDS, "code": CODES,

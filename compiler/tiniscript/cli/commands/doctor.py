@@ -217,7 +217,8 @@ def _report(diagnosis: Diagnosis, told: Mapping[str, str], language: str) -> lis
     rows = report.head(report.MARK, text("report_about", language),
                        report.facts(diagnosis.computer), diagnosis.port)  # fmt: skip
     rows += [
-        f"{each.cause} {'sure' if each.is_sure else 'probably'}" for each in diagnosis.findings
+        f"{finding.cause} {'sure' if finding.is_sure else 'probably'}"
+        for finding in diagnosis.findings
     ]
     return [*rows, "", *_rows(diagnosis, language, is_private=True), "", *_form(told, language)]
 

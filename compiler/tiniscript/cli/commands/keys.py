@@ -21,7 +21,7 @@ from tiniscript.link.messages import KEYS
 
 def run(options: Namespace, language: str) -> int:
     ways = options.list or None, options.export, options.bring, options.forget, options.accept
-    if sum(each is not None for each in ways) > 1:
+    if sum(way is not None for way in ways) > 1:
         raise CommandError(2, "one_way")
     own = KeyFile()
     try:

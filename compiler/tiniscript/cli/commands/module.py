@@ -61,7 +61,7 @@ def _wanted(options: Namespace) -> Wanted:
             )  # fmt: skip
         baud = known[options.baud]
     wanted = Wanted(name, options.pin, baud)
-    misfits = [set_up.misfit(wanted, each) for each in DIALECTS]
+    misfits = [set_up.misfit(wanted, dialect) for dialect in DIALECTS]
     if all(misfits):
         _refuse(wanted, max(DIALECTS, key=lambda each: each.name_bytes), misfits[0])
     return wanted
@@ -117,7 +117,7 @@ class _SetUp:
             outcomes = set_up.done(self.wire, module, plan, self._tell)
         else:
             self._show(plan)
-        is_done = all(each.how in GOOD for each in outcomes)
+        is_done = all(outcome.how in GOOD for outcome in outcomes)
         if not plan:
             pin = "123456"[: module.dialect.pin_digits]
             print(self._text("module_nothing", port=self.port, pin=pin))

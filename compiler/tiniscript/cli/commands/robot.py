@@ -268,7 +268,7 @@ def _pushes_ms(option: str, found: str | None) -> list[int]:
     if found is None:
         return []
     values = [decimal(each.strip()) for each in found.split(",")]
-    known = [each for each in values if each is not None and each >= 0]
+    known = [value for value in values if value is not None and value >= 0]
     if len(known) != len(values):
         raise CommandError(2, "bad_button", option=option, found=shown(found) or "''")
     return known

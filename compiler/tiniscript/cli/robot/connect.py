@@ -258,7 +258,7 @@ class Connection(Client):
         self, make: Callable[[Requester], PendingRequest[T]], key: str, *statuses: str
     ) -> Reply[T]:
         """Make a request, of which these refusals have the sentence `key`. Raises CommandError."""
-        reply = self.ask(make, [STATUSES[each] for each in statuses])
+        reply = self.ask(make, [STATUSES[status] for status in statuses])
         if reply.status:
             raise CommandError(3, key, robot=self.name)
         return reply

@@ -135,7 +135,8 @@ def _map_of(compiled: Compiled, end: int) -> Map:
     """Return the map of the text up to `end`; what is behind comes from nowhere."""
     nowhere = Span(end, end)
     places = (
-        each if each.span.end <= end else each._replace(span=nowhere) for each in compiled.places
+        place if place.span.end <= end else place._replace(span=nowhere)
+        for place in compiled.places
     )
     return source_map.made(compiled.source, places)
 

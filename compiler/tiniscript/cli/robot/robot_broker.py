@@ -136,7 +136,7 @@ def _class_command(options: Namespace) -> str:
         words += ["--user", options.user]
     if options.tls:
         words += ["--tls", "--trust", options.trust]
-    return shown(" ".join(["tsc", "class", *(quoted(str(each)) for each in words)]))
+    return shown(" ".join(["tsc", "class", *(quoted(str(word)) for word in words)]))
 
 
 def _state(told: WifiReply) -> str:

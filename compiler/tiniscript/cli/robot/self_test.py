@@ -96,7 +96,7 @@ class SelfTest(Conversation):
         known = wanted if kit == wanted.kit.fingerprint else of_kit(kit)
         good = self._good(known.name if known is not None else "")
         for part in PARTS:
-            self.found += [each for each in causes if each.part == part] or good.get(part, [])
+            self.found += [cause for cause in causes if cause.part == part] or good.get(part, [])
         return known
 
     def _hear(self, heard: Heard) -> None:

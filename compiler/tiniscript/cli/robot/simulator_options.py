@@ -140,6 +140,6 @@ def _motors(found: str | None, language: str) -> tuple[float, float]:
     if len(parts) != 2:
         raise CommandError(2, "bad_motors", found=shown(found) or "''")
     left, right = (
-        number("--motors", each.strip(), 0, MOTOR_LOW, MOTOR_HIGH, language) for each in parts
+        number("--motors", part.strip(), 0, MOTOR_LOW, MOTOR_HIGH, language) for part in parts
     )
     return left, right

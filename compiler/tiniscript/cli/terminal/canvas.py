@@ -62,8 +62,8 @@ def layered(layers: Sequence[tuple[Canvas, str]]) -> list[Text]:
         line = Text()
         for column, bits in enumerate(zip(*rows, strict=True)):
             dots = 0
-            for each in bits:
-                dots |= each
+            for bit in bits:
+                dots |= bit
             line.append(chr(_BLANK + dots) if dots else " ")
             style = next((layers[k][1] for k, each in enumerate(bits) if each), "")
             if style:

@@ -79,7 +79,7 @@ class Plot:
             oldest = min(self.curves, key=lambda each: self.curves[each][-1][0])
             del self.curves[oldest], self.styles[oldest]
         self.curves[name] = deque(maxlen=KEPT)
-        self.styles[name] = next(each for each in STYLES if each not in self.styles.values())
+        self.styles[name] = next(style for style in STYLES if style not in self.styles.values())
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
         """Return at most `height` lines of at most `width` columns: a title and the curves."""
@@ -92,7 +92,7 @@ class Plot:
         low, high, step = scale(min(known, default=0), max(known, default=1000))
         rows = min(ROWS, height - 1)
         ticks = [as_text(value) for value in range(low, high + 1, step)]
-        self.margin = max(self.margin, *(len(each) + 1 for each in ticks))  # it never jumps back
+        self.margin = max(self.margin, *(len(tick) + 1 for tick in ticks))  # it never jumps back
         margin = self.margin
         columns = width - margin
         title = self._title(width)
@@ -102,15 +102,15 @@ class Plot:
             (self._curve(values, columns, rows, begin_ms, low, high), self.styles[name])
             for name, values in self.curves.items()
         ] or [(Canvas(columns, rows), "")]
-        found = [title]
+        lines = [title]
         marks = {
             round((high - value) / (high - low) * (rows - 1)): as_text(value)
             for value in range(low, high + 1, step)
         }
         for row, curve in enumerate(layered(canvases)):
             label = marks.get(row, "")
-            found.append(Text(f"{label:>{margin - 1}} ", style="dim").append_text(curve))
-        return found
+            lines.append(Text(f"{label:>{margin - 1}} ", style="dim").append_text(curve))
+        return lines
 
     def _title(self, width: int) -> Text:
         """Return the names with their newest values, each in the colour of its curve."""

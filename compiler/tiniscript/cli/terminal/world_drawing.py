@@ -52,11 +52,11 @@ class WorldPicture(Picture):
         for number in range(len(robot.profile.kit.sensors)):
             self.readings[number] = robot.sensing.look(number, robot.pose)
         has_footer = bool(self.footer) and height > 4
-        found = super().lines(width, height - has_footer, now_ms - self.began_ms)
+        lines = super().lines(width, height - has_footer, now_ms - self.began_ms)
         if has_footer:
-            found.append(Text(self.footer, style="dim"))
-            found[-1].truncate(width, overflow="ellipsis")
-        return found
+            lines.append(Text(self.footer, style="dim"))
+            lines[-1].truncate(width, overflow="ellipsis")
+        return lines
 
     def _title(self, width: int) -> Text:
         found = super()._title(width)

@@ -161,7 +161,7 @@ class Statements:
     def call_def(self, call: ir.Call, arguments: Sequence[ir.Expression]) -> None:
         """Call a function; of its arguments with a RANDOM all but the last come before."""
         self.remarks(call.span.start)
-        texts = [self.write.text(each) for each in arguments]
+        texts = [self.write.text(argument) for argument in arguments]
         for k in [k for k, each in enumerate(arguments) if has_random(each)][:-1]:
             first = self.write.keep()
             self.line(f"{first} = {texts[k]};")

@@ -59,4 +59,4 @@ def is_count(device: Device, wiring: Wiring) -> bool:
 
 def is_small(devices: Iterable[Device]) -> bool:
     """Whether a float tells all readings apart, thousandth by thousandth."""
-    return all(max(abs(each.low), abs(each.high)) < 2**24 for each in devices)
+    return all(max(abs(device.low), abs(device.high)) < 2**24 for device in devices)

@@ -78,19 +78,21 @@ class _Sketch:
         self.source, self.program, self.robot, self.language = source, program, robot, language
         self.is_exact = needs_numbers(program, robot)
         self.yes_no = ir.are_yes_no(program, robot.kit)  # of each variable
-        self.arguments = frozenset(k for each in program.procedures for k in each.values)
+        self.arguments = frozenset(k for procedure in program.procedures for k in procedure.values)
         self.needed: dict[str, None] = {}  # helpers, in the order in which they are met
         names = Names(language)
         kit = robot.kit
         devices = (
-            [names.of(each.name) for each in kit.sensors],
-            [names.of(each.name, called("read", language)) for each in kit.sensors],
-            [names.of(each.name, called("set", language)) for each in kit.actuators],
+            [names.of(sensor.name) for sensor in kit.sensors],
+            [names.of(sensor.name, called("read", language)) for sensor in kit.sensors],
+            [names.of(actuator.name, called("set", language)) for actuator in kit.actuators],
         )
-        procedures = [names.of(each.name) for each in program.procedures]
-        variables = {each: names.of(each) for each in dict.fromkeys(program.variables)}
+        procedures = [names.of(procedure.name) for procedure in program.procedures]
+        variables = {variable: names.of(variable) for variable in dict.fromkeys(program.variables)}
         # values of two DEFs may have one name
-        self.named = Named(*devices, procedures, [variables[each] for each in program.variables])
+        self.named = Named(
+            *devices, procedures, [variables[variable] for variable in program.variables]
+        )
         self.write = Expressions(self.use, self.is_exact, self.named.variables, self.named.sensors)
         self.plan = SketchPlan(robot, self.label, self.is_exact)
         self.functions = {**helpers.HELPERS, **numbers.NUMBERS}
@@ -121,7 +123,7 @@ class _Sketch:
         last = body[-1] if body else None
         if isinstance(last, ir.Loop) and last.times is None and not ir.loops_end(last.body):
             body, loop = body[:-1], last.body
-        procedures = [self.procedure(rows, each) for each in program.procedures]
+        procedures = [self.procedure(rows, procedure) for procedure in program.procedures]
         rows.given = self.arguments
         rows.body(body)
         if isinstance(last, ir.Loop) and loop:
@@ -143,9 +145,11 @@ class _Sketch:
     def statements(self) -> Statements:
         comments = [
             Comment(
-                each.start, self.source.position(each.start)[0], harmless(each.text[2:].strip())
+                comment.start,
+                self.source.position(comment.start)[0],
+                harmless(comment.text[2:].strip()),
             )
-            for each in scan(self.source.text).comments
+            for comment in scan(self.source.text).comments
         ]
         return Statements(self.source, self.robot.kit, self.named, self.write, comments)
 
@@ -216,7 +220,7 @@ class _Sketch:
             f"void loop() {{\n{_lines(repeated)}}}\n",
         ]
         if procedures:
-            pieces += [_heading(self.says("def")), *(f"{each}\n" for each in procedures)]
+            pieces += [_heading(self.says("def")), *(f"{procedure}\n" for procedure in procedures)]
         if written:
             pieces += [_heading(self.says("helpers")), *written]
         return self.filled("\n".join(piece for piece in pieces if piece))

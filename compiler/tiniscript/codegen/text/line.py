@@ -82,11 +82,11 @@ def plain_code(program: Program) -> PlainCode:
 
 def _short_offsets(code: bytes) -> dict[int, int]:
     """Return where each instruction, and the end, would be if no jump were a far one."""
-    found, at, far = {0: 0}, 0, 0
+    short_offsets, at, far = {0: 0}, 0, 0
     while at < len(code):
         op = op_at(code, at)
         assert op is not None
         at += op.size
         far += op.name.endswith("_FAR")
-        found[at] = at - far
-    return found
+        short_offsets[at] = at - far
+    return short_offsets

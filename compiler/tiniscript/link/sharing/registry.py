@@ -214,8 +214,8 @@ def _read(path: Path) -> Registration | None:
         return None
     numbers = registration.number, registration.baud, registration.pid
     words = registration.port, registration.token, registration.answer, registration.verb
-    is_sound = all(isinstance(each, str) and each.isprintable() for each in words)
-    is_sound = is_sound and all(type(each) is int for each in numbers)
+    is_sound = all(isinstance(word, str) and word.isprintable() for word in words)
+    is_sound = is_sound and all(type(number) is int for number in numbers)
     is_sound = is_sound and type(registration.is_alias) is bool
     return registration if is_sound and 0 < registration.number < 65536 else None
 

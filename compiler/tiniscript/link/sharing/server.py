@@ -160,8 +160,8 @@ class Server:
         except Exception as bug:
             self._line.fail(bug)
         finally:
-            for each in self._names:
-                registry.remove(each)
+            for name in self._names:
+                registry.remove(name)
             self._part()
             self._close_all()
 

@@ -89,7 +89,7 @@ class _Scan:
                 await asyncio.wait_for(scanner.stop(), LEAVE_S)
 
     def _notice(self, device: BLEDevice, said: AdvertisementData) -> None:
-        services = {each.lower() for each in said.service_uuids}
+        services = {service_uuid.lower() for service_uuid in said.service_uuids}
         before = self.seen.get(device.address)
         name = said.local_name or device.name or (before.name if before else "")
         is_robot = bool(services & set(SERVICES)) or (before is not None and before.is_robot)
@@ -143,7 +143,7 @@ async def found(name: str) -> BLEDevice:
     if not matches:
         raise PortError(errors.NOT_FOUND, ", ".join(robots[:NEARBY]))
     if len(matches) > 1:
-        raise PortError(errors.SEVERAL, ", ".join(f"ble://{each}" for each in sorted(matches)))
+        raise PortError(errors.SEVERAL, ", ".join(f"ble://{match}" for match in sorted(matches)))
     return next(iter(matches.values())).device
 
 

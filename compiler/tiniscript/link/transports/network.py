@@ -106,8 +106,8 @@ def _network() -> Zeroconf:
 
 def _address(info: ServiceInfo) -> str:
     """Return the port that a robot announces. Raises PortError: it is none of a local network."""
-    for each in info.parsed_addresses(IPVersion.V4Only):
-        address = ip_address(each)
+    for parsed_address in info.parsed_addresses(IPVersion.V4Only):
+        address = ip_address(parsed_address)
         is_local = address.is_private or address.is_link_local or address.is_loopback
         if is_local and not address.is_unspecified and info.port:
             return f"socket://{address}:{info.port}"

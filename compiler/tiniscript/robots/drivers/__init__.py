@@ -12,7 +12,7 @@ from tiniscript.robots.profile import Wiring
 def _found() -> dict[tuple[str, str], Driver]:
     """Return the drivers of this folder, by the table and kind of [board] that uses them."""
     made: list[Driver] = [
-        import_module(f"{__name__}.{each.name}").DRIVER for each in iter_modules(__path__)
+        import_module(f"{__name__}.{module.name}").DRIVER for module in iter_modules(__path__)
     ]
     return {(driver.used_by, driver.name): driver for driver in made}
 

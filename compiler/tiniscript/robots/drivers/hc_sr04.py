@@ -55,7 +55,7 @@ class HcSr04(SensorDriver):
         trigger = f"{device.name}_$TRIGGER_$PIN"
         plan.pin(trigger, wiring.pins["trigger"], "OUTPUT", beside)
         echo = plan.pin(f"{device.name}_$ECHO_$PIN", wiring.pins["echo"], "INPUT")
-        drivers = [each.driver for each in plan.robot.board.sensors]
+        drivers = [sensor.driver for sensor in plan.robot.board.sensors]
         first, again, last = [], "", []
         if drivers.count(self.name) > 1:
             first = ["static unsigned long $own_ping = -60;"]

@@ -181,7 +181,7 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
 
 def _first(name: str, layout: Layout) -> Pin:
     """Return the pin of a rail that has its tag: the first one of the left side, if it has one."""
-    return min((each for each in layout.pins if each.name == name), key=lambda each: each[:2])
+    return min((pin for pin in layout.pins if pin.name == name), key=lambda each: each[:2])
 
 
 # -- wires

@@ -42,10 +42,10 @@ class _Finished:
         self.wheel = wheel_cm[0] * self.scale, wheel_cm[1] * self.scale
         half = max(self.breadth, body.wheel_base_cm * self.scale + self.wheel[1]) / 2
         self.left, self.right = BESIDE, BESIDE + 2 * half
-        places = [0.0, *(each.x_cm for each in body.places.values())]
+        places = [0.0, *(place.x_cm for place in body.places.values())]
         ahead = max(0.0, max(places) * self.scale - self.length / 2)
         self.x, self.y = BESIDE + half, MARGIN + ahead + self.length / 2
-        self.servos = [each for each in plan.parts if each.is_device and each.shape.icon == "servo"]
+        self.servos = [part for part in plan.parts if part.is_device and part.shape.icon == "servo"]
         self.y += JAW if self.servos and self._held() is None else 0
         self.width = self.right + BESIDE
         self.height = self.y + self.length / 2 + MARGIN
@@ -98,11 +98,11 @@ class _Finished:
     def _rows(self) -> list[str]:
         """Return board, breadboard and batteries: boxes on the plate, from front to back."""
         driver = self.plan.parts[0].title
-        supplies = [each for each in self.plan.parts if _is_supply(each)]
+        supplies = [part for part in self.plan.parts if _is_supply(part)]
         boxes = [
             (SIDES[self.plan.chip.name].name, self.say("on_top_usb"), LINE),
             (driver, self.say("beside_driver"), LINE),
-            *((each.title, each.label, RAIL_INKS["M+"]) for each in supplies),
+            *((supply.title, supply.label, RAIL_INKS["M+"]) for supply in supplies),
             (self.say("power_bank"), self.say("for_the_board"), RAIL_INKS["5V"]),
         ]
         room = self.length * 0.72
@@ -136,7 +136,9 @@ class _Finished:
         lines: list[str] = []
         held = self._held()
         edge = self.y - self.length / 2
-        above = sum(each.y_cm > 0 for each in self.plan.body.places.values())  # other labels there
+        above = sum(
+            place.y_cm > 0 for place in self.plan.body.places.values()
+        )  # other labels there
         first_row = max(edge + 26, MARGIN + 14 + ROW_STEP * above)
         for k, part in enumerate(self.servos):
             share = (k + 0.5) / len(self.servos) - 0.5
@@ -170,7 +172,7 @@ class _Finished:
         rows = {"left": MARGIN + 14.0, "right": MARGIN + 14.0}
         body = self.plan.body
         by_side = sorted(body.places.items(), key=lambda each: -each[1].x_cm)
-        labels = {each.title: each.label for each in self.plan.parts if each.is_device}
+        labels = {part.title: part.label for part in self.plan.parts if part.is_device}
         for name, place in by_side:
             side = "left" if place.y_cm > 0 else "right"
             x, y = self.at(place.x_cm, place.y_cm)

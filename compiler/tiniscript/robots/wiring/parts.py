@@ -40,13 +40,15 @@ def _at_3v3(shape: Shape) -> Shape:
     """
     if shape.needs_5v:
         ends = (
-            each._replace(to_ground="2 kΩ", beyond="1 kΩ") if each.pin_key == "echo" else each
-            for each in shape.terminals
+            terminal._replace(to_ground="2 kΩ", beyond="1 kΩ")
+            if terminal.pin_key == "echo"
+            else terminal
+            for terminal in shape.terminals
         )
     else:
         ends = (
-            each._replace(rail=BOARD_3V3) if each.rail == BOARD_5V else each
-            for each in shape.terminals
+            terminal._replace(rail=BOARD_3V3) if terminal.rail == BOARD_5V else terminal
+            for terminal in shape.terminals
         )
     notes = tuple(of_3v3(note) for note in shape.notes)
     return shape._replace(need=of_3v3(shape.need), terminals=tuple(ends), notes=notes)

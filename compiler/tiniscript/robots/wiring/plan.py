@@ -160,7 +160,7 @@ def plan_of(robot: Robot, language: str) -> Plan:
             shape = parts.shape_of(
                 f"{used_by} {device.kind}", wiring, device, place, chip.pin_volts
             )
-            if any(each.rail == SERVO_SUPPLY for each in motors.terminals):
+            if any(terminal.rail == SERVO_SUPPLY for terminal in motors.terminals):
                 shape = _with_servo_supply(shape)
             label = robot.labels[language][device.name]
             label = "" if label == device.name else label

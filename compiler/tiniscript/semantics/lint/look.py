@@ -45,7 +45,7 @@ class Look:
     @cached_property
     def uses_motors(self) -> bool:
         """Whether M is used; without it the motors stand between two instructions."""
-        return any(isinstance(each, ir.Motors) for each in self.statements)
+        return any(isinstance(statement, ir.Motors) for statement in self.statements)
 
     @cached_property
     def variables(self) -> Variables:

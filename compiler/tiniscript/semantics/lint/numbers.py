@@ -240,9 +240,9 @@ def swapped_names(move: Move, around: Around, look: Look) -> None:
         return
     set_to = look.variables.set_to
     values = [[*map(known_value, set_to.get(side[0].value, ()))] for side in sides]
-    if not all(len(each) == 1 and each[0] is not None for each in values):
+    if not all(len(value) == 1 and value[0] is not None for value in values):
         return
-    time, power = (each[0] or 0 for each in values)
+    time, power = (value[0] or 0 for value in values)
     first, second = (look.program.variables[side[0].value] for side in sides)
     if _is_swapped(time, power) and not _is_right_order(first, second):
         fix = f"{move.direction}({second}, {first})"

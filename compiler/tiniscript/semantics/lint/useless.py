@@ -54,12 +54,12 @@ def in_notes(look: Look) -> None:
     and behind a header or `SI|` a note tells what comes.
     """
     source, tokens = look.source, look.scan.tokens
-    short = [each for each in look.scan.comments if len(each.text) <= LONGEST]
-    if all(each.kind in AT_END for each in tokens):
+    short = [comment for comment in look.scan.comments if len(comment.text) <= LONGEST]
+    if all(token.kind in AT_END for token in tokens):
         _all_of_it(short, look)
         return
     rows = [each for each in short if re.fullmatch(_CALLS, each.text) or swallowed(each.text)]
-    is_ping = [each.text for each in tokens[:2]] == ["PING", "|"]
+    is_ping = [token.text for token in tokens[:2]] == ["PING", "|"]
     depth = k = 0
     for note in rows:
         while tokens[k].start < note.start:
@@ -89,7 +89,7 @@ def swallowed(note: str) -> list[str]:
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
     first, *others = (each.strip() for each in re.split(r";|//", note.removeprefix("//")))
-    found = [each for each in others if re.fullmatch(_CALL_IN_IT, each)]
+    found = [other for other in others if re.fullmatch(_CALL_IN_IT, other)]
     is_row = all(each in found or not set("()") & set(each) for each in (first, *others))
     is_row = is_row and bool(found) and found != ["S"] * len(found)
     return found if is_row and first else []
@@ -120,7 +120,7 @@ def busy_loop(loop: ir.Loop | ir.While, around: Around, look: Look) -> None:
         look.program.tasks  # there each turn of a loop takes time
         or not _is_forever(loop)
         or ir.loops_end(loop.body)
-        or any(isinstance(each, _LASTING) for each in ir.with_calls(loop.body, procedures))
+        or any(isinstance(call, _LASTING) for call in ir.with_calls(loop.body, procedures))
     ):
         return
     word = "LOOP(FOREVER)" if isinstance(loop, ir.Loop) else "WHILE"
@@ -217,7 +217,9 @@ def unused_readings(look: Look) -> None:
 
 
 def unused_defs(look: Look) -> None:
-    called = {each.procedure for each in look.statements if isinstance(each, ir.Call)}
+    called = {
+        statement.procedure for statement in look.statements if isinstance(statement, ir.Call)
+    }
     for number, procedure in enumerate(look.program.procedures):
         if number not in called:
             span = Span(procedure.span.start, procedure.span.start + len("DEF"))
