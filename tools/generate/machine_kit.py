@@ -276,7 +276,7 @@ def late() -> Iterator[Run]:
     for name, text, pace in (
         ("the first turn of the main task waits", "N = DISTANCE;TASK;SHOW(N);END_TASK;SHOW(TIME)",
          first),
-        ("the others begin behind that turn", "DISTANCE;TASK;W(0.015);SHOW(TIME);END_TASK", first),
+        ("the others begin after that turn", "DISTANCE;TASK;W(0.015);SHOW(TIME);END_TASK", first),
         ("the others do not wait",
          "WHEN(DISTANCE < 10);SHOW(1);END_WHEN;TASK;SHOW(2);W(0.005);SHOW(3);END_TASK", echo),
         ("a look is over when the motors are taken", looks, Pace(1, ECHO, 1000, 100, 150)),

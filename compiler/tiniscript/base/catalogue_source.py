@@ -90,7 +90,7 @@ class Catalogue:
 
 @dataclass
 class Row:
-    """A key of a file with what stands behind it, which is None where it cannot be read.
+    """A key of a file with what stands after it, which is None where it cannot be read.
 
     `above` are the rows of notes and tables before it.
     """

@@ -74,7 +74,7 @@ ROLES = {role.name: role for role in (
 SECONDS = Argument("seconds", "s", 0)
 TIME = Argument("time", "s", 0, sample="2")
 POWER = Argument("power", "%", 0, 100_000, "80")
-# What a move may have in the place of its time, by the unit behind it.
+# What a move may have in the place of its time, by the unit after it.
 WAYS = {"CM": Argument("distance", "cm", 0, sample="20 CM"), "DEG": Argument("angle", "°", 0, sample="90 DEG")}
 UNIT_OF = {"F": "CM", "B": "CM", "L": "DEG", "R": "DEG"}
 LEFT = Argument("left", "%", -100_000, 100_000, "50")

@@ -1,7 +1,7 @@
 """The disassembly: code as text, and that text as code.
 
 The text that `tsc show` prints and that cases compare: offset, bytes, instruction. Reading one
-takes the bytes; the words behind them are for people.
+takes the bytes; the words after them are for people.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def disassemble(
 ) -> str:
     """Return `code` as text, a line for each instruction.
 
-    `remarks` stand behind the instruction at their offset; a kit gives devices their names.
+    `remarks` stand after the instruction at their offset; a kit gives devices their names.
     """
     lines = []
     for row in rows(code):

@@ -42,7 +42,7 @@ FIELDS = (
     Field("header_length", "B",  1, "Bytes before the code, 15 to 255."),
     Field("devices",       "H",  2, "A [hash](#devices) of those that the code uses; 0 for none."),
     Field("code_length",   "H",  2, "Bytes of code that follow the header, 0 to 32767."),
-    Field("checksum",      "I",  4, "CRC-32 (zlib) of all bytes before and behind it."),
+    Field("checksum",      "I",  4, "CRC-32 (zlib) of all bytes before and after it."),
     Field("needs",         "B",  1, "What the machine must have: 1 for tasks, 2 for ways to go."),
 )
 HEADER_BYTES = sum(field.size for field in FIELDS)

@@ -80,7 +80,7 @@ class Op(NamedTuple):
         return base if last in _VARIANTS or last.isdigit() else self.name
 
 
-# What stands behind the name of a family, but for numbers.
+# What stands after the name of a family, but for numbers.
 _VARIANTS = ("FAR", "F", "B", "L", "R", "EQ", "NE", "LT", "LE", "GT", "GE")
 
 # fmt: off
@@ -170,7 +170,7 @@ PUSHED = (*range(11), *range(20, 101, 10))
 
 OPS = (
     #    code  name              operands               stack effect      role     meaning
-    _op(0x00, "END",             "",                    "--",              "end",   "The program is finished. No code holds it: a machine puts it behind."),
+    _op(0x00, "END",             "",                    "--",              "end",   "The program is finished. No code holds it: a machine puts it after the code."),
     # values
     _op(0x01, "PUSH8",           "n:u8",                "-- n",            "value", "Push the whole number `n`."),
     _op(0x02, "PUSH16",          "n:i16",               "-- n",            "value", "Push the whole number `n`."),
@@ -256,7 +256,7 @@ OPS = (
     _op(0x75, "BREAK_LOOP_FAR",  "to:fwd16",            "--",              "drop",  "The same, further."),
     _op(0x78, "DEF",             "to:fwd8",             "--",              "def",   "A procedure begins here; go to `to`, its end."),
     _op(0x79, "DEF_FAR",         "to:fwd16",            "--",              "def",   "The same, further."),
-    _op(0x7A, "RETURN",          "",                    "--",              "return", "Go back behind the call."),
+    _op(0x7A, "RETURN",          "",                    "--",              "return", "Go back to just after the call."),
     _op(0x7B, "CALL",            "to:back8",            "--",              "call",  "Call the procedure whose first instruction is at `to`."),
     _op(0x7C, "CALL_FAR",        "to:back16",           "--",              "call",  "The same, further."),
     # tasks

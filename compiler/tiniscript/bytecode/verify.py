@@ -49,7 +49,7 @@ RULES = {
     "BAD_TARGET":      (28, "A jump forward leads out of the block around it, or out of the code."),
     "MISSED_TARGET":   (29, "No instruction begins where a jump leads, or one that may not be reached so."),
     "BAD_LOOP_START":  (30, "A jump back does not lead to the beginning of its loop."),
-    "BAD_LOOP_END":    (31, "A BREAK or a loop's head names an end that is not behind the loop."),
+    "BAD_LOOP_END":    (31, "A BREAK or a loop's head names an end that is not after the loop."),
     "NOT_OPEN":        (32, "ELSE, AGAIN, NEXT, BREAK, UNTIL, LOOK, RETURN or the end of a task without what it belongs to."),
     "STILL_OPEN":      (33, "A loop, a procedure or the code ends while a block or a procedure in it is open."),
     "TOO_DEEP":        (34, "Blocks, counters, joins or calls deeper than a machine remembers."),
@@ -57,7 +57,7 @@ RULES = {
     "TOO_MANY_DEFS":   (36, "More than 16 DEFs."),
     "BAD_CALL":        (37, "A CALL that does not lead to the beginning of a DEF before it."),
     "INSIDE_CHECK":    (38, "Between WATCH and UNTIL, or WHEN and LOOK, stands more than readings and a condition."),
-    "BAD_END":         (39, "END: it stands behind the code, not in it."),
+    "BAD_END":         (39, "END: it stands after the code, not in it."),
     "TOO_MANY_TASKS":  (40, "More than 4 tasks beside the main one."),
 }
 # fmt: on
@@ -275,7 +275,7 @@ class _Verifier:
             self.refuse("BAD_TARGET")
         around = self.blocks[-1] if self.blocks else None
         if around is not None and around.end:
-            # the end of a loop lies behind what closes it
+            # the end of a loop lies after what closes it
             if end > around.end - (around.kind != _IF):
                 self.refuse("BAD_TARGET")
             if kind == _IF and end == around.end:

@@ -1,6 +1,6 @@
 """Encodes and decodes frames: a head, a payload and a checksum, in COBS.
 
-A large frame has a 0 behind its head: so its first byte on the wire is 4 at most. In a sealed one
+A large frame has a 0 after its head: so its first byte on the wire is 4 at most. In a sealed one
 that is the 0 of the seal, which belongs to the payload.
 
 Does not know what a message means. The C++ version is `vm_arduino/src/link/frames.cpp`.

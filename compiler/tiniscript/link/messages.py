@@ -70,7 +70,7 @@ WIFI_STATES = (
 MAJOR = 2  # if it differs, robot and computer understand only each other's HELLO
 MINOR = 1  # grows when messages, statuses or features are added
 
-# Bytes of a frame before COBS. A large one has a 0 behind its head, so that its first byte on the
+# Bytes of a frame before COBS. A large one has a 0 after its head, so that its first byte on the
 # wire is 4 at most. Any robot takes small ones; HELLO says whether it takes large ones, and how many
 # requests it holds before it has answered the first.
 SMALL_FRAME, LARGE_FRAME = 63, 250
@@ -79,7 +79,7 @@ HEAD_BYTES = 3  # type, sequence number, epoch
 CRC_BYTES = 4
 STATUS_BYTES = 1  # before the fields of a reply
 REPLY = 0x80  # flag of a type: sent to the computer
-SEALED = 0x40  # flag of a type: a 0 and a counter before the payload, and a MAC behind it
+SEALED = 0x40  # flag of a type: a 0 and a counter before the payload, and a MAC after it
 NAME_BYTES = 16
 TRIM_BYTES, PACE_BYTES = 3, 8
 KEY_BYTES = 16
@@ -104,7 +104,7 @@ STOP_BYTES = 8  # zeros that a computer sends to stop a robot
 STOP_RUN = 4  # zeros in a row that stop it
 SILENCE_MS = 1000  # after this silence everything is text, until a 0x00
 ZERO_MS = 400  # after this silence a sender of frames sends a 0x00 first
-TEXT_MS = 1100  # text waits so long behind a frame
+TEXT_MS = 1100  # text waits so long after a frame
 HELD_MS = 100  # after this silence a typed stop acts in what began as a frame
 DEAD_MAN_MS = 1000  # dead-man timer: without a valid frame, an attached program ends
 LISTEN_MS = 3000  # without a valid frame, a robot sends no more events
@@ -204,7 +204,7 @@ KINDS = {"u8": "B", "u16": "H", "u32": "I", "i8": "b", "i32": "i"}
 
 
 def _fields(text: str, before: int = 0) -> tuple[Field, ...]:
-    """Return the fields that a text names, behind so many bytes of the payload."""
+    """Return the fields that a text names, after so many bytes of the payload."""
     found: list[Field] = []
     for word in text.split():
         name, _, kind = word.partition(":")
@@ -251,7 +251,7 @@ MESSAGES = (
              "Runs code once. The program that the robot holds does not change."),
     _message(9, "PROGRAM", True, "mode:u8 code:rest=0..", _RECEIPT, "A whole program in one frame."),
     _message(11, "DATA", True, "offset:u16 bytes:rest=1..", "next:u16",
-             "What lies behind the checksum, from `offset` on. The robot takes only what begins at `next`."),
+             "What lies after the checksum, from `offset` on. The robot takes only what begins at `next`."),
     _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "The program is whole: its image's checksum."),
     _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8. OK once it is kept; until then SAVING or LOW_SUPPLY: ask again."),
     _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES + PACE_BYTES}", f"wheels:u8 balance:i8 least:u8 pace:rest=0..{PACE_BYTES}",

@@ -196,9 +196,9 @@ class PortConnection(LinkConnection):
                 self._listener([])
 
     def _read(self) -> bytes:
-        """Wait for a byte and return it with those behind it: a socket of pyserial tells of one."""
+        """Wait for a byte and return it with those after it: a socket of pyserial tells of one."""
         found = bytes(self._port.read(1))
-        with suppress(OSError):  # the port is gone: the next read says so, behind its last bytes
+        with suppress(OSError):  # the port is gone: the next read says so, after its last bytes
             while 0 < len(found) < READ_BYTES and (more := self._port.in_waiting):
                 found += self._port.read(more)
         return found

@@ -48,7 +48,7 @@ def is_name(port: str) -> bool:
 
 
 def name_in(port: str) -> str:
-    """Return the name or address behind `://`, in its canonical form."""
+    """Return the name or address after `://`, in its canonical form."""
     return canonical(port.partition("://")[2])
 
 

@@ -1,7 +1,7 @@
 """Splits bytes into packets: frames, lines of text, and the run of zeros that stops a robot.
 
 Everything is text until a 0x00. After a 0x00 everything is frames, until a second passes without a
-byte. A frame ends with 0x00. In frames, CR or LF behind one or more bytes that since the last 0x00
+byte. A frame ends with 0x00. In frames, CR or LF after one or more bytes that since the last 0x00
 are all 0x20 to 0x7e ends a line of text, and text goes on.
 
 Knows where a packet begins and ends; `frames` checks whether a frame is undamaged. Holds one packet
@@ -28,8 +28,8 @@ LINE_ENDS = b"\r\n"
 class State(Enum):
     TEXT = auto()  # in text: between lines or in one
     LOST = auto()  # in a line of text that found no place
-    BEGIN = auto()  # behind a 0x00: nothing has come yet
-    LINE = auto()  # behind a 0x00: all bytes are printable, so a line of text or a frame
+    BEGIN = auto()  # after a 0x00: nothing has come yet
+    LINE = auto()  # after a 0x00: all bytes are printable, so a line of text or a frame
     FRAME = auto()  # in a frame
 
 
@@ -56,7 +56,7 @@ class Receiver:
         self._is_cut = False  # a 0x00 has cut a line: the rest of it is lost
         self._frame_bytes = most_bytes
         self._window = window
-        self._behind: deque[Packet] = deque()  # frames behind the packet that waits
+        self._behind: deque[Packet] = deque()  # frames after the packet that waits
         self._last_ms = 0
 
     def take(self) -> Packet | None:
@@ -153,7 +153,7 @@ class Receiver:
         self._length = 0
 
     def _has_place(self) -> bool:
-        """Return whether a packet that begins now may wait: frames do, and nothing behind text."""
+        """Return whether a packet that begins now may wait: frames do, and nothing after text."""
         if self.packet is None:
             return True
         return not self.packet.is_text and len(self._behind) < self._window - 1

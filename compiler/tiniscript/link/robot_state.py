@@ -116,7 +116,7 @@ class RobotState:
         return True
 
     # Which program's SHOW a value is of. Replies and events come in their order: no value of an
-    # earlier run comes behind a reply that names a later one.
+    # earlier run comes after a reply that names a later one.
 
     def _learn_program(self, values: SentReply, epoch: int) -> None:
         if isinstance(values, ReceiptReply):

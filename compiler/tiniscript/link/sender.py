@@ -25,6 +25,6 @@ class Sender:
         return b"\0" + frames if is_silent or (is_repeated and not are_zeros) else frames
 
     def zeros(self, zeros: bytes, now_ms: int) -> bytes:
-        """Return a stop sequence, sent now: no further 0x00 is needed behind it."""
+        """Return a stop sequence, sent now: no further 0x00 is needed after it."""
         self._sent_ms, self._are_zeros = now_ms, True
         return zeros

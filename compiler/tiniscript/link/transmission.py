@@ -63,7 +63,7 @@ class Transmission:
 
     def renew(self, epoch: int, seq: int | None = None) -> None:
         """Give a frame of which no byte was sent the epoch in which it will be sent, and the
-        number behind that of a frame which came before it.
+        number after that of a frame which came before it.
         """
         if self.frame is not None and not (self.is_sent or self.is_of("AUTHENTICATE")):
             self.frame = self.frame._replace(
@@ -140,14 +140,14 @@ SLOW_MS = 1000  # and behind so much of a line that is slower than its port, abo
 REPLY_BYTES = 32  # of DATA on the wire, and more
 FRAME_BYTES = 24  # of DATA on the wire beside its piece, and more
 LEAST_BYTES = 8  # of a piece, where a line loses so much that no longer one arrives
-MORE_BYTES = 8  # of the next piece, behind one that has arrived
+MORE_BYTES = 8  # of the next piece, after one that has arrived
 REMEMBERED = 64  # pieces that were sent last: their answers may be late
 _DATA = BY_NAME["DATA"]
 
 
 class SentPiece(NamedTuple):
     seq: int
-    end: int  # offset of the byte behind it
+    end: int  # offset of the byte after it
     sent_ms: int
     wire_bytes: int  # with those of its answer
 
@@ -172,7 +172,7 @@ class Window(Transmission):
         self._number = number
         self._room = trips.bytes_in(SLOW_MS)  # for what is under way, with its answers
         self._next = 0  # what the robot wants next
-        self._sent = 0  # offset of the byte behind the last one that was sent
+        self._sent = 0  # offset of the byte after the last one that was sent
         self._under_way: deque[SentPiece] = deque()
         self._before: deque[SentPiece] = deque(maxlen=REMEMBERED)  # taken for lost
         self._lost_ms = 0  # when what is under way is taken for lost

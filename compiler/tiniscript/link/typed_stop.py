@@ -1,6 +1,6 @@
 """Which lines are typed stops: of all their characters only ASCII letters and digits are looked at.
 
-Nothing behind // counts. Knows spellings, no receiver and no time. The C++ version is
+Nothing after // counts. Knows spellings, no receiver and no time. The C++ version is
 `vm_arduino/src/link/typed_stop.h`.
 """
 

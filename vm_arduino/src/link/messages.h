@@ -84,7 +84,7 @@ enum class Message : uint8_t {
   kStart = 7,  // Starts the program that the robot holds.
   kLive = 8,  // Runs code once. The program that the robot holds does not change.
   kProgram = 9,  // A whole program in one frame.
-  kData = 11,  // What lies behind the checksum, from `offset` on. The robot takes only what begins at `next`.
+  kData = 11,  // What lies after the checksum, from `offset` on. The robot takes only what begins at `next`.
   kCommit = 12,  // The program is whole: its image's checksum.
   kName = 14,  // Names the robot: UTF-8. OK once it is kept; until then SAVING or LOW_SUPPLY: ask again.
   kTrim = 15,  // Sets the motors' trim, bytes like those of the reply, with `pace` or without; without any only reports it. OK as for NAME.

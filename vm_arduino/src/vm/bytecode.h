@@ -296,7 +296,7 @@ enum class Rule : uint8_t {
   kBadTarget = 28,  // A jump forward leads out of the block around it, or out of the code.
   kMissedTarget = 29,  // No instruction begins where a jump leads, or one that may not be reached so.
   kBadLoopStart = 30,  // A jump back does not lead to the beginning of its loop.
-  kBadLoopEnd = 31,  // A BREAK or a loop's head names an end that is not behind the loop.
+  kBadLoopEnd = 31,  // A BREAK or a loop's head names an end that is not after the loop.
   kNotOpen = 32,  // ELSE, AGAIN, NEXT, BREAK, UNTIL, LOOK, RETURN or the end of a task without what it belongs to.
   kStillOpen = 33,  // A loop, a procedure or the code ends while a block or a procedure in it is open.
   kTooDeep = 34,  // Blocks, counters, joins or calls deeper than a machine remembers.
@@ -304,7 +304,7 @@ enum class Rule : uint8_t {
   kTooManyDefs = 36,  // More than 16 DEFs.
   kBadCall = 37,  // A CALL that does not lead to the beginning of a DEF before it.
   kInsideCheck = 38,  // Between WATCH and UNTIL, or WHEN and LOOK, stands more than readings and a condition.
-  kBadEnd = 39,  // END: it stands behind the code, not in it.
+  kBadEnd = 39,  // END: it stands after the code, not in it.
   kTooManyTasks = 40,  // More than 4 tasks beside the main one.
 };
 

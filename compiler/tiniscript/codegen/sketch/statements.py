@@ -119,7 +119,7 @@ class Statements:
                 self.line(f"// {row}")
 
     def rest(self) -> None:
-        """Add the comments behind the last instruction."""
+        """Add the comments after the last instruction."""
         self.remarks(len(self.source.text) + 1)
 
     # -- instructions

@@ -2,7 +2,7 @@
 
 Knows what a reader keeps beside the code, and in which order: `docs/develop/text.md`. The code
 grows from one end of the memory; names, blocks that are open and operators that wait grow from the
-other one, and a word lies behind the code until it has been looked up. Made for right programs: it
+other one, and a word lies after the code until it has been looked up. Made for right programs: it
 looks for no mistake.
 """
 
@@ -38,7 +38,7 @@ class Need(NamedTuple):
 
 
 class _Def(NamedTuple):
-    """The sensors that are surely read behind it, and the variables of its values."""
+    """The sensors that are surely read after it, and the variables of its values."""
 
     read: int
     values: tuple[int, ...]
@@ -75,7 +75,7 @@ class Reader:
         self.used = 0  # at the other end
         self.brackets = 0
         self.is_way = False  # of the instruction whose brackets have been read
-        self.one_too_many: Span | None = None  # the first bracket behind MOST_BRACKETS
+        self.one_too_many: Span | None = None  # the first bracket after MOST_BRACKETS
         self.sensors = {each.name: k for k, each in enumerate(among(tokens, kit).readings)}
         self.actuators = {each.name: k for k, each in enumerate(kit.actuators)}
         self.variables: dict[str, int] = {}
@@ -90,7 +90,7 @@ class Reader:
     # -- memory -------------------------------------------------------------------------------
 
     def has_room(self, more: int) -> None:
-        """Note that a byte is wanted behind the code and `more` bytes."""
+        """Note that a byte is wanted after the code and `more` bytes."""
         wanted = self.length + more + 1 + self.used
         if wanted > self.most:
             self.most = wanted
@@ -226,7 +226,7 @@ class Reader:
                 self.count += 1
 
     def give(self, values: Sequence[int]) -> None:
-        """Read the brackets of a call, where it has any: each value is set behind its code."""
+        """Read the brackets of a call, where it has any: each value is set after its code."""
         if self.token.kind != "(":
             return
         self.open_bracket()
@@ -322,7 +322,7 @@ class Reader:
                 return is_forever
 
     def value(self) -> None:
-        """Read an expression to the sign behind it; below it lies a byte that is popped then."""
+        """Read an expression to the sign after it; below it lies a byte that is popped then."""
         while True:
             while not self.operand():
                 pass

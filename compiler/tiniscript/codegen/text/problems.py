@@ -11,7 +11,7 @@ from tiniscript.base.languages import found
 LONGEST = 40  # characters of a text
 
 # By number, from 1. In front of what is said stands a column; of RANGE, the number and the least
-# that goes there, and behind it the most.
+# that goes there, and after it the most.
 # fmt: off
 PROBLEMS = (
     "CHECKSUM", "CHARACTER", "NUMBER", "TOO_BIG", "SETUP", "PING", "INSTRUCTION", "UNKNOWN_WORD",

@@ -193,7 +193,7 @@ class Broker:
         """Return the robots of a class that the broker knows, in the order of their names.
 
         A broker does one request after the other. So the answer to a second one, which asks for
-        nothing, comes behind what it retains; silence counts from then on. Raises PortError.
+        nothing, comes after what it retains; silence counts from then on. Raises PortError.
         """
         assert is_class(group)
         end_s = monotonic() + LIST_S
