@@ -59,6 +59,14 @@ def with_platformio(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv(name, value)
 
 
+# How a program that others run may end badly: by itself, or ended from outside.
+ENDS = (
+    "sys.exit(3)",
+    "sys.exit(255)",
+    *(f"os.kill(os.getpid(), signal.{name})" for name in ("SIGKILL", "SIGTERM", "SIGSEGV")),
+)
+
+
 def copied(folder: Path) -> Path:
     """Return a copy of the package, without what is built for it, in a folder."""
     return linked(ROOT / "compiler", folder / "compiler", "ready", "page")
@@ -266,7 +274,8 @@ def test_the_avrdude_of_another_program_is_found(
     (avrdude.FAILED, ""),
 ])  # fmt: skip
 def test_what_avrdude_says_has_a_name(how: str, said: str) -> None:
-    assert avrdude.outcome(1, said).how == how
+    for code in (1, 255, -9, -15):  # also where it was ended from outside
+        assert avrdude.outcome(code, said).how == how
 
 
 def test_every_end_has_its_sentence() -> None:
