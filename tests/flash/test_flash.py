@@ -7,8 +7,9 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import cast
 
 import pytest
 import serial
@@ -23,9 +24,12 @@ from tests.support.platformio import firmware, prepared, shared
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.commands import firmware as firmware_command
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import has_text
 from tiniscript.flash import avrdude, ready
+from tiniscript.flash.avrdude import Seen
 from tiniscript.flash.bootloaders import BOARDS, UNO
+from tiniscript.flash.ready import Ready
 from tiniscript.robots.profile import answered
 from tools import CannotMake
 from tools.bench import firmware_size
@@ -228,6 +232,25 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
     said = interrupted(told, "--port", board.pty, **variables).gives(2).err
     assert "half of its" in said or said.strip() == "Stopped."  # it may not have read that far
     assert not Path(f"/proc/{told.read_text()}").exists()
+
+
+@pytest.mark.parametrize("count", range(4))
+def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
+    count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And nothing of that before: the board has what it had."""
+
+    def write(*words: object) -> None:
+        look = cast("Callable[[Seen | None], None]", words[-1])
+        for found in [None, None, *(Seen(avrdude.WRITING, 9 * k) for k in range(count)), None]:
+            look(found)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(avrdude, "write", write)
+    firmware = Ready("tinibot", "uno", "0", Path("x.hex"))
+    with pytest.raises((CommandError, KeyboardInterrupt)) as ended:
+        firmware_command._written(["x"], UNO, "x", firmware, "en")
+    assert getattr(ended.value, "key", None) == ("flash_stopped" if count else None)
 
 
 def test_without_avrdude_it_says_where_to_get_it(package: Path, tmp_path: Path) -> None:
