@@ -16,9 +16,10 @@ const PLAYED = {
   'virtual/sounds.js': ['Sounds'],
   'world/choice.js': ['WorldChoice'],
   'world/drawing.js': ['WorldDrawing'],
-  'page/pictures.js': ['offer', 'pictured', 'dialPicture'],
+  'page/pictures.js': ['offer', 'pictured', 'dialPicture', 'worldPicture', 'drawnPicture'],
   'blocks/blocks.js': ['Blocks'],
-  'robot/serial.js': ['hasSerial', 'chosenPort'],
+  'robot/host.js': ['HostRobot', 'hasHost', 'hostPorts', 'isPupil', 'isTeacher', 'post'],
+  'robot/serial.js': ['hasSerial', 'chosenPort', 'knownPorts', 'SerialPort'],
   'robot/flash.js': ['firmwares', 'firmwareOf', 'flashBoard'],
   pyodide: ['loadPyodide'],
 };
@@ -117,6 +118,7 @@ class Part extends EventTarget {
   removeAttribute(name) { delete this.attributes[name]; }
   getAttribute(name) { return this.attributes[name] ?? null; }
   click() { this.dispatchEvent(new Event('click')); }
+  focus() {}
 }
 
 class Store {
@@ -127,7 +129,7 @@ class Store {
 }
 
 const stands = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
-for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Details']) stands(`HTML${kind}Element`, Part);
+for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Details', 'Form']) stands(`HTML${kind}Element`, Part);
 stands('setTimeout', setLater);
 stands('clearTimeout', clearLater);
 stands('performance', { now });
@@ -153,6 +155,7 @@ export function freshPage(given = {}) {
   stands('document', {
     documentElement: new Part(), body: new Part(), getElementById: byId, querySelectorAll: () => [],
     createElement: () => new Part(), createElementNS: () => new Part(),
+    addEventListener() {}, visibilityState: 'visible',
   });
   const load = (name) => import(pathToFileURL(`${sources}/${name}`).href + query);
   return { load, byId };

@@ -35,6 +35,12 @@ ENDS = {
     "pupil": {"removed"},
     "pictures": {"made", "none"},
     "worker": {"good", "failed"},
+    "checking": {"changed", "checked"},
+    "lessons": {"check", "end", "edit"},
+    "link": {"left", "unheard", "link_silent"},
+    "stops": {"silent", "confirmed"},
+    "worlds": {"one", "several"},
+    "curves": {"long", "short"},
 }
 
 
