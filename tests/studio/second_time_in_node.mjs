@@ -548,6 +548,79 @@ const PARTS = {
     };
   },
 
+  // What is asked of a robot, also of one that is gone or goes meanwhile.
+  async asking() {
+    const page = freshPage();
+    const { Asking, Failed } = await page.load('robot/transport.js');
+    return async (chance, isGood) => {
+      const told = [];
+      let open = 0;
+      let isOver = false;
+      const end = chance.of(isGood ? ['stays'] : ['stays', 'goes', 'goes']);
+      const asking = new Asking({ event: ({ event }) => told.push(event), over: (why) => told.push(why.reason) });
+      asking.go = async () => {
+        const sent = asking.asked.splice(0);
+        await later(isGood ? 5 : chance.below(300));
+        for (const { id, what } of sent) if (!isOver) asking.take({ id, ok: what });
+      };
+      for (let k = 0; k < 6; k += 1) {
+        open += 1;
+        asking.ask({ what: k }).then(({ ok }) => told.push(ok), (why) => told.push(why.reason)).finally(() => { open -= 1; });
+        await passes(chance.below(100));
+        if (end === 'goes' && !isOver && chance() < 0.4) {
+          isOver = true;
+          asking.end(new Failed('gone'));
+        }
+      }
+      await passes(1000);
+      if (open) throw new Error(`${open} never end: ${told}`);
+      return { ends: [end], seen: told };
+    };
+  },
+
+  // Python in its worker, which may be tried again until it is there.
+  async python() {
+    let fails = '';
+    const page = freshPage();
+    const notes = [];
+    globalThis.Worker = class extends EventTarget {
+      constructor() {
+        super();
+        const how = fails;
+        const says = (data, ms) => setTimeout(() => this.isEnded || this.dispatchEvent(Object.assign(new Event('message'), { data })), ms);
+        if (how === 'silent') return;
+        says({ begun: true }, 5);
+        if (how === 'error') setTimeout(() => this.dispatchEvent(Object.assign(new Event('error'), { message: 'broken' })), 10);
+        else says({ id: 0, error: how && 'not fetched' }, 20);
+      }
+      terminate() { this.isEnded = true; }
+      postMessage({ id, request }) {
+        setTimeout(() => this.isEnded || this.dispatchEvent(Object.assign(new Event('message'), { data: { id, answer: request } })), 30);
+      }
+    };
+    const { Python } = await page.load('python.js');
+    let python = null;
+    return async (chance, isGood) => {
+      notes.length = 0;
+      fails = isGood ? '' : chance.of(['error', 'not fetched', 'silent']);
+      const end = fails;
+      if (python) python.again('en');
+      else {
+        python = new Python('en');
+        python.heed({ waits: () => notes.push('waits'), begins() {}, fails: () => notes.push('fails') });
+      }
+      let open = 0;
+      for (let k = 0; k < 4; k += 1) {
+        open += 1;
+        python.ask({ k }).then((found) => isGood && notes.push(found), () => isGood && notes.push('rejected')).finally(() => { open -= 1; });
+        await passes(chance.below(100));
+      }
+      await passes(120_000);
+      if (open) throw new Error(`${open} never end: ${notes}`);
+      return { ends: [end], seen: [...notes] };
+    };
+  },
+
   // One connection to a robot after another; what is late of one before is not of the next.
   async link() {
     const notes = [];

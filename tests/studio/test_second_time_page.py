@@ -37,6 +37,8 @@ ENDS = {
     "worker": {"good", "failed"},
     "checking": {"changed", "checked"},
     "lessons": {"check", "end", "edit"},
+    "asking": {"stays", "goes"},
+    "python": {"error", "not fetched", "silent"},
     "link": {"left", "unheard", "link_silent"},
     "stops": {"silent", "confirmed"},
     "worlds": {"one", "several"},
