@@ -637,9 +637,9 @@ const PARTS = {
         }
         async connect() {
           await later(late());
-          if (failure) {
+          if (failure || this.isOver) {
             this.isOver = true;
-            throw new Failed(failure);
+            throw new Failed(failure || 'left');
           }
           return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, is_running: false };
         }
@@ -676,7 +676,7 @@ const PARTS = {
       late = () => (isGood ? 5 : 5 + chance.below(300));
       failure = isGood || chance() < 0.7 ? '' : 'link_silent';
       panel.byHost('p');
-      const all = [structuredClone(pageState.robotRun.value)]; // nobody tells where it is
+      const all = [structuredClone(pageState.robotRun.value), document.documentElement.dataset['robot']];
       await passes(isGood ? 50 : chance.below(600));
       for (let k = 1 + chance.below(6); k > 0; k -= 1) {
         if (isGood && before.length) before[0].end('unheard'); // once more, and late
