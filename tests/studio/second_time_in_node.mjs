@@ -621,6 +621,40 @@ const PARTS = {
     };
   },
 
+  // The programs of pupils on the teacher's page, which come over a network that loses some.
+  async wall() {
+    const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
+    document.documentElement.dataset['class'] = '';
+    playsNavigator({});
+    playsFetch(async () => { throw new Broken(); });
+    await learns(page);
+    let room = async () => { throw new Broken(); };
+    playsFetch((_, { body }) => room(JSON.parse(body)));
+    const { Teacher } = await page.load('class/teacher.js');
+    new Teacher({ get ready() { return Promise.reject(new Broken()); }, ask() {} });
+    const wall = page.byId('class').children.at(-2);
+    const large = document.body.children.find(({ id }) => id === 'big_pupil');
+    return async (chance, isGood) => {
+      let lost = false;
+      room = async (request) => {
+        await later(isGood ? 5 : chance.below(300));
+        if (!isGood && chance() < 0.5) {
+          lost ||= request.do === 'class_text';
+          throw new Broken();
+        }
+        if (request.do === 'class_text') return answers({ text: `of ${request.pupil}`, robot: 'tinibot', version: 1 });
+        const pupils = [1, 2].map((number) => ({ number, name: `P${number}`, silent_s: 0, place: 0, robot: '', left_s: 0, version: 1, is_right: true, hand: 0, lessons: [] }));
+        return answers({ code: '1', turn_s: 60, places: 2, over: '', goes_on: false, lessons: 1, kept: [], pupils, robots: [] });
+      };
+      await passes(isGood ? 5000 : 300 + chance.below(3000));
+      const seen = isGood && wall.children.map(({ children }) => {
+        children.at(-3).click(); // then it is seen large
+        return large.children[1].children.map((each) => each.textContent);
+      });
+      return { ends: [lost ? 'lost' : 'came'], seen };
+    };
+  },
+
   // One connection to a robot after another; what is late of one before is not of the next.
   async link() {
     const notes = [];
@@ -752,7 +786,7 @@ const PARTS = {
     const page = freshPage();
     const { Plot } = await page.load('virtual/plot.js');
     const place = Object.assign(page.byId('place'), { clientHeight: 300 });
-    const canvas = Object.assign(page.byId('canvas'), { clientWidth: 400, clientHeight: 300, parentElement: place });
+    const canvas = Object.assign(page.byId('canvas'), { clientWidth: 400, clientHeight: 300, parent: place });
     document.documentElement.hasAttribute = () => false;
     const drawn = [];
     const pen = noting(drawn, 'pen', { measureText: () => ({ width: 9 }) });
