@@ -141,7 +141,7 @@ class Store {
 }
 
 const stands = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
-for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Details', 'Form']) stands(`HTML${kind}Element`, Part);
+for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Details', 'Form', 'Dialog', 'TextArea']) stands(`HTML${kind}Element`, Part);
 stands('setTimeout', setLater);
 stands('clearTimeout', clearLater);
 stands('performance', { now });

@@ -621,6 +621,30 @@ const PARTS = {
     };
   },
 
+  // A program is shared as a line or as a link, whichever was asked for last.
+  async sharing() {
+    const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
+    playsNavigator({});
+    await learns(page);
+    const { Programs } = await page.load('programs/programs.js');
+    let late = () => 5;
+    const python = { ask: async () => { await later(late()); return { text: 'a line' }; } };
+    new Programs({ python, work: { text: 'F(1)', robot: 'tinibot', name: '' }, put() {}, picturing() {} });
+    const { dataset } = page.byId('programs');
+    return async (chance, isGood) => {
+      late = () => (isGood ? 5 : 5 + chance.below(900));
+      let end = '';
+      for (let k = 1 + chance.below(isGood ? 1 : 4); k > 0; k -= 1) {
+        end = chance.of(['share_line', 'share_link']);
+        page.byId(end).click();
+        await passes(isGood ? 10 : chance.below(300));
+      }
+      for (let k = 0; isGood && dataset['shared'] === 'asked' && k < 10_000; k += 1) await settles(); // what is packed waits for the real clock
+      await passes(isGood ? 2000 : 0);
+      return { ends: [end], seen: isGood && [page.byId('shared').value, page.byId('shared_told').textContent, dataset['shared'], page.byId('share_link').attributes] };
+    };
+  },
+
   // The programs of pupils on the teacher's page, which come over a network that loses some.
   async wall() {
     const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });

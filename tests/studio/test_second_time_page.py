@@ -39,6 +39,7 @@ ENDS = {
     "lessons": {"check", "end", "edit"},
     "asking": {"stays", "goes"},
     "python": {"error", "not fetched", "silent"},
+    "sharing": {"share_line", "share_link"},
     "wall": {"lost", "came"},
     "link": {"left", "unheard", "link_silent"},
     "stops": {"silent", "confirmed"},
