@@ -284,7 +284,7 @@ def test_a_command_whose_output_nobody_reads_ends_with_ctrl_c(
 def test_who_shares_the_pipe_of_an_interrupted_command_has_it_as_it_was(
     monkeypatch: pytest.MonkeyPatch, stream: str, reader: str
 ) -> None:
-    """What comes behind it in `(tsc upload prog; echo done) | less` may wait for the reader."""
+    """What comes after it in `(tsc upload prog; echo done) | less` may wait for the reader."""
     monkeypatch.setattr(streams, "UNREAD_S", 0.0)
     end, pipe = os.pipe()
     shared = os.dup(pipe)

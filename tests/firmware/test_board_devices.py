@@ -192,7 +192,7 @@ def test_a_program_that_has_ended_plays_its_tune_and_the_light_says_that_one_cou
     assert [board.pin(light, START + ms) for ms in (-50, 50, 250)] == ["high", "low", "high"]
 
 
-def test_a_tone_has_no_note_of_a_tune_behind_it() -> None:
+def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
     """The button starts the program again while the first note of its end sounds."""
     robot = robots.load("tinibot")
     board = started(robot, "SI|BEEP(0.05, 880);W(0.2)")

@@ -142,7 +142,7 @@ def test_a_program_drives_and_sounds_and_a_panic_turns_the_motors_off(
     assert [robot.output(pin) for pin in pins] == [0] * len(pins)
 
 
-def test_a_tone_has_no_note_of_a_tune_behind_it() -> None:
+def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
     robot, session = switched_on(Esp32Robot()), computer()
     send(robot, session, "SI|F(0.05, 80)")
     while "TONE 1047" not in happened(robot):

@@ -242,8 +242,8 @@ def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
 
     def write(*words: object) -> None:
         look = cast("Callable[[Seen | None], None]", words[-1])
-        for found in [None, None, *(Seen(avrdude.WRITING, 9 * k) for k in range(count)), None]:
-            look(found)
+        for progress in [None, None, *(Seen(avrdude.WRITING, 9 * k) for k in range(count)), None]:
+            look(progress)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(avrdude, "write", write)
