@@ -10,6 +10,7 @@ import sys
 import termios
 from argparse import Namespace
 from array import array
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from tests.support.pty_robot import PtyRobot, on
 from tests.support.robot_fleet import RobotFleet
 from tests.support.waiting import HANGS_S, until
 from tiniscript import robots
-from tiniscript.cli import CLOSED
+from tiniscript.cli import CLOSED, streams
 from tiniscript.cli.robot import connect, fleet
 from tiniscript.library import opening
 from tiniscript.link.messages import STATUSES, STOP_RUN
@@ -275,3 +276,32 @@ def test_a_command_whose_output_nobody_reads_ends_with_ctrl_c(
     if verb == "upload":
         pty_robot.until(lambda: not pty_robot.moves, "it stands")
     assert "Traceback" not in command.ended().err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
+@pytest.mark.parametrize("reader", ["reads", "is slow", "has gone"])
+@pytest.mark.parametrize("stream", ["stdout", "stderr"])
+def test_who_shares_the_pipe_of_an_interrupted_command_has_it_as_it_was(
+    monkeypatch: pytest.MonkeyPatch, stream: str, reader: str
+) -> None:
+    """What comes after it in `(tsc upload prog; echo done) | less` may wait for the reader."""
+    monkeypatch.setattr(streams, "UNREAD_S", 0.0)
+    end, pipe = os.pipe()
+    shared = os.dup(pipe)
+    if reader == "is slow":
+        os.set_blocking(pipe, False)
+        with suppress(BlockingIOError):
+            while True:
+                os.write(pipe, bytes(4096))
+        os.set_blocking(pipe, True)
+    with os.fdopen(pipe, "w") as file:
+        monkeypatch.setattr(sys, stream, file)
+        if reader == "has gone":
+            os.close(end)
+        for _ in range(2):
+            streams.drop_unread()
+            assert os.get_blocking(shared) and os.get_blocking(pipe)
+        monkeypatch.undo()
+    os.close(shared)
+    if reader != "has gone":
+        os.close(end)

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.flash.test_flash import copied
+from tests.flash.test_flash import ENDS, copied
 from tests.support.casefile import ROOT
 from tests.support.command import TSC, Done, Tsc
 from tests.support.copies import linked
@@ -26,6 +26,7 @@ from tests.support.terminal import Terminal
 from tests.support.waiting import HANGS_S, has_ended, until
 from tiniscript.base.files import cache_folder
 from tiniscript.cli import fetching, page_build
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import text
 from tiniscript.flash import children
 from tiniscript.library import install_advice
@@ -407,6 +408,23 @@ def test_what_must_not_end_in_the_middle_is_waited_for(
         children.run([sys.executable, "-c", code], tmp_path, look,
                      may_end=lambda so_far: fetching.PUTTING not in so_far)  # fmt: skip
     assert (tmp_path / "whole").exists() == (said == fetching.PUTTING)
+
+
+@pytest.mark.parametrize("end", [*ENDS, None])
+def test_what_does_not_end_well_has_not_done_it(tmp_path: Path, end: str | None) -> None:
+    """Nor what the system has ended, as where there is no memory left: it has no exit code."""
+    code = f"import os, signal, sys; print('Compiling a', flush=True); {end or ''}"
+    failures = [] if end is None else [2]
+    try:
+        fetching.run(
+            [sys.executable, "-c", code],
+            tmp_path,
+            lambda said: fetching.Step("fetch_npm_now", 0),
+            "en",
+        )
+    except CommandError as failure:
+        failures.remove(failure.exit_code)
+    assert not failures
 
 
 def test_the_measure_of_the_progress_is_that_of_the_packages() -> None:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import random
 import stat
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -107,6 +109,32 @@ def test_many_claims_at_once_lose_no_key(own: KeyFile) -> None:
     assert sorted(key.id for key in found) == [100 * k + n for k in range(4) for n in range(25)]
     assert not any(key.is_pending for key in found)
     assert [key.is_stale for key in found] == [key.id % 5 == 0 for key in found]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_key_that_its_robot_may_have_taken_stays_until_that_is_known(
+    own: KeyFile, seed: int
+) -> None:
+    """Whatever else comes into the file, or goes out of it: a robot keeps no second copy."""
+    own.add([ONE, ONE._replace(id=7)])
+    claim = own.made(ONE.id, ONE.which, ONE.name)
+    assert claim is not None
+    other = ONE._replace(key=bytes(range(1, 17)))
+    changes: list[Callable[[], object]] = [
+        lambda: own.add([ONE]), lambda: own.add([other, ONE._replace(which=KEY_TEACHER)]),
+        lambda: own.add([ONE._replace(id=7)]), lambda: own.forget(7), lambda: own.refuse(ONE),
+        lambda: own.drop(ONE), lambda: own.drop(other), lambda: own.settle(ONE._replace(id=7)),
+        lambda: own.settle(ONE._replace(which=KEY_TEACHER)),
+        lambda: own.made(ONE.id, KEY_TEACHER, ONE.name),
+    ]  # fmt: skip
+    chance = random.Random(seed)
+    for change in chance.choices(changes, k=6):
+        change()
+        assert claim in own.all()
+    own.settle(claim)
+    assert [key for key in own.of_robot(ONE.id) if key.which == ONE.which] == [
+        claim._replace(is_pending=False)
+    ]
 
 
 def test_a_command_that_stands_still_keeps_no_other_one_waiting_for_ever(

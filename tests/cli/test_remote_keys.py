@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+
 import pytest
 
 from tiniscript.cli.robot.remote_keys import FIRST_S, REPEAT_S, HeldKeys
@@ -62,3 +64,19 @@ def test_what_is_no_key_of_a_remote_control_holds_nothing(typed: str) -> None:
 @pytest.mark.parametrize("typed", ["q", "Q", "\x04", UP + "q", "aaaq"])
 def test_who_wants_to_leave(typed: str) -> None:
     assert HeldKeys().take(typed, 0.0)
+
+
+OTHERS = ("\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "é", "q", "\x04")
+
+
+@pytest.mark.parametrize("seed", range(50))
+def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
+    """Wherever keys are cut, and whatever came before: nothing of a key is left for the next."""
+    chance = random.Random(seed)
+    whole, cut = HeldKeys(), HeldKeys()
+    for k in range(20):
+        typed, now_s = chance.choice([*(typed for typed, _ in KEYS), *OTHERS]), 2.0 * k
+        at = chance.randrange(len(typed) + 1)
+        leaves = [cut.take(piece, now_s) for piece in (typed[:at], "", typed[at:], "")]
+        assert any(leaves) == whole.take(typed, now_s), (k, typed)
+        assert cut.held(now_s) == whole.held(now_s), (k, typed)

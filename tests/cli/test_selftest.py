@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import signal
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import redirect_stderr, redirect_stdout
@@ -16,7 +17,7 @@ from unittest import mock
 import pytest
 
 from tests.machines.host_firmware import EMPTY, HostFirmware
-from tests.support.command import inside
+from tests.support.command import Command, inside
 from tests.support.flicker import Flicker
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.simulated_port import simulated
@@ -222,6 +223,19 @@ def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
     }  # fmt: skip
     turned = [line for line in pty_robot.did if "MOTORS" in line]
     assert turned == ["MOTORS 60 0", "MOTORS 0 0", "MOTORS 0 60", "MOTORS 0 0"]
+
+
+@pytest.mark.parametrize("motor", [1, 2])
+def test_ctrl_c_stops_the_robot_whichever_motor_turns(pty_robot: PtyRobot, motor: int) -> None:
+    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    sensors = 2 * len(pty_robot.kit.sensors)
+    answers = b"\n" * (1 + sensors) + b"1\n" * (motor - 1)
+    command = Command("doctor", "--selftest", "--port", pty_robot.port, data=answers)
+    begun = ["MOTORS 60 0", "MOTORS 0 60"][motor - 1]
+    pty_robot.until(lambda: begun in pty_robot.did, "a motor turns")
+    command.signal(signal.SIGINT)
+    assert command.ended().code == 2
+    assert not pty_robot.moves
 
 
 def test_what_a_person_sees_is_wrong(pty_robot: PtyRobot) -> None:

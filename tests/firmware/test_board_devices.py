@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import pytest
 
-from tests.firmware.test_boards import LAMP, START, on_board, pulses, started
+from tests.firmware.test_boards import LAMP, START, STEADY, on_board, pulses, started
 from tests.machines.board import HERTZ, MS, Board
 from tiniscript import robots
 from tiniscript.robots.profile import Robot
@@ -190,6 +190,19 @@ def test_a_program_that_has_ended_plays_its_tune_and_the_light_says_that_one_cou
     halves = [b - a for a, b in pairwise(edges)]
     assert halves[0] > 1.3 * halves[-2]
     assert [board.pin(light, START + ms) for ms in (-50, 50, 250)] == ["high", "low", "high"]
+
+
+def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
+    """The button starts the program again while the first note of its end sounds."""
+    robot = robots.load("tinibot")
+    board = started(robot, "SI|BEEP(0.05, 880);W(0.2)")
+    board.watch(robot.board.buzzer)
+    board.press(START + 255, START + 345 - STEADY)
+    board.ran(START + 590)
+    edges = [cycle / MS - START for cycle in board.edges(robot.board.buzzer)]
+    assert any(255 < edge < 340 for edge in edges), "the tune has begun"
+    assert any(350 < edge < 390 for edge in edges), "the program runs again"
+    assert not any(400 < edge < 585 for edge in edges)
 
 
 def test_a_servo_and_a_lamp() -> None:

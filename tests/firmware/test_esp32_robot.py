@@ -142,6 +142,17 @@ def test_a_program_drives_and_sounds_and_a_panic_turns_the_motors_off(
     assert [robot.output(pin) for pin in pins] == [0] * len(pins)
 
 
+def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
+    robot, session = switched_on(Esp32Robot()), computer()
+    send(robot, session, "SI|F(0.05, 80)")
+    while "TONE 1047" not in happened(robot):
+        robot.talk(session, 1)
+    robot.did.clear()
+    send(robot, session, "SI|BEEP(0.2, 440);W(1)")
+    robot.talk(session, 900)
+    assert [what for what in happened(robot) if "TONE" in what][-2:] == ["TONE 440", "TONE 0"]
+
+
 def test_a_window_of_large_frames_waits_for_a_main_loop_that_writes() -> None:
     """As while a page of flash is written: all that a computer may have under way comes at once."""
     robot = switched_on(Esp32Robot())

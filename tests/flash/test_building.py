@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.flash.test_flash import command, copied, interrupted, new_board, tsc
+from tests.flash.test_flash import ENDS, command, copied, interrupted, new_board, tsc
 from tests.machines.bootloaders import bootloader
 from tests.machines.uno import needed
 from tests.robots.test_robots import TEXTS
@@ -268,6 +268,17 @@ def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) ->
     assert not list(ready.cache().glob("*.hex"))
 
 
+@pytest.mark.sampled("end", keep=2)
+@pytest.mark.parametrize("end", ENDS)
+def test_a_build_that_does_not_end_well_has_made_nothing(
+    end: str, clone: Path, tmp_path: Path
+) -> None:
+    """Whatever file is there then."""
+    body = f'import signal\n{MAKES}\nmake("uno", ":00000001FF\\n")\n{end}'
+    built(clone, pretending(tmp_path, body)).gives(2, "could not be built")
+    assert not list(ready.cache().glob("*.hex"))
+
+
 def test_own_settings_build_nothing_else(clone: Path, tmp_path: Path) -> None:
     """Settings for a project of the person's own would change what is built, or where."""
     body = 'print("Compiling", *sorted(n for n in os.environ if "PLATFORMIO" in n)); sys.exit(1)'
@@ -410,7 +421,8 @@ print("Compiling .pio/build/esp32dev/src/main.cpp.o")
 if "upload" in words:
     assert words[words.index("--upload-port") + 1] == os.environ["ITS_PORT"]
     print("Writing at 0x00010000... (7 %)\\nWriting at 0x00020000... (100 %)")
-    sys.exit(int(os.environ["ITS_CODE"]))
+    code = int(os.environ["ITS_CODE"])
+    os.kill(os.getpid(), -code) if code < 0 else sys.exit(code)
 assert os.path.exists("partitions.csv") and "esp32dev" in words
 """
 
@@ -433,8 +445,9 @@ def test_an_esp32_is_built_and_written_in_one_command(clone: Path, tmp_path: Pat
     done.gives(3, "no robot answers", out="tinibot32 on the esp32dev: written")
 
 
-def test_an_esp32_that_is_not_written_is_told(clone: Path, tmp_path: Path) -> None:
-    written(clone, tmp_path, "--lang", "es", code=1).gives(2, "botón BOOT", out="")
+@pytest.mark.parametrize("code", [1, -9])
+def test_an_esp32_that_is_not_written_is_told(clone: Path, tmp_path: Path, code: int) -> None:
+    written(clone, tmp_path, "--lang", "es", code=code).gives(2, "botón BOOT", out="")
 
 
 def test_an_esp32_is_only_built_where_that_is_asked(clone: Path, tmp_path: Path) -> None:

@@ -7,8 +7,9 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import cast
 
 import pytest
 import serial
@@ -23,9 +24,12 @@ from tests.support.platformio import firmware, prepared, shared
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.commands import firmware as firmware_command
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import has_text
 from tiniscript.flash import avrdude, ready
+from tiniscript.flash.avrdude import Seen
 from tiniscript.flash.bootloaders import BOARDS, UNO
+from tiniscript.flash.ready import Ready
 from tiniscript.robots.profile import answered
 from tools import CannotMake
 from tools.bench import firmware_size
@@ -57,6 +61,14 @@ def with_platformio(monkeypatch: pytest.MonkeyPatch) -> None:
     need(why)
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
+
+
+# How a program that others run may end badly: by itself, or ended from outside.
+ENDS = (
+    "sys.exit(3)",
+    "sys.exit(255)",
+    *(f"os.kill(os.getpid(), signal.{name})" for name in ("SIGKILL", "SIGTERM", "SIGSEGV")),
+)
 
 
 def copied(folder: Path) -> Path:
@@ -222,6 +234,25 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
     assert not Path(f"/proc/{told.read_text()}").exists()
 
 
+@pytest.mark.parametrize("count", range(4))
+def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
+    count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And nothing of that before: the board has what it had."""
+
+    def write(*words: object) -> None:
+        look = cast("Callable[[Seen | None], None]", words[-1])
+        for progress in [None, None, *(Seen(avrdude.WRITING, 9 * k) for k in range(count)), None]:
+            look(progress)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(avrdude, "write", write)
+    firmware = Ready("tinibot", "uno", "0", Path("x.hex"))
+    with pytest.raises((CommandError, KeyboardInterrupt)) as ended:
+        firmware_command._written(["x"], UNO, "x", firmware, "en")
+    assert getattr(ended.value, "key", None) == ("flash_stopped" if count else None)
+
+
 def test_without_avrdude_it_says_where_to_get_it(package: Path, tmp_path: Path) -> None:
     done = tsc(package, "--port", "x", PATH=str(tmp_path), HOME=str(tmp_path))
     assert done.code == 2
@@ -266,7 +297,8 @@ def test_the_avrdude_of_another_program_is_found(
     (avrdude.FAILED, ""),
 ])  # fmt: skip
 def test_what_avrdude_says_has_a_name(how: str, said: str) -> None:
-    assert avrdude.outcome(1, said).how == how
+    for code in (1, 255, -9, -15):  # also where it was ended from outside
+        assert avrdude.outcome(code, said).how == how
 
 
 def test_every_end_has_its_sentence() -> None:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import random
-from typing import Any
+from argparse import Namespace
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
+from tiniscript.cli.robot import run_monitor
 from tiniscript.library import client
 from tiniscript.library.client import LOW_S, SAVE_S, Saving
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 from tiniscript.link.payloads import ReceiptReply, StatusReply
+from tiniscript.link.requests import OK, Reply
 
 LOOK_S = 0.1
 PROGRAM = 7
@@ -92,3 +96,50 @@ def test_what_is_never_saved_is_given_up(clock: Clock) -> None:
     assert saving.reason == "saves_later"
     assert waited(clock, saving, [(SAVE_S * 9, SAVED_STORED)]) == pytest.approx(LOOK_S)
     assert saving.reason == ""
+
+
+# -- while the program runs ---------------------------------------------------------------------
+
+
+class Asked:
+    outcome: Reply[StatusReply] | None = None
+
+
+class Line:
+    """A connection to a robot that says how far it is, each time after a while."""
+
+    language, options = "en", Namespace()
+
+    def __init__(self) -> None:
+        self.asked: list[Asked] = []
+
+    def do(self, make: object) -> Asked:
+        self.asked.append(Asked())
+        return self.asked[-1]
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_what_becomes_of_a_program_is_told_while_it_runs(
+    clock: Clock, monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    """A supply that is low, each time, and that it is saved: one answer is not the last one."""
+    monkeypatch.setattr(run_monitor, "monotonic", clock)
+    rng = random.Random(seed)
+    late_s = rng.uniform(0, 0.5)
+    story, wanted = [], []
+    for _ in range(rng.randrange(4)):
+        story += [(rng.uniform(2, 5), SAVED_SAVING), (rng.uniform(2, 5), SAVED_LOW_SUPPLY)]
+        wanted.append("LOW_SUPPLY")
+    story += [(rng.uniform(2, 5), SAVED_SAVING), (5.0, SAVED_STORED)]
+    line, told = Line(), list[str]()
+    printer = SimpleNamespace(say=lambda at_ms, name, *rest, **more: told.append(name))
+    saving = run_monitor.Saving(cast("Any", line), cast("Any", printer), receipt(SAVED_SAVING))
+    for lasts_s, saved in story:
+        end_s = clock.now_s + lasts_s
+        while clock.now_s < end_s:
+            if len(line.asked) > 0 and line.asked[-1].outcome is None and rng.random() > late_s:
+                line.asked[-1].outcome = Reply(OK, 0, status(saved))
+            saving.look()
+            clock.now_s += LOOK_S
+    assert told == [*wanted, "SAVED"]
+    assert len(line.asked) <= 1 + clock.now_s / run_monitor.ASK_S

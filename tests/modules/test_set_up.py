@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections import deque
 
 import pytest
@@ -283,3 +284,17 @@ def test_what_a_module_cannot_have_is_known_before(wanted: Wanted, dialect: str,
 def test_a_name_from_an_id_fits_each() -> None:
     assert set_up.name_for(0x12347F3A) == "Tini-7F3A"
     assert all(not set_up.misfit(Wanted(set_up.name_for(7)), each) for each in DIALECTS)
+
+
+@pytest.mark.parametrize("seed", range(12))
+@of_each
+def test_what_was_sent_before_is_no_part_of_a_command(kind: str, seed: int) -> None:
+    """A set-up that was interrupted anywhere in a command, however long ago."""
+    chance = random.Random(f"{kind} {seed}")
+    end: Simulated = KINDS[kind](*([chance.choice(BAUDS)] if not kind.startswith("HC-05") else []))
+    wire = SimulatedWire(end, end.baud)
+    plain = met(SimulatedWire(KINDS[kind](*([end.baud] if not kind.startswith("HC-05") else []))))
+    command = chance.choice(["AT", "AT+", "AT+VERSION", "AT+ROLE?", "AT\r", "A", "w" * 20, "\0"])
+    wire.send(command.encode())
+    wire.heard(chance.choice([1, 10, 100, 900]))
+    assert met(wire) == plain

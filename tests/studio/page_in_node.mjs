@@ -16,11 +16,13 @@ const PLAYED = {
   'virtual/sounds.js': ['Sounds'],
   'world/choice.js': ['WorldChoice'],
   'world/drawing.js': ['WorldDrawing'],
-  'page/pictures.js': ['offer', 'pictured', 'dialPicture'],
+  'page/pictures.js': ['offer', 'pictured', 'dialPicture', 'worldPicture', 'drawnPicture'],
   'blocks/blocks.js': ['Blocks'],
-  'robot/serial.js': ['hasSerial', 'chosenPort'],
+  'robot/host.js': ['HostRobot', 'hasHost', 'hostPorts', 'isPupil', 'isTeacher', 'post'],
+  'robot/serial.js': ['hasSerial', 'chosenPort', 'knownPorts', 'SerialPort'],
   'robot/flash.js': ['firmwares', 'firmwareOf', 'flashBoard'],
   pyodide: ['loadPyodide'],
+  'lean-qr': ['generate', 'correction'],
 };
 /** What is played now; other modules are the page's own. */
 let played = {};
@@ -92,12 +94,15 @@ class Part extends EventTarget {
   options = [];
   textContent = '';
   value = '';
+  src = '';
+  open = false;
   hidden = false;
   disabled = false;
   attributes = {};
   classList = { toggle() {}, add() {}, remove() {} };
   style = { setProperty() {}, removeProperty() {} };
 
+  get parentElement() { return this.parent; }
   get lastElementChild() { return this.children.at(-1); }
   append(...parts) {
     for (const each of parts) if (each instanceof Part) each.parent = this;
@@ -117,6 +122,15 @@ class Part extends EventTarget {
   removeAttribute(name) { delete this.attributes[name]; }
   getAttribute(name) { return this.attributes[name] ?? null; }
   click() { this.dispatchEvent(new Event('click')); }
+  focus() {}
+  toggleAttribute() {}
+  showModal() { this.open = true; }
+  close() { this.open = false; }
+  insertBefore(part, next) {
+    this.children = this.children.filter((each) => each !== part);
+    part.parent = this;
+    this.children.splice(next ? this.children.indexOf(next) : this.children.length, 0, part);
+  }
 }
 
 class Store {
@@ -127,7 +141,7 @@ class Store {
 }
 
 const stands = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
-for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Details']) stands(`HTML${kind}Element`, Part);
+for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Details', 'Form', 'Dialog', 'TextArea']) stands(`HTML${kind}Element`, Part);
 stands('setTimeout', setLater);
 stands('clearTimeout', clearLater);
 stands('performance', { now });
@@ -135,6 +149,7 @@ stands('requestAnimationFrame', (does) => setLater(() => does(now_ms), 16));
 stands('cancelAnimationFrame', clearLater);
 stands('ResizeObserver', class { observe() {} });
 stands('matchMedia', () => ({ matches: false }));
+stands('Option', Part);
 stands('self', globalThis);
 stands('location', { hash: '', pathname: '/', search: '', href: 'http://127.0.0.1/' });
 AbortSignal.timeout = () => new AbortController().signal;
@@ -153,6 +168,7 @@ export function freshPage(given = {}) {
   stands('document', {
     documentElement: new Part(), body: new Part(), getElementById: byId, querySelectorAll: () => [],
     createElement: () => new Part(), createElementNS: () => new Part(),
+    addEventListener() {}, visibilityState: 'visible', querySelector: byId,
   });
   const load = (name) => import(pathToFileURL(`${sources}/${name}`).href + query);
   return { load, byId };

@@ -451,6 +451,380 @@ const PARTS = {
       return { ends: [told.some((each) => each.error) ? 'failed' : 'good'], seen: [told.map(({ id, error }) => [id, error ?? 'ok']), number - first] };
     };
   },
+  // What the compiler says while somebody types.
+  async checking() {
+    const page = freshPage();
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { Checking } = await page.load('writing/checking.js');
+    let breaks = () => false;
+    let notes = [];
+    const python = {
+      again() {},
+      async ask(request, data) {
+        await later(breaks() ? 400 : 30);
+        if (breaks()) throw new Broken();
+        return { robot: request.robot, findings: [], image: `of ${new TextDecoder().decode(data)}`, names_robot: false };
+      },
+    };
+    const checking = new Checking(python, (why) => notes.push(String(why)));
+    pageState.checked.subscribe((answer) => {
+      if (answer && answer.image !== `of ${pageState.programText.value}`) throw new Error('it is said of another text');
+      notes.push(answer?.image);
+    });
+    checking.ready();
+    return async (chance, isGood) => {
+      breaks = () => !isGood && chance() < 0.3;
+      const ends = [];
+      for (let k = 1 + chance.below(5); k > 0; k -= 1) {
+        const text = isGood ? `${chance.of(['F', 'B'])}(${k})` : chance.of(['F(1)', 'B(2)', 'R(3)']);
+        if (isGood) pageState.programText.set('');
+        notes = [];
+        pageState.programText.set(text);
+        if (pageState.checked.value) throw new Error('what is said is of the text before');
+        notes.push(document.documentElement.dataset['state']);
+        if (!isGood && chance() < 0.3) checking.whenChecked();
+        await passes(isGood ? 1000 : chance.below(400));
+        ends.push(document.documentElement.dataset['state']);
+      }
+      return { ends: [...new Set(ends)], seen: [notes, document.documentElement.dataset['image']] };
+    };
+  },
+
+  // A check of a lesson, which may be ended at any time.
+  async lessons() {
+    const page = freshPage({ offer() {}, pictured() {}, worldPicture() {} });
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { Lessons } = await page.load('lesson/lessons.js');
+    const LESSONS = [1, 2].map((k) => ({ name: `lesson${k}`, title: 'L', robot: 'tinibot', worlds: 2, world: {} }));
+    let late = () => 5;
+    let verdict = '';
+    let parts = 0;
+    const python = {
+      again() {},
+      async ask(request) {
+        const isLast = request.do === 'lesson_go' && (parts -= 1) < 0;
+        const own = verdict;
+        await later(late());
+        if (request.do === 'lesson_titles') return { lessons: LESSONS };
+        if (request.do === 'lesson_steps') return { steps: [{ blocks: [], hint: '' }], taught: [] };
+        return { verdict: isLast ? own : '', seed: 1, worlds: 2, said: ['said'], run: isLast && own === 'failed' ? { seed: 1, until_ms: 9 } : null };
+      },
+    };
+    let stops = () => {};
+    const driving = { showLesson: () => later(late()), stop: () => stops(), play: () => new Promise((resolve) => { stops = resolve; setTimeout(resolve, 200); }) };
+    new Lessons({ python, driving, put() {} });
+    page.byId('lessons').hidden = false;
+    page.byId('side_lessons').click();
+    await passes(500);
+    const said = () => [page.byId('lesson_said').textContent, page.byId('lesson_said').dataset['verdict'], page.byId('lesson_stars').textContent, page.byId('lesson_end').hidden];
+    const acts = {
+      check: () => page.byId('lesson_check').click(),
+      end: () => page.byId('lesson_end').click(),
+      edit: () => pageState.programText.set('F(1)'),
+    };
+    return async (chance, isGood) => {
+      late = () => (isGood ? 5 : 5 + chance.below(300));
+      let end = '';
+      for (let k = 1 + chance.below(4); k > 0; k -= 1) {
+        verdict = chance.of(['passed', 'failed', 'mistakes']);
+        parts = chance.below(4);
+        end = chance.of(isGood ? ['edit', 'end'] : ['check', 'check', 'end', 'edit']);
+        if (end === 'end') await passes(chance.below(100));
+        if (isGood) acts.edit();
+        acts[end]();
+        if (!isGood) await passes(chance.below(400));
+      }
+      const seen = [said()];
+      if (!isGood) return { ends: [end], seen };
+      for (let k = 0; k < 20; k += 1) {
+        await passes(50);
+        seen.push(said());
+      }
+      acts.check();
+      await passes(3000);
+      return { ends: [end], seen: [seen, said()] };
+    };
+  },
+
+  // What is asked of a robot, also of one that is gone or goes meanwhile.
+  async asking() {
+    const page = freshPage();
+    const { Asking, Failed } = await page.load('robot/transport.js');
+    return async (chance, isGood) => {
+      const told = [];
+      let open = 0;
+      let isOver = false;
+      const end = chance.of(isGood ? ['stays'] : ['stays', 'goes', 'goes']);
+      const asking = new Asking({ event: ({ event }) => told.push(event), over: (why) => told.push(why.reason) });
+      asking.go = async () => {
+        const sent = asking.asked.splice(0);
+        await later(isGood ? 5 : chance.below(300));
+        for (const { id, what } of sent) if (!isOver) asking.take({ id, ok: what });
+      };
+      for (let k = 0; k < 6; k += 1) {
+        open += 1;
+        asking.ask({ what: k }).then(({ ok }) => told.push(ok), (why) => told.push(why.reason)).finally(() => { open -= 1; });
+        await passes(chance.below(100));
+        if (end === 'goes' && !isOver && chance() < 0.4) {
+          isOver = true;
+          asking.end(new Failed('gone'));
+        }
+      }
+      await passes(1000);
+      if (open) throw new Error(`${open} never end: ${told}`);
+      return { ends: [end], seen: told };
+    };
+  },
+
+  // Python in its worker, which may be tried again until it is there.
+  async python() {
+    let fails = '';
+    const page = freshPage();
+    const notes = [];
+    globalThis.Worker = class extends EventTarget {
+      constructor() {
+        super();
+        const how = fails;
+        const says = (data, ms) => setTimeout(() => this.isEnded || this.dispatchEvent(Object.assign(new Event('message'), { data })), ms);
+        if (how === 'silent') return;
+        says({ begun: true }, 5);
+        if (how === 'error') setTimeout(() => this.dispatchEvent(Object.assign(new Event('error'), { message: 'broken' })), 10);
+        else says({ id: 0, error: how && 'not fetched' }, 20);
+      }
+      terminate() { this.isEnded = true; }
+      postMessage({ id, request }) {
+        setTimeout(() => this.isEnded || this.dispatchEvent(Object.assign(new Event('message'), { data: { id, answer: request } })), 30);
+      }
+    };
+    const { Python } = await page.load('python.js');
+    let python = null;
+    return async (chance, isGood) => {
+      notes.length = 0;
+      fails = isGood ? '' : chance.of(['error', 'not fetched', 'silent']);
+      const end = fails;
+      if (python) python.again('en');
+      else {
+        python = new Python('en');
+        python.heed({ waits: () => notes.push('waits'), begins() {}, fails: () => notes.push('fails') });
+      }
+      let open = 0;
+      for (let k = 0; k < 4; k += 1) {
+        open += 1;
+        python.ask({ k }).then((found) => isGood && notes.push(found), () => isGood && notes.push('rejected')).finally(() => { open -= 1; });
+        await passes(chance.below(100));
+      }
+      await passes(120_000);
+      if (open) throw new Error(`${open} never end: ${notes}`);
+      return { ends: [end], seen: [...notes] };
+    };
+  },
+
+  // A program is shared as a line or as a link, whichever was asked for last.
+  async sharing() {
+    const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
+    playsNavigator({});
+    await learns(page);
+    const { Programs } = await page.load('programs/programs.js');
+    let late = () => 5;
+    const python = { ask: async () => { await later(late()); return { text: 'a line' }; } };
+    new Programs({ python, work: { text: 'F(1)', robot: 'tinibot', name: '' }, put() {}, picturing() {} });
+    const { dataset } = page.byId('programs');
+    return async (chance, isGood) => {
+      late = () => (isGood ? 5 : 5 + chance.below(900));
+      let end = '';
+      for (let k = 1 + chance.below(isGood ? 1 : 4); k > 0; k -= 1) {
+        end = chance.of(['share_line', 'share_link']);
+        page.byId(end).click();
+        await passes(isGood ? 10 : chance.below(300));
+      }
+      for (let k = 0; isGood && dataset['shared'] === 'asked' && k < 10_000; k += 1) await settles(); // what is packed waits for the real clock
+      await passes(isGood ? 2000 : 0);
+      return { ends: [end], seen: isGood && [page.byId('shared').value, page.byId('shared_told').textContent, dataset['shared'], page.byId('share_link').attributes] };
+    };
+  },
+
+  // The programs of pupils on the teacher's page, which come over a network that loses some.
+  async wall() {
+    const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
+    document.documentElement.dataset['class'] = '';
+    playsNavigator({});
+    playsFetch(async () => { throw new Broken(); });
+    await learns(page);
+    let room = async () => { throw new Broken(); };
+    playsFetch((_, { body }) => room(JSON.parse(body)));
+    const { Teacher } = await page.load('class/teacher.js');
+    new Teacher({ get ready() { return Promise.reject(new Broken()); }, ask() {} });
+    const wall = page.byId('class').children.at(-2);
+    const large = document.body.children.find(({ id }) => id === 'big_pupil');
+    return async (chance, isGood) => {
+      let lost = false;
+      room = async (request) => {
+        await later(isGood ? 5 : chance.below(300));
+        if (!isGood && chance() < 0.5) {
+          lost ||= request.do === 'class_text';
+          throw new Broken();
+        }
+        if (request.do === 'class_text') return answers({ text: `of ${request.pupil}`, robot: 'tinibot', version: 1 });
+        const pupils = [1, 2].map((number) => ({ number, name: `P${number}`, silent_s: 0, place: 0, robot: '', left_s: 0, version: 1, is_right: true, hand: 0, lessons: [] }));
+        return answers({ code: '1', turn_s: 60, places: 2, over: '', goes_on: false, lessons: 1, kept: [], pupils, robots: [] });
+      };
+      await passes(isGood ? 5000 : 300 + chance.below(3000));
+      const seen = isGood && wall.children.map(({ children }) => {
+        children.at(-3).click(); // then it is seen large
+        return large.children[1].children.map((each) => each.textContent);
+      });
+      return { ends: [lost ? 'lost' : 'came'], seen };
+    };
+  },
+
+  // One connection to a robot after another; what is late of one before is not of the next.
+  async link() {
+    const notes = [];
+    let late = () => 5;
+    let failure = '';
+    let ways = [];
+    const page = freshPage({
+      offer() {}, pictured() {}, drawnPicture() {}, hasSerial: false, chosenPort() {}, knownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
+      hostPorts: async () => [],
+      HostRobot: class {
+        constructor(heard) {
+          this.heard = heard;
+          ways.push(this);
+        }
+        async connect() {
+          await later(late());
+          if (failure || this.isOver) {
+            this.isOver = true;
+            throw new Failed(failure || 'left');
+          }
+          return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, is_running: false };
+        }
+        async ask({ do: what }) {
+          await later(late());
+          return { ok: true, program: 'ff', trim: what === 'trim' ? null : undefined };
+        }
+        stop() { notes.push('stop'); }
+        tell(event) { if (!this.isOver) this.heard.event(event); }
+        end(why) {
+          this.isOver = true;
+          this.heard.over(new Failed(why));
+        }
+        leave() { this.end('left'); }
+      },
+    });
+    playsNavigator({});
+    playsFetch(async () => { throw new Broken(); });
+    await learns(page);
+    const { Failed } = await page.load('robot/transport.js');
+    const { pageState } = await page.load('page/page_state.js');
+    const { RobotPlace } = await page.load('robot/place.js');
+    const { RobotPanel } = await page.load('robot/panel.js');
+    pageState.robotName.set('tinibot');
+    pageState.checked.set({ ...PROGRAM, program: 'ff', bytes: 9 });
+    const panel = new RobotPanel({ python: null, goTo() {}, recorder: noting(notes, 'recorder'), place: new RobotPlace() });
+    await passes(10);
+    const EVENTS = [{ event: 'STARTED', program: 'ff', is_program: true }, { event: 'PLACE', program: 'ff', at: 0 }, { event: 'SHOW', value: '1' }, { event: 'DONE' }, { event: 'LOST' }, { event: 'STOPPED', cause: 'MESSAGE' }];
+    const seen = () => [page.byId('link_said').textContent, page.byId('link_shown').textContent, document.documentElement.dataset['robot'], structuredClone(pageState.robotRun.value)];
+    return async (chance, isGood) => {
+      const before = ways;
+      ways = [];
+      notes.length = 0;
+      late = () => (isGood ? 5 : 5 + chance.below(300));
+      failure = isGood || chance() < 0.7 ? '' : 'link_silent';
+      panel.byHost('p');
+      const all = [structuredClone(pageState.robotRun.value), document.documentElement.dataset['robot']];
+      await passes(isGood ? 50 : chance.below(600));
+      for (let k = 1 + chance.below(6); k > 0; k -= 1) {
+        if (isGood && before.length) before[0].end('unheard'); // once more, and late
+        ways[0]?.tell(chance.of(EVENTS));
+        all.push(seen());
+        await passes(chance.below(300));
+      }
+      const end = failure || (isGood ? 'stays' : chance.of(['left', 'unheard']));
+      if (end === 'left') ways[0].leave();
+      if (end === 'unheard') ways[0].end('unheard');
+      if (!isGood) await passes(1000);
+      return { ends: [end], seen: [all, [...notes]] };
+    };
+  },
+
+  // STOP for all robots, pressed again and again.
+  async stops() {
+    const page = freshPage();
+    let room = null;
+    playsNavigator({});
+    playsFetch((_, { body }) => room(JSON.parse(body)));
+    await learns(page);
+    playsFetch((_, { body }) => room(JSON.parse(body)));
+    const { stopAll } = await page.load('robot/stops.js');
+    const place = page.byId('stops');
+    const shown = () => [place.hidden, place.dataset['confirmed'], place.children.map((each) => each.textContent ?? each)];
+    return async (chance, isGood) => {
+      const late_ms = isGood ? 5 : 5 + chance.below(700);
+      const robots = ['A', 'B'].map((name) => ({ name, late_ms: chance.of([100, 900, 1500, 1e9]) }));
+      let began_ms = now();
+      room = async (request) => {
+        await later(late_ms);
+        if (!isGood && chance() < 0.2) throw new Broken();
+        if (request.do === 'stop_all') began_ms = now();
+        return answers({ robots: robots.map((each) => ({ name: each.name, stop: now() - began_ms < each.late_ms ? 'asked' : 'confirmed' })) });
+      };
+      stopAll();
+      const seen = [];
+      for (let k = isGood ? 60 : chance.below(20); k > 0; k -= 1) {
+        await passes(100);
+        if (k < 55) seen.push(shown()); // the answer is there
+      }
+      return { ends: [isGood ? 'over' : robots.some((each) => each.late_ms > 1e6) ? 'silent' : 'confirmed'], seen };
+    };
+  },
+
+  // The worlds that were drawn, as they are kept.
+  async worlds() {
+    const page = freshPage();
+    await learns(page);
+    const { OwnWorlds } = await page.load('world/own.js');
+    const { keptWorlds } = await page.load('programs/work.js');
+    let late = () => 5;
+    const own = new OwnWorlds({ ask: async ({ form }) => { await later(late()); return { text: `text of ${form.name}` }; } });
+    return async (chance, isGood) => {
+      late = () => (isGood ? 50 : 5 + chance.below(600));
+      const count = 1 + chance.below(5);
+      for (let k = 0; k < count; k += 1) {
+        own.put({ name: `${isGood ? 'good' : 'bad'} ${k}` }, isGood);
+        own.keep('tinibot');
+        if (!isGood) await passes(chance.below(300));
+      }
+      if (!isGood) return { ends: [count > 1 ? 'several' : 'one'], seen: [] };
+      own.before = [];
+      own.keep('tinibot');
+      await passes(2000);
+      return { ends: ['good'], seen: keptWorlds().newest };
+    };
+  },
+
+  // The curves of a run.
+  async curves() {
+    const page = freshPage();
+    const { Plot } = await page.load('virtual/plot.js');
+    const place = Object.assign(page.byId('place'), { clientHeight: 300 });
+    const canvas = Object.assign(page.byId('canvas'), { clientWidth: 400, clientHeight: 300, parent: place });
+    document.documentElement.hasAttribute = () => false;
+    const drawn = [];
+    const pen = noting(drawn, 'pen', { measureText: () => ({ width: 9 }) });
+    canvas.getContext = () => pen;
+    const plot = new Plot(canvas);
+    return async (chance, isGood) => {
+      plot.begin();
+      const count = chance.of([3, 100, 1999, 2001, 9000]);
+      for (let k = 0; k < count; k += 1) plot.add(20 * k, [{ name: chance.of(['X', 'Y']), value: chance.below(100) }]);
+      drawn.length = 0;
+      plot.draw();
+      return { ends: [count > 2000 ? 'long' : 'short'], seen: isGood && [...drawn] };
+    };
+  },
 };
 
 const answers = (found) => ({ ok: true, status: 200, json: async () => found });

@@ -35,6 +35,16 @@ ENDS = {
     "pupil": {"removed"},
     "pictures": {"made", "none"},
     "worker": {"good", "failed"},
+    "checking": {"changed", "checked"},
+    "lessons": {"check", "end", "edit"},
+    "asking": {"stays", "goes"},
+    "python": {"error", "not fetched", "silent"},
+    "sharing": {"share_line", "share_link"},
+    "wall": {"lost", "came"},
+    "link": {"left", "unheard", "link_silent"},
+    "stops": {"silent", "confirmed"},
+    "worlds": {"one", "several"},
+    "curves": {"long", "short"},
 }
 
 
