@@ -40,6 +40,20 @@ def said(finding: Finding, language: str, values: Mapping[str, str] | None = Non
     return Sentences(*(text(key, language).format(**filled) if key else "" for key in keys))
 
 
+def as_data(finding: Finding, language: str) -> dict[str, object]:
+    """Return a finding as data: what a program reads, and what a person would."""
+    what, seen, then = said(finding, language)
+    return {
+        "cause": finding.cause,
+        "is_wrong": finding.is_wrong,
+        "is_sure": finding.is_sure,
+        "values": dict(finding.values),
+        "said": what,
+        "seen": seen,
+        "next": then,
+    }
+
+
 def label(finding: Finding, language: str) -> str:
     """Return the name of the part of a robot that a finding is about: `sensor DISTANCE`."""
     return text(f"part_{finding.part}", language).format(**finding.values)
