@@ -15,7 +15,7 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.diagnosing import diagnosis_of, expected_of
 from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.cli.texts import say, text
-from tiniscript.cli.texts.causes import label, said
+from tiniscript.cli.texts.causes import rows, said
 from tiniscript.doctor import report
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES, OK, OPEN, WRONG, Finding, sure
@@ -74,7 +74,7 @@ def _print(found: list[Finding], name: str, port: str | None, is_json: bool, lan
         return
     if name:
         say("selftest_head", language, robot=name, port=shown(port or ""))
-    print("\n".join(_rows(found, language)))
+    print("\n".join(rows(found, language)))
     counts = {each: sum(row.verdict == each for row in found) for each in (OK, WRONG, OPEN)}
     good, wrong, left = counts[OK], counts[WRONG], counts[OPEN]
     say("selftest_end", language, good=good, all=len(found), wrong=wrong, open=left)
@@ -94,21 +94,6 @@ def _fields(found: Finding, language: str) -> dict[str, object]:
     }
 
 
-def _rows(found: list[Finding], language: str) -> list[str]:
-    rows = []
-    for each in found:
-        what, seen, then = said(each, language)
-        mark = text(f"selftest_{each.verdict}", language)
-        rows.append(
-            text("selftest_row", language).format(mark=mark, what=label(each, language), said=what)
-        )
-        if seen:
-            rows.append(text("selftest_seen", language).format(seen=seen))
-        if then:
-            rows.append(text("selftest_next", language).format(then=then))
-    return rows
-
-
 def _report(found: list[Finding], name: str, port: str, language: str) -> list[str]:
     """Return the lines of a report: nothing in it tells whose robot or computer it is."""
     hidden = [(each, report.shown_port(port)) for each in (port, shown(port)) if port]
@@ -126,4 +111,4 @@ def _report(found: list[Finding], name: str, port: str, language: str) -> list[s
         each if CAUSES[each.cause].part else each._replace(values=report.values_of(each))
         for each in found  # what is of no part is of the computer and its port
     ]
-    return [*head, "", *map(without_names, _rows(private, language))]
+    return [*head, "", *map(without_names, rows(private, language))]
