@@ -21,6 +21,8 @@ from tiniscript.cli.robot.member import Member, Result, Target
 from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.library import opening
 from tiniscript.link import known_ports, ports
+from tiniscript.link.frames import decoded
+from tiniscript.link.messages import BY_NAME
 
 TINIBOT, LINER = robots.load("tinibot").kit, robots.load("liner").kit
 SHORT = "SI|F(0.3, 80);SHOW(DISTANCE)"
@@ -163,6 +165,32 @@ def test_each_robot_has_a_row(class_: RobotFleet) -> None:
     assert done.code == 3
     assert "no existe el puerto /dev/no-such" in done.out
     assert "3" in inside("doctor", "--count", "3", "--port", names[0], "--port", names[0]).out
+
+
+def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> None:
+    """Its causes are in the row of the robot, and each is asked as often as was said."""
+    weak = class_.pupils[1]
+    with weak._lock:
+        weak.robot.supply(True)
+    inside("upload", "-e", "SB|S", "--port", weak.port)
+    heard = {pupil.port: len(pupil.heard) for pupil in class_.pupils}
+    found = results(inside("doctor", "--all", "--count", "3", "--json").gives(3))
+    alone = json.loads(inside("doctor", "--port", weak.port, "--json").gives(3).out)
+    wrong = [each for each in alone["findings"] if each["is_wrong"]]
+    assert [each["cause"] for each in wrong] == ["low_supply"]
+    findings = found[weak.port]["findings"]
+    assert isinstance(findings, list)
+    assert [each for each in findings if each["is_wrong"]] == wrong
+    assert wrong[0]["said"] in str(found[weak.port]["said"])
+    for pupil in class_.pupils:
+        assert found[pupil.port]["is_done"] == (pupil is not weak)
+        assert found[pupil.port]["round_trips"] == 3
+        assert pings(pupil.heard[heard[pupil.port] :]) == 3 + 20 * (pupil is weak)
+
+
+def pings(heard: bytes) -> int:
+    frames = [decoded(packet) for packet in heard.split(b"\0") if packet]
+    return sum(each is not None and each.number == BY_NAME["PING"].number for each in frames)
 
 
 def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import signal
 from collections.abc import Iterator
+from contextlib import closing, nullcontext
 
 import pytest
 
@@ -12,7 +14,21 @@ from tests.support.pty_end import PtyEnd
 from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hc06New, Hm10
 from tests.support.simulated_modules import SimulatedModule as Simulated
 from tests.support.waiting import until
-from tiniscript.link.modules import talk
+from tiniscript.cli.texts.causes import said as said_of
+from tiniscript.doctor.findings import CAUSES, WRONG, sure
+from tiniscript.link.modules import set_up, talk
+from tiniscript.link.ports import opened
+
+ENDS = {
+    set_up.DONE: ("module_done", "module_done_baud", "module_done_later"),
+    set_up.UNSEEN: ("module_unseen",), set_up.REFUSED: ("module_refused",),
+    set_up.SILENT: ("module_lost_midway",), set_up.DIFFERS: ("module_differs",),
+    set_up.ELSEWHERE: ("module_elsewhere",), set_up.LOST: ("module_lost",),
+}  # fmt: skip
+UNSEEN = [
+    "       Seen: it cannot confirm the value",
+    "       Try:  Pair it, and see whether it has what you gave it.",
+]
 
 
 @pytest.fixture
@@ -34,9 +50,11 @@ def test_a_module_gets_name_pin_and_speed(tsc: Tsc, module: Simulated) -> None:
     assert (module.name, module.pin, module.baud) == ("ANA", "4711", 57600)
     assert done.out.splitlines() == [
         f"HC-06 3.x on {port_of(module)}, version 3.0-20170609; it listens at 9600 baud.",
-        "name ANA: the module says that it is done, but cannot confirm the value.",
-        "PIN 4711: the module says that it is done, but cannot confirm the value.",
-        "57600 baud: done; it answers at this speed.",
+        "?      name ANA: the module says that it is done",
+        *UNSEEN,
+        "?      PIN 4711: the module says that it is done",
+        *UNSEEN,
+        "ok     57600 baud: done; it answers at this speed",
         "Now switch it off, connect it to the robot as it was, switch it on and pair it again.",
     ]
 
@@ -80,7 +98,9 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     with PtyEnd(end) as pty_end:
         done = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA")
     assert done.code == 3
-    assert "no module answers" in done.err and "held in reset" in done.err
+    silent = said_of(sure("module_silent"), "en")
+    assert f"WRONG  module: {silent.what}\n" in done.out and silent.then in done.out
+    assert done.err == ""
 
 
 @pytest.mark.parametrize(
@@ -114,22 +134,47 @@ def test_what_this_module_cannot_have_is_refused_before_anything_is_changed(tsc:
 def test_ports_that_are_none(tsc: Tsc) -> None:
     assert "tsc doctor --module --port P" in tsc("doctor", "--module").err
     assert tsc("doctor", "--module", "--port", "").code == 2
-    assert tsc("doctor", "--module", "--port", "/dev/not-there").code == 3
     for port in ("/dev/rfcomm7", "socket://127.0.0.1:9"):
         tsc("doctor", "--module", "--port", port).gives(2, "only by wire")
+
+
+@pytest.mark.parametrize("is_locked", [False, True])
+def test_a_port_that_does_not_open_is_what_the_doctor_says_of_it(
+    tsc: Tsc, module: Simulated, is_locked: bool
+) -> None:
+    port = port_of(module) if is_locked else "/dev/not-there"
+    with closing(opened(port, 9600)) if is_locked else nullcontext():
+        (finding,) = json.loads(tsc("doctor", "--port", port, "--json").out)["findings"]
+        out = tsc("doctor", "--module", "--port", port, "--name", "ANA").gives(3, "").out
+    assert out.splitlines() == [
+        f"WRONG  module: {finding['said']}",
+        f"       Seen: {finding['seen']}",
+        f"       Try:  {finding['next']}",
+    ]
+    assert module.name != "ANA"
+
+
+def test_how_a_step_ends_is_a_cause_of_the_doctors_table() -> None:
+    """And no other cause is of a setting."""
+    named = {cause: how for how, causes in ENDS.items() for cause in causes}
+    assert {*named} == {cause for cause, row in CAUSES.items() if row.part == "setting"}
+    assert {cause for cause, how in named.items() if how not in set_up.GOOD} == {
+        cause for cause in named if CAUSES[cause].verdict == WRONG
+    }
 
 
 def test_a_module_that_does_not_do_it_is_an_exit_code(tsc: Tsc, module: Simulated) -> None:
     module.breaks_after = 4
     done = tsc("doctor", "--module", "--port", port_of(module), "--name", "ANA", "--baud", "115200")
     assert done.code == 3
-    assert "try again" in done.err
+    assert "WRONG  115200 baud: the module" in done.out
+    assert "try again" in done.out
 
 
 @pytest.mark.parametrize(("is_on", "is_pulled", "code", "said"), [
-    (True, True, 3, "has vanished. It was being set to 115200 baud"),
-    (True, False, 2, "It was being set to 115200 baud: it has that speed or the old one."),
-    (False, False, 2, "Its speed has not changed. Try again"),
+    (True, True, 3, "The module was being set to 115200 baud"),
+    (True, False, 2, "The module was being set to 115200 baud: it has that speed or the old one."),
+    (False, False, 2, "tsc: stopped. The module's speed has not changed."),
 ])  # fmt: skip
 def test_a_pulled_cable_and_ctrl_c_say_at_which_speeds_the_module_may_be(
     is_on: bool, is_pulled: bool, code: int, said: str
@@ -145,4 +190,5 @@ def test_a_pulled_cable_and_ctrl_c_say_at_which_speeds_the_module_may_be(
             command.signal(signal.SIGINT)
         done = command.ended()
     assert done.code == code
-    assert said in done.err
+    assert said in (done.out if is_pulled else done.err)
+    assert ("WRONG  module: The port vanished" in done.out) == is_pulled

@@ -8,7 +8,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Sequence
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import ExitStack, redirect_stderr, redirect_stdout
 from itertools import product
 from pathlib import Path
 from typing import NamedTuple
@@ -19,7 +19,9 @@ import pytest
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.command import Command, inside
 from tests.support.flicker import Flicker
+from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on
+from tests.support.simulated_ends import Firmware
 from tests.support.simulated_port import simulated
 from tests.support.virtual_robot import robot_in
 from tiniscript import robots
@@ -29,6 +31,7 @@ from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.doctor import report
 from tiniscript.library.simulated import Simulated
 from tiniscript.link.messages import RESETS
+from tiniscript.link.ports import opened
 
 LIGHT, DISTANCE = 500_000, 42_000  # thousandths
 GOOD = (LIGHT, LIGHT, DISTANCE)
@@ -137,6 +140,45 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     assert code == 3
     assert found["kit"]["verdict"] == "ok", "what was found before is said"
     assert (found["answers"]["verdict"], found["answers"]["finding"]) == ("wrong", "plain")
+
+
+@pytest.mark.parametrize("kind", ["missing", "other speed", "locked", "silent radio"])
+def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str) -> None:
+    """With its causes, what was seen and the next step: nobody has to type another command."""
+    with ExitStack() as stack:
+        port = "/dev/not-there"
+        if kind == "silent radio":
+            port = "socket://127.0.0.1:9"
+        elif kind != "missing":
+            end = stack.enter_context(PtyEnd(Firmware(57_600 if kind == "other speed" else 9600)))
+            port = end.port
+        if kind == "locked":
+            stack.callback(opened(port, 9600).close)
+        told = json.loads(inside("doctor", "--port", port, "--json").out)["findings"]
+        done = inside("doctor", "--selftest", "--port", port, "--json").gives(3)
+        text = inside("doctor", "--selftest", "--port", port, "--lang", "en").gives(3).out
+    found = json.loads(done.out)["found"]
+    wrong = [each for each in told if each["is_wrong"]]
+    assert wrong and [each["finding"] for each in found] == [each["cause"] for each in wrong]
+    for ours, its in zip(found, wrong, strict=True):
+        assert [ours[key] for key in ("said", "seen", "next")] == [
+            its[key] for key in ("said", "seen", "next")
+        ]
+        assert ours["next"] != "tsc doctor"
+        assert all(said in text for said in (its["said"], its["seen"], its["next"]))
+
+
+def test_only_the_port_of_the_self_test_is_opened(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The board of another group may be on the only other port: nobody has chosen it."""
+    monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO", ())
+    monkeypatch.setattr("tiniscript.doctor.linux._users", lambda system, port: [])
+    with PtyEnd(Firmware()) as end:
+        monkeypatch.setattr("tiniscript.doctor.diagnosis._only", lambda *_: end.port)
+        done = inside("doctor", "--selftest", "--json").gives(3)
+        assert end.heard == b""
+    assert json.loads(done.out)["found"][0]["finding"] == "not_opened"
 
 
 # -- with a person

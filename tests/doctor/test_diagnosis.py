@@ -400,10 +400,12 @@ def test_what_was_not_opened_is_not_said_to_have_been(case: Case) -> None:
 
 
 def test_every_cause_has_a_test() -> None:
-    """Each is in a table of this folder, or is named in a test, or in one of the self-test."""
+    """Each is in a table of this folder, or is named in a test of what else asks the doctor."""
     folder = Path(__file__).parent
-    tables = (folder / "test_line.py", folder / "test_diagnosis.py",
-              folder.parent / "cli" / "test_selftest.py")  # fmt: skip
+    commands = (
+        folder.parent / "cli" / f"test_{name}.py" for name in ("selftest", "module_command")
+    )
+    tables = (folder / "test_line.py", folder / "test_diagnosis.py", *commands)
     said = "".join(path.read_text(encoding="utf-8") for path in tables)
     assert [cause for cause in CAUSES if f'"{cause}"' not in said] == []
     assert len(CAUSES) >= 20

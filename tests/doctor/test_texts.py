@@ -29,6 +29,7 @@ VALUES = {
     "reads": {"name", "values"}, "stuck": {"name", "values"}, "changes": {"name", "values", "now"},
     "same": {"name", "values", "now"}, "as_bright": {"name", "values", "now"},
     "no_reading": {"name", "said"}, "ended": {"said"},
+    **{f"module_{how}": {"name", "said"} for how in ("refused", "differs", "elsewhere", "lost")},
 }  # fmt: skip
 
 

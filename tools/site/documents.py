@@ -115,7 +115,7 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
         *_guides(root, "trust", "comparison", "guarantees", "figures", "computer"),
         *_rows(root, "trust", "SECURITY.md", "CODE_OF_CONDUCT.md"),
         *_rows(root, "build", "CONTRIBUTING.md"),
-        *_pages(root, "first-change", "translating", "architecture"),
+        *_pages(root, "first-change", "translating", "architecture", "decisions"),
         *_rows(root, "build", "bytecode_spec.md"),
         *_pages(root, "conformance", "link", "owners", "network", "text", "store", "esp32"),
         *_guides(root, "build", "versions"),

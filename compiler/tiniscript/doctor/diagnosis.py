@@ -219,6 +219,12 @@ def _is_listed(system: System, found: Computer, port: str) -> bool:
     )  # fmt: skip
 
 
+def unopened(system: System, port: str, failure: PortError) -> Finding:
+    """Return why a port that somebody has tried to open did not open."""
+    found = looked(system)
+    return _held(system, found, port) or _unopened(failure, found, port, system)
+
+
 def _unopened(failure: PortError, found: Computer, port: str, system: System) -> Finding:
     """Return why a port did not open."""
     if failure.reason == errors.MISSING:

@@ -200,13 +200,7 @@ def _hearing(
 ) -> tuple[list[Finding], tuple[float, ...]]:
     """Send PING, and count what is not answered at once and what the robot heard damaged."""
     tell("pings")
-    trips_ms: list[float] = []
-    for _ in range(expected.pings):
-        missed, began_s = robot.missed, perf_counter()
-        robot.ask("PING")
-        if robot.missed == missed:
-            trips_ms.append((perf_counter() - began_s) * 1000)
-        robot.pause(PAUSE_MS)
+    trips_ms = trips_of(robot, expected.pings, lambda: robot.pause(PAUSE_MS))
     missed = expected.pings - len(trips_ms)
     after = robot.status()
     damaged = 0
@@ -220,7 +214,21 @@ def _hearing(
         lost = [sure("lossy", **values)] if after is not None else []
     elif after is not None and lost_packets(before) >= 10 * LOSSY:
         lost = [probably("lossy", **{**values, "damaged": str(lost_packets(before))})]
-    return lost, tuple(trips_ms)
+    return lost, trips_ms
+
+
+def trips_of(
+    robot: Robot, count: int, pause: Callable[[], None] = lambda: None
+) -> tuple[float, ...]:
+    """Send so many PING; return how many milliseconds each answer took that came at once."""
+    trips_ms: list[float] = []
+    for _ in range(count):
+        missed, began_s = robot.missed, perf_counter()
+        robot.ask("PING")
+        if robot.missed == missed:
+            trips_ms.append((perf_counter() - began_s) * 1000)
+        pause()
+    return tuple(trips_ms)
 
 
 def _trim(robot: Robot, hello: HelloReply) -> TrimReply | None:

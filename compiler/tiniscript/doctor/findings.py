@@ -1,6 +1,6 @@
-"""What the doctor and the self-test can find: one table of causes. Knows no sentence.
+"""What the doctor, the self-test and a module's set-up can find: one table of causes.
 
-A cause is a short name that stays; its sentences are in `languages/en/command.toml`.
+Knows no sentence: those of a cause, a short name that stays, are in `languages/en/command.toml`.
 """
 
 from __future__ import annotations
@@ -67,6 +67,12 @@ CAUSES = dict((
     *_all(OPEN, "motor", "unasked", then="person"),
     *_all(OK, "buzzer", "heard"),
     *_all(WRONG, "buzzer", "unheard", then="wires"),
+    # a module that is set up, and each of its settings
+    *_all(WRONG, "module", "module_silent"),
+    *_all(OK, "setting", "module_done module_done_baud module_done_later"),
+    *_all(OPEN, "setting", "module_unseen"),
+    *_all(WRONG, "setting", "module_refused module_lost_midway module_differs"),
+    *_all(WRONG, "setting", "module_elsewhere module_lost"),
 ))  # fmt: skip
 
 

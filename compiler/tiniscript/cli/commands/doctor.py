@@ -6,11 +6,10 @@ What is wrong goes into a report, too, which may be sent.
 from __future__ import annotations
 
 import json
-import os
 import sys
 from argparse import Namespace
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 from tiniscript.cli import inputs, outputs
@@ -18,39 +17,27 @@ from tiniscript.cli.commands import ports as ports_step
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.robot.connect import Connection, baud_of, remember_profile
+from tiniscript.cli.robot.connect import Connection, remember_profile
 from tiniscript.cli.robot.description import (
     Description,
-    measuring,
     trips_as_data,
     trips_in_words,
 )
+from tiniscript.cli.robot.diagnosing import diagnosis_of, examination_of, expected_of
 from tiniscript.cli.robot.fleet import together
-from tiniscript.cli.robot.member import are_many
+from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.robot.simulator import running_address
-from tiniscript.cli.terminal.asking import agreed, can_ask
-from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import Said, text
-from tiniscript.cli.texts.causes import said
+from tiniscript.cli.texts.causes import as_data, said
 from tiniscript.doctor import report
-from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
+from tiniscript.doctor.diagnosis import Diagnosis
 from tiniscript.doctor.examination import PINGS, Expected, Heard
 from tiniscript.doctor.findings import OPEN
-from tiniscript.doctor.system import System
 from tiniscript.library import opening
-from tiniscript.library.known_kits import name_of
-from tiniscript.link import ports
-from tiniscript.link.authority import has_to_seal, is_other, whose
-from tiniscript.link.connection import LinkConnection
-from tiniscript.link.keys import KeyFile
-from tiniscript.link.messages import OWNED, RESETS, SEALS
-from tiniscript.link.payloads import HelloReply
-from tiniscript.link.port_names import same_for_all
+from tiniscript.link.authority import whose
+from tiniscript.link.messages import RESETS
 from tiniscript.link.requests import described
-from tiniscript.link.sharing.shared_connection import joined
 from tiniscript.link.trim import told as trim_told
-from tiniscript.link.wire import Wire
-from tiniscript.virtual import directory
 
 LONGEST_WATCH_S = 600
 BLANK = "____"
@@ -61,19 +48,18 @@ STEPS = ("answers", "boot", "drive", "stop", "typed", "cable", "upload", "power"
 
 def run(options: Namespace, language: str) -> int:
     count = whole_number("--count", options.count, PINGS, 1, 10_000, language)
+    expected = expected_of(options, language, count)
     if are_many(options):
         if options.report is not None or options.watch is not None:
             raise CommandError(2, "doctor_one")
-        return together(options, inputs.robot(options, language), language, measuring(count))
+        work = partial(_one_of_many, expected)
+        return together(options, inputs.robot(options, language), language, work)
     told: dict[str, str] = {}  # by a robot, of itself
     heard: list[Heard] = []
-    question = _question(options, language, told, heard, count)
-    doing = Doing(not options.json)
-    try:
-        diagnosis = diagnosed(_doors(options, language, doing), question)
-    finally:
-        doing.end()
-    robot = _described(diagnosis, heard[-1], language) if heard else None
+    watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
+    expected = expected._replace(note=told.update, hear=heard.append)
+    diagnosis = diagnosis_of(options, _port(options), expected, language, watch_s * 1000)
+    robot = _described(diagnosis.port or "", heard[-1], language) if heard else None
     if robot is not None:
         opening.remember(robot.port, robot.device_info.name)
         remember_profile(options, inputs.robot(options, language), robot.device_info.kit)
@@ -100,72 +86,39 @@ def run(options: Namespace, language: str) -> int:
     return 0 if is_fine else 3
 
 
-def _described(diagnosis: Diagnosis, heard: Heard, language: str) -> Description:
-    """Return what a robot says about itself, of what it has answered."""
-    info = described(heard.hello)
-    trim = None if heard.trim is None else trim_told(heard.trim)
-    return Description(diagnosis.port or "", info, heard.status, trim, whose(info), language)
-
-
-def _question(
-    options: Namespace, language: str, told: dict[str, str], heard: list[Heard], count: int
-) -> Question:
-    robot = inputs.robot(options, language)
-    watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
+def _port(options: Namespace) -> str | None:
     port: str | None = options.port
     if options.virtual:
         if port is not None:
             raise CommandError(2, "virtual_and_port")
         port = running_address(options)
-    port = None if port is None else inputs.port(port)
-    kit = None if options.robot is None else robot.kit.fingerprint
-    return Question(
-        port,
-        opening.last_port(),
-        baud_of(options, robot, language),
-        Expected(kit, robot.name, name_of, _has_key, _doubt, "", told.update, heard.append, count),
-        int.from_bytes(os.urandom(4), "little"),
-        watch_s * 1000,
-        tuple(each.address for each in directory.for_all()),
+    return None if port is None else inputs.port(port)
+
+
+def _one_of_many(expected: Expected, connection: Connection, member: Member) -> Result:
+    """Examine one of many robots as if it were the only one."""
+    member.meet(connection)
+    language = connection.language
+    findings, heard = examination_of(
+        connection, expected, lambda what: member.tell(f"doing_{what}", n=expected.pings)
     )
+    wrong = [finding for finding in findings if finding.is_wrong]
+    rows, fields = [said(finding, language).what for finding in wrong], {}
+    if heard is not None:
+        robot, trips_ms = _described(connection.port, heard, language), [*heard.trips_ms]
+        rows.append(robot.line())
+        if trips_ms:
+            rows.append(trips_in_words(trips_ms, language))
+        fields = {**robot.fields(), **trips_as_data(trips_ms)}
+    fields["findings"] = [as_data(finding, language) for finding in findings]
+    return Result(not wrong, "; ".join(rows), fields)
 
 
-def _has_key(robot: int) -> bool:
-    return bool(KeyFile().of_robot(robot))
-
-
-def _doubt(port: str, hello: HelloReply) -> str:
-    """Return the cause why this may be another robot than the one of a key of this computer."""
-    keys, info = KeyFile(is_for_virtual=opening.is_virtual(port)), described(hello)
-    if is_other(keys, same_for_all(port), info):
-        return "other_robot"
-    is_right = hello.features & (OWNED | SEALS) == (OWNED | SEALS)
-    return "unproven" if has_to_seal(keys, info) and not is_right else ""
-
-
-def _doors(options: Namespace, language: str, doing: Doing) -> Doors:
-    def open_wire(port: str, baud: int) -> Wire:
-        return Wire(ports.opened(port, baud))
-
-    def may_open(port: str) -> bool:
-        if options.yes:
-            return True
-        if options.json or not can_ask():
-            return False
-        doing.end()
-        return agreed(text("doctor_yes", language).format(port=shown(port)))
-
-    @contextmanager
-    def share(port: str) -> Iterator[LinkConnection]:
-        given = Namespace(verb="doctor", port=port, baud=options.baud, virtual=False)
-        with Connection(given, inputs.robot(options, language), language) as connection:
-            connection.meet()
-            yield connection.line
-
-    return Doors(
-        System(), open_wire, lambda port: joined(port, "doctor"), may_open, ports.is_radio,
-        share, lambda what: doing.tell(text(f"doing_{what}", language)),
-    )  # fmt: skip
+def _described(port: str, heard: Heard, language: str) -> Description:
+    """Return what a robot says about itself, of what it has answered."""
+    info = described(heard.hello)
+    trim = None if heard.trim is None else trim_told(heard.trim)
+    return Description(port, info, heard.status, trim, whose(info), language)
 
 
 def _rows(diagnosis: Diagnosis, language: str, is_private: bool) -> list[str]:
@@ -225,23 +178,9 @@ def _report(diagnosis: Diagnosis, told: Mapping[str, str], language: str) -> lis
 
 def _fields(diagnosis: Diagnosis, language: str) -> dict[str, object]:
     """Return it as data."""
-    rows = []
-    for finding in diagnosis.findings:
-        what, seen, then = said(finding, language)
-        rows.append(
-            {
-                "cause": finding.cause,
-                "is_wrong": finding.is_wrong,
-                "is_sure": finding.is_sure,
-                "values": dict(finding.values),
-                "said": what,
-                "seen": seen,
-                "next": then,
-            }
-        )
     return {
         "port": diagnosis.port,
         "is_opened": diagnosis.is_opened,
         "bluetooth": diagnosis.computer.bluetooth,
-        "findings": rows,
+        "findings": [as_data(finding, language) for finding in diagnosis.findings],
     }

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import re
-import sys
 from argparse import Namespace
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import opening_port
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
+from tiniscript.cli.texts.causes import rows
+from tiniscript.doctor.diagnosis import unopened
+from tiniscript.doctor.findings import Finding, sure
+from tiniscript.doctor.system import System
 from tiniscript.link import ports
+from tiniscript.link.errors import PortError
 from tiniscript.link.modules import set_up
 from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
 from tiniscript.link.modules.set_up import BAUD, DONE, GOOD, NAME, PIN, Outcome, Step, Wanted
@@ -22,17 +25,28 @@ from tiniscript.link.wire import Wire
 
 def run(options: Namespace, language: str) -> int:
     wanted = _wanted(options)
-    wire = _wire(options)
+    port = _port(options)
+    try:
+        wire = Wire(ports.opened(port, BAUDS[0]))
+    except PortError as failure:
+        return _end(unopened(System(), port, failure)._replace(of="module"), language)
     begun: list[Step] = []  # the speed, once a command for it may have been sent
     try:
         return _SetUp(wire, options, wanted, language, begun).run()
     except OSError:
-        left = _left(begun, language)
-        raise CommandError(3, "module_gone", port=shown(options.port), left=left) from None
+        code = _end(sure("port_gone")._replace(of="module"), language)
+        print(_left(begun, language))
+        return code
     except KeyboardInterrupt:
         raise CommandError(2, "module_stopped", left=_left(begun, language)) from None
     finally:
         wire.close()
+
+
+def _end(finding: Finding, language: str) -> int:
+    """Print what was found; return the exit code."""
+    print("\n".join(rows([finding], language)), flush=True)
+    return 3 if finding.is_wrong else 0
 
 
 def _left(begun: list[Step], language: str) -> str:
@@ -79,14 +93,13 @@ def _refuse(wanted: Wanted, dialect: Dialect, what: str) -> None:
         raise CommandError(2, "module_bad_pin", digits=str(dialect.pin_digits), module=dialect.name)
 
 
-def _wire(options: Namespace) -> Wire:
+def _port(options: Namespace) -> str:
     if options.port is None:
         raise CommandError(2, "module_no_port")
     port = inputs.port(options.port)
-    with opening_port(port):
-        if ports.is_radio(port):
-            raise CommandError(2, "module_by_radio", port=shown(port))
-        return Wire(ports.opened(port, BAUDS[0]))
+    if ports.is_radio(port):
+        raise CommandError(2, "module_by_radio", port=shown(port))
+    return port
 
 
 class _SetUp:
@@ -104,7 +117,7 @@ class _SetUp:
         )
         doing.end()
         if module is None:
-            raise CommandError(3, "module_silent", port=self.port)
+            return _end(sure("module_silent"), self.language)
         what = set_up.misfit(self.wanted, module.dialect)
         if what:
             _refuse(self.wanted, module.dialect, what)
@@ -163,12 +176,8 @@ class _SetUp:
 
     def _tell(self, outcome: Outcome) -> None:
         step, how, said = outcome
-        what = self._text(f"module_what_{step.what}", value=step.value)
-        key = f"module_{how}"
+        name = self._text(f"module_what_{step.what}", value=step.value)
         if step.what == BAUD and how == DONE:
-            key = "module_done_baud" if said == step.value else "module_done_later"
-        if how == set_up.SILENT:
-            key = "module_lost_midway"
-        out = sys.stdout if how in GOOD else sys.stderr
+            how = "done_baud" if said == step.value else "done_later"
         said = shown(said) or self._text("module_no_word")
-        print(self._text(key, what=what, said=said), file=out, flush=True)
+        _end(sure(f"module_{how}", name=name, said=said), self.language)

@@ -12,33 +12,36 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.diagnosing import diagnosis_of, expected_of
 from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.cli.texts import say, text
-from tiniscript.cli.texts.causes import label, said
+from tiniscript.cli.texts.causes import rows, said
 from tiniscript.doctor import report
-from tiniscript.doctor.findings import OK, OPEN, WRONG, Finding, sure
+from tiniscript.doctor.examination import Expected
+from tiniscript.doctor.findings import CAUSES, OK, OPEN, WRONG, Finding, sure
+from tiniscript.library import opening
 
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
-    port, name = options.port, ""
+    expected = expected_of(options, language)
+    port, name = options.port or opening.last_port(), ""
     try:
-        connection = Connection(options, robot, language)
-    except CommandError as failure:
-        if options.report is None or failure.exit_code != 3:
-            raise
-        found = [sure("plain", said=failure.sentence(language))]
-    else:
-        with connection:
+        with Connection(options, robot, language) as connection:
             port = connection.port
             try:
-                test = SelfTest(connection, options.robot is not None, not options.yes)
-                found = test.run()
+                connection.meet()
+                found = SelfTest(connection, expected, not options.yes).run()
+            except CommandError:  # nothing was started: no robot has answered
+                raise
             except BaseException:  # Ctrl-C, too: the motors may turn
                 connection.stop()
                 raise
-            if connection.line.robot is not None:
-                name = connection.name
+            name = connection.name
+    except CommandError as failure:
+        if failure.exit_code != 3 or options.virtual:
+            raise
+        found = _without_robot(options, port, expected, failure, language)
     _print(found, name, port, options.json, language)
     if options.report is not None:
         data = ("\n".join(_report(found, name, port or "", language)) + "\n").encode()
@@ -48,6 +51,22 @@ def run(options: Namespace, language: str) -> int:
     return 3 if any(each.verdict == WRONG for each in found) else 0
 
 
+def _without_robot(
+    options: Namespace, port: str | None, expected: Expected, failure: CommandError,
+    language: str,
+) -> list[Finding]:  # fmt: skip
+    """Return what the doctor finds where no robot has answered.
+
+    It may open the port that was to be opened, and no other one.
+    """
+    may_open = port is not None
+    found = diagnosis_of(options, port, expected, language, may_open=may_open).findings
+    wrong = [finding for finding in found if finding.is_wrong]
+    if not wrong:  # it has come meanwhile
+        return [sure("plain", said=failure.sentence(language))]
+    return [finding._replace(of=finding.part or "answers") for finding in wrong]
+
+
 def _print(found: list[Finding], name: str, port: str | None, is_json: bool, language: str) -> None:
     if is_json:
         fields = [_fields(each, language) for each in found]
@@ -55,7 +74,7 @@ def _print(found: list[Finding], name: str, port: str | None, is_json: bool, lan
         return
     if name:
         say("selftest_head", language, robot=name, port=shown(port or ""))
-    print("\n".join(_rows(found, language)))
+    print("\n".join(rows(found, language)))
     counts = {each: sum(row.verdict == each for row in found) for each in (OK, WRONG, OPEN)}
     good, wrong, left = counts[OK], counts[WRONG], counts[OPEN]
     say("selftest_end", language, good=good, all=len(found), wrong=wrong, open=left)
@@ -63,28 +82,16 @@ def _print(found: list[Finding], name: str, port: str | None, is_json: bool, lan
 
 def _fields(found: Finding, language: str) -> dict[str, object]:
     """Return it as data."""
-    what, _, then = said(found, language)
+    what, seen, then = said(found, language)
     return {
         "what": found.part,
         "verdict": found.verdict,
         "finding": found.cause,
         "values": dict(found.values),
         "said": what,
+        "seen": seen or None,
         "next": then or None,
     }
-
-
-def _rows(found: list[Finding], language: str) -> list[str]:
-    rows = []
-    for each in found:
-        what, _, then = said(each, language)
-        mark = text(f"selftest_{each.verdict}", language)
-        rows.append(
-            text("selftest_row", language).format(mark=mark, what=label(each, language), said=what)
-        )
-        if then:
-            rows.append(text("selftest_next", language).format(then=then))
-    return rows
 
 
 def _report(found: list[Finding], name: str, port: str, language: str) -> list[str]:
@@ -100,4 +107,8 @@ def _report(found: list[Finding], name: str, port: str, language: str) -> list[s
 
     head = report.head(report.SELFTEST_MARK, text("selftest_about", language),
                        [("system", sys.platform)], port)  # fmt: skip
-    return [*head, "", *map(without_names, _rows(found, language))]
+    private = [
+        each if CAUSES[each.cause].part else each._replace(values=report.values_of(each))
+        for each in found  # what is of no part is of the computer and its port
+    ]
+    return [*head, "", *map(without_names, rows(private, language))]

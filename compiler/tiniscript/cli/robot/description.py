@@ -5,16 +5,16 @@ from __future__ import annotations
 import json
 from contextlib import suppress
 from statistics import median
-from time import perf_counter
 from typing import NamedTuple
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, name_of
 from tiniscript.cli.robot.event_printer import fault_sentence
-from tiniscript.cli.robot.fleet import Work
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.texts import text
+from tiniscript.doctor.examination import trips_of
+from tiniscript.doctor.robot import SharedRobot
 from tiniscript.library import source_map
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.link.authority import OF_ANOTHER, whose
@@ -30,8 +30,9 @@ from tiniscript.link.messages import (
     TEXT_LEVELS,
 )
 from tiniscript.link.names import fault_name, row_name
+from tiniscript.link.outcomes import LOST
 from tiniscript.link.payloads import StatusReply
-from tiniscript.link.requests import DeviceInfo
+from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.trim import Pace, Trim, told
 
 COUNT = 10  # round trips
@@ -183,27 +184,21 @@ def introduced(connection: Connection, is_json: bool) -> int:
     return 0
 
 
-def measuring(count: int) -> Work:
-    """Return the function that describes each of many robots, and says how soon it answers."""
-
-    def work(connection: Connection, member: Member) -> Result:
-        result = in_a_line(connection, member)
-        member.tell("crew_pinging")
-        trips = _trips(connection, count)
-        said = f"{result.said}; {trips_in_words(trips, connection.language)}"
-        return Result(True, said, {**result.fields, **trips_as_data(trips)})
-
-    return work
+def measured(connection: Connection, member: Member) -> Result:
+    """Describe one of many robots, and say how soon it answers."""
+    result = in_a_line(connection, member)
+    member.tell("crew_pinging")
+    trips = _trips(connection, COUNT)
+    said = f"{result.said}; {trips_in_words(trips, connection.language)}"
+    return Result(True, said, {**result.fields, **trips_as_data(trips)})
 
 
 def _trips(connection: Connection, count: int) -> list[float]:
-    """Return how many milliseconds each of so many answers took."""
-    trips = []
-    for _ in range(count):
-        begin_s = perf_counter()
-        connection.ask(lambda session: session.ping())
-        trips.append((perf_counter() - begin_s) * 1000)
-    return trips
+    """Return how many milliseconds the answers took that came at once; none: CommandError."""
+    trips_ms = trips_of(SharedRobot(connection.line, connection.wait), count)
+    if not trips_ms:
+        raise connection.failure(Reply(LOST))
+    return [*trips_ms]
 
 
 def _shortest_usual_longest(trips: list[float]) -> dict[str, float]:

@@ -10,7 +10,7 @@ from functools import partial
 from tiniscript.cli.images import Ready
 from tiniscript.cli.robot import program_upload
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.description import COUNT, measuring
+from tiniscript.cli.robot.description import measured
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
@@ -25,7 +25,7 @@ def upload_to_many(
 ) -> int:  # fmt: skip
     """Send a program to many robots; return the exit code."""
     is_ping = ready.image.start == "PING"  # a program that asks who is there
-    work = measuring(COUNT) if is_ping else partial(_upload, options, ready, name)
+    work = measured if is_ping else partial(_upload, options, ready, name)
     return together(options, robot, language, work)
 
 

@@ -21,14 +21,12 @@ from tiniscript.cli.robot.conversation import (
     as_seen,
 )
 from tiniscript.cli.robot.description import trim_in_words
-from tiniscript.doctor.examination import Expected, Heard, examined
+from tiniscript.cli.robot.diagnosing import examination_of
+from tiniscript.doctor.examination import Expected, Heard
 from tiniscript.doctor.findings import Finding, sure
-from tiniscript.doctor.robot import SharedRobot
-from tiniscript.library.known_kits import name_of, of_kit
+from tiniscript.library.known_kits import of_kit
 from tiniscript.link.messages import RESETS, SAVED
 from tiniscript.link.names import row_name
-from tiniscript.link.outcomes import LOST
-from tiniscript.link.requests import Reply
 from tiniscript.link.trim import Trim, told
 from tiniscript.robots.profile import Robot
 
@@ -42,11 +40,11 @@ ANSWERED = ("plain", "selftest_silent")  # failures that the robot has told: it 
 
 
 class SelfTest(Conversation):
-    """The checks of a robot that answers. `is_asking`: a person is beside it."""
+    """The checks of a robot that has answered. `is_asking`: a person is beside it."""
 
-    def __init__(self, connection: Connection, is_given: bool, is_asking: bool) -> None:
+    def __init__(self, connection: Connection, expected: Expected, is_asking: bool) -> None:
         super().__init__(connection, is_asking)
-        self.is_given = is_given  # the person has said which robot it should be
+        self.expected = expected
         self.found: list[Finding] = []
         self.heard: Heard | None = None
         self.trim = Trim()
@@ -60,7 +58,6 @@ class SelfTest(Conversation):
         return self.found
 
     def _check(self) -> None:
-        self.connection.meet()
         self._add("is_there")
         robot = self._examine()
         self.trim = told(self.connection.ask(lambda session: session.trim()).values)
@@ -86,21 +83,12 @@ class SelfTest(Conversation):
         """Let the doctor examine it; return the robot that it is, where this computer knows it."""
         wanted = self.connection.profile
         kit = self.connection.device_info.kit
-        expected = Expected(wanted.kit.fingerprint if self.is_given else None, wanted.name, name_of,
-                            hear=self._hear)  # fmt: skip
-        robot = SharedRobot(self.connection.line, self.connection.wait)
-        reply = robot.hello()
-        if reply is None:
-            raise self.connection.failure(Reply(LOST))
-        causes = examined(robot, reply, expected)
+        causes, self.heard = examination_of(self.connection, self.expected)
         known = wanted if kit == wanted.kit.fingerprint else of_kit(kit)
         good = self._good(known.name if known is not None else "")
         for part in PARTS:
             self.found += [cause for cause in causes if cause.part == part] or good.get(part, [])
         return known
-
-    def _hear(self, heard: Heard) -> None:
-        self.heard = heard
 
     def _good(self, name: str) -> dict[str, list[Finding]]:
         """Return what is said of each part of a robot of which nothing is wrong."""

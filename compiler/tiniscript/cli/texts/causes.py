@@ -1,8 +1,8 @@
-"""The sentences of a finding, whoever has found it: the doctor, or the self-test."""
+"""The sentences of a finding, whoever has found it: the doctor, self-test or a module's set-up."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from tiniscript.cli.texts import has_text, text
@@ -40,6 +40,35 @@ def said(finding: Finding, language: str, values: Mapping[str, str] | None = Non
     return Sentences(*(text(key, language).format(**filled) if key else "" for key in keys))
 
 
+def as_data(finding: Finding, language: str) -> dict[str, object]:
+    """Return a finding as data: what a program reads, and what a person would."""
+    what, seen, then = said(finding, language)
+    return {
+        "cause": finding.cause,
+        "is_wrong": finding.is_wrong,
+        "is_sure": finding.is_sure,
+        "values": dict(finding.values),
+        "said": what,
+        "seen": seen,
+        "next": then,
+    }
+
+
 def label(finding: Finding, language: str) -> str:
     """Return the name of the part of a robot that a finding is about: `sensor DISTANCE`."""
     return text(f"part_{finding.part}", language).format(**finding.values)
+
+
+def rows(findings: Iterable[Finding], language: str) -> list[str]:
+    """Return the lines of a conversation about parts: what came of each, and what to do."""
+    lines = []
+    for finding in findings:
+        what, seen, then = said(finding, language)
+        mark = text(f"finding_{finding.verdict}", language)
+        row = text("finding_row", language)
+        lines.append(row.format(mark=mark, what=label(finding, language), said=what))
+        if seen:
+            lines.append(text("finding_seen", language).format(seen=seen))
+        if then:
+            lines.append(text("finding_next", language).format(then=then))
+    return lines

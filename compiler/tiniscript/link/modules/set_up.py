@@ -16,7 +16,7 @@ from tiniscript.link.wire import Wire
 NAME, PIN, BAUD = "name", "pin", "baud"
 # How a step ends. UNSEEN: the module says that it is done, and does not tell the value.
 DONE, UNSEEN, REFUSED, SILENT, DIFFERS, ELSEWHERE, LOST = (
-    "done", "unseen", "refused", "silent", "differs", "elsewhere", "lost",
+    "done", "unseen", "refused", "lost_midway", "differs", "elsewhere", "lost",
 )  # fmt: skip
 GOOD = (DONE, UNSEEN)
 LETTERS = set("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_ ")

@@ -1,0 +1,121 @@
+"""The doctor as a command asks it: what it gets from outside, and of a robot that answers.
+
+`tsc doctor` asks it, its self-test and its module's set-up where nothing answers, and the fleet.
+"""
+
+from __future__ import annotations
+
+import os
+from argparse import Namespace
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from tiniscript.cli import inputs
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.connect import Connection, baud_of
+from tiniscript.cli.terminal.asking import agreed, can_ask
+from tiniscript.cli.terminal.progress import Doing
+from tiniscript.cli.texts import text
+from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
+from tiniscript.doctor.examination import PINGS, Expected, Heard, examined
+from tiniscript.doctor.findings import Finding
+from tiniscript.doctor.robot import SharedRobot
+from tiniscript.doctor.system import System
+from tiniscript.library import opening
+from tiniscript.library.known_kits import name_of
+from tiniscript.link import ports
+from tiniscript.link.authority import has_to_seal, is_other
+from tiniscript.link.connection import LinkConnection
+from tiniscript.link.keys import KeyFile
+from tiniscript.link.messages import OWNED, SEALS
+from tiniscript.link.outcomes import LOST
+from tiniscript.link.payloads import HelloReply
+from tiniscript.link.port_names import same_for_all
+from tiniscript.link.requests import Reply, described
+from tiniscript.link.sharing.shared_connection import joined
+from tiniscript.link.wire import Wire
+from tiniscript.virtual import directory
+
+
+def diagnosis_of(
+    options: Namespace, port: str | None, expected: Expected, language: str,
+    watch_ms: int = 0, may_open: bool = False,
+) -> Diagnosis:  # fmt: skip
+    """Let the doctor look at a port, or at the one that there is; say what it does meanwhile.
+
+    `may_open`: nobody has to be asked before the port of a cable is opened.
+    """
+    robot = inputs.robot(options, language)
+    question = Question(
+        port,
+        opening.last_port(),
+        baud_of(options, robot, language),
+        expected,
+        int.from_bytes(os.urandom(4), "little"),
+        watch_ms,
+        tuple(each.address for each in directory.for_all()),
+    )
+    doing = Doing(not options.json)
+    try:
+        return diagnosed(_doors(options, language, doing, expected.pings, may_open), question)
+    finally:
+        doing.end()
+
+
+def expected_of(options: Namespace, language: str, pings: int = PINGS) -> Expected:
+    """Return the robot that the options name, and what this computer knows of all."""
+    robot = inputs.robot(options, language)
+    kit = None if options.robot is None else robot.kit.fingerprint
+    return Expected(kit, robot.name, name_of, _has_key, _doubt, pings=pings)
+
+
+def examination_of(
+    connection: Connection, expected: Expected,
+    tell: Callable[[str], None] = lambda what: None,
+) -> tuple[list[Finding], Heard | None]:  # fmt: skip
+    """Let the doctor examine a robot that has answered; return what it found and heard."""
+    robot = SharedRobot(connection.line, connection.wait)
+    reply = robot.hello()
+    if reply is None:
+        raise connection.failure(Reply(LOST))
+    heard: list[Heard] = []
+    found = examined(robot, reply, expected._replace(hear=heard.append), tell=tell)
+    return found, heard[-1] if heard else None
+
+
+def _has_key(robot: int) -> bool:
+    return bool(KeyFile().of_robot(robot))
+
+
+def _doubt(port: str, hello: HelloReply) -> str:
+    """Return the cause why this may be another robot than the one of a key of this computer."""
+    keys, info = KeyFile(is_for_virtual=opening.is_virtual(port)), described(hello)
+    if is_other(keys, same_for_all(port), info):
+        return "other_robot"
+    is_right = hello.features & (OWNED | SEALS) == (OWNED | SEALS)
+    return "unproven" if has_to_seal(keys, info) and not is_right else ""
+
+
+def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agreed: bool) -> Doors:
+    def open_wire(port: str, baud: int) -> Wire:
+        return Wire(ports.opened(port, baud))
+
+    def agrees(port: str) -> bool:
+        if options.yes or is_agreed:
+            return True
+        if options.json or not can_ask():
+            return False
+        doing.end()
+        return agreed(text("doctor_yes", language).format(port=shown(port)))
+
+    @contextmanager
+    def share(port: str) -> Iterator[LinkConnection]:
+        given = Namespace(verb="doctor", port=port, baud=options.baud, virtual=False)
+        with Connection(given, inputs.robot(options, language), language) as connection:
+            connection.meet()
+            yield connection.line
+
+    return Doors(
+        System(), open_wire, lambda port: joined(port, "doctor"), agrees, ports.is_radio,
+        share, lambda what: doing.tell(text(f"doing_{what}", language).format(n=pings)),
+    )  # fmt: skip
