@@ -201,6 +201,9 @@ class JudgedRun(Simulation):
     def step(self, limit_ms: int) -> None:
         self.go(STEP_MS)
 
+    def press(self, keys: int, x: int, y: int) -> None:
+        """Nobody but the judge holds anything."""
+
     def stop(self) -> None:
         self.robot.rest()
 
