@@ -95,14 +95,14 @@ def test_a_run_whose_keys_the_judge_presses_is_seen_with_them() -> None:
     answer, seen = judged(18, drives)
     assert "KEY_RIGHT was held" in answer["said"][0]  # type: ignore[index]
     state = seen.state()
-    assert state["pose"][0] > 260, "it went forward"
+    assert state["pose"][0] > 170, "it went forward"
     assert (state["now_ms"] - state["began_ms"]) == 5100
     image = check(drives.encode(), "tinibot", "en").image
     seen = page_lessons.JudgedRun("tinibot", 18, 1, 900, image, Marks(()))
     for _ in range(9):
         seen.press(1, 0, 100)
         seen.go(100)
-    assert seen.state()["pose"][:2] == [250, 250]
+    assert seen.state()["pose"][:2] == [160, 160]
 
 
 def test_the_goals_of_a_task_are_where_its_judge_looks() -> None:

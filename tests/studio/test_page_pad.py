@@ -12,8 +12,9 @@ from tests.studio.test_page_link import connect, said
 from tests.support import studio
 from tests.support.casefile import ROOT
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import Pages, axe, hears, in_phase, shown, turn, write
+from tests.support.studio import Pages, axe, hears, in_phase, shown, speak, turn, write
 from tiniscript import robots
+from tiniscript.base.kit import YES_NO, Device, Kit
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
 
@@ -142,6 +143,44 @@ def test_a_run_that_is_held_stopped_or_run_again_reads_what_is_held_then(pages: 
     assert not any(line.endswith("MOTORS 0 0") for line in trace(page))
     page.keyboard.up("ArrowUp")
     hears(page, lambda: driven(page) == "0 0", "it stands")
+
+
+def test_a_robot_that_hears_no_keys_is_told_none_and_the_page_says_so(pages: Pages) -> None:
+    sensors = tuple(Device(f"S{k}", YES_NO, "", 0, 1) for k in range(9))
+    with PtyRobot(Kit(sensors)) as robot:
+        known_ports.remember(robot.port, "OLDER")
+        page = pages.open()
+        connect(page, robot)
+        assert not page.locator("#pad").is_visible()
+        write(page, KEYS)
+        page.locator("#pad_said", has_text="This robot has no remote control").wait_for()
+        assert page.locator("#pad button:visible").count() == 0
+        assert axe(page) == []
+        speak(page, "es")
+        page.locator("#pad_said", has_text="Este robot no tiene control remoto").wait_for()
+        speak(page, "en")
+        write(page, "F(1, 50)")
+        page.locator("#pad").wait_for(state="hidden")
+        page.click("#link_leave")
+
+
+def test_a_run_of_the_judges_is_driven_by_nobody_else(pages: Pages) -> None:
+    page = pages.open()
+    write(page, f"// robot: tinibot\n{KEYS}")
+    page.click("#side_lessons")
+    page.locator("#lesson_next:enabled").wait_for()
+    page.select_option("#lesson", index=17)
+    page.locator("#lesson_steps button").last.click()
+    page.click("#run")  # the own run
+    in_phase(page, "running")
+    page.locator("[data-key=KEY_UP]").wait_for()
+    page.click("#lesson_check")
+    hears(page, lambda: driven(page) == "60 60", "the judge presses")
+    assert not page.locator("#pad").is_visible()
+    page.locator("#lesson_said[data-verdict]").wait_for()
+    assert "KEY_RIGHT" in page.locator("#lesson_findings").inner_text()
+    in_phase(page, "ended")
+    assert not page.locator("#pad").is_visible()
 
 
 def test_a_real_robot_is_driven_and_stands_when_the_page_is_not_seen(pages: Pages) -> None:

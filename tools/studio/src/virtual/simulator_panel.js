@@ -360,8 +360,8 @@ export class SimulatorPanel {
   /** A run that reads a remote control can be driven. */
   #offer() {
     const canDrive = this.#isDriving && this.#remote.length > 0;
-    if (!canDrive) this.#simulator.held = null;
     this.#page.pad.offer('driving', canDrive ? { reads: this.#remote, tell: (held) => { this.#simulator.held = held; } } : null);
+    if (!canDrive) this.#simulator.held = null;
   }
 
   /** A picture of a run: beside the robot, one thing at a time is new. @param {import('../python.js').RobotState} state */
