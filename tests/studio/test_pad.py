@@ -125,6 +125,12 @@ def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(made: Path, end: list[
     assert [held for _, *held in found[let_go + 1 :]] == [[32, 0, 0]]
 
 
+def test_a_key_whose_end_nobody_sees_is_not_held_with_the_next_one(made: Path) -> None:
+    """It was let go in another window."""
+    story = [["keydown", "b"], ["event", "blur"], ["keydown", "ArrowUp"]]
+    assert [held for _, *held in told(made, WHOLE, *story)] == [[32, 0, 0], NOTHING, [UP, 0, 0]]
+
+
 def test_a_gamepad_holds_until_it_is_unplugged(made: Path) -> None:
     found = told(
         made, WHOLE, ["gamepads", [[0.1, -0.05], []]], ["event", "gamepadconnected"],
@@ -181,6 +187,7 @@ def test_a_stick_that_moves_all_the_time_is_said_as_it_is_now(made: Path, way: s
     moved = [y for _, y in found["sent"][:-1]]
     assert moved == sorted(set(moved)) and len(moved) > 100
     assert found["sent"][-1][1] == 0
+    assert len(found["sent"]) <= found["asked"], "one word at a time: the newest"
     assert found["sent"][-1][0] - found["released"] <= (31 if way == "host" else 150)
     assert not found["over"]
     if way == "host":
