@@ -36,7 +36,7 @@ def folder(tmp_path: Path) -> Path:
 def test_the_lessons_are_listed(tsc: Tsc) -> None:
     done = tsc("lesson", "--lang", "es").gives(0)
     rows = done.out.splitlines()
-    assert len(rows) == 17
+    assert len(rows) == 18
     assert rows[0] == " 1  La primera línea   (tinibot)"
 
 
@@ -123,7 +123,7 @@ def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path
         (["jump"], "lesson takes show, check or sheet, not jump"),
         (["--json"], "--json does not go with tsc lesson."),
         (["show"], "which lesson?"),
-        (["show", "18"], "There is no lesson 18. Give a number from 1 to 17"),
+        (["show", "19"], "There is no lesson 19. Give a number from 1 to 18"),
         (["show", "0"], "There is no lesson 0."),
         (["show", "²"], "There is no lesson ²."),
         (["show", "9" * 5000], "There is no lesson 999"),

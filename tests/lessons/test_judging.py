@@ -13,7 +13,7 @@ from tiniscript import robots
 from tiniscript.lessons import catalogue, running
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.sentences import sentence as words_for
-from tiniscript.lessons.variation import point_of, varied
+from tiniscript.lessons.variation import point_of, pressed, varied
 from tiniscript.library.compiling import compile_source, image_of
 
 HEAD = 'robot = "{robot}"\nseconds = 10\n{more}\n[title]\nen = "A"\nes = "B"\n'
@@ -165,6 +165,68 @@ def test_a_criterion_is_met_or_missed(
     assert sentence in found
     assert spanish != found
     assert "{" not in found + spanish
+
+
+OBEYS = """
+[[criteria]]
+kind = "obeys"
+[[presses]]
+at_seconds = 1
+seconds = 1
+key = "{key}"
+"""
+DOES = {"UP": "F(0.1, 60)", "DOWN": "B(0.1, 60)", "LEFT": "L(0.1, 60)", "RIGHT": "R(0.1, 60)",
+        "A": "BEEP(0.1, 440)", "B": "BEEP(0.1, 440)"}  # fmt: skip
+FAILS = {"UP": "go forward", "DOWN": "go back", "LEFT": "turn to the left",
+         "RIGHT": "turn to the right", "A": "beep", "B": "beep"}  # fmt: skip
+OTHER = {"UP": "DOWN", "DOWN": "UP", "LEFT": "RIGHT", "RIGHT": "LEFT", "A": "B", "B": "A"}
+
+
+def answering(key: str, does: str) -> str:
+    return f"LOOP(FOREVER); IF(KEY_{key}); {does}; END_IF; W(0.02); END_LOOP"
+
+
+@pytest.mark.parametrize("key", DOES)
+def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str) -> None:
+    lesson = lesson_of(tmp_path, OBEYS.format(key=f"KEY_{key}"))
+    assert said(lesson, answering(key, DOES[key])) == []
+    (missed,) = said(lesson, answering(OTHER[key], DOES[key]))
+    assert f"After 1.0 s KEY_{key} was held, and the robot did not {FAILS[key]}." in missed
+    if not FAILS[key].startswith("beep"):
+        (missed,) = said(lesson, answering(key, DOES[OTHER[key]]))
+        assert f"did not {FAILS[key]}." in missed
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [
+        ("F(0.5, 60); " + answering("UP", "F(0.1, 60)"), "0.0"),
+        (answering("UP", "F(3, 60)"), "2.6"),
+        (answering("UP", "M(60, 60)"), "2.6"),
+        (answering("UP", "F(0.1, 60)").replace("END_IF", "ELSE; L(0.1, 60); END_IF"), "0.0"),
+    ],
+)
+def test_a_robot_that_nobody_drives_stands(tmp_path: Path, text: str, seconds: str) -> None:
+    lesson = lesson_of(tmp_path, OBEYS.format(key="KEY_UP"))
+    (missed,) = said(lesson, text)
+    assert f"After {seconds} s no key was held, and the robot moved all the same" in missed
+
+
+def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) -> None:
+    lesson = lesson_of(tmp_path, OBEYS.format(key="KEY_LEFT"), more="mirror = true\nworlds = 2")
+    assert [each.key for seed in (1, 2) for each in pressed(lesson, seed)] == [
+        "KEY_LEFT",
+        "KEY_RIGHT",
+    ]
+    both = answering("LEFT", "L(0.1, 60)").replace("W(", "IF(KEY_RIGHT); R(0.1, 60); END_IF; W(")
+    assert findings_of(both, lesson, range(1, 3)) == []
+    assert findings_of(answering("LEFT", "L(0.1, 60)"), lesson, range(1, 3))
+
+
+def test_what_is_held_is_no_heartbeat_that_a_run_needs(tmp_path: Path) -> None:
+    """A run of the judge's goes on without a computer, before the first key and after the last."""
+    lesson = lesson_of(tmp_path, OBEYS.format(key="KEY_A") + '[[criteria]]\nkind = "shows"\n')
+    assert said(lesson, answering("A", "BEEP(0.1, 440)").replace("W(", "SHOW(TIME); W(")) == []
 
 
 def test_what_stands_behind_a_loop_is_not_in_it(tmp_path: Path) -> None:

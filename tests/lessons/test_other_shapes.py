@@ -301,6 +301,19 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF Q(N); LOOP(3); F(N CM, 60); L(90 DEG, 60); END_LOOP; END_DEF; Q(20); Q(30); Q(40)": "20 cm past corner 5",
         },
     },
+    18: {
+        "right": {
+            "WHILE(TRUE); M(0, 0); W(0.05); WHILE(KEY_UP); M(80, 80); W(0.02); END_WHILE; WHILE(KEY_DOWN); M(-80, -80); W(0.02); END_WHILE; WHILE(KEY_LEFT); M(-30, 30); W(0.02); END_WHILE; WHILE(KEY_RIGHT); M(30, -30); W(0.02); END_WHILE; IF(KEY_A); BEEP(0.1, 880); END_IF; END_WHILE": "",
+            "DEF T(X, Y); M(X, Y); W(0.1); M(0, 0); END_DEF; LOOP(FOREVER); IF(KEY_UP); T(50, 50); END_IF; IF(KEY_DOWN); T(-50, -50); END_IF; IF(KEY_LEFT); T(-50, 50); END_IF; IF(KEY_RIGHT); T(50, -50); END_IF; IF(KEY_A); BEEP(0.2, 440); END_IF; W(0.02); END_LOOP": "",
+        },
+        "rote": {
+            "SI|W(1); F(1.5, 60); W(1); R(1, 40); W(1); F(1, 60); W(1); B(1, 60); W(1); BEEP(0.5, 440); W(1); L(0.5, 40)": "KEY_LEFT was held, and the robot did not turn to the left",
+        },
+        "wrong": {
+            "W(FOREVER) UNTIL(KEY_UP); F(5, 60)": "no key was held, and the robot moved all the same",
+            "W(FOREVER) UNTIL(KEY_UP); F(1, 60); W(FOREVER) UNTIL(KEY_DOWN); B(1, 60)": "KEY_RIGHT was held, and the robot did not turn to the right",
+        },
+    },
 }  # fmt: skip
 EACH = [
     pytest.param(number, program, what, id=f"{number}-{group}-{k}")

@@ -28,6 +28,7 @@ def refused(folder: Path, text: str, language: str = "en") -> list[str]:
     return describe(found.value, language)
 
 
+PRESS = '[[presses]]\nat_seconds = 1\nseconds = 2\nkey = "KEY_A"\n'
 CASES = [
     (HEAD, "The lesson has no criteria. Add one"),
     (HEAD + '[[criteria]]\nkind = "never_touch"\n', "Did you mean never_touches?"),
@@ -59,6 +60,13 @@ CASES = [
     ("worlds = 99\n" + HEAD + TOUCH, "Write a number from 1 to 20."),
     (HEAD.replace("tinibot", "tinibt") + TOUCH, "robot is tinibt. Write one of these: tinibot"),
     (HEAD.replace('en = "A"\nes = "B"\n', "") + TOUCH, "title.en is missing"),
+    (HEAD + '[[criteria]]\nkind = "obeys"\n', "presses is missing. Add it, for example: [[presses]]"),
+    (HEAD + TOUCH + '[[presses]]\n', "presses[1].at_seconds is missing. Add it, for example: at_seconds = 0"),
+    (HEAD + TOUCH + PRESS + PRESS, "presses[2].at_seconds"),
+    (HEAD + TOUCH + PRESS.replace("_A", "_C"), "Write one of these: KEY_UP"),
+    (HEAD + TOUCH + PRESS.replace("KEY_A", "PAD_X"), "Write one of these: KEY_UP"),
+    (HEAD + TOUCH + PRESS.replace("= 2", "= 0"), "presses[1].seconds"),
+    (HEAD + TOUCH + PRESS + "x = 1\n", "presses[1].x means nothing in a lesson."),
     ("x", "Line 1 is not TOML."),
 ]  # fmt: skip
 

@@ -61,9 +61,12 @@ class Server {
     this.done = [];
     this.stops = [];
     this.connection = 0;
+    this.held = []; // words of a remote control, as they arrive
+    this.said = []; // and as they are sent
   }
 
   asked(request, limit_ms) {
+    this.said.push(...(request.asked ?? []).filter((each) => each.do === 'keys').map(({ keys }) => keys));
     return new Promise((resolve, reject) => {
       setLater(() => reject(new Error('timeout')), limit_ms);
       const arrives = () => {
@@ -95,7 +98,8 @@ class Server {
     for (const each of request.asked ?? []) {
       if (each.id <= this.last) continue;
       this.last = each.id;
-      this.done.push(each.what);
+      if (each.do === 'keys') this.held.push(each.keys);
+      else this.done.push(each.what);
       setLater(() => this.tell({ id: each.id, ok: true, what: each.what }), this.takes_ms());
     }
     this.news = this.news.filter(({ number }) => number > request.seen);
@@ -130,6 +134,7 @@ async function story(random, bad, isWild = false, dies = false) {
   await until(now_ms + 3000);
   const asks = 1 + Math.floor(random() * 12);
   let presses = 0;
+  const words = []; // how often each has ended
   for (let k = 0; k < asks; k += 1) {
     ends.push(0);
     const counts = () => (ends[k] += 1);
@@ -137,6 +142,12 @@ async function story(random, bad, isWild = false, dies = false) {
       counts();
       if (answer.what !== `${server.name} ${k}`) heard.push(`another's answer: ${answer.what}`);
     }, counts);
+    for (let presses = Math.floor(random() * 3); presses > 0; presses -= 1) {
+      words.push(0);
+      const at = words.length - 1;
+      const counts = () => (words[at] += 1);
+      robot.press({ keys: (server.keys = (server.keys ?? 0) + 1), x: 0, y: 0 }).then(counts, counts);
+    }
     if (random() < 0.1) {
       robot.stop();
       presses += robot.isOver ? 0 : 1;
@@ -151,7 +162,7 @@ async function story(random, bad, isWild = false, dies = false) {
   const before = JSON.stringify([ends, heard, over]);
   await until(now_ms + 10_000);
   const isQuiet = JSON.stringify([ends, heard, over]) === before;
-  return { met, wasMet, isThere, isGone, over, ends, presses, heard, isQuiet, timers: timers.length };
+  return { words, met, wasMet, isThere, isGone, over, ends, presses, heard, isQuiet, timers: timers.length };
 }
 
 for (let seed = 0; seed < seeds; seed += 1) {
@@ -160,6 +171,8 @@ for (let seed = 0; seed < seeds; seed += 1) {
   server.name = 'first';
   const first = await story(chance(seed + 7), bad, isWild, seed % 8 === 7);
   const made = server.done;
+  const [held, said] = [[...server.held], [...server.said]];
+  server.keys = 0;
   server.done = [];
   server.stops = [];
   server.name = 'second';
@@ -168,6 +181,6 @@ for (let seed = 0; seed < seeds; seed += 1) {
   server = new Server(chance(seed + 1));
   server.name = 'second';
   const fresh = await story(chance(seed + 99), 0);
-  console.log(JSON.stringify({ isWild, first, made, second, secondDone, fresh, freshDone: server.done }));
+  console.log(JSON.stringify({ isWild, first, made, held, said, second, secondDone, fresh, freshDone: server.done }));
 }
 process.exit(0);

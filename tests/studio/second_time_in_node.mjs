@@ -256,7 +256,7 @@ const PARTS = {
       },
     };
     robot = virtualRobot(chanceOf(1), true);
-    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled: async () => PROGRAM, remember() {} });
+    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled: async () => PROGRAM, remember() {}, pad: { offer: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
     await settles();
     const seen = () => [page.byId('doing').textContent, page.byId('trace').textContent, page.byId('values').children.map((row) => row.children.map((each) => each.textContent)), structuredClone(pageState.fault.value)];
     return async (chance, isGood) => {
@@ -829,7 +829,7 @@ const PARTS = {
 
 const answers = (found) => ({ ok: true, status: 200, json: async () => found });
 
-const PROGRAM = { image: '00ff', places: [[0, 1, 1, 1, 9]], shows: [[0, 'X', 1, 1, false, false]], variables: [{ name: 'X', is_yes_no: false }] };
+const PROGRAM = { image: '00ff', places: [[0, 1, 1, 1, 9]], shows: [[0, 'X', 1, 1, false, false]], variables: [{ name: 'X', is_yes_no: false }], remote: ['KEY_A'] };
 
 /** As the worker's: each picture of it goes on, bumps, says and ends. */
 function virtualRobot(chance, isGood) {

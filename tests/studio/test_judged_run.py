@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from pathlib import Path
 
 import pytest
 
@@ -12,6 +13,7 @@ from tiniscript.lessons import catalogue
 from tiniscript.studio import page_lessons
 from tiniscript.studio.checking import check
 from tiniscript.studio.simulation import Marks
+from tools.studio.pack import on_page
 
 NUMBERS = range(1, len(catalogue.folders()) + 1)
 OF_A_TERMINAL = re.compile(r"\btsc\b|\w\.ts\b|____|--virtual|Ctrl|\[(print|page|hint)\]")
@@ -46,6 +48,26 @@ def test_the_steps_are_written_for_the_page(number: int, language: str) -> None:
     assert not re.search(r"\[(print|page|hint)\]", printed)
 
 
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("number", NUMBERS)
+def test_what_is_packed_of_a_page_has_the_same_steps(
+    number: int, language: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = page_lessons.steps(number, language)
+    pages: list[tuple[str, str]] = []
+
+    def packed(path: Path) -> str:
+        text = path.read_text(encoding="utf-8")
+        if path.suffix != ".md":
+            return text
+        pages.append((text, on_page(text)))
+        return pages[-1][1]
+
+    monkeypatch.setattr(catalogue, "_text", packed)
+    assert page_lessons.steps(number, language) == whole
+    assert all("[print]" in text and "[print]" not in less for text, less in pages) and pages
+
+
 @pytest.mark.parametrize(
     "number, program, seconds, touches",
     [(1, "SI|F(5, 80)", 3.0, True), (1, "SI|F(2.5, 80)", 2.5, False),
@@ -65,6 +87,22 @@ def test_the_run_that_was_judged_is_the_one_that_is_seen(
         assert said and abs(took_s - float(said[1])) < 0.1
     if seconds is not None:
         assert round(took_s, 1) == seconds
+
+
+def test_a_run_whose_keys_the_judge_presses_is_seen_with_them() -> None:
+    """Nobody else presses any."""
+    drives = "LOOP(FOREVER); IF(KEY_UP); M(60, 60); ELSE; M(0, 0); END_IF; W(0.02); END_LOOP"
+    answer, seen = judged(18, drives)
+    assert "KEY_RIGHT was held" in answer["said"][0]  # type: ignore[index]
+    state = seen.state()
+    assert state["pose"][0] > 170, "it went forward"
+    assert (state["now_ms"] - state["began_ms"]) == 5100
+    image = check(drives.encode(), "tinibot", "en").image
+    seen = page_lessons.JudgedRun("tinibot", 18, 1, 900, image, Marks(()))
+    for _ in range(9):
+        seen.press(1, 0, 100)
+        seen.go(100)
+    assert seen.state()["pose"][:2] == [160, 160]
 
 
 def test_the_goals_of_a_task_are_where_its_judge_looks() -> None:

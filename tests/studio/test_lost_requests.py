@@ -246,6 +246,7 @@ def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
     assert len(rows) == 400
     wild = [each["first"]["isThere"] for each in rows if each["isWild"]]
     assert sum(wild) < 0.8 * len(wild)  # so some are lost
+    assert sum(len(each["held"]) for each in rows) > len(rows) / 2
     for row in rows:
         for part in (row["first"], row["second"]):
             assert set(part["ends"]) == {1} and part["over"] == part["met"] == 1, row
@@ -253,6 +254,10 @@ def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
             assert set(part["heard"]) <= {"STOPPED"}, row
             assert len(part["heard"]) <= part["presses"], row
         assert len(set(row["made"])) == len(row["made"]), row
+        # A word of a remote control is sent at most once, and none is older than one before.
+        assert set(row["first"]["words"] + row["second"]["words"]) <= {1}, row
+        for words in (row["held"], row["said"]):
+            assert words == sorted(set(words)), row
         if not row["isWild"]:
             first = row["first"]
             assert first["isThere"] and len(row["made"]) == len(first["ends"]), row

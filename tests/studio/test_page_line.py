@@ -11,8 +11,10 @@ from tests.support.virtual_robot import robot_in
 from tiniscript import compile, robots
 from tiniscript.link import keys
 from tiniscript.link.authority import RobotKey
+from tiniscript.link.messages import HOLD_MS, REMOTE
 from tiniscript.studio import worker
 from tiniscript.studio.page_line import HEARD_MS, PageKeys, PageRobot
+from tiniscript.studio.robot_link import MOST_WAITING, BadRequest
 
 FOREVER = "LOOP(FOREVER);\nF(1, 80);\nEND_LOOP"
 OWNER = 0
@@ -101,6 +103,8 @@ def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
     stranger = Page(memory=memory)
     assert stranger.ask("hello")["robot"]["owner"] == "other"
     assert stranger.upload(FOREVER)["failure"] == "NOT_OWNER"
+    refused = stranger.ask("keys", keys=1, x=0, y=0)
+    assert refused["failure"] == "NOT_OWNER" and refused["said"]
     assert not stranger.robot.is_running
 
     owner = Page(PageKeys(kept), memory)
@@ -148,3 +152,90 @@ def test_a_page_is_told_where_its_program_is(page: Page) -> None:
     page.upload(FOREVER)
     page.go(500)
     assert "PLACE" in {each.get("event") for each in page.news}
+
+
+STICK = "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nIF(KEY_B);\nS;\nENDIF;\nW(0.02);\nEND_LOOP"
+
+
+def held(page: Page, keys: int = 0, x: int = 0, y: int = 0) -> dict[str, Any]:
+    return page.ask("keys", keys=keys, x=x, y=y)
+
+
+def test_a_stick_is_read_until_it_returns_or_nobody_says_anything(page: Page) -> None:
+    assert page.ask("hello")["robot"]["has_remote"]
+    page.upload(STICK)
+    for _ in range(4):
+        assert held(page, y=60)["ok"]
+        page.go(200)
+        assert round(page.robot.driving.left) == 60
+    assert held(page)["ok"]
+    page.go(60)
+    assert round(page.robot.driving.left) == 0
+    held(page, y=-60)
+    page.go(HOLD_MS - 100)
+    assert round(page.robot.driving.left) == -60
+    page.go(200)
+    assert round(page.robot.driving.left) == 0 and page.robot.is_running
+
+
+def test_a_page_that_hangs_holds_nothing(page: Page) -> None:
+    page.upload(STICK)
+    held(page, y=60)
+    page.go(100)
+    page.go(HOLD_MS + 50, is_away=True)
+    assert round(page.robot.driving.left) == 0
+
+
+def test_keys_behind_a_stop_start_nothing_and_are_read_by_the_next_program(page: Page) -> None:
+    page.upload(STICK)
+    held(page, y=60)
+    page.ask("stop")
+    assert not held(page, y=60).get("said"), "the stop is on its way, and ends it"
+    for _ in range(5):
+        page.go(200)
+        assert held(page, y=60)["ok"]
+    assert round(page.robot.driving.left) == 0 and not page.robot.is_running
+    page.upload(STICK)
+    assert held(page, y=60)["ok"]
+    page.go(100)
+    assert round(page.robot.driving.left) == 60
+
+
+def test_keys_end_no_upload_and_take_no_place_of_it(page: Page) -> None:
+    image = compile("SI|" + "SHOW(1);" * 60).image.hex()
+    sent = {"do": "upload", "image": image, "robot": "tinibot", "runs": True}
+    page.go(1, *({"do": "keys", "id": 100 + k, "keys": 0, "x": 0, "y": k} for k in range(60)))
+    page.go(1, {"id": 99, **sent})
+    for k in range(40):
+        page.go(20, {"do": "keys", "id": 200 + k, "keys": 1, "x": 0, "y": k})
+    page.go(2000)
+    answers = {each["id"]: each for each in page.news if "id" in each}
+    assert answers[99].get("ok")
+    assert {*range(100, 160), *range(200, 240)} <= answers.keys(), "each has its answer"
+    assert not any(each.get("said") for each in answers.values())
+    names = [{"do": "hello", "id": 300 + k} for k in range(MOST_WAITING)]
+    keys = {"do": "keys", "id": 400, "keys": 0, "x": 0, "y": 0}
+    page.go(1, *names, keys)
+    with pytest.raises(BadRequest):
+        page.page.link.ask({"do": "hello", "id": 401})
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"keys": 64}, {"keys": -1}, {"x": 101}, {"y": -101}, {"x": 1.5}, {"keys": True}, {"y": None}],
+    ids=str,
+)
+def test_what_nobody_can_hold_is_refused(page: Page, wrong: dict[str, Any]) -> None:
+    with pytest.raises(BadRequest):
+        page.page.link.ask({"do": "keys", "id": 1, "keys": 0, "x": 0, "y": 0, **wrong})
+
+
+def test_a_robot_without_a_remote_control_is_told_nothing(page: Page) -> None:
+    robot = page.page.line.robot
+    assert robot is not None
+    values = robot.values._replace(features=robot.values.features & ~REMOTE)
+    page.page.line.session._handshake.robot = robot._replace(values=values)
+    refused = held(page, y=60)
+    assert refused["failure"] == "NO_REMOTE" and "no remote control" in refused["said"]
+    assert page.upload(STICK)["failure"] == "NO_REMOTE"
+    assert round(page.robot.driving.left) == 0

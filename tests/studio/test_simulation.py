@@ -151,6 +151,67 @@ def test_a_fault_is_named() -> None:
     assert state["fault"] == "DIVIDE_BY_ZERO" and state["fault_at"] is not None
 
 
+STICK = "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP"
+
+
+def test_a_remote_control_is_read_until_nobody_says_anything() -> None:
+    """For half a second of the robot's time, however long that takes."""
+    simulation = begun(STICK)
+    for _ in range(5):
+        simulation.press(0, 0, 60)
+        simulation.go(400)
+        assert round(simulation.robot.driving.left) == 60
+    simulation.go(200)
+    assert round(simulation.robot.driving.left) == 0
+    simulation.press(0, 0, -60)
+    simulation.go(60)
+    assert round(simulation.robot.driving.left) == -60
+    simulation.press(0, 0, 0)
+    simulation.go(60)
+    assert round(simulation.robot.driving.left) == 0
+
+
+def test_what_is_held_while_it_is_held_or_stopped_counts_when_it_goes_on() -> None:
+    simulation = begun(STICK, at=(1,))
+    simulation.go(100)
+    assert simulation.held_at is not None
+    for _ in range(3):
+        simulation.press(0, 0, 60)
+        simulation.go(400)  # no time goes on
+    assert round(simulation.robot.driving.left) == 0
+    simulation.set_breakpoints(())
+    simulation.press(0, 0, 30)
+    simulation.go_on()
+    simulation.go(100)
+    assert round(simulation.robot.driving.left) == 30
+    simulation.stop()
+    simulation.press(0, 0, 60)
+    simulation.go(1000)
+    assert round(simulation.robot.driving.left) == 0 and not simulation.robot.is_running
+
+
+def test_the_page_says_what_is_held_of_a_remote_control() -> None:
+    """A run that begins anew begins with nothing."""
+
+    def motors(do: str, data: bytes = b"", **more: object) -> object:
+        return json.loads(worker.answer(json.dumps({"do": do, **more}), data))["motors"]
+
+    found = json.loads(
+        worker.answer(
+            json.dumps({"do": "check", "robot": "tinibot", "language": "en"}), STICK.encode()
+        )
+    )
+    assert found["remote"] == ["PAD_Y"]
+    on = {"robot": "tinibot", "world": "obstacles", "language": "en"}
+    image = bytes.fromhex(found["image"])
+    assert motors("power_on", image, **on) == [0, 0]
+    assert motors("go", duration_ms=100, held=[0, 0, 60]) == [60, 60]
+    assert motors("go", duration_ms=100, held=[0, 0, 0]) == [0, 0]
+    assert motors("step", limit_ms=100, held=[0, 0, 50]) == [50, 50]
+    assert motors("power_on", image, **on) == [0, 0]
+    assert motors("go", duration_ms=300) == [0, 0]
+
+
 def test_the_page_asks_for_all_of_it() -> None:
     def ask(data: bytes = b"", **fields: object) -> dict[str, object]:
         found: dict[str, object] = json.loads(worker.answer(json.dumps(fields), data))

@@ -53,7 +53,7 @@ END_LOOP
 # As blocks after its run; at a breakpoint, with values; on the start screen, where both are kept;
 # in a lesson, after a check; and those of SHEETS.
 SCENES = {"": PROGRAM, ".held": COUNTED, ".start": COUNTED, ".lesson": "SI|F(5, 80)",
-          ".drawing": PROGRAM, ".phone": PROGRAM, ".minute": PROGRAM,
+          ".drawing": PROGRAM, ".phone": PROGRAM, ".minute": PROGRAM, ".drive": PROGRAM,
           ".teacher": PROGRAM, ".wall": "", ".more": PROGRAM}  # fmt: skip
 WALL = ".wall"  # of a teacher, with thirty pupils
 PUPILS = ["Ana", "Beto", "Carla", "Dani", "Elena", "Fabio", "Gabi", "Hugo", "Inés", "Julia",
@@ -252,6 +252,23 @@ def _minute(page: Page, scene: str, look: Callable[[], None]) -> None:
     look()
 
 
+def _drive(page: Page, scene: str, look: Callable[[], None]) -> None:
+    """By hand: straight on, a turn with the horn, and the same on a large screen."""
+    page.click("#home")
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.click("[data-begin=drive]")
+    _in_phase(page, "running")
+    for key, lasts_ms in (("ArrowUp", 1500), ("ArrowLeft", 200), ("a", 100)):
+        page.keyboard.down(key)
+        page.wait_for_timeout(lasts_ms)
+        if key != "ArrowLeft":
+            look()
+    page.set_viewport_size({"width": 1366, "height": 768})
+    page.click("#view_blocks")
+    studio.shown(page)
+    look()
+
+
 def _teacher(page: Page, scene: str, look: Callable[[], None]) -> None:
     """A real robot in four steps, and below them what is for the teacher."""
     page.click("#side_real")
@@ -301,6 +318,7 @@ SHEETS = {
     ".drawing": _drawing,
     ".phone": _phone,
     ".minute": _minute,
+    ".drive": _drive,
     ".teacher": _teacher,
 }
 

@@ -79,6 +79,7 @@ GROUPS = (
     ("What TiniBot sees", (
         "DISTANCE",
         "LIGHT_L   LIGHT_R",
+        "KEY_UP   KEY_A   PAD_X",
     )),
 )
 # fmt: on

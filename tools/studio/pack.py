@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import importlib._bootstrap_external as bootstrap
 import importlib.util
+import re
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
@@ -32,6 +33,8 @@ DATA = {
 }
 DATA_OF_LESSONS = {"lessons": ("*/lesson.toml", "*/world.toml", "*/pupil.*.md"),
                    "languages": ("*/lessons.texts",)}  # fmt: skip
+PRINTED = re.compile(r"((?:-|[0-9]{1,2}\.) +)?\[print\]")  # a line that is only on paper
+ON_PAGE = (0, 2, 3)  # sections of a pupil's page that are read beside the simulator: `page_lessons`
 ENCODINGS = ("encodings.latin_1", "encodings.ascii", "encodings.utf_8_sig", "encodings.cp437")
 STAMP = (1980, 1, 1, 0, 0, 0)
 Files = dict[str, bytes]
@@ -137,6 +140,18 @@ def compiled(files: Files) -> Files:
     }
 
 
+def on_page(written: str) -> str:
+    """Return of a pupil's page what the studio shows, and all its headings."""
+    kept: list[str] = []
+    section = 0
+    for line in written.split("\n"):
+        is_heading = line.startswith("## ")
+        section += is_heading
+        if is_heading or (section in ON_PAGE and not PRINTED.match(line)):
+            kept.append(line)
+    return "\n".join(kept)
+
+
 def data_of(package: str, rows: Mapping[str, tuple[str, ...]]) -> Files:
     """Return the files of folders that match their patterns."""
     return {
@@ -158,6 +173,8 @@ def pack(start: list[str], package: str, cobs: str, standard: str, target: str) 
     packer.add(LESSONS)  # what of Python's library these need is in the archive of that
     lessons = {name: source for name, source in packer.own.items() if name not in packed}
     data = data_of(package, DATA_OF_LESSONS)
+    data |= {name: on_page(page.decode()).encode() for name, page in data.items()
+             if name.endswith(".md")}  # fmt: skip
     write(f"{target}/lessons.zip", {**compiled(lessons), **data})
     write(f"{target}/python.zip", compiled(packer.standard))
     return f"{len(packer.own)} modules of tiniscript and cobs, {len(packer.standard)} of Python"

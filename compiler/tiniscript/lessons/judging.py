@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 
 from tiniscript.base.fixed_point import ONE, as_text
 from tiniscript.lessons import place_judging
@@ -25,6 +26,8 @@ EARLY_MS = 5000  # within them a robot that turns to the wrong side has lost its
 STOOD_MS = 1000  # of a loop that took no time: so long it was where it is
 RESTED_MS = 3000  # without power at the end of the time: there it stays
 SAMPLE_CM = 5.0  # between two points of a line that is followed
+LATE_MS = 600  # after which a robot does what is held now
+OBEYED_CM, OBEYED_DEGREES = 3.0, 10.0  # more is a move, or a turn
 MOVING = frozenset({"ends_in", "reaches", "stands_before", "follows", "drives", "faces"})
 AT_END = frozenset({"ends_in", "stands_before", "faces"})  # where the robot is when it is over
 WHERE = AT_END | {"reaches"}
@@ -247,6 +250,57 @@ def _ends(criterion: Criterion, task: Task) -> Finding | None:
     return None if task.run.ending == DONE else Finding("ends", "ends", over)
 
 
+def _obeys(criterion: Criterion, task: Task) -> Finding | None:
+    """Compare what the robot does with each key that is held, and with none, in their order."""
+    rested_ms = 0.0
+    for press in task.run.presses:
+        at_ms, end_ms = press.at_seconds * 1000, press.end_seconds * 1000 + LATE_MS
+        if not _stood(task.run, rested_ms, at_ms):
+            return _unrest(rested_ms, at_ms)
+        rested_ms = end_ms
+        what, is_done = _obeyed(press.key, task.run, at_ms, end_ms)
+        if not is_done:
+            values = {"seconds": in_seconds(at_ms), "word": press.key}
+            return Finding("obeys", f"obeys/{what}", values, ms=round(end_ms))
+    is_still = _stood(task.run, rested_ms, task.run.end_ms)
+    return None if is_still else _unrest(rested_ms, task.run.end_ms)
+
+
+def _unrest(from_ms: float, to_ms: float) -> Finding:
+    return Finding("obeys", "obeys/rest", {"seconds": in_seconds(from_ms)}, ms=round(to_ms))
+
+
+def _obeyed(key: str, run: Run, from_ms: float, to_ms: float) -> tuple[str, bool]:
+    """Return what a key is for, and whether the robot did it."""
+    ahead_cm, degrees = _moved(run, from_ms, to_ms)
+    found = {
+        "KEY_UP": ("forward", ahead_cm > OBEYED_CM),
+        "KEY_DOWN": ("back", ahead_cm < -OBEYED_CM),
+        "KEY_LEFT": ("left", degrees > OBEYED_DEGREES),
+        "KEY_RIGHT": ("right", degrees < -OBEYED_DEGREES),
+    }
+    return found.get(key) or ("beep", any(from_ms <= beep.ms <= to_ms for beep in run.beeps))
+
+
+def _stood(run: Run, from_ms: float, to_ms: float) -> bool:
+    ahead_cm, degrees = _moved(run, from_ms, to_ms)
+    return abs(ahead_cm) < STILL_CM and abs(degrees) < STILL_DEGREES
+
+
+def _moved(run: Run, from_ms: float, to_ms: float) -> tuple[float, float]:
+    """Return how far a robot went ahead in a time, and how far it turned to the left."""
+    ahead_cm = degrees = 0.0
+    for before, after in pairwise(run.track):
+        if from_ms <= before.ms and after.ms <= to_ms:
+            along = math.radians(before.pose.heading)
+            dx = after.pose.x_cm - before.pose.x_cm
+            dy = after.pose.y_cm - before.pose.y_cm
+            ahead_cm += dx * math.cos(along) + dy * math.sin(along)
+            turned = after.pose.heading - before.pose.heading
+            degrees += (turned + 180) % 360 - 180
+    return ahead_cm, degrees
+
+
 # -- what it says ---------------------------------------------------------------------------------
 
 
@@ -328,6 +382,7 @@ JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {
     "shows": _shows,
     "beeps": _beeps,
     "blinks": _blinks,
+    "obeys": _obeys,
     "order": _order,
     "ends": _ends,
 }

@@ -56,12 +56,25 @@ class Variation(NamedTuple):
     heading: tuple[float, float]
 
 
+class Press(NamedTuple):
+    """A key of a remote control that is held, by its word, from so many seconds of the run on."""
+
+    at_seconds: float
+    seconds: float
+    key: str
+
+    @property
+    def end_seconds(self) -> float:
+        return self.at_seconds + self.seconds
+
+
 class Lesson(NamedTuple):
     """A lesson. `name` is that of its folder.
 
     A program has `seconds` of the robot's time in each world, and passes where it meets all
     criteria in the worlds of the seeds 1 to `worlds`. Sensors and motors are off by about
     `noise`, a fraction. `is_mirrored`: in half of the worlds left and right are exchanged.
+    `presses` are played in each world, one after the other.
     """
 
     name: str
@@ -74,6 +87,7 @@ class Lesson(NamedTuple):
     world: World
     variations: tuple[Variation, ...]
     criteria: tuple[Criterion, ...]
+    presses: tuple[Press, ...] = ()
 
 
 class Answer(NamedTuple):
@@ -143,6 +157,7 @@ KINDS: dict[str, Kind] = {
     "beeps": Kind("its buzzer sounds `times` times, at `pitches` different pitches; with `at`, within `within_cm` of each of these places", (TIMES, Number("pitches", 1, 100, 1), WITHIN), places=1, may_be_anywhere=True),
     "blinks": Kind("it switches `what` on `times` times while it moves", (TIMES,), words="switch"),
     "order": Kind("these things happen one after the other: moves, stops, beeps, shows", words="event"),
+    "obeys": Kind("it does what is held: it goes forward for KEY_UP and back for KEY_DOWN, turns for KEY_LEFT and KEY_RIGHT, beeps for KEY_A and KEY_B, and stands while nothing is held"),
     "ends": Kind("the program ends by itself"),
     "uses": Kind("the text has each of these words `times` times; a DEF counts if it is called, a LOOP if it repeats more than waiting, an UNTIL if it asks for something", (TIMES,), words="word"),
     "needs": Kind("without these, LOOP, DEF, WHEN or TASK, the robot misses one of the criteria above: with each loop done once, without the words of DEF, or without the other tasks", words="block"),

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 
 from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import REMOTE
 from tiniscript.base.languages import SOURCE, ByLanguage, languages
 from tiniscript.base.languages import found as text_of
 from tiniscript.base.languages import text as said_in
@@ -31,6 +32,7 @@ from tiniscript.lessons.lesson import (
     LessonRefused,
     Number,
     Place,
+    Press,
     Variation,
 )
 from tiniscript.lessons.sentences import sentence
@@ -43,7 +45,7 @@ LABEL_CHARACTERS = 80
 PROGRAM_CHARACTERS = 20_000
 MOST_SECONDS, MOST_WORLDS, MOST_NOISE = 600, 20, 20
 MOST_CM = 2000
-ROWS = 100  # criteria, variations, answers
+ROWS = 100  # criteria, variations, answers, presses
 GAP = re.compile(r"\{(\w+)\}")
 PART = re.compile(r"(start)|(walls|boxes|lines|lamps)\[([1-9][0-9]{0,2})\]")
 NO_LABELS = ByLanguage({each: said_in("lessons", "place", each) for each in languages()})
@@ -69,9 +71,12 @@ def read(text: str, world: World, name: str) -> Lesson:
             world,
             tuple(_variation(row, world) for row in _rows(root, "varies")),
             tuple(_criterion(row, world, known) for row in _rows(root, "criteria")),
+            _presses(_rows(root, "presses")),
         )
         if not lesson.criteria and not root.reasons:
             root.complain("no_criteria", "criteria")
+        if any(each.kind == "obeys" for each in lesson.criteria) and not lesson.presses:
+            root.complain("missing", "presses", example="[[presses]]")
     return lesson
 
 
@@ -142,6 +147,20 @@ def _variation(table: Table, world: World) -> Variation:
         table.complain("lamp_has_no_heading", "heading")
     table.finish()
     return Variation(place, *spans)
+
+
+def _presses(tables: list[Table]) -> tuple[Press, ...]:
+    """Return what is held, one after the other: each begins when the one before has ended."""
+    keys = [device.name for device in REMOTE if device.is_yes_no]
+    found: list[Press] = []
+    for table in tables:
+        begins = round(found[-1].end_seconds * ONE) if found else 0
+        soon = f"at_seconds = {begins / ONE:g}"
+        at = table.number("at_seconds", begins, MOST_SECONDS * ONE, soon)
+        lasts = table.number("seconds", ONE // 10, MOST_SECONDS * ONE, "seconds = 1")
+        found.append(Press(at / ONE, lasts / ONE, table.choice("key", keys)))
+        table.finish()
+    return tuple(found)
 
 
 def _span(table: Table, key: str, most: int) -> tuple[float, float]:

@@ -11,8 +11,10 @@ from typing import NamedTuple
 
 from tiniscript.base.trace import Event
 from tiniscript.bytecode.image import Image
-from tiniscript.lessons.lesson import Lesson
-from tiniscript.lessons.variation import varied
+from tiniscript.lessons.lesson import Lesson, Press
+from tiniscript.lessons.variation import pressed, varied
+from tiniscript.link.remote import NOTHING
+from tiniscript.link.remote import pressed as held
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.computer import Computer
@@ -86,6 +88,7 @@ class Run(NamedTuple):
     happened: tuple[str, ...]
     driven_cm: float
     robot: VirtualRobot
+    presses: tuple[Press, ...] = ()
 
     @property
     def world(self) -> World:
@@ -110,11 +113,12 @@ class Trial:
         robot = self.robot = VirtualRobot(
             profile, varied(lesson, seed), Settings(seed=seed, noise=lesson.noise, eeprom_us=0)
         )
-        self._witness = _Witness(robot, seed)
+        self._presses = pressed(lesson, seed)
+        self._witness = _Witness(robot, seed, self._presses)
         self._asks = image.start == "PING"
         if self._asks:
             return
-        _bring(robot, image)
+        self._computer = _bring(robot, image)
         self._witness.look()
         end_ms = robot.now_ms + BRINGING_MS
         while self._witness.began_ms is None and robot.now_ms < end_ms:
@@ -135,15 +139,28 @@ class Trial:
                 return witness.run(LIMIT)
             if robot.now_ms >= until_ms:
                 return None
-            robot.step(min(robot.now_ms + STEP_MS, self._limit_ms))
+            self.step(min(robot.now_ms + STEP_MS, self._limit_ms))
             witness.look()
             if witness.events > EVENTS:
                 robot.rest()
                 return witness.run(BUSY)
         return witness.run(FAULT if robot.fault else DONE)
 
+    def step(self, until_ms: int) -> None:
+        """Let the robot's time go on, by STEP_MS at most, while what is to be held is held."""
+        robot = self.robot
+        if not self._presses:
+            robot.step(until_ms)
+            return
+        assert self._witness.began_ms is not None
+        seconds = (robot.now_ms - self._witness.began_ms) / 1000
+        keys = (each.key for each in self._presses if each.at_seconds <= seconds < each.end_seconds)
+        key = next(keys, "")
+        self._computer.session.press(*(held([key.removeprefix("KEY_")]) if key else NOTHING))
+        self._computer.wait(until_ms - robot.now_ms)
 
-def _bring(robot: VirtualRobot, image: Image) -> None:
+
+def _bring(robot: VirtualRobot, image: Image) -> Computer:
     """Bring a program to the robot and start it, by its button where it begins with SB."""
     computer = Computer(robot, robot.settings.seed)
     session = computer.session
@@ -156,14 +173,16 @@ def _bring(robot: VirtualRobot, image: Image) -> None:
         robot.press()
         robot.step(robot.now_ms + PUSH_MS)
         robot.let_go()
+    return computer
 
 
 class _Witness:
     """Notes what a robot does, from the start of its program on."""
 
-    def __init__(self, robot: VirtualRobot, seed: int) -> None:
+    def __init__(self, robot: VirtualRobot, seed: int, presses: tuple[Press, ...]) -> None:
         self.robot = robot
         self.seed = seed
+        self._presses = presses
         self.began_ms: int | None = None
         self.events = 0
         self._bumps = 0
@@ -256,4 +275,5 @@ class _Witness:
             tuple(self._track) or (Sample(0, robot.world.start),),
             tuple(self._touches), tuple(self._shown), tuple(self._beeps), tuple(self._switched),
             tuple(self._motors), tuple(self._happened), robot.driving.driven_cm, robot,
+            self._presses,
         )  # fmt: skip

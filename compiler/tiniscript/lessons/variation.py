@@ -10,7 +10,7 @@ import math
 from random import Random
 from typing import TypeVar
 
-from tiniscript.lessons.lesson import Lesson, Place, Variation
+from tiniscript.lessons.lesson import Lesson, Place, Press, Variation
 from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.geometry import Point, Segment, joined
 from tiniscript.virtual.world import World
@@ -28,6 +28,16 @@ def varied(lesson: Lesson, seed: int) -> World:
         )
         world = _moved(world, variation, dx, dy, turn)
     return _mirrored(world) if is_mirrored(lesson, seed) else world
+
+
+OTHER_SIDE = {"KEY_LEFT": "KEY_RIGHT", "KEY_RIGHT": "KEY_LEFT"}
+
+
+def pressed(lesson: Lesson, seed: int) -> tuple[Press, ...]:
+    """Return what is held in the world of a seed."""
+    if not is_mirrored(lesson, seed):
+        return lesson.presses
+    return tuple(each._replace(key=OTHER_SIDE.get(each.key, each.key)) for each in lesson.presses)
 
 
 def is_mirrored(lesson: Lesson, seed: int) -> bool:

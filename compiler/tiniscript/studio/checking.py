@@ -11,6 +11,7 @@ from functools import cache, lru_cache
 from typing import NamedTuple
 
 from tiniscript import robots
+from tiniscript.base.kit import REMOTE, Kit
 from tiniscript.base.source import Edit, Source
 from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics.codes import Diagnostic
@@ -53,7 +54,8 @@ class Checked(NamedTuple):
     which offset on which range of the text it comes from, `shows` which of them are SHOWs with a
     name, by offset; `variables` are in the order of their
     numbers; `start` is SI, SB or PING, or nothing where there are mistakes; `robot` is the one that
-    it was compiled for, which the text names where `names_robot`."""
+    it was compiled for, which the text names where `names_robot`; `remote` are the words of a
+    remote control that it reads."""
 
     image: bytes
     code_bytes: int
@@ -64,6 +66,7 @@ class Checked(NamedTuple):
     start: str = ""
     robot: str = ""
     names_robot: bool = False
+    remote: tuple[str, ...] = ()
 
 
 def check(data: bytes, robot: str, language: str) -> Checked:
@@ -79,7 +82,14 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     variables = tuple(map(Variable, found.program.variables, kinds))
     places = source_map.made(found.source, found.places)
     return Checked(found.image, len(found.code), findings, places.places, _shows(places), variables,
-                   found.program.start, profile.name, names_robot)  # fmt: skip
+                   found.program.start, profile.name, names_robot,
+                   _remote(found, profile.kit))  # fmt: skip
+
+
+def _remote(found: Compiled, kit: Kit) -> tuple[str, ...]:
+    uses = found.verdict.uses if found.verdict is not None else ()
+    read = {number - len(kit.sensors) for what, number in uses if what == "sensor"}
+    return tuple(device.name for k, device in enumerate(REMOTE) if k in read)
 
 
 def _shows(places: source_map.Map) -> tuple[tuple[int, Show], ...]:

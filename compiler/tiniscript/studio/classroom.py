@@ -157,7 +157,7 @@ OVER_S = 6.0  # for pages to hear that the class is over
 WRONG = (20, 1 / 3)
 REQUESTS = (80, 40)  # of a pupil; a page that drives asks ten times a second
 # What a pupil may ask of a robot. Its name, its trim and its owner are the teacher's.
-MAY = ("hello", "upload", "live", "start", "identify", "trim", "stop")
+MAY = ("hello", "upload", "live", "start", "identify", "trim", "keys", "stop")
 
 Clock = Callable[[], float]
 

@@ -177,7 +177,8 @@ class JudgedRun(Simulation):
     ) -> None:
         lesson = _lesson(number)
         profile = profile_of(robot)
-        self.robot = Trial(unpack(image), profile, lesson, seed).robot
+        self._trial = Trial(unpack(image), profile, lesson, seed)
+        self.robot = self._trial.robot
         self.session = Session(NONCE, profile.board.baud, profile.kit.fingerprint)
         self.fault_at = None
         self.marks = marks._replace(breakpoints=())
@@ -193,13 +194,16 @@ class JudgedRun(Simulation):
         self._owed_ms += duration_ms
         while robot.is_running and self._owed_ms >= STEP_MS and robot.now_ms < self._end_ms:
             self._owed_ms -= STEP_MS
-            robot.step(min(robot.now_ms + STEP_MS, self._end_ms))
+            self._trial.step(min(robot.now_ms + STEP_MS, self._end_ms))
             robot.driving.look(robot.now_ms)
         if robot.now_ms >= self._end_ms:
             robot.rest()
 
     def step(self, limit_ms: int) -> None:
         self.go(STEP_MS)
+
+    def press(self, keys: int, x: int, y: int) -> None:
+        """Nobody but the judge holds anything."""
 
     def stop(self) -> None:
         self.robot.rest()

@@ -28,10 +28,18 @@ from tiniscript.link.connection import (
     Requester,
     reason_of,
 )
-from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST, NAME_BYTES, STATE_RUNNING
+from tiniscript.link.messages import (
+    MOST_BALANCE,
+    MOST_LEAST,
+    MOST_PAD,
+    NAME_BYTES,
+    REMOTE_KEYS,
+    STATE_RUNNING,
+)
 from tiniscript.link.names import cause_name, fault_name, saved_name
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, TrimReply
+from tiniscript.link.remote import Pressed, has_remote
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, sentence
 from tiniscript.link.trim import Trim, told
@@ -55,6 +63,7 @@ class _Asked(NamedTuple):
     number: int
     pending: PendingRequest[Any]
     is_program: bool  # it sends or starts one, and no line
+    is_keys: bool  # of a remote control: the newest word alone waits, so few do
 
 
 class _Run(NamedTuple):
@@ -94,7 +103,9 @@ class RobotLink:
             self.stop()
             self._answers.append({"id": number, "ok": True})
             return
-        if not isinstance(do, str) or do not in _MAKERS or len(self._asked) >= MOST_WAITING:
+        if not isinstance(do, str) or do not in _MAKERS:
+            raise BadRequest
+        if do != "keys" and sum(not each.is_keys for each in self._asked) >= MOST_WAITING:
             raise BadRequest
         make = _MAKERS[do](request)
         limit_ms = whole(request, "limit_ms", 1, LONGEST_MS, LIMIT_MS)
@@ -109,7 +120,8 @@ class RobotLink:
                 pending.limit_ms = limit_ms
             return pending
 
-        self._asked.append(_Asked(number, self._connection.do(limited), do in ("upload", "start")))
+        pending = self._connection.do(limited)
+        self._asked.append(_Asked(number, pending, do in ("upload", "start"), do == "keys"))
 
     def stop(self) -> None:
         """Stop the robot, whoever has started what it does."""
@@ -238,6 +250,7 @@ def about(robot: DeviceInfo) -> Json:
         "owner": whose(robot),
         "room": robot.room,
         "is_running": robot.values.state == STATE_RUNNING,
+        "has_remote": has_remote(robot),
     }
 
 
@@ -284,6 +297,12 @@ def _trim(request: Json) -> _Make:
     return lambda session: session.trim(trim.data())
 
 
+def _keys(request: Json) -> _Make:
+    keys = whole(request, "keys", 0, (1 << len(REMOTE_KEYS)) - 1)
+    held = Pressed(keys, *(whole(request, way, -MOST_PAD, MOST_PAD) for way in ("x", "y")))
+    return lambda session: session.press(*held)
+
+
 _MAKERS: dict[str, Callable[[Json], _Make]] = {
     "hello": lambda request: lambda session: session.hello(),
     "upload": _upload,
@@ -293,6 +312,7 @@ _MAKERS: dict[str, Callable[[Json], _Make]] = {
     "identify": lambda request: lambda session: session.identify(),
     "name": _name,
     "trim": _trim,
+    "keys": _keys,
     "claim": lambda request: lambda session: session.claim(0),
     "disown": lambda request: lambda session: session.disown(0),
 }

@@ -144,6 +144,11 @@ class Simulation:
         self.robot.let_go()
         self.go(1)
 
+    def press(self, keys: int, x: int, y: int) -> None:
+        """Hold these keys of a remote control and its pad so, until something else is said; who
+        says nothing for half a second of the robot's time holds nothing."""
+        self.session.press(keys, x, y)
+
     def close(self) -> None:
         self.robot.switch_off()
 

@@ -63,10 +63,14 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
 
 
 def _driven(drive: Callable[[Simulation, Answer], object]) -> Callable[[Answer, bytes], Answer]:
-    """Return what does `drive` with the virtual robot, and answers how it stands then."""
+    """Return what does `drive` with the virtual robot, and answers how it stands then.
+
+    `held` is what somebody holds of a remote control meanwhile."""
 
     def answer(fields: Answer, data: bytes) -> Answer:
         assert _simulation is not None, "nothing is switched on"
+        if "held" in fields:
+            _simulation.press(*fields["held"])
         drive(_simulation, fields)
         return _simulation.state()
 

@@ -45,6 +45,7 @@ def _check(fields: Answer, data: bytes) -> Answer:
         "start": found.start,
         "robot": found.robot,
         "names_robot": found.names_robot,
+        "remote": found.remote,
         "loose": _loose(fields, data) if LOOSE.encode() in data else 0,
     }
 

@@ -16,6 +16,7 @@ import { pageState } from './page/page_state.js';
 import { bringsProgram } from './programs/links.js';
 import { called, currentLanguage, known, languageOf, LANGUAGES, setLanguage, text } from './page/texts.js';
 import { SimulatorPanel } from './virtual/simulator_panel.js';
+import { Pad } from './remote/pad.js';
 import { Recorder } from './robot/recorder.js';
 import { whyOutside } from './robot/host.js';
 import { RobotPanel } from './robot/panel.js';
@@ -82,7 +83,8 @@ pageState.robotName.set(work.robot);
 
 const editor = new Editor(element('editor', HTMLElement));
 const views = new Views({ python, editor, work, remember });
-const driving = new SimulatorPanel({ python, work, whenCompiled: () => checking.whenChecked(), remember });
+const pad = new Pad();
+const driving = new SimulatorPanel({ python, work, whenCompiled: () => checking.whenChecked(), remember, pad });
 const programs = new Programs({ python, work, put: putProgram, picturing: () => views.picture() });
 
 const recorder = new Recorder({ python, world: () => driving.world });
@@ -90,6 +92,7 @@ const place = new RobotPlace();
 const panel = new RobotPanel({
   recorder,
   place,
+  pad,
   python,
   goTo: (place) => views.goTo(place),
 });

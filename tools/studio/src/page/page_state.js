@@ -33,6 +33,7 @@ class Observable {
 
 export const pageState = {
   screen: new Observable(/** @type {'' | 'start' | 'program'} */ ('')), // that is seen
+  side: new Observable(''), // that is seen beside the program, by its button
   language: new Observable(''),
   areWordsShown: new Observable(false), // of the text, on blocks and at readings
   robotName: new Observable(''),

@@ -2,6 +2,7 @@
 // class. All go on meanwhile.
 
 import { element } from './elements.js';
+import { pageState } from './page_state.js';
 
 const SIDES = [
   { button: element('side_virtual', HTMLButtonElement), section: null },
@@ -22,4 +23,5 @@ export function showSide(id) {
   }
   element('driving', HTMLElement).hidden = id !== 'side_virtual' && id !== 'side_lessons';
   document.documentElement.dataset['side'] = id;
+  pageState.side.set(id);
 }

@@ -16,6 +16,7 @@ import { leaveForeignWorkers } from '../page/offline.js';
 const PLACE = 'tiniscript.token';
 const LOADED_PLACE = 'tiniscript.loaded'; // the code for which the page was loaded again
 const BEAT_MS = 100;
+const GAP_MS = 30; // between two beats, as between two words of a remote control: a class takes forty requests a second of a pupil
 const SILENT_MS = 3000; // without an answer
 const ASK_MS = 2000;
 const CONNECT_TRIES = 3;
@@ -99,6 +100,7 @@ export class HostRobot extends Asking {
   #seen = 0;
   #isAsking = false;
   #heardAt = 0;
+  #beganAt = -GAP_MS; // the newest beat
   /** @type {(about: About) => void} */
   #met = () => {};
   /** @type {(why: Error) => void} */
@@ -166,8 +168,14 @@ export class HostRobot extends Asking {
 
   async go() {
     if (this.isOver || this.#isAsking || !this.#isThere) return;
-    this.#isAsking = true;
     clearTimeout(this.timer);
+    const early_ms = this.#beganAt + GAP_MS - performance.now();
+    if (early_ms > 0) {
+      this.timer = window.setTimeout(() => this.go(), early_ms);
+      return;
+    }
+    this.#isAsking = true;
+    this.#beganAt = performance.now();
     const asked = this.asked.splice(0, 8);
     let isLost = false;
     try {
@@ -181,7 +189,7 @@ export class HostRobot extends Asking {
       if (why instanceof Failed) this.end(why);
       else {
         isLost = true;
-        this.asked.unshift(...asked); // it has not arrived, or has: an id is answered once
+        this.asked.unshift(...this.withoutKeys(asked)); // it has not arrived, or has: an id is answered once
         if (performance.now() - this.#heardAt > SILENT_MS) this.end(new Failed('host_gone'));
       }
     } finally {

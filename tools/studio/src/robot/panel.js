@@ -33,6 +33,7 @@ import { nameOfShow, showAt } from '../writing/shows.js';
  * @property {(place: import('../writing/editor.js').Range) => void} goTo
  * @property {import('./recorder.js').Recorder} recorder of what the robot tells
  * @property {import('./place.js').RobotPlace} place where its program is
+ * @property {import('../remote/pad.js').Pad} pad
  */
 
 // The keys of robots that this browser keeps: the text of a file of keys, as `tsc set owner --list` writes it. Who uses
@@ -50,6 +51,8 @@ export class RobotPanel {
   #isBusy = false;
   /** @type {Choice[]} */
   #choices = [];
+  /** Words of a remote control that the newest program reads. @type {string[]} */
+  #reads = [];
   /** @type {{program: string, places: Checked['places'], of: Checked} | null} */
   #sent = null;
   /** The newest programs and lines that were sent, by checksum: what they show is named. @type {Map<string, Checked>} */
@@ -102,6 +105,7 @@ export class RobotPanel {
     });
     for (const name of ['pagehide', 'freeze']) addEventListener(name, () => this.#way?.leave());
     pageState.language.subscribe(() => this.#show());
+    pageState.checked.subscribe(() => this.#offer());
     this.#show();
     this.#look();
   }
@@ -288,9 +292,30 @@ export class RobotPanel {
     this.#ask({ do: 'upload', image: program.image, robot: pageState.robotName.value, runs }, (answer) => {
       const { program: sum = '', saved = 'MEMORY' } = answer;
       this.#sent = { program: sum, places: program.places, of: program };
+      this.#offer();
       if (runs && program.start === 'SB') this.#page.recorder.wait(sum);
       this.#speech.say('say_receipt', { program: sum, bytes: program.bytes }, `saved_${saved}`);
     });
+  }
+
+  /** A robot is driven by hand where the program that it has from here, or that is seen, reads a remote control. */
+  #offer() {
+    const reads = this.#sent?.of.remote.length ? this.#sent.of.remote : pageState.checked.value?.remote ?? this.#reads;
+    this.#reads = reads;
+    const about = this.#about;
+    this.#page.pad.offer('link', about && reads.length ? {
+      reads,
+      isDeaf: !about.has_remote,
+      tell: (held) => this.#press(held),
+    } : null);
+  }
+
+  /** @param {import('../remote/held.js').Held} held */
+  async #press(held) {
+    const answer = await this.#way?.press(held).catch(() => null); // it is over, and that was said
+    if (!answer?.said) return; // it has heard it, or the next word
+    this.#page.pad.letGo(); // it is not asked again and again
+    this.#speech.fail(new Failed(answer.failure ?? 'bug', refusal(answer)));
   }
 
   /** Runs a line now. @param {string} line */
@@ -361,6 +386,7 @@ export class RobotPanel {
     else if (event.event === 'STOPPING') this.#stopping.begin();
     else if (event.event === 'RESTARTED') this.#speech.say('why_restarted');
     else if (event.event === 'STOPPED') {
+      this.#page.pad.letGo();
       // A page that is hidden keeps the words why it stopped the robot.
       if (this.#stopping.isOpen || document.visibilityState !== 'hidden') this.#stopping.confirm(String(event.cause));
     }
@@ -415,6 +441,7 @@ export class RobotPanel {
     element('link_settings', HTMLElement).hidden = !isThere;
     element('flash', HTMLElement).classList.toggle('away', this.#way !== null);
     for (const id of ['link_connect', 'link_serial', 'link_bluetooth', 'flash_write', 'flash_open']) element(id, HTMLButtonElement).disabled = this.#isBusy;
+    this.#offer();
     document.documentElement.dataset['robot'] = isThere ? 'connected' : this.#isBusy ? 'connecting' : 'none';
   }
 }

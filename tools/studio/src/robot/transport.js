@@ -8,6 +8,7 @@
  * @property {'free' | 'yours' | 'other'} owner
  * @property {number} room
  * @property {boolean} is_running
+ * @property {boolean} has_remote its programs can read a remote control
  */
 
 /**
@@ -57,6 +58,7 @@
 /**
  * @typedef {object} Transport to a connected robot
  * @property {(request: Record<string, unknown>) => Promise<Answer>} ask
+ * @property {(held: import('../remote/held.js').Held) => Promise<Answer>} press
  * @property {() => void} stop
  * @property {() => void} leave
  */
@@ -101,6 +103,26 @@ export class Asking {
       this.#waiting.set(id, { resolve, reject });
       this.asked.push({ ...request, id });
       this.go();
+    });
+  }
+
+  /**
+   * Says what is held of a remote control. It takes the place of what was not sent yet, and is not sent again: that would
+   * press a key that was let go.
+   * @param {import('../remote/held.js').Held} held
+   */
+  press(held) {
+    this.asked = this.withoutKeys(this.asked);
+    return this.ask({ do: 'keys', ...held });
+  }
+
+  /** What is asked but for keys, whose askers hear that they were not sent. @param {Record<string, unknown>[]} asked */
+  withoutKeys(asked) {
+    return asked.filter((each) => {
+      if (each['do'] !== 'keys') return true;
+      this.#waiting.get(each['id'])?.resolve({ failure: 'replaced' });
+      this.#waiting.delete(each['id']);
+      return false;
     });
   }
 

@@ -64,6 +64,15 @@ LOOP(2);
 END_LOOP;
 S;
 ` },
+  drive: { robot: 'tinibot', world: 'obstacles', text: `\
+SI|LOOP(FOREVER);
+  M(PAD_Y + PAD_X, PAD_Y - PAD_X);
+  W(0.05);
+END_LOOP;
+WHEN(KEY_A);
+  BEEP(0.2, 440);
+END_WHEN;
+` },
 };
 
 /** Whether a program is one that the page has brought. @param {string} text */

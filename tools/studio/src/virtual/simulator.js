@@ -6,6 +6,7 @@ import { bugSaid } from '../page/faults.js';
 import { currentLanguage } from '../page/texts.js';
 
 /** @import { Python, Checked, RobotState } from '../python.js' */
+/** @import { Held } from '../remote/held.js' */
 /** @typedef {'off' | 'running' | 'paused' | 'ended'} Phase */
 
 const MOST_MS = 400; // of the robot's time that is asked for at once: a stop waits for no more
@@ -23,6 +24,8 @@ export class Simulator {
   /** @type {string[]} */
   trace = [];
   speed = 1;
+  /** What somebody holds of a remote control, where the program reads one. @type {Held | null} */
+  held = null;
   #least = 0;
   failure = ''; // a mistake of ours
   #isAsking = false;
@@ -89,7 +92,7 @@ export class Simulator {
     if (this.phase !== 'paused' || this.#isAsking) return;
     const until_ms = (this.state?.now_ms ?? 0) + STEP_LIMIT_MS;
     do {
-      await this.#ask({ do: 'step', limit_ms: MOST_MS });
+      await this.#drive({ do: 'step', limit_ms: MOST_MS });
     } while (
       this.phase === 'paused' &&
       this.state?.is_running &&
@@ -141,10 +144,15 @@ export class Simulator {
       const whole = Math.min(MOST_MS, Math.floor(this.#rest));
       if (whole > 0) {
         this.#rest = Math.min(this.#rest - whole, MOST_MS);
-        await this.#ask({ do: 'go', duration_ms: whole });
+        await this.#drive({ do: 'go', duration_ms: whole });
       }
     }
     this.#goOnWithNext();
+  }
+
+  /** Lets the robot's time go on, for less than what is held counts. @param {Record<string, unknown>} request */
+  #drive(request) {
+    return this.#ask(this.held ? { ...request, held: [this.held.keys, this.held.x, this.held.y] } : request);
   }
 
   /**

@@ -28,6 +28,7 @@ import { WorldDrawing } from '../world/drawing.js';
  * @property {import('../programs/work.js').Work} work
  * @property {() => Promise<Checked | null>} whenCompiled what the compiler says of the newest text, when it is done; null if it cannot say
  * @property {() => void} remember
+ * @property {import('../remote/pad.js').Pad} pad
  */
 
 const SHOWN = 200; // lines of the trace
@@ -54,6 +55,8 @@ export class SimulatorPanel {
   /** Whose run it is. @type {Pick<Checked, 'places' | 'shows'>} */
   #program = { places: [], shows: [] };
   #wasStopped = false;
+  /** What the run reads of a remote control; nothing of one that was judged. @type {string[]} */
+  #remote = [];
   #note = '';
   #told = ''; // of the trace
   #shown_ms = 0; // when more than the robot was shown last
@@ -326,6 +329,7 @@ export class SimulatorPanel {
     this.#places = program.places;
     this.#variables = program.variables;
     this.#findStops();
+    this.#remote = judged ? [] : program.remote;
     const world = judged ?? this.#world.request;
     await this.#simulator.begin(program, pageState.robotName.value, world, judged ? [] : this.#offsets, isPaused, least);
   }
@@ -349,7 +353,15 @@ export class SimulatorPanel {
     this.#showReadings();
     this.#arena.draw(state);
     document.documentElement.dataset['phase'] = phase;
+    this.#offer();
     if (!this.#isDriving) this.#seenRun();
+  }
+
+  /** A run that reads a remote control can be driven. */
+  #offer() {
+    const canDrive = this.#isDriving && this.#remote.length > 0;
+    this.#page.pad.offer('driving', canDrive ? { reads: this.#remote, tell: (held) => { this.#simulator.held = held; } } : null);
+    if (!canDrive) this.#simulator.held = null;
   }
 
   /** A picture of a run: beside the robot, one thing at a time is new. @param {import('../python.js').RobotState} state */

@@ -1,0 +1,54 @@
+// node pad_in_node.mjs SOURCES MADE STORY: plays what hands do at the page's remote control, on a clock of the script.
+// Prints as JSON what each robot was told: when, its side, and what is held.
+
+import { freshPage, learns, now, passes, playsNavigator, words } from './page_in_node.mjs';
+
+const story = JSON.parse(words[0]);
+let gamepads = [];
+playsNavigator({ getGamepads: () => gamepads });
+const page = freshPage();
+const Part = globalThis.HTMLElement;
+Object.defineProperty(globalThis, 'Element', { value: Part, configurable: true });
+Part.prototype.setPointerCapture = () => {};
+Part.prototype.getBoundingClientRect = () => ({ left: 0, top: 0, width: 120, height: 120 });
+Part.prototype.after = function after(part) { this.placedAfter = part; };
+Part.prototype.closest = function closest() { return this.isTaken ? this : null; };
+const heard = new EventTarget();
+document.addEventListener = heard.addEventListener.bind(heard);
+document.visibilityState = 'visible';
+await learns(page);
+const { pageState } = await page.load('page/page_state.js');
+const { Pad } = await page.load('remote/pad.js');
+const pad = new Pad();
+const box = Object.assign(page.byId('pad'), { hidden: true });
+const parts = [...page.byId('pad_arrows').children, ...page.byId('pad_letters').children];
+const part = (name) => (name === 'stick' ? page.byId('pad_stick') : parts.find((each) => each.dataset.key === name));
+const taken = Object.assign(new Part(), { isTaken: true });
+
+const told = [];
+const point = (kind, name, pointerId, clientX = 60, clientY = 60) => part(name).dispatchEvent(Object.assign(new Event(kind), { pointerId, clientX, clientY, button: 0 }));
+const key = (kind, name, more = {}) => {
+  const event = Object.assign(new Event(kind, { cancelable: true }), { key: name, code: name, ...more });
+  Object.defineProperty(event, 'target', { value: more.on === 'field' ? taken : part(more.on) ?? new Part() });
+  dispatchEvent(event);
+};
+const does = {
+  offer: (side, driven) => pad.offer(side, driven && { ...driven, tell: ({ keys, x, y }) => told.push([now(), side, keys, x, y]) }),
+  down: (...given) => point('pointerdown', ...given),
+  move: (...given) => point('pointermove', ...given),
+  up: (...given) => point('pointerup', ...given),
+  cancel: (...given) => point('pointercancel', ...given),
+  keydown: (...given) => key('keydown', ...given),
+  keyup: (...given) => key('keyup', ...given),
+  gamepads: (...found) => { gamepads = found.map(([axes, pressed], index) => ({ index, connected: true, axes, buttons: Array.from({ length: 16 }, (_, k) => ({ pressed: pressed.includes(k) })) })); },
+  event: (name) => dispatchEvent(new Event(name)),
+  hide: () => { document.visibilityState = 'hidden'; heard.dispatchEvent(new Event('visibilitychange')); },
+  see: () => { document.visibilityState = 'visible'; heard.dispatchEvent(new Event('visibilitychange')); },
+  side: (id) => pageState.side.set(id),
+  stop: () => page.byId('stop').click(),
+  passes,
+};
+for (const [what, ...given] of story) await does[what](...given);
+const shown = [...parts, page.byId('pad_stick')].filter((each) => !each.hidden).map((each) => each.dataset.key ?? 'stick');
+console.log(JSON.stringify({ told, shown: box.hidden ? [] : shown, said: page.byId('pad_said').textContent }));
+process.exit(0);

@@ -1,0 +1,189 @@
+"""Keys of a remote control through `tsc studio`: they reach the robot of who presses, and no other.
+
+The robots' firmware is behind ptys; the pages are the tests' own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import ExitStack
+from typing import Any
+
+import pytest
+
+from tests.studio.test_lost_requests import Asker
+from tests.support.pty_robot import PtyRobot
+from tests.support.waiting import until
+from tiniscript import compile, robots
+from tiniscript.studio.attending import HEARD_S
+from tiniscript.studio.classroom import Classroom
+from tiniscript.studio.hosting import Hosting
+
+Json = dict[str, Any]
+KIT = robots.load("tinibot").kit
+STICK = "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP"
+HERE = "192.0.2.9"
+
+
+class Hand(Asker):
+    """A page that drives by hand."""
+
+    number = 0
+
+    def says(self, **request: object) -> int:
+        self.number += 1
+        seen = max((each["number"] for each in self.news), default=0)
+        made = {"id": self.number, "seen": seen, **request}
+        self.asks("beat", made)
+        return self.number
+
+    def holds(self, y: int) -> int:
+        return self.says(do="keys", keys=0, x=0, y=y)
+
+    def answer_to(self, number: int) -> Json:
+        found: list[Json] = []
+
+        def looks() -> bool:
+            self.asks("beat")
+            found[:] = [each for each in self.news if each.get("id") == number]
+            return bool(found)
+
+        until(looks, f"an answer to {number}")
+        return found[0]
+
+    def uploads(self, text: str) -> Json:
+        image = compile(text).image.hex()
+        return self.answer_to(self.says(do="upload", image=image, robot="tinibot", runs=True))
+
+    def drives(self, robot: PtyRobot, power: int) -> None:
+        """Hold the stick until the robot does so."""
+
+        def is_so() -> bool:
+            self.holds(power)
+            return power_of(robot) == power
+
+        until(is_so, f"it has {power} %")
+
+
+def power_of(robot: PtyRobot) -> int:
+    driven = [line for line in robot.did if line.startswith("MOTORS")]
+    return int(driven[-1].split()[1]) if driven else 0
+
+
+@pytest.fixture
+def two() -> Iterator[list[PtyRobot]]:
+    with ExitStack() as stack:
+        yield [stack.enter_context(PtyRobot(KIT)) for _ in range(2)]
+
+
+class Class:
+    def __init__(self, ports: list[str]) -> None:
+        self.hosting = Hosting()
+        self.room = Classroom(self.hosting, ports)
+
+    def pupil(self, name: str) -> Hand:
+        join = {"do": "join", "code": self.room.code, "name": name}
+        token = self.room.answer("", HERE, join)["token"]
+        self.room.answer(token, HERE, {"do": "here", "wants": True})
+        return Hand(lambda asked: self.room.answer(token, HERE, {**asked, "page": name}), "turn")
+
+
+@pytest.fixture
+def lesson(two: list[PtyRobot]) -> Iterator[Class]:
+    made = Class([robot.port for robot in two])
+    yield made
+    made.hosting.close()
+
+
+def test_a_pupil_drives_the_own_robot_and_no_other(lesson: Class, two: list[PtyRobot]) -> None:
+    ana, beto = lesson.pupil("Ana"), lesson.pupil("Beto")
+    for hand in (ana, beto):
+        assert hand.asks("connect") == {}
+        hand.beats_until(lambda each: "connected" in each, "it is met")
+        assert hand.uploads(STICK)["ok"]
+    ana.drives(two[0], 60)
+    assert power_of(two[1]) == 0
+    ana.drives(two[0], 0)
+    beto.drives(two[1], -40)
+    assert power_of(two[0]) == 0
+    ana.asks("beat")
+    beto.drives(two[1], 0)
+
+
+def test_who_has_no_turn_drives_nothing(lesson: Class, two: list[PtyRobot]) -> None:
+    """Neither one who waits, nor one whose turn is over: both are told."""
+    ana, beto, carla = (lesson.pupil(name) for name in ("Ana", "Beto", "Carla"))
+    assert ana.asks("connect") == {}
+    ana.beats_until(lambda each: "connected" in each, "it is met")
+    assert ana.uploads(STICK)["ok"]
+    ana.drives(two[0], 60)
+    assert carla.asks("connect") == {"failure": "turn_none"}
+    word = {"do": "keys", "id": 1, "seen": 0, "keys": 0, "x": 0, "y": -80}
+    assert [each["over"] for each in carla.asks("beat", word)["news"]] == ["left"]
+    pupils = lesson.room.teach({"do": "class"})["pupils"]
+    number = next(each["number"] for each in pupils if each["name"] == "Ana")
+    lesson.room.teach({"do": "class_next", "pupil": number})
+    until(lambda: power_of(two[0]) == 0, "it is stopped")
+    moves = len(two[0].did)
+    for _ in range(5):
+        ana.holds(60)
+    ana.beats_until(lambda each: each.get("over") == "turn_over", "it is told")
+    assert power_of(two[0]) == 0 and len(two[0].did) == moves
+    assert beto.asks("connect") == {}
+    beto.beats_until(lambda each: "connected" in each, "it is met")
+    assert beto.uploads(STICK)["ok"]
+    beto.drives(two[1], 40)
+    assert power_of(two[0]) == 0
+
+
+def test_a_teachers_stop_is_no_key_of_a_pupils(lesson: Class, two: list[PtyRobot]) -> None:
+    """What was said before is void, and what is held on starts nothing."""
+    ana = lesson.pupil("Ana")
+    assert ana.asks("connect") == {}
+    ana.beats_until(lambda each: "connected" in each, "it is met")
+    assert ana.uploads(STICK)["ok"]
+    ana.drives(two[0], 60)
+    lesson.room.teach({"do": "stop_all"})
+    number = ana.holds(60)
+    assert ana.answer_to(number)["failure"] == "stopped_elsewhere"
+    until(lambda: power_of(two[0]) == 0, "it is stopped")
+    for _ in range(20):
+        ana.answer_to(ana.holds(60))
+    assert power_of(two[0]) == 0
+
+
+def test_a_page_that_falls_silent_holds_nothing(two: list[PtyRobot]) -> None:
+    """Also where the run is not its own, so that nobody stops it."""
+    robot = two[0]
+    hosting = Hosting()
+    hand = Hand(hosting.answer, robot.port)
+    try:
+        assert hand.asks("connect") == {}
+        hand.beats_until(lambda each: "connected" in each, "it is met")
+        image = compile(STICK.replace("SI|", "SB|")).image.hex()
+        sent = hand.says(do="upload", image=image, robot="tinibot", runs=False)
+        assert hand.answer_to(sent)["ok"]
+        robot.push()
+
+        def drives() -> bool:
+            hand.holds(60)
+            return power_of(robot) == 60
+
+        until(drives, "it drives")
+        until(lambda: power_of(robot) == 0, f"after {HEARD_S} s and a little")
+    finally:
+        hosting.close()
+
+
+def test_what_nobody_can_hold_is_refused_and_the_next_word_is_heard(two: list[PtyRobot]) -> None:
+    robot = two[0]
+    hosting = Hosting()
+    hand = Hand(hosting.answer, robot.port)
+    try:
+        assert hand.asks("connect") == {}
+        hand.beats_until(lambda each: "connected" in each, "it is met")
+        found = hand.answer_to(hand.says(do="keys", keys=0, x=0, y=101))
+        assert found["failure"] == "bad_request"
+        assert hand.answer_to(hand.holds(60))["ok"]
+    finally:
+        hosting.close()

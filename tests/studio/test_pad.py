@@ -1,0 +1,197 @@
+"""The page as a remote control: what its robot is told, on a clock of the script.
+
+What is held is said at each change and every 200 ms, and nothing is said while nothing is held.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.studio.test_second_time_page import made
+from tests.support.needs import need
+from tiniscript.link.remote import EVERY_MS
+from tiniscript.studio import classroom
+from tiniscript.studio.building import SOURCES
+from tools import CannotMake
+from tools.builds.studio import found_tools
+
+__all__ = ["made"]
+
+WAYS_SCRIPT = Path(__file__).with_name("keys_in_node.mjs")
+SCRIPT = Path(__file__).with_name("pad_in_node.mjs")
+ALL = ["KEY_UP", "KEY_DOWN", "KEY_LEFT", "KEY_RIGHT", "KEY_A", "KEY_B", "PAD_X", "PAD_Y"]
+WHOLE: Any = ["offer", "driving", {"reads": ALL}]
+UP, A = 1, 16
+NOTHING = [0, 0, 0]
+
+
+def played(made: Path, *story: Any) -> dict[str, Any]:
+    return in_node(SCRIPT, made, json.dumps(story))
+
+
+def in_node(script: Path, made: Path, word: str) -> dict[str, Any]:
+    try:
+        node = found_tools().node
+    except CannotMake as why:
+        need(str(why))
+    words = [*node, str(script), str(SOURCES / "src"), str(made), word]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def told(made: Path, *story: Any) -> list[Any]:
+    """Return what the robot is told, without its side."""
+    return [[ms, *held] for ms, _, *held in played(made, *story)["told"]]
+
+
+def test_it_is_said_at_each_change_and_again_while_it_is_held(made: Path) -> None:
+    found = told(
+        made, WHOLE, ["passes", 1000], ["down", "KEY_UP", 1], ["passes", 450],
+        ["up", "KEY_UP", 1], ["passes", 2000],
+    )  # fmt: skip
+    assert EVERY_MS == 200
+    assert found == [[1000, UP, 0, 0], [1200, UP, 0, 0], [1400, UP, 0, 0], [1450, *NOTHING]]
+
+
+def test_a_stick_goes_where_the_finger_is_and_returns_with_it(made: Path) -> None:
+    found = told(
+        made, WHOLE, ["down", "stick", 1, 80, 40], ["move", "stick", 1, 500, 60],
+        ["move", "stick", 1, 501, 60], ["up", "stick", 1, 500, 60], ["passes", 900],
+    )  # fmt: skip
+    assert found == [[0, 0, 50, 50], [0, 0, 100, 0], [0, *NOTHING]]
+
+
+def test_two_fingers_hold_two_parts_and_a_second_one_moves_no_stick(made: Path) -> None:
+    found = told(
+        made, WHOLE, ["down", "stick", 1, 60, 20], ["down", "KEY_A", 2],
+        ["down", "stick", 3, 99, 60], ["move", "stick", 3, 99, 60], ["up", "stick", 3],
+        ["up", "stick", 1], ["down", "KEY_A", 4], ["up", "KEY_A", 2], ["cancel", "KEY_A", 4],
+    )  # fmt: skip
+    assert found == [[0, 0, 0, 100], [0, A, 0, 100], [0, A, 0, 0], [0, *NOTHING]]
+
+
+def test_keys_of_a_keyboard_are_keys_and_its_arrows_move_a_stick_alone(made: Path) -> None:
+    both = [["keydown", "ArrowUp"], ["keydown", "A"], ["keyup", "ArrowUp"], ["keyup", "A"]]
+    assert told(made, WHOLE, *both) == [
+        [0, UP, 0, 0], [0, UP | A, 0, 0], [0, A, 0, 0], [0, *NOTHING],
+    ]  # fmt: skip
+    stick = ["offer", "driving", {"reads": ["PAD_Y", "KEY_A"]}]
+    assert told(made, stick, *both) == [
+        [0, 0, 0, 100], [0, A, 0, 100], [0, A, 0, 0], [0, *NOTHING],
+    ]  # fmt: skip
+    assert told(made, stick, ["keydown", "ArrowUp"], ["keydown", "ArrowLeft"]) == [
+        [0, 0, 0, 100], [0, 0, -71, 71],
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("more", [{"on": "field"}, {"ctrlKey": True}, {"repeat": True}], ids=str)
+def test_keys_that_are_somebody_elses(made: Path, more: dict[str, Any]) -> None:
+    """Of a field, of the browser, or of one that was held before."""
+    assert told(made, WHOLE, ["keydown", "ArrowUp", more], ["passes", 500]) == []
+
+
+def test_a_button_that_has_the_focus_is_held_by_the_space_bar(made: Path) -> None:
+    on = {"on": "KEY_A"}
+    assert told(made, WHOLE, ["keydown", " ", on], ["keyup", " ", on]) == [
+        [0, A, 0, 0],
+        [0, *NOTHING],
+    ]
+
+
+LET_GO = [["hide"], ["event", "blur"], ["event", "pagehide"], ["stop"],
+          ["side", "side_real"], ["offer", "driving", None],
+          ["keydown", "Escape"]]  # fmt: skip
+
+
+@pytest.mark.parametrize("end", LET_GO, ids=str)
+def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(made: Path, end: list[Any]) -> None:
+    gamepad = ["gamepads", [[0, -1], [0]]]
+    found = told(
+        made, WHOLE, gamepad, ["event", "gamepadconnected"], ["down", "stick", 1, 60, 20],
+        ["keydown", "b"], ["passes", 10], end, ["passes", 500], ["see"], ["side", "side_virtual"],
+        WHOLE, ["move", "stick", 1, 99, 60], ["keydown", "b", {"repeat": True}], ["passes", 500],
+        ["up", "stick", 1], ["keyup", "b"], ["passes", 500],
+        ["gamepads", [[0, 0], []]], ["passes", 100], ["keydown", "b"],
+    )  # fmt: skip
+    let_go = found.index([10, *NOTHING])
+    assert [10, A | 32, 0, 100] in [[10, *held] for _, *held in found[:let_go]]
+    assert [held for _, *held in found[let_go + 1 :]] == [[32, 0, 0]]
+
+
+def test_a_key_whose_end_nobody_sees_is_not_held_with_the_next_one(made: Path) -> None:
+    """It was let go in another window."""
+    story = [["keydown", "b"], ["event", "blur"], ["keydown", "ArrowUp"]]
+    assert [held for _, *held in told(made, WHOLE, *story)] == [[32, 0, 0], NOTHING, [UP, 0, 0]]
+
+
+def test_a_gamepad_holds_until_it_is_unplugged(made: Path) -> None:
+    found = told(
+        made, WHOLE, ["gamepads", [[0.1, -0.05], []]], ["event", "gamepadconnected"],
+        ["passes", 50], ["gamepads", [[0.1, -1], [14, 1]]], ["passes", 20], ["gamepads"],
+        ["passes", 500],
+    )  # fmt: skip
+    assert [held for _, *held in found] == [[4 | 32, 10, 100], NOTHING]
+    assert found[1][0] - found[0][0] <= 20, "it need not be told of"
+
+
+def test_what_the_program_reads_is_there_and_nothing_else(made: Path) -> None:
+    for reads in (ALL, ["KEY_A"], ["PAD_X"], ["KEY_LEFT", "PAD_Y"], []):
+        driven = ["offer", "driving", {"reads": reads}]
+        parts = [each for each in reads if each.startswith("KEY")]
+        stick = ["stick"] if any(each.startswith("PAD") for each in reads) else []
+        assert played(made, driven)["shown"] == parts + stick
+    assert played(made, WHOLE, ["offer", "driving", None])["shown"] == []
+    assert played(made, ["offer", "link", {"reads": ALL}])["shown"] == []  # another one is seen
+
+
+def test_a_robot_without_a_remote_control_is_told_nothing(made: Path) -> None:
+    deaf = ["offer", "link", {"reads": ALL, "isDeaf": True}]
+    found = played(
+        made, ["side", "side_real"], deaf, ["keydown", "ArrowUp"], ["passes", 500], ["stop"],
+        ["gamepads", [[0, -1], [0]]], ["event", "gamepadconnected"], ["passes", 500],
+    )  # fmt: skip
+    assert found["told"] == [] == found["shown"]
+    assert found["said"].startswith("This robot has no remote control.")
+
+
+def test_a_robot_that_comes_to_be_seen_is_told_what_is_pressed_from_then_on(made: Path) -> None:
+    """The one before hears that all is let go."""
+    real = ["offer", "link", {"reads": ALL}]
+    found = played(
+        made, WHOLE, real, ["down", "KEY_UP", 1], ["passes", 10], ["side", "side_real"],
+        ["passes", 500], ["up", "KEY_UP", 1], ["down", "KEY_A", 1], ["side", "side_virtual"],
+        ["passes", 500],
+    )  # fmt: skip
+    assert found["told"] == [
+        [0, "driving", UP, 0, 0], [10, "driving", *NOTHING],
+        [510, "link", A, 0, 0], [510, "link", *NOTHING],
+    ]  # fmt: skip
+
+
+def test_the_same_robot_that_is_offered_again_is_held_on(made: Path) -> None:
+    found = told(made, WHOLE, ["down", "KEY_UP", 1], ["passes", 10], WHOLE, ["passes", 190])
+    assert found == [[0, UP, 0, 0], [200, UP, 0, 0]]
+
+
+@pytest.mark.parametrize("way", ["host", "direct"])
+def test_a_stick_that_moves_all_the_time_is_said_as_it_is_now(made: Path, way: str) -> None:
+    """No more often than the link says it, no word after a newer one, and the release at once."""
+    found = in_node(WAYS_SCRIPT, made, way)
+    moved = [y for _, y in found["sent"][:-1]]
+    assert moved == sorted(set(moved)) and len(moved) > 100
+    assert found["sent"][-1][1] == 0
+    assert len(found["sent"]) <= found["asked"], "one word at a time: the newest"
+    assert found["sent"][-1][0] - found["released"] <= (31 if way == "host" else 150)
+    assert not found["over"]
+    if way == "host":
+        seconds = 6
+        assert found["asked"] / seconds < classroom.REQUESTS[1] - 1000 / 300, (
+            "and it looks for its turn"
+        )

@@ -1,0 +1,221 @@
+"""The page's remote control in a browser: fingers and keys drive a virtual robot and a real one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_link import connect, said
+from tests.support import studio
+from tests.support.casefile import ROOT
+from tests.support.pty_robot import PtyRobot
+from tests.support.studio import Pages, axe, hears, in_phase, shown, speak, turn, write
+from tiniscript import robots
+from tiniscript.base.kit import YES_NO, Device, Kit
+from tiniscript.link import known_ports
+from tiniscript.studio import serving
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+STICK = "LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP;\n"
+KEYS = "LOOP(FOREVER);\nIF(KEY_UP);\nM(60, 60);\nELSE;\nM(0, 0);\nENDIF;\nW(0.02);\nEND_LOOP;\n"
+PHONE, DESK = {"width": 390, "height": 844}, {"width": 1366, "height": 768}
+
+
+@pytest.fixture(scope="module")
+def server(browser: Browser) -> Iterator[serving.Server]:
+    with studio.hosted() as made:
+        yield made
+
+
+@pytest.fixture
+def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
+    found = Pages(browser, server.address, entrance=server.entrance)
+    yield found
+    found.close()
+    assert not found.wrong
+
+
+def driven(page: Page) -> str:
+    """Return the power of the virtual robot's motors, as its trace has it."""
+    found = [line.partition(" MOTORS ")[2] for line in trace(page) if " MOTORS " in line]
+    return found[-1] if found else ""
+
+
+def trace(page: Page) -> list[str]:
+    return (page.locator("#trace").text_content() or "").split("\n")
+
+
+class Fingers:
+    """Those on the screen of a page."""
+
+    def __init__(self, page: Page) -> None:
+        self._session = page.context.new_cdp_session(page)
+
+    def are(self, kind: str, *points: tuple[float, float]) -> None:
+        found = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]
+        self._session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": found})
+
+
+def middle(page: Page, place: str) -> tuple[float, float]:
+    box = page.locator(place).bounding_box()
+    assert box is not None
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+@pytest.mark.parametrize("size", [PHONE, DESK], ids=["phone", "desk"])
+def test_a_picture_of_the_start_is_driven_at_once(pages: Pages, size: dict[str, int]) -> None:
+    """By a finger with another one on A; what is let go stops it."""
+    page = pages.visit(pages.entrance(), "start", viewport=size, has_touch=True)
+    page.click("[data-begin=drive]")
+    in_phase(page, "running")
+    page.locator("#pad_stick").wait_for()
+    assert page.locator("#pad button:visible").all_inner_texts() == ["A"]
+    for place in ("#pad_stick", "#pad button:visible", "#arena", "#stop"):
+        box = page.locator(place).bounding_box()
+        assert box and box["y"] >= 0 and box["y"] + box["height"] <= size["height"], place
+    assert axe(page) == []
+    x, y = middle(page, "#pad_stick")
+    a = middle(page, "#pad button:visible")
+    fingers = Fingers(page)
+    fingers.are("touchStart", (x, y))
+    fingers.are("touchMove", (x, y - 200))
+    hears(page, lambda: driven(page) == "100 100", "it drives")
+    fingers.are("touchStart", (x, y - 200), a)
+    hears(page, lambda: any("BEEP 440" in line for line in trace(page)), "it beeps")
+    fingers.are("touchEnd")
+    hears(page, lambda: driven(page) == "0 0", "it stands")
+    page.keyboard.down("ArrowUp")
+    hears(page, lambda: driven(page) == "100 100", "it drives by a key")
+    page.keyboard.down("ArrowRight")
+    hears(page, lambda: driven(page) in ("142 0", "100 0"), "it turns")
+    page.evaluate("dispatchEvent(new Event('blur'))")
+    hears(page, lambda: driven(page) == "0 0", "nobody presses it")
+    turn(page, "program")
+    shown(page)
+    page.click("#stop")
+    in_phase(page, "ended")
+    assert not page.locator("#pad").is_visible()
+
+
+def test_the_picture_opens_the_example(pages: Pages) -> None:
+    page = pages.visit(pages.entrance(), "start")
+    page.click("[data-begin=drive]")
+    shown(page)
+    example = (ROOT / "examples" / "remote.ts").read_text("utf-8")
+    page.click("#view_text")
+    ours = page.locator(".cm-content").inner_text()
+    assert ours.split() == re.sub(r"//.*", "", example).split()
+
+
+def test_a_run_that_is_held_stopped_or_run_again_reads_what_is_held_then(pages: Pages) -> None:
+    page = pages.open()
+    write(page, STICK)
+    page.click("#run")
+    in_phase(page, "running")
+    page.locator("#pad_stick").wait_for()
+    page.keyboard.down("ArrowUp")
+    hears(page, lambda: driven(page) == "100 100", "it drives")
+    page.click("#pause")
+    in_phase(page, "paused")
+    page.keyboard.up("ArrowUp")
+    page.click("#pause")
+    in_phase(page, "running")
+    hears(page, lambda: driven(page) == "0 0", "what was let go meanwhile is not held")
+    page.keyboard.down("ArrowUp")
+    hears(page, lambda: driven(page) == "100 100", "it drives")
+    page.click("#stop")
+    in_phase(page, "ended")
+    page.click("#run")
+    in_phase(page, "running")
+    page.locator("#pad_stick").wait_for()
+    hears(page, lambda: driven(page) == "0 0", "it is pressed anew first")
+    page.keyboard.up("ArrowUp")
+    page.keyboard.down("ArrowUp")
+    hears(page, lambda: driven(page) == "100 100", "it drives")
+    page.select_option("#speed", "20")
+    since = trace(page)[-1]
+    hears(page, lambda: since not in trace(page), "it goes on, at each speed")
+    assert not any(line.endswith("MOTORS 0 0") for line in trace(page))
+    page.keyboard.up("ArrowUp")
+    hears(page, lambda: driven(page) == "0 0", "it stands")
+
+
+def test_a_robot_that_hears_no_keys_is_told_none_and_the_page_says_so(pages: Pages) -> None:
+    sensors = tuple(Device(f"S{k}", YES_NO, "", 0, 1) for k in range(9))
+    with PtyRobot(Kit(sensors)) as robot:
+        known_ports.remember(robot.port, "OLDER")
+        page = pages.open()
+        connect(page, robot)
+        assert not page.locator("#pad").is_visible()
+        write(page, KEYS)
+        page.locator("#pad_said", has_text="This robot has no remote control").wait_for()
+        assert page.locator("#pad button:visible").count() == 0
+        assert axe(page) == []
+        speak(page, "es")
+        page.locator("#pad_said", has_text="Este robot no tiene control remoto").wait_for()
+        speak(page, "en")
+        write(page, "F(1, 50)")
+        page.locator("#pad").wait_for(state="hidden")
+        page.click("#link_leave")
+
+
+def test_a_run_of_the_judges_is_driven_by_nobody_else(pages: Pages) -> None:
+    page = pages.open()
+    write(page, f"// robot: tinibot\n{KEYS}")
+    page.click("#side_lessons")
+    page.locator("#lesson_next:enabled").wait_for()
+    page.select_option("#lesson", index=17)
+    page.locator("#lesson_steps button").last.click()
+    page.click("#run")  # the own run
+    in_phase(page, "running")
+    page.locator("[data-key=KEY_UP]").wait_for()
+    page.click("#lesson_check")
+    hears(page, lambda: driven(page) == "60 60", "the judge presses")
+    assert not page.locator("#pad").is_visible()
+    page.locator("#lesson_said[data-verdict]").wait_for()
+    assert "KEY_RIGHT" in page.locator("#lesson_findings").inner_text()
+    in_phase(page, "ended")
+    assert not page.locator("#pad").is_visible()
+
+
+def test_a_real_robot_is_driven_and_stands_when_the_page_is_not_seen(pages: Pages) -> None:
+    with PtyRobot(robots.load("tinibot").kit) as robot:
+        known_ports.remember(robot.port, "TINI")
+        page = pages.open(has_touch=True)
+        connect(page, robot)
+        write(page, KEYS)
+        page.click("#link_upload")
+        said(page, "The robot has it")
+        page.locator("[data-key=KEY_UP]").wait_for()
+        assert page.locator("#pad button:visible").count() == 1
+        assert axe(page) == []
+        fingers = Fingers(page)
+        fingers.are("touchStart", middle(page, "[data-key=KEY_UP]"))
+        hears(page, lambda: robot.moves, "it drives")
+        since_ms = robot.robot_ms
+        hears(
+            page, lambda: robot.moves and robot.robot_ms > since_ms + 2000, "as long as it is held"
+        )
+        fingers.are("touchEnd")
+        hears(page, lambda: not robot.moves, "it stands")
+        page.keyboard.down("ArrowUp")
+        hears(page, lambda: robot.moves, "it drives by a key")
+        page.keyboard.press("Escape")
+        hears(page, lambda: not robot.moves, "it is stopped")
+        said(page, "Stopped")
+        page.click("#link_start")
+        said(page, "It is running")
+        since_ms = robot.robot_ms
+        hears(page, lambda: robot.robot_ms > since_ms + 700, "time goes by")
+        assert not robot.moves, "it is pressed anew first"
+        page.keyboard.up("ArrowUp")
+        page.keyboard.down("ArrowUp")
+        hears(page, lambda: robot.moves, "it drives by a key")
+        page.click("#link_leave")
+        hears(page, lambda: not robot.moves, "nobody is there")
+        assert not page.locator("#pad").is_visible()
