@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -325,3 +326,25 @@ def test_a_program_may_be_a_file(tmp_path: Path) -> None:
     with pytest.raises(tiniscript.UsageError) as raised:
         tiniscript.run(tmp_path / "none.ts")
     assert raised.value.reason == "unreadable"
+
+
+VALUES = """SI|
+DEF SIDE(SIZE, SPEED); F(SIZE CM, SPEED); END_DEF
+DEF PAUSE(LONG); W(LONG); END_DEF
+TASK; LOOP(FOREVER); PAUSE(1); END_LOOP; END_TASK
+N = 2
+LOOP(N); SIDE(30, 60); N = N + 1; END_LOOP
+PAUSE(N)
+IF(N > 3); SHOW(N); END_IF
+"""
+
+
+def test_a_listing_names_each_variable_as_the_text_does() -> None:
+    named: dict[str, set[str]] = {}
+    for line in tiniscript.compile(VALUES).listing().splitlines():
+        instruction, _, remark = line[25:].partition(" ; ")
+        if "VAR" in instruction:
+            number = re.findall(r"[0-9]+", instruction.replace("VAR8", "").replace("VAR16", ""))[0]
+            named.setdefault(number, set()).add(remark.split()[0])
+    # SIDE's values, those of PAUSE for the program and for the task, and N
+    assert sorted(named.values(), key=min) == [{"LONG"}, {"LONG"}, {"N"}, {"SIZE"}, {"SPEED"}]

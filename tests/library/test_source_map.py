@@ -119,7 +119,10 @@ def test_an_offset_inside_an_instruction_is_the_instruction_s() -> None:
 def test_a_map_is_written_as_json_writes_it() -> None:
     text = "".join(map(chr, range(0x180))) + "\u2028\ud800 🤖"
     places = (MapLocation(0, 1, 1, 1, 2), MapLocation(10, 2, 3, 40, 5))
-    for found in (source_map.Map(text, (text, "", "S"), places), source_map.Map("", (), ())):
+    for found in (
+        source_map.Map(text, (text, "", "S"), places, (text, "N")),
+        source_map.Map("", (), ()),
+    ):
         fields = {"version": source_map.VERSION, **found._asdict()}
         assert source_map.as_json(found) == json.dumps(fields, ensure_ascii=False)
 
@@ -133,11 +136,14 @@ def test_a_map_is_written_as_json_writes_it() -> None:
         {"places": [[0, 1, 1]]},
         {"places": [[0, 1, 1, 1, "x"]]},
         {"lines": None},
+        {"variables": 5},
     ],
 )
 def test_what_is_no_map_is_refused(changed: dict[str, object]) -> None:
     fields = json.loads(source_map.as_json(mapped(compiled("S"))))
-    assert source_map.from_json(json.dumps(fields))
+    assert source_map.from_json(json.dumps(fields)).variables == ()
+    earlier = {name: value for name, value in fields.items() if name != "variables"}
+    assert source_map.from_json(json.dumps(earlier)) == source_map.from_json(json.dumps(fields))
     with pytest.raises(ValueError):
         source_map.from_json(json.dumps({**fields, **changed}))
     del fields["places"]

@@ -7,7 +7,7 @@ takes the bytes; the words after them are for people.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
@@ -49,16 +49,26 @@ def rows(code: bytes) -> list[Row]:
 
 
 def disassemble(
-    code: bytes, remarks: Mapping[int, str] | None = None, kit: Kit | None = None
-) -> str:
+    code: bytes, remarks: Mapping[int, str] | None = None, kit: Kit | None = None,
+    variables: Sequence[str] = (),
+) -> str:  # fmt: skip
     """Return `code` as text, a line for each instruction.
 
-    `remarks` stand after the instruction at their offset; a kit gives devices their names.
+    `remarks` stand after the instruction at their offset; a kit gives devices their names, and
+    `variables` are those of variables in the order of their numbers.
     """
+    named: dict[str, Sequence[str]] = {"variable": variables}
+    if kit is not None:
+        named["sensor"] = [sensor.name for sensor in kit.readings]
+        named["actuator"] = [actuator.name for actuator in kit.actuators]
     lines = []
     for row in rows(code):
         text = row.text
-        names = [] if kit is None else _names(row, kit)
+        names = [
+            named[kind][value]
+            for kind, value in _numbered(row)
+            if kind in named and value < len(named[kind])
+        ]
         remark = "  ".join([*names, *([remarks[row.offset]] if remarks and row.offset in remarks
                                       else [])])  # fmt: skip
         line = f"{row.offset:04x}  {row.data.hex(' '):<{_BYTES_WIDTH}} {text}"
@@ -68,20 +78,18 @@ def disassemble(
 
 def devices_of(row: Row) -> list[tuple[str, int]]:
     """Return the devices that an instruction names: "sensor" or "actuator", and its number."""
+    return [(kind, value) for kind, value in _numbered(row) if kind in ("sensor", "actuator")]
+
+
+def _numbered(row: Row) -> list[tuple[str, int]]:
+    """Return the kind and the value of each operand, with the one that the opcode implies."""
     if row.op is None:
         return []
     kinds = [operand.kind.name for operand in row.op.operands]
-    named = list(zip(kinds, row.operands, strict=True))
+    numbered = list(zip(kinds, row.operands, strict=True))
     if row.op.implied is not None:
-        named.append((row.op.implied.kind.name, row.op.implied.value))
-    return [(kind, value) for kind, value in named if kind in ("sensor", "actuator")]
-
-
-def _names(row: Row, kit: Kit) -> list[str]:
-    devices = {"sensor": kit.readings, "actuator": kit.actuators}
-    return [
-        devices[kind][value].name for kind, value in devices_of(row) if value < len(devices[kind])
-    ]
+        numbered.append((row.op.implied.kind.name, row.op.implied.value))
+    return numbered
 
 
 def assemble(text: str) -> bytes:

@@ -58,7 +58,8 @@ def ready(
     if not compiled.is_right:
         return None
     image = image_of(compiled, robot)
-    return Ready(image, len(compiled.image), source_map.made(compiled.source, compiled.places))
+    places = source_map.made(compiled.source, compiled.places, compiled.variables)
+    return Ready(image, len(compiled.image), places)
 
 
 def _read(given: inputs.Input) -> Image:

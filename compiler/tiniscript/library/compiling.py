@@ -46,6 +46,11 @@ class Compiled(NamedTuple):
     lowered: ir.Program | None = None
 
     @property
+    def variables(self) -> tuple[str, ...]:
+        """The names of the code's variables, in the order of their numbers."""
+        return self.lowered.variables if self.lowered is not None else ()
+
+    @property
     def is_right(self) -> bool:
         return not any(diagnostic.is_mistake for diagnostic in self.diagnostics)
 

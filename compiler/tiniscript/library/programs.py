@@ -73,7 +73,8 @@ class Program:
         """Return one line per instruction: offset, bytes, name, and the source line that it comes
         from."""
         kit = self._profile.kit if self._image.devices else None
-        return disassemble(self.code, remarks(self._map, _checked(language)), kit)
+        variables = self._map.variables if self._map is not None else ()
+        return disassemble(self.code, remarks(self._map, _checked(language)), kit, variables)
 
     def __repr__(self) -> str:
         name = "image" if self.text is None else repr(self.text[:40])
@@ -228,7 +229,7 @@ def _program(
         error = ProgramError("mistakes", language, said="\n".join(said))
         error.diagnostics = diagnostics
         raise error
-    places = source_map.made(found.source, found.places)
+    places = source_map.made(found.source, found.places, found.variables)
     return Program(text, found.image, image_of(found, profile), profile, places, diagnostics)
 
 

@@ -1,4 +1,4 @@
-"""The source map: which instruction of a compiled program comes from which line.
+"""The source map: which instruction of a compiled program comes from which line, and the names.
 
 An image holds no text. Its map lies in the user's cache under the image's checksum, so that a
 fault can name its line and a disassembly can show it. Losing a map loses nothing else.
@@ -36,11 +36,13 @@ class MapLocation(NamedTuple):
 
 
 class Map(NamedTuple):
-    """`lines` are those of the program's text, without their ends."""
+    """`lines` are those of the program's text, without their ends; `variables` are names in the
+    order of their numbers, none where a map of an earlier version was kept."""
 
     name: str
     lines: tuple[str, ...]
     places: tuple[MapLocation, ...]
+    variables: tuple[str, ...] = ()
 
     def at(self, offset: int) -> MapLocation | None:
         """Return where the instruction at `offset` comes from."""
@@ -73,7 +75,7 @@ class Map(NamedTuple):
         return self.lines[number - 1] if 1 <= number <= len(self.lines) else ""
 
 
-def made(source: Source, places: Iterable[SourceLocation]) -> Map:
+def made(source: Source, places: Iterable[SourceLocation], variables: tuple[str, ...] = ()) -> Map:
     """Return the map of a program that has just been compiled."""
     found = tuple(
         MapLocation(
@@ -83,11 +85,11 @@ def made(source: Source, places: Iterable[SourceLocation]) -> Map:
     )
     last = source.position(len(source.text))[0]
     lines = tuple(source.line_text(number) for number in range(1, last + 1))
-    return Map(source.name, lines, found)
+    return Map(source.name, lines, found, variables)
 
 
 def as_json(places: Map) -> str:
-    """Return a map as JSON: version, name, lines, and places as lists of numbers.
+    """Return a map as JSON: version, name, lines, places as lists of numbers, and variables.
 
     Importing json takes longer than writing this.
     """
@@ -95,7 +97,7 @@ def as_json(places: Map) -> str:
     numbers = ", ".join(f"[{', '.join(map(str, place))}]" for place in places.places)
     return (
         f'{{"version": {VERSION}, "name": {_quoted(places.name)}, "lines": [{lines}],'
-        f' "places": [{numbers}]}}'
+        f' "places": [{numbers}], "variables": [{", ".join(map(_quoted, places.variables))}]}}'
     )
 
 
@@ -118,7 +120,8 @@ def from_json(text: str) -> Map:
         if fields["version"] != VERSION:
             raise ValueError("another version")
         places = tuple(MapLocation(*map(int, place)) for place in fields["places"])
-        return Map(str(fields["name"]), tuple(map(str, fields["lines"])), places)
+        lines, variables = fields["lines"], fields.get("variables", [])
+        return Map(str(fields["name"]), tuple(map(str, lines)), places, tuple(map(str, variables)))
     except (KeyError, TypeError, AttributeError) as wrong:
         raise ValueError("no map") from wrong
 

@@ -152,8 +152,9 @@ class Repl:
         return line
 
     def _run(self, found: Line, is_last: bool) -> int:
-        places = source_map.made(found.compiled.source, found.compiled.places)
-        source_map.remember(found.compiled.image, places)  # tsc doctor names a fault's line later
+        compiled = found.compiled
+        places = source_map.made(compiled.source, compiled.places, compiled.variables)
+        source_map.remember(compiled.image, places)  # tsc doctor names a fault's line later
         kit = kit_of(found.compiled, self.connection.profile)
         reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))
         program = reply.values.program
