@@ -723,7 +723,7 @@ const PARTS = {
     const { RobotPanel } = await page.load('robot/panel.js');
     pageState.robotName.set('tinibot');
     pageState.checked.set({ ...PROGRAM, program: 'ff', bytes: 9 });
-    const panel = new RobotPanel({ python: null, goTo() {}, recorder: noting(notes, 'recorder'), place: new RobotPlace() });
+    const panel = new RobotPanel({ python: null, goTo() {}, recorder: noting(notes, 'recorder'), place: new RobotPlace(), pad: noting(notes, 'pad') });
     await passes(10);
     const EVENTS = [{ event: 'STARTED', program: 'ff', is_program: true }, { event: 'PLACE', program: 'ff', at: 0 }, { event: 'SHOW', value: '1' }, { event: 'DONE' }, { event: 'LOST' }, { event: 'STOPPED', cause: 'MESSAGE' }];
     const seen = () => [page.byId('link_said').textContent, page.byId('link_shown').textContent, document.documentElement.dataset['robot'], structuredClone(pageState.robotRun.value)];
