@@ -66,7 +66,7 @@ def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
         "answers", "kit", "firmware", "line", "supply", "store", "trim", *sensors
     }  # fmt: skip
     assert {name for name, each in verdicts.items() if each == "open"} == asked
-    assert {each["finding"] for each in found.values()} == {
+    assert {each["cause"] for each in found.values()} == {
         "is_there", "kit_is", "firmware_is", "line_is", "supply_is", "empty", "trim_is", "reads",
         "unasked",
     }  # fmt: skip
@@ -103,7 +103,7 @@ def test_a_robot_that_has_restarted(pty_robot: PtyRobot, reset: str, finding: st
         pty_robot._robot = HostFirmware(pty_robot.kit, EMPTY, number)
     code, found = found_by(pty_robot)
     assert code == 3
-    assert (found["supply"]["verdict"], found["supply"]["finding"]) == ("wrong", finding)
+    assert (found["supply"]["verdict"], found["supply"]["cause"]) == ("wrong", finding)
 
 
 def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
@@ -113,8 +113,8 @@ def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
     pty_robot.damages = 97
     told = json.loads(on(pty_robot, "doctor", "--robot", "liner", "--json").out)["findings"]
     _, found = found_by(pty_robot, "--robot", "liner")
-    assert found["store"]["finding"] == "unsaved"
-    ours = {each["finding"]: each for each in found.values()}
+    assert found["store"]["cause"] == "unsaved"
+    ours = {each["cause"]: each for each in found.values()}
     assert {each["cause"] for each in told} >= {"low_supply", "wrong_kit", "lossy"}
     for each in told:
         if each["is_wrong"]:
@@ -129,17 +129,17 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(low, LIGHT, DISTANCE))
     _, found = found_by(pty_robot)
     first, second = (f"sensor {each.name}" for each in pty_robot.kit.sensors[:2])
-    assert found[first]["finding"] == "stuck"
+    assert found[first]["cause"] == "stuck"
     assert found[second]["verdict"] == "ok"
     pty_robot.damages = 100
     code, found = found_by(pty_robot)
     assert code == 3
-    assert found["line"]["finding"] == "lossy"
+    assert found["line"]["cause"] == "lossy"
     pty_robot.damages, pty_robot.off_after = 0, 150
     code, found = found_by(pty_robot)
     assert code == 3
     assert found["kit"]["verdict"] == "ok", "what was found before is said"
-    assert (found["answers"]["verdict"], found["answers"]["finding"]) == ("wrong", "plain")
+    assert (found["answers"]["verdict"], found["answers"]["cause"]) == ("wrong", "plain")
 
 
 @pytest.mark.parametrize("kind", ["missing", "other speed", "locked", "silent radio"])
@@ -159,7 +159,7 @@ def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str)
         text = inside("doctor", "--selftest", "--port", port, "--lang", "en").gives(3).out
     found = json.loads(done.out)["found"]
     wrong = [each for each in told if each["is_wrong"]]
-    assert wrong and [each["finding"] for each in found] == [each["cause"] for each in wrong]
+    assert wrong and [each["cause"] for each in found] == [each["cause"] for each in wrong]
     for ours, its in zip(found, wrong, strict=True):
         assert [ours[key] for key in ("said", "seen", "next")] == [
             its[key] for key in ("said", "seen", "next")
@@ -178,7 +178,7 @@ def test_only_the_port_of_the_self_test_is_opened(
         monkeypatch.setattr("tiniscript.doctor.diagnosis._only", lambda *_: end.port)
         done = inside("doctor", "--selftest", "--json").gives(3)
         assert end.heard == b""
-    assert json.loads(done.out)["found"][0]["finding"] == "not_opened"
+    assert json.loads(done.out)["found"][0]["cause"] == "not_opened"
 
 
 # -- with a person
@@ -251,7 +251,7 @@ def person(
 
 
 def causes(out: str) -> set[str]:
-    return {each["finding"] for each in json.loads(out)["found"]}
+    return {each["cause"] for each in json.loads(out)["found"]}
 
 
 def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
@@ -322,7 +322,7 @@ def test_each_cause_of_a_line_that_the_robot_ends(
 
     monkeypatch.setattr(SelfTest, "does", does)
     _, out, _ = asked(pty_robot, person(pty_robot), "--json")
-    found = [(each["what"], each["finding"]) for each in json.loads(out)["found"]]
+    found = [(each["what"], each["cause"]) for each in json.loads(out)["found"]]
     sensors = [("sensor", "no_reading")] * len(pty_robot.kit.sensors)
     assert found[-3 - len(sensors) :] == [
         *sensors, ("left", "ended"), ("right", "ended"), ("buzzer", "ended"),
@@ -382,10 +382,10 @@ def test_a_disc_that_flickers_at_rest_is_wrong(number: int | None) -> None:
         running.close()
     (disc,) = [each for each in json.loads(done.out)["found"] if each["what"] == "discs"]
     if number is None:
-        assert (done.code, disc["finding"]) == (0, "discs_rest") and "disc" not in said
+        assert (done.code, disc["cause"]) == (0, "discs_rest") and "disc" not in said
         return
     edges = [int(disc["values"][side]) for side in ("left", "right")]
-    assert (done.code, disc["finding"], disc["verdict"]) == (3, "discs_noise", "wrong")
+    assert (done.code, disc["cause"], disc["verdict"]) == (3, "discs_noise", "wrong")
     assert edges[number] >= 18 and edges[1 - number] == 0
     assert "a disc flickers: look at its sensor" in said
 

@@ -36,6 +36,22 @@ def browser(playwright: Playwright) -> Iterator[Browser]:
         yield opened
 
 
+@pytest.fixture(scope="module")
+def server(browser: Browser) -> Iterator[serving.Server]:
+    """A `tsc studio` that holds the robots of its pages."""
+    with studio.hosted() as made:
+        yield made
+
+
+@pytest.fixture
+def hosted_pages(browser: Browser, server: serving.Server) -> Iterator[studio.Pages]:
+    """Pages of that server, on which nothing goes wrong."""
+    made = studio.Pages(browser, server.address, entrance=server.entrance)
+    yield made
+    made.close()
+    assert not made.wrong
+
+
 @pytest.fixture(scope="package")
 def address(browser: Browser) -> Iterator[str]:
     with studio.served() as server:

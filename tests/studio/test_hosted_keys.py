@@ -152,38 +152,36 @@ def test_a_teachers_stop_is_no_key_of_a_pupils(lesson: Class, two: list[PtyRobot
     assert power_of(two[0]) == 0
 
 
-def test_a_page_that_falls_silent_holds_nothing(two: list[PtyRobot]) -> None:
+@pytest.fixture
+def hand(two: list[PtyRobot]) -> Iterator[Hand]:
+    """A page that is connected to the first of the two."""
+    hosting = Hosting()
+    made = Hand(hosting.answer, two[0].port)
+    try:
+        assert made.asks("connect") == {}
+        made.beats_until(lambda event: "connected" in event, "it is met")
+        yield made
+    finally:
+        hosting.close()
+
+
+def test_a_page_that_falls_silent_holds_nothing(hand: Hand, two: list[PtyRobot]) -> None:
     """Also where the run is not its own, so that nobody stops it."""
     robot = two[0]
-    hosting = Hosting()
-    hand = Hand(hosting.answer, robot.port)
-    try:
-        assert hand.asks("connect") == {}
-        hand.beats_until(lambda each: "connected" in each, "it is met")
-        image = compile(STICK.replace("SI|", "SB|")).image.hex()
-        sent = hand.says(do="upload", image=image, robot="tinibot", runs=False)
-        assert hand.answer_to(sent)["ok"]
-        robot.push()
+    image = compile(STICK.replace("SI|", "SB|")).image.hex()
+    sent = hand.says(do="upload", image=image, robot="tinibot", runs=False)
+    assert hand.answer_to(sent)["ok"]
+    robot.push()
 
-        def drives() -> bool:
-            hand.holds(60)
-            return power_of(robot) == 60
+    def drives() -> bool:
+        hand.holds(60)
+        return power_of(robot) == 60
 
-        until(drives, "it drives")
-        until(lambda: power_of(robot) == 0, f"after {HEARD_S} s and a little")
-    finally:
-        hosting.close()
+    until(drives, "it drives")
+    until(lambda: power_of(robot) == 0, f"after {HEARD_S} s and a little")
 
 
-def test_what_nobody_can_hold_is_refused_and_the_next_word_is_heard(two: list[PtyRobot]) -> None:
-    robot = two[0]
-    hosting = Hosting()
-    hand = Hand(hosting.answer, robot.port)
-    try:
-        assert hand.asks("connect") == {}
-        hand.beats_until(lambda each: "connected" in each, "it is met")
-        found = hand.answer_to(hand.says(do="keys", keys=0, x=0, y=101))
-        assert found["failure"] == "bad_request"
-        assert hand.answer_to(hand.holds(60))["ok"]
-    finally:
-        hosting.close()
+def test_what_nobody_can_hold_is_refused_and_the_next_word_is_heard(hand: Hand) -> None:
+    answer = hand.answer_to(hand.says(do="keys", keys=0, x=0, y=101))
+    assert answer["failure"] == "bad_request"
+    assert hand.answer_to(hand.holds(60))["ok"]

@@ -44,18 +44,9 @@ VOID = "The robot was stopped meanwhile"
 BLINKS = "The robot that blinks and plays its tune is"
 
 
-@pytest.fixture(scope="module")
-def server(browser: Browser) -> Iterator[serving.Server]:
-    with studio.hosted() as made:
-        yield made
-
-
 @pytest.fixture
-def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
-    found = Pages(browser, server.address, entrance=server.entrance)
-    yield found
-    found.close()
-    assert not found.wrong
+def pages(hosted_pages: Pages) -> Pages:
+    return hosted_pages
 
 
 @pytest.fixture(scope="module")
@@ -443,8 +434,8 @@ def marked(page: Page, part: str) -> None:
 
 
 def unmarked(page: Page) -> None:
-    page.locator(".cm-running").wait_for(state="detached")
-    assert page.locator("#blocks .running").count() == 0
+    for mark in (".cm-running", "#blocks .running"):
+        page.locator(mark).wait_for(state="detached")
 
 
 def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
@@ -461,7 +452,7 @@ def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
 
 
 def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> None:
-    write(page, "F(60, 80)")
+    write(page, "F(FOREVER, 80)")
     page.click("#link_upload")
     page.locator(".cm-running").wait_for()
     page.locator(".cm-content").focus()

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.studio.test_page_link import KIT, connect, said
-from tests.support import studio
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import Pages, checked, drives, hang, hears, write
@@ -39,12 +38,6 @@ HIDE = """(state) => {
   Object.defineProperty(document, 'visibilityState', { value: state, configurable: true });
   document.dispatchEvent(new Event('visibilitychange'));
 }"""
-
-
-@pytest.fixture(scope="module")
-def server(browser: Browser) -> Iterator[serving.Server]:
-    with studio.hosted() as made:
-        yield made
 
 
 @pytest.fixture(scope="module")

@@ -3,41 +3,29 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import pytest
 
 from tests.studio.test_page_link import connect, said
-from tests.support import studio
 from tests.support.casefile import ROOT
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import Pages, axe, hears, in_phase, shown, speak, turn, write
 from tiniscript import robots
 from tiniscript.base.kit import YES_NO, Device, Kit
 from tiniscript.link import known_ports
-from tiniscript.studio import serving
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Page
 
 STICK = "LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP;\n"
 KEYS = "LOOP(FOREVER);\nIF(KEY_UP);\nM(60, 60);\nELSE;\nM(0, 0);\nENDIF;\nW(0.02);\nEND_LOOP;\n"
 PHONE, DESK = {"width": 390, "height": 844}, {"width": 1366, "height": 768}
 
 
-@pytest.fixture(scope="module")
-def server(browser: Browser) -> Iterator[serving.Server]:
-    with studio.hosted() as made:
-        yield made
-
-
 @pytest.fixture
-def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
-    found = Pages(browser, server.address, entrance=server.entrance)
-    yield found
-    found.close()
-    assert not found.wrong
+def pages(hosted_pages: Pages) -> Pages:
+    return hosted_pages
 
 
 def driven(page: Page) -> str:

@@ -244,7 +244,7 @@ def contents(path: Path, limit_bytes: int) -> bytes:
 
 
 def _found(path: Path) -> os.stat_result | None:
-    """Return what is at a path, after a link; None where nothing is."""
+    """Return what is at a path, through a link; None where nothing is."""
     try:
         return path.stat()
     except FileNotFoundError:

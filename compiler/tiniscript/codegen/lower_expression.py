@@ -57,7 +57,7 @@ class Emitter:
         return label
 
     def pops_read(self, sensor: int) -> bool:
-        """Take back `READ sensor` if it is the last instruction and nothing jumps after it."""
+        """Take back `READ sensor` if it is the last instruction and no jump ends after it."""
         if self.plain or not self.items or self._last_mark == len(self.items):
             return False
         last = self.items[-1]

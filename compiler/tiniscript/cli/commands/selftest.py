@@ -15,7 +15,7 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.diagnosing import diagnosis_of, expected_of
 from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.cli.texts import say, text
-from tiniscript.cli.texts.causes import rows, said
+from tiniscript.cli.texts.causes import as_data, rows
 from tiniscript.doctor import report
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES, OK, OPEN, WRONG, Finding, sure
@@ -69,7 +69,10 @@ def _without_robot(
 
 def _print(found: list[Finding], name: str, port: str | None, is_json: bool, language: str) -> None:
     if is_json:
-        fields = [_fields(each, language) for each in found]
+        fields = [
+            {"what": finding.part, "verdict": finding.verdict, **as_data(finding, language)}
+            for finding in found
+        ]
         print(json.dumps({"robot": name, "port": port, "found": fields}, indent=2))
         return
     if name:
@@ -78,20 +81,6 @@ def _print(found: list[Finding], name: str, port: str | None, is_json: bool, lan
     counts = {each: sum(row.verdict == each for row in found) for each in (OK, WRONG, OPEN)}
     good, wrong, left = counts[OK], counts[WRONG], counts[OPEN]
     say("selftest_end", language, good=good, all=len(found), wrong=wrong, open=left)
-
-
-def _fields(found: Finding, language: str) -> dict[str, object]:
-    """Return it as data."""
-    what, seen, then = said(found, language)
-    return {
-        "what": found.part,
-        "verdict": found.verdict,
-        "finding": found.cause,
-        "values": dict(found.values),
-        "said": what,
-        "seen": seen or None,
-        "next": then or None,
-    }
 
 
 def _report(found: list[Finding], name: str, port: str, language: str) -> list[str]:
