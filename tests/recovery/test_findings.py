@@ -12,8 +12,8 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.diagnostics.fixing import fixed
-from tiniscript.recovery.findings import moved_back
 from tiniscript.recovery.setup import setup
+from tiniscript.recovery.told import moved_back
 
 
 def test_si_in_place_of_brackets_is_taken_with_its_end() -> None:

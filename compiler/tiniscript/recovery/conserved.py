@@ -357,7 +357,7 @@ class _Said:
     def _is_loose_unit(self, k: int) -> bool:
         """Whether a word says a unit and nothing else, of no number."""
         token, before, after = self.tokens[k], self.tokens[k - 1] if k else _END, self._after(k)
-        said = {each.split()[0] for each in lexicon().get(token.text, ())}
+        said = {each.kind for each in lexicon().get(token.text, ())}
         is_behind = len(token.text) == 1 and after.text in (",", ")") and before.kind is WORD
         is_unit = said == {"unit"} or ("unit" in said and (is_behind or token.text in WAYS))
         is_free = not self.names.is_name(token.text) and after.kind is not NUMBER
