@@ -439,9 +439,12 @@ c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|U
 ⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num )
     | BEEP ( @ms:b , $a ) | 1 | TS102 | offered
     | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
-a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@num , n=@num u=CM|DEG⟩ )
+a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@power , n=@num u=CM|DEG⟩ )
     | $a ( $n $u , $p ) | ⟨1¦1¦.9⟩ | TS076 | offered
     | ⟨B(CM(20), 60)¦F(150, 60 CM)¦R(60, 20 DEG)⟩ => ⟨B(20 CM, 60)¦F(150 CM, 60)¦R(20 DEG, 60)⟩
+a=F|B|L|R ( p=@num , n=@num u=CM|DEG )
+    | $a ( $n $u , $p ) | 1.1 | TS076 | offered
+    | R(8, 150 DEG) => R(150 DEG, 8)
 a=⟨F|B¦L|R⟩ ( n=@noparen+ @like_⟨CM¦DEG⟩ e=,|;
     | $a ( $n ⟨CM¦DEG⟩ $e | 1 | TS102 | offered
     | ⟨F(20 MC, 60)¦L(90 DG, 60)⟩ => ⟨F(20 CM, 60)¦L(90 DEG, 60)⟩

@@ -10,7 +10,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Sequence
 from difflib import SequenceMatcher
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Span
@@ -211,10 +211,17 @@ def _foreign(slip: Slip) -> Slip:
     cut = next((k for k, it in enumerate(found) if it.text in ("=", "(")), len(found))
     is_set = cut < len(found) and found[cut].text == "="
     found = found[: cut - is_set] or found
+    if any(each.kind is NUMBER for each in found):  # PARA of `PARA I DE 1 A 4`
+        found = [*takewhile(_is_counting, found)] or found
     if right and found and all(said_of(each.text, "filler") for each in found):
         named = [each for each in old if meant_by(each.text) == right[0].text]
         found = named[:1] or found  # `oi robô, anda`
     return slip._replace(found=found, right=right)
+
+
+def _is_counting(token: Lexeme) -> bool:
+    """Whether a word says that something is done several times: FOR, and EACH behind it."""
+    return meant_by(token.text) == "LOOP" or bool(said_of(token.text, "count", "each"))
 
 
 def _torn(slip: Slip) -> Slip:
