@@ -50,8 +50,7 @@ class Wrong:
     @cached_property
     def recovery(self) -> Recovery | None:
         """The readings of the text; nothing for a long one, or one that is copied again."""
-        text = self.source.text.replace("\r\n", "\n")
-        text = text.replace("\r", "\n") if "\r" in text else text  # a line ends with one alone
+        text = self.source.text.replace("\r\n", "\n").replace("\r", "\n")
         if len(text) > LONGEST or SEAL in text:
             return None
         return Recovery(text, self.kit, lambda to: self._mistakes(to, is_own=to == text))
