@@ -11,8 +11,8 @@ from tests.pupils.corpus import check
 from tests.support.rows import each_row
 from tiniscript import robots
 from tiniscript.base.languages import languages, table
-from tiniscript.base.source import Source
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.base.source import Source, applied
+from tiniscript.diagnostics.fixing import edits_of, fixed
 from tiniscript.diagnostics.rendering import message
 from tiniscript.recovery import rewrites
 from tiniscript.recovery.conserved import difference
@@ -95,6 +95,19 @@ def test_no_repair_loses_a_sign_or_a_unit_in_the_example_of_a_row(text: str) -> 
         assert is_kept(written, value, unit, made), (wrong, made)
 
 
+@pytest.mark.sampled("text", keep=30)
+@pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
+def test_what_is_only_shown_keeps_a_unit_or_says_that_it_loses_it(text: str) -> None:
+    """A minus is not asked for: where it goes, a move goes the other way and says so."""
+    for wrong, written, value, unit in variants(text):
+        shown = [each for each in check(wrong) if each.repair and not each.repair.is_sure]
+        is_part = re.search(rf"\d\. {re.escape(written)}", wrong)  # of one number: `2. 80`
+        for found in shown if unit and not is_part else ():
+            made = applied(wrong, edits_of(found) or [])
+            lost = found.values.get("lost", "")
+            assert written in lost or is_kept(written, value, unit, made), (wrong, made)
+
+
 @each_row("text", WRITTEN)
 def test_no_repair_loses_a_sign_or_a_unit(text: str) -> None:
     for number, sign, space in product(("2", "0.5"), ("", "-", "- "), ("", " ")):
@@ -172,6 +185,8 @@ def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(wrong: str, mad
         ("SIDE = 30 CM\nW(SIDE)", "SIDE = 30 (without 30 CM)"),
         ("F(25, 60 CM)", "F(60 CM, 25) or F(25 CM, 60)"),
         ("F(-0.5 M, 60)", "B(50 CM, 60)"),
+        ("F(5, 60) HASTA(PARED < 10 seg)", "F(5, 60) UNTIL(DISTANCE < 10) (without 10 seg)"),
+        ("DISTANCE < 10 % ? S", "IF(DISTANCE < 10);S;ENDIF (without 10 %)"),
         ("R(-90 grados, 60)", "L(90 DEG, 60)"),
         ("F(- 2 sec, 60)", "B(2, 60)"),
     ],

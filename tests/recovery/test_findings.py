@@ -12,8 +12,8 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.diagnostics.fixing import fixed
-from tiniscript.recovery.findings import moved_back
 from tiniscript.recovery.setup import setup
+from tiniscript.recovery.told import moved_back
 
 
 def test_si_in_place_of_brackets_is_taken_with_its_end() -> None:
@@ -141,3 +141,13 @@ def test_many_blanks_take_no_time() -> None:
     for blank in (" ", "( ", "5 ", "(5) "):
         assert check(f"SI|F({blank * 20_000}((5)+1), 60) hola amigo\n")
         assert check(f"SI|F(5{blank * 20_000}hola amigo\n")
+
+
+@pytest.mark.parametrize("ends", [*product(("\n", "\r", "\r\n", "\n\r", "\r\r\n"), repeat=3)])
+def test_lines_may_end_in_every_way_beside_each_other(ends: tuple[str, ...]) -> None:
+    rows = ("F(2 80)", "R(1 60)", "LOOP(2)", "S")
+    text = "".join(row + end for row, end in zip(rows, (*ends, ""), strict=True))
+    places = [text[: each.span.start].count(")") for each in check(text)]
+    assert [each.code.number for each in check(text)] == ["TS017", "TS017", "TS024"]
+    assert places[:2] == [0, 1]
+    assert "F(2, 80)" in fixed(text, check).text and "R(1, 60)" in fixed(text, check).text

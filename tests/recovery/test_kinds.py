@@ -138,13 +138,25 @@ def test_a_variable_x_is_only_shown_as_a_sign() -> None:
 
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
 @pytest.mark.parametrize("around", ["SI|{}", "SI|W(1);{};S", "SI|DEF A\n{}\nEND_DEF\nA"])
-@pytest.mark.parametrize(("power", "way"), [("70", "30"), ("60", "90"), ("40", "25"), ("5", "20")])
+@pytest.mark.parametrize(("power", "way"), [("70", "30"), ("60", "90"), ("40", "25"), ("99", "20")])
 def test_a_unit_stays_with_its_number_and_the_other_reading_is_beside_it(
     word: str, unit: str, around: str, power: str, way: str
 ) -> None:
     wrong = around.format(f"{word}({power}, {way} {unit})")
     own, other = f"{word}({way} {unit}, {power})", f"{word}({power} {unit}, {way})"
     assert told(wrong) == [("TS076", f"{own} or {other}")]
+    assert fixed(wrong, check).text == wrong
+
+
+@pytest.mark.parametrize(("word", "unit"), TRAVELS)
+@pytest.mark.parametrize("around", ["SI|{}", "SI|W(1);{};S", "SI|DEF A\n{}\nEND_DEF\nA"])
+@pytest.mark.parametrize(("little", "power"), [("2", "60"), ("5", "20"), ("0.5", "100")])
+def test_what_hardly_moves_a_robot_is_no_power_where_another_number_is_one(
+    word: str, unit: str, around: str, little: str, power: str
+) -> None:
+    wrong = around.format(f"{word}({little}, {power} {unit})")
+    first, other = f"{word}({little} {unit}, {power})", f"{word}({power} {unit}, {little})"
+    assert told(wrong) == [("TS076", f"{first} or {other}")]
     assert fixed(wrong, check).text == wrong
 
 
@@ -302,3 +314,32 @@ def test_an_example_takes_the_number_of_the_program(number: str, beside: str) ->
     for text in (f"SI|F(FOREVER, 50);{other}", f"SI|{other}\nB(FOREVER, 50)"):
         assert told(text)[0][1].endswith(f"UNTIL(DISTANCE < {number})")
     assert told("SI|F(FOREVER, 50)")[0][1].startswith("F(FOREVER, 50) UNTIL(DISTANCE < 10)")
+
+
+# -- what is named, and what is told once -----------------------------------------------------
+
+
+@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("around", ["SI|{}", "SI|F(2, 80);{}", "{};S"])
+@pytest.mark.parametrize(
+    ("head", "named"),
+    [
+        ("PARA I DE 1 A 4", "PARA"), ("para i de 1 até 4 faça", "para"),
+        ("FOR I FROM 1 TO 4", "FOR"),
+        ("para cada i de 1 a 4", "para cada"),
+    ],
+)  # fmt: skip
+def test_what_counts_is_named_without_what_it_counts(
+    head: str, named: str, around: str, between: str
+) -> None:
+    text = around.format(between.join((head, "L(1, 60)", "END_LOOP")))
+    found = next(each for each in check(text) if each.code.number == "TS102")
+    assert (found.values["found"], text[slice(*found.span)]) == (named, named)
+
+
+@pytest.mark.parametrize("use", ["F(1, {})", "LOOP({});S;END_LOOP", "BEEP(1, {});BEEP(2, {})"])
+@pytest.mark.parametrize("name", ["notes", "N"])
+def test_a_name_that_holds_a_list_is_not_asked_for_its_number(name: str, use: str) -> None:
+    text = f"SI|{name} = [440, 494]\n{use.replace('{}', name)}"
+    assert [code for code, _ in told(text)] == ["TS067"]
+    assert "TS103" in [code for code, _ in told(text + ";W(OTHER)")]

@@ -106,7 +106,7 @@ OF_BLOCKS = {"whole", "line", "lines", "times", "ends"}
 @each_row("code", [pytest.param(code, id=code.number) for code in slips.NAMED])
 def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
     """Of a slip each value is made that a text names, and none that no text does."""
-    named = {*slips.NAMED[code].split()}
+    named = {*slips.NAMED[code]}
     asked = []
     for part in ("message", "try"):
         text = languages.found("messages", f"{code.number}/{part}", "en")

@@ -144,39 +144,49 @@ _INSTEAD = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "every": "LOOP(FOREVER)
 # fmt: on
 
 
+class Said(NamedTuple):
+    """What the lexicon says of a word: `kind` is a word of TiniScript, or what its `value` is.
+
+    A unit has how many thousandths of it the word stands for, too: `unit s 60000`.
+    """
+
+    kind: str
+    value: str = ""
+    scale: str = ""
+
+
 @cache
-def lexicon() -> dict[str, list[str]]:
+def lexicon() -> dict[str, list[Said]]:
     """What each word means: all that the languages say of it, English last."""
-    found: dict[str, list[str]] = {}
+    found: dict[str, list[Said]] = {}
     for language in (*languages()[1:], SOURCE):
         for row in table(language, "lexicon.txt").split("\n"):
             if not row.startswith("#"):
                 meaning, _, words = row.partition("|")
                 for word in words.split():
-                    found.setdefault(word, []).append(meaning.strip())
+                    found.setdefault(word, []).append(Said(*meaning.split()))
     return found
 
 
 @lru_cache(4000)
 def said_of(word: str, *kinds: str) -> tuple[str, ...]:
     """Return what the lexicon says of a word, of these kinds: `("s", "1000")` of SEG, `unit`."""
-    for meaning in lexicon().get(word, ()):
-        first, *rest = meaning.split()
-        if first in kinds:
-            return tuple(rest) or (first,)
+    for kind, value, scale in lexicon().get(word, ()):
+        if kind in kinds:
+            return (value, scale) if scale else (value or kind,)
     return ()
 
 
 def shortened(word: str) -> list[str]:
     """Return the commands that a word is short for in some language: E for W, and for L."""
-    return [it.split()[1] for it in lexicon().get(word, ()) if it.startswith("short ")]
+    return [it.value for it in lexicon().get(word, ()) if it.kind == "short"]
 
 
 def concept_of(word: str) -> str | None:
     """Return the word of the language or of a kit that the lexicon says a word for."""
-    for meaning in lexicon().get(word, ()):
-        if meaning.isupper() and " " not in meaning:
-            return meaning
+    for kind, value, _ in lexicon().get(word, ()):
+        if kind.isupper() and not value:
+            return kind
     return None
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import KIT_WORDS_SINCE, Kit
 from tiniscript.base.limits import CODE_BYTES
-from tiniscript.base.source import Source, Span, Unreadable, applied, decode
+from tiniscript.base.source import Source, Span, Unreadable, decode
 from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_of, pack
 from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.codegen.lower import SourceLocation, lower
@@ -25,7 +25,7 @@ from tiniscript.semantics.checker import check
 from tiniscript.semantics.lint import lint
 from tiniscript.semantics.optimizer import optimized
 from tiniscript.syntax.later_words import given_way, in_program
-from tiniscript.syntax.parser import ENOUGH, parse
+from tiniscript.syntax.parser import parse
 
 
 class Compiled(NamedTuple):
@@ -55,9 +55,6 @@ class Compiled(NamedTuple):
         return not any(diagnostic.is_mistake for diagnostic in self.diagnostics)
 
 
-ROUNDS = 20  # of reading what follows a mistake from the repaired text
-
-
 def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and all that is wrong with it."""
     found = analyzed(text, kit, name)
@@ -66,34 +63,11 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
 
 def _with_findings(found: Compiled, kit: Kit) -> Compiled:
     """Return a wrong program with what is told of it."""
-    from tiniscript.diagnostics.fixing import without_wrong
-    from tiniscript.recovery.conserved import conserving, with_sample
-    from tiniscript.recovery.dedupe import dedupe
-    from tiniscript.recovery.findings import findings, moved_back
-    from tiniscript.recovery.pointing import pointed
-    from tiniscript.recovery.usage import with_usage
+    from tiniscript.recovery.told import told_of
 
-    read = cache(lambda text: analyzed(text, kit))  # a repair that was tried is read on
+    read = cache(lambda text: analyzed(text, kit).diagnostics)  # a repair is asked for again
     its = _kit_in(found.source.text, kit)
-
-    def told_of(it: Compiled, rounds: int) -> Compiled:
-        told: list[codes.Diagnostic] = []
-        if rounds:
-            told, edits = findings(it.source, it.diagnostics, lambda to: read(to).diagnostics, its)
-        if not told:
-            told = with_usage(it.diagnostics, it.source, its)
-        elif len(told) <= ENOUGH:
-            rest = read(applied(it.source.text, edits))
-            # The warnings of what is left come when it is repaired.
-            left = [] if rest.is_right else told_of(rest, rounds - 1).diagnostics
-            told = [*told, *(moved_back(each, edits, it.source) for each in left)]
-        return it._replace(diagnostics=dedupe(told, it.source))
-
-    told = told_of(found, ROUNDS)
-    honest = without_wrong(told.diagnostics, told.source.text, lambda to: read(to).diagnostics)
-    kept = with_sample(conserving(honest, told.source.text, its), told.source.text, its)
-    at = [pointed(each, found.source) for each in kept]
-    return told._replace(diagnostics=codes.in_order(at))
+    return found._replace(diagnostics=told_of(found.source, found.diagnostics, read, its))
 
 
 def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:

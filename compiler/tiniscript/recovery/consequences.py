@@ -20,6 +20,7 @@ _FOLLOW: dict[Code, tuple[Code, ...]] = {
     codes.NEVER_ENDS: (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP),
 }  # fmt: skip
 _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
+_OF_NAMES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _MANY = 30  # of which it is looked at: each goes through its row
 
 
@@ -55,6 +56,14 @@ def _uses_of_a_reserved_word(told: Sequence[Diagnostic], _: Source) -> Iterator[
             yield each
 
 
+def _uses_of_a_list(told: Sequence[Diagnostic], _: Source) -> Iterator[Diagnostic]:
+    """That a name has no number which holds a list: it needs several names."""
+    lists = {each.values.get("found", "").upper() for each in told if each.code is codes.LISTS}
+    for each in told if lists else ():
+        if each.code in _OF_NAMES and each.values.get("found", "").upper() in lists:
+            yield each
+
+
 def _units_of_an_unknown_word(told: Sequence[Diagnostic], source: Source) -> Iterator[Diagnostic]:
     unknown = [each.span.start for each in told if each.code in _OF_ITS_WORD]
     units = [each for each in told if each.code is codes.UNIT_PLACE]
@@ -76,5 +85,5 @@ def _ends_of_a_question_behind(told: Sequence[Diagnostic], source: Source) -> It
 
 _RULES: tuple[Callable[[Sequence[Diagnostic], Source], Iterator[Diagnostic]], ...] = (
     _ends_of_a_misspelt_loop, _ends_of_an_unread_if, _uses_of_a_reserved_word,
-    _units_of_an_unknown_word, _ends_of_a_question_behind,
+    _uses_of_a_list, _units_of_an_unknown_word, _ends_of_a_question_behind,
 )  # fmt: skip

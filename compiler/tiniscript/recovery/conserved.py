@@ -75,6 +75,7 @@ _GLUED = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
 _DIGITS = re.compile(r"[0-9oOlI]*[0-9][0-9oOlI]*|\b[oO](?=\.)")
 _BETWEEN = re.compile(r"[.,:;'´`·_ ]*")
 _LETTERS = str.maketrans("oOlI", "0011")
+_WITH_UNIT = re.compile(r"[\d.]+\s*([^\W\d]+|[%°])")
 _LONGEST = 3  # parts of a number
 _END = lexemes(";")[0]
 _ASKS_NEAR = re.compile(rf"DISTANCE [<>]=? {NEAR_CM}(?![\d.])")
@@ -110,15 +111,20 @@ def difference(text: str, repaired: str, kit: Kit) -> Difference:
 def conserving(found: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
     """Return diagnostics of which no repair is sure that loses something, or does more.
 
-    It is shown together with what is `lost`. Together they may keep what one alone does not.
+    It is shown together with what is `lost`, and so is what was not sure before and loses a unit.
     """
+    return [_with_units(each, text, kit) for each in _without_losses(found, text, kit)]
+
+
+def _without_losses(found: Sequence[Diagnostic], text: str, kit: Kit) -> Sequence[Diagnostic]:
+    """Return diagnostics of which sure repairs lose nothing: one alone, or all of them together."""
     sure = [each for each in found if each.repair and each.repair.is_sure]
     joint: list[Edit] = []
     for each in sure:
         if each.repair and not overlap(each.repair.edits, joint):
             joint += each.repair.edits
     if not joint or not any(difference(text, applied(text, joint), kit)):
-        return [*found]
+        return found
     lost = {id(each): difference(text, applied(text, each.repair.edits), kit)
             for each in sure if each.repair}  # fmt: skip
     is_joint = not any(any(each) for each in lost.values())  # none alone: then all together do it
@@ -128,6 +134,23 @@ def conserving(found: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnos
         else each
         for each in found
     ]
+
+
+def _with_units(found: Diagnostic, text: str, kit: Kit) -> Diagnostic:
+    """Return a diagnostic whose shown repair says which units of numbers are in it no more.
+
+    A minus is none of these: a move goes the other way then.
+    """
+    repair = found.repair
+    if repair is None or repair.is_sure or not repair.edits or found.values.get("lost"):
+        return found
+    made = "".join(edit.text for edit in repair.edits)
+    units = [
+        lost
+        for lost in difference(text, applied(text, repair.edits), kit).lost
+        if (unit := _WITH_UNIT.fullmatch(lost)) and unit[1].upper() not in made.upper()
+    ]
+    return _shown(found, units) if units else found
 
 
 def with_sample(found: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
@@ -357,7 +380,7 @@ class _Said:
     def _is_loose_unit(self, k: int) -> bool:
         """Whether a word says a unit and nothing else, of no number."""
         token, before, after = self.tokens[k], self.tokens[k - 1] if k else _END, self._after(k)
-        said = {each.split()[0] for each in lexicon().get(token.text, ())}
+        said = {each.kind for each in lexicon().get(token.text, ())}
         is_behind = len(token.text) == 1 and after.text in (",", ")") and before.kind is WORD
         is_unit = said == {"unit"} or ("unit" in said and (is_behind or token.text in WAYS))
         is_free = not self.names.is_name(token.text) and after.kind is not NUMBER

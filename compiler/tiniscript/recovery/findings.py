@@ -1,17 +1,12 @@
-"""What people are told of a text that is read wholly and surely: typed values and edits.
-
-Each finding is judged by what is left of the text's mistakes with its edits. All else is read as
-if they were made, so that no consequence of a mistake is reported.
-"""
+"""What people are told of a text by what is meant with it: typed values and edits."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Edit, Source, Span, applied, overlap
+from tiniscript.base.source import Edit, Source, Span, applied
 from tiniscript.base.spelling import is_slip, nearest
 from tiniscript.base.words import MOVES, UNIT_OF, WAYS, said_of
 from tiniscript.diagnostics import codes
@@ -21,15 +16,12 @@ from tiniscript.recovery.conserved import difference
 from tiniscript.recovery.explanation import Explanation, explained, trimmed
 from tiniscript.recovery.meanings import lexemes, plain
 from tiniscript.recovery.search import Candidate, Recovery
-from tiniscript.recovery.setup import SEAL, Check, beginning, other_word
-from tiniscript.recovery.suggestions import suggested
-from tiniscript.recovery.usage import with_usage
 from tiniscript.recovery.writing import in_one_line, laid_out
 
-LONGEST = 4_000  # characters of a text that is read as a whole
 # Codes whose sentence names what is right.
 _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OTHER_ASSIGNMENT)
 _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
+_CR_ALONE = re.compile(r"\r(?!\n)")
 _SET = re.compile(r"(\w+) = -?[0-9.]+")
 _CLOSED = re.compile(r"(?:[^()]|\((?:[^()]|\([^()]*\))*\))*")
 _UNIT = re.compile(r"[^\d\s.]+$")
@@ -37,59 +29,7 @@ _HEAD = re.compile(r"(?i)\bDEF[ \t]+(\w+)[ \t]*\((?P<values>[^()\n]*)\)")
 _VALUE = re.compile(r"(\w+)[ \t]+(\w+)(?=[ \t]*[,)])")
 
 
-class Findings(NamedTuple):
-    """What is told of a text, and the edits with which the rest of it is read."""
-
-    told: list[Diagnostic]
-    edits: list[Edit]
-
-
-def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit) -> Findings:
-    """Return what is wrong with a text that can be read, or with words behind its instructions.
-
-    `found` is what the parser and the checker, which `check` asks, say of the text. It is read from
-    its beginning, then as a whole, surely; then the words behind instructions; then by guesses.
-    """
-    if told := beginning(source, found, check, kit):
-        return _with_edits(told)
-    if begun := other_word(source, found):
-        return Findings(with_usage([begun], source, kit), [Edit(begun.span, "SI")])
-    recovery = _recovery(source.text, found, check, kit)
-    if recovery and (told := _meant(source, found, recovery, is_sure=True)):
-        return _with_edits(told)
-    behind = suggested(source.text, kit)
-    if recovery:  # what is behind an instruction belongs to it by its sign: `X = 20 x 3`
-        behind = [each for each in behind if not recovery.has_signs(each.passed.span.start)]
-    if behind:
-        return Findings([each.diagnostic for each in behind], [each.passed for each in behind])
-    told = _meant(source, found, recovery, is_sure=False) if recovery else []
-    return _with_edits(told) if told else _of_blocks(found)
-
-
-def _of_blocks(found: Sequence[Diagnostic]) -> Findings:
-    """Return misspelt words that begin blocks or end them: the rest is read with them.
-
-    Else what is inside would be told of as well.
-    """
-    told = [each for each in found if each.code is codes.UNKNOWN_WORD
-            and each.values.get("near") in slips.OF_BLOCKS]  # fmt: skip
-    return Findings(told, [Edit(each.span, each.values["near"]) for each in told])
-
-
-def _recovery(written: str, found: Sequence[Diagnostic], check: Check, kit: Kit) -> Recovery | None:
-    """Return the readings of a text; nothing for a long one, or one that is copied again."""
-    text = written.replace("\r\n", "\n")
-    text = written.replace("\r", "\n") if "\r" in text else text  # a line ends with one alone
-    if len(text) > LONGEST or SEAL in text:
-        return None
-    return Recovery(text, kit, lambda to: _mistakes(found if to == text else check(to)))
-
-
-def _with_edits(told: list[Diagnostic]) -> Findings:
-    return Findings(told, [edit for each in told if each.repair for edit in each.repair.edits])
-
-
-def _meant(
+def meant_in(
     source: Source, found: Sequence[Diagnostic], recovery: Recovery, is_sure: bool
 ) -> list[Diagnostic]:
     """Return what is wrong with a text where it is known what is meant by it.
@@ -100,7 +40,7 @@ def _meant(
     if meant is None:
         return []
     text = recovery.program
-    written = source.text if len(source.text) > len(text) else text  # with the \r of its lines
+    written = _CR_ALONE.sub("\n", source.text)  # its lines are those of the recovery
     told = explained(written, meant)
     if not told and meant.is_whole:
         misplaced = [each for each in found if each.code in rows.MISPLACED]
@@ -245,41 +185,3 @@ def _moved(found: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Diagnost
             values |= {"open": move.name}  # its end is in no line
     repair = Repair((trimmed(0, text, made),), meant.is_applied and not lost)
     return found._replace(values=values, repair=repair)
-
-
-def _mistakes(found: Sequence[Diagnostic]) -> list[Code]:
-    return [each.code for each in found if each.is_mistake]
-
-
-def moved_back(found: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
-    """Return a diagnostic of the text with these edits, as one of the text without them.
-
-    A condition that nobody can read is shown as it is written, and not what it was passed over for.
-    """
-    values = dict(found.values)
-    for edit in edits:
-        if edit.text.endswith("(TRUE)") and "TRUE" not in (was := source[edit.span].strip()):
-            values = {name: text.replace(edit.text, was) for name, text in values.items()}
-    place = found.place and _before(found.place, edits)
-    repair = found.repair
-    if repair is not None:
-        own = tuple(Edit(_before(edit.span, edits), edit.text) for edit in repair.edits)
-        passed = [edit for edit in edits if edit.text.isspace()]  # words that nothing may drop
-        repair = Repair((), False) if overlap(own, passed) else repair._replace(edits=own)
-    return Diagnostic(found.code, _before(found.span, edits), values, place, repair)
-
-
-def _before(span: Span, edits: Sequence[Edit]) -> Span:
-    """Return where a span of the text with edits stood before them; all of one it begins in."""
-    start = end = shift = 0
-    for edit in sorted(edits):
-        begin = edit.span.start + shift
-        behind = begin + len(edit.text)
-        shift = behind - edit.span.end
-        if span.start >= behind:
-            start = shift
-        elif span.start > begin:
-            start = span.start - edit.span.start
-        if span.end > begin:
-            end = shift if span.end >= behind else span.end - edit.span.end
-    return Span(span.start - start, max(span.start - start, span.end - end))

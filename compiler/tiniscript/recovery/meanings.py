@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.spelling import Speller, is_slip, nearest
-from tiniscript.base.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, lexicon
+from tiniscript.base.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, Said, lexicon
 from tiniscript.base.words import concept_of as concept_of
 from tiniscript.base.words import said_of as said_of
 from tiniscript.syntax.blocks import ENDS
@@ -39,9 +39,11 @@ _SIGNS = SIGNS | frozenset("(),;|")
 _LONGEST = 4  # words of a name
 # Classes by what the lexicon says of a word that is none of the language.
 _CLASSES = {
-    "unit cm 1000": "@in_cm", "unit cm 100000": "@in_m", "unit s 1000": "@in_secs",
-    "unit ° 1000": "@in_deg", "unit steps 1000": "@in_steps", "value %": "@of_power",
-    "value s": "@of_time", "value Hz": "@of_pitch", "number 1": "@one", "number 100": "@hundred",
+    Said("unit", "cm", "1000"): "@in_cm", Said("unit", "cm", "100000"): "@in_m",
+    Said("unit", "s", "1000"): "@in_secs", Said("unit", "°", "1000"): "@in_deg",
+    Said("unit", "steps", "1000"): "@in_steps", Said("value", "%"): "@of_power",
+    Said("value", "s"): "@of_time", Said("value", "Hz"): "@of_pitch",
+    Said("number", "1"): "@one", Said("number", "100"): "@hundred",
 }  # fmt: skip
 NEAR_CM = "10"  # an example of what is near
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
@@ -412,7 +414,7 @@ class Names:
         return [text, "@word", *self._classes_of_word(text)]
 
     def _classes_of_word(self, text: str) -> list[str]:
-        said = [meaning.split()[0] for meaning in lexicon().get(text, ())]
+        said = [meaning.kind for meaning in lexicon().get(text, ())]
         is_own = text in self.variables or text in self.defs
         classes = [each for each in said if each.islower() and not is_own]
         if text not in WORDS:

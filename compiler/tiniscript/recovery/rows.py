@@ -76,10 +76,6 @@ SIGNS = r"""
 ⟨(?<=[( ])0?0:(\d\d)(?=\))¦(?<==)\s*(\d{1,3}),(?=000\b)⟩
     | `\1` | TS008 | applied
     | ⟨W(0:30)¦X=1,000⟩ => ⟨W(30)¦X=1000⟩
-(?<=\))\s*[✓✔]\s*(?=\w) | `; ` | TS005 | applied | F(2, 80) ✓ R(1, 50) => F(2, 80); R(1, 50)
-\b([A-Za-z_]\w*)\s*=\+\s+(?=\d)
-    | `\1 = \1 + ` | TS050 | applied
-    | V = 5⏎V =+ 10⏎F(2, V) => V = 5⏎V = V + 10⏎F(2, V)
 (?<![^;])\s*([*/+=-]+)([A-Za-z](?:[^;]*[\w)])?)\1\s*(?![^;])
     | `\2` | TS054 | applied
     | **F(2, 80)** => F(2, 80)
@@ -99,7 +95,6 @@ SIGNS = r"""
     | `\1` | TS006 | applied
     | ⟨"SI|F(2,80);R(1,50)"¦“F(2,80);R(1,50)”⟩ => ⟨SI|¦⟩F(2,80);R(1,50)
 \b([FBLR])\((\d)\.([1-9]0|100)\) | `\1(\2, \3)` | TS020 | offered | F(2.80) => F(2, 80)
-(?<=[(,\s])😎\s*$ | `8)` | TS010 | offered | W(😎 => W(8)
 (?<=\d)=(?=\s*\))|(?<=\()=(?=\.\d) | `0` | TS076 | offered | F(2, 8=) => F(2, 80)
 ((?<=[=,])\s*|(?<=SHOW\())(\d+)x(\d+)\b | `\1\2 * \3` | TS010 | applied | X = 3x2 => X = 3 * 2
 (?<=[(,])(\s*)!(?=\s*[,)]) | `\g<1>1` | TS076 | offered | F(!, 80) => F(1, 80)
@@ -151,9 +146,6 @@ SIGNS = r"""
 ⟨≤¦≥¦≠¦¡=¦(?<= )><⟩
     | `⟨<=¦>=¦<>¦<>¦<>⟩` | TS010 | applied
     | IF(DISTANCE ⟨≤¦≥¦≠¦¡=¦><⟩ 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=¦<>¦<>¦<>⟩ 10);S;ENDIF
-(?<=\))\s*[↑↓⬅-⬇➡]\uFE0F?\s*(?=[A-Za-z]+\s*\()
-    | `; ` | TS061 | applied
-    | F(2, 80) ➡ R(1, 60) => F(2, 80); R(1, 60)
 [→➜⇒]|[–—]> | `;` | TS061 | applied | →F(2, 80) => ;F(2, 80)
 </?[a-z]+/?>|\A\s*(?:[$>] tsc\b.*|```\w*\s*)\Z | `` | TS072 | applied | <b>F(2, 80)</b> => F(2, 80)
 \A\s*tsc(?: \w+)? (?:(["'])(S[IB]\|.*)\1\Z|(?=S[IB]\|))
@@ -173,7 +165,6 @@ SIGNS = r"""
 (?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))|(?<=\d)[|¿?!"]+(?=\s*\))
     | `` | TS005 | applied
     | F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
-\bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$))) | `W(\1)` | TS015 | applied | S; W2.5) => S; W(2.5)
 ^\s*(?:(?:paso|step|linea|line)\s*\d+\s*[.):-]*\s|\d+\s*(?:[.)]|[.):-]+\s))\s*(?=[A-Za-z])
     | `` | TS054 | applied
     | 1) F(2,80)⏎2) S => F(2,80)⏎S
@@ -247,12 +238,6 @@ o=(|AND|OR !|no v=@measured e=)|AND|OR
 o==|(|, a=@num|@val minus b=@num|@val
     | $o $a - $b | 1 | TS010 | first
     | SHOW(8 minus 4) => SHOW(8 - 4)
-o==|( the? largest of|between? a=@num|@val ,|then b=@num|@val e=)|,|$
-    | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered
-    | SHOW(el mayor de LIGHT_L y LIGHT_R) => SHOW(MAX(LIGHT_L, LIGHT_R))
-o==|( a=@num|@val ,|then|or b=@num|@val the? largest e=)|,|$
-    | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered
-    | SHOW(LIGHT_L or LIGHT_R the bigger) => SHOW(MAX(LIGHT_L, LIGHT_R))
 # comparisons in words: a row for each sense, and a sign
 is? ⟨less than?¦more⟩ or? equal to|than?
     | ⟨<=¦>=⟩ | 1 | TS010 | first
@@ -296,12 +281,6 @@ l=MIN|MAX ( c=@noparen+ ) s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num
     | $l ( $c ) $s $a &o $l ( $c ) $t $b | 1 | TS018 | offered
     | IF(MIN(2, DISTANCE) < 10 OR < 5);S;ENDIF => IF(MIN(2, DISTANCE) < 10 OR MIN(2, DISTANCE) <
     5);S;ENDIF
-( s=<|<= n=@num )
-    | ( DISTANCE $s $n ) | 1 | TS018 | offered
-    | IF(< 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-h=IF|WHILE|ELSEIF v=@val ( n=@num )
-    | &h ( $v < $n ) | 1 | TS048 | offered
-    | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ c=@cond+ ? <body> : d=@start s=@all* $
     | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered
     | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
@@ -317,9 +296,6 @@ o==|( a=@num|@val over by|over? b=@num|@val
 h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val ⟨then|&¦or|OR⟩ b=@val s=<|> n=@num )
     | &h ( $a $s $n ⟨AND¦OR⟩ $b $s $n ) | 1 | TS010 | first offered
     | IF(LIGHT_L ⟨y¦o⟩ LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 ⟨AND¦OR⟩ LIGHT_R > 500)⏎S⏎ENDIF
-then|and|AND / or|OR
-    | OR | 1 | TS010 | first
-    | IF(DISTANCE < 10 y/o LIGHT_L > 50);S;ENDIF => IF(DISTANCE < 10 OR LIGHT_L > 50);S;ENDIF
 a=@num|@val ⟨then|&¦or⟩ b=@val|less|more|NOT⟨|<¦⟩
     | $a ⟨AND¦OR⟩ $b | 1 | TS010 | first
     | IF(DISTANCE < 10 ⟨y¦o⟩ LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 ⟨AND¦OR⟩ LIGHT_L >
@@ -334,7 +310,6 @@ a=@num|@val '|' b=@val
 a=@num b=0 | @cat:a:b | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
 a=@num c=, b=@num | @dec:a:c:b | 1 | TS012 | applied | W(2,5) => W(2.5)
 o=(|,|; a=@num % ) | $o $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
-^ n=@num @in_secs|seconds $ | W ( $n ) | 1 | TS042 | offered | 2 segundos => W(2)
 o=+|-|=|, a=@num % ⟨e=;|,¦$⟩
     | $o $a ⟨$e¦⟩ | 1 | TS049 | applied
     | X = 50⏎X = X + 10%⟨;¦⏎⟩F(2, X) => X = 50⏎X = X + 10⟨;¦⏎⟩F(2, X)
@@ -348,15 +323,11 @@ s=<|>|<=|>=|=|<> n=@num u=@unit
     | ⟨x = 5 cm¦T = 500 ms⏎W(T)⟩ => ⟨x = 5¦T = 0.5⏎W(T)⟩
 v=@val CM|in? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
-h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val
-    | &h $b &v | 1 | TS102 | first
-    | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
 o=(|AND|OR the? wall s=<|<=|>|>= n=@num CM?
     | $o DISTANCE $s $n | 1 | TS102 | offered
     | F(5, 60) HASTA(PARED < 10 CM) => F(5, 60) UNTIL(DISTANCE < 10)
 sensing ( v=@val ) | $v | 1 | TS044 | first | SHOW(SENSOR(DISTANCE)) => SHOW(DISTANCE)
-sensing of? the? v=@val|light | $v | 1 | TS044 | first | SHOW(sensor de distancia) => SHOW(DISTANCE)
 # variables
 v=@name = a=@num|@val b=@start
     | $v = $a ; $b | 1 | TS013 | applied
@@ -401,9 +372,6 @@ x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => S
 RANDOM ( between|from? a=@num to|and|until|- b=@num )
     | RANDOM ( $a , $b ) | 1 | TS017 | applied
     | X = RANDOM(1 al 3)⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
-a=F|B|L|R|W ( RANDOM? b=@num to|and|until|- c=@num e=,|)
-    | $a ( RANDOM ( $b , $c ) $e | 1 | TS076 | offered
-    | F(1 a 3, 60) => F(RANDOM(1, 3), 60)
 c=⟨@callw¦RANDOM|ROUND|MIN|MAX⟩ ( a=@noparen+ ; b=@noparen+ e=)|$
     | $c ( $a , $b ) | 1 | TS019 | applied
     | ⟨F(2;80¦X = RANDOM(1; 6)⟩ => ⟨F(2, 80)¦X = RANDOM(1, 6)⟩
@@ -439,9 +407,12 @@ c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|U
 ⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num )
     | BEEP ( @ms:b , $a ) | 1 | TS102 | offered
     | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
-a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@num , n=@num u=CM|DEG⟩ )
+a=F|B|L|R ( ⟨u=CM|DEG (? n=@num )? , p=@num¦n=@num , p=@power u=CM|DEG¦p=@power , n=@num u=CM|DEG⟩ )
     | $a ( $n $u , $p ) | ⟨1¦1¦.9⟩ | TS076 | offered
     | ⟨B(CM(20), 60)¦F(150, 60 CM)¦R(60, 20 DEG)⟩ => ⟨B(20 CM, 60)¦F(150 CM, 60)¦R(20 DEG, 60)⟩
+a=F|B|L|R ( p=@num , n=@num u=CM|DEG )
+    | $a ( $n $u , $p ) | 1.1 | TS076 | offered
+    | R(8, 150 DEG) => R(150 DEG, 8)
 a=⟨F|B¦L|R⟩ ( n=@noparen+ @like_⟨CM¦DEG⟩ e=,|;
     | $a ( $n ⟨CM¦DEG⟩ $e | 1 | TS102 | offered
     | ⟨F(20 MC, 60)¦L(90 DG, 60)⟩ => ⟨F(20 CM, 60)¦L(90 DEG, 60)⟩
@@ -479,9 +450,6 @@ a=@close UNTIL that? ⟨c=@cond+ then+ ,? b=@start¦c=@noparen+ $⟩
     | $a ( ⟨FOREVER ,¦⟩ $b ) UNTIL ( $c ) | 2 | TS029 | offered
     | ⟨F(UNTIL(DISTANCE < 10),¦UNTIL DISTANCE < 10 F(2,⟩ 60) => F(⟨FOREVER¦2⟩, 60) UNTIL(DISTANCE <
     10)
-a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num @in_secs|S ) $
-    | $a ( $n , $p ) | 1 | TS049 | offered
-    | F(FOREVER, 60) UNTIL(5 SECONDS) => F(5, 60)
 # IF and WHILE
 ELSE a=@val s=<|<=|>|>= b=@num|@val do|:? $
     | ELSEIF ( $a $s $b ) | .9 | TS015 | offered
@@ -601,9 +569,6 @@ o=(|,|=|<|>|+|- '|' v=@num|@val c=@noparen* '|'
 ^ a=F|B|L|R|M|W|BEEP ( c=@noparen+ ) WHEN (? q=@cond+ )? ;|:|,? <body> $
     | WHEN ( $q ) ; $b $r ; END_WHEN ; $a ( $c ) | .9 | TS071 | offered
     | F(9, 50) WHEN(DISTANCE < 9) S => WHEN(DISTANCE < 9);S;END_WHEN;F(9, 50)
-m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val )
-    | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered
-    | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
 LOOP ( @name = 1 to|until n=@num )
     | LOOP ( $n ) | 1 | TS063 | offered
     | LOOP(I = 1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
@@ -700,9 +665,6 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
     | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered
     | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
 # words behind a call: shown, not made
-^ a=S|STOP after of? n=@num seconds? $
-    | W ( $n ) ; $a | 1 | TS013 | offered
-    | STOP AFTER 2 SECONDS => W(2);STOP
 ^ a=S|STOP ⟨( n=@num seconds? )¦during? n=@num seconds?⟩ $
     | $a ; W ( $n ) | 2 | ⟨TS039¦TS013⟩ | offered
     | S⟨(2)¦ 2 segundos⟩ => S;W(2)
@@ -756,7 +718,6 @@ h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ )
 ^ ⟨leaves 0¦import @any+⟩ ;? $
     | | 1 | ⟨TS065¦TS072⟩ | applied
     | ⟨return 0;¦import robot⟩⏎F(1, 50) => ⏎F(1, 50)
-^ idles $ | | 1 | TS044 | offered | NADA⏎F(1, 50) => ⏎F(1, 50)
 ^ closing $$ | | 0 | TS044 | first | F(1, 50)⏎fimalgoritmo => F(1, 50)⏎
 ^ end program? $$ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$
@@ -787,7 +748,6 @@ a=@close ⟨+|&|AND|->|'|'¦,⟩ $
     | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | applied
     | F(2, 80)⟨ +¦,⟩⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 # words of other languages around a program
-brake | BREAK | 1 | TS102 | offered | LOOP(3)⏎S⏎BRAKE⏎END_LOOP => LOOP(3)⏎S⏎BREAK⏎END_LOOP
 ⟨read ( v=@val )¦^ read the? v=@val $⟩
     | $v | 1 | TS102 | applied
     | ⟨X = leer(DISTANCE)¦leer DISTANCE⟩ => ⟨X =DISTANCE¦DISTANCE⟩

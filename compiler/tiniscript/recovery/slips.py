@@ -10,7 +10,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Sequence
 from difflib import SequenceMatcher
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Span
@@ -32,36 +32,39 @@ from tiniscript.recovery.writing import laid_out
 from tiniscript.syntax.lexer import NUMBER, WORD
 
 OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
-# What the message of a code names, and what it offers: of two codes `dedupe` asks for `found`, too.
-NAMED: dict[Code, str] = {
-    **dict.fromkeys((codes.DECIMAL_COMMA, codes.SEMICOLON_INSIDE, codes.ARGUMENT_COUNT,
-                     codes.UNTIL_ALONE, codes.FOREVER_NOT_HERE, codes.CHAINED, codes.EXTRA_CLOSE,
-                     codes.SPANISH_IF, codes.LOOP_COUNTS, codes.ASKED_BEHIND,
-                     codes.CHOICE_IN_VALUE, codes.SET_TOGETHER), "fix"),
-    **dict.fromkeys((codes.ODD_CHARACTER, codes.NOT_AN_INSTRUCTION, codes.EXTRA_WORD,
-                     codes.OTHER_ASSIGNMENT, codes.SIGN_BETWEEN, codes.REPEATED,
-                     codes.QUESTION_BEHIND), "found fix"),
-    **dict.fromkeys((codes.SETUP_TWICE, codes.LINE_NUMBER, codes.NEEDLESS_FRAME, codes.PASTED),
-                    "found"),
-    **dict.fromkeys((codes.OTHER_SIGN, codes.END_SPLIT, codes.BRACES, codes.UNIT),
-                    "found right fix"),
-    **dict.fromkeys((codes.OTHER_NOTE, codes.END_ALONE, codes.WRONG_END, codes.NAME_WITH_SPACE),
-                    "found right"),
-    **dict.fromkeys((codes.QUOTE, codes.SEVERAL_ORDERS), "right fix"),
-    **dict.fromkeys((codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.MISSING_CLOSE),
-                    "before fix"),
-    **dict.fromkeys((codes.MISSING_OPEN, codes.OTHER_CALL), "word usage fix"),
-    **dict.fromkeys((codes.NO_VALUE, codes.NAMED_ARGUMENT, codes.GROUPED), "word fix"),
-    codes.BAD_NAME: "found word right",
-    codes.BAD_NUMBER: "found right letter fix",
-    codes.EMPTY_BRACKETS: "word",
-    codes.MISSING_COMMA: "usage fix",
-    codes.MISSING_SIGN: "before found fix",
-    codes.MISSING_VALUE: "before found usage fix",
-    codes.NO_BRACKETS_HERE: "word right fix",
-    codes.OTHER_LANGUAGE: "found right usage takes fix",
-    codes.UNTIL_NOT_HERE: "word example",
+# What messages name, and what they offer: of two codes `dedupe` asks for `found`, too.
+_NAMED_BY: dict[tuple[str, ...], tuple[Code, ...]] = {
+    ("fix",): (
+        codes.DECIMAL_COMMA, codes.SEMICOLON_INSIDE, codes.ARGUMENT_COUNT, codes.UNTIL_ALONE,
+        codes.FOREVER_NOT_HERE, codes.CHAINED, codes.EXTRA_CLOSE, codes.SPANISH_IF,
+        codes.LOOP_COUNTS, codes.ASKED_BEHIND, codes.CHOICE_IN_VALUE, codes.SET_TOGETHER,
+    ),
+    ("found",): (
+        codes.SETUP_TWICE, codes.LINE_NUMBER, codes.NEEDLESS_FRAME, codes.PASTED,
+    ),
+    ("word",): (codes.EMPTY_BRACKETS,),
+    ("found", "fix"): (
+        codes.ODD_CHARACTER, codes.NOT_AN_INSTRUCTION, codes.EXTRA_WORD, codes.OTHER_ASSIGNMENT,
+        codes.SIGN_BETWEEN, codes.REPEATED, codes.QUESTION_BEHIND,
+    ),
+    ("found", "right"): (
+        codes.OTHER_NOTE, codes.END_ALONE, codes.WRONG_END, codes.NAME_WITH_SPACE,
+    ),
+    ("right", "fix"): (codes.QUOTE, codes.SEVERAL_ORDERS),
+    ("before", "fix"): (codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.MISSING_CLOSE),
+    ("usage", "fix"): (codes.MISSING_COMMA,),
+    ("word", "fix"): (codes.NO_VALUE, codes.NAMED_ARGUMENT, codes.GROUPED),
+    ("word", "example"): (codes.UNTIL_NOT_HERE,),
+    ("found", "right", "fix"): (codes.OTHER_SIGN, codes.END_SPLIT, codes.BRACES, codes.UNIT),
+    ("found", "word", "right"): (codes.BAD_NAME,),
+    ("word", "usage", "fix"): (codes.MISSING_OPEN, codes.OTHER_CALL),
+    ("word", "right", "fix"): (codes.NO_BRACKETS_HERE,),
+    ("before", "found", "fix"): (codes.MISSING_SIGN,),
+    ("before", "found", "usage", "fix"): (codes.MISSING_VALUE,),
+    ("found", "right", "letter", "fix"): (codes.BAD_NUMBER,),
+    ("found", "right", "usage", "takes", "fix"): (codes.OTHER_LANGUAGE,),
 }  # fmt: skip
+NAMED = {code: names for names, its in _NAMED_BY.items() for code in its}
 
 
 class Change(NamedTuple):
@@ -97,7 +100,7 @@ class Slip(NamedTuple):
 
 def values_of(slip: Slip, code: Code) -> dict[str, str]:
     """Return what a message with this code says of a slip."""
-    return {name: _VALUES[name](slip) for name in NAMED.get(code, "").split()}
+    return {name: _VALUES[name](slip) for name in NAMED.get(code, ())}
 
 
 def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
@@ -208,10 +211,17 @@ def _foreign(slip: Slip) -> Slip:
     cut = next((k for k, it in enumerate(found) if it.text in ("=", "(")), len(found))
     is_set = cut < len(found) and found[cut].text == "="
     found = found[: cut - is_set] or found
+    if any(each.kind is NUMBER for each in found):  # PARA of `PARA I DE 1 A 4`
+        found = [*takewhile(_is_counting, found)] or found
     if right and found and all(said_of(each.text, "filler") for each in found):
         named = [each for each in old if meant_by(each.text) == right[0].text]
         found = named[:1] or found  # `oi robô, anda`
     return slip._replace(found=found, right=right)
+
+
+def _is_counting(token: Lexeme) -> bool:
+    """Whether a word says that something is done several times: FOR, and EACH behind it."""
+    return meant_by(token.text) == "LOOP" or bool(said_of(token.text, "count", "each"))
 
 
 def _torn(slip: Slip) -> Slip:

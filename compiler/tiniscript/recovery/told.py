@@ -1,0 +1,183 @@
+"""What people are told of a wrong text: each step of it, in their order.
+
+The first of `READERS` that says something is told. The rest of the text is read as if its edits
+were made, so that no consequence of a mistake is reported; `usage` says what no reader does. What
+is told in all is held to the laws, each by a function that `told_of` names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Edit, Source, Span, applied, overlap
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
+from tiniscript.diagnostics.fixing import Check, without_wrong
+from tiniscript.recovery import slips
+from tiniscript.recovery.conserved import conserving, with_sample
+from tiniscript.recovery.dedupe import dedupe
+from tiniscript.recovery.findings import meant_in
+from tiniscript.recovery.pointing import pointed
+from tiniscript.recovery.search import Recovery
+from tiniscript.recovery.setup import SEAL, beginning, other_word
+from tiniscript.recovery.suggestions import suggested
+from tiniscript.recovery.usage import with_usage
+from tiniscript.syntax.parser import ENOUGH
+
+ROUNDS = 20  # of reading what follows a mistake from the repaired text
+LONGEST = 4_000  # characters of a text that is read as a whole
+
+
+class Findings(NamedTuple):
+    """What is told of a text, and the edits with which the rest of it is read."""
+
+    told: list[Diagnostic]
+    edits: list[Edit]
+
+
+class Wrong:
+    """A wrong text: `found` is what the parser and the checker, which `check` asks, say of it."""
+
+    def __init__(self, source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit) -> None:
+        self.source = source
+        self.found = found
+        self.check = check
+        self.kit = kit
+
+    @cached_property
+    def recovery(self) -> Recovery | None:
+        """The readings of the text; nothing for a long one, or one that is copied again."""
+        text = self.source.text.replace("\r\n", "\n").replace("\r", "\n")
+        if len(text) > LONGEST or SEAL in text:
+            return None
+        return Recovery(text, self.kit, lambda to: self._mistakes(to, is_own=to == text))
+
+    def _mistakes(self, text: str, is_own: bool) -> list[Code]:
+        found = self.found if is_own else self.check(text)
+        return [each.code for each in found if each.is_mistake]
+
+
+def told_of(
+    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
+) -> list[Diagnostic]:
+    """Return what is told of a wrong text, of which the parser and the checker say `found`."""
+    text = source.text
+    told = _read(Wrong(source, found, check, kit), ROUNDS)
+    told = without_wrong(told, text, check)  # what is offered is right
+    told = conserving(told, text, kit)  # what is made keeps what was written
+    told = with_sample(told, text, kit)  # what was not written is said to be an example
+    return codes.in_order([pointed(each, source) for each in told])
+
+
+def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
+    """Return what the readers say of a text, and then of what their edits leave wrong."""
+    findings = (reader(wrong) for reader in READERS if rounds)
+    told, edits = next((each for each in findings if each.told), Findings([], []))
+    if not told:
+        told = with_usage(wrong.found, wrong.source, wrong.kit)
+    elif len(told) <= ENOUGH:
+        rest = applied(wrong.source.text, edits)
+        left = wrong.check(rest)
+        if any(each.is_mistake for each in left):  # else its warnings come when it is repaired
+            behind = _read(Wrong(Source(rest), left, wrong.check, wrong.kit), rounds - 1)
+            told = [*told, *(moved_back(each, edits, wrong.source) for each in behind)]
+    return dedupe(told, wrong.source)
+
+
+# -- readers --------------------------------------------------------------------------------------
+
+
+def _beginning(wrong: Wrong) -> Findings:
+    """Return what is wrong with the lines before the program, and with its `SI|`."""
+    return _with_edits(beginning(wrong.source, wrong.found, wrong.check, wrong.kit))
+
+
+def _other_beginning(wrong: Wrong) -> Findings:
+    begun = other_word(wrong.source, wrong.found)
+    if begun is None:
+        return Findings([], [])
+    told = with_usage([begun], wrong.source, wrong.kit)
+    return Findings(told, [Edit(begun.span, "SI")])
+
+
+def _meant_surely(wrong: Wrong) -> Findings:
+    """Return what is wrong with a text that is read wholly and surely."""
+    recovery = wrong.recovery
+    if recovery is None:
+        return Findings([], [])
+    return _with_edits(meant_in(wrong.source, wrong.found, recovery, is_sure=True))
+
+
+def _words_behind(wrong: Wrong) -> Findings:
+    """Return what words say behind instructions, or in the place of one."""
+    behind = suggested(wrong.source.text, wrong.kit)
+    if recovery := wrong.recovery:  # they belong to the instruction by its sign: `X = 20 x 3`
+        behind = [each for each in behind if not recovery.has_signs(each.passed.span.start)]
+    return Findings([each.diagnostic for each in behind], [each.passed for each in behind])
+
+
+def _guessed(wrong: Wrong) -> Findings:
+    """Return what is wrong with the lines that are read, if not surely."""
+    recovery = wrong.recovery
+    if recovery is None:
+        return Findings([], [])
+    return _with_edits(meant_in(wrong.source, wrong.found, recovery, is_sure=False))
+
+
+def _words_of_blocks(wrong: Wrong) -> Findings:
+    """Return misspelt words that begin blocks or end them: the rest is read with them.
+
+    Else what is inside would be told of as well.
+    """
+    told = [each for each in wrong.found if each.code is codes.UNKNOWN_WORD
+            and each.values.get("near") in slips.OF_BLOCKS]  # fmt: skip
+    return Findings(told, [Edit(each.span, each.values["near"]) for each in told])
+
+
+READERS: tuple[Callable[[Wrong], Findings], ...] = (
+    _beginning, _other_beginning, _meant_surely, _words_behind, _guessed, _words_of_blocks,
+)  # fmt: skip
+
+
+def _with_edits(told: list[Diagnostic]) -> Findings:
+    return Findings(told, [edit for each in told if each.repair for edit in each.repair.edits])
+
+
+# -- places ---------------------------------------------------------------------------------------
+
+
+def moved_back(found: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
+    """Return a diagnostic of the text with these edits, as one of the text without them.
+
+    A condition that nobody can read is shown as it is written, and not what it was passed over for.
+    """
+    values = dict(found.values)
+    for edit in edits:
+        if edit.text.endswith("(TRUE)") and "TRUE" not in (was := source[edit.span].strip()):
+            values = {name: text.replace(edit.text, was) for name, text in values.items()}
+    place = found.place and _before(found.place, edits)
+    repair = found.repair
+    if repair is not None:
+        own = tuple(Edit(_before(edit.span, edits), edit.text) for edit in repair.edits)
+        passed = [edit for edit in edits if edit.text.isspace()]  # words that nothing may drop
+        repair = Repair((), False) if overlap(own, passed) else repair._replace(edits=own)
+    return Diagnostic(found.code, _before(found.span, edits), values, place, repair)
+
+
+def _before(span: Span, edits: Sequence[Edit]) -> Span:
+    """Return where a span of the text with edits stood before them; all of one it begins in."""
+    start = end = shift = 0
+    for edit in sorted(edits):
+        begin = edit.span.start + shift
+        behind = begin + len(edit.text)
+        shift = behind - edit.span.end
+        if span.start >= behind:
+            start = shift
+        elif span.start > begin:
+            start = span.start - edit.span.start
+        if span.end > begin:
+            end = shift if span.end >= behind else span.end - edit.span.end
+    return Span(span.start - start, max(span.start - start, span.end - end))
