@@ -112,7 +112,7 @@ def _meant_surely(wrong: Wrong) -> Findings:
 
 
 def _words_behind(wrong: Wrong) -> Findings:
-    """Return what words say behind instructions, or in the place of one."""
+    """Return what words say after instructions, or in the place of one."""
     behind = suggested(wrong.source.text, wrong.kit)
     if recovery := wrong.recovery:  # they belong to the instruction by its sign: `X = 20 x 3`
         behind = [each for each in behind if not recovery.has_signs(each.passed.span.start)]
