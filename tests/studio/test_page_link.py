@@ -452,7 +452,7 @@ def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
 
 
 def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> None:
-    write(page, "F(FOREVER, 80)")
+    write(page, "F(600, 80)")
     page.click("#link_upload")
     page.locator(".cm-running").wait_for()
     page.locator(".cm-content").focus()
