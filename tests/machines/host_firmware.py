@@ -83,6 +83,10 @@ class HostFirmware(Process):
         """
         return self._pass(milliseconds, data, SPREAD if is_spread else 0)
 
+    def until_sent(self, milliseconds: int) -> bytes:
+        """Let time pass, at most until the robot sends something; return that."""
+        return self._pass(milliseconds, b"", UNTIL_SENT)[0]
+
     def _pass(self, milliseconds: int, data: bytes, how: int) -> tuple[bytes, list[bool]]:
         head = pack("<IIHBI", self.now_ms + 1, milliseconds, TICKS, how, len(data))
         sent, rest = first_text(self.ask(b"W", head + data))
@@ -123,6 +127,10 @@ class HostFirmware(Process):
         """Return how many edges both wheels have gone, less those that they went back."""
         left, right = unpack("<ii", self.ask(b"O", b""))
         return left / 1000, right / 1000
+
+    def pace(self, ticks: int) -> None:
+        """Let each byte that the robot sends take so many ticks, as on a slow line."""
+        self.ask(b"P", bytes((ticks,)))
 
     def supply(self, is_low: bool) -> None:
         """Let the voltage be too low to save anything, or enough."""
@@ -172,7 +180,7 @@ class HostFirmware(Process):
         if data or flags or quiet_ms < 2:
             sent = self.step(data, flags)
         else:
-            sent, _ = self._pass(quiet_ms, b"", UNTIL_SENT)
+            sent = self.until_sent(quiet_ms)
         session.receive(sent, self.now_ms)
 
     def until(self, session: Session, request: PendingRequest[Any], limit_ms: int = 30_000) -> int:

@@ -74,6 +74,8 @@ struct Tabletop {
   Place hung = {};
   uint8_t busy_ticks = 0;   // for which a byte is being written,
   uint8_t write_ticks = 0;  // as many as this
+  uint8_t sends_ticks = 0;  // that each byte takes which the robot sends; 0: none,
+  uint8_t line_ticks = 0;   // and so many are left of the last one
   std::string code;                // that was started last
   std::vector<std::string> codes;  // all that nobody has asked for
 };
@@ -154,8 +156,12 @@ std::string pass(uint32_t now_ms, uint16_t ticks, const uint8_t* heard, size_t l
     firmware_tick(now_ms);
     check_code();
     if (table.busy_ticks != 0) table.busy_ticks--;
+    if (table.line_ticks != 0) table.line_ticks--;
     uint8_t byte = 0;
-    while (firmware_next_tx_byte(&byte)) sent += static_cast<char>(byte);
+    while (table.line_ticks == 0 && firmware_next_tx_byte(&byte)) {
+      sent += static_cast<char>(byte);
+      table.line_ticks = table.sends_ticks;
+    }
   }
   return sent;
 }
@@ -227,6 +233,9 @@ void answer_dead(RequestReader* request, Writer*) { table.dead.insert(request->u
 void answer_readings(RequestReader* request, Writer*) {
   for (int32_t& reading : table.readings) reading = request->i32();
 }
+
+// P: so many ticks pass until the robot has sent a byte.
+void answer_pace(RequestReader* request, Writer*) { table.sends_ticks = request->u8(); }
 
 // C: the codes that were started since this was asked last.
 void answer_codes(RequestReader*, Writer* answer) {
@@ -413,6 +422,7 @@ const Answers answers = {
     {'K', answer_remote},
     {'O', answer_wheels},
     {'H', answer_held},
+    {'P', answer_pace},
 };
 
 }  // namespace tiniscript

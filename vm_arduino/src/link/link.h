@@ -301,6 +301,7 @@ class Link {
   bool is_typed() const { return is_typed_; }
   void note_typed(bool is_so) { is_typed_ = is_so; }
 #endif
+  void note_end(uint8_t due);
   void reply();
   void describe();
   void fetch();

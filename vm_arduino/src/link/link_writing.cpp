@@ -50,15 +50,17 @@ uint16_t both(uint8_t first, uint8_t second) {
 
 }  // namespace
 
-void Link::done() {
-  ended_run_ = port_status().run;
-  due_ |= kDueDone;
-}
+void Link::done() { note_end(kDueDone); }
 
 void Link::faulted() {
   renew();
+  note_end(kDueFault);
+}
+
+// Of two ends that wait for the line the last one is told: an end is never told of another run.
+void Link::note_end(uint8_t due) {
   ended_run_ = port_status().run;
-  due_ |= kDueFault;
+  due_ = static_cast<uint8_t>((due_ & ~(kDueFault | kDueDone)) | due);
 }
 
 void Link::stopped(Cause cause) {

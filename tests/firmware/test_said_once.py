@@ -1,0 +1,384 @@
+"""What a robot says from a stop, a fault or an end on, until it stands and after.
+
+A client sends random requests, one after the other, on a quick line or a slow one; programs show
+values, end, fail and go on; at any moment something stops the robot. Of all that it says:
+
+- Each request that has arrived whole gets one reply, and nothing else does.
+- A stop is told once, with the cause that stopped the robot; again where it is stopped again.
+- A run that ends by itself is told once, as DONE or as FAULT, and no other run is;
+  the next one's end may replace it while the line is busy.
+- Each value is told once, in its order, with the run that shows it, and none after its end.
+- Who hears a new epoch is told why by HELLO's reply, STOPPED or FAULT.
+
+`python -m tests.firmware.test_said_once 2000` tries more.
+"""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from dataclasses import dataclass, field
+
+import pytest
+
+from tests.firmware.test_host_firmware import KIT
+from tests.firmware.test_second_time import SmallRobot
+from tests.machines.host_firmware import TICKS, HostFirmware
+from tests.support.campaign import each_seed, wanted
+from tests.support.images import image_of
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import (
+    AGAIN_MS,
+    BY_NAME,
+    DETACHED,
+    MAJOR,
+    MINOR,
+    RUN,
+    STATUSES,
+    ZERO_MS,
+)
+
+SHOW, FAULT, STOPPED, DONE = (BY_NAME[name].number for name in ("SHOW", "FAULT", "STOPPED", "DONE"))
+HELLO, CLEAR, LIVE, PROGRAM, START, STOP = (
+    BY_NAME[name].number for name in ("HELLO", "CLEAR", "LIVE", "PROGRAM", "START", "STOP")
+)
+OTHERS = tuple(BY_NAME[name].number for name in ("PING", "STATUS", "TRIM", "IDENTIFY", "ABORT"))
+OK = STATUSES["OK"]
+SEQUENCE, MESSAGE, BUTTON, CABLE, TEXT = range(1, 6)  # who stops
+PRESSED, RELEASED, STALLED, UNPLUGGED = 1, 2, 4, 8
+KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallRobot}
+PACES = (0, 2, 21, 21)  # ticks of a byte: at once, as with 115200 baud, as with 9600
+ANSWERS_MS = 400  # on the slowest line, whatever it says before
+BUSY_MS = 70  # with what it was saying, at most
+ENDINGS = (";W(0.002)", ";SHOW(1 / (X - X))", ";W(9)", ";F(9, 80)")
+
+
+@dataclass(frozen=True)
+class Program:
+    """It shows so many values from a first one on, if nothing ends it before."""
+
+    first: int
+    shows: int
+
+
+@dataclass
+class Run:
+    program: Program
+    begun_ms: int
+    ended: int = 0  # by itself, as which event
+    ended_ms: int = 0
+    ended_epoch: int = 0
+    is_ended: bool = False  # by itself, or by a stop
+    values: list[int] = field(default_factory=list)
+    told: list[int] = field(default_factory=list)  # its end
+    is_over: bool = False  # as its client knows
+
+
+@dataclass
+class Stop:
+    """`must`: it is to be told, also if the robot stood already."""
+
+    at_ms: int
+    must: bool
+    epoch: int | None  # as heard before; None if the robot was stopped already
+
+
+class Client:
+    """Sends requests, hears what is said, and holds it to the laws."""
+
+    def __init__(self, rng: random.Random, kind: str) -> None:
+        self.rng = rng
+        self.robot = KINDS[kind](KIT)
+        self.robot.wait(300)
+        self.pace(rng.choice(PACES))
+        self.heard = b""
+        self.sent_ms = -ZERO_MS  # the last frame, and nothing since
+        self.asked_ms = 0
+        self.seq = 0
+        self.epoch = 0
+        self.nonce = 1
+        self.programs: dict[bytes, Program] = {}
+        self.runs: list[Run] = []
+        self.waiting: dict[int, tuple[int, int]] = {}  # by number: message, time
+        self.stops: list[Stop] = []  # that nothing has told yet
+        self.causes: list[tuple[int, int]] = []  # with times, since the robot was not stopped
+        self.cause = 0  # of what stands or is to be told
+        self.confirmed_ms = -AGAIN_MS
+        self.log: list[object] = []
+        self.is_new = True
+        self.ask(HELLO, self.hello())
+        self.passes(ANSWERS_MS)
+
+    def pace(self, ticks: int) -> None:
+        self.ticks = ticks
+        self.robot.pace(ticks)
+
+    # -- what is heard ----------------------------------------------------------------------------
+
+    def passes(self, milliseconds: int, data: bytes = b"", flags: int = 0, cause: int = 0) -> None:
+        """Let time pass, at whose beginning bytes arrive, or something else stops the robot."""
+        robot = self.robot
+        until_ms = robot.now_ms + milliseconds
+        if cause in (SEQUENCE, MESSAGE, TEXT):
+            self.note_stop(cause)
+        was_running = not robot.is_latched
+        sent = robot.step(data, flags)
+        ended = self.note_runs()
+        if cause in (BUTTON, CABLE) and was_running and robot.is_latched and not ended:
+            self.note_stop(cause)
+        self.receive(sent)
+        while robot.now_ms < until_ms:
+            sent = robot.until_sent(until_ms - robot.now_ms)
+            self.note_runs()
+            self.receive(sent)
+
+    def note_stop(self, cause: int) -> None:
+        """Of a robot that stands already STOPPED comes again, but not too often."""
+        now_ms = self.robot.now_ms
+        passed_ms = now_ms - self.confirmed_ms
+        must = not self.causes or passed_ms > AGAIN_MS + 2
+        self.stops.append(Stop(now_ms, must, None if self.causes else self.epoch))
+        may_be_clear = CLEAR in (asked for asked, _ in self.waiting.values())
+        if not self.causes or passed_ms >= AGAIN_MS - 2 or may_be_clear:
+            self.confirmed_ms = now_ms
+        self.causes.append((now_ms, cause))
+        self.cause = self.causes[0][1]
+        self.log.append((now_ms, "stop", cause))
+
+    def note_runs(self) -> bool:
+        """Note what has begun and ended; no program is done in its first millisecond.
+
+        Return whether one has ended by itself.
+        """
+        begun = [self.programs[code] for code in self.robot.codes()]
+        did = [line.split()[1] for line in self.robot.did]
+        self.robot.did.clear()
+        for what, end in (("FINISHED", DONE), ("FAULTED", FAULT)):
+            if what in did:
+                if end == FAULT:
+                    self.begin(begun)
+                self.runs[-1].ended = end
+                self.runs[-1].ended_ms, self.runs[-1].ended_epoch = self.robot.now_ms, self.epoch
+                self.runs[-1].is_ended = True
+                self.log.append((self.robot.now_ms, what))
+        self.begin(begun)
+        if self.runs and self.robot.is_latched:
+            self.runs[-1].is_ended = True
+        return "FINISHED" in did or "FAULTED" in did
+
+    def begin(self, programs: list[Program]) -> None:
+        for program in programs:
+            self.runs.append(Run(program, self.robot.now_ms))
+            self.log.append((self.robot.now_ms, "run", len(self.runs), program))
+            self.stood_until(self.robot.now_ms)
+        programs.clear()
+
+    def stood_until(self, now_ms: int) -> None:
+        """Forget who has stopped it before: it was not stopped any more."""
+        self.causes = [row for row in self.causes if row[0] >= now_ms - 1]
+        if self.causes:
+            self.cause = self.causes[0][1]
+
+    def receive(self, sent: bytes) -> None:
+        *packets, self.heard = (self.heard + sent).split(b"\0")
+        for packet in packets:
+            frame = decoded(packet) if packet else None
+            assert frame or not packet, f"no frame: {packet!r}"
+            if frame is not None:
+                self.log.append((self.robot.now_ms, frame))
+                self.take(frame, self.robot.now_ms - (len(packet) + 1) * self.ticks // TICKS)
+
+    def take(self, frame: Frame, begun_ms: int) -> None:
+        self.take_epoch(frame)
+        if frame.number == SHOW:
+            self.take_value(frame.payload)
+        elif frame.number == STOPPED:
+            self.take_stop(frame, begun_ms)
+        elif frame.number in (FAULT, DONE):
+            run = self.run_of(frame.payload[0])
+            run.told.append(frame.number)
+            run.is_over = True
+            assert frame.number == DONE or frame.epoch != run.ended_epoch, (
+                "a fault without an epoch"
+            )
+            assert run.told == [run.ended], "an end that is none, another one, or told twice"
+        else:
+            asked, asked_ms = self.waiting.pop(frame.seq, (0, 0))
+            assert frame.is_reply and asked == frame.number, "a reply that nobody waits for"
+            if asked == CLEAR and frame.payload[0] == OK:
+                self.stood_until(asked_ms + 1)
+
+    def take_epoch(self, frame: Frame) -> None:
+        """A reply may be ahead of the fault, which the next run's end may replace."""
+        if frame.epoch == self.epoch and not self.is_new:
+            return
+        is_ahead = any(run.ended == FAULT and not run.told for run in self.runs[-2:])
+        is_late = is_ahead and frame.number != SHOW  # a reply, or the end of the next run
+        assert frame.number in (HELLO, STOPPED, FAULT) or is_late, "nothing tells why"
+        assert self.is_new or (frame.epoch - self.epoch) % 256 < 128, "an old epoch"
+        self.epoch, self.is_new = frame.epoch, False
+
+    def run_of(self, number: int) -> Run:
+        assert 0 < number <= len(self.runs) < 256
+        return self.runs[number - 1]
+
+    def take_value(self, payload: bytes) -> None:
+        run = self.run_of(payload[5])
+        assert not run.is_over, "a value after the end"
+        run.values.append(int.from_bytes(payload[:4], "little", signed=True) // 1000)
+        first = run.program.first
+        assert run.values == list(range(first, first + len(run.values))), "not the next value"
+
+    def take_stop(self, frame: Frame, begun_ms: int) -> None:
+        cause = frame.payload[0]
+        assert self.stops, "a stop that is none, or told twice"
+        cleared_ms = min(
+            (ms for asked, ms in self.waiting.values() if asked == CLEAR), default=None
+        )
+        first = {self.cause}
+        if cleared_ms is not None:  # it may have been done before
+            first |= {cause for at_ms, cause in self.causes if at_ms >= cleared_ms}
+        assert cause in first, f"not the first cause: {first}"
+        assert frame.epoch != self.stops.pop(0).epoch, "a stop without an epoch"
+        self.stops = [stop for stop in self.stops if stop.at_ms >= begun_ms - 2]
+        for stop in self.stops:  # it may have come before what is said was written
+            stop.must = False
+        for run in self.runs:
+            run.is_over |= run.is_ended and run.ended == 0
+
+    # -- what is done -----------------------------------------------------------------------------
+
+    def hello(self) -> bytes:
+        kit = KIT.fingerprint.to_bytes(2, "little")
+        return bytes((MAJOR, MINOR, 2, 0)) + kit + self.nonce.to_bytes(4, "little")
+
+    def program(self) -> bytes:
+        rng = self.rng
+        first, shows = 100 * (len(self.programs) + 1), rng.choice((0, 0, 1, 2, 5, 30))
+        wait = rng.choice(("", "", "W(0.001);", "W(0.02);"))
+        loop = f"LOOP({shows});SHOW(X);X = X + 1;{wait}END_LOOP" if shows else f"{wait}W(0)"
+        text = f"SI|X = {first};{loop}{rng.choice(ENDINGS)}"
+        return self.known(text, Program(first, shows))
+
+    def known(self, text: str, program: Program) -> bytes:
+        """Return the code of a text, whose runs count as the program's."""
+        code = image_of(text, KIT).code
+        self.programs[code] = program
+        return code
+
+    def request(self) -> tuple[int, bytes]:
+        """Return a message and its payload."""
+        rng = self.rng
+        number = rng.choice((*OTHERS, CLEAR, CLEAR, LIVE, LIVE, LIVE, PROGRAM, START, STOP, HELLO))
+        if number == HELLO:
+            self.nonce += rng.random() < 0.5
+            return number, self.hello()
+        if number == LIVE:
+            return number, bytes((RUN,)) + self.program()
+        if number == PROGRAM:
+            return number, bytes((rng.choice((0, RUN, RUN | DETACHED)),)) + self.program()
+        return number, bytes((rng.choice((0, DETACHED)),)) if number == START else b""
+
+    def ask(self, number: int, payload: bytes = b"", after: bytes = b"", cause: int = 0) -> None:
+        """Send a request; a stop may follow at once. What has another epoch is done by none."""
+        now_ms = self.robot.now_ms
+        zero = b"\0" if number == HELLO or now_ms - self.sent_ms >= ZERO_MS else b""
+        self.seq = (self.seq + 1) % 256
+        self.waiting[self.seq] = (number, now_ms)
+        frame = Frame(number, self.seq, self.epoch, payload)
+        self.sent_ms = self.asked_ms = now_ms
+        if number == STOP:
+            self.note_stop(MESSAGE)
+        self.passes(1, zero + encoded(frame) + after, 0, cause)
+
+    def turn(self) -> None:
+        """Ask for something, or let time pass; mostly something stops the robot at any moment."""
+        rng = self.rng
+        data, flags, cause = rng.choice((
+            (bytes(4), 0, SEQUENCE), (bytes(8), 0, SEQUENCE), (b"\0S\n", 0, TEXT),
+            (b"", PRESSED, BUTTON), (b"", STALLED, 0), (b"", UNPLUGGED, CABLE),
+            (b"", 0, 0), (b"", 0, 0), (b"", 0, 0),
+        ))  # fmt: skip
+        is_at_once = not flags and rng.random() < 0.3
+        if rng.random() < 0.9 or self.robot.now_ms - self.asked_ms > 1000:  # it is always heard
+            self.ask(*self.request(), *((data, cause) if is_at_once else ()))
+        if not is_at_once:
+            self.passes(rng.choice((1, 2, 5, 15, 40, 70)))
+            self.passes(1, data, flags, cause)
+        if data:
+            self.sent_ms = -ZERO_MS
+        if flags == PRESSED:
+            self.passes(rng.choice((5, 40, 90)))
+            self.passes(1, b"", RELEASED)
+        self.passes(ANSWERS_MS if self.waiting else 1)
+        assert not self.waiting, "no reply"
+        self.passes(rng.choice((1, 1, 60, 1100)))
+
+    def settle(self) -> None:
+        self.passes(ANSWERS_MS)
+        assert not [stop for stop in self.stops if stop.must], "a stop that nobody is told of"
+        for number, run in enumerate(self.runs, 1):
+            # The button may start the next one while the line is busy.
+            begins_ms = [later.begun_ms for later in self.runs[number : number + 1]]
+            is_overtaken = begins_ms and begins_ms[0] - run.ended_ms < BUSY_MS
+            assert run.ended in (0, *run.told) or is_overtaken, f"no end of {number}"
+            if run.ended == DONE:
+                assert len(run.values) == run.program.shows, number
+
+
+def check(seed: int, kind: str) -> Counter[str]:
+    rng = random.Random(f"{seed} {kind}")
+    client = Client(rng, kind)
+    try:
+        for _ in range(25):
+            client.turn()
+        client.settle()
+    except Exception as error:
+        log = "\n".join(map(str, client.log[-25:]))
+        raise AssertionError(f"{seed} {kind} {client.ticks}: {error!r}\n{log}") from error
+    names = {DONE: "done", FAULT: "faults"}
+    happened = Counter(names[run.ended] for run in client.runs if run.ended)
+    happened["stops"] += sum(isinstance(row, tuple) and row[1] == "stop" for row in client.log)
+    return happened
+
+
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(5))
+@pytest.mark.parametrize("kind", KINDS)
+def test_all_that_happens_is_told_once(kind: str, part: int) -> None:
+    happened: Counter[str] = Counter()
+    for seed in range(part * 20, part * 20 + 20):
+        happened += check(seed, kind)
+    assert all(happened[name] for name in ("done", "faults", "stops")), happened
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("is_fault_first", [False, True])
+def test_an_end_is_told_of_its_own_run_though_another_waits_for_the_line(
+    is_fault_first: bool, kind: str
+) -> None:
+    done, fault = "SI|X = 1;W(0.002)", "SI|X = 1;SHOW(1 / (X - X))"
+    waited = 0
+    for delay_ms in range(1, 40):
+        client = Client(random.Random(delay_ms), kind)
+        client.pace(21)
+        first, pressed = (fault, done) if is_fault_first else (done, fault)
+        client.ask(PROGRAM, bytes((0,)) + client.known(pressed, Program(0, 0)))
+        client.passes(ANSWERS_MS)
+        client.ask(LIVE, bytes((RUN,)) + client.known(first, Program(0, 0)))
+        client.passes(delay_ms)
+        client.passes(1, b"", PRESSED, BUTTON)
+        client.passes(5)
+        client.passes(1, b"", RELEASED)
+        client.settle()
+        waited += len(client.runs) == 2 and sum(len(run.told) for run in client.runs) == 1
+    assert waited, "the line was never busy at both ends"
+
+
+def check_all(seed: int) -> None:
+    for kind in KINDS:
+        check(seed, kind)
+
+
+if __name__ == "__main__":
+    each_seed(check_all, wanted(2000, 10_000))
