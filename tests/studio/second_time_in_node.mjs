@@ -258,7 +258,8 @@ const PARTS = {
     robot = virtualRobot(chanceOf(1), true);
     new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled: async () => PROGRAM, remember() {}, pad: { offer: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
     await settles();
-    const seen = () => [page.byId('doing').textContent, page.byId('trace').textContent, page.byId('values').children.map((row) => row.children.map((each) => each.textContent)), structuredClone(pageState.fault.value)];
+    const line = page.byId('time_at');
+    const seen = () => [page.byId('time_line').hidden || [line.min, line.max, line.value], page.byId('doing').textContent, page.byId('trace').textContent, page.byId('values').children.map((row) => row.children.map((each) => each.textContent)), structuredClone(pageState.fault.value)];
     return async (chance, isGood) => {
       notes.splice(0);
       robot = virtualRobot(chance, isGood);
@@ -267,8 +268,12 @@ const PARTS = {
       for (let k = chance.below(6); k > 0; k -= 1) {
         await passes(100 + chance.below(300));
         notes.push(seen());
-        const pressed = page.byId(chance.of(['pause', 'step', 'push', 'nothing']));
-        if (!pressed.hidden && !pressed.disabled) pressed.click();
+        const pressed = page.byId(chance.of(['pause', 'step', 'push', 'time_at', 'nothing']));
+        if (pressed === line && !page.byId('time_line').hidden) {
+          line.value = String(chance.below(3000));
+          line.dispatchEvent(new Event('input'));
+          notes.push(seen());
+        } else if (!pressed.hidden && !pressed.disabled) pressed.click();
       }
       const end = chance.of(['stop', 'wait', 'again', 'again']); // again: while it runs
       if (end === 'again') await passes(chance.below(40));

@@ -34,7 +34,8 @@ export class Arena {
   /** How far each wheel has turned, in cm. @type {[number, number]} */
   #rolled = [0, 0];
   #seen_ms = 0; // of the robot's time
-  #beeps_until_ms = 0;
+  /** From when to when it beeps. @type {[number, number]} */
+  #beep = [0, 0];
   #taken = 0; // flags
   /** What it has shown last, and when. @type {[string, number]} */
   #said = ['', 0];
@@ -70,7 +71,8 @@ export class Arena {
     this.#robot = robotOf(robot) ?? ROBOTS[0];
     this.#ways = [...this.#ways.filter((way) => way.length > 1), []].slice(-1 - MOST_WAYS);
     this.#rolled = [0, 0];
-    this.#seen_ms = this.#beeps_until_ms = 0;
+    this.#seen_ms = 0;
+    this.#beep = [0, 0];
     this.#taken = 0;
     this.#said = ['', 0];
     this.#isFloorDrawn = false;
@@ -91,8 +93,6 @@ export class Arena {
     const way = this.#ways.at(-1) ?? [];
     const last = way.at(-1);
     if (!last || Math.hypot(last[0] - x, last[1] - y) > 0.5) way.push([x, y]);
-    const taken = state.score?.taken ?? 0;
-    if (taken !== this.#taken) this.#isFloorDrawn = false;
     if (way.length > MOST_POINTS) {
       way.splice(0, MOST_POINTS / 2);
       this.#isFloorDrawn = false;
@@ -100,14 +100,13 @@ export class Arena {
     const passed_s = Math.max(0, state.now_ms - this.#seen_ms) / 1000;
     const full = (this.#robot?.speed_cm_s ?? 0) / 100;
     this.#seen_ms = state.now_ms;
-    this.#taken = taken;
     this.#rolled[0] += state.motors[0] * full * passed_s;
     this.#rolled[1] += state.motors[1] * full * passed_s;
   }
 
-  /** @param {number} until_ms of the robot's time */
-  showBeep(until_ms) {
-    this.#beeps_until_ms = until_ms;
+  /** @param {number} from_ms of the robot's time @param {number} until_ms */
+  showBeep(from_ms, until_ms) {
+    this.#beep = [from_ms, until_ms];
   }
 
   /** @param {string} what @param {number} at_ms of the robot's time */
@@ -152,6 +151,9 @@ export class Arena {
       width / (world.width_cm + 2 * MARGIN_CM),
       height / (world.height_cm + 2 * MARGIN_CM),
     );
+    const taken = state?.score?.taken ?? 0;
+    if (taken !== this.#taken) this.#isFloorDrawn = false;
+    this.#taken = taken;
     this.#drawFloor(world);
     const pen = this.#pen;
     pen.setTransform(1, 0, 0, 1, 0, 0);
@@ -201,7 +203,8 @@ export class Arena {
     pen.save();
     pen.translate(x, y);
     pen.rotate((heading * Math.PI) / 180);
-    const isBeeping = state !== null && state.is_running && state.now_ms < this.#beeps_until_ms;
+    const [from_ms, until_ms] = this.#beep;
+    const isBeeping = state !== null && state.is_running && from_ms <= state.now_ms && state.now_ms < until_ms;
     drawRobot(pen, robot, state, { rolled: this.#rolled, isBeeping });
     pen.restore();
     if (state?.touches) this.#drawStar(...state.touches);

@@ -53,8 +53,8 @@ export class Plot {
     return [...new Set(this.#samples.flatMap(({ values }) => [...values.keys()]))];
   }
 
-  /** Draws all of it, if it is to be seen. */
-  draw() {
+  /** Draws all of it, if it is to be seen. @param {number | null} seen_ms when the moment was at which somebody looks */
+  draw(seen_ms = null) {
     const canvas = this.#canvas;
     const place = canvas.parentElement;
     if (!place || place.hidden || !place.clientHeight) return; // what is hidden is not laid out for it
@@ -83,6 +83,7 @@ export class Plot {
       const label = `${rounded(at / 1000)} s`;
       pen.fillText(label, Math.min(x(at) + 2, LEFT + wide - pen.measureText(label).width), names.length * row + 14);
     }
+    if (seen_ms !== null) path(pen, [[x(seen_ms), 0], [x(seen_ms), names.length * row]], this.#colors.said, 2);
     names.forEach((name, k) => this.#drawRow(pen, name, k * row, row, x, this.#colors.rows[k % this.#colors.rows.length] ?? ''));
   }
 

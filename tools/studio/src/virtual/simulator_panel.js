@@ -11,6 +11,7 @@ import { made } from '../page/made.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
+import { TimeLine } from './time_line.js';
 import { pageState } from '../page/page_state.js';
 import { hasText, text } from '../page/texts.js';
 import { isSecond } from '../page/twice.js';
@@ -49,9 +50,12 @@ export class SimulatorPanel {
   #plot = new Plot(element('plot', HTMLCanvasElement));
   #sounds = new Sounds();
   #where = new Where();
+  #timeLine = new TimeLine(() => this.#lookBack());
   #bumps = 0; // that were seen
   /** What each SHOW has shown last. @type {Map<string, string>} */
   #shown = new Map();
+  /** What each had shown when somebody looks back. @type {Map<string, string>} */
+  #seenShows = new Map();
   /** Whose run it is. @type {Pick<Checked, 'places' | 'shows'>} */
   #program = { places: [], shows: [] };
   #wasStopped = false;
@@ -114,15 +118,20 @@ export class SimulatorPanel {
     this.#run.addEventListener('click', () => this.#start(false));
     this.#pause.addEventListener('click', (event) => {
       if (isSecond(event)) return; // it was pressed twice to pause
+      this.#lookAtNow();
       if (this.#simulator.phase === 'paused') this.#simulator.goOn();
       else this.#pauseIt();
     });
     element('step', HTMLButtonElement).addEventListener('click', () => {
+      this.#lookAtNow();
       if (this.#simulator.phase === 'running') this.#pauseIt();
       else if (this.#simulator.phase === 'paused') this.#simulator.step();
       else this.#start(true);
     });
-    this.#push.addEventListener('click', () => this.#simulator.push());
+    this.#push.addEventListener('click', () => {
+      this.#lookAtNow();
+      this.#simulator.push();
+    });
     element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
     addEventListener('keydown', (event) => {
       if (event.key === 'Escape') this.stop();
@@ -152,10 +161,10 @@ export class SimulatorPanel {
       this.#arena.eraseWays();
       this.#show();
     });
-    new ResizeObserver(() => this.#plot.draw()).observe(element('plot_place', HTMLElement));
+    new ResizeObserver(() => this.#showReadings()).observe(element('plot_place', HTMLElement));
     new ResizeObserver(() => {
       this.#arena.resize();
-      this.#arena.draw(this.#simulator.state);
+      this.#arena.draw(this.#state);
     }).observe(element('arena', HTMLCanvasElement));
     pageState.language.subscribe(() => this.#show());
     pageState.areWordsShown.subscribe(() => this.#show());
@@ -201,6 +210,27 @@ export class SimulatorPanel {
   leave() {
     this.stop();
     this.#drawing.end();
+  }
+
+  /** How the robot is, or was at the moment at which somebody looks. */
+  get #state() {
+    return this.#timeLine.seen ?? this.#simulator.state;
+  }
+
+  /** What runs stands still while somebody looks back. */
+  #lookBack() {
+    if (this.#simulator.phase === 'running') this.#pauseIt();
+    this.#arena.say('', 0);
+    this.#seenShows = this.#keepShows(new Map(), this.#timeLine.shows);
+    this.#show();
+  }
+
+  /** The newest moment is seen again. */
+  #lookAtNow() {
+    if (!this.#timeLine.seen) return;
+    this.#timeLine.leave();
+    this.#keepShows(this.#shown, this.#timeLine.shows);
+    this.#show();
   }
 
   get #isDriving() {
@@ -259,6 +289,7 @@ export class SimulatorPanel {
     this.stop();
     this.#simulator.leave();
     this.#plot.begin();
+    this.#timeLine.begin();
     this.#variables = [];
     this.#arena.begin(this.#shapes, pageState.robotName.value, this.#world.goals);
     this.#show();
@@ -324,6 +355,7 @@ export class SimulatorPanel {
     this.#bumps = 0;
     this.#arena.begin(this.#world.shapes, pageState.robotName.value, this.#world.goals);
     this.#plot.begin();
+    this.#timeLine.begin();
     this.#shown.clear();
     this.#program = program;
     this.#places = program.places;
@@ -343,12 +375,13 @@ export class SimulatorPanel {
     }
     this.#sounds.silence();
     if (!this.#isDriving) return;
+    this.#lookAtNow();
     this.#wasStopped = true;
     this.#simulator.stop();
   }
 
   #show() {
-    const { phase, state } = this.#simulator;
+    const { phase } = this.#simulator, state = this.#state;
     this.#showPlaces(); // first: the editor has the page laid out, which is little as long as nothing else is new
     this.#showReadings();
     this.#arena.draw(state);
@@ -373,7 +406,7 @@ export class SimulatorPanel {
   }
 
   #showReadings() {
-    const { phase, state, trace } = this.#simulator;
+    const { phase, trace } = this.#simulator, state = this.#state;
     this.#shown_ms = performance.now();
     this.#isReadingNext = false;
     this.#pause.disabled = !this.#isDriving;
@@ -385,12 +418,13 @@ export class SimulatorPanel {
     this.#showScore(state?.score ?? null);
     this.#where.tell(state, phase);
     this.#showValues();
-    this.#plot.draw();
+    this.#plot.draw(state && this.#timeLine.seen ? state.now_ms - (state.began_ms ?? state.now_ms) : null);
+    this.#timeLine.show();
   }
 
   /** Marks what runs, or where it had a fault. */
   #showPlaces() {
-    const { state } = this.#simulator;
+    const state = this.#state;
     this.#shown_ms = performance.now();
     this.#isReadingNext = true;
     const range = this.#place();
@@ -402,13 +436,14 @@ export class SimulatorPanel {
 
   /** What runs in the text that is seen, or what had a fault. */
   #place() {
-    const { state } = this.#simulator;
+    const state = this.#state;
     return rangeAt(this.#places, state?.fault ? state.fault_at : state?.at);
   }
 
   /** Keeps what is to be seen, and lets be heard what is. @param {import('../python.js').RobotState} state */
   #keep(state) {
     this.#arena.follow(state);
+    this.#timeLine.add(state);
     if (state.bumps > this.#bumps) {
       this.#arena.shake();
       this.#sounds.crash();
@@ -417,17 +452,11 @@ export class SimulatorPanel {
     for (const [at_ms, what] of state.events) {
       const [word, hertz, lasts_ms] = what.split(' ');
       if (word !== 'BEEP') continue;
-      this.#arena.showBeep(at_ms + Number(lasts_ms));
+      this.#arena.showBeep(at_ms, at_ms + Number(lasts_ms));
       this.#sounds.beep(Number(hertz), Number(lasts_ms) / 1000 / this.#simulator.speed);
     }
     if (state.began_ms === null) return;
-    for (const [at_ms, what, at] of state.events) {
-      if (!what.startsWith('SHOW ')) continue;
-      const value = what.slice('SHOW '.length);
-      const show = showAt(this.#program, at);
-      this.#shown.set(show ? nameOfShow(show, `SHOW(${show[1]})`, true) : 'SHOW', value);
-      this.#arena.say(value, at_ms);
-    }
+    this.#keepShows(this.#shown, state.events);
     this.#plot.add(state.now_ms - state.began_ms, [
       ...devicesOf(pageState.robotName.value, 'sensor').map((device, k) => ({ name: nameOf(device), value: numberOf(state.readings[k]?.text) })),
       ...this.#variables.map(({ name, is_yes_no }, k) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[k])) : state.variables[k] })),
@@ -435,10 +464,27 @@ export class SimulatorPanel {
     ]);
   }
 
+  /**
+   * Keeps what has been shown, by its name, and says the last of it.
+   * @param {Map<string, string>} shown
+   * @param {[number, string, number][]} events
+   */
+  #keepShows(shown, events) {
+    for (const [at_ms, what, at] of events) {
+      if (!what.startsWith('SHOW ')) continue;
+      const value = what.slice('SHOW '.length);
+      const show = showAt(this.#program, at);
+      shown.set(show ? nameOfShow(show, `SHOW(${show[1]})`, true) : 'SHOW', value);
+      this.#arena.say(value, at_ms);
+    }
+    return shown;
+  }
+
   #doing() {
     const { phase, state, isStopping, failure } = this.#simulator;
     if (failure) return failure;
     if (isStopping) return text('robot_stopping');
+    if (this.#timeLine.seen) return text('looked_back', { seconds: secondsOf(this.#timeLine.seen) });
     if (phase === 'off' || !state) return this.#task() || text('robot_off');
     if (state.fault) {
       const what = faultSaid(state.fault);
@@ -471,15 +517,14 @@ export class SimulatorPanel {
   }
 
   #showValues() {
-    const { state } = this.#simulator;
-    const seconds = state ? ((state.now_ms - (state.began_ms ?? state.now_ms)) / 1000).toFixed(1) : '–';
+    const state = this.#state;
     const rows = [
-      [text('time'), state ? `${seconds} s` : '–'],
+      [text('time'), state ? `${secondsOf(state)} s` : '–'],
       [text('motors'), state ? state.motors.map((power) => `${power} %`).join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
       ...devicesOf(pageState.robotName.value, 'sensor').map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–', partOf(device, state?.readings[k]?.value)]),
       ...this.#variables.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
-      ...this.#shown,
+      ...(this.#timeLine.seen ? this.#seenShows : this.#shown),
     ];
     const place = element('values', HTMLElement);
     while (place.children.length > rows.length) place.lastElementChild?.remove();
@@ -494,6 +539,11 @@ export class SimulatorPanel {
       });
     });
   }
+}
+
+/** How long the program has run. @param {import('../python.js').RobotState} state */
+function secondsOf({ now_ms, began_ms }) {
+  return ((now_ms - (began_ms ?? now_ms)) / 1000).toFixed(1);
 }
 
 /** How much of its range a reading is, for a bar. @param {ReturnType<typeof devicesOf>[number]} device @param {number} [value] */

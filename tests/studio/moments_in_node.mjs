@@ -1,0 +1,75 @@
+// node moments_in_node.mjs SOURCES SEEDS: random runs are kept moment by moment, and looked back at. Prints a JSON row for
+// each seed: how many moments were kept of how many states, and the first thing that was not as it had been.
+
+const { Moments } = await import(`${process.argv[2]}/virtual/moments.js`);
+
+function chanceOf(seed) {
+  let state = seed;
+  return () => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return state / 2 ** 32;
+  };
+}
+
+const rounded = (value) => JSON.parse(JSON.stringify(value, (_, each) => (typeof each === 'number' ? Math.round(each * 1000) / 1000 : each)));
+
+function played(moments, chance, most) {
+  const count = Math.floor(chance() * 2000), quiet = chance();
+  const below = (limit) => Math.floor(chance() * limit);
+  const told = new Map(); // by its time: the state, and all that had been shown
+  let now_ms = below(100), bumps = 0, at = 0, pose = [0, 0, 0];
+  const shows = [];
+  const wrong = [];
+  const check = (is, what) => is || wrong.push(what);
+  for (let k = 0; k < count; k += 1) {
+    now_ms += 1 + below(30);
+    const isQuiet = chance() < quiet;
+    if (!isQuiet) at = below(4);
+    if (!isQuiet && chance() < 0.1) bumps += 1;
+    if (chance() < 0.7) pose = [chance() * 100, chance() * 100, chance() * 360];
+    const events = isQuiet || chance() < 0.5 ? [] : [[now_ms, chance() < 0.5 ? `SHOW ${below(9)}` : 'MOTORS 1 2', at]];
+    shows.push(...events.filter(([, what]) => what.startsWith('SHOW')));
+    const state = { now_ms, pose, bumps, at, places: [at], is_running: true, variables: [below(3)], events, nothing: chance() < 0.5 ? null : 'é"' };
+    told.set(now_ms, [rounded(state), shows.length]);
+    moments.add(state);
+    check(moments.size <= most + 1000, `too large: ${moments.size}`);
+  }
+  const times = [];
+  for (let k = 0; k < moments.length; k += 1) {
+    const state = moments.at(k), [was, shown] = told.get(state.now_ms) ?? [];
+    check(JSON.stringify(state, Object.keys(was ?? {}).sort()) === JSON.stringify(was, Object.keys(was ?? {}).sort()), `another state: ${JSON.stringify([state, was])}`);
+    const ends = moments.shows(k);
+    check(JSON.stringify(ends) === JSON.stringify(shows.slice(shown - ends.length, shown)), `other shows at ${k}`);
+    check(moments.until(state.now_ms) === k && moments.until(state.now_ms + 0.5) === k, `another moment than ${k}`);
+    times.push(state.now_ms);
+    if (k) check(moments.parts.includes(k) === (state.at !== moments.at(k - 1).at), `not the parts: ${k}`);
+  }
+  check(!count || moments.parts[0] === 0 || times[0] > told.keys().next().value, 'the first part is missing');
+  check(times.every((time, k) => k === 0 || time > times[k - 1]), 'not in order');
+  check(!count || times.at(-1) > now_ms - 40 * 64, 'the newest is missing');
+  const first = times[0] ?? 0;
+  for (const [time, [was]] of told) {
+    if (was.events.length && time >= first) check(times.includes(time), `an event is missing: ${time}`);
+  }
+  for (const which of [moments.events, moments.parts]) {
+    let k = moments.length - 1;
+    const back = [];
+    while (k > 0) back.push(k = moments.beside(k, -1, which));
+    for (const event of which) check(back.includes(event) || event === moments.length - 1, `${event} is passed on the way back`);
+    for (const event of back.reverse()) {
+      check(k <= event, 'on goes back');
+      k = moments.beside(event, 1, which);
+      check(k > event || event === moments.length - 1, 'stands still on the way on');
+    }
+  }
+  return { kept: moments.length, states: count, wrong: wrong.slice(0, 1) };
+}
+
+for (let seed = 1; seed <= Number(process.argv[3]); seed += 1) {
+  const chance = chanceOf(seed * 7919);
+  const most = [3000, 20_000, 2_000_000][seed % 3];
+  const moments = new Moments(most);
+  played(moments, chance, most);
+  moments.begin(); // the second run knows nothing of the first one
+  console.log(JSON.stringify(played(moments, chance, most)));
+}

@@ -1,0 +1,100 @@
+"""The line under the world: a person looks back at a run, and goes on from where it is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_robot import running, value
+from tests.support.studio import in_phase, write
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+COUNT = "SI|X = 0;\nLOOP(3);\nX = X + 1;\nSHOW(X);\nF(0.5, 60);\nEND_LOOP"
+
+
+@pytest.fixture(autouse=True)
+def at_rest(page: Page) -> None:
+    page.set_viewport_size({"width": 1366, "height": 768})
+    page.keyboard.press("Escape")
+    page.click("#view_text")
+    page.select_option("#speed", "1")
+    page.click("#seen_arena")
+
+
+def begun(page: Page, text: str) -> None:
+    write(page, text)
+    page.click("#run")
+
+
+def doing(page: Page) -> str:
+    return page.locator("#doing").inner_text()
+
+
+def seconds(page: Page) -> float:
+    return float(value(page, "Time").split()[0])
+
+
+def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
+    begun(page, COUNT)
+    in_phase(page, "ended")
+    page.focus("#time_at")
+    end_s, pose = seconds(page), page.locator("#where").text_content()
+    times, shown = [end_s], []
+    while times[-1] > 0:
+        page.keyboard.press("ArrowLeft")
+        assert doing(page) == f"Looking back: this was after {seconds(page):.1f} s."
+        assert seconds(page) < times[-1] or seconds(page) == times[-1] == 0
+        if seconds(page) == times[-1]:
+            break
+        times.append(seconds(page))
+        shown.append(value(page, "X"))
+    assert shown[0] == "3" and shown[-1] in ("0", "1")
+    for at_s in times[-2::-1]:
+        page.keyboard.press("ArrowRight")
+        assert seconds(page) == at_s
+    assert page.locator("#where").text_content() == pose
+    page.keyboard.press("Home")
+    assert seconds(page) == 0
+
+
+@pytest.mark.parametrize("button", ["pause", "step", "stop"])
+def test_what_runs_stands_still_while_somebody_looks_back_and_goes_on_from_now(
+    page: Page, button: str
+) -> None:
+    begun(page, "SI|X = 0;\nLOOP(999);\nX = X + 1;\nSHOW(X);\nF(0.3, 60);\nEND_LOOP")
+    page.locator("#values div", has_text="X").get_by_text("3", exact=True).first.wait_for()
+    page.focus("#time_at")
+    page.keyboard.press("ArrowLeft")
+    in_phase(page, "paused")
+    page.keyboard.press("Home")
+    assert value(page, "X") == value(page, "SHOW(X)") == "1"
+    assert running(page) == "F(0.3, 60)"
+    page.click(f"#{button}")
+    page.locator("#doing", has_not_text="Looking back").wait_for()
+    assert value(page, "X") == value(page, "SHOW(X)") != "1"
+    in_phase(page, {"pause": "running", "step": "paused", "stop": "ended"}[button])
+
+
+def test_with_shift_each_part_that_has_run_is_seen(page: Page) -> None:
+    begun(page, "SI|F(0.3, 60);\nW(0.3);\nB(0.3, 60)")
+    in_phase(page, "ended")
+    page.focus("#time_at")
+    page.keyboard.press("Home")
+    parts = []
+    for _ in range(3):
+        parts.append(running(page))
+        page.keyboard.press("Shift+ArrowRight")
+    assert parts == ["F(0.3, 60)", "W(0.3)", "B(0.3, 60)"]
+
+
+def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
+    begun(page, COUNT)
+    in_phase(page, "ended")
+    page.focus("#time_at")
+    page.keyboard.press("Home")
+    begun(page, "SI|W(0.4)")
+    page.locator("#doing").get_by_text("It has ended.").wait_for()
+    page.wait_for_function("time_at.max - time_at.min < 1000 && time_at.value === time_at.max")
