@@ -30,7 +30,7 @@ def begun(page: Page, text: str) -> None:
 
 
 def doing(page: Page) -> str:
-    return page.locator("#doing").inner_text()
+    return page.locator("#doing").text_content() or ""
 
 
 def seconds(page: Page) -> float:
@@ -45,7 +45,9 @@ def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
     times, shown = [end_s], []
     while times[-1] > 0:
         page.keyboard.press("ArrowLeft")
-        assert doing(page) == f"Looking back: this was after {seconds(page):.1f} s."
+        assert doing(page).startswith(
+            f"Looking back: after {seconds(page):.1f} s line 5 ran, F(0.5, "
+        )
         assert seconds(page) < times[-1] or seconds(page) == times[-1] == 0
         if seconds(page) == times[-1]:
             break
@@ -65,7 +67,8 @@ def test_what_runs_stands_still_while_somebody_looks_back_and_goes_on_from_now(
     page: Page, button: str
 ) -> None:
     begun(page, "SI|X = 0;\nLOOP(999);\nX = X + 1;\nSHOW(X);\nF(0.3, 60);\nEND_LOOP")
-    page.locator("#values div", has_text="X").get_by_text("3", exact=True).first.wait_for()
+    in_phase(page, "running")
+    page.locator("#trace", has_text="SHOW 3").wait_for(state="attached")
     page.focus("#time_at")
     page.keyboard.press("ArrowLeft")
     in_phase(page, "paused")
@@ -96,5 +99,18 @@ def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
     page.focus("#time_at")
     page.keyboard.press("Home")
     begun(page, "SI|W(0.4)")
-    page.locator("#doing").get_by_text("It has ended.").wait_for()
-    page.wait_for_function("time_at.max - time_at.min < 1000 && time_at.value === time_at.max")
+    page.locator("#trace", has_text="DONE", has_not_text="SHOW").wait_for(state="attached")
+    in_phase(page, "ended")
+    assert doing(page) == "It has ended."
+    first, last, now = (float(page.evaluate(f"time_at.{each}")) for each in ("min", "max", "value"))
+    assert last - first < 1000 and now == last
+
+
+def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page) -> None:
+    begun(page, "SI|NEAR = 30;\nF(1, 60) UNTIL(DISTANCE < NEAR)")
+    in_phase(page, "ended")
+    page.focus("#time_at")
+    page.keyboard.press("Home")
+    part, *values = doing(page).split("   ")
+    assert part == "Looking back: after 0.0 s line 2 ran, F(1, 60) UNTIL(DISTANCE < NEAR)"
+    assert values[0].startswith("DISTANCE ") and values[1:] == ["NEAR 30"]

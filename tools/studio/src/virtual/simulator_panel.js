@@ -484,7 +484,7 @@ export class SimulatorPanel {
     const { phase, state, isStopping, failure } = this.#simulator;
     if (failure) return failure;
     if (isStopping) return text('robot_stopping');
-    if (this.#timeLine.seen) return text('looked_back', { seconds: secondsOf(this.#timeLine.seen) });
+    if (this.#timeLine.seen) return this.#lookedBack(this.#timeLine.seen);
     if (phase === 'off' || !state) return this.#task() || text('robot_off');
     if (state.fault) {
       const what = faultSaid(state.fault);
@@ -497,6 +497,25 @@ export class SimulatorPanel {
     if (phase === 'paused') return text('robot_paused');
     if (phase === 'ended') return text('robot_ended');
     return text(state.is_waiting ? 'robot_waiting' : 'robot_running');
+  }
+
+  /** What ran at a moment, and the values of what it names. @param {import('../python.js').RobotState} state */
+  #lookedBack(state) {
+    const seconds = secondsOf(state), range = this.#place();
+    if (!range) return text('looked_back', { seconds });
+    const { line, column, end_column } = range;
+    const part = (pageState.programText.value.split('\n')[line - 1] ?? '').slice(column - 1, end_column - 1).trim();
+    const names = new Set(part.toUpperCase().match(/\w+/g));
+    const values = this.#valuesOf(state).filter(([name]) => names.has(name)).map(([name, value]) => `${name} ${value}`);
+    return [text('looked_back_at', { seconds, line, part }), ...values].join('   ');
+  }
+
+  /** @param {import('../python.js').RobotState} state @returns {[string, string][]} the value of each sensor and variable, by its name */
+  #valuesOf(state) {
+    return [
+      ...devicesOf(pageState.robotName.value, 'sensor').map(({ text: name }, k) => /** @type {[string, string]} */ ([name, state.readings[k]?.text ?? ''])),
+      ...this.#variables.map(({ name, is_yes_no }, k) => /** @type {[string, string]} */ ([name, written(state.variables[k], is_yes_no)])),
+    ];
   }
 
   /** What is to be done in this world, if there is such a thing. */
