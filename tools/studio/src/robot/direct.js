@@ -24,7 +24,7 @@ const LOOK_MS = 100; // between two looks at the latest
 const STOP = new Uint8Array(LINK.stop_bytes); // zeros stop a robot, whatever it hears
 const LOCK = 'tiniscript-robot';
 
-/** The connection before, until its port is closed. @type {Promise<unknown>} */
+/** The connections before, until their ports are closed. @type {Promise<unknown>} */
 let parting = Promise.resolve();
 
 export class DirectRobot extends Asking {
@@ -75,6 +75,7 @@ export class DirectRobot extends Asking {
       await parting;
       await this.#lock();
       await this.#python.ask({ do: 'connect', robot, language }, new TextEncoder().encode(keys));
+      if (this.isOver) throw new Failed('left'); // nothing of it is in the way of the next one
       const opening = this.#port.open(
         (data) => {
           this.#bytes += data.length;
@@ -101,7 +102,7 @@ export class DirectRobot extends Asking {
     if (!navigator.locks) return Promise.resolve();
     return new Promise((resolve, reject) => {
       navigator.locks.request(LOCK, { ifAvailable: true }, (lock) => {
-        if (!lock) {
+        if (!lock || this.isOver) {
           reject(new Failed('other_tab'));
           return undefined;
         }
@@ -183,10 +184,10 @@ export class DirectRobot extends Asking {
   /** @param {Failed} why @param {Promise<unknown>} [before] */
   end(why, before = Promise.resolve()) {
     if (this.isOver) return;
-    parting = before
+    parting = Promise.all([parting, before
       .then(() => this.#port.close())
       .catch(() => {})
-      .finally(() => this.#unlock());
+      .finally(() => this.#unlock())]);
     this.#fails(why);
     super.end(why);
   }
