@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterator
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -378,7 +379,7 @@ def test_a_long_program_is_drawn_in_slices_and_not_to_its_end(
 
 
 # Which programs the page has heard of, and which of them have a picture.
-NOTES = """() => { window.told = []; window.drawn = [];
+DRAWINGS = """() => { window.told = []; window.drawn = [];
   const ask = fetch, post = Worker.prototype.postMessage, make = URL.createObjectURL;
   let newest = '';
   window.fetch = async (...words) => {
@@ -397,12 +398,14 @@ def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, taught: Cla
     teacher = teaches(pages, taught)
     only_ana(taught)
     tile(teacher, "Ana").locator("img[src^=blob]").wait_for()
-    teacher.evaluate(NOTES)
+    teacher.evaluate(DRAWINGS)
     teacher.evaluate(STANDS)
 
     def has(names: str, text: str, passed_ms: int = 0) -> bool:
         teacher.evaluate(f"() => {{ window.now += {passed_ms}; }}")
         return text in teacher.evaluate(names)
+
+    whole = "F(1, 51)"
 
     def adds() -> str:
         """Write one line more, at once; return the whole."""
@@ -413,7 +416,6 @@ def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, taught: Cla
         first.keyboard.insert_text("\nW(1)")
         return whole
 
-    whole = "F(1, 51)"
     write(first, whole)
     hears(teacher, lambda: has("drawn", whole, 1000), "what waits, and was written between")
     teacher.evaluate("() => { window.now += 1000; }")
@@ -422,7 +424,7 @@ def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, taught: Cla
     before = len(teacher.evaluate("drawn"))
     for _ in range(2):
         newest = adds()
-        hears(teacher, lambda text=newest: has("told", text), "it is told")
+        hears(teacher, partial(has, "told", newest), "it is told")
     asked = {"do": "join", "code": taught.room.code, "name": "Teo"}
     teo = taught.room.answer("", "192.0.2.7", asked)["token"]
     taught.room.answer(teo, "192.0.2.7", {"do": "here", "text": "S", "robot": "tinibot"})
