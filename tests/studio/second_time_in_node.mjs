@@ -1104,6 +1104,8 @@ const PARTS = {
     let state = 'closed';
     let late = () => 5;
     let fails = () => false;
+    let hangs = () => false;
+    let hasHung = false;
     let isHeard = true;
     let goes = () => {};
     const python = {
@@ -1131,6 +1133,11 @@ const PARTS = {
         goes = gone;
       },
       async write() {
+        if (hangs()) {
+          state = 'closed'; // what it went to is not there any more, and nobody says so
+          hasHung = true;
+          await new Promise(() => {});
+        }
         await later(1);
         if (state !== 'open') throw new Broken();
       },
@@ -1143,6 +1150,7 @@ const PARTS = {
     return async (chance, isGood) => {
       late = () => (isGood ? 5 : 5 + chance.below(300));
       fails = () => !isGood && chance() < 0.2;
+      hangs = () => !isGood && chance() < 0.1;
       isHeard = isGood || chance() < 0.8;
       const ends = [];
       const notes = [];
@@ -1157,8 +1165,9 @@ const PARTS = {
         else ends.push(robot.isOver ? 'over' : state);
         robot.leave();
         await settles();
-        if (!isGood && !wasOpening && chance() < 0.5) continue; // to the next one at once
-        await passes(1000);
+        if (!isGood && !wasOpening && !hasHung && chance() < 0.5) continue; // to the next one at once
+        await passes(hasHung ? 12_000 : 1000);
+        hasHung = false;
         notes.push(await met);
         if (wasLeft) throw new Error('it is opened though it was left');
         if (state !== 'closed' || isHeld) throw new Error(`the port is ${state} after it was left: ${notes}`);

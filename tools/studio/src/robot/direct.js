@@ -21,6 +21,7 @@ import { LINK, robotOf } from '../page/words.js';
 
 const OPEN_MS = 20_000; // a radio that looks for its robot
 const LOOK_MS = 100; // between two looks at the latest
+const CLOSE_MS = 10_000; // for the last write and the end of a port: the next connection waits no longer
 const STOP = new Uint8Array(LINK.stop_bytes); // zeros stop a robot, whatever it hears
 const LOCK = 'tiniscript-robot';
 
@@ -184,8 +185,7 @@ export class DirectRobot extends Asking {
   /** @param {Failed} why @param {Promise<unknown>} [before] */
   end(why, before = Promise.resolve()) {
     if (this.isOver) return;
-    parting = Promise.all([parting, before
-      .then(() => this.#port.close())
+    parting = Promise.all([parting, within(CLOSE_MS, before.then(() => this.#port.close()), 'port_stuck')
       .catch(() => {})
       .finally(() => this.#unlock())]);
     this.#fails(why);
