@@ -11,6 +11,7 @@ import signal
 from argparse import Namespace
 from collections.abc import Iterator
 from functools import partial
+from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
@@ -250,6 +251,45 @@ def test_what_became_of_the_robots_is_the_exit_code(
     done = {"list": classroom.list_robots, "upload": classroom.upload, "stop": classroom.stop}
     is_usual = verb.startswith("show") and code == 2
     assert done.get(verb, classroom.show)(room) == (0 if is_usual else code)
+
+
+@pytest.mark.parametrize("is_there", [True, False])
+@pytest.mark.parametrize("gone", [*product((True, False, None), repeat=classroom.STOPS)])
+def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
+    gone: tuple[bool | None, ...], is_there: bool,
+) -> None:  # fmt: skip
+    """All of them are tried, and then each robot is asked whether it stands; where none can be,
+    it is said that a message has gone, if one has."""
+    left, asked = [*gone], []
+
+    def stop(group: str) -> bool:
+        has_gone = left.pop(0)
+        if has_gone is None:
+            raise ConnectionResetError
+        return has_gone
+
+    def present() -> list[object]:
+        if not is_there:
+            raise CommandError(3, "class_empty", group="c", host="h")
+        return []
+
+    room = SimpleNamespace(broker=SimpleNamespace(stop=stop), group="c", present=present,
+                           language="en", targets=lambda *given: given)  # fmt: skip
+
+    def ask(*given: object) -> int:
+        asked.append(given)
+        return 7
+
+    monkeypatch.setattr("tiniscript.cli.commands.stop.run", ask)
+    if is_there:
+        assert classroom.stop(cast(Classroom, room)) == 7 and len(asked) == 1
+    else:
+        with pytest.raises(CommandError):
+            classroom.stop(cast(Classroom, room))
+    assert left == []
+    has_gone = "the stop has gone to the broker" in capsys.readouterr().err
+    assert has_gone == (not is_there and any(gone))
 
 
 def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:

@@ -18,11 +18,12 @@ from tests.support.virtual_robot import Talk, robot_in
 from tiniscript import compile_text, robots
 from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, requested
 from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
+from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.live_state import Known
 from tiniscript.library.other_robots import named_among
 from tiniscript.link import known_ports, ports
-from tiniscript.link.outcomes import Event, MissedEvent, ShownEvent
+from tiniscript.link.outcomes import LOOK_S, Event, MissedEvent, ShownEvent
 from tiniscript.link.payloads import DoneEvent
 from tiniscript.robots import given
 from tiniscript.virtual import directory
@@ -57,6 +58,24 @@ def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None
     )
 
 
+LOOKS = 300  # at events, that a command may still need for saving
+
+
+@pytest.fixture
+def ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A command that looks at events long after its time is over fails: it would never end."""
+    whole, looks = Connection.event, 0
+
+    def counted(connection: Connection, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
+        nonlocal looks
+        looks += connection.is_time_over
+        assert looks < LOOKS, "its time is over, and it goes on"
+        return whole(connection, limit_s)
+
+    monkeypatch.setattr(Connection, "event", counted)
+
+
+@pytest.mark.usefixtures("ends_in_time")
 def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     """By the time of `--for`, to the millisecond. Only bringing a program pushes no button."""
     text = FOREVER.replace("SI", "SB")
@@ -76,6 +95,7 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     assert "SHOW 2" not in done.out
 
 
+@pytest.mark.usefixtures("ends_in_time")
 @pytest.mark.parametrize("hurry", ["1", "50", "max"])
 def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
     done = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "2.5", "--hurry", hurry).gives(0)

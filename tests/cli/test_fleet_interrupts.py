@@ -5,8 +5,12 @@ from __future__ import annotations
 
 import random
 import threading
+from argparse import Namespace
+from collections import deque
 from collections.abc import Callable, Iterator
-from typing import Any
+from contextlib import contextmanager
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
@@ -14,7 +18,11 @@ from tests.support.command import inside
 from tests.support.robot_fleet import RobotFleet, known_fleet
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
-from tiniscript.cli.robot.fleet import Fleet
+from tiniscript.cli import streams
+from tiniscript.cli.robot import fleet as fleet_of
+from tiniscript.cli.robot.fleet import LOOK_S, Fleet
+from tiniscript.cli.robot.member import Member, Target
+from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 
@@ -100,3 +108,68 @@ def test_behind_ctrl_c_nothing_starts(
     assert room.pressed.is_set()
     assert room.counted() == room.starts, (room.stages, done)
     assert not any(pupil.moves for pupil in fleet.pupils)
+
+
+@contextmanager
+def not_passed_on() -> Iterator[None]:
+    """A Ctrl-C ends here, and no run of the tests."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        pytest.fail("Ctrl-C ends in a traceback")
+
+
+class Watched:
+    """A fleet whose robots are silent for ever, on a clock of the test; somebody presses Ctrl-C."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, presses_s: list[float]) -> None:
+        self.now_s = 0.0
+        self.presses_s = [*presses_s]
+        self.stopped: list[float] = []  # when each robot was told
+        monkeypatch.setattr(fleet_of, "monotonic", lambda: self.now_s)
+        monkeypatch.setattr(streams, "drop_unread", lambda: None)
+        options = Namespace(verb="upload", detach=True, json=False)
+        self.fleet = Fleet([], options, robots.load("tinibot"), "en")
+        for port in "12":
+            member = Member(Target(port, "", True, True), deque())
+            member.connection = cast(Any, SimpleNamespace(
+                interrupt=lambda: self.stopped.append(self.now_s), line=SimpleNamespace(robot=None)
+            ))  # fmt: skip
+            self.fleet.members.append(member)
+        news = SimpleNamespace(wait=self.passes, clear=lambda: None)
+        monkeypatch.setattr(self.fleet, "_news", news)
+
+    def passes(self, seconds: float = LOOK_S) -> None:
+        assert self.now_s < 300, "it never ends"
+        self.now_s += seconds
+        if self.presses_s and self.now_s > self.presses_s[0]:
+            self.presses_s.pop(0)
+            raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("how", ["lines", "a table", "stop"])
+@pytest.mark.parametrize("presses", [1, 2, 3])
+def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_none(
+    monkeypatch: pytest.MonkeyPatch, how: str, presses: int
+) -> None:
+    """Whenever they come; with nobody who presses twice it ends by itself."""
+    for seed in range(10):
+        chance = random.Random(seed)
+        times = [5.0]
+        for _ in range(presses):
+            times.append(times[-1] + chance.uniform(LOOK_S, opening.CONFIRM_S - LOOK_S))
+        room = Watched(monkeypatch, times[:presses])
+        limit_s = opening.CONFIRM_S + 1
+        if how == "stop":  # nobody can read the output: that is as a first Ctrl-C
+            room.presses_s, limit_s = times[1:presses], opening.CONFIRM_S
+            room.now_s = times[0]
+            with not_passed_on():
+                room.fleet.stop()
+        else:
+            table = SimpleNamespace(draw=room.passes, end=lambda _: None, say=lambda _: None)
+            with not_passed_on():
+                room.fleet.watch(cast(FleetTable, table) if how == "a table" else None)
+        assert [at_s for at_s in room.stopped if at_s <= times[0] + 2 * LOOK_S], "each is told"
+        assert len(room.stopped) == len(room.fleet.members)
+        end_s = times[1] if presses > 1 else times[0] + limit_s
+        assert end_s <= room.now_s <= end_s + 3 * LOOK_S

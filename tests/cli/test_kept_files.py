@@ -13,7 +13,7 @@ import resource
 import signal
 import sys
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from types import FrameType, ModuleType
 from typing import Any, NamedTuple
@@ -271,3 +271,31 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
         assert sorted(kept.all()) == [*before, SECOND, THIRD], line
         for end in (*there, *holds, *say):
             os.close(end)
+
+
+@pytest.mark.parametrize("name", [name for name, kept in KEPT.items() if not kept.is_alone])
+def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The other one keeps it without the lock, or says that it cannot, or leaves it as it was."""
+    kept = KEPT[name]
+    before = fresh(kept, tmp_path)
+    now_s = 0.0
+
+    def passes(seconds: float) -> None:
+        nonlocal now_s
+        now_s += seconds
+        assert now_s < 2 * files.LOCK_S, "it waits for ever"
+
+    monkeypatch.setattr(files, "monotonic", lambda: now_s)
+    monkeypatch.setattr(files, "sleep", passes)
+    with ExitStack() as stack:
+        for lock in [*tmp_path.rglob(f"*{files.LOCK}")]:
+            stack.enter_context(files.alone(lock.with_name(lock.name[: -len(files.LOCK)])))
+        for _ in range(2):  # and the second time
+            now_s = 0.0
+            with suppress(BadKeys, OSError):
+                kept.add(SECOND)
+            assert sorted(kept.all()) in (before, with_more(kept, before, SECOND))
+    kept.add(THIRD)
+    assert THIRD in kept.all()

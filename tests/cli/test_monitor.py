@@ -5,12 +5,19 @@ from __future__ import annotations
 import json
 import signal
 from pathlib import Path
+from random import Random
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
 from tests.support.command import Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
+from tiniscript.cli.commands.hold import _Log
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.link.outcomes import LOST, Event, LostEvent
+from tiniscript.link.requests import OK
 
 
 def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path) -> None:
@@ -79,3 +86,44 @@ def test_monitor_and_a_full_disk(pty_robot: PtyRobot, tmp_path: Path) -> None:
     for file in files if files[0].exists() else files[1:]:
         on(pty_robot, "monitor", "--csv", file, "--max-time", "1").gives(2, "--csv", out="")
     assert on(pty_robot, "monitor", "--max-time", "1").code == 0
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
+    capsys: pytest.CaptureFixture[str], seed: int
+) -> None:
+    """However often it is lost, and however many searches nobody answers; each is found once."""
+    chance = Random(seed)
+    searches: list[Any] = []
+    is_there, losses, waits = True, 0, 0
+
+    class Over(Exception):
+        pass
+
+    def event() -> tuple[int, Event] | None:
+        nonlocal is_there, losses, waits
+        waits += 1
+        if waits > 400:
+            raise Over
+        if is_there:
+            if losses < 5 and chance.random() < 0.1:
+                is_there, losses = False, losses + 1
+                return waits, LostEvent()
+            return None
+        asked = [each for each in searches if each.outcome is None]
+        assert len(asked) == 1, "nobody looks for it"
+        if chance.random() < 0.3:
+            is_there = chance.random() < 0.3
+            asked[0].outcome = SimpleNamespace(status=OK if is_there else LOST)
+        return None
+
+    def search() -> Any:
+        searches.append(SimpleNamespace(outcome=None))
+        return searches[-1]
+
+    connection = SimpleNamespace(language="en", name="TINI", port="p", event=event, search=search)
+    with pytest.raises(Over):
+        _Log(cast(Connection, connection), is_json=True).keep()
+    told = [json.loads(line)["event"] for line in capsys.readouterr().out.splitlines()]
+    assert losses == 5
+    assert told == ["LINKED", *["LOST", "FOUND"] * 5]

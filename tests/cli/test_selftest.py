@@ -11,7 +11,8 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack, redirect_stderr, redirect_stdout
 from itertools import product
 from pathlib import Path
-from typing import NamedTuple
+from types import SimpleNamespace
+from typing import NamedTuple, cast
 from unittest import mock
 
 import pytest
@@ -27,6 +28,8 @@ from tests.support.virtual_robot import robot_in
 from tiniscript import robots
 from tiniscript.cli import main
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.conversation import AGAIN, Conversation, NoPerson
 from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.doctor import report
 from tiniscript.library.simulated import Simulated
@@ -416,3 +419,35 @@ def test_a_robot_that_is_not_there_has_a_report_too(tmp_path: Path) -> None:
     said = file.read_text(encoding="utf-8")
     assert "Ana" not in said
     assert "tsc doctor" in said
+
+
+@pytest.mark.parametrize("answers", range(4))
+def test_who_has_not_answered_once_is_asked_and_shown_nothing_more(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], answers: int
+) -> None:
+    """Nothing turns for somebody who is not there, whatever it was that nobody has answered."""
+    did: list[str] = []
+    typed = iter(["1\n"] * answers)
+    monkeypatch.setattr(Conversation, "does", lambda _, line: did.append(line))
+    monkeypatch.setattr("tiniscript.cli.terminal.asking.answer", lambda _: next(typed, ""))
+    ways: list[Callable[[Conversation], object]] = [
+        lambda talk: talk.lift(),
+        lambda talk: talk.answer("ask_free", name="X", values=""),
+        lambda talk: talk.choice("ask_learn", 2),
+        lambda talk: talk.turned("left"),
+        lambda talk: talk.saw("BEEP(1, 440)", "ask_buzzer", AGAIN),
+    ]
+    for last in ways:
+        typed = iter(["1\n"] * answers)
+        talk = Conversation(cast(Connection, SimpleNamespace(language="en")))
+        for _ in range(answers):
+            ways[1](talk)
+        with pytest.raises(NoPerson):
+            last(talk)
+        typed = iter(["1\n"] * 10)  # who comes back then is heard no more
+        did.clear()
+        capsys.readouterr()
+        for way in ways:
+            with pytest.raises(NoPerson):
+                way(talk)
+        assert did == [] and capsys.readouterr().err == ""

@@ -21,6 +21,7 @@ from tests.support.command import Done, Tsc
 from tests.support.copies import linked
 from tests.support.needs import need
 from tests.support.platformio import firmware, prepared, shared
+from tests.support.terminal import Terminal
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.commands import firmware as firmware_command
@@ -226,11 +227,15 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
 ) -> None:
     told = tmp_path / "told"
     body = (
-        f'{PROGRESS}\nimport os\nopen({str(told)!r}, "w").write(str(os.getpid()))\ntime.sleep(60)'
+        f'import os\nopen({str(told)!r}, "w").write(str(os.getpid()))\n{PROGRESS}\ntime.sleep(60)'
     )
     variables = {"PYTHONPATH": str(package), **fake(tmp_path, body)}
-    said = interrupted(told, "--port", board.pty, **variables).gives(2).err
-    assert "half of its" in said or said.strip() == "Stopped."  # it may not have read that far
+    tsc = [*LIMITED, sys.executable, "-m", "tiniscript"]
+    terminal = Terminal("firmware", "--yes", "--port", board.pty, command=tsc, env=variables)
+    terminal.until(r"\[#+\.+\]")  # it has read how far avrdude is
+    terminal.interrupt()
+    assert terminal.end() == 2
+    assert "half of its firmware" in " ".join(" ".join(terminal.whole()).split())
     assert not Path(f"/proc/{told.read_text()}").exists()
 
 

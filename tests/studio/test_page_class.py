@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterator
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -377,34 +378,61 @@ def test_a_long_program_is_drawn_in_slices_and_not_to_its_end(
     teacher.close()
 
 
+# Which programs the page has heard of, and which of them have a picture.
+DRAWINGS = """() => { window.told = []; window.drawn = [];
+  const ask = fetch, post = Worker.prototype.postMessage, make = URL.createObjectURL;
+  let newest = '';
+  window.fetch = async (...words) => {
+    const answer = await ask(...words);
+    answer.clone().json().then(({ text }) => window.told.push(text), () => {});
+    return answer; };
+  Worker.prototype.postMessage = function (...words) {
+    const { do: what } = JSON.parse(words[0].request);
+    if (what === 'blocks') newest = new TextDecoder().decode(words[0].data);
+    return post.apply(this, words); };
+  URL.createObjectURL = (blob) => (window.drawn.push(newest), make(blob)); }"""
+
+
 def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, taught: Class) -> None:
     """Whatever the page writes meanwhile; and the newest is drawn then. Others wait for nothing."""
     teacher = teaches(pages, taught)
     only_ana(taught)
-    picture = tile(teacher, "Ana").locator("img[src^=blob]")
-    picture.wait_for()
+    tile(teacher, "Ana").locator("img[src^=blob]").wait_for()
+    teacher.evaluate(DRAWINGS)
     teacher.evaluate(STANDS)
+
+    def has(names: str, text: str, passed_ms: int = 0) -> bool:
+        teacher.evaluate(f"() => {{ window.now += {passed_ms}; }}")
+        return text in teacher.evaluate(names)
+
+    whole = "F(1, 51)"
+
+    def adds() -> str:
+        """Write one line more, at once; return the whole."""
+        nonlocal whole
+        whole += "\nW(1)"
+        first.locator(".cm-content").focus()
+        first.keyboard.press("Control+End")
+        first.keyboard.insert_text("\nW(1)")
+        return whole
+
+    write(first, whole)
+    hears(teacher, lambda: has("drawn", whole, 1000), "what waits, and was written between")
     teacher.evaluate("() => { window.now += 1000; }")
-    before = picture.get_attribute("src")
-
-    def changes(text: str) -> None:
-        with teacher.expect_response(
-            lambda found: '"class_text"' in (found.request.post_data or "")
-        ):
-            write(first, text)
-
-    changes("F(1, 51)")
-    teacher.locator(f"#wall img[src^=blob]:not([src='{before}'])").wait_for()
-    newest = picture.get_attribute("src")
-    for text in ("F(1, 52)", "F(1, 53);S"):
-        changes(text)
+    newest = adds()
+    hears(teacher, lambda: has("drawn", newest), "after a second it is drawn at once")
+    before = len(teacher.evaluate("drawn"))
+    for _ in range(2):
+        newest = adds()
+        hears(teacher, partial(has, "told", newest), "it is told")
     asked = {"do": "join", "code": taught.room.code, "name": "Teo"}
     teo = taught.room.answer("", "192.0.2.7", asked)["token"]
     taught.room.answer(teo, "192.0.2.7", {"do": "here", "text": "S", "robot": "tinibot"})
     tile(teacher, "Teo").locator("img[src^=blob]").wait_for()
-    assert picture.get_attribute("src") == newest
+    assert teacher.evaluate("drawn")[before:] == ["S"]
     teacher.evaluate("() => { window.now += 1000; }")
-    teacher.locator(f"#wall li:has-text('Ana') img[src^=blob]:not([src='{newest}'])").wait_for()
+    hears(teacher, lambda: has("drawn", newest), "the newest is drawn")
+    assert teacher.evaluate("drawn")[before:] == ["S", newest]
     teacher.close()
     only_ana(taught)
 

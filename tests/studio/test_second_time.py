@@ -8,15 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from http.client import HTTPConnection
+from itertools import product
 from random import Random
+from threading import Event
+from time import sleep
+from types import SimpleNamespace
 from typing import Any, ClassVar, cast
 
 import pytest
 
 from tests.support.page_server import serves
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANGS_S, until
+from tiniscript.library import opening
+from tiniscript.studio import hosted_robot, serving
 from tiniscript.studio import hosting as hosting_of
-from tiniscript.studio import serving
 from tiniscript.studio.attending import HEARD_S, LATCH_S, LEFT_S, Attending
 from tiniscript.studio.hosting import Hosting
 from tiniscript.studio.robot_link import BadRequest, RobotLink
@@ -223,6 +228,52 @@ def test_each_silence_of_a_page_stops_what_it_drives_once(seed: int) -> None:
             assert stops == (["stop"] if was_driving and is_silent else [])
             silences += len(stops)
     assert silences > 3 and HEARD_S < LEFT_S
+
+
+# -- a robot that is left more than once
+
+
+class HeldClient:
+    """Another command drives the robot through it, until all have left it who leave it."""
+
+    all_left: ClassVar[Event] = Event()
+    was_held: ClassVar[bool | None] = None
+    holds_for_others = True
+
+    def __init__(self, *_: object, **__: object) -> None:
+        self.line = SimpleNamespace(
+            held_by="upload", tell_places=lambda: None, event=lambda limit_s: sleep(limit_s)
+        )
+
+    def meet(self, is_patient: object) -> SimpleNamespace:
+        return SimpleNamespace(name="TINI")
+
+    def hold_for_others(self, goes_on: Callable[[], bool]) -> None:
+        assert HeldClient.all_left.wait(HANGS_S)
+        HeldClient.was_held = goes_on()
+
+    def close(self, has_run: bool) -> None:
+        """Nothing of the page's runs."""
+
+
+@pytest.mark.parametrize("leaves", [each for k in (1, 2, 3) for each in product((0, 1), repeat=k)])
+def test_a_port_that_is_let_go_once_is_held_for_nobody(
+    monkeypatch: pytest.MonkeyPatch, leaves: tuple[int, ...]
+) -> None:
+    """Whoever else leaves it, before or after: a page, the end of a turn, and the studio's end."""
+    monkeypatch.setattr(hosted_robot, "Client", HeldClient)
+    monkeypatch.setattr(hosted_robot, "about", lambda robot: {})
+    monkeypatch.setattr(opening, "remember", lambda *_: None)
+    monkeypatch.setattr(HeldClient, "all_left", Event())
+    monkeypatch.setattr(HeldClient, "was_held", None)
+    made = hosted_robot.HostedRobot("p", "tinibot", "en")
+    until(lambda: made.name != "", "it is met")
+    for lets_go in leaves:
+        made.leave(lets_go=bool(lets_go))
+    HeldClient.all_left.set()
+    made.join(HANGS_S)
+    assert HeldClient.was_held == (not any(leaves))
+    assert made.has_ended and not made.is_parting
 
 
 # -- many requests on one connection

@@ -45,6 +45,12 @@ ENDS = {
     "stops": {"silent", "confirmed"},
     "worlds": {"one", "several"},
     "curves": {"long", "short"},
+    "steps": {"came", "failed"},
+    "recording": {"theirs", "shows", "ends", "waits", "gone"},
+    "giving": {"chosen", "gone", "alike", "nobody"},
+    "sure": {"sure", "once"},
+    "cable": {"closed", "opening", "open", "over"},
+    "presses": {"run", "step", "stop", "edits"},
 }
 
 

@@ -7,13 +7,16 @@ from __future__ import annotations
 
 import sys
 from random import Random
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
 from tests.support.virtual_robot import robot_in
 from tiniscript import compile, robots
+from tiniscript.studio import hosted_robot
 from tiniscript.studio.attending import CONFIRMED, LATCH_S, SILENT, Attending
+from tiniscript.studio.hosted_robot import HostedRobot
 from tiniscript.studio.page_line import PageKeys, PageLine
 from tiniscript.studio.robot_link import RobotLink
 from tiniscript.virtual.worlds import read
@@ -127,6 +130,64 @@ def test_a_robot_that_hears_no_stop_is_told() -> None:
     meeting.attending.latch()
     meeting.go(7000)
     assert meeting.attending.last_stop == SILENT
+
+
+class LateLink:
+    """A robot that confirms a stop after some looks, or never; what it has told before waits."""
+
+    has_run = True
+
+    def __init__(self, chance: Random) -> None:
+        self.now_ms = 0
+        self._chance = chance
+        self._news: list[dict[str, Any]] = []
+        self._confirms_ms = float("inf")
+
+    def tells(self) -> None:
+        """Stops of somebody else, and what there is between them."""
+        names = self._chance.choices(("STOPPED", "STARTED", "SHOW"), k=self._chance.randrange(6))
+        self._news += [{"event": name} for name in names]
+
+    def hears(self, confirms_after_ms: float) -> None:
+        self._late_ms = confirms_after_ms
+
+    def stop(self) -> None:
+        self._confirms_ms = self.now_ms + self._late_ms
+
+    def news(self, limit_s: float = 0) -> list[dict[str, Any]]:
+        self.now_ms += round(1000 * limit_s)
+        if self.now_ms >= self._confirms_ms:
+            self._confirms_ms = float("inf")
+            self._news.append({"event": "STOPPED"})
+        found, self._news = self._news, []
+        return found
+
+
+@pytest.mark.parametrize("end", ["latch", "part"])
+@pytest.mark.parametrize("seed", range(10))
+def test_no_stop_of_before_confirms_the_newest_one(
+    monkeypatch: pytest.MonkeyPatch, seed: int, end: str
+) -> None:
+    """However many there were, whoever has pressed them, and whether they were confirmed."""
+    chance = Random(seed)
+    link = LateLink(chance)
+    attending = Attending(lambda: link.now_ms / 1000)
+    monkeypatch.setattr(hosted_robot, "monotonic", lambda: link.now_ms / 1000)
+    hosted = SimpleNamespace(attending=attending, is_unconfirmed=False)
+    for _ in range(5):
+        link.tells()
+        late_ms = chance.choice((0, 40, 1000, float("inf")))
+        link.hears(late_ms)
+        if end == "part":
+            HostedRobot._part(cast(HostedRobot, hosted), cast(RobotLink, link))
+            is_confirmed = not hosted.is_unconfirmed
+        else:
+            attending.latch()
+            for _ in range(200):
+                attending.attend(cast(RobotLink, link))
+            is_confirmed = attending.last_stop == CONFIRMED
+        assert is_confirmed == (late_ms < float("inf")), late_ms
+        link.tells()
 
 
 if __name__ == "__main__":

@@ -164,6 +164,7 @@ export class Teacher {
       this.#show(state);
       if (state.over) return;
     } catch {
+      if (this.#state?.over) return; // it ends with its class
       this.#say('why_host_gone');
     }
     clearTimeout(this.#timer);
@@ -342,7 +343,7 @@ export class Teacher {
 
 /** A button of what cannot be taken back: it acts at the second press. @param {'class_end' | 'class_anew'} key @param {() => void} act */
 function pressedTwice(key, act) {
-  let isSure = false;
+  let isSure = false, timer = 0;
   const found = button(key, (event) => {
     if (isSecond(event)) return; // a habit is no second thought
     if (isSure) act();
@@ -353,7 +354,8 @@ function pressedTwice(key, act) {
     const said = now ? known(`${key}_sure`) : key;
     found.dataset['text'] = said;
     found.textContent = text(said);
-    if (now) setTimeout(() => sure(false), SURE_MS);
+    clearTimeout(timer);
+    if (now) timer = window.setTimeout(() => sure(false), SURE_MS);
   };
   return found;
 }

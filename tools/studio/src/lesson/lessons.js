@@ -156,16 +156,16 @@ export class Lessons {
   async #choose(number) {
     const asked = ++this.#asked;
     const language = currentLanguage();
-    const isOther = number !== this.#number || !this.#steps.length;
-    this.#number = number;
-    this.#choice.value = String(number);
     this.#forget();
     const { steps, taught } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
     if (asked !== this.#asked) return;
+    const isOther = number !== this.#number || !this.#steps.length;
+    this.#number = number; // from now on: until then the one before is seen and checked
+    this.#choice.value = String(number);
     this.#steps = steps;
     pageState.taughtBlocks.set(taught);
-    if (isOther && !element('lessons', HTMLElement).hidden) await this.#seeWorld(1);
     this.#go(isOther ? 0 : this.#step);
+    if (isOther && !element('lessons', HTMLElement).hidden) await this.#seeWorld(1);
     this.#setReady(true);
   }
 
@@ -263,6 +263,7 @@ export class Lessons {
   /** @param {unknown} why */
   #fail(why) {
     this.#forget();
+    this.#choice.value = String(this.#number); // so that another one can be chosen again
     this.#said.textContent = bugSaid(why);
   }
 

@@ -21,10 +21,11 @@ import { LINK, robotOf } from '../page/words.js';
 
 const OPEN_MS = 20_000; // a radio that looks for its robot
 const LOOK_MS = 100; // between two looks at the latest
+const CLOSE_MS = 10_000; // for the last write and the end of a port: the next connection waits no longer
 const STOP = new Uint8Array(LINK.stop_bytes); // zeros stop a robot, whatever it hears
 const LOCK = 'tiniscript-robot';
 
-/** The connection before, until its port is closed. @type {Promise<unknown>} */
+/** The connections before, until their ports are closed. @type {Promise<unknown>} */
 let parting = Promise.resolve();
 
 export class DirectRobot extends Asking {
@@ -75,6 +76,7 @@ export class DirectRobot extends Asking {
       await parting;
       await this.#lock();
       await this.#python.ask({ do: 'connect', robot, language }, new TextEncoder().encode(keys));
+      if (this.isOver) throw new Failed('left'); // nothing of it is in the way of the next one
       const opening = this.#port.open(
         (data) => {
           this.#bytes += data.length;
@@ -101,7 +103,7 @@ export class DirectRobot extends Asking {
     if (!navigator.locks) return Promise.resolve();
     return new Promise((resolve, reject) => {
       navigator.locks.request(LOCK, { ifAvailable: true }, (lock) => {
-        if (!lock) {
+        if (!lock || this.isOver) {
           reject(new Failed('other_tab'));
           return undefined;
         }
@@ -183,10 +185,9 @@ export class DirectRobot extends Asking {
   /** @param {Failed} why @param {Promise<unknown>} [before] */
   end(why, before = Promise.resolve()) {
     if (this.isOver) return;
-    parting = before
-      .then(() => this.#port.close())
+    parting = Promise.all([parting, within(CLOSE_MS, before.then(() => this.#port.close()), 'port_stuck')
       .catch(() => {})
-      .finally(() => this.#unlock());
+      .finally(() => this.#unlock())]);
     this.#fails(why);
     super.end(why);
   }
