@@ -29,7 +29,6 @@ FILES = [
 VM = SOURCES / "src" / "vm"
 CHOOSING = {"build.h", "cpu.h", "layout_avr.h"}
 CONDITION = re.compile(r"#\s*(if|ifdef|ifndef|elif|else|endif)\b")
-KITS = SOURCES / "src" / "boards" / "kits"  # `boards/kit.h` chooses one of them
 HEADERS = sorted(path for part in ("src", "extras") for path in (SOURCES / part).rglob("*.h"))
 BOARDS = sorted(
     path for folder in ("", "avr") for path in (SOURCES / "src/boards" / folder).glob("*.[ch]*")
@@ -93,7 +92,7 @@ def test_nothing_on_a_board_waits(path: Path) -> None:
     assert not waiting & set(re.findall(r"\w+", code_of(path)))
 
 
-@each_row("path", [path for path in HEADERS if path.parent != KITS])
+@each_row("path", HEADERS)
 def test_each_header_is_read_once(path: Path) -> None:
     assert code_of(path).split()[:2] == ["#pragma", "once"]
 
