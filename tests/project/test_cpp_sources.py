@@ -28,6 +28,7 @@ FILES = [
 ]
 VM = SOURCES / "src" / "vm"
 CHOOSING = {"build.h", "cpu.h", "layout_avr.h"}
+ASSEMBLY_THAT_CHOOSES = {"bytecode_avr.S", "tasks_avr.S"}
 CONDITION = re.compile(r"#\s*(if|ifdef|ifndef|elif|else|endif)\b")
 HEADERS = sorted(path for part in ("src", "extras") for path in (SOURCES / part).rglob("*.h"))
 BOARDS = sorted(
@@ -81,6 +82,21 @@ def test_what_the_machine_chooses_stands_in_few_headers(path: Path) -> None:
         first, last = conditions[0], len(rows) - 1
         assert conditions == [first, last], [rows[k] for k in conditions]
         assert all(row.startswith("#include") for row in rows[:first])
+
+
+@each_row("path", sorted(VM.glob("*.S")))
+def test_what_assembly_chooses_stands_in_the_files_that_build_h_names(path: Path) -> None:
+    """Elsewhere a condition encloses all of a file, or is an assertion."""
+    code = re.sub(r"#if [^#]*?#error[^\n]*\n#endif", "", code_of(path))
+    code = re.sub(r"(?m)^#define.*\n|;.*", "", code)
+    rows = [row.strip() for row in code.splitlines() if row.strip()]
+    inner = [k for k, row in enumerate(rows) if CONDITION.match(row)]
+    if path.name in ASSEMBLY_THAT_CHOOSES:
+        assert f"`{path.name}`" in (VM / "build.h").read_text(encoding="utf-8")
+        assert len(inner) > 2, "no more"
+        return
+    assert inner in ([], [inner[0], len(rows) - 1] if inner else []), [rows[k] for k in inner]
+    assert all(row.startswith("#include") for row in rows[: inner[0] if inner else 0])
 
 
 @each_row("path", BOARDS)
