@@ -19,6 +19,8 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import trim_wizard
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.description import trim_in_words
+from tiniscript.cli.texts import causes
+from tiniscript.doctor.findings import Finding
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.names import fault_name
 from tiniscript.link.payloads import TrimReply
@@ -139,13 +141,23 @@ def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot)
     ]  # fmt: skip
 
 
+def of_the_table(cause: str, part: str, **values: str) -> str:
+    """What the doctor's table says of a cause, as this verb prints it."""
+    finding = Finding(cause, True, values, part)
+    found = causes.said(finding, "en")
+    return (
+        f"tsc: {causes.label(finding, 'en')}: {found.what}. The robot keeps what it had. "
+        f"Try:  {found.then}"
+    )
+
+
 def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "--balance", "7", "--least", "3").code == 0
     for answers, said in (
-        ("\n1\n2\n", "the same wheel"),
-        ("\n5\n", "did not turn"),
-        ("\n1\n3\n" + "2\n" * 8, "do not turn with 40 %"),
-        ("\n1\n3\n1\n\n" + "2\n" * 3, "more than 40 % stronger"),
+        ("\n1\n2\n", of_the_table("same_wheel", "motors")),
+        ("\n5\n", of_the_table("still", "left")),
+        ("\n1\n3\n" + "2\n" * 8, of_the_table("too_weak", "motors", n="40")),
+        ("\n1\n3\n1\n\n" + "2\n" * 3, of_the_table("too_uneven", "motors", n="40")),
         ("\n1\n", "the answers ended"),
     ):
         on(pty_robot, data=answers).gives(3, said)

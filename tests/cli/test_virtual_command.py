@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 from tests.support.command import OBSTACLE, Command, Done, Tsc, inside
-from tiniscript.cli.commands.robot import ended_by_signal
+from tiniscript.cli.terminal.signals import ended_by_signal
 from tiniscript.library import install_advice
 from tiniscript.link import ports
 from tiniscript.virtual import directory

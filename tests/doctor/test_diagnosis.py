@@ -403,7 +403,7 @@ def test_every_cause_has_a_test() -> None:
     """Each is in a table of this folder, or is named in a test of what else asks the doctor."""
     folder = Path(__file__).parent
     commands = (
-        folder.parent / "cli" / f"test_{name}.py" for name in ("selftest", "module_command")
+        folder.parent / "cli" / f"test_{name}.py" for name in ("selftest", "module_command", "trim")
     )
     tables = (folder / "test_line.py", folder / "test_diagnosis.py", *commands)
     said = "".join(path.read_text(encoding="utf-8") for path in tables)

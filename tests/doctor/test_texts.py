@@ -28,7 +28,7 @@ VALUES = {
     "supply_is": {"reset"}, "trim_is": {"trim"}, "discs_noise": {"left", "right"},
     "reads": {"name", "values"}, "stuck": {"name", "values"}, "changes": {"name", "values", "now"},
     "same": {"name", "values", "now"}, "as_bright": {"name", "values", "now"},
-    "no_reading": {"name", "said"}, "ended": {"said"},
+    "no_reading": {"name", "said"}, "ended": {"said"}, "too_weak": {"n"}, "too_uneven": {"n"},
     **{f"module_{how}": {"name", "said"} for how in ("refused", "differs", "elsewhere", "lost")},
 }  # fmt: skip
 

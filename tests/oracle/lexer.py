@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import zlib
+from itertools import pairwise
 from typing import NamedTuple
 
 from tests.oracle.words import FIXED, Mistake
@@ -59,13 +60,36 @@ def tokens_of(text: str) -> list[Token]:
         if kind == "degrees":
             kind, word = "word", "DEG"
         if word in FIXED:
-            found += (each._replace(line=line) for each in tokens_of(FIXED[word])[:-1])
+            names, meaning = FIXED[word]
+            values, at = _given(text, at, len(names)) if names else ([], at)
+            for each in tokens_of(meaning)[:-1]:
+                given = dict(zip(names, values, strict=True)).get(each.text, [each])
+                found += (one._replace(line=line) for one in given)
         elif kind != "space" and not (kind == "newline" and depth > 0):
             found.append(Token(kind, word, line))
         if kind == "newline":
             line += 1
     found.append(Token("end", "", line))
     return found
+
+
+def _given(text: str, at: int, count: int) -> tuple[list[list[Token]], int]:
+    """The tokens of each value in the brackets that begin here, and where these end."""
+    match = re.compile(r"\s*\(").match(text, at)
+    if match is None:
+        raise Mistake("a word without its values")
+    begin = end = match.end()
+    depth, ends = 1, [begin - 1]
+    while depth:
+        if end == len(text):
+            raise Mistake("brackets without an end")
+        depth += (text[end] == "(") - (text[end] == ")")
+        if depth == 0 or (depth == 1 and text[end] == ","):
+            ends.append(end)
+        end += 1
+    if len(ends) != count + 1:
+        raise Mistake("another number of values")
+    return [tokens_of(text[a + 1 : b])[:-1] for a, b in pairwise(ends)], end
 
 
 def thousandths(text: str) -> int:

@@ -106,14 +106,14 @@ RANGES: dict[str, tuple[tuple[int, int], ...]] = {
     "BEEP": (_TIME, (31_000, 20_000_000)),
 }
 
-# Words with fixed values, and the instructions that they stand for, as the reference lists them:
-# "- With fixed values: `HORN` = `BEEP(0.5, 440)`".
+# Words that stand for instructions, and these with the names of values in them, as the reference
+# lists them: "- With fixed values: `HORN` = `BEEP(0.5, 440)` `HOOT(S)` = `BEEP(S, 440)`".
 _REFERENCE = Path(__file__).parent.parent.parent / "docs" / "en" / "language.md"
 FIXED = {
-    word: meaning
+    word: (tuple(names.split(", ")) if names else (), meaning)
     for line in _REFERENCE.read_text("utf-8").splitlines()
     if line.startswith("- With fixed values")
-    for word, meaning in re.findall(r"`(\w+)` = `([^`]+)`", line)
+    for word, names, meaning in re.findall(r"`(\w+)(?:\(([^)`]*)\))?` = `([^`]+)`", line)
 }
 
 RESERVED = frozenset(

@@ -28,8 +28,8 @@ FILES = [
 ]
 VM = SOURCES / "src" / "vm"
 CHOOSING = {"build.h", "cpu.h", "layout_avr.h"}
+ASSEMBLY_THAT_CHOOSES = {"bytecode_avr.S", "tasks_avr.S"}
 CONDITION = re.compile(r"#\s*(if|ifdef|ifndef|elif|else|endif)\b")
-KITS = SOURCES / "src" / "boards" / "kits"  # `boards/kit.h` chooses one of them
 HEADERS = sorted(path for part in ("src", "extras") for path in (SOURCES / part).rglob("*.h"))
 BOARDS = sorted(
     path for folder in ("", "avr") for path in (SOURCES / "src/boards" / folder).glob("*.[ch]*")
@@ -84,6 +84,21 @@ def test_what_the_machine_chooses_stands_in_few_headers(path: Path) -> None:
         assert all(row.startswith("#include") for row in rows[:first])
 
 
+@each_row("path", sorted(VM.glob("*.S")))
+def test_what_assembly_chooses_stands_in_the_files_that_build_h_names(path: Path) -> None:
+    """Elsewhere a condition encloses all of a file, or is an assertion."""
+    code = re.sub(r"#if [^#]*?#error[^\n]*\n#endif", "", code_of(path))
+    code = re.sub(r"(?m)^#define.*\n|;.*", "", code)
+    rows = [row.strip() for row in code.splitlines() if row.strip()]
+    inner = [k for k, row in enumerate(rows) if CONDITION.match(row)]
+    if path.name in ASSEMBLY_THAT_CHOOSES:
+        assert f"`{path.name}`" in (VM / "build.h").read_text(encoding="utf-8")
+        assert len(inner) > 2, "no more"
+        return
+    assert inner in ([], [inner[0], len(rows) - 1] if inner else []), [rows[k] for k in inner]
+    assert all(row.startswith("#include") for row in rows[: inner[0] if inner else 0])
+
+
 @each_row("path", BOARDS)
 def test_nothing_on_a_board_waits(path: Path) -> None:
     """Nor asks the core for what is done here by registers; it defines the clock alone."""
@@ -93,7 +108,7 @@ def test_nothing_on_a_board_waits(path: Path) -> None:
     assert not waiting & set(re.findall(r"\w+", code_of(path)))
 
 
-@each_row("path", [path for path in HEADERS if path.parent != KITS])
+@each_row("path", HEADERS)
 def test_each_header_is_read_once(path: Path) -> None:
     assert code_of(path).split()[:2] == ["#pragma", "once"]
 

@@ -120,6 +120,12 @@ def test_the_library_does_not_know_the_command(path: Path) -> None:
     assert not [name for name in modules_of(path) if name.startswith("tiniscript.cli")]
 
 
+@each_row("path", [path for path in FILES if path.parent == PACKAGE / "cli" / "commands"])
+def test_a_command_calls_no_command(path: Path) -> None:
+    """What two of them need is below both."""
+    assert not [name for name in modules_of(path) if name.startswith("tiniscript.cli.commands.")]
+
+
 def test_no_circle_of_files() -> None:
     """Whatever the import is for: at the top, inside a function, or for types alone."""
     assert not measures.circles(measures.imports_of(FILES))

@@ -1,4 +1,4 @@
-"""A word with fixed values is a row of `words.py`: every stage takes it from there."""
+"""A word that stands for others is a row of `words.py`: every stage takes it from there."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import tiniscript
 from tests.oracle.interpreter import run as run_by_reference
 from tests.oracle.words import FIXED
 from tests.support.casefile import ROOT
-from tests.support.new_word import HORN, SAID, with_texts
+from tests.support.new_word import DANCE, HORN, SAID, WIGGLE, with_texts
 from tests.support.rows import each_row
 from tests.text.test_line import check_line
 from tiniscript import compile_text, robots
@@ -25,12 +25,13 @@ from tiniscript.codegen.sketch.writing import sketch_of
 from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics import codes
 from tiniscript.library.text_fitting import misfits
+from tiniscript.robots.kit_words import packed_range
 from tiniscript.robots.text_levels import LEVELS, Level
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.description import description
 from tiniscript.syntax.formatter import formatted
-from tools.generate import paper, poster
+from tools.generate import paper, poster, text_tables
 from tools.generate.documents import language_document
 from tools.generate.paper import Line
 
@@ -43,7 +44,11 @@ MEANT = PROGRAM.replace(HORN.text, HORN.stands_for)
 @pytest.fixture(autouse=True)
 def _has_horn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORDS, HORN.text, HORN)
-    monkeypatch.setitem(FIXED, HORN.text, HORN.stands_for)
+    monkeypatch.setitem(FIXED, HORN.text, ((), HORN.stands_for))
+    monkeypatch.setitem(WORDS, WIGGLE.text, WIGGLE)
+    monkeypatch.setitem(FIXED, WIGGLE.text, (("N",), WIGGLE.stands_for))
+    monkeypatch.setitem(WORDS, DANCE.text, DANCE)
+    monkeypatch.setitem(FIXED, DANCE.text, (("SECONDS", "N"), DANCE.stands_for))
 
 
 def test_it_does_what_it_stands_for() -> None:
@@ -61,11 +66,73 @@ def test_it_does_what_it_stands_for() -> None:
         ("HORM", codes.UNKNOWN_WORD),
         ("HORN UNTIL(DISTANCE < 10)", codes.UNTIL_NOT_HERE),
         ("SHOW(HORN)", codes.NO_VALUE),
+        ("WIGGLE", codes.MISSING_OPEN),
+        ("WIGGLE()", codes.ARGUMENT_COUNT),
+        ("WIGGLE(2, 3)", codes.ARGUMENT_COUNT),
+        ("WIGGLE(0)", codes.OUT_OF_RANGE),
+        ("WIGGLE(10)", codes.OUT_OF_RANGE),
+        ("WIGGLE(2 CM)", codes.UNIT_PLACE),
+        ("WIGGLE(TRUE)", codes.WANTS_NUMBER),
+        ("WIGGLE(FOREVER)", codes.FOREVER_NOT_HERE),
+        ("WIGGLE(2) UNTIL(DISTANCE < 10)", codes.UNTIL_NOT_HERE),
+        ("N = WIGGLE(2)", codes.NO_VALUE),
     ],
 )
 def test_what_is_wrong_with_it_is_said(program: str, code: codes.Code) -> None:
     found = compile_text(program, KIT).diagnostics
     assert [each.code for each in found] == [code]
+
+
+@each_row(
+    "program, meant",
+    [
+        ("WIGGLE(3)", "LOOP(3);L(0.2, 60);R(0.2, 60);END_LOOP"),
+        ("N = 2;WIGGLE(N + 1)", "N = 2;LOOP(N + 1);L(0.2, 60);R(0.2, 60);END_LOOP"),
+        ("WIGGLE(MIN(2, (DISTANCE)))", "LOOP(MIN(2, (DISTANCE)));L(0.2, 60);R(0.2, 60);END_LOOP"),
+        ("DEF A(N);WIGGLE(N);END_DEF;A(2)",
+         "DEF A(N);LOOP(N);L(0.2, 60);R(0.2, 60);END_LOOP;END_DEF;A(2)"),
+        ("IF(TRUE);WIGGLE(2);ENDIF;W(1)",
+         "IF(TRUE);LOOP(2);L(0.2, 60);R(0.2, 60);END_LOOP;ENDIF;W(1)"),
+        ("N = 2;DANCE(N + 1, N)",
+         "N = 2;BEEP(N + 1, 440);BEEP(0.5, 440);LOOP(N);L(0.2, 60);R(0.2, 60);END_LOOP"),
+    ],
+)  # fmt: skip
+def test_a_word_with_a_value_does_what_its_instructions_do(program: str, meant: str) -> None:
+    """Whatever the value is; in blocks, as text of a robot and in the reference it is its row."""
+    compiled = compile_text(program, KIT)
+    assert not compiled.diagnostics
+    assert compiled.image and compiled.image == compile_text(meant, KIT).image
+    assert line_of(compiled.source) == line_of(Source(meant))
+    assert str(tiniscript.run(program)) == run_by_reference(program)
+    assert compiled.program is not None
+    for level in LEVELS.values():
+        lacking, as_written = (
+            [(each.code, each.values) for each in misfits(its.source, its.program, KIT, level)]
+            for its in (compiled, compile_text(meant, KIT))
+            if its.program is not None
+        )
+        assert lacking == as_written
+    sketch = sketch_of(compiled.source, compiled.program, ROBOT, "en")
+    assert "turnLeft(" in sketch and WIGGLE.stands_for not in sketch
+
+
+def test_a_value_is_named_where_it_is_wrong() -> None:
+    program = "SI|F(1, 80);WIGGLE(2 + UP)"
+    (found,) = compile_text(program, KIT).diagnostics
+    assert program[found.span.start : found.span.end] == "UP"
+
+
+def test_a_value_of_such_a_word_is_the_whole_of_one_value() -> None:
+    """Twice, a RANDOM in it would be two numbers; in `N * 2` it would need brackets.
+
+    A name that is a word would mean the word: `F(TIME, 80)` goes as long as the program has run.
+    """
+    for word in WORDS.values():
+        for name in (its.name.upper() for its in word.arguments if word.stands_for):
+            said = rf"(?<!\w){name}(?!\w)"
+            assert name not in WORDS, word
+            assert len(re.findall(said, word.stands_for)) == 1, word
+            assert re.search(rf"[(,] *{said} *[,)]", word.stands_for), word
 
 
 def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
@@ -94,19 +161,25 @@ def test_a_robot_that_reads_text_gets_what_it_stands_for(level: Level) -> None:
 FRESH = """
 import sys
 from pathlib import Path
-from tests.support.new_word import HORN, with_texts
+from tests.support.new_word import HORN, WIGGLE, with_texts
 from tiniscript.base import languages
 languages.FOLDER = with_texts(Path(sys.argv[1]))
 from tiniscript.base.words import WORDS
 WORDS[HORN.text] = HORN
 WORDS["CHIME"] = HORN._replace(text="CHIME")
+WORDS[WIGGLE.text] = WIGGLE
 import json
 from tiniscript.studio import block_kinds
 from tools.builds.page_texts import page_texts
 from tools.generate import text_tables
 texts = [page_texts(language) for language in ("en", "es")]
 labels = [each["block/HORN"] for each in texts] + [block_kinds.SAYS["CHIME"]]
-print(json.dumps([block_kinds.data(), labels, text_tables.words_tables("a test")]))
+from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_reading import read
+from tiniscript import robots
+form = read("SI|WIGGLE(X + 2)", robots.load("tinibot").kit)
+blocks = [(each.kind, each.word, each.values) for each in form.body], print_blocks(form).text
+print(json.dumps([block_kinds.data(), labels, text_tables.words_tables("a test"), blocks]))
 """
 
 
@@ -118,12 +191,20 @@ def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) ->
         capture_output=True,
         text=True,
     )
-    blocks, labels, tables = json.loads(ran.stdout)
+    blocks, labels, tables, (body, printed) = json.loads(ran.stdout)
     assert HORN.text in blocks["kinds"]["fixed"]["words"]
+    assert WIGGLE.text in blocks["kinds"]["fixed_1"]["words"]
+    assert blocks["says"]["fixed_1"] == "%1 %2"
+    value = [["NAME", "X"], ["NUMBER", "2"], ["ADD", ""]]
+    assert body == [["fixed_1", WIGGLE.text, [value]]]
+    assert printed == "SI|WIGGLE(X + 2)\n"
     own = "{CHIME} CHIME = BEEP(0.5, 440)"  # the catalogue has nothing to say of it
     assert labels == [*(f"{{{HORN.text}}} {says}" for says in SAID.values()), own]
-    packed, rows, _ = tables.split("tini_progmem = {")[1:]
-    assert "// HORN" in packed and "// HORN" not in rows
+    packed, rows, ranges = tables.split("tini_progmem = {")[1:]
+    for word in (HORN.text, WIGGLE.text):
+        assert f"// {word}" in packed and f"// {word}" not in rows
+    (times,) = WIGGLE.arguments  # no robot reads the word
+    assert text_tables.bytes_of_table(packed_range(times.low, times.high)) not in ranges
 
 
 @pytest.mark.parametrize(("language", "says"), SAID.items())
@@ -156,5 +237,10 @@ def test_a_page_that_is_full_is_an_error(monkeypatch: pytest.MonkeyPatch) -> Non
     ],
 )
 def test_it_is_in_the_references(document: str, language: str, says: str) -> None:
-    row = rf"(?m)^- {says}: .*`HORN` = `BEEP\(0\.5, 440\)`$"
-    assert re.search(row, language_document(document, language))
+    row = rf"(?m)^- {says}: .*`HORN` = `BEEP\(0\.5, 440\)` (.*)$"
+    found = re.search(row, language_document(document, language))
+    with_values = {"WIGGLE(N)": WIGGLE, "DANCE(SECONDS, N)": DANCE}
+    assert found
+    assert found[1] == " ".join(
+        f"`{usage}` = `{word.stands_for}`" for usage, word in with_values.items()
+    )

@@ -9,6 +9,11 @@ from unittest.mock import Mock
 import pytest
 
 from tiniscript.bytecode.image import Image
+from tiniscript.link.connection import PendingRequest, Requester
+from tiniscript.link.handshake import exchange_of
+from tiniscript.link.messages import BY_NAME, Field, Message
+from tiniscript.link.payloads import REPLIES, EmptyReply
+from tiniscript.link.requests import Request
 from tiniscript.link.sharing.protocol import BadMessage, message_of
 from tiniscript.link.sharing.requests import ClientRequest, ClientRequests, asked_for
 from tiniscript.link.wifi import BrokerSettings, Network, Tls
@@ -107,3 +112,49 @@ def test_who_presses_keys_is_not_for_the_client_to_say() -> None:
     session = Mock()
     asked_for(of("press", 1, 0, 0, 9), 700, 2)(session)
     assert session.press.call_args.args == (1, 0, 0, 2)
+
+
+# -- a request that is no more than a message ------------------------------------------------------
+
+NOD = Message(
+    99, "NOD", True,
+    (Field("times", "u8", 1, 1), Field("turn", "i8", 1, 1), Field("which", "u32", 4, 4),
+     Field("said", "rest", 1, 3)), (), "The robot nods.",
+)  # fmt: skip
+
+
+def nod(
+    self: Requester, times: int, turn: int, which: int, said: bytes
+) -> PendingRequest[EmptyReply]:
+    return self._ask("nod", EmptyReply, times=times, turn=turn, which=which, said=said)
+
+
+@pytest.fixture
+def _knows_nod(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(BY_NAME, "NOD", NOD)
+    monkeypatch.setitem(REPLIES, "NOD", EmptyReply)
+    monkeypatch.setattr(Requester, "nod", nod, raising=False)
+
+
+@pytest.mark.usefixtures("_knows_nod")
+@pytest.mark.parametrize("values", [(0, -128, 0, b"a"), (255, 127, (1 << 32) - 1, b"abc")])
+def test_a_message_of_the_table_and_its_method_are_a_request(values: tuple[Any, ...]) -> None:
+    """Of this process and of a client of a shared port; no other file has to know it."""
+    session = Mock()
+    asked_for(Asked("nod", values).message(), 700)(session)
+    ((name, taken, _),) = session.method_calls
+    assert (name, taken) == ("nod", values)
+    given = dict(zip((its.name for its in NOD.request), values, strict=True))
+    assert next(exchange_of("nod")(Mock(), **given)) == Request("NOD", given)
+
+
+@pytest.mark.usefixtures("_knows_nod")
+@pytest.mark.parametrize(
+    "wrong",
+    [{"times": -1}, {"times": 256}, {"times": True}, {"turn": -129}, {"turn": 128}, {"turn": "1"},
+     {"which": 1 << 32}, {"which": 0.5}, {"said": ""}, {"said": "61626364"}, {"said": None},
+     {"do": "NOD"}, {"do": "stop"}, {"do": "data"}, {"do": "_ask"}],
+)  # fmt: skip
+def test_a_field_of_such_a_message_keeps_to_its_range(wrong: dict[str, Any]) -> None:
+    with pytest.raises(BadMessage):
+        asked_for(of("nod", 1, 2, 3, b"a") | wrong, 700)

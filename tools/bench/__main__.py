@@ -1,48 +1,47 @@
-"""Prints every figure that the documents name: `python -m tools.bench`, or only those named.
+"""Prints the figures that `docs/en/figures.md` shows: `python -m tools.bench`, or only those named.
 
-Runs each benchmark as a process of its own, one after the other, and tells which of them failed.
-Takes minutes; times of this computer mean something only where nothing else runs.
+Runs each benchmark as the page names it, as a process of its own, one after the other, and tells
+which of them failed. Takes minutes; times of this computer mean something only where nothing else
+runs.
 """
 
 from __future__ import annotations
 
 import argparse
+import re
 import subprocess
 import sys
+from pathlib import Path
 
-BENCHMARKS = (
-    # in the order of `docs/en/figures.md`, then what other documents quote
-    "compiler",
-    "machine",
-    "code_size",
-    "link",
-    "text",
-    "tasks",
-    "virtual",
-    "obstacles",
-    "ways",
-    "upload",
-    "large_upload",
-    "studio",
-    "firmware_size",
-    "sizes",
-)
+PAGE = Path(__file__).parent.parent.parent / "docs" / "en" / "figures.md"
+
+
+def commands() -> list[list[str]]:
+    """Return the name of each benchmark of the page and its arguments, in the page's order."""
+    text = " ".join(PAGE.read_text(encoding="utf-8").split())
+    found = re.findall(r"`python -m tools\.bench\.(\w+(?: [^`]+)?)`", text)
+    return [command.split() for command in dict.fromkeys(found)]
 
 
 def main(arguments: list[str] | None = None) -> int:
+    shown = commands()
+    known = list(dict.fromkeys(name for name, *_ in shown))
     parser = argparse.ArgumentParser(
-        prog="python -m tools.bench", description="Print every figure that the documents name."
+        prog="python -m tools.bench", description="Print the figures of docs/en/figures.md."
     )
-    parser.add_argument("names", nargs="*", metavar="name", help=f"only some of {BENCHMARKS}")
-    names: list[str] = parser.parse_args(arguments).names or list(BENCHMARKS)
-    unknown = [name for name in names if name not in BENCHMARKS]
+    parser.add_argument("names", nargs="*", metavar="name", help=f"only some of {known}")
+    names: list[str] = parser.parse_args(arguments).names or known
+    unknown = [name for name in names if name not in known]
     if unknown:
         parser.error(f"no such benchmark: {', '.join(unknown)}")
     failed = []
-    for name in names:
-        print(f"\n# python -m tools.bench.{name}\n", flush=True)
-        if subprocess.run([sys.executable, "-m", f"tools.bench.{name}"], check=False).returncode:
-            failed.append(name)
+    for name, *rest in shown:
+        if name not in names:
+            continue
+        print("\n# python -m", " ".join([f"tools.bench.{name}", *rest]), end="\n\n", flush=True)
+        command = [sys.executable, "-m", f"tools.bench.{name}", *rest]
+        if subprocess.run(command, check=False).returncode:
+            failed.append(" ".join([name, *rest]))
     if failed:
         print(f"\nnot within its limits, or not done: {', '.join(failed)}", file=sys.stderr)
     return 1 if failed else 0

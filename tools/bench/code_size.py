@@ -80,7 +80,6 @@ def main() -> None:
         f"{found.programs} programs, {found.statements} statements, {found.code_bytes} code_bytes: "
         f"{found.per_statement:.2f} bytes a statement"
     )
-    print(f"in instruction set 1.0: {BEFORE} code_bytes, {BEFORE / STATEMENTS:.2f} a statement")
 
 
 if __name__ == "__main__":

@@ -92,7 +92,11 @@ def bring_up_document(document: str, language: str) -> str:
 
 def language_document(document: str, language: str) -> str:
     """Return a reference of the language, whose list of words has those with fixed values."""
-    words = [f"`{word.text}` = `{word.stands_for}`" for word in WORDS.values() if word.stands_for]
+    words = [
+        f"`{word.usage.upper()}` = `{word.stands_for}`"
+        for word in WORDS.values()
+        if word.stands_for
+    ]
     row = f"- {text('documents', 'language/fixed', language)}: {' '.join(words)}\n"
     return spliced(_text(document), "fixed", row if words else "")
 

@@ -100,7 +100,7 @@ def _with_fixed(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]
         for word in WORDS.values():
             if word.stands_for and f"{{{word.stands_for.partition('(')[0]}}}" in code:
                 says = translated("studio", f"block/{word.text}", language)
-                yield word.text, says.partition("} ")[2] if says else f"= {word.stands_for}"
+                yield word.example, says.partition("} ")[2] if says else f"= {word.stands_for}"
 
 
 def posters(command: str) -> dict[str, Callable[[], str]]:

@@ -80,9 +80,9 @@ def ranges() -> list[tuple[int, int]]:
     """Return the ranges of arguments, each once, in the order of their words."""
     found: list[tuple[int, int]] = []
     for word in words_in_order():
-        for argument in word.arguments:
+        for argument in word.arguments if role_of(word) not in ("function", "later") else ():
             pair = (argument.low, argument.high)
-            if pair not in found and pair != (LOWEST, HIGHEST) and role_of(word) != "function":
+            if pair not in found and pair != (LOWEST, HIGHEST):
                 found.append(pair)
     return found
 

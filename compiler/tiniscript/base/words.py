@@ -29,7 +29,6 @@ class Role(NamedTuple):
 
     name: str
     is_instruction: bool = False  # a robot does something at it
-    is_call: bool = False  # an instruction with values in brackets
     lasts: bool = False  # for a time, or until something is so
     is_move: bool = False  # with a power, and a time or a way
     is_of_blocks: bool = False
@@ -39,12 +38,21 @@ class Role(NamedTuple):
 
 
 class Word(NamedTuple):
-    """A word with the role `fixed` stands for an instruction with its values, `BEEP(0.5, 440)`."""
+    """A word with the role `fixed` stands for instructions, `BEEP(0.5, 440)`.
+
+    Where it takes values, their names are in them, each as the whole of a value and once:
+    `LOOP(N);L(0.2, 60);R(0.2, 60);END_LOOP`.
+    """
 
     text: str
     role: Role
     arguments: tuple[Argument, ...] = ()
     stands_for: str = ""
+
+    @property
+    def is_call(self) -> bool:
+        """Whether it is an instruction with values in brackets."""
+        return self.role.is_instruction and bool(self.arguments)
 
     @property
     def usage(self) -> str:
@@ -61,10 +69,9 @@ class Word(NamedTuple):
 
 # fmt: off
 ROLES = {role.name: role for role in (
-    Role("move", is_instruction=True, is_call=True, lasts=True, is_move=True),
-    Role("wait", is_instruction=True, is_call=True, lasts=True),
-    *(Role(name, is_instruction=True, is_call=True) for name in ("motors", "beep", "show")),
-    *(Role(name, is_instruction=True) for name in ("stop", "fixed")),
+    Role("move", is_instruction=True, lasts=True, is_move=True),
+    Role("wait", is_instruction=True, lasts=True),
+    *(Role(name, is_instruction=True) for name in ("motors", "beep", "show", "stop", "fixed")),
     *(Role(name, is_of_blocks=True) for name in ("block", "arm", "end")),
     *(Role(name, is_of_values=True, begins=False) for name in ("value", "operator", "function")),
     *(Role(name, is_offered=False) for name in ("alias", "later")),

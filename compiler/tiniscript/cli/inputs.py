@@ -107,6 +107,17 @@ def robot(options: Namespace, language: str) -> Robot:
         raise refused(why, language, "profile_refused", file=shown(options.robot)) from None
 
 
+def wired_robot(options: Namespace, language: str) -> Robot:
+    """Return the robot of the options. Raises CommandError where no firmware fits its board."""
+    from tiniscript.robots.firmware import BOARDS  # with all drivers
+
+    found = robot(options, language)
+    if found.board.chip not in BOARDS:
+        known = ", ".join(BOARDS)
+        raise CommandError(2, "no_firmware", chip=found.board.chip, known=known)
+    return found
+
+
 def robot_for(given: Input, options: Namespace, language: str) -> Robot:
     """Return the robot that `--robot` names, else the one that the program names, else the default.
 

@@ -232,3 +232,13 @@ def _reading(device: Device, found: str, language: str) -> int:
     if value is None or not device.low <= value <= device.high:
         raise CommandError(2, "sensor_value", found=found or "''", name=device.name, range=allowed)
     return value
+
+
+def name_bytes(name: str) -> bytes:
+    """Return a name as bytes for the robot. Raises CommandError if it is too long."""
+    from tiniscript.link.messages import NAME_BYTES  # few verbs need the link
+
+    data = name.encode("utf-8", "surrogateescape")
+    if not 1 <= len(data) <= NAME_BYTES or not name.isprintable() or not name.strip():
+        raise CommandError(2, "bad_name", bytes=str(len(data)))
+    return data

@@ -1,4 +1,4 @@
-"""What the doctor, the self-test and a module's set-up can find: one table of causes.
+"""What doctor, self-test, a module's set-up and trim can find: one table of causes.
 
 Knows no sentence: those of a cause, a short name that stays, are in `languages/en/command.toml`.
 """
@@ -65,6 +65,9 @@ CAUSES = dict((
     *_all(WRONG, "motor", "still", then="wires"),
     *_all(WRONG, "motor", "ended", then="batteries"),  # of the buzzer, too
     *_all(OPEN, "motor", "unasked", then="person"),
+    *_all(WRONG, "motors", "same_wheel", then="pins"),
+    *_all(WRONG, "motors", "too_weak", then="wheels"),
+    *_all(WRONG, "motors", "too_uneven", then="brake"),
     *_all(OK, "buzzer", "heard"),
     *_all(WRONG, "buzzer", "unheard", then="wires"),
     # a module that is set up, and each of its settings

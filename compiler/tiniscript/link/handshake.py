@@ -25,6 +25,7 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.outcomes import OTHER_ROBOT, UNPROVEN
 from tiniscript.link.payloads import (
+    REPLIES,
     AuthenticateReply,
     EmptyReply,
     HelloReply,
@@ -260,11 +261,10 @@ def status() -> Exchange[StatusReply]:
     return requests.single(Request("STATUS"), StatusReply)
 
 
-# The exchange that carries out each request of a `Requester`, by the request's name.
-EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
+# What carries out the requests of a `Requester` that are more than the message of their name.
+_EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
     "hello": Handshake.hello,
     "ping": lambda its: ping(),
-    "status": lambda its: status(),
     "clear": lambda its: requests.clear(),
     "start": Handshake.start,
     "live": Handshake.live,
@@ -273,7 +273,6 @@ EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
     "name": Handshake.name,
     "trim": lambda its, trim: requests.kept(Request("TRIM", {"trim": trim}), TrimReply),
     "fetch": lambda its: requests.fetch(),
-    "identify": lambda its: requests.single(Request("IDENTIFY"), EmptyReply),
     "claim": Handshake.claim,
     "disown": Handshake.disown,
     "hold_back": Handshake.hold_back,
@@ -284,4 +283,14 @@ EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
     "broker": lambda its: wifi.tell("TELL_BROKER"),
     "use_broker": lambda its, broker: wifi.use_broker(broker),
 }
+
+
+def exchange_of(name: str) -> Callable[..., Exchange[Any]]:
+    """Return what carries out the request of this name, of a handshake and what is given."""
+    if name in _EXCHANGES:
+        return _EXCHANGES[name]
+    message = name.upper()
+    return lambda its, **given: requests.single(Request(message, given), REPLIES[message])
+
+
 NEED_NO_HELLO = ("ping", "status", "fetch")

@@ -20,7 +20,7 @@ from tiniscript.bytecode.image import isa_of
 from tiniscript.link.authority import NOT_OWNER, KeyRing
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest, Requester
 from tiniscript.link.frames import Frame, decoded
-from tiniscript.link.handshake import EXCHANGES, NEED_NO_HELLO, Handshake, ping, status
+from tiniscript.link.handshake import NEED_NO_HELLO, Handshake, exchange_of, ping, status
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
@@ -854,7 +854,7 @@ class Session(Requester):
     def _ask(
         self, name: str, kind: type[T], starts: bool = False, /, **given: object
     ) -> PendingExchange[T]:
-        make: Callable[[], Exchange[T]] = partial(EXCHANGES[name], self._handshake, **given)
+        make: Callable[[], Exchange[T]] = partial(exchange_of(name), self._handshake, **given)
         if name == "hello":
             exchange = make()
         elif name in NEED_NO_HELLO:

@@ -415,7 +415,7 @@ class _Said:
         word = self.tokens[k - 1] if k else _END
         if word.kind is not WORD:
             return []
-        if word.text not in WORDS or not WORDS[word.text].role.is_call:
+        if word.text not in WORDS or not WORDS[word.text].is_call:
             return [""]
         units = [argument.unit for argument in WORDS[word.text].arguments]
         behind = texts(self.tokens[k : closed(self.tokens, k) or k])

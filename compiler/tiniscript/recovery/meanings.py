@@ -27,7 +27,7 @@ KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so
 STARTS = frozenset(BLOCK_ENDS) - {"DEF"}
 SEPARATORS = frozenset(";|{}")
 SOME_END = "FIN"  # of a block that its word does not name: what a row makes of each such end
-CALLED = frozenset(word.text for word in WORDS.values() if word.role.is_call)
+CALLED = frozenset(word.text for word in WORDS.values() if word.is_call)
 DONE = CALLED | {"S", "STOP", "BREAK"}
 ASKING = frozenset(("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL"))
 

@@ -85,7 +85,7 @@ def _begins(rest: str, sign: str, is_apart: bool) -> bool:
     known = WORDS.get(word)
     if known is None:
         return bool(sign) and after in ("=", "(")
-    is_apart = is_apart and (after is not None or known.role.is_call or word == "DEF")
+    is_apart = is_apart and (after is not None or known.is_call or word == "DEF")
     return known.role.begins and (bool(sign) or after == "(" or is_apart)
 
 

@@ -196,7 +196,7 @@ class Trailing:
             "@paced": self._is_paced(k),
             "@told": self.tokens and self._is_told(k),
             f"@no{concept}": not is_of_kit,
-            "@call": known and known.role.is_call,
+            "@call": known and known.is_call,
             "@order": known and known.role.is_instruction,
             "@ask": self.means(text) in ASKING,
             "@quote": text in QUOTES and text != "`",

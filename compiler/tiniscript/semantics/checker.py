@@ -6,9 +6,9 @@ ranges, types, limits; and the rule which reading a sensor's name means. Does no
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.limits import (
@@ -185,9 +185,6 @@ class _Checker(Scope):
         if word is None:
             self.kit_or_def(node, made)
             return
-        if word.stands_for:
-            node = _spelled_out(word, node.span)
-            word = WORDS[node.word]
         arguments = node.arguments or ()
         span = node.span
         if len(arguments) != len(word.arguments):
@@ -210,6 +207,10 @@ class _Checker(Scope):
         ]
         if len(self.diagnostics) > said:
             self.wrong.values(node, word, said)
+        if word.stands_for:
+            if len(self.diagnostics) == said:
+                self.spelled_out(word, arguments, span, made)
+            return
         self.stack_fits(values, span)
         self.take(values, span, made)
         terms = [value.terms for value in values]
@@ -220,6 +221,15 @@ class _Checker(Scope):
             made.append(ir.Move(node.word, time, power, until, span, unit))
         elif word.role.is_instruction:  # START does nothing
             made.append(_MAKES[word.role.name](values, span))
+
+    def spelled_out(
+        self, word: Word, arguments: Sequence[ast.Argument], span: Span, made: list[Statement]
+    ) -> None:
+        """Make what the instructions make that a word stands for, with these values."""
+        names = [its.name.upper() for its in word.arguments]
+        given = dict(zip(names, arguments, strict=True))
+        for instruction in parse(Source(word.stands_for)).program.body:
+            _CHECKS[type(instruction)](self, _placed(instruction, span, given), made)
 
     def way(self, node: ast.Command, unit: ast.Part) -> None:
         """Check the unit of a move, and whether the robot's speed is known."""
@@ -489,18 +499,18 @@ class _Checker(Scope):
         self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls = was
 
 
-def _spelled_out(word: Word, span: Span) -> ast.Command:
-    """Return the instruction that a word with fixed values stands for, at the word's place."""
-    (command,) = parse(Source(word.stands_for)).program.body
-    assert isinstance(command, ast.Command)
-    arguments = tuple(
-        each._replace(
-            expression=tuple(part._replace(start=span[0], end=span[1]) for part in each.expression),
-            span=span,
-        )
-        for each in command.arguments or ()
-    )
-    return command._replace(word_span=span, arguments=arguments, span=span)
+def _placed(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
+    """Return a part of a tree at another place, with what was given for the names in it."""
+    if isinstance(node, Span):
+        return span
+    if isinstance(node, ast.Part):
+        return node._replace(start=span.start, end=span.end)
+    if isinstance(node, ast.Argument) and node.expression[0].value in given:
+        return given[str(node.expression[0].value)]
+    if isinstance(node, tuple):
+        parts = [_placed(part, span, given) for part in node]
+        return type(node)(*parts) if hasattr(node, "_fields") else tuple(parts)
+    return node
 
 
 # What the instructions that take no time of their own become, by the role of their words.

@@ -37,12 +37,18 @@ class Kind(NamedTuple):
     says: str = ""
 
 
+def fixed_kind(count: int) -> str:
+    """Return the kind of the words that stand for others and take so many values."""
+    return f"fixed_{count}" if count else "fixed"
+
+
 # fmt: off
 SUMS = {"ADD": "+", "SUB": "−", "MUL": "×", "DIV": "÷", "MOD": "%"}
 COMPARISONS = {"EQ": "=", "NE": "≠", "LT": "<", "LE": "≤", "GT": ">", "GE": "≥"}
-# What a word with fixed values says where the catalogue has no `block/HORN`: `HORN = BEEP(0.5, 440)`.
+# What a word that stands for others says where the catalogue has no `block/HORN`:
+# `HORN = BEEP(0.5, 440)`. Those that take as many values are of one kind.
 FIXED = {
-    word.text: f"{{{word.text}}} {word.text} = {word.stands_for}"
+    word.text: f"{{{word.text}}} {word.usage.upper()} = {word.stands_for}"
     for word in WORDS.values() if word.stands_for
 }
 
@@ -56,7 +62,14 @@ KINDS = {kind.name: kind for kind in (
     Kind("start", "others"),
     Kind("beep", "time", ("number", "number")),
     Kind("show", "time", ("any",)),
-    Kind("fixed", "time", words=tuple(FIXED), says="%1"),
+    *(
+        Kind(
+            fixed_kind(count), "time", ("number",) * count,
+            words=tuple(name for name in FIXED if len(WORDS[name].arguments) == count),
+            says=" ".join(f"%{k + 1}" for k in range(count + 1)),
+        )
+        for count in sorted({0, *(len(WORDS[name].arguments) for name in FIXED)})
+    ),
     Kind("read", "sensors", field="sensor"),
     Kind("set", "sensors", ("any",), field="actuator"),
     Kind("call", "words", field="name"),

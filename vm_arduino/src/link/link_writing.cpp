@@ -183,16 +183,7 @@ void Link::reply() {
       tell_wifi();
       break;
 #endif
-    case Message::kStop:
-    case Message::kClear:
-    case Message::kAbort:
-    case Message::kName:
-    case Message::kClaim:
-    case Message::kIdentify:
-    case Message::kShow:
-    case Message::kFault:
-    case Message::kStopped:
-    case Message::kDone:
+    default:  // OK says it all
       break;
   }
 }

@@ -1,6 +1,7 @@
 // What this build has, in one place for C++ and assembly. All that is conditional in `vm/` is here, in
 // `cpu.h`, in `layout_avr.h`, or encloses a whole file; and most of what is in the other folders, but
-// for `boards/`.
+// for `boards/`. In two files of assembly a part is conditional: `bytecode_avr.S` says what a machine
+// without tasks does about theirs, and `tasks_avr.S` has the moves, unless `drive.cpp` has them.
 //
 // The machine of an AVR is in assembly. With `tiniscript_portable` it is the C++ of all other chips,
 // which tests compare with that.
@@ -69,6 +70,13 @@
 #define tiniscript_transports
 #endif
 
+// What only a machine with tasks has.
+#ifdef tiniscript_has_tasks
+#define tini_of_tasks(...) __VA_ARGS__
+#else
+#define tini_of_tasks(...)
+#endif
+
 // How it moves: one of three files.
 #ifndef tiniscript_has_tasks
 #define tiniscript_drives_alone  // drive_alone.cpp
@@ -92,10 +100,8 @@ constexpr bool kInAssembly = false;
 
 #ifdef tiniscript_has_tasks
 constexpr bool kHasTasks = true;
-#define tini_of_tasks(...) __VA_ARGS__
 #else
 constexpr bool kHasTasks = false;
-#define tini_of_tasks(...)
 #endif
 
 #ifdef tiniscript_has_discs

@@ -53,10 +53,8 @@ op_if_not_far:
 op_else_far:
 op_break_far:
 op_def_far:
-#ifdef tiniscript_has_tasks
-op_task:
-op_when:
-#endif
+tini_of_tasks(op_task:)
+tini_of_tasks(op_when:)
     set
     rcall distance
 jump:

@@ -120,11 +120,9 @@ op_way:
     adiw r26, 1
     rjmp 3f
 op_end:
-#ifdef tiniscript_has_tasks
-op_look:
-op_end_task:
-op_end_when:
-#endif
+tini_of_tasks(op_look:)
+tini_of_tasks(op_end_task:)
+tini_of_tasks(op_end_when:)
 op_set_short:
 op_move:
 op_watch:
@@ -151,11 +149,9 @@ op_show_yes_no:
     rcall perform
     tst r18
     brne statement_end
-#ifdef tiniscript_has_tasks
-    cp r26, at
-    cpc r27, at1
-    breq statement_end
-#endif
+    tini_of_tasks(cp r26, at)
+    tini_of_tasks(cpc r27, at1)
+    tini_of_tasks(breq statement_end)
     rjmp leave
 
 op_until:

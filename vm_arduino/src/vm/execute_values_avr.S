@@ -186,9 +186,7 @@ push_value:
 bad_caller:
     pop r0
     pop r0
-#ifdef __AVR_3_BYTE_PC__
-    pop r0
-#endif
+    tini_of_far_code(pop r0)
 bad_pop:
     rjmp bad_1
 

@@ -7,6 +7,13 @@
 // The bit of GPIOR0 that interrupts set: `boards/avr/events.h`.
 #define tini_event_bit 0
 
+// What a chip has whose calls leave three bytes on the stack, not two.
+#ifdef __AVR_3_BYTE_PC__
+#define tini_of_far_code(...) __VA_ARGS__
+#else
+#define tini_of_far_code(...)
+#endif
+
 // in a Machine
 #define tini_fault_at 1
 #define tini_sensors_at 2

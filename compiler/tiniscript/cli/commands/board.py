@@ -8,16 +8,14 @@ from pathlib import Path
 
 from tiniscript.base.kit import OWN_BESIDE_REMOTE
 from tiniscript.cli import inputs, outputs
-from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.robots import firmware
-from tiniscript.robots.profile import Robot
 
 SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the place in it
 
 
 def run(options: Namespace, language: str) -> int:
-    robot = wired(options, language).speaking(language)
+    robot = inputs.wired_robot(options, language).speaking(language)
     if not robot.kit.has_remote:
         say_aside("board_no_remote", language, robot=robot.name, most=str(OWN_BESIDE_REMOTE))
     header = firmware.header([robot], "tsc firmware --board, from a robot profile.")
@@ -27,15 +25,6 @@ def run(options: Namespace, language: str) -> int:
     say("board", language, file=inputs.shown(options.output), robot=robot.name,
         chip=robot.board.chip, now=now)  # fmt: skip
     return 0
-
-
-def wired(options: Namespace, language: str) -> Robot:
-    """Return the robot of the options. Raises CommandError where no firmware fits its board."""
-    robot = inputs.robot(options, language)
-    if robot.board.chip not in firmware.BOARDS:
-        known = ", ".join(firmware.BOARDS)
-        raise CommandError(2, "no_firmware", chip=robot.board.chip, known=known)
-    return robot
 
 
 def _next(robot: str, output: Path, chip: str, language: str) -> str:

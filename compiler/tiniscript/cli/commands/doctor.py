@@ -13,7 +13,6 @@ from functools import partial
 from pathlib import Path
 
 from tiniscript.cli import inputs, outputs
-from tiniscript.cli.commands import ports as ports_step
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
@@ -26,6 +25,8 @@ from tiniscript.cli.robot.description import (
 from tiniscript.cli.robot.diagnosing import diagnosis_of, examination_of, expected_of
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result, are_many
+from tiniscript.cli.robot.port_rows import lines as lines_of_ports
+from tiniscript.cli.robot.port_rows import listed
 from tiniscript.cli.robot.simulator import running_address
 from tiniscript.cli.texts import Said, text
 from tiniscript.cli.texts.causes import as_data, said
@@ -63,7 +64,7 @@ def run(options: Namespace, language: str) -> int:
     if robot is not None:
         opening.remember(robot.port, robot.device_info.name)
         remember_profile(options, inputs.robot(options, language), robot.device_info.kit)
-    rows = ports_step.listed(language)
+    rows = listed(language)
     if options.json:
         fields = {**_fields(diagnosis, language), "ports": rows, "robot": None}
         if robot is not None:
@@ -75,7 +76,7 @@ def run(options: Namespace, language: str) -> int:
             lines += ["", robot.text()]
             if heard[-1].trips_ms:
                 lines.append(trips_in_words([*heard[-1].trips_ms], language))
-        lines += ["", text("doctor_ports", language), *ports_step.lines(rows, language)]
+        lines += ["", text("doctor_ports", language), *lines_of_ports(rows, language)]
         print(Said("\n".join(lines)), flush=True)
     if options.report is not None:
         data = "\n".join(_report(diagnosis, told, language)) + "\n"

@@ -6,7 +6,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from tiniscript.cli import images, inputs, outputs
-from tiniscript.cli.commands import show
+from tiniscript.cli.disassembling import print_disassembly
 from tiniscript.cli.robot.connect import connected
 
 
@@ -27,5 +27,5 @@ def run(options: Namespace, language: str) -> int:
                        code=len(ready.image.code),
                        checksum=f"{ready.image.checksum:08x}")  # fmt: skip
     else:
-        show.print_disassembly(ready, robot, name, language)
+        print_disassembly(ready, robot, name, language)
     return 0

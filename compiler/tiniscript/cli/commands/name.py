@@ -6,8 +6,8 @@ from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.options import name_bytes
 from tiniscript.cli.robot.connect import connected
-from tiniscript.link.messages import NAME_BYTES
 from tiniscript.link.requests import TAKEN
 
 
@@ -24,11 +24,3 @@ def run(options: Namespace, language: str) -> int:
             raise connection.failure(reply)
         connection.say("named", name=shown(name))
     return 0
-
-
-def name_bytes(name: str) -> bytes:
-    """Return a name as bytes for the robot. Raises CommandError if it is too long."""
-    data = name.encode("utf-8", "surrogateescape")
-    if not 1 <= len(data) <= NAME_BYTES or not name.isprintable() or not name.strip():
-        raise CommandError(2, "bad_name", bytes=str(len(data)))
-    return data

@@ -11,24 +11,20 @@ from contextlib import closing
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import about_port, about_virtual, baud_of, opened_client
-from tiniscript.cli.robot.in_reach import AT_ONCE, InReach, alive, found
+from tiniscript.cli.robot.connect import baud_of, opened_client
+from tiniscript.cli.robot.in_reach import AT_ONCE, found
+from tiniscript.cli.robot.port_rows import NOWHERE, Row, lines, listed
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.library.known_kits import shipped_of_kit
-from tiniscript.link import known_ports, ports
+from tiniscript.link import known_ports
 from tiniscript.link.authority import whose
-from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing.protocol import LOOKER
 from tiniscript.robots.profile import Robot
-from tiniscript.virtual import directory
 
 OPEN_S = 12.0
-NOWHERE = InReach({}, [], [], [])  # nothing was searched
-
-Row = dict[str, object]  # a port as data
 
 
 def run(options: Namespace, language: str) -> int:
@@ -56,34 +52,6 @@ def run(options: Namespace, language: str) -> int:
     else:
         print("\n".join(lines(rows, language)))
     return 0
-
-
-def listed(language: str, only: str | None = None, in_reach: InReach = NOWHERE) -> list[Row]:
-    """Return the ports that the system lists, those in reach, and others that had a robot."""
-    known = known_ports.known()
-    virtual = {each.address: each for each in directory.running()}
-    about = {each.port: about_port(each, language) for each in ports.listed()}
-    about |= in_reach.about
-    held = {registration.port: registration.verb for registration in alive()}
-    names = [only] if only is not None else list(about)
-    if only is None:
-        names += [port for port in known.names if port not in about and is_there(port)
-                  and port not in in_reach.others and not directory.is_gone(port)]  # fmt: skip
-        names += [port for port in virtual if port not in (*names, *in_reach.others)]
-        listed = {same_for_all(port) for port in names}
-        names += [port for port in held if port not in listed]
-    about |= {port: about_virtual(each, language) for port, each in virtual.items()}
-    return [
-        {
-            "port": port,
-            "description": about.get(port, ""),
-            "remembered": known.names.get(port),
-            "is_last_used": known.last == port,
-            "is_virtual": port in virtual,
-            "held_by": held.get(same_for_all(port)),
-        }
-        for port in names
-    ]
 
 
 def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
@@ -114,22 +82,3 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             "said": said,
         }
     return {"answer": None, "said": text("port_other" if heard else "port_quiet", language)}
-
-
-def lines(rows: list[Row], language: str) -> list[str]:
-    return [_line(row, language) for row in rows] or [text("no_port_listed", language)]
-
-
-def _line(row: Row, language: str) -> str:
-    """Return a port as a line: its name, the system's description, and the robot there."""
-    parts = [shown(str(row["port"])), shown(str(row["description"]))]
-    if "said" in row:
-        parts.append(str(row["said"]))
-    elif row["remembered"]:
-        name = shown(str(row["remembered"]))
-        parts.append(text("port_remembered", language).format(name=name))
-    if row["held_by"]:
-        parts.append(text("port_held", language).format(verb=row["held_by"]))
-    if row["is_last_used"]:
-        parts.append(text("port_last", language))
-    return "   ".join(part for part in parts if part)

@@ -4,27 +4,24 @@ from __future__ import annotations
 
 import errno
 import os
-import signal
 import sys
 from argparse import Namespace
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tiniscript.base.files import is_pipe
 from tiniscript.base.trace import Event
 from tiniscript.cli import inputs, outputs
-from tiniscript.cli.commands.name import name_bytes
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.options import decimal, whole_number
+from tiniscript.cli.options import decimal, name_bytes, whole_number
 from tiniscript.cli.robot import simulator_options
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal import FRAME_S
 from tiniscript.cli.terminal.keys import Keys, is_in_front
 from tiniscript.cli.terminal.screen import Screen
+from tiniscript.cli.terminal.signals import ended_by_signal
 from tiniscript.cli.terminal.world_drawing import WorldPicture
 from tiniscript.cli.texts import say_aside, text
 from tiniscript.library import install_advice, opening
@@ -205,39 +202,6 @@ class _Stage:
         if memory != self._kept or is_due:
             outputs.write(Path(self.options.memory), memory, "unwritable_at --memory")
             self._kept = memory
-
-
-class Ended:
-    """Whether a signal has asked the process to end."""
-
-    def __init__(self) -> None:
-        self.is_set = False
-
-    def ask(self, *_: Any) -> None:
-        """Handle a signal. A C callback may drop the exception, so a flag is set, too."""
-        self.is_set = True
-        raise KeyboardInterrupt
-
-
-@contextmanager
-def ended_by_signal() -> Iterator[Ended]:
-    """A signal that ends this process works as Ctrl-C does, so that no files are left over."""
-    ended = Ended()
-    numbers = (signal.SIGTERM, signal.SIGINT)
-    tell = sys.unraisablehook
-
-    def tell_others(dropped: sys.UnraisableHookArgs) -> None:
-        if not issubclass(dropped.exc_type, KeyboardInterrupt):  # of which the flag is left
-            tell(dropped)
-
-    sys.unraisablehook = tell_others
-    before = [signal.signal(number, ended.ask) for number in numbers]
-    try:
-        yield ended
-    finally:
-        sys.unraisablehook = tell
-        for number, handler in zip(numbers, before, strict=True):
-            signal.signal(number, handler)
 
 
 def _transports(port: int, has_terminal: bool) -> Transports:

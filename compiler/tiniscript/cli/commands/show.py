@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from argparse import Namespace
 
-from tiniscript.bytecode.disassembly import disassemble, rows
 from tiniscript.cli import compiling, images, inputs, outputs
+from tiniscript.cli.disassembling import print_disassembly, print_json
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts import say, text
+from tiniscript.cli.texts import say
 from tiniscript.codegen.sketch.writing import BOARDS, sketch_of
-from tiniscript.library.programs import remarks
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics.ir import every
 from tiniscript.semantics.ways import is_open_way
@@ -60,44 +58,3 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
         name = inputs.shown(robot.labels[language]["robot"])
         say("sketch", language, file=inputs.shown(options.output), robot=name)
     return 0
-
-
-def print_disassembly(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
-    image = ready.image
-    key = "for_robot" if image.devices else "any_robot"
-    whose = text(key, language).format(robot=robot.name)
-    say("head", language, file=name, start=image.start, robot=whose, code=len(image.code),
-        image=ready.image_bytes, checksum=f"{image.checksum:08x}")  # fmt: skip
-    found = remarks(ready.places, language)
-    kit = robot.kit if image.devices else None
-    variables = ready.places.variables if ready.places is not None else ()
-    print(disassemble(image.code, found, kit, variables), end="")
-
-
-def print_json(ready: images.Ready, robot: Robot) -> None:
-    image = ready.image
-    instructions = []
-    for row in rows(image.code):
-        assert row.op is not None
-        fields: dict[str, object] = {
-            "offset": row.offset,
-            "bytes": row.data.hex(),
-            "name": row.op.name,
-            "operands": list(row.operands),
-            "text": row.text,
-        }
-        place = ready.places.at(row.offset) if ready.places is not None else None
-        if place is not None:
-            fields["line"] = place.line
-            fields["column"] = place.column
-        instructions.append(fields)
-    print(json.dumps({
-        "code_bytes": len(image.code),
-        "image_bytes": ready.image_bytes,
-        "start": image.start,
-        "robot": robot.name if image.devices else None,
-        "devices": f"{image.devices:04x}",
-        "checksum": f"{image.checksum:08x}",
-        "isa": f"{image.isa[0]}.{image.isa[1]}",
-        "instructions": instructions,
-    }, indent=2))  # fmt: skip

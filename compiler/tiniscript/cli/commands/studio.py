@@ -11,11 +11,11 @@ from threading import Thread
 from typing import NamedTuple
 
 from tiniscript.cli import inputs, page_build
-from tiniscript.cli.commands.robot import ended_by_signal
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.terminal.progress import waiting
+from tiniscript.cli.terminal.signals import ended_by_signal
 from tiniscript.cli.texts import say_aside
 from tiniscript.studio import building, class_keeping, serving
 from tiniscript.studio.classroom import Classroom

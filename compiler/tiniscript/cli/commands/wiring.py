@@ -10,7 +10,6 @@ from textwrap import wrap
 from rich.cells import cell_len, set_cell_size
 
 from tiniscript.cli import inputs, outputs
-from tiniscript.cli.commands.board import wired
 from tiniscript.cli.texts import say
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.page import rail_rows, wire_rows
@@ -21,7 +20,7 @@ NARROWEST = 16  # a column on a terminal that is too narrow for the table
 
 
 def run(options: Namespace, language: str) -> int:
-    robot = wired(options, language)
+    robot = inputs.wired_robot(options, language)
     plan = plan_of(robot, language)
     if options.output is None:
         _print_rows(wire_rows(plan))

@@ -12,6 +12,8 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.conversation import YES, Conversation, NoPerson, as_seen
 from tiniscript.cli.texts import say_aside
+from tiniscript.cli.texts.causes import label, said
+from tiniscript.doctor.findings import Finding, sure
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.requests import TAKEN
 from tiniscript.link.trim import MOST_PACE, Pace, Trim
@@ -100,10 +102,10 @@ class TrimWizard(Conversation):
         for side in ("left", "right"):
             seen.append(self.turned(side))
             if not seen[-1].wheel:
-                raise CommandError(3, "trim_no_wheel")
+                raise self._failure(sure("still")._replace(of=side))
         found = as_seen(Trim(), *seen)
         if found is None:
-            raise CommandError(3, "trim_same_wheel")
+            raise self._failure(sure("same_wheel"))
         return found
 
     def _least(self) -> int:
@@ -112,7 +114,7 @@ class TrimWizard(Conversation):
             self.does(f"M({power}, {power}); W(1); M(0, 0)")
             if self.choice("trim_moves", 2, n=str(power)) == YES:
                 return power if power > LEAST_STEP else 0
-        raise CommandError(3, "trim_too_weak", n=str(MOST_LEAST))
+        raise self._failure(sure("too_weak", n=str(MOST_LEAST)))
 
     def _measured(self, move: str, seconds: int, question: str) -> list[float]:
         """Return how much it went, or turned, in a second at each power."""
@@ -153,9 +155,14 @@ class TrimWizard(Conversation):
             last = side
             balance = found.balance + side * step
             if abs(balance) > MOST_BALANCE:
-                raise CommandError(3, "trim_too_uneven", n=str(MOST_BALANCE))
+                raise self._failure(sure("too_uneven", n=str(MOST_BALANCE)))
             found = found._replace(balance=balance)
             self._set(found)
+
+    def _failure(self, finding: Finding) -> CommandError:
+        found = said(finding, self.language)
+        part = label(finding, self.language)
+        return CommandError(3, "trim_found", part=part, found=found.what, then=found.then)
 
     def _set(self, trim: Trim) -> None:
         self.connection.ask(lambda session: session.trim(trim.data()), TAKEN)  # kept at the end

@@ -21,14 +21,34 @@ EMPTY = "SI|"  # a program that does nothing: an empty line would be none
 
 
 def spelled_out(tokens: Iterable[Token]) -> Iterator[Token]:
-    """Yield tokens; in place of a word with fixed values those that it stands for."""
-    for token in tokens:
+    """Yield tokens; in place of a word that stands for instructions those of them."""
+    rest = iter(tokens)
+    for token in rest:
         word = WORDS.get(token.text)
         if word is None or not word.stands_for:
             yield token
             continue
-        for each in scan(word.stands_for).tokens[:-1]:
-            yield each._replace(start=token.start, end=token.end)
+        values = _values(rest) if word.arguments else []
+        given = dict(zip([its.name.upper() for its in word.arguments], values, strict=True))
+        meant = []
+        for its in scan(word.stands_for).tokens[:-1]:
+            meant += given.get(its.text, [its._replace(start=token.start, end=token.end)])
+        yield from spelled_out(meant)
+
+
+def _values(tokens: Iterator[Token]) -> list[list[Token]]:
+    """Take the brackets of a call; return the tokens of each value in them."""
+    values: list[list[Token]] = [[]]
+    depth = 0
+    for token in tokens:
+        depth += (token.kind == "(") - (token.kind == ")")
+        if depth == 0:
+            break
+        if token.kind == "," and depth == 1:
+            values.append([])
+        elif token.kind != "(" or depth > 1:
+            values[-1].append(token)
+    return values
 
 
 def line_of(source: Source) -> str:

@@ -11,13 +11,15 @@ from typing import Any, TypeVar
 from tiniscript.bytecode.image import HEADER_BYTES, STARTS, Image
 from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.messages import (
+    BY_NAME,
     KEYS,
     LEAST_PASSWORD,
-    NAME_BYTES,
     NETWORK_BYTES,
     PACE_BYTES,
     PASSWORD_BYTES,
+    SEALED_PAYLOAD_BYTES,
     TRIM_BYTES,
+    Field,
 )
 from tiniscript.link.remote import Pressed
 from tiniscript.link.sharing import protocol
@@ -68,9 +70,7 @@ def asked_for(
     `speaker` is who presses keys.
     """
     name = protocol.field(message, "do", str)
-    if name not in _GIVEN:
-        raise BadMessage
-    given = _GIVEN[name](message)
+    given = _GIVEN[name](message) if name in _GIVEN else _as_message(name, message)
     if name == "press":
         given += (speaker,)
 
@@ -85,6 +85,25 @@ def asked_for(
 def is_detached(message: JsonMessage) -> bool:
     """Return whether a message requests a run that goes on without its client."""
     return message.get("is_detached") is True
+
+
+def _as_message(name: str, message: JsonMessage) -> tuple[object, ...]:
+    """Return the fields of the link's message of that name, which such a request is given."""
+    if name not in vars(Requester) or name.upper() not in BY_NAME:
+        raise BadMessage
+    return tuple(_field(message, each) for each in BY_NAME[name.upper()].request)
+
+
+def _field(message: JsonMessage, its: Field) -> int | bytes:
+    """Return what a message says for a field of the link's. Raises BadMessage."""
+    if its.kind == "rest":
+        return _bytes(message, its.name, its.low, min(its.high, SEALED_PAYLOAD_BYTES))
+    bits = 8 * its.high
+    lowest = -(1 << bits - 1) if its.kind.startswith("i") else 0
+    number = protocol.number(message, its.name)
+    if not 0 <= number - lowest < 1 << bits:
+        raise BadMessage
+    return number
 
 
 def _below(message: JsonMessage, name: str, limit: int, usual: int | None = None) -> int:
@@ -170,14 +189,14 @@ def _upload(message: JsonMessage) -> tuple[object, ...]:
     return (_image(message), *flags, _kit(message))
 
 
-# What each request is given, read from a message.
+# What requests are given, read from a message, where that is not what the link's message of their
+# name has.
 _GIVEN: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
     **dict.fromkeys(
-        ("hello", "ping", "status", "clear", "fetch", "undo", "identify", "hold_back", "wifi",
-         "forget_wifi", "broker"), lambda message: (),
+        ("hello", "ping", "fetch", "hold_back", "wifi", "forget_wifi", "broker"),
+        lambda message: (),
     ),
     "press": _pressed,
-    "name": lambda message: (_bytes(message, "name", 1, NAME_BYTES),),
     "trim": lambda message: (_trim(message),),
     "claim": lambda message: (_below(message, "which", len(KEYS)),),
     "disown": lambda message: (_below(message, "which", len(KEYS)),),

@@ -32,6 +32,11 @@ function item(type, values = [], word = '') {
   return { kind: 'block', type, inputs, ...(word ? { fields: { WORD: word } } : {}) };
 }
 
+/** @param {typeof FIXED[number]} word @returns {Item} */
+function fixed({ text, arguments: values }) {
+  return item(values.length ? `fixed_${values.length}` : 'fixed', values.map(({ sample }) => Number(sample)), text);
+}
+
 /** @param {string} name of a word of one's own @param {number} count of its values @returns {Item} */
 function call(name, count) {
   return { ...item('call', Array(count).fill(1), name), ...(count ? { extraState: { count } } : {}) };
@@ -85,7 +90,7 @@ function groups(used) {
     ]],
     ['time', [
       ['few', item('wait', [1])], ['few', item('beep', [0.5, 440])], ['usual', item('show', [1])],
-      ...FIXED.map((word) => /** @type {[Level, Item]} */ (['few', item('fixed', [], word.text)])),
+      ...FIXED.map((word) => /** @type {[Level, Item]} */ (['few', fixed(word)])),
       ['usual', until('wait_until', [5])], ['all', item('time')], ['all', item('endless')],
     ]],
     ['control', [

@@ -1,0 +1,42 @@
+"""Signals that end this process work as Ctrl-C does."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+
+class Ended:
+    """Whether a signal has asked the process to end."""
+
+    def __init__(self) -> None:
+        self.is_set = False
+
+    def ask(self, *_: Any) -> None:
+        """Handle a signal. A C callback may drop the exception, so a flag is set, too."""
+        self.is_set = True
+        raise KeyboardInterrupt
+
+
+@contextmanager
+def ended_by_signal() -> Iterator[Ended]:
+    """A signal that ends this process works as Ctrl-C does, so that no files are left over."""
+    ended = Ended()
+    numbers = (signal.SIGTERM, signal.SIGINT)
+    tell = sys.unraisablehook
+
+    def tell_others(dropped: sys.UnraisableHookArgs) -> None:
+        if not issubclass(dropped.exc_type, KeyboardInterrupt):  # of which the flag is left
+            tell(dropped)
+
+    sys.unraisablehook = tell_others
+    before = [signal.signal(number, ended.ask) for number in numbers]
+    try:
+        yield ended
+    finally:
+        sys.unraisablehook = tell
+        for number, handler in zip(numbers, before, strict=True):
+            signal.signal(number, handler)
