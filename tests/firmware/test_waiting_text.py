@@ -1,5 +1,6 @@
-"""Text that waits in front of a program of frames, or behind it: what runs is what was verified, and
-as often as it was sent. A frame that is said again was sent once.
+"""Text that waits in front of a program of frames, or behind it: what runs is what was verified.
+
+And it runs as often as it was sent: a frame that is said again was sent once.
 
 `python -m tests.firmware.test_waiting_text 100000` is a campaign.
 """
