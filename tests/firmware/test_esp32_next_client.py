@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Callable
 
 import pytest
@@ -16,6 +17,7 @@ from tests.support.images import image_of
 from tests.support.owners import Keys
 from tiniscript.link.messages import AUTHORITY_MS, STOP_BYTES
 from tiniscript.link.session import Session
+from tiniscript.link.typed_stop import is_typed_stop, stops_at_once
 
 PLACES: list[Make] = [LowEnergy, SerialPort, Network]
 
@@ -109,15 +111,38 @@ def test_nobody_is_told_what_another_one_has_typed(make: Make, typed: bytes) -> 
     assert other.heard == b""
 
 
-@pytest.mark.parametrize("make", PLACES[:2])
-def test_zeros_of_two_clients_are_no_stop(make: Make) -> None:
-    robot, owner = owned(Keys())
-    assert uploaded(robot, [(None, owner)], owner, AWAY) == "OK"
-    talk(robot, [(None, owner), (end := make(robot), Bytes(b"\0\0\0"))], 2)
-    end.leave()
-    talk(robot, [(None, owner)], 2)
-    talk(robot, [(None, owner), (make(robot), Bytes(b"\0"))], 100)
-    assert happened(robot)[-1] == "MOTORS 80 80"
+STOPS = (bytes(4), b"S\n", b"stop\r", b"\0S\n", b"\0stop\0", b"\x03\n", b"SSS", b"stop stop",
+         b"para\n", b"ST\x1b[AOP\n", b"\0\0\0\0\0")  # fmt: skip
+
+
+def stops_alone(data: bytes) -> bool:
+    lines = re.split(rb"[\r\n\0]", data)
+    is_ended = any(is_typed_stop(line) or line == b"\x03" for line in lines[:-1])
+    return is_ended or bytes(4) in data or any(map(stops_at_once, lines))
+
+
+CUT_STOPS = [
+    (data[:cut], data[cut:])
+    for data in STOPS
+    for cut in range(1, len(data))
+    if not stops_alone(data[:cut]) and not stops_alone(data[cut:])
+]
+
+
+@pytest.mark.parametrize("make", PLACES)
+@pytest.mark.parametrize("pause_ms", [0, 300])
+def test_what_two_clients_say_is_no_stop_of_both(make: Make, pause_ms: int) -> None:
+    robot, end, owner = far_owner(Keys())
+    ends: Ends = [(end, owner)]
+    assert uploaded(robot, ends, owner, AWAY) == "OK"
+    for parts in CUT_STOPS:
+        for part in parts:
+            talk(robot, [*ends, (other := make(robot), Bytes(part))], 20)
+            other.leave()
+            talk(robot, ends, 5 + pause_ms)
+        assert happened(robot)[-1] == "MOTORS 80 80", parts
+    talk(robot, [*ends, (make(robot), Bytes(b"\0" + b"".join(CUT_STOPS[-1]) + b"\0"))], 100)
+    assert happened(robot)[-1] == "MOTORS 0 0", "of one it is a stop"
 
 
 # -- who is silent ------------------------------------------------------------------------------
