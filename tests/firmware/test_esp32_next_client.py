@@ -12,10 +12,20 @@ from tests.firmware.test_esp32_transports import AWAY, Ends, Make, ended, upload
 from tests.firmware.test_esp32_wifi import far_owner, owned, remote
 from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
-from tests.support.esp32_radio import Bytes, End, LowEnergy, Network, SerialPort, session, talk
+from tests.support.esp32_radio import (
+    Bytes,
+    End,
+    LowEnergy,
+    Network,
+    SerialPort,
+    session,
+    takes,
+    talk,
+)
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tiniscript.link.messages import AUTHORITY_MS, STOP_BYTES
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.session import Session
 from tiniscript.link.typed_stop import is_typed_stop, stops_at_once
 
@@ -143,6 +153,36 @@ def test_what_two_clients_say_is_no_stop_of_both(make: Make, pause_ms: int) -> N
         assert happened(robot)[-1] == "MOTORS 80 80", parts
     talk(robot, [*ends, (make(robot), Bytes(b"\0" + b"".join(CUT_STOPS[-1]) + b"\0"))], 100)
     assert happened(robot)[-1] == "MOTORS 0 0", "of one it is a stop"
+
+
+# -- what is sent to them -----------------------------------------------------------------------
+
+STATUS, ASKED_PING = BY_NAME["STATUS"].number, 77
+
+
+@pytest.mark.parametrize("most", [0, 1, 7, 30, 1000])
+@pytest.mark.parametrize("requests", [1, 5, 60])
+def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, requests: int) -> None:
+    """Over a network that takes a few bytes at a time, whenever the one before leaves."""
+    robot, end, owner = far_owner(Keys())
+    end.leave()
+    frames = b"".join(encoded(Frame(STATUS, seq, 0)) for seq in range(requests))
+    rests = 0
+    for moment_ms in (1, 2, 3, 5, 9, 100):
+        takes(robot, most)
+        first = Bytes(b"\0" + frames)
+        talk(robot, [(end := Network(robot), first)], moment_ms)
+        end.leave()
+        talk(robot, [], 3)
+        takes(robot, 1000)
+        other = Bytes(b"\0" + encoded(Frame(BY_NAME["PING"].number, ASKED_PING, 0)))
+        talk(robot, [(end := Network(robot), other)], 60)
+        end.leave()
+        talk(robot, [], 3)
+        answers = [decoded(data) for data in other.heard.split(b"\0") if data]
+        assert [answer and answer.seq for answer in answers] == [ASKED_PING], moment_ms
+        rests += len(first.heard) < len(other.heard)
+    assert rests or most == 1000
 
 
 # -- who is silent ------------------------------------------------------------------------------
