@@ -164,7 +164,7 @@ STATUS, ASKED_PING = BY_NAME["STATUS"].number, 77
 @pytest.mark.parametrize("requests", [1, 5, 60])
 def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, requests: int) -> None:
     """Over a network that takes a few bytes at a time, whenever the one before leaves."""
-    robot, end, owner = far_owner(Keys())
+    robot, end, _ = far_owner(Keys())
     end.leave()
     frames = b"".join(encoded(Frame(STATUS, seq, 0)) for seq in range(requests))
     rests = 0

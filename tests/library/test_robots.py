@@ -279,6 +279,9 @@ def client_of(line: object) -> Client:
     return client
 
 
+THE_ROBOT: Any = object()
+
+
 class StoppedAtFirst:
     """A connection through a holder; a stop of somebody else cancels the first of its requests."""
 
@@ -296,7 +299,7 @@ class StoppedAtFirst:
         if self.stops:
             self.stops -= 1
             return Reply(CANCELLED)
-        self.robot = "the robot"
+        self.robot = THE_ROBOT
         return Reply(OK)
 
 
@@ -308,7 +311,7 @@ def test_who_connects_while_others_stop_the_robot_meets_it(stops: int, patience:
     client = client_of(line := StoppedAtFirst(stops))
     client.port, client.language, client._heed = "P", "en", lambda: None
     if patience >= stops:
-        assert client.meet(is_patient=lambda: next(left)) == "the robot"
+        assert client.meet(is_patient=lambda: next(left)) is THE_ROBOT
         return
     with fails(tiniscript.RobotError, "stopped_elsewhere"):
         client.meet(is_patient=lambda: next(left))
