@@ -25,7 +25,7 @@ from tests.support.owners import Keys
 from tiniscript import robots
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STATUS_NAMES, STOP_BYTES
+from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, DEAD_MAN_MS, STATUS_NAMES, STOP_BYTES
 from tiniscript.link.session import Session
 
 AWAY = "SI|F(60, 80)"
@@ -119,6 +119,70 @@ def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
     assert [each.name for each in driver.events()] == ["STOPPED"]
     assert ended(robot, ends, other.start()) == "OTHER_DRIVER"
     assert uploaded(robot, ends, driver) == "OK", "who drives goes on after it"
+
+
+ENDS: dict[str, tuple[str, str]] = {  # its program, and what all are told
+    "by itself": ("SI|F(0.2, 80)", "DONE"),
+    "its fault": ("SI|X = 0;F(0.2, 80);SHOW(1 / X)", "FAULT"),
+    "its silent client": (AWAY, "FAULT"),
+    "its client that leaves": (AWAY, "STOPPED"),
+    "its client's zeros": (AWAY, "STOPPED"),
+    "another one's zeros": (AWAY, "STOPPED"),
+    "a message of another one": (AWAY, "STOPPED"),
+    "a line of another one": (AWAY, "STOPPED"),
+    "the button": (AWAY, "STOPPED"),
+}
+SAID = {
+    "its client's zeros": bytes(4),
+    "another one's zeros": bytes(4),
+    "a message of another one": b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0)),
+    "a line of another one": b"\0S\n",
+}
+
+
+@pytest.mark.parametrize("driver", range(3))
+@pytest.mark.parametrize("how", ENDS)
+def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) -> None:
+    """Once, and what they ask for from then on is of the time after it."""
+    text, name = ENDS[how]
+    if (how, driver) == ("its client that leaves", 0):
+        driver = 1  # a cable does not leave
+    robot = booted()
+    clients = [session(number, robot) for number in (1, 2, 3)]
+    ends: Ends = list(zip((None, LowEnergy(robot), SerialPort(robot)), clients, strict=True))
+    for client in clients:
+        assert ended(robot, ends, client.hello()) == "OK"
+    assert uploaded(robot, ends, clients[driver], text) == "OK"
+    talk(robot, ends, 100)
+    for client in clients:
+        client.events()
+    mine, others = ends[driver], [end for end in ends if end is not ends[driver]]
+    there = ends
+    if how in ("its silent client", "its client that leaves"):
+        there = others
+        if how == "its client that leaves" and mine[0] is not None:
+            mine[0].leave()
+    elif how in SAID:
+        say(robot, mine if how.startswith("its") else others[-1], SAID[how])
+    talk(robot, there, 1, flags=how == "the button")
+    talk(robot, there, DEAD_MAN_MS + 300)
+    told = [
+        [each._replace(run=0) if hasattr(each, "run") else each for each in client.events()]
+        for _, client in there
+    ]
+    assert [each.name for each in told[0]] == [name], told
+    assert all(events == told[0] for events in told), told
+    for _, client in there:
+        assert ended(robot, there, client.identify()) == "OK"
+        assert not client.events()
+
+
+def say(robot: Esp32Robot, end: tuple[End | None, Client], data: bytes) -> None:
+    """Let a client say this beside its session."""
+    if end[0] is None:
+        end[1].receive(robot.step(data), robot.now_ms)
+    else:
+        end[0].send(data)
 
 
 def test_the_next_one_drives_when_the_first_is_silent() -> None:
