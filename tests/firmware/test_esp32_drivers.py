@@ -15,7 +15,7 @@ from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
 from tests.support.images import image_of
 from tests.support.owners import Keys
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.messages import AUTHORITY_MS
+from tiniscript.link.messages import AUTHORITY_MS, LISTEN_MS
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -64,6 +64,33 @@ def test_whose_program_runs_keeps_the_wheel_while_he_is_heard(
     page.stop(robot.now_ms)
     talk(robot, ends, AUTHORITY_MS + 300)
     assert uploaded(robot, ends, other) == "OK"
+
+
+SHOWS = "SI|F(0.1, 80);LOOP(FOREVER);SHOW(7);W(0.5);END_LOOP"
+
+
+@pytest.mark.parametrize("is_owned", [False, True])
+@pytest.mark.parametrize("starts", ["a client", "a client, and the button"])
+def test_what_runs_alone_is_anybodys_when_its_client_is_not_heard(
+    starts: str, is_owned: bool
+) -> None:
+    """Its values go to who listens, and he may take the wheel."""
+    robot, page, other = pair(is_owned)
+    ends: Ends = [(None, page), (LowEnergy(robot), other)]
+    upload = page.upload(image_of(SHOWS), saves=False, is_detached=True)
+    assert ended(robot, ends, upload) == "OK"
+    if "button" in starts:  # a stop, and a start
+        for _ in range(2):
+            talk(robot, ends, 100, flags=1)
+            talk(robot, ends, 300, flags=2)
+    only = ends[1:]
+    assert ended(robot, only, other.hello()) == "OK"
+    talk(robot, only, LISTEN_MS + 600)
+    other.events()
+    talk(robot, only, 2000)
+    assert {event.name for event in other.events()} == {"SHOW"}
+    assert uploaded(robot, only, other) == "OK"
+    assert happened(robot)[-1] == "MOTORS 80 80"
 
 
 def test_a_page_gives_way_to_nobody_without_a_key() -> None:
