@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 
 from tests.firmware.test_esp32_transports import AWAY, Ends, booted, ended, uploaded
@@ -11,10 +14,13 @@ from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tiniscript.link.messages import AUTHORITY_MS
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.messages import AUTHORITY_MS, LISTEN_MS
+from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 SHORT = "SI|F(0.1, 30)"
+PAUSE_MS = AUTHORITY_MS // 2
 
 
 def pair(is_owned: bool) -> tuple[Esp32Robot, Session, Session]:
@@ -60,6 +66,33 @@ def test_whose_program_runs_keeps_the_wheel_while_he_is_heard(
     assert uploaded(robot, ends, other) == "OK"
 
 
+SHOWS = "SI|F(0.1, 80);LOOP(FOREVER);SHOW(7);W(0.5);END_LOOP"
+
+
+@pytest.mark.parametrize("is_owned", [False, True])
+@pytest.mark.parametrize("starts", ["a client", "a client, and the button"])
+def test_what_runs_alone_is_anybodys_when_its_client_is_not_heard(
+    starts: str, is_owned: bool
+) -> None:
+    """Its values go to who listens, and he may take the wheel."""
+    robot, page, other = pair(is_owned)
+    ends: Ends = [(None, page), (LowEnergy(robot), other)]
+    upload = page.upload(image_of(SHOWS), saves=False, is_detached=True)
+    assert ended(robot, ends, upload) == "OK"
+    if "button" in starts:  # a stop, and a start
+        for _ in range(2):
+            talk(robot, ends, 100, flags=1)
+            talk(robot, ends, 300, flags=2)
+    only = ends[1:]
+    assert ended(robot, only, other.hello()) == "OK"
+    talk(robot, only, LISTEN_MS + 600)
+    other.events()
+    talk(robot, only, 2000)
+    assert {event.name for event in other.events()} == {"SHOW"}
+    assert uploaded(robot, only, other) == "OK"
+    assert happened(robot)[-1] == "MOTORS 80 80"
+
+
 def test_a_page_gives_way_to_nobody_without_a_key() -> None:
     robot, page, _ = pair(is_owned=True)
     stranger, typed = session(5, robot), Bytes()
@@ -73,19 +106,71 @@ def test_a_page_gives_way_to_nobody_without_a_key() -> None:
     assert "MOTORS 80 80" not in happened(robot)
 
 
+UPLOAD = "an upload"  # one, of which little arrives in each turn
+CHANGES: dict[str, Callable[[Session, int], PendingRequest[Any]]] = {
+    UPLOAD: lambda who, turn: who.upload(
+        image_of("SB|" + ";".join(["F(1, 80)"] * 1500)), saves=False
+    ),
+    "short programs": lambda who, turn: who.upload(image_of(SHORT), saves=False),
+    "lines": lambda who, turn: who.live(image_of(SHORT).code),
+    "names": lambda who, turn: who.name(b"n%d" % turn),
+    "a trim": lambda who, turn: who.trim(bytes((0, turn, 0))),
+    "a latch": lambda who, turn: who.clear(),
+}
+
+
 @pytest.mark.parametrize("is_owned", [False, True])
-def test_an_upload_that_goes_on_is_not_overtaken(is_owned: bool) -> None:
-    """However long it takes: each of its parts changes something."""
+@pytest.mark.parametrize("what", CHANGES)
+def test_who_goes_on_is_not_overtaken(what: str, is_owned: bool) -> None:
+    """However long it takes: each part that changes something counts. Then the next one drives."""
     robot, page, other = pair(is_owned)
     far = LowEnergy(robot)
     ends: Ends = [(None, page), (far, other)]
-    long = page.upload(image_of("SB|" + ";".join("F(1, 80)" for _ in range(1500))), saves=False)
-    answers = set()
-    while long.outcome is None:
-        for _ in range(20):  # a slow line
-            if long.outcome is None:
-                talk(robot, [(far, other)], 40)
-                talk(robot, ends, 1)
-        answers.add(uploaded(robot, [(far, other)], other, SHORT))
-    assert long.outcome.status == 0
-    assert answers == {"OTHER_DRIVER"}
+    page._baud = 9600  # so it sends little at once
+    assert uploaded(robot, ends, page, SHORT) == "OK"
+    talk(robot, ends, 300)
+    for turn in range(3 * AUTHORITY_MS // PAUSE_MS + 1):
+        if what != UPLOAD or turn == 0:
+            request = CHANGES[what](page, turn)
+        talk(robot, ends, 3 if what == UPLOAD else 400)
+        status = None if request.outcome is None else request.outcome.status
+        assert status == (None if what == UPLOAD else OK), turn
+        talk(robot, [(far, other)], PAUSE_MS)
+        assert uploaded(robot, [(far, other)], other, SHORT) == "OTHER_DRIVER", turn
+    talk(robot, [(far, other)], AUTHORITY_MS)
+    assert uploaded(robot, [(far, other)], other) == "OK"
+
+
+# -- the button -------------------------------------------------------------------------------
+
+
+def runs(robot: Esp32Robot, ends: Ends, page: Session) -> None:
+    assert uploaded(robot, ends, page) == "OK"
+
+
+def waits(robot: Esp32Robot, ends: Ends, page: Session) -> None:
+    assert uploaded(robot, ends, page, "SB|F(60, 80)") == "OK"
+
+
+def stands(robot: Esp32Robot, ends: Ends, page: Session) -> None:
+    waits(robot, ends, page)
+    page.stop(robot.now_ms)
+    talk(robot, ends, 100)
+
+
+@pytest.mark.parametrize("before", [runs, waits, stands])
+@pytest.mark.parametrize("is_owned", [False, True])
+@pytest.mark.parametrize("has_passed", [False, True])
+def test_behind_the_button_anybody_drives(
+    before: Callable[[Esp32Robot, Ends, Session], None], is_owned: bool, has_passed: bool
+) -> None:
+    """Who has driven before, and is heard, has nothing to do with what it has started."""
+    robot, page, other = pair(is_owned)
+    ends: Ends = [(None, page), (LowEnergy(robot), other)]
+    before(robot, ends, page)
+    for _ in range(1 + (before is runs)):  # the first press is a stop
+        talk(robot, ends, 100, flags=1)
+        talk(robot, ends, 300, flags=2)
+    assert happened(robot)[-1] == "MOTORS 80 80", "the button has started it"
+    talk(robot, ends, AUTHORITY_MS + 300 if has_passed else 1)
+    assert uploaded(robot, ends, other) == "OK"

@@ -12,6 +12,7 @@ from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import session, talk
 from tests.support.images import image_of
+from tiniscript.link.messages import STOP_RUN
 
 NAMES = ["tinibot32", "tinibotc3"]
 FORWARD, OFF = "MOTORS 80 80", "MOTORS 0 0"
@@ -98,6 +99,21 @@ def test_each_byte_with_a_framing_error_is_a_zero() -> None:
         robot.wait(FIFO_MS + 2, b"\xff")
         assert happened(robot)[-1] == (FORWARD if spoiled == 3 else OFF)
     assert framing(robot) == 7
+
+
+@pytest.mark.parametrize("pause_ms", [1, 5, FIFO_MS, FIFO_MS + 1, 30, 200])
+def test_each_byte_with_a_framing_error_counts_as_soon_as_the_first_one(pause_ms: int) -> None:
+    """Nothing follows it, and there were others before."""
+    robot = typed(booted())
+    for _ in range(3):
+        assert happened(robot)[-1] == FORWARD
+        for _ in range(STOP_RUN):
+            robot.wait(pause_ms)
+            robot.spoil_byte()
+        robot.wait(FIFO_MS + 2)
+        assert happened(robot)[-1] == OFF
+        robot.wait(1200)
+        typed(robot, b"SI|F(60, 80)\r\n")
 
 
 @pytest.mark.parametrize("before", [b"", b"F(60, ", b"F(60, 80"])

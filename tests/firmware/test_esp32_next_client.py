@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Callable
 
 import pytest
@@ -11,11 +12,22 @@ from tests.firmware.test_esp32_transports import AWAY, Ends, Make, ended, upload
 from tests.firmware.test_esp32_wifi import far_owner, owned, remote
 from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
-from tests.support.esp32_radio import Bytes, End, LowEnergy, Network, SerialPort, session, talk
+from tests.support.esp32_radio import (
+    Bytes,
+    End,
+    LowEnergy,
+    Network,
+    SerialPort,
+    session,
+    takes,
+    talk,
+)
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tiniscript.link.messages import AUTHORITY_MS, STOP_BYTES
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.session import Session
+from tiniscript.link.typed_stop import is_typed_stop, stops_at_once
 
 PLACES: list[Make] = [LowEnergy, SerialPort, Network]
 
@@ -109,15 +121,68 @@ def test_nobody_is_told_what_another_one_has_typed(make: Make, typed: bytes) -> 
     assert other.heard == b""
 
 
-@pytest.mark.parametrize("make", PLACES[:2])
-def test_zeros_of_two_clients_are_no_stop(make: Make) -> None:
-    robot, owner = owned(Keys())
-    assert uploaded(robot, [(None, owner)], owner, AWAY) == "OK"
-    talk(robot, [(None, owner), (end := make(robot), Bytes(b"\0\0\0"))], 2)
+STOPS = (bytes(4), b"S\n", b"stop\r", b"\0S\n", b"\0stop\0", b"\x03\n", b"SSS", b"stop stop",
+         b"para\n", b"ST\x1b[AOP\n", b"\0\0\0\0\0")  # fmt: skip
+
+
+def stops_alone(data: bytes) -> bool:
+    lines = re.split(rb"[\r\n\0]", data)
+    is_ended = any(is_typed_stop(line) or line == b"\x03" for line in lines[:-1])
+    return is_ended or bytes(4) in data or any(map(stops_at_once, lines))
+
+
+CUT_STOPS = [
+    (data[:cut], data[cut:])
+    for data in STOPS
+    for cut in range(1, len(data))
+    if not stops_alone(data[:cut]) and not stops_alone(data[cut:])
+]
+
+
+@pytest.mark.parametrize("make", PLACES)
+@pytest.mark.parametrize("pause_ms", [0, 300])
+def test_what_two_clients_say_is_no_stop_of_both(make: Make, pause_ms: int) -> None:
+    robot, end, owner = far_owner(Keys())
+    ends: Ends = [(end, owner)]
+    assert uploaded(robot, ends, owner, AWAY) == "OK"
+    for parts in CUT_STOPS:
+        for part in parts:
+            talk(robot, [*ends, (other := make(robot), Bytes(part))], 20)
+            other.leave()
+            talk(robot, ends, 5 + pause_ms)
+        assert happened(robot)[-1] == "MOTORS 80 80", parts
+    talk(robot, [*ends, (make(robot), Bytes(b"\0" + b"".join(CUT_STOPS[-1]) + b"\0"))], 100)
+    assert happened(robot)[-1] == "MOTORS 0 0", "of one it is a stop"
+
+
+# -- what is sent to them -----------------------------------------------------------------------
+
+STATUS, ASKED_PING = BY_NAME["STATUS"].number, 77
+
+
+@pytest.mark.parametrize("most", [0, 1, 7, 30, 1000])
+@pytest.mark.parametrize("requests", [1, 5, 60])
+def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, requests: int) -> None:
+    """Over a network that takes a few bytes at a time, whenever the one before leaves."""
+    robot, end, _ = far_owner(Keys())
     end.leave()
-    talk(robot, [(None, owner)], 2)
-    talk(robot, [(None, owner), (make(robot), Bytes(b"\0"))], 100)
-    assert happened(robot)[-1] == "MOTORS 80 80"
+    frames = b"".join(encoded(Frame(STATUS, seq, 0)) for seq in range(requests))
+    rests = 0
+    for moment_ms in (1, 2, 3, 5, 9, 100):
+        takes(robot, most)
+        first = Bytes(b"\0" + frames)
+        talk(robot, [(end := Network(robot), first)], moment_ms)
+        end.leave()
+        talk(robot, [], 3)
+        takes(robot, 1000)
+        other = Bytes(b"\0" + encoded(Frame(BY_NAME["PING"].number, ASKED_PING, 0)))
+        talk(robot, [(end := Network(robot), other)], 60)
+        end.leave()
+        talk(robot, [], 3)
+        answers = [decoded(data) for data in other.heard.split(b"\0") if data]
+        assert [answer and answer.seq for answer in answers] == [ASKED_PING], moment_ms
+        rests += len(first.heard) < len(other.heard)
+    assert rests or most == 1000
 
 
 # -- who is silent ------------------------------------------------------------------------------

@@ -25,7 +25,7 @@ from tests.support.owners import Keys
 from tiniscript import robots
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STATUS_NAMES, STOP_BYTES
+from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, DEAD_MAN_MS, STATUS_NAMES, STOP_BYTES
 from tiniscript.link.session import Session
 
 AWAY = "SI|F(60, 80)"
@@ -119,6 +119,69 @@ def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
     assert [each.name for each in driver.events()] == ["STOPPED"]
     assert ended(robot, ends, other.start()) == "OTHER_DRIVER"
     assert uploaded(robot, ends, driver) == "OK", "who drives goes on after it"
+
+
+ENDS: dict[str, tuple[str, str]] = {  # its program, and what all are told
+    "by itself": ("SI|F(0.2, 80)", "DONE"),
+    "its fault": ("SI|X = 0;F(0.2, 80);SHOW(1 / X)", "FAULT"),
+    "its silent client": (AWAY, "FAULT"),
+    "its client that leaves": (AWAY, "STOPPED"),
+    "its client's zeros": (AWAY, "STOPPED"),
+    "another one's zeros": (AWAY, "STOPPED"),
+    "a message of another one": (AWAY, "STOPPED"),
+    "a line of another one": (AWAY, "STOPPED"),
+    "the button": (AWAY, "STOPPED"),
+}
+SAID = {
+    "its client's zeros": bytes(4),
+    "another one's zeros": bytes(4),
+    "a message of another one": b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0)),
+    "a line of another one": b"\0S\n",
+}
+
+
+@pytest.mark.parametrize("driver", range(3))
+@pytest.mark.parametrize("how", ENDS)
+def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) -> None:
+    """Once, and what they ask for from then on is of the time after it."""
+    text, name = ENDS[how]
+    if (how, driver) == ("its client that leaves", 0):
+        driver = 1  # a cable does not leave
+    robot = booted()
+    clients = [session(number, robot) for number in (1, 2, 3)]
+    ways: tuple[End | None, ...] = (None, LowEnergy(robot), SerialPort(robot))
+    ends: Ends = list(zip(ways, clients, strict=True))
+    for client in clients:
+        assert ended(robot, ends, client.hello()) == "OK"
+    assert uploaded(robot, ends, clients[driver], text) == "OK"
+    talk(robot, ends, 100)
+    for client in clients:
+        client.events()
+    other = 1 if driver == 2 else 2
+    listening = [0, 1, 2]
+    if how in ("its silent client", "its client that leaves"):
+        listening.remove(driver)
+        if how == "its client that leaves" and (way := ways[driver]) is not None:
+            way.leave()
+    elif how in SAID:
+        say(robot, ends[driver if how.startswith("its") else other], SAID[how])
+    there = [ends[place] for place in listening]
+    talk(robot, there, 1, flags=how == "the button")
+    talk(robot, there, DEAD_MAN_MS + 300)
+    told = [clients[place].events() for place in listening]
+    assert [event.name for event in told[0]] == [name], told
+    assert all(events == told[0] for events in told), told
+    for place in listening:
+        assert ended(robot, there, clients[place].identify()) == "OK"
+        assert not clients[place].events()
+
+
+def say(robot: Esp32Robot, end: tuple[End | None, Client], data: bytes) -> None:
+    """Let a client say this beside its session."""
+    if end[0] is None:
+        end[1].receive(robot.step(data), robot.now_ms)
+    else:
+        end[0].send(data)
 
 
 def test_the_next_one_drives_when_the_first_is_silent() -> None:

@@ -403,6 +403,42 @@ def test_a_robot_makes_itself_known_and_leaves_the_buzzer_to_a_program() -> None
     assert not [line for line in table.robot.did if "BEEP" in line]
 
 
+STEP_MS, STEPS = 250, 12  # of the light
+HELD_PROGRAMS = {"nothing": "", "a program for the button": "SB|F(1, 50)", "what it runs": FOREVER}
+
+
+@pytest.mark.parametrize("holds", HELD_PROGRAMS)
+def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds: str) -> None:
+    """Also while it still shows itself, or has just done so. Then its light says what it did."""
+    table = Owned()
+    robot, session = table.robot, table.session()
+    assert table.outcome(session, session.hello()) == "OK"
+    if text := HELD_PROGRAMS[holds]:
+        upload = session.upload(image_of(text), saves=False, is_detached=True)
+        assert table.outcome(session, upload) == "OK"
+    robot.wait(100)
+    says, number = robot.is_lit, session.robot.id if session.robot else 0
+    runs = holds == "what it runs"
+    tune = [] if runs else [131 * (4 + (number >> 3 * k) % 8) for k in range(3)]
+    for seq, before_ms in enumerate((1, 249, 251, 700, 2999, 3500)):
+        for again in range(2):
+            robot.did.clear()
+            its_seq = (session._seq + 1 + 2 * seq + again) % 256
+            frame = Frame(BY_NAME["IDENTIFY"].number, its_seq, session._epoch)
+            robot.step(b"\0" + encoded(frame))
+            begun_ms = robot.now_ms
+            seen = [robot.is_lit]
+            for _ in range((before_ms if not again else STEPS * STEP_MS + 500) - 1):
+                robot.step()
+                seen.append(robot.is_lit)
+        wanted = [k // STEP_MS % 2 == 0 for k in range(STEPS * STEP_MS)] + [says] * 500
+        assert seen == wanted, before_ms
+        beeps = [line.split() for line in robot.did if "BEEP" in line]
+        assert beeps == [
+            [str(begun_ms + k * STEP_MS), "BEEP", str(hertz), "200"] for k, hertz in enumerate(tune)
+        ]
+
+
 def test_a_storm_of_identify_leaves_a_run_and_a_stop_alone() -> None:
     """A stranger may ask as often as the line carries it."""
     table, keys = Owned(), Keys()

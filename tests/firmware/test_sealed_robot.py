@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import random
 from collections import Counter
+from collections.abc import Callable
 
 import pytest
 
@@ -33,11 +34,13 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.payloads import HelloReply
-from tiniscript.link.requests import Reply
+from tiniscript.link.requests import OK, Reply
 from tiniscript.link.seal import LAST, Seal
 from tiniscript.link.session import Session
 
 SHORT = "SI|F(0.1, 80)"
+UNPLUGGED = 8
+MOST_TIMES, SHOWN_MS = 3, 500  # each piece again, and a key is shown
 
 
 def recorded(table: Owned, session: Session, text: str) -> tuple[list[bytes], list[bytes]]:
@@ -244,6 +247,42 @@ def test_a_seal_that_has_expired_is_made_again_for_the_same_request() -> None:
     assert table.outcome(session, request) == "OK"
     assert session._sealing.seal is not before
     assert len([line for line in table.robot.did if "MOTORS 80 80" in line]) == 1
+
+
+PIECES = {1: "F(0.1, 80);", 3: "F(0.1, 80);B(0.1, 60);" * 20, 7: "F(0.1, 80);B(0.1, 60);" * 45}
+
+
+def cable_off(table: Owned, session: Session) -> None:
+    """The robot forgets the seal."""
+    table.robot.step(flags=UNPLUGGED)
+
+
+def spent(table: Owned, session: Session) -> None:
+    """The session has one more number for it."""
+    if session._sealing.seal:
+        session._sealing.seal.sent = LAST - 1
+
+
+@pytest.mark.parametrize("loses", [cable_off, spent])
+@pytest.mark.parametrize("pieces", PIECES)
+def test_a_seal_that_is_lost_at_any_moment_of_an_upload_costs_no_piece_of_it(
+    pieces: int, loses: Callable[[Owned, Session], None]
+) -> None:
+    """Nor time: no piece that was under way is waited for."""
+    image = image_of("SI|" + PIECES[pieces])
+    table, session, _ = opened()
+    begun_ms = table.robot.now_ms
+    assert table.outcome(session, session.upload(image, saves=False)) == "OK"
+    took_ms = table.robot.now_ms - begun_ms
+    for moment_ms in range(took_ms + 2):
+        session.stop(table.robot.now_ms)
+        table.pass_time(session, 500)
+        table.robot.codes()
+        request = session.upload(image, saves=False)
+        table.pass_time(session, moment_ms)
+        loses(table, session)
+        assert table.robot.until(session, request, MOST_TIMES * took_ms + SHOWN_MS) == OK, moment_ms
+        assert table.robot.codes() == [image.code], moment_ms
 
 
 def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:

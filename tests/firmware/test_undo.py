@@ -7,6 +7,7 @@ are those of the button. Before each of them the robot has saved one program mor
 from __future__ import annotations
 
 import random
+from itertools import product
 
 import pytest
 
@@ -14,6 +15,7 @@ from tests.firmware.test_button_states import OTHER, SAVED, STATES, Table
 from tests.firmware.test_host_firmware import (
     KIT,
     LONG,
+    broken_upload,
     computer,
     happened,
     held,
@@ -28,6 +30,7 @@ from tests.firmware.test_persistence import (
     FIRST,
     SECOND,
     bytes_of,
+    name_after_power_off,
     program_after_power_off,
     saved,
 )
@@ -149,6 +152,44 @@ def test_a_program_that_is_not_saved_stays_where_nothing_is() -> None:
 
 
 # -- in the middle of something -------------------------------------------------------------------
+
+
+NAMED, SAVED_ONE, TRIED, CUT = "a name", "a saved program", "a tried program", "a cut upload"
+ASKED = [
+    steps for count in (1, 2, 3) for steps in product((NAMED, SAVED_ONE, TRIED, CUT), repeat=count)
+]
+
+
+@pytest.mark.parametrize("steps", ASKED, ids=", ".join)
+def test_what_a_low_supply_has_kept_waiting_is_done_as_it_was_asked_for_last(
+    steps: tuple[str, ...],
+) -> None:
+    """A program that another one has followed since is not saved, nor is one in its place."""
+    robot, session = with_two()
+    robot.supply(is_low=True)
+    waits, is_tried, name = "", False, ""
+    for count, step in enumerate(steps):
+        text = f"SI|SHOW({count}); " + "W(0); " * 20
+        if step == NAMED:
+            name = f"name {count}"
+            assert robot.until(session, session.name(name.encode())) == STATUSES["LOW_SUPPLY"]
+        elif step == CUT:
+            broken_upload(robot, session)
+            session = computer(90 + count)
+        else:
+            send(robot, session, text, saves=step == SAVED_ONE)
+            robot.talk(session, 800)  # so that it waits for the supply
+        if step != NAMED:
+            waits, is_tried = text if step == SAVED_ONE else "", step == TRIED
+    robot.supply(is_low=False)
+    robot.talk(session, 5000)
+    assert saved(robot, session) == ("MEMORY" if is_tried else "STORED")
+    assert program_after_power_off(robot) == bytes_of(waits or B)
+    assert name_after_power_off(robot) == name
+    if waits or SAVED_ONE not in steps:  # else what was given up has taken the place of A
+        again, session = switched_on(robot.memory()), computer(80)
+        assert undo(again, session) == OK
+        assert held(again, session) == bytes_of(B if waits else A)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])

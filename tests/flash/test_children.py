@@ -1,7 +1,10 @@
-"""Whatever ends a program that is run: what it has started holds no port any more."""
+"""Whatever ends a program that is run: what it has started holds no port any more, and Ctrl-C is
+heard as before.
+"""
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -72,3 +75,26 @@ def test_nothing_is_left_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
                 children.run(words, None, look, None, lambda _: way != FIRST_ITS_END, 0.2)
         child = int(noted.read_text(encoding="utf-8"))
         until(partial(is_over, child), "what it has started ends")
+
+
+# What Popen may raise where a program cannot be started.
+REFUSALS = (FileNotFoundError, PermissionError, MemoryError, ValueError)
+
+
+@pytest.mark.parametrize("is_pressed", [False, True], ids=["", "Ctrl-C meanwhile"])
+@pytest.mark.parametrize("refusal", REFUSALS)
+def test_ctrl_c_is_heard_where_nothing_could_be_started(
+    monkeypatch: pytest.MonkeyPatch, refusal: type[Exception], is_pressed: bool
+) -> None:
+    def refuses(*_: object, **__: object) -> None:
+        if is_pressed:
+            signal.raise_signal(signal.SIGINT)
+        raise refusal
+
+    monkeypatch.setattr(subprocess, "Popen", refuses)
+    failure = children.CannotStart if issubclass(refusal, OSError) else refusal
+    for _ in range(2):  # the second one as the first one
+        with pytest.raises(KeyboardInterrupt if is_pressed else failure):
+            children.run(["none"], None, looks_on)
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)

@@ -6,8 +6,9 @@ import math
 import os
 import signal
 import threading
-from collections.abc import Iterator
-from typing import cast
+from collections.abc import Callable, Iterator
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
@@ -20,9 +21,10 @@ from tests.support.waiting import until
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.endings import End, Follower
-from tiniscript.link.connection import LinkConnection
-from tiniscript.link.outcomes import Event, LostEvent, RestartedEvent, StartedEvent
+from tiniscript.link.connection import LinkConnection, PendingRequest
+from tiniscript.link.outcomes import CANCELLED, Event, LostEvent, RestartedEvent, StartedEvent
 from tiniscript.link.payloads import DoneEvent
+from tiniscript.link.requests import OK, Reply
 from tiniscript.virtual import directory
 
 
@@ -271,10 +273,49 @@ class ToldEvents:
         return self.events.pop(0) if self.events else None
 
 
-def client_of(line: ToldEvents) -> Client:
+def client_of(line: object) -> Client:
     client = Client.__new__(Client)
     client.line = cast(LinkConnection, line)
     return client
+
+
+THE_ROBOT: Any = object()
+
+
+class StoppedAtFirst:
+    """A connection through a holder; a stop of somebody else cancels the first of its requests."""
+
+    held_by = "monitor"
+    heard, is_echoed = 9, False
+
+    def __init__(self, stops: int) -> None:
+        self.stops = stops
+        self.robot: object = None
+
+    def do(self, make: Callable[[Any], PendingRequest[Any]]) -> PendingRequest[Any]:
+        return make(SimpleNamespace(hello=PendingRequest))
+
+    def wait(self, request: PendingRequest[Any], look: Callable[[], None]) -> Reply[Any]:
+        if self.stops:
+            self.stops -= 1
+            return Reply(CANCELLED)
+        self.robot = THE_ROBOT
+        return Reply(OK)
+
+
+@pytest.mark.parametrize("stops", range(4))
+@pytest.mark.parametrize("patience", range(4))
+def test_who_connects_while_others_stop_the_robot_meets_it(stops: int, patience: int) -> None:
+    """As long as he is patient."""
+    left = iter([True] * patience + [False] * 9)
+    client = client_of(line := StoppedAtFirst(stops))
+    client.port, client.language, client._heed = "P", "en", lambda: None
+    if patience >= stops:
+        assert client.meet(is_patient=lambda: next(left)) is THE_ROBOT
+        return
+    with fails(tiniscript.RobotError, "stopped_elsewhere"):
+        client.meet(is_patient=lambda: next(left))
+    assert line.stops == stops - patience - 1
 
 
 def test_only_its_own_word_confirms_a_stop() -> None:

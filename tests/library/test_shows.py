@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -116,3 +117,18 @@ def test_the_same_code_of_another_text_is_called_as_that_text_says() -> None:
     maps[program] = mapped(second)
     names += [finder.of(event(program, at)), finder.of(event(program, at, run=2))]
     assert [each and each.text for each in names] == ["NEAR", "NEAR", "FAR"], "until its next run"
+
+
+@pytest.mark.usefixtures("cache")
+def test_a_value_is_called_so_whatever_was_shown_before() -> None:
+    """Also behind a reset of the robot: its runs begin at the same number again."""
+    programs = [compiled(f"SHOW({name})") for name in ("DISTANCE", "LIGHT_R", "TIME")]
+    at = rows(programs[0].code)[-1].offset
+    known = {checksum(program.image): mapped(program) for program in programs[:2]}
+    events = [event(checksum(program.image), at, run) for program in programs for run in (1, 2)]
+    for before in product(events, repeat=2):
+        for shown_last in events:
+            finder = Finder(known)
+            for shown_before in before:
+                finder.of(shown_before)
+            assert finder.of(shown_last) == Finder(known).of(shown_last), (before, shown_last)

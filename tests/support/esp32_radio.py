@@ -172,6 +172,11 @@ def in_reach(robot: Esp32Robot, name: str, password: str) -> None:
     robot.radio("R", _text(name.encode()) + _text(password.encode()))
 
 
+def takes(robot: Esp32Robot, most: int) -> None:
+    """Let a client in a network take so many bytes of what is sent at once; of 0 none, for now."""
+    robot.radio("t", pack("<H", most))
+
+
 def known(robot: Esp32Robot, name: str, address: str, wait_ms: int = 0) -> None:
     """Let the network know a computer's name, which it takes some time to look up."""
     words = _text(name.encode()) + _text(address.encode())

@@ -14,6 +14,7 @@ from tiniscript.virtual import transports as limits
 from tiniscript.virtual.simulator import FULL_BYTES, HEARTBEAT_MS, SILENT_S, Heartbeat, Simulator
 
 PING = b"\0" + encoded(Frame(BY_NAME["PING"].number, 1, 0))
+REST = b"the rest"
 TURNS = 3000  # far more than anything here takes
 
 
@@ -98,6 +99,29 @@ def test_many_at_once_are_all_told_but_one(simulator: Simulator) -> None:
     for client in crowd:
         client.close()
     until(simulator, lambda: not simulator.transports.is_connected)
+
+
+@pytest.mark.parametrize("late_ms", [1, 30, 300])
+def test_a_new_client_hears_nothing_that_is_under_way_to_the_one_before(
+    simulator: Simulator, late_ms: int
+) -> None:
+    """On a bad line, whose bytes come late."""
+    for _ in range(3):
+        assert REST not in heard_by_a_client(simulator, 1)
+        simulator.back.put(REST, simulator.robot.now_ms + late_ms)
+    assert REST not in heard_by_a_client(simulator, 2 * late_ms)
+
+
+def heard_by_a_client(simulator: Simulator, stays_ms: int) -> bytes:
+    """Return what somebody hears who comes, asks for something, and leaves after a while."""
+    visits, end_ms = simulator.transports.visits, simulator.robot.now_ms + stays_ms
+    with visit(simulator) as client:
+        client.sendall(PING)
+        until(simulator, lambda: simulator.transports.visits > visits)
+        heard = bytearray()
+        until(simulator, lambda: b"\0" in received(client, heard))
+        until(simulator, lambda: simulator.robot.now_ms > end_ms)
+        return bytes(received(client, heard))
 
 
 # -- the heartbeat of a hurried robot -------------------------------------------------------------

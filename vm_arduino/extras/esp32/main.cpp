@@ -248,6 +248,8 @@ void answer_radio(RequestReader* request, Writer* answer) {
       return network_searches(request->u32());
     case 'L':
       return radio_logs();
+    case 't':
+      return network_takes(request->u16());
     case 'x':
       return network_refuses(request->u8());
     case 'H':

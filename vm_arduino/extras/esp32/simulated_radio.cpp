@@ -91,7 +91,7 @@ bool has_modem_sleep = true;
 std::atomic<bool> has_network_stack{false};
 std::atomic<int> sockets{0};
 constexpr int kMostSockets = 16;
-constexpr size_t kTaken = 90;  // of what is sent at once: the rest comes later, as over a poor radio
+std::atomic<size_t> taken{90};  // of what is sent at once: the rest comes later, as over a poor radio
 std::string near_name;
 std::string near_password;
 uint16_t bound_port;
@@ -306,6 +306,8 @@ void network_name(const std::string& name, const std::string& address, uint16_t 
 }
 
 void network_refuses(uint8_t reason) { refusal = reason; }
+
+void network_takes(uint16_t most) { taken = most; }
 
 void network_expires() {
   arduino_event_t event = {ARDUINO_EVENT_WIFI_STA_DISCONNECTED, {{kAuthExpire}}};
@@ -678,7 +680,12 @@ struct hostent* lwip_gethostbyname(const char* name) {
 int lwip_listen(int s, int backlog) { return listen(s, backlog); }
 ssize_t lwip_recv(int s, void* mem, size_t len, int flags) { return recv(s, mem, len, flags); }
 ssize_t lwip_send(int s, const void* dataptr, size_t size, int flags) {
-  return send(s, dataptr, size < kTaken ? size : kTaken, flags | MSG_NOSIGNAL);
+  const size_t most = taken;
+  if (most == 0) {
+    errno = EWOULDBLOCK;
+    return -1;
+  }
+  return send(s, dataptr, size < most ? size : most, flags | MSG_NOSIGNAL);
 }
 int lwip_setsockopt(int s, int level, int optname, const void* optval, socklen_t optlen) {
   return setsockopt(s, level, optname, optval, optlen);

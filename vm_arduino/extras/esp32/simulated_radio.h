@@ -34,6 +34,7 @@ std::string serial_port_said();  // since the last call
 // WiFi: a network in reach with its password; none if `name` is empty.
 void network_in_reach(const std::string& name, const std::string& password);
 void network_refuses(uint8_t reason);  // a wrong password
+void network_takes(uint16_t most);     // of what is sent at once; 0: nothing, for now
 void network_expires();  // it sends the robot away: its authentication is over
 void network_leases_after(uint32_t lease_ms);  // until whoever has joined has an address
 void network_searches(uint32_t search_ms);     // until a network is found, or none

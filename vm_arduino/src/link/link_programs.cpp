@@ -47,7 +47,7 @@ tini_noinline void Link::prepare() {
 bool Link::go_live() {
   const uint8_t* const bytes = receiver_->bytes();
   if (!check_.is_whole() || !is_next(bytes[kSeqAt], bytes[kEpochAt]) || is_latched() ||
-      port_prepare_upload(true) != Answer::kOk) {
+      port_may_drive(kLiveByte) != Answer::kOk || port_prepare_upload(true) != Answer::kOk) {
     return false;
   }
   left_ms_[kListen] = kListenMs;
