@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from tests.pupils.corpus import check
@@ -9,7 +11,10 @@ from tests.support.rows import each_row
 from tiniscript import robots
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import fixed
+from tiniscript.recovery import rows as recovery_rows
 from tiniscript.recovery import usage
+from tiniscript.recovery.rows import SIGNS, TOKENS
+from tiniscript.recovery.suggestion_rows import SUGGESTIONS
 from tiniscript.recovery.suggestions import Gaps, Row, rows, suggested
 
 KIT = robots.load(robots.DEFAULT).kit
@@ -47,6 +52,17 @@ def test_what_was_found_is_told_by_the_row_of_its_example() -> None:
             telling.clear()
             check(row.example[0])
             assert row in telling or suggested(row.example[0], KIT), row.example
+
+
+@pytest.mark.parametrize("table", [SIGNS, TOKENS, SUGGESTIONS])
+def test_each_heading_names_the_laws_that_its_rows_keep(table: str) -> None:
+    known = {*re.findall("^- `([a-z]+)`:", recovery_rows.__doc__ or "", re.MULTILINE)}
+    lines = table.strip().splitlines()
+    headings = [line for line in lines if line.startswith("# ")]
+    assert lines[0] in headings and len(known) > 5
+    for heading in headings:
+        laws = heading.rpartition(": ")[2].split(", ")
+        assert {*laws} <= known, heading
 
 
 @pytest.mark.parametrize(
