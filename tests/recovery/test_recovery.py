@@ -95,7 +95,7 @@ def test_an_explanation_has_a_slip_and_its_edits(
     assert found is not None
     (said,) = explained(wrong, found)
     assert (said.code, said.edits) == (CODES[code], [edit])
-    assert said.values_as(said.code) == {**values, "whole": ""}
+    assert said.values_as(said.code) == {**values, "whole": "", "ends": ""}
 
 
 ASKED_FOR = {codes.BAD_NAME: {"found"}, codes.NAME_WITH_SPACE: {"found"}}  # by `dedupe`

@@ -7,9 +7,10 @@ a block is told at its beginning. Knows no sentence of any language.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
 from itertools import accumulate
+from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Span
 from tiniscript.base.words import BLOCK_ENDS
@@ -38,14 +39,54 @@ _ARMS = ("ELSE", "ELSEIF")
 _SIGNS = ("BEEP", "SHOW", "S", "STOP")
 
 
+class Slipped(NamedTuple):
+    """A slip, and what only its line, or the text around it, can say of it.
+
+    `right` are names that get their letters, or a note; `needless` is a brace, `early` an end, both
+    too many. An end of another block stands for `fix`, the end of the `word` on line `line`.
+    """
+
+    slip: Slip
+    right: str = ""
+    needless: str = ""
+    early: str = ""
+    word: str = ""
+    line: str = ""
+    fix: str = ""
+
+    def values(self, code: Code) -> dict[str, str]:
+        said = {name: str(its) for name, its in self._asdict().items() if name != "slip" and its}
+        return slips.values_of(self.slip, code) | said
+
+
+@dataclass
+class Unended:
+    """A block that begins with `word` and lacks its end, `right`.
+
+    It has `behind` on its own line, or it is `begun` on another line than that of the place, and
+    line `line`, `last`, is its last one. Of `several` instructions the last one may as well be
+    behind it: there `last` is empty. It may end `early`, on the line before one that `begins`.
+    """
+
+    word: str
+    right: str
+    behind: str = ""
+    begun: str = ""
+    line: str = ""
+    last: str = ""
+    several: str = ""
+    early: str = ""
+    begins: str = ""
+
+    def values(self, _: Code) -> dict[str, str]:
+        return asdict(self)
+
+
 @dataclass
 class Explanation:
-    """What is told of a line: its code, and a slip, or an end that is missing.
+    """What is told of a line: its code, and what it is `about`.
 
-    `gaps` are what its message says beside that: of its block, or of other lines. Where more of the
-    block changes, that becomes `whole`, and ends with `ends`. A block that begins with `word` and
-    lacks its end, `right`, has `behind` on its own line, and line `line`, `last`, is its last one;
-    of `several` instructions the last one may as well be behind it, and there `last` is empty.
+    Where more of its block changes, that becomes `whole`, and ends with `ends`.
 
     `place` is what `fix` stands for; `edits` are all that belong to it: ends, braces. It begins in
     change `first`, from 0; `last` is a change, and how many of its lines belong to it; `opened` are
@@ -55,22 +96,28 @@ class Explanation:
     code: Code
     place: Span
     span: Span
-    slip: Slip | None
-    gaps: dict[str, str]
+    about: Slipped | Unended
     edits: list[Edit]
     first: int
     last: tuple[int, int]
+    whole: str = ""
+    ends: str = ""
     opened: set[int] = field(default_factory=set)
     is_sure: bool = True
 
-    def values_as(self, code: Code) -> dict[str, str]:
-        """Return the values of a message with this code."""
-        return (slips.values_of(self.slip, code) if self.slip else {}) | self.gaps
+    @property
+    def slip(self) -> Slip | None:
+        return self.about.slip if isinstance(self.about, Slipped) else None
 
     @property
     def fix(self) -> str:
         """What the instruction becomes; nothing where only an end is missing."""
-        return self.gaps.get("fix") or (slips.fix_of(self.slip) if self.slip else "")
+        about = self.about
+        return (about.fix or slips.fix_of(about.slip)) if isinstance(about, Slipped) else ""
+
+    def values_as(self, code: Code) -> dict[str, str]:
+        """Return the values of a message with this code."""
+        return self.about.values(code) | {"whole": self.whole, "ends": self.ends}
 
 
 def explained(program: str, found: Candidate) -> list[Explanation]:
@@ -109,7 +156,7 @@ class _Explainer:
     def complete(self, told: Explanation) -> None:
         if told.code is not codes.NEVER_ENDS:
             is_shown = self.found.is_whole and told.last > (told.first, 1)
-            told.gaps["whole"] = self.whole(told.first, told.last) if is_shown else ""
+            told.whole = self.whole(told.first, told.last) if is_shown else ""
         start, end = self.words(told.edits[0].span)
         while start < end and self.program[start] in "\r\n":
             start += 1
@@ -167,10 +214,10 @@ class _Explainer:
             told = self.added(closed or around, edit, (k, 1), after) if is_more else None
             told = told or self.new(k, part, code, step)
             told.opened |= {closed.first} if closed else set()
-            if code is codes.WRONG_END and told.slip:
-                right = slips.right_of(told.slip)
+            if code is codes.WRONG_END and isinstance(about := told.about, Slipped):
+                right = slips.right_of(about.slip)
                 line = str(self.changes[closed.first if closed else k].first + 1)
-                told.gaps |= {"word": ENDED.get(right, ""), "line": line, "fix": right}
+                told.about = about._replace(word=ENDED.get(right, ""), line=line, fix=right)
             for block in self.open:
                 if block.first == k or is_brace:
                     block.told = block.told or told
@@ -243,51 +290,45 @@ class _Explainer:
         told.edits.append(edit)
         told.first, told.last = first, max(told.last, last)
         ends = next((each.text for each in after if each.text in ENDED), "")
-        told.gaps["ends"] = told.gaps.get("ends") or ends
+        told.ends = told.ends or ends
         return told
 
     def new(self, k: int, part: Change, code: Code, step: Step | None) -> Explanation:
         is_end = code is codes.NEVER_ENDS
-        slip = None if is_end else slips.slip_of(part, code, step)
-        gaps = dict(self.beside(k, part, slip, step) if slip else self.unended(k, part))
-        self.out.append(
-            Explanation(code, part.place, part.place, slip, gaps, [part.edit], k, (k, 1))
-        )
+        about = self.unended(k, part) if is_end else self.slipped(k, part, code, step)
+        self.out.append(Explanation(code, part.place, part.place, about, [part.edit], k, (k, 1)))
         return self.out[-1]
 
-    def beside(
-        self, k: int, part: Change, slip: Slip, step: Step | None
-    ) -> Iterator[tuple[str, str]]:
-        """Yield what is said of a slip that only its line, or the text around it, can tell."""
-        code = slip.code
+    def slipped(self, k: int, part: Change, code: Code, step: Step | None) -> Slipped:
+        slip = slips.slip_of(part, code, step)
         if code is codes.BRACES and part.before and not part.after:
-            yield "needless", slips.found_in(slip)
+            return Slipped(slip, needless=slips.found_in(slip))
         if code is codes.OTHER_NOTE:
-            yield "right", self.changes[k].text.strip()
+            return Slipped(slip, right=self.changes[k].text.strip())
         if code is codes.EXTRA_WORD and not step:
             behind = _BEHIND.match(self.program, self.words(part.edit.span).start)
             arm = behind[1].upper() if behind else ""
-            if {arm, meant_by(arm)} & {*_ARMS}:
-                yield "early", slips.found_in(slip)
+            is_early = bool({arm, meant_by(arm)} & {*_ARMS})
+            return Slipped(slip, early=slips.found_in(slip) if is_early else "")
         if code in _DEDUPED:  # LIGHT_L and LIGHT_R
             same = (it for it in self.changes[k].steps if it.code is code)
             pairs = ((texts(it.before), texts(it.after)) for it in same)
             names = [each for was, now in pairs for each in now if each not in was]
             if slips.right_of(slip) in names:
-                yield "right", ", ".join(dict.fromkeys(names))
+                return Slipped(slip, right=", ".join(dict.fromkeys(names)))
+        return Slipped(slip)
 
-    def unended(self, k: int, part: Change) -> Iterator[tuple[str, str]]:
-        """Yield what is said of a block that lacks its end on the line where it begins."""
+    def unended(self, k: int, part: Change) -> Unended:
+        """Return what is said of a block that lacks its end on the line where it begins."""
         now, inside = texts(part.after), without_setup(part.before)
         word = next((each for each in now if each in BLOCK_ENDS), "")
         end = BLOCK_ENDS.get(word) or next((it for it in now if it in ENDED), "")
-        yield "word", word or ENDED.get(end, "")
-        yield "right", end
-        yield "behind", laid_out(inside[-1]) if word and inside else ""
+        found = Unended(word or ENDED.get(end, ""), end)
+        found.behind = laid_out(inside[-1]) if word and inside else ""
         above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
         if not word and k and above:  # its indentation says where it ends
-            yield "line", str(above.last + 1)
-            yield "last", laid_out(tokens_of(above.text.split("\n")[0]))
+            found.line, found.last = str(above.last + 1), _first_line(above)
+        return found
 
     def end(self, last: tuple[int, int], change: search.Change, end: str, text: str) -> None:
         """Tell of an end that is missing behind a line."""
@@ -297,26 +338,26 @@ class _Explainer:
         if self.added(block, edit, last, lexemes(end)):
             return
         first, word = (block.first, block.word) if block else (last[0], "")
-        behind_this = laid_out(tokens_of(change.text.split("\n")[0]))
-        place = Span(self.starts[self.changes[first].first], behind)
-        gaps = {"word": word, "right": end, "line": str(change.last + 1), "last": behind_this,
-                "whole": self.whole(first, last)}  # fmt: skip
+        found = Unended(word, end, line=str(change.last + 1), last=_first_line(change))
+        whole = self.whole(first, last)
         if block and self.may_end_earlier(block, last[0]):
-            gaps |= {"several": behind_this, "last": "", "whole": ""} | self.early(block, last[0])
+            found.several, found.last, whole = found.last, "", ""
+            if before := self.early(block, last[0]):
+                found.early, found.begins = str(before.last + 1), _first_line(before)
         if first < last[0]:
-            gaps["begun"] = str(self.changes[first].first + 1)
-        told = Explanation(codes.NEVER_ENDS, place, place, None, gaps, [edit], first, (first, 1))
-        self.out.append(told)
+            found.begun = str(self.changes[first].first + 1)
+        place = Span(self.starts[self.changes[first].first], behind)
+        self.out.append(
+            Explanation(codes.NEVER_ENDS, place, place, found, [edit], first, (first, 1), whole)
+        )
 
-    def early(self, block: _Block, last: int) -> dict[str, str]:
+    def early(self, block: _Block, last: int) -> search.Change | None:
         """Return the line before the first header in a block: it may end there as well."""
         for k in range(block.first + 2, last + 1):
             words = texts(lexemes(self.changes[k].text))
             if words and words[0] in BLOCK_ENDS and self.changes[k - 1].text.strip():
-                before = self.changes[k - 1]
-                begins = laid_out(tokens_of(before.text.split("\n")[0]))
-                return {"early": str(before.last + 1), "begins": begins}
-        return {}
+                return self.changes[k - 1]
+        return None
 
     def may_end_earlier(self, block: _Block, last: int) -> bool:
         """Whether nothing says that the last instruction of a block is in it.
@@ -331,6 +372,10 @@ class _Explainer:
             return False
         is_sign = inside[-1] in _SIGNS and inside[-1] not in inside[:-1]
         return is_sign or block.word not in ("LOOP", "DEF")
+
+
+def _first_line(change: search.Change) -> str:
+    return laid_out(tokens_of(change.text.split("\n")[0]))
 
 
 def _is_closed(tokens: Sequence[Lexeme]) -> bool:

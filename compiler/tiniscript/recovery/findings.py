@@ -139,7 +139,7 @@ def _diagnostic(told: Explanation, meant: Candidate, found: Sequence[Diagnostic]
     is_sure = meant.is_applied or (meant.is_whole and told.is_sure)
     repair = Repair(tuple(told.edits), is_said and is_sure)
     if not meant.has_sure_blocks and "FOREVER" not in told.fix:
-        told.gaps["whole"] = ""  # where it ends is a guess
+        told.whole = ""  # where it ends is a guess
     code, values = _in_words(told)
     asked = codes.ARGUMENT_COUNT if code is codes.OTHER_CALL else code
     counted = (each for each in found if each.code is asked)

@@ -31,7 +31,18 @@ with `more` and `>`. Each has its own example.
 
 `SIGNS` is what characters become before there are tokens: `re` patterns and what stands for them,
 in the same columns but for the cost. `^` and `$` are those of an instruction there, too, `\A` and
-`\Z` those of a line. Rows are sorted by what they are about.
+`\Z` those of a line.
+
+Rows are sorted by what they are about. A row is here since programs of strangers need it, or since
+it keeps a law, which the heading above it names:
+
+- `sign`: a sign of paper, a telephone or another language means the one of this language.
+- `number`: a number keeps its digits, its sign, its unit and how often it says.
+- `branch`: no question, order or branch of a line is left out of what is offered.
+- `kind`: what is read of one word is read of each of its kind: comparisons, ends, blocks, devices.
+- `two`: of two meanings that cost about the same both are offered.
+- `other`: without it another row reads the line as something else.
+- `code`: nothing else tells of its code, which the list of mistakes has.
 """
 
 from tiniscript.diagnostics import codes
@@ -69,6 +80,7 @@ SETUP = (
 BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # signs that stand for the bar whatever follows
 
 SIGNS = r"""
+# characters that stand for others, and what is pasted around a program: sign, number, kind, other
 (?<!\) )(["'«»`])([A-Za-z0-9_.,()| <>=]*[A-Za-z0-9)][A-Za-z0-9_.,()| <>=]*)(?:\1|»)
     | `\2` | TS006 | applied
     | F("2","80") => F(2,80)
@@ -96,7 +108,6 @@ SIGNS = r"""
     | ⟨"SI|F(2,80);R(1,50)"¦“F(2,80);R(1,50)”⟩ => ⟨SI|¦⟩F(2,80);R(1,50)
 \b([FBLR])\((\d)\.([1-9]0|100)\) | `\1(\2, \3)` | TS020 | offered | F(2.80) => F(2, 80)
 (?<=\d)=(?=\s*\))|(?<=\()=(?=\.\d) | `0` | TS076 | offered | F(2, 8=) => F(2, 80)
-((?<=[=,])\s*|(?<=SHOW\())(\d+)x(\d+)\b | `\1\2 * \3` | TS010 | applied | X = 3x2 => X = 3 * 2
 (?<=[(,])(\s*)!(?=\s*[,)]) | `\g<1>1` | TS076 | offered | F(!, 80) => F(1, 80)
 (?<=\()l(?=\s*,) | `1` | TS008 | offered | F(l, 80) => F(1, 80)
 (?<=\d) (?=000\b) | `` | TS008 | applied | F(2, 80); SHOW(1 000) => F(2, 80); SHOW(1000)
@@ -112,15 +123,7 @@ SIGNS = r"""
 \(f"[^"{}]*\{(\w+)\}[^"{}]*"\)
     | `(\1)` | TS006 | offered
     | print(f"{DISTANCE} cm") => SHOW(DISTANCE)
-\ASI barr?a? (?=\w) | `SI|` | TS010 | offered | SI bar F(2, 80) => SI|F(2, 80)
-\b([a-z]+) (?:open |abre |abrir )?(?:bracket|parenthesis|par[eé]ntesis) ([\w.]+) comm?a (\w+)(?:
-    (?:close|cierrar?) (?:bracket|parenthesis|par[eé]ntesis))?
-    | `\1(\2, \3)` | TS015 | offered
-    | F paréntesis dos coma ochenta => F(2, 80)
 (?<=\d)\. (?=\d) | `.` | TS008 | applied | F(1. 5, 80) => F(1.5, 80)
-^\s*(\d+) (?:loop|repe[a-z]+)\s*:?$
-    | `LOOP(\1)` | TS015 | applied
-    | 5 LOOP⏎F(1, 50)⏎END_LOOP => LOOP(5)⏎F(1, 50)⏎END_LOOP
 \bLOOP_?(\d+)(?=\s*(?:;|$))
     | `LOOP(\1)` | TS015 | applied
     | LOOP4;F(2, 80);END_LOOP => LOOP(4);F(2, 80);END_LOOP
@@ -210,7 +213,7 @@ SIGNS = r"""
 """
 
 TOKENS = r"""
-# signs that other languages have
+# signs that other languages have: sign
 a=@num|@val|) ⟨@cross¦·¦X⟩ b=@num|@val|(
     | $a * $b | ⟨1¦1¦1.2⟩ | TS010 | ⟨applied¦applied¦offered⟩
     | ⟨SHOW(DISTANCE X 2)¦SHOW(2 · 3)¦X = 4⏎W(2 x X)⟩ => ⟨SHOW(DISTANCE * 2)¦SHOW(2 * 3)¦X = 4⏎W(2 *
@@ -234,11 +237,11 @@ o=(|AND|OR !|no v=@measured e=)|AND|OR
     | $o $v = 0 $e | .5 | TS010 | first offered
     | IF(!LIGHT_L);S;ENDIF => IF(LIGHT_L = 0);S;ENDIF
 ! v=@val|( | NOT $v | 1 | TS010 | first | X = TRUE⏎IF(!X);S;ENDIF => X = TRUE⏎IF(NOT X);S;ENDIF
-# sums in words
+# sums in words: kind
 o==|(|, a=@num|@val minus b=@num|@val
     | $o $a - $b | 1 | TS010 | first
     | SHOW(8 minus 4) => SHOW(8 - 4)
-# comparisons in words: a row for each sense, and a sign
+# comparisons in words, a row for each sense, and a sign: kind
 is? ⟨less than?¦more⟩ or? equal to|than?
     | ⟨<=¦>=⟩ | 1 | TS010 | first
     | IF(DISTANCE es ⟨menor¦mayor⟩ o igual que 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=⟩ 10);S;ENDIF
@@ -254,13 +257,10 @@ o=(|AND|OR|NOT l=@val is|equal+ to|than? n=@num|@val
 ⟨is? different than?¦no is|equal to|equal? one?⟩
     | <> | 1 | TS010 | first
     | IF(DISTANCE ⟨distinto de¦NO ES⟩ 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
-= @word* RANDOM between|from? a=@num to|and|until|-|, b=@num $
-    | = RANDOM ( $a , $b ) | 1 | TS102 | offered
-    | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 l=@val is? between a=@num and b=@num
     | $l > $a AND $l < $b | 1 | TS037 | offered
     | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
-# questions and sums
+# questions and sums: kind, branch
 a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val
     | $a $s $b AND $b $t $c | 1 | TS037 | applied
     | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
@@ -277,10 +277,6 @@ no l=@val|(
 l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num
     | $l $s $a &o $l $t $b | 1 | TS018 | offered
     | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
-l=MIN|MAX ( c=@noparen+ ) s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num
-    | $l ( $c ) $s $a &o $l ( $c ) $t $b | 1 | TS018 | offered
-    | IF(MIN(2, DISTANCE) < 10 OR < 5);S;ENDIF => IF(MIN(2, DISTANCE) < 10 OR MIN(2, DISTANCE) <
-    5);S;ENDIF
 ^ c=@cond+ ? <body> : d=@start s=@all* $
     | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered
     | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
@@ -300,13 +296,10 @@ a=@num|@val ⟨then|&¦or⟩ b=@val|less|more|NOT⟨|<¦⟩
     | $a ⟨AND¦OR⟩ $b | 1 | TS010 | first
     | IF(DISTANCE < 10 ⟨y¦o⟩ LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 ⟨AND¦OR⟩ LIGHT_L >
     100);S;ENDIF
-o=AND|OR IF
-    | &o | 1 | TS010 | first
-    | IF(DISTANCE > 5 AND IF DISTANCE < 9);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 9);S;ENDIF
 a=@num|@val '|' b=@val
     | $a OR $b | 1 | TS010 | applied
     | IF(DISTANCE<10 | LIGHT_R>50)⏎S⏎ENDIF => IF(DISTANCE<10 OR LIGHT_R>50)⏎S⏎ENDIF
-# numbers, units, values
+# numbers, units, values: number
 a=@num b=0 | @cat:a:b | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
 a=@num c=, b=@num | @dec:a:c:b | 1 | TS012 | applied | W(2,5) => W(2.5)
 o=(|,|; a=@num % ) | $o $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
@@ -327,8 +320,7 @@ the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
 o=(|AND|OR the? wall s=<|<=|>|>= n=@num CM?
     | $o DISTANCE $s $n | 1 | TS102 | offered
     | F(5, 60) HASTA(PARED < 10 CM) => F(5, 60) UNTIL(DISTANCE < 10)
-sensing ( v=@val ) | $v | 1 | TS044 | first | SHOW(SENSOR(DISTANCE)) => SHOW(DISTANCE)
-# variables
+# variables: kind, other, code
 v=@name = a=@num|@val b=@start
     | $v = $a ; $b | 1 | TS013 | applied
     | X = DISTANCE F(1, 50) => X = DISTANCE;F(1, 50)
@@ -366,7 +358,7 @@ a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => 
 ^ keep the? e=@val|@num to v=@word $
     | $v = $e | 1.5 | TS050 | applied
     | guardar 80 en potencia⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
-# calls and their brackets
+# calls and their brackets: kind, two, other
 x=@callw [ | $x ( | 1 | TS010 | first | F[2,80] => F(2,80)
 x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => SI|F(2,80)
 RANDOM ( between|from? a=@num to|and|until|- b=@num )
@@ -420,13 +412,10 @@ a=⟨F|B¦L|R⟩ ( n=@noparen+ @like_⟨CM¦DEG⟩ e=,|;
     | BEEP ( 0.2 , 440 ) ; W ( 0.2 ) ; BEEP ( 0.2 , 440 ) $e | 1 | TS102 | offered
     | bip bip => BEEP(0.2, 440);W(0.2);BEEP(0.2, 440)
 @newname . c=F|B|L|R|W|BEEP ( | $c ( | 1 | TS102 | applied | bot.F(2, 80) => F(2, 80)
-# UNTIL
+# UNTIL: branch, two
 a=F|B|L|R|W ( b=@noparen+ ) then? S|STOP WHEN c=@cond+ $
     | $a ( $b ) UNTIL ( $c ) | .9 | TS102 | applied
     | F(10, 60) STOP WHEN DISTANCE < 12 => F(10, 60) UNTIL(DISTANCE < 12)
-a=F|B|L|R|W ( b=@noparen+ ) S|STOP ( c=@val s=<|<=|>|>= d=@num|@val ) $
-    | $a ( $b ) UNTIL ( $c $s $d ) | 2 | TS102 | offered
-    | F(10, 60) STOP(DISTANCE < 12) => F(10, 60) UNTIL(DISTANCE < 12)
 ^ a=S|STOP UNTIL that? ( c=@any+ ) e=;|$
     | $a ; W ( FOREVER ) UNTIL ( $c ) $e | 1 | TS030 | offered
     | S HASTA(DISTANCE > 20) => S;W(FOREVER) UNTIL(DISTANCE > 20)
@@ -450,7 +439,7 @@ a=@close UNTIL that? ⟨c=@cond+ then+ ,? b=@start¦c=@noparen+ $⟩
     | $a ( ⟨FOREVER ,¦⟩ $b ) UNTIL ( $c ) | 2 | TS029 | offered
     | ⟨F(UNTIL(DISTANCE < 10),¦UNTIL DISTANCE < 10 F(2,⟩ 60) => F(⟨FOREVER¦2⟩, 60) UNTIL(DISTANCE <
     10)
-# IF and WHILE
+# IF and WHILE: branch, kind, other
 ELSE a=@val s=<|<=|>|>= b=@num|@val do|:? $
     | ELSEIF ( $a $s $b ) | .9 | TS015 | offered
     | IF(DISTANCE < 10)⏎S⏎ELSE DISTANCE < 30⏎B(1, 50)⏎ENDIF =>
@@ -462,9 +451,6 @@ ELSE ( a=@noparen* s=<|<=|>|>=|=|<> b=@noparen+ )
 h=IF|WHILE|ELSEIF|WHEN < a=@val s=<|<=|>|>=|= b=@num|@val > do|:?
     | &h ( $a $s $b ) | 1 | TS010 | applied
     | si <DISTANCE < 15> entonces⏎S⏎fin => IF(DISTANCE < 15)⏎S⏎ENDIF
-c=IF|WHILE|ELSEIF|UNTIL ( ( a=@noparen* b=@num|@word ) e=;|$
-    | $c ( ( $a $b ) ) $e | 1 | TS016 | applied
-    | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 <asks> ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ )
     | &h ( ( $c ) ⟨AND¦OR⟩ ( $d ) ) | 1 | TS015 | applied
     | IF(DISTANCE > 5) ⟨y¦o⟩ (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) ⟨AND¦OR⟩(LIGHT_R >
@@ -505,7 +491,7 @@ h=IF|WHILE|LOOP|WHEN ( c=@any+ ⟨,¦;⟩ <body> ) $
 <block> <question> ⟨;? (¦[⟩ <body> ⟨)¦]⟩ $
     | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied
     | LOOP(4) ⟨(¦[⟩F(1,60); R(1,50)⟨)¦]⟩ => LOOP(4);F(1, 60);R(1, 50);END_LOOP
-# ELSE and ELSEIF
+# ELSE and ELSEIF: branch
 h=IF|ELSEIF <question> ( <body> ) e=ELSEIF|ELSE
     | &h ( $c ) ; $b $r ; $e | .9 | TS080 | applied
     | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
@@ -526,7 +512,7 @@ h=ELSE|TASK ⟨:|,|-|do|=|'|'¦b=@start|'{'⟩
 ⟨a=@any|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF|END_WHEN|END_TASK¦a=@close h=end $⟩
     | $a ; &h | 1 | TS013 | applied
     | LOOP(3); F(2,80) ⟨END_LOOP¦fin⟩ => LOOP(3);F(2, 80);END_LOOP
-# LOOP
+# LOOP: number, kind, code
 ^ ⟨LOOP FOREVER :|,?¦FOREVER :|;?⟩ b=@start|'{'
     | LOOP ( FOREVER ) ; $b | 1 | ⟨TS015¦TS032⟩ | applied
     | ⟨LOOP FOREVER¦forever:⟩ F(1,50) => LOOP(FOREVER);F(1, 50);END_LOOP
@@ -593,9 +579,6 @@ h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num )
 ^ h=IF|WHILE ( c=@noparen+ , b=@start r=@noparen* ) $
     | &h ( $c ) ; $b $r | 2 | TS080 | applied
     | IF(DISTANCE < 10, S)⏎ELSE⏎F(1,50)⏎ENDIF => IF(DISTANCE < 10);S⏎ELSE⏎F(1,50)⏎ENDIF
-LOOP ( ⟨n=@num , <body> )¦n=@num <body> ) $⟩
-    | LOOP ( $n ) ; $b $r ⟨¦; END_LOOP⟩ | 2 | TS080 | applied
-    | LOOP(⟨4, F(1,50))⏎END_LOOP¦4 F(1,50))⟩ => LOOP(4);F(1, 50)⟨⏎¦;⟩END_LOOP
 LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
     | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered
     | para n desde 1 hasta 4⏎F(n, 60)⏎fin para => N = 0;LOOP(4);N = N + 1;⏎F(n, 60)⏎END_LOOP
@@ -614,9 +597,6 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
 ^ q=@val s=<|>|<=|>= n=@num|@val :|do|=|->|=>? b=@start r=@all*
     | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered
     | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
-^ S|STOP LOOP $
-    | BREAK | 1 | TS102 | applied
-    | LOOP(2)⏎F(1, 50)⏎STOP LOOP⏎END_LOOP => LOOP(2)⏎F(1, 50)⏎BREAK⏎END_LOOP
 ^ ⟨FOREVER :¦FOREVER¦LOOP FOREVER :?⟩ $
     | LOOP ( FOREVER ) ⟨;¦¦⟩ | 1 | ⟨TS032¦TS032¦TS102⟩ | applied
     | ⟨forever:¦forever¦repetir siempre⟩⏎F(1,50)⟨¦⏎end¦⏎fin repetir⟩ =>
@@ -649,11 +629,7 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
     | LOOP ( $n ) ; IF ( $c ) ; BREAK ; ENDIF | 1 | TS064 | offered
     | LOOP(3) UNTIL(DISTANCE < 10)⏎F(1, 40)⏎END_LOOP => LOOP(3);IF(DISTANCE < 10);BREAK;ENDIF⏎F(1,
     40)⏎END_LOOP
-^ do '{' b=@start
-    | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied
-    | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <=
-    9);BREAK;ENDIF;END_LOOP
-# how often something is done, said behind it or before it
+# how often something is done, said behind it or before it: number
 ⟨^ b=@step *|X? n=@num times? $¦call b=@step n=@num¦^ b=@step n=X2|X3|X4|X5|X6 $⟩
     | LOOP ( ⟨$n¦$n¦@xn:n⟩ ) ; $b ; END_LOOP | 1 | TS062 | applied
     | DEF SALTO;F(0.2, 60);END_DEF⏎⟨SALTO*3¦CALL SALTO 3¦SALTO x3⟩ => DEF SALTO;F(0.2,
@@ -664,14 +640,14 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
 ^ do|make? b=@start r=@any* n=@num times $
     | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered
     | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
-# words behind a call: shown, not made
+# words behind a call, shown and not made: branch
 ^ a=S|STOP ⟨( n=@num seconds? )¦during? n=@num seconds?⟩ $
     | $a ; W ( $n ) | 2 | ⟨TS039¦TS013⟩ | offered
     | S⟨(2)¦ 2 segundos⟩ => S;W(2)
 ^ b=F|B|L|R|S|STOP|BEEP|SHOW|W r=@any* IF c=@cond+ ELSE d=@start s=@all* $
     | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS071 | offered
     | F(2, 80) if DISTANCE > 10 else S => IF(DISTANCE > 10);F(2, 80);ELSE;S;ENDIF
-# what the devices of a kit are set to
+# what the devices of a kit are set to: kind
 d=@device v=⟨lit|on¦dark|off⟩ e=;|$
     | &d ( ⟨TRUE¦FALSE⟩ ) $e | 1 | TS015 | applied
     | LED ⟨ON¦OFF⟩ => LED(⟨TRUE¦FALSE⟩)
@@ -683,7 +659,7 @@ d=@device ( ⟨lit¦dark¦most¦least⟩ )
     | &d ( ⟨@most:d¦@least:d¦TRUE¦FALSE⟩ ) | 1 | TS102 | applied
     | ⟨ABRIR PINZA¦cerrar la garra¦prende el LED¦apagar el foco⟩ =>
     ⟨GRIPPER(180)¦GRIPPER(0)¦LED(TRUE)¦LED(FALSE)⟩
-# DEF and its calls
+# DEF and its calls: kind, other
 ^ TO n=@word ':' v=@name ⟨¦':' u=@name⟩ $
     | DEF $n ( $v ⟨¦, $u⟩ ) | 1 | TS102 | applied
     | TO SQUARE :SIZE⟨¦ :SPEED⟩⏎F(SIZE, ⟨50¦SPEED⟩)⏎END⏎SQUARE(⟨3¦3, 60⟩) =>
@@ -692,9 +668,6 @@ n=@defw a=@num|@val ⟨¦,? b=@num|@val⟩ e=;|$
     | $n ( $a ⟨¦, $b⟩ ) $e | 1 | TS015 | applied
     | DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO ⟨3¦3 60⟩ =>
     DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO(⟨3¦3, 60⟩)
-^ n=@defw = a=@num|@val , b=@num|@val $
-    | $n ( $a , $b ) | 1 | TS015 | offered
-    | DEF LADO(X, Y)⏎F(X, Y)⏎END_DEF⏎LADO = 3, 60 => DEF LADO(X, Y)⏎F(X, Y)⏎END_DEF⏎LADO(3, 60)
 ^ DEF ( n=@word )
     | DEF $n | 1 | TS039 | offered
     | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
@@ -707,13 +680,10 @@ DEF n=@word ( v=@noparen+ ) ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩
 ^ call|do|make|the the|one? b=@def
     | $b | 1 | TS044 | applied
     | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
-# ends of blocks
+# ends of blocks: kind
 ^ ⟨end¦END_DEF⟩ n=@def $
     | END_DEF @label:n | 1 | ⟨TS022¦TS044⟩ | ⟨applied¦first⟩
     | DEF SALTO⏎F(1, 50)⏎⟨FIN¦END_DEF⟩ SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
-h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ )
-    | &h | 1 | TS039 | first offered
-    | LOOP(3)⏎F(2, 80)⏎END_LOOP(3) => LOOP(3)⏎F(2, 80)⏎END_LOOP
 ^ ⟨program @word¦then ,?⟩ $ | | 1 | TS044 | applied | ⟨programa baile¦luego,⟩⏎F(1, 50) => ⏎F(1, 50)
 ^ ⟨leaves 0¦import @any+⟩ ;? $
     | | 1 | ⟨TS065¦TS072⟩ | applied
@@ -723,7 +693,7 @@ h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ )
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$
     | @endof:k | 1 | TS022 | first
     | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
-# what joins instructions
+# what joins instructions: kind, other
 ⟨^ by? please|first ,?¦; first+ ,?⟩ b=@start
     | ⟨¦;⟩ $b | 1 | TS044 | applied
     | ⟨please¦F(2, 80); y despues⟩ R(1, 50) => ⟨¦F(2, 80);⟩R(1, 50)
@@ -747,7 +717,7 @@ a=@close ⟨comma¦point then comma⟩ b=@start
 a=@close ⟨+|&|AND|->|'|'¦,⟩ $
     | $a ; | ⟨1¦.8⟩ | ⟨TS061¦TS013⟩ | applied
     | F(2, 80)⟨ +¦,⟩⏎R(1, 50) => F(2, 80)⏎R(1, 50)
-# words of other languages around a program
+# words of other languages around a program: kind, code
 ⟨read ( v=@val )¦^ read the? v=@val $⟩
     | $v | 1 | TS102 | applied
     | ⟨X = leer(DISTANCE)¦leer DISTANCE⟩ => ⟨X =DISTANCE¦DISTANCE⟩

@@ -1,27 +1,41 @@
-"""The rows of suggestions: what is told of words that no repair reads surely.
+"""What is told where no repair is read: of words beside instructions, and of what was found.
 
 `SUGGESTIONS` has these columns, and the first row that holds is told:
 
-    pattern | code | values | example => one of the values
+    pattern | code | values | example => one of the values, or the code
 
-A pattern is one of `rows`. Its first token is a whole instruction, with its brackets and its UNTIL;
-the others are the words behind it. Classes of the instruction, beside its word: @cmd (of the
-language), @did (a DEF), @more (others stand before it on its line), @later (others stand before
-it), @outer (in no block), @move, @clock (its first value is its time), @asked (has its UNTIL) and
-@unasked (may get one). Words without an instruction have @none there, also @after where one stands
-before them, @opening where they are the first of several lines, @last where they end the text, and
-@unbegun in a text without `SI|`. Classes of the words: @number (in words, too), @often (a number
-that says how often), @percent (one that says a power), @in_s (a unit of time), @other (the other
-way), @paced (another pace than its power), @told (says nothing that the instruction does not),
-@quote, @mark (what is written below a line that is meant again), @dots, @ask (a word of the
-language that asks) and @noBUTTON (a word for BUTTON, which the kit lacks), @call and @order (of the
-language: with values, or without). What `s` captures is pointed at. `h` is a header: the rest is
-read with what is asked as its question, else with TRUE.
+A pattern is one of `rows`. Its first token is what the row speaks of, the others are the tokens
+behind it:
 
-Values are texts with gaps. A gap is a capture, or a function in `suggestions`; a row with a gap
-that cannot be filled does not hold, unless `?` stands behind its name. `⟨less¦more⟩` makes a row of
-each, and a row goes on in lines that are indented, as in `rows`. Rows are sorted by what is asked
-for.
+1. A whole instruction, with its brackets and its UNTIL, before words. Its classes, beside its word:
+   @cmd (of the language), @did (a DEF), @more (others stand before it on its line), @later (others
+   stand before it), @outer (in no block), @move, @clock (its first value is its time), @asked (has
+   its UNTIL) and @unasked (may get one).
+2. No instruction, @none, before words; also @after where one stands before them, @opening where
+   they are the first of several lines, @last where they end the text, and @unbegun in a text
+   without `SI|`.
+3. What was found by who checks a text, TS015, before the instruction that it is in; also @strange
+   (a word that nobody knows begins it), and @TS033_PING, with what stands there. `usage` has more.
+
+Classes of the words of 1 and 2: @number (in words, too), @often (a number that says how often),
+@percent (one that says a power), @in_s (a unit of time), @other (the other way), @paced (another
+pace than its power), @told (says nothing that the instruction does not), @quote, @mark (what is
+written below a line that is meant again), @dots, @ask (a word of the language that asks) and
+@noBUTTON (a word for BUTTON, which the kit lacks), @call and @order (of the language: with values,
+or without); of 3: @quote, @known (of the language), @loose (a first word that means nothing) and
+@button. What `s` captures is pointed at. `h` is a header: the rest is read with what is asked as
+its question, else with TRUE.
+
+A code `=` is that which was found, with its values. Behind it stands where it is told, if not
+there, `here` (the instruction) or a place of `usage`, and what is done with it: `offered` (its fix
+takes the place of the instruction, if somebody says so), `whole` (its fix stands for that),
+`everywhere` (`right` is written in each place of a name), `again` (rows speak of it once more).
+
+Values are texts with gaps. A gap is a capture, or a function: of 1 and 2 in `suggestions`, of 3 in
+`usage`; a row with a gap that cannot be filled does not hold, unless `?` stands behind its name.
+`?=` must be filled and is not told, `*=` are values that come together. `⟨less¦more⟩` makes a row
+of each, and a row goes on in lines that are indented, as in `rows`. Rows are sorted by what is
+asked for; a heading names the laws of `rows` that those keep which no stranger's program needs.
 """
 
 # Pieces of patterns that several rows have.
@@ -40,7 +54,7 @@ PARTS = {
 }
 
 SUGGESTIONS = """
-# what stands for what is above it, and for what follows
+# what stands for what is above it, and for what follows: code
 ^ @after <again> $ | TS130 | right={above?} | F(2, 80)⏎igual que arriba => right=F(2, 80)
 ^ @after <again> by? n=@often times ⟨¦extra ⟩$
     | TS130 | right=; often={⟨all¦more⟩}
@@ -51,19 +65,16 @@ SUGGESTIONS = """
 ^ @after ⟨¦@num .|) ⟩goback to the|one? beginning|1 $
     | TS131 | found={said}; endless={endless}
     | F(1, 80)⏎⟨GO TO START¦3. voltar ao 1⟩ => endless=LOOP(FOREVER);F(1, 80);END_LOOP
-# notes
-^ @none this @word @word+ $
-    | TS073 | fix=// {said}
-    | this makes it turn to the light => fix=// this makes it turn to the light
+# notes: branch, number, code
 ^ @none TSC @any* $ | TS073 | command={said}; words= | SI|F(1, 80)⏎tsc upload => command=tsc upload
-# how often, before what is repeated, and a loop behind it
+# how often, before what is repeated, and a loop behind it: number
 ^ @none 1|@one times :? $ | TS062 | found={words}; line={said} | 1 vez:⏎S => line=1 vez
 ^ @none n=@number times :? $ | TS062 | found={words}; fix=LOOP({n}) | 4 veces:⏎S => fix=LOOP(4)
 ^ @last repeat (? n=@num? )? times? $
     | TS062 | found={words}; all={all?}
     | F(1, 50)⏎repetir 3 => all=LOOP(3);F(1, 50);END_LOOP
 ^ @opening launch $ | TS102 | found={words}; right=SI|; usage=SI|; fix= | go⏎S => right=SI|
-# questions in words
+# questions in words: branch, kind, two
 ^ @opening when|at|to? @word? @noBUTTON @word? pressed? $
     | TS102 | found={words}; right=SB|; usage=SB|; fix=
     | on button pressed⏎S => right=SB|
@@ -80,7 +91,7 @@ SUGGESTIONS = """
     | TS103 | found={s}; unsensed={s}; sensors={sensors}; near=; words=
     | IF(COLOR = RED)⏎S⏎ENDIF => unsensed=RED
 ^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $
-    | TS135 | word={head}
+    | TS135 | word={head}; *=question
     | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
 ^ @none @any* <asks> ( v=@word s=@num ) <body> $
     | TS048 | before={v}; found={s}; words=
@@ -91,10 +102,7 @@ SUGGESTIONS = """
 ^ @none s=FOREVER t=that q=@cond+ @startm $
     | TS102 | found={s} {t}; right=WHEN; usage=WHEN({question})
     | siempre que distancia > 20 avanza => usage=WHEN(DISTANCE > 20)
-^ ⟨@none s=ELSEIF¦c=ELSE s=IF⟩ :? $
-    | TS015 | word=ELSEIF; words=; usage=ELSEIF; example=ELSEIF({distance} < 10); bare=ELSE
-    | IF(DISTANCE < 10)⏎S⏎⟨ELIF¦ELSE IF⟩⏎F(1, 60)⏎ENDIF => bare=ELSE
-# what asks or calculates, alone
+# what asks or calculates, alone: branch, two, code
 ^ @none IF <either> do? w=@start @any* $
     | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n});{then};ENDIF; another=IF({two} {r}
     {n});{then};ENDIF
@@ -115,17 +123,7 @@ SUGGESTIONS = """
 ^ @none most|least|on|off the|one? s=@noGRIPPER|@noLED $
     | TS101 | found={s}; near=
     | OPEN GRIPPER => found=GRIPPER
-^ @none w=⟨F|B|L|R ( @num s=@in_steps|times¦BEEP|W ( @num s=@in_steps|times|@in_cm|@in_deg⟩ @any* $
-    | TS053 | word={called}; name=⟨time¦seconds⟩; wanted=seconds; unit={s}; usage={usage}
-    | ⟨F(3 pasos, 60)¦BEEP(3 veces)⟩ => usage=⟨F(time, power)¦BEEP(seconds, hertz)⟩
-# letters for a way
-^ @none s=FL|LF ( n=@num , @num ) $
-    | TS101 | found={s}; near=; curve=M(30, 60);W({n});S
-    | FL(1, 60) => curve=M(30, 60);W(1);S
-^ @none s=A ( n=@num , m=@num ) $
-    | TS101 | found=A; near=; ahead=F({n}, {m}); back=B({n}, {m})
-    | A(2, 80) => ahead=F(2, 80)
-# an order that is chosen, or stands for a value
+# an order that is chosen, or stands for a value: two, code
 ^ @none RANDOM ( l=@any+ ) $
     | TS136 | fix={choice}; example={choices}
     | RANDOM(L(1, 60), S) => fix=IF(RANDOM(1, 2) = 1);L(1, 60);ELSE;S;ENDIF
@@ -141,12 +139,9 @@ SUGGESTIONS = """
 ^ @none w=@call @any* (|, s=@order ) $
     | TS051 | word={s}; example={example}
     | F(2, R) => example=F(2, 80)
-# words for nothing, and those that are no words behind it
+# words for nothing, and those that are no words behind it: number
 ^ c=F|B CM|@in_cm $ | TS085 | fix={by_way} | F(20, 60) cm => fix=F(20 CM, 60)
-^ c=@move|W s=UN u=TIL q=@any+ $
-    | TS102 | found={s} {u}; right=UNTIL; usage=UNTIL{q}
-    | F(5, 60) UN TIL(DISTANCE < 30) => usage=UNTIL(DISTANCE < 30)
-# how often
+# how often: number, two
 ^ c=@more <lead> <often> <close> $
     | TS062 | found={text}; last={loop}; all={all}
     | F(1, 60); L(1, 60) x4 => last=LOOP(4);L(1, 60);END_LOOP
@@ -162,29 +157,25 @@ SUGGESTIONS = """
 ^ ⟨<does> one then anew times¦c=@cmd count? FOREVER⟩ $
     | TS085 | endless=LOOP(FOREVER);{c};END_LOOP
     | F(1, 80) ⟨una y otra vez¦siempre⟩ => endless=LOOP(FOREVER);F(1, 80);END_LOOP
-^ @none do|LOOP|make w=⟨@callw ( v=@noparen+ )¦@def⟩ @word* FOREVER|anew|over @word* $
-    | TS064 | fix=LOOP(FOREVER);{w}⟨({v})¦⟩;END_LOOP
-    | ⟨repeat F(1, 80)¦DEF A1;S;END_DEF⏎do A1⟩ again and again => fix=LOOP(FOREVER);⟨F(1,
-    80)¦A1⟩;END_LOOP
 ^ <does> @any* anew @any* $
     | TS085 | again=LOOP(2);{c};END_LOOP
     | F(1, 80) again => again=LOOP(2);F(1, 80);END_LOOP
 ^ @none TASK s=@num :|.|-|=|)? r=@any+ $
     | TS044 | found={s}; fix=TASK;{r};END_TASK
     | TASK 1: F(5, 60) => fix=TASK;F(5, 60);END_TASK
-# how long
+# how long: number
 ^ c=⟨S|STOP¦M⟩ (? during? n=@number u=@in_s )? $
     | TS085 | fix={c};W({n})⟨¦;S⟩
     | ⟨S¦M(50, 50)⟩ 2 segundos => fix=⟨S¦M(50, 50)⟩;W(2)⟨¦;S⟩
 ^ c=@clock <lead> during|to|then|X? n=@number u=@in_s <close> t=UNTIL? q=@any* $
     | TS085 | time={n} s; longer={longer}{until?}
     | F(2,80) por 5 segundos => longer=F(5,80)
-# how fast
+# how fast: number, two
 ^ c=@move ⟨<lead> @told* n=@percent @told* <close>¦A n=@num⟩ $
     | TS085 | power={paced}
     | F(2,80) ⟨al 50%¦a 50⟩ => power=F(2,50)
 ^ c=@move @word? @word? @paced $ | TS085 | power={c} | F(2, 80) despacio => power=F(2, 80)
-# until when
+# until when: branch, two
 ^ c=@cmd s=WHEN (? q=@cond+ )? w=@start @any* $
     | TS071 | found={s}; fix=WHEN({question});{then};END_WHEN;{c}
     | F(10, 50) WHEN DISTANCE < 15 BEEP(1, 440) => fix=WHEN(DISTANCE < 15);BEEP(1,
@@ -201,16 +192,10 @@ SUGGESTIONS = """
 ^ c=@cmd s=when @word* no @word* wall $
     | TS071 | found={s}; fix=IF({distance} > 10);{c};ENDIF
     | S cuando no hay pared => fix=IF(DISTANCE > 10);S;ENDIF
-^ c=@unasked s=UNTIL l=@word|@num|@unit+ $
-    | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({measured})
-    | F(2, 80) hasta la pared a 30 cm => usage=F(2, 80) UNTIL(DISTANCE < 30)
 ^ c=@unasked h=UNTIL s=@word+ $
-    | TS135 | word={head}
+    | TS135 | word={head}; *=question
     | F(2, 80) hasta negro => question=LIGHT_L < 500
-^ c=@unasked s=UNTIL @word+ $
-    | TS102 | found={s}; right=UNTIL; usage={c} UNTIL(c)
-    | F(2, 80) hasta YA => usage=F(2, 80) UNTIL(c)
-# which way, and what comes next
+# which way, and what comes next: branch, two
 ^ c=@cmd then|+|&|,|beside? <call> <moment> $
     | TS061 | found={s} {k} {t}; together=TASK;{w}({v});END_TASK;{c}
     | F(2, 80) y BEEP(1, 440) al mismo tiempo => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
@@ -236,7 +221,7 @@ SUGGESTIONS = """
 ^ c=@cmd or l=@any+ $
     | TS136 | fix={choice}; example={choices}
     | L(1, 60) o R(2, 60) => fix=IF(RANDOM(1, 2) = 1);L(1, 60);ELSE;R(2, 60);ENDIF
-# notes
+# notes: branch, number, code
 ^ @none SHOW s=@newname @word* $ | TS070 | words={shown} | SHOW Hola => words=Hola
 ^ c=@any w=@told+ $
     | TS085 | fix={note?}
@@ -251,4 +236,161 @@ SUGGESTIONS = """
 ^ c=@cmd ⟨" w=@noparen+ "¦( w=@any+ )⟩ $
     | TS085 | order={w}
     | F(1, 80) ⟨"y gira"¦(y gira)⟩ => order=y gira
+# a word that nobody knows, an end, a part of a thing, words to show, a count: kind
+^ @strange end @word? @word? $
+    | TS023 offered here | found={said}; right={end}; fix={end}
+    | for each paso in 4⏎F(1, 50)⏎end => found=end
+^ @strange end @word? @word? $ | = | | to square⏎F(1,50)⏎end⏎square => found=END
+^ @pressed | TS120 | *=button | wait for button => asked=button
+^ @strange @word .
+    | TS102 member | found={member}; right={done}; usage={done_usage?}
+    | robot.adelante() => found=robot.adelante
+^ @strange @word . | TS101 member | found={member} | servo.write(90); => found=servo.write
+^ @strange SHOW @any* @quote | TS070 | | PRINT "hola" => TS070
+^ @instead | = | *=instead | RETURN => found=RETURN
+^ @strange @loose @num $ | TS050 offered here | fix={first} = {sign} | PUNTOS 5 => fix=PUNTOS = 5
+^ @strange @loose ++|--|+|-
+    | TS050 offered here | found={sign}; fix={first} = {first} {step} {number}
+    | x++ => found=++
+# … a sentence that says a block, an order or several: branch, two, code
+^ @strange
+    | TS102 offered | fix={block}; right={right}; found={named_first}; usage={usage}; takes=
+    | SE DISTANCE < 10 APITA => fix=IF(DISTANCE < 10);BEEP(1, 440);ENDIF
+^ @strange
+    | TS102 offered | fix={order}; right={right}; found={named}; usage={usage}; takes={takes?}
+    | PIIIII => fix=BEEP(1, 440)
+^ @strange
+    | TS074 here | right={sided}; example={made_up?}
+    | avanza, gira, avanza, gira => right=F(2, 80);R(2, 80);F(2, 80);R(2, 80)
+^ @strange
+    | TS074 offered here | fix={several}; example={made_up?}
+    | esperar 2 segundos luego avanzar => fix=W(2);F(2, 80)
+^ @switched | TS122 | | PRENDER => TS122
+^ @button | TS120 | *=button | SB|botão⏎F(2, 80) => begun=SB|
+^ @strange
+    | TS102 offered | ?={endless}; fix=LOOP(FOREVER); right=LOOP; found={named_endless};
+    usage={usage}; takes=
+    | por siempre => right=LOOP
+# … a turn that says no way, or no number: branch, two, code
+^ @turned | TS074 here | ?={others} | avanza y gira a la derecha 4 veces => TS074
+^ @turned
+    | TS121 | right={way}({angle} DEG, 60); word={way}; way={side}
+    | girar(derecha, 90) => right=R(90 DEG, 60)
+^ @turned | TS121 | to_left=L{turned}; to_right=R{turned} | u turn => to_left=L(180 DEG, 60)
+^ @turned | TS121 | word={way?}; way={side?}; usage={way_usage?} | VUELTA(3) => TS121
+# … a word of another language, prose, a word of its own: kind, code
+^ @strange
+    | TS135 | word={asking}; *=in_words
+    | hasta que distancia < 10⏎avanza(1,50)⏎fin => word=UNTIL
+^ @strange
+    | TS102 offered | fix={concept_alone}; right={concept}; found={word_said}; usage={usage}; takes=
+    | EXIT => right=BREAK
+^ @strange | TS074 here | ?={concept_numbered} | salir 3 => TS074
+^ @strange | TS102 | found={word_said}; right={concept}; usage={concept_usage?} | fd 50 => found=FD
+^ @sentence
+    | TS073 here | name={variable}; example={variable} = {variable} + {number}; fix=
+    | N = 5⏎cambiar N por -1 => name=N
+^ @sentence | TS073 offered here | fix=// {said} | CALL DANCE => fix=// CALL DANCE
+^ @strange | = | near={often_taught} | Si|Loco(4)⏎F(1, 60)⏎L(0.39, 60)⏎End_loop => near=LOOP
+^ @strange | = | taught={taught} | SALTO(3) => taught=SALTO
+^ @strange | TS129 | name={untaught}; often={often?} | SALTO() => name=SALTO
+^ @strange | = | own={own} | SI|FRFL => own=FRFL
+# a word without its brackets: branch, kind
+^ TS015 @any* @button | TS120 | *=button | F boton => asked=boton
+^ @bare | = offered | fix={block} | if see obstacle stop => fix=IF(DISTANCE < 10);STOP;ENDIF
+^ @bare | = offered | fix={order} | F => fix=F(2, 80)
+^ @bare | TS074 here | right={sided}; example={made_up?} | F y gira => right=F(2, 80);R(2, 80)
+^ @bare
+    | TS074 offered here | fix={several}; example={made_up?}
+    | F 2 segundos y luego S => fix=F(2, 80);S
+^ TS015 | TS135 | word={bare_asking}; *=in_words | IF BRIGHT THEN STOP => word=IF
+^ TS015 | = | example={bare_example?}; usage={bare_usage?} | SHOW => example=SHOW(DISTANCE)
+# what is no value, in brackets or behind one: number, branch
+^ TS017
+    | TS049 offered | ?={unit}; fix={without_seconds}; found={here}
+    | F(RANDOM(1, 3) sec, 50) => fix=F(RANDOM(1, 3), 50)
+^ TS017 | TS049 whole | fix=; found={unit} | F(RANDOM(1,3) min, 50) => found=min
+^ TS017
+    | TS049 | found={number_said}; fix=; right={way_said?}
+    | BEEP(1 segundo, nota DO) => found=1 segundo
+^ TS017
+    | TS053 | name={value_name}; wanted={wanted}; unit={value_found}; word={value_word};
+    usage={value_usage}
+    | SI|F(3 VOLTAS, 75)⏎R(90 DEG, 50)⏎F(3 VOLTAS, 75)⏎BEEP(1, 440) => name=time
+^ TS017
+    | TS076 | fix=; extra={extra}; word={value_word}; usage={value_usage}
+    | F(2 VEL)⏎S => extra=VEL
+^ @values @known ( $ | = | usage={first_usage} | W( => usage=W(seconds)
+^ @values | TS101 first again | found={foreign} | CUADRADO(2 3) => found=CUADRADO
+^ @values|TS009 | TS103 amount | found={amount}; *=amount | W(más) => found=más
+^ @values SHOW @any* @word | TS070 | | SHOW(hello world) => TS070
+^ @values
+    | TS135 | word={in_words}; *=in_brackets
+    | IF(distancia a la pared < 10)⏎S⏎ENDIF => word=IF
+^ TS103 | = | near=; meant=FOREVER; endless={endless_move} | F(INFINITO, 50) => meant=FOREVER
+^ TS103 | TS135 | word={in_dark}; *=in_dark | IF(distancia < poca)⏎S⏎ENDIF => word=IF
+^ TS013
+    | TS085 behind | before={before}; words={words_behind}; order={words_behind}
+    | F (2) (80) => before=F (2)
+# a beginning in another place, or in other words: branch, kind
+^ TS034 | = | ?={saying_button}; right=SB| | Boton|F(2,80) => right=SB|
+^ @twice
+    | TS102 offered here | fix={arm}; found={said}; right={arm}; usage={arm}
+    | SI NO => found=SI NO
+^ @TS033_CHECK_CONNECTION | TS035 | | PING;CHECK_CONNECTION => TS035
+^ @TS033_PING | TS036 | found=PING; fix=PING| | SI|PING => found=PING
+^ @twice
+    | TS045 offered | fix={block}
+    | SI(DISTANCE < 10) APITA => fix=IF(DISTANCE < 10);BEEP(1, 440);ENDIF
+^ @twice
+    | TS135 | word={question_begun}; *=in_words
+    | SI|F(3, 50)⏎si hay una pared cerca BEEP(1, 440)⏎si no hay nada sigue otra vez => word=IF
+^ @twice | TS045 | ?={question_begun} | si adelante => TS045
+^ @TS033_SB
+    | = | found={begun_again}; here={begun_again}; button=SB; pause=W(2); twice={twice?};
+    instead={instead?}
+    | F(1,80)⏎SB => found=SB
+^ @twice
+    | = | found={begun_again}; here={begun_again}; button=; pause=W(2); twice=; instead={instead?}
+    | SB|SI|F(2,80) => found=SI|
+# blocks: branch
+^ TS024 | = | *=unended | DEF A - => word=DEF
+^ TS115
+    | = | skipped={skipped}
+    | IF(DISTANCE < 10)⏎BREAK⏎ENDIF⏎F(1, 60) => skipped=IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
+^ TS025 | = | part={part} | SI|WHEN(DISTANCE < 15)⏎B(1, 60)⏎ELSE⏎F(1, 60)⏎END_WHEN => part=ELSE
+^ TS120 | TS120 | *=button | SHOW(boton) => asked=boton
+^ TS029 | = | example={asked_behind?} | until distance < 10 forward => word=UNTIL
+^ TS032
+    | = | fix={forever_first}
+    | SI|WHEN(TIME() = 5, S)⏎F(50, FOREVER) => fix=F(FOREVER, 50) UNTIL(DISTANCE < 10)
+# signs and names: sign, kind, code
+^ @upside
+    | TS073 offered here | fix=// {said}
+    | Claro, aquí tienes el programa:⏎F(2, 80)⏎R(1, 50)⏎¡Espero que te ayude! => fix=// Claro, aquí
+    tienes el programa:
+^ TS005 | TS102 | found={here}; right={sign_means}; usage={sign_usage} | ⬆ => found=⬆
+^ TS005 | TS082 dots | *=dots | LOOP(3)⏎...⏎END_LOOP => head=LOOP(3)
+^ @negating | TS010 | found=!; right=NOT | IF(!DARK);S;ENDIF => found=!
+^ TS005 | TS008 | found={two_digits} | F(0:30,80) => found=0:3
+^ @brace | TS047 | found={here} | LOOP(3)⏎F(1,50)⏎} => found=}
+^ @quoted SHOW | TS070 quoted | | SHOW('hola') => TS070
+^ @quoted | TS006 quoted | found={here} | F(", 80) => found="
+^ TS105
+    | TS105 everywhere | word={word}; since={since?}; right={everywhere}; line={name_line?};
+    lines={name_lines?}; times={name_times?}
+    | S = 5 => word=S
+^ @clocked
+    | = | right={time_right?}; clock={clock?}; line={time_line?}; lines={time_lines?}
+    | F(2, 60)⏎TIME = 0⏎WHILE(TIME < 10)⏎L(1, 40)⏎END_WHILE => clock=MY_TIME
+^ TS105 | = | right={name_right?} | cuadrado = LOOP(4) => word=LOOP
+^ TS042 | TS007 | found={note} | /* hola */ F(2,80) => found=/*
+^ TS046 | TS039 | word={sensor}; right={sensor} | IF(DISTANCE(cm) < 10);S;ENDIF => word=DISTANCE
+^ TS046 | TS068 | ?={input} | X = input()⏎F(X, 80) => TS068
+^ TS009
+    | TS102 | found={plain_letters}; right={letters_mean}; usage={letters_usage?}
+    | W(5) Útil(BUTTON) => found=UTIL
+^ TS009 | TS101 | found={called_here}; near= | Señal(1,440) => found=SEÑAL
+^ TS009 | TS101 again | found={said_first} | Olá => found=OLA
+^ TS009 | = | right={cased} | F(2, TAMAÑO) => right=TAMANO
 """

@@ -1,24 +1,25 @@
 """Suggestions: what is told of words that no repair reads surely.
 
 Reads each instruction of a line with the words behind it, and words without one, by the rows of
-`suggestion_rows`. Knows no row and no sentence of any language.
+`suggestion_rows`; `holding` finds them, for `usage`, too. Knows no row and no sentence of any
+language.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from itertools import islice
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span, overlap
 from tiniscript.base.spelling import nearest
 from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import CODES, Diagnostic
+from tiniscript.diagnostics.codes import CODES, Code, Diagnostic
 from tiniscript.recovery import lines, rewrites, suggestion_rows
 from tiniscript.recovery.meanings import (
     ASKING,
@@ -43,7 +44,7 @@ from tiniscript.syntax.operators import COMPARISONS
 LONGEST = 24  # words behind an instruction that are read
 MOST = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
-_ASIDE = (codes.REPEATED.number, codes.WORDS_BEHIND.number)
+_ASIDE = (codes.REPEATED, codes.WORDS_BEHIND)
 _MOST_BEFORE = 8  # instructions that an example repeats
 _FARTHEST = 40  # lines and instructions that are looked at for what is done again
 _BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
@@ -57,10 +58,35 @@ _BARE = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
 
 
 class Row(NamedTuple):
+    """A row: its code is None where it is told with that which was found, and `how` says where."""
+
     pattern: rewrites.Pattern
-    code: str
+    code: Code | None
+    how: Sequence[str]
     values: dict[str, str]
     example: tuple[str, str]
+
+
+class Place(Protocol):
+    """What rows speak of: what comes first, and the tokens of the `row` behind it."""
+
+    text: str
+    names: Names
+
+    @property
+    def row(self) -> Sequence[Lexeme]: ...
+
+    @property
+    def spans(self) -> Sequence[Span]: ...
+
+    @property
+    def gaps(self) -> Mapping[str, Callable[[Gaps], str]]: ...
+
+    def labels(self) -> list[str]: ...
+
+    def values(self) -> dict[str, str]: ...
+
+    def several(self, name: str, gaps: Gaps) -> Mapping[str, str]: ...
 
 
 class Suggestion(NamedTuple):
@@ -77,7 +103,8 @@ def rows() -> tuple[Row, ...]:
         named = dict(each.split("=", 1) for each in values.split("; ") if each)
         wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
         compiled = rewrites.compiled(pattern, suggestion_rows.PARTS)
-        found.append(Row(compiled, code, named, (wrong, right)))
+        number, *how = code.split()
+        found.append(Row(compiled, CODES.get(number), how, named, (wrong, right)))
     return tuple(found)
 
 
@@ -123,7 +150,7 @@ def _as_orders(line: str, is_right: bool) -> str | None:
     return line.strip().rstrip(" ;") if is_right else ""
 
 
-def _parts(body: str, start: int, around: Around) -> Iterator[Trailing]:
+def _parts(body: str, start: int, around: Around) -> Iterator[_Words]:
     """Give each instruction of a line that has words behind it, and words without one."""
     names = around.names
     before: list[str | None] = []
@@ -136,33 +163,40 @@ def _parts(body: str, start: int, around: Around) -> Iterator[Trailing]:
             size = whole(tokens, names)
             rest = tokens[size:]
             if not size and (found := _said_call(tokens, names)):
-                yield Trailing(around, at, tokens, found[0], before, found[1])
+                yield _Words(around, at, tokens, found[0], before, found[1])
                 break
             if not size or not rest:
-                yield Trailing(around, at, tokens, 0, before)
+                yield _Words(around, at, tokens, 0, before)
                 break
             if any(token.text in ASKING for token in tokens[:size]):
                 is_ended = all(said_of(each.text, "do") for each in rest)  # by a THEN
-                yield Trailing(around, at, tokens if is_ended else tokens[:size], 0, before)
+                yield _Words(around, at, tokens if is_ended else tokens[:size], 0, before)
             if not whole(rest, names) or rest[0].text in ("IF", "WHILE"):
-                yield Trailing(around, at, tokens, size, before)
+                yield _Words(around, at, tokens, size, before)
                 break
             at += sum(map(width, tokens[:size]))
             tokens = rest
         before = [*before, None if is_block else match[1].strip()]
 
 
-def _told(part: Trailing) -> Suggestion | None:
-    if len(part.row) > LONGEST or not part.is_aside():
-        return None
-    line = rewrites.Encoded([made(";"), *part.row], part.names, part.labels())
+def holding(place: Place) -> Iterator[tuple[Row, Gaps]]:
+    """Give the rows that hold at a place, with what fills their gaps, in the order of the table."""
+    line = rewrites.Encoded([made(";"), *place.row], place.names, place.labels())
     for k in line.tried(_places()):
         row = rows()[k]
         if match := next(line.matches(row.pattern), None):
-            with suppress(_NoGap):
-                found = _suggestion(row, _Gaps(part, line, match))
-                is_aside = row.code in _ASIDE and part.tokens and _is_read_surely(part)
-                return None if is_aside else found
+            gaps = Gaps(place, line, match)
+            with suppress(NoGap):
+                gaps.fill(row)
+                yield row, gaps
+
+
+def _told(part: _Words) -> Suggestion | None:
+    if len(part.row) > LONGEST or not part.is_aside():
+        return None
+    for row, gaps in holding(part):
+        is_aside = row.code in _ASIDE and part.tokens and _is_read_surely(part)
+        return None if is_aside else _suggestion(row, gaps)
     return None
 
 
@@ -174,12 +208,25 @@ def _is_read_surely(part: Trailing) -> bool:
     return bool(found) and found[0].is_sure and len(found[0].items or ()) == 1
 
 
-def _suggestion(row: Row, gaps: _Gaps) -> Suggestion:
-    part, named = gaps.part, row.pattern.of_labels.groupindex
-    values = {"before": shortened(part.call), "words": shortened(part.words), "fix": ""}
-    values |= {name: template.format_map(gaps) for name, template in row.values.items()}
-    if row.code == codes.IN_WORDS.number:
-        values |= _worded(gaps, is_not="f" in named)
+class _Words(Trailing):
+    """Words behind an instruction, or without one, as a place of rows."""
+
+    def __init__(
+        self, around: Around, start: int, tokens: Sequence[Lexeme], size: int,
+        before: Sequence[str | None], said: str = "",
+    ) -> None:  # fmt: skip
+        super().__init__(around, start, tokens, size, before, said)
+        self.gaps = _GAPS
+
+    def values(self) -> dict[str, str]:
+        return {"before": shortened(self.call), "words": shortened(self.words), "fix": ""}
+
+    def several(self, name: str, gaps: Gaps) -> Mapping[str, str]:
+        return _worded(gaps)
+
+
+def _suggestion(row: Row, gaps: Gaps) -> Suggestion:
+    part, named, values = gaps.part, row.pattern.of_labels.groupindex, gaps.filled
     place = part.place if values["fix"] else None
     is_right = lines.is_right(part.tokens, part.names)
     if place and not is_right and values["fix"].startswith(part.call):
@@ -187,7 +234,8 @@ def _suggestion(row: Row, gaps: _Gaps) -> Suggestion:
         values["fix"] = values["fix"][len(part.call) :].lstrip(" ")
     start, end = gaps.span("s") if "s" in named else (1, len(part.spans))
     span = Span(part.spans[start].start, part.spans[end - 1].end)
-    code = CODES[row.code]
+    code = row.code
+    assert code is not None
     if code is codes.OTHER_LANGUAGE and values["found"].upper() == values["right"]:
         code, values = codes.MISSING_OPEN, {**values, "word": values["right"], "words": ""}
     found = Diagnostic(code, span, values, place)
@@ -210,23 +258,41 @@ def _said_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None
     return (asks, laid_out(call.tokens)) if call and not call.times else None
 
 
-class _NoGap(Exception):
+class NoGap(Exception):
     """A gap of a row cannot be filled."""
 
 
-class _Gaps(dict[str, str]):
-    """Fills the gaps of a row: captures, and the functions of `_GAPS`."""
+class Gaps(dict[str, str]):
+    """Fills the gaps of a row: captures, and the functions of its place.
 
-    def __init__(self, part: Trailing, line: rewrites.Encoded, match: re.Match[str]) -> None:
-        self.part = part
+    `filled` are the values so far: a gap may speak of those before it.
+    """
+
+    def __init__(self, place: Place, line: rewrites.Encoded, match: re.Match[str]) -> None:
+        self.place = place
+        self.filled: dict[str, str] = {}
         self._line = line
         self._match = match
 
+    @property
+    def part(self) -> Trailing:
+        assert isinstance(self.place, Trailing)
+        return self.place
+
+    def fill(self, row: Row) -> None:
+        self.filled = self.place.values()
+        for name, template in row.values.items():
+            if name == "*":
+                self.filled |= self.place.several(template, self)
+            else:
+                self.filled[name] = template.format_map(self)
+        self.filled.pop("?", None)
+
     def __missing__(self, name: str) -> str:
         gap = name.rstrip("?")
-        found = _GAPS[gap](self) if gap in _GAPS else self.captured(gap)
+        found = self.place.gaps[gap](self) if gap in self.place.gaps else self.captured(gap)
         if not found and gap == name:
-            raise _NoGap
+            raise NoGap
         return found
 
     def span(self, name: str) -> tuple[int, int]:
@@ -265,7 +331,7 @@ class _Gaps(dict[str, str]):
         return number
 
 
-def _all(gaps: _Gaps, times: str) -> str:
+def _all(gaps: Gaps, times: str) -> str:
     """The loop that does so often all that stands before, nothing where that is long."""
     part, before = gaps.part, [each for each in gaps.part.before if each]
     is_known = len(before) == len(part.before) <= _FARTHEST
@@ -281,44 +347,44 @@ def _all(gaps: _Gaps, times: str) -> str:
     return ";".join((f"LOOP({times})", *orders, BLOCK_ENDS["LOOP"]))
 
 
-def _worded(gaps: _Gaps, is_not: bool) -> dict[str, str]:
-    """What the words of a condition ask, or the opposite."""
+def _worded(gaps: Gaps) -> dict[str, str]:
+    """What the words of a condition ask."""
     row, names = gaps.tokens("s"), gaps.part.names
     is_bare = [each.text for each in gaps.from_on("s")[len(row) :][:1]] != [")"]
     is_order = is_bare and gaps["head"] == "UNTIL" and not gaps.part.tokens
     is_order |= is_bare and any("|@start|" in names.label(each) for each in row)
     is_read = is_order or bool(_asked(gaps, "s"))
-    found = None if is_read else worded([*[made("NOT")] * is_not, *row], names)
+    found = None if is_read else worded(row, names)
     if found is None:
-        raise _NoGap
+        raise NoGap
     return found
 
 
-def _sensor(gaps: _Gaps, k: int) -> str:
+def _sensor(gaps: Gaps, k: int) -> str:
     """One of the sensors that a word may mean."""
     return "".join(sensors_of(plain(gaps["l"]), gaps.part.names)[k : k + 1])
 
 
-def _measured(gaps: _Gaps) -> str:
+def _measured(gaps: Gaps) -> str:
     """What words ask with a number of their own: `la pared a 30 cm`."""
     words = gaps.tokens("l")
     is_said = any(word.kind is WORD and not said_of(word.text, "unit", "in") for word in words)
     return (worded(words, gaps.part.names) or {}).get("asked", "") if is_said else ""
 
 
-def _alone(gaps: _Gaps) -> str:
+def _alone(gaps: Gaps) -> str:
     """A condition that stands alone, and sets nothing."""
     signs = {token.text for token in gaps.tokens("s")}
     return laid_out(_asked(gaps, "s")) if signs & {*COMPARISONS} - {"="} else ""
 
 
-def _then(gaps: _Gaps) -> str:
+def _then(gaps: Gaps) -> str:
     """What is done: the words from a capture on where they are right, else the orders they say."""
     words, names = gaps.from_on("w"), gaps.part.names
     return _rest(gaps, "w") if lines.is_right(words, names) else written(orders(words, names))
 
 
-def _free(gaps: _Gaps) -> str:
+def _free(gaps: Gaps) -> str:
     """A name that may get the value before it, which is no other name."""
     names, name = gaps.part.names, plain(gaps["x"])
     is_name = all(token.kind is WORD for token in gaps.tokens("v"))
@@ -326,7 +392,7 @@ def _free(gaps: _Gaps) -> str:
     return "" if is_name or is_taken else name
 
 
-def _choice(gaps: _Gaps, is_exact: bool = False) -> str:
+def _choice(gaps: Gaps, is_exact: bool = False) -> str:
     """An IF that asks RANDOM which of two orders or more is done; `is_exact`: by no example."""
     said = f"{gaps.part.call},{gaps['l']}".lstrip(",")
     orders = []
@@ -345,13 +411,13 @@ def _choice(gaps: _Gaps, is_exact: bool = False) -> str:
     return f"{drawn}{''.join(arms)[4:]}ELSE; {orders[-1]}; ENDIF" if arms else ""
 
 
-def _loop(gaps: _Gaps) -> str:
+def _loop(gaps: Gaps) -> str:
     number = gaps["n"]
     is_often = number.isdecimal() and number not in ("0", "1")
     return f"LOOP({number});{gaps.part.call};{BLOCK_ENDS['LOOP']}" if is_often else ""
 
 
-def _with(gaps: _Gaps, value: re.Match[str] | None, new: str) -> str:
+def _with(gaps: Gaps, value: re.Match[str] | None, new: str) -> str:
     """The call with another value, of which the old one is a part; nothing where it is the same."""
     new = value.expand(new) if value else ""
     if value is None or value[1] == new:
@@ -359,25 +425,25 @@ def _with(gaps: _Gaps, value: re.Match[str] | None, new: str) -> str:
     return f"{gaps.part.call[: value.start(1)]}{new}{gaps.part.call[value.end(1) :]}"
 
 
-def _paced(gaps: _Gaps) -> str:
+def _paced(gaps: Gaps) -> str:
     """The call with another power."""
     number = gaps["n"]
     return _with(gaps, gaps.part.power, number) if 9 < float(number) <= 100 else ""
 
 
-def _asked(gaps: _Gaps, name: str = "q") -> list[Lexeme]:
+def _asked(gaps: Gaps, name: str = "q") -> list[Lexeme]:
     """The condition that words ask, in words of the language; nothing where they ask none."""
     return [] if gaps.part.is_asked else condition_in(gaps.tokens(name), gaps.part.names)
 
 
-def _shown(gaps: _Gaps) -> str:
+def _shown(gaps: Gaps) -> str:
     """A word to show, which is no letter and like no name of the program."""
     word = gaps["s"]
     is_name = len(word) < _SHORTEST_WORD or nearest(plain(word), gaps.part.names.known.values)
     return "" if is_name else word
 
 
-def _rest(gaps: _Gaps, name: str) -> str:
+def _rest(gaps: Gaps, name: str) -> str:
     """The words from a capture on."""
     start, end = gaps.span(name)
     return gaps.part.text[gaps.part.spans[start].start : gaps.part.place.end] if start < end else ""
@@ -389,20 +455,20 @@ def _calls(part: Trailing) -> list[Order]:
     return [] if any(each.is_side_free or each.is_repeated for each in found) else found
 
 
-def _orders(gaps: _Gaps) -> str:
+def _orders(gaps: Gaps) -> str:
     """The instruction, and those that the words behind it say."""
     found = _calls(gaps.part)
     return f"{gaps.part.call};{written(found)}" if found else ""
 
 
-def _note(gaps: _Gaps) -> str:
+def _note(gaps: Gaps) -> str:
     part = gaps.part
     after = part.text[part.place.end :].split("\n")[0].lstrip(" \t;\r")
     is_last = not after or after.startswith("//")
     return f"{part.call} // {part.words.strip(_BARE)}" if is_last else ""
 
 
-_GAPS: dict[str, Callable[[_Gaps], str]] = {
+_GAPS: dict[str, Callable[[Gaps], str]] = {
     "above": lambda gaps: ["", *gaps.part.before][-1] or "",
     "all": lambda gaps: _all(gaps, gaps["n?"]), "often": lambda gaps: _all(gaps, "4"),
     "endless": lambda gaps: _all(gaps, "FOREVER"),

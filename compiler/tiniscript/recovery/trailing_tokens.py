@@ -167,7 +167,7 @@ class Trailing:
                 "@unbegun": not _BEGUN.match(self.text),
                 "@opening": not _BEGUN.match(self.text) and self._is_opening(),
             }
-        return _label("\x01", labels)
+        return label("\x01", labels)
 
     def _is_opening(self) -> bool:
         """Whether words are the first line of a text, and others follow."""
@@ -203,7 +203,7 @@ class Trailing:
             "@mark": text in MARKS,
             "@dots": text == "…" or (text == "." and "." in (before, after)),
         }
-        return _label(self.names.label(token)[:-2], labels)
+        return label(self.names.label(token)[:-2], labels)
 
     def _text(self, k: int) -> str:
         return self.row[k].text if 0 <= k < len(self.row) else ""
@@ -299,5 +299,5 @@ def _set_in(text: str) -> frozenset[str]:
     return frozenset(re.findall(r"\b(\w+)\s*=", text.upper()))
 
 
-def _label(first: str, labels: Mapping[str, object]) -> str:
+def label(first: str, labels: Mapping[str, object]) -> str:
     return "|".join((first, *(label for label, is_so in labels.items() if is_so), "\x02"))

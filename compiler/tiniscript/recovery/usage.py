@@ -1,14 +1,16 @@
-"""Usage: how the instruction is written that nobody can read, where no row says more.
+"""Usage: what was found wrong, with the instruction around it, as a place that rows speak of.
 
-Takes what the grammar expected at a place, and adds what its words are about: the command that one
-of them means, a sentence, a condition in words. A function for each code. Knows no row.
+What no reader reads is told by the rows of `suggestion_rows` that begin with its code. Here are
+the classes of such a place, and the gaps of those rows. Knows no row.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
-from itertools import dropwhile, pairwise, takewhile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
+from itertools import accumulate, dropwhile, pairwise, takewhile
+from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
@@ -22,10 +24,12 @@ from tiniscript.base.words import (
     UNIT_OF,
     WAYS,
     WORDS,
+    Argument,
+    Word,
     said_instead,
 )
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
+from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
 from tiniscript.recovery.meanings import (
@@ -42,7 +46,9 @@ from tiniscript.recovery.meanings import (
     said_of,
     words_of,
 )
-from tiniscript.recovery.orders import block, condition_in, made_up, orders, written
+from tiniscript.recovery.orders import Order, block, condition_in, made_up, orders, written
+from tiniscript.recovery.suggestions import Gaps, NoGap, Row, holding
+from tiniscript.recovery.trailing_tokens import label, width
 from tiniscript.recovery.worded import worded
 from tiniscript.recovery.writing import (
     instruction_at,
@@ -77,6 +83,7 @@ _FOREVER_BEHIND = re.compile(r"(?i)([FBLR])\s*\(([^(),]+),\s*FOREVER\s*\)(\s*UNT
 _TURNED = re.compile(r"(?im)\b[FBLR]\s*\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)(?!\s*UNTIL)")
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
+_OF_VALUES = (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE)
 _OF_NAMES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
 _BEGINS = (";", "newline", "|")  # what an instruction begins behind
@@ -93,8 +100,7 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     found = text.with_name(found)
     told: list[Diagnostic] = []
     for each in found[:_MANY]:
-        say = _SAYS.get(each.code) if each.repair is None else None
-        told.append((say(_Usage(text, each)) if say else None) or each)
+        told.append((_told(Found(text, each)) if each.repair is None else None) or each)
     parts = [it for it in told if it.values.get("part")]
     if parts and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
         part = {"part": parts[0].values["part"]}
@@ -159,46 +165,131 @@ class _Text:
         return [said if each is own else each for each in found if each.values.get("found") != name]
 
 
-class _Usage:
-    """A diagnostic, and the instruction around its place."""
+def _told(place: Found) -> Diagnostic | None:
+    """Return what the first row that holds tells of a place, None where there is none."""
+    return next((place.told(row, gaps) for row, gaps in holding(place)), None)
+
+
+class Found:
+    """What was found wrong, and the instruction around its place.
+
+    `row` are the tokens of the instruction; before them rows have what was found.
+    """
 
     def __init__(self, text: _Text, found: Diagnostic) -> None:
-        self.text = text
+        self.around = text
         self.source = text.source
+        self.text = text.source.text
         self.names = text.names
         self.found = found
         self.piece = instruction_at(found.span, text.source)
         self.is_first = found.span.start == self.piece.start
-        self.behind_it = text.source.text[found.span.end :]
-        self.tokens = lexemes(self.source[self.piece])
-        self.words = [token.text for token in self.tokens if token.kind is WORD]
-        self.signs = [token.text for token in self.tokens]
-        self.number = next((it.text for it in self.tokens[1:] if it.kind is NUMBER), "1")
+        self.behind_it = self.text[found.span.end :]
+        self.row = lexemes(self.source[self.piece])
+        self.words = [token.text for token in self.row if token.kind is WORD]
+        self.signs = [token.text for token in self.row]
+        self.number = next((it.text for it in self.row[1:] if it.kind is NUMBER), "1")
+        self.gaps = GAPS
+        ends = [*accumulate(map(width, self.row), initial=self.piece.start)][1:]
+        spans = (
+            Span(end - len(it.source or ""), end) for it, end in zip(self.row, ends, strict=True)
+        )
+        self.spans = [found.span, *spans]
 
-    def around(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
+    def matched(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return the match of a pattern whose part `here` begins at the place."""
-        found = pattern.finditer(self.source.text)
+        found = pattern.finditer(self.text)
         return next((it for it in found if it.start("here") == self.found.span.start), None)
 
-    def adds(self, **values: str) -> Diagnostic:
-        """Return the diagnostic with values beside its own."""
-        return self.found._replace(values={**self.found.values, **values})
+    # -- classes ----------------------------------------------------------------------------------
 
-    def says(self, code: Code, **values: str) -> Diagnostic:
-        """Return another diagnostic of the same place."""
-        return Diagnostic(code, self.found.span, values)
+    def labels(self) -> list[str]:
+        """Return the classes of what was found, and of each token, as patterns match them."""
+        return [self._label_of_found(), *map(self._label_of, range(len(self.row)))]
 
-    def offers(self, code: Code, fix: str, **values: str) -> Diagnostic:
-        """Return one with what the instruction becomes, which is never made without asking."""
-        repair = Repair((Edit(self.piece, fix),), False)
-        return Diagnostic(code, self.piece, {"fix": fix, **values}, self.piece, repair)
+    def _label_of_found(self) -> str:
+        code, here = self.found.code, self.source[self.found.span]
+        is_strange = code is codes.UNKNOWN_WORD and self.is_first and bool(self.row)
+        is_strange = is_strange and not self.found.values.get("near")
+        said = (*self.words, "_".join(self.words[:2]))  # `turn on the led`, `u turn`
+        are_sentence = len(self.words) > 1 and len(self.source[self.piece]) <= _LONGEST
+        labels: dict[str, object] = {
+            code.number: True,
+            "@bare": code is codes.MISSING_OPEN and self.is_first,
+            f"@{code.number}_{here.upper()}": True,
+            "@values": code in _OF_VALUES,
+            "@twice": code is codes.SETUP_TWICE,
+        }
+        if code is codes.ODD_CHARACTER:
+            after = self.behind_it[:1]
+            labels |= {
+                "@upside": here in "\u00a1\u00bf" and len(self.words) > 1,
+                "@negating": here == "!" and after not in ("", "\n", " "),
+                "@brace": here in ("{", "}"),
+                "@quoted": here in QUOTES,
+            }
+        if code is codes.RESERVED:
+            labels["@clocked"] = bool(self.other_name.is_set) and self.other_name.word == "TIME"
+        if is_strange:
+            labels |= {
+                "@strange": True,
+                "@pressed": self._is_pressed(),
+                "@instead": said_instead(self.signs[0]),
+                "@switched": any(said_of(each, "on", "off") for each in said),
+                "@button": any(map(self.is_button, self.words)) and self.signs[1:2] != ["("],
+                "@turned": any(said_of(each, "turn", "lap") for each in self.words),
+                "@sentence": are_sentence and not {*self.signs} & {*COMPARISONS, "(", "="},
+            }
+        return label("\x01", labels)
 
-    def translated(self, found: str, fix: str, is_longer: bool = False) -> Diagnostic:
-        right = re.split("[(;]", fix)[0]
-        found = next((it for it in self.signs if self.names.meant(it) == right != it), found)
-        values = {"right": right, "usage": _usage(right), "takes": _usage(right) * is_longer}
-        told = self.offers(codes.OTHER_LANGUAGE, fix, found=found, **values)
-        return told._replace(span=self.found.span)
+    def _is_pressed(self) -> bool:
+        """Whether parts of one word say that a button is pressed: `onButtonPressed(…)`."""
+        parted = re.findall("[A-Z]?[a-z]+", self.source[self.piece].split("(")[0])
+        return len(parted) > 1 and any(self.is_button(plain(each)) for each in parted)
+
+    def _label_of(self, k: int) -> str:
+        text, span = self.row[k].text, self.spans[k + 1]
+        is_said = bool(self.names.meant(text) or said_of(text, "turn", "end", "short"))
+        labels = {
+            "@quote": text in QUOTES,
+            "@known": text in WORDS,
+            "@loose": not k and not is_said,
+            "@button": self.is_button(text),
+            "@behind": span.start >= self.found.span.start,
+        }
+        return label(self.names.label(self.row[k])[:-2], labels)
+
+    # -- where it is told -------------------------------------------------------------------------
+
+    def told(self, row: Row, gaps: Gaps) -> Diagnostic:
+        """Return what a row tells: of the place, or where its words say."""
+        values, fix = gaps.filled, gaps.filled.get("fix", "")
+        span = next((_PLACES[each](self) for each in row.how if each in _PLACES), self.found.span)
+        code = row.code or self.found.code
+        if row.code is None:
+            values = {**self.found.values, **values}
+        place = self.piece if {*row.how} & {"offered", "whole"} else None
+        repair = Repair((Edit(self.piece, fix),), False) if "offered" in row.how else None
+        if "everywhere" in row.how:
+            edits = (Edit(each, values["right"]) for each in self.renamed())
+            repair = Repair(tuple(edits), False)
+        told = Diagnostic(code, span, values, place, repair)
+        if "again" not in row.how:
+            return told
+        return _told(Found(self.around, told)) or told
+
+    def values(self) -> dict[str, str]:
+        """Return what is said before the gaps of a row are filled."""
+        return {}
+
+    def several(self, name: str, gaps: Gaps) -> Mapping[str, str]:
+        """Return values that come together."""
+        found = _SEVERAL[name](self, gaps.filled.get("word", ""))
+        if not found:
+            raise NoGap
+        return found
+
+    # -- what its words say -----------------------------------------------------------------------
 
     def usage(self, word: str) -> str:
         """Return how an instruction is written: a block with its end, where the text has none."""
@@ -207,10 +298,10 @@ class _Usage:
         if word in ("L", "R") and (angle := _ANGLE.search(self.source[self.piece])):
             if float(angle[1]) >= LONG_S:  # `turnLeft(90, 70)`: no seconds
                 return f"{word}({angle[1]} DEG, {angle[2]})"
-        is_ended = _ENDS.search(plain(self.source.text)) is not None
+        is_ended = _ENDS.search(plain(self.text)) is not None
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
-        found = lines.read(self.tokens, self.names) if word == "LOOP" else []  # else a guess
+        found = lines.read(self.row, self.names) if word == "LOOP" else []  # else a guess
         is_head = bool(found) and [each.kind for each in found[0].items or ()] == ["open"]
         head = laid_out(found[0].tokens).strip("; ") if is_head else _usage(word)
         return head if is_ended else f"{head}; ...; {BLOCK_ENDS[word]}"
@@ -228,481 +319,238 @@ class _Usage:
 
     def asked(self, word: str) -> list[Lexeme]:
         """Return what stands behind a header, up to what is done."""
-        behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.tokens)][1:]
+        behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.row)][1:]
         begun = DONE - {"L", "R"}  # `pared a la derecha`
         meant = [_is_over(each) or self.names.meant(each.text) in begun for each in behind]
         return behind[: [*meant, True].index(True)]
 
-    def block(self) -> str:
-        below = self.source.text[self.piece.end :].lstrip("; \t\r\n").upper()
-        is_open = bool(re.match(r"SI ?NO\b|ELSE", below))
-        return block(self.tokens, self.names, is_open)
-
-    # -- words that are none of the language ----------------------------------------------------
-
-    def unknown(self) -> Diagnostic | None:
-        """A word that nobody knows, or that an instruction is said with."""
-        if not self.is_first or self.found.values.get("near") or not self.tokens:
-            return None
-        first, sign = self.signs[0], "".join(self.signs[1:2])
-        if said_of(first, "end") and len(self.words) == len(self.tokens) < _MOST_OF_END:
-            named = next(
-                (BLOCK_ENDS.get(self.names.meant(word), "") for word in self.words[1:]), ""
-            )
-            end = named or self.text.end_at(self.piece.start)
-            said = self.source[self.piece]
-            return self.offers(codes.END_ALONE, end, found=said, right=end) if end else None
-        parted = re.findall("[A-Z]?[a-z]+", self.source[self.piece].split("(")[0])
-        if len(parted) > 1 and any(self.is_button(plain(each)) for each in parted):
-            return self.no_button()  # `onButtonPressed(…)`
-        if parts := _MEMBER.match(self.source.text, self.found.span.start):  # `Serial.begin`
-            thing, _, done = plain(parts[0]).rpartition(".")
-            right = "" if said_of(thing, "device") else self.names.meant(done)  # `servo.write`
-            usage = self.usage(right)
-            values = {"right": right, "usage": usage} if self.names.takes(right) else {}
-            code = codes.OTHER_LANGUAGE if values else codes.UNKNOWN_WORD
-            return Diagnostic(code, Span(*parts.span()), {"found": parts[0], **values})
-        if self.names.meant(first) == "SHOW" and {*self.signs} & {*QUOTES}:
-            return self.says(codes.WORDS_SHOWN)
-        if instead := said_instead(first):
-            return self.adds(**instead)
-        if not (self.names.meant(first) or said_of(first, "turn", "end", "short")):
-            if self.signs == [first, self.number]:
-                return self.offers(codes.OTHER_ASSIGNMENT, f"{first} = {sign}")
-            if sign in ("++", "--", "+", "-"):
-                fix = f"{first} = {first} {sign[0]} {self.number}"
-                return self.offers(codes.OTHER_ASSIGNMENT, fix, found=sign)
-        return self.sentence() or self.own_word()
-
-    def sentence(self) -> Diagnostic | None:
-        """Words that say an instruction, or several, or none."""
-        words = self.words
-        ordered = self.ordered()
-        meant = next(iter(ordered), "")
-        if told := self.orders(meant):
-            return told
-        said = (*words, "_".join(words[:2]))  # `turn on the led`, `u turn`
-        if any(said_of(each, "on", "off") for each in said):
-            return self.says(codes.SWITCH_WHAT)
-        if any(map(self.is_button, words)) and self.signs[1:2] != ["("]:
-            return self.no_button()
-        endless = next((each for each in words if self.names.meant(each) == "FOREVER"), "")
-        if endless and not meant:
-            return self.translated(endless, "LOOP(FOREVER)")
-        if any(said_of(each, "turn", "lap") for each in words):
-            return self.turn(said, ordered)
-        word = next(filter(self.names.meant, (*words[:1], meant)), "")
-        concept = self.names.meant(word)
-        is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
-        is_among = concept == "S" and {*ordered.values()} != {"S"}  # `ve para adelante`
-        if is_order and concept != word and not is_among:
-            if concept in ASKING and (asked := self.asked_in_words(concept)):
-                return asked
-            if len(self.tokens) == 1 and not WORDS[concept].arguments:
-                return self.translated(word, concept)
-            if not WORDS[concept].arguments and any(it.kind is NUMBER for it in self.tokens):
-                return Diagnostic(codes.SEVERAL_ORDERS, self.piece)  # it alone would lose it
-            return self.says(
-                codes.OTHER_LANGUAGE, found=word, right=concept, usage=self.usage(concept)
-            )
-        text = self.source[self.piece]
-        if len(words) < 2 or {*self.signs} & {*COMPARISONS, "(", "="} or len(text) > _LONGEST:
-            return None
-        if name := next((each for each in words if each in self.names.variables), ""):
-            example = f"{name} = {name} + {self.number}"
-            values = {"name": name, "example": example, "fix": ""}
-            return Diagnostic(codes.PROSE, self.piece, values)
-        return self.offers(codes.PROSE, f"// {text}")
-
-    def turn(self, said: Sequence[str], ordered: dict[str, str]) -> Diagnostic:
-        """A turn that says no way, or no number."""
-        others = {its for word, its in ordered.items() if not said_of(word, "right")}
-        if others - {"L", "R", "B", "S"}:
-            return Diagnostic(codes.SEVERAL_ORDERS, self.piece)  # a turn alone would lose them
-        way = next((it for it in map(self.names.meant, self.words) if it in ("L", "R")), "")
-        degrees = {"half": "180", "whole": "360"}
-        halves = (it for it in degrees if any(said_of(each, it) for each in said))
-        angle = degrees.get(next(halves, ""), "")
-        is_timed = any(said_of(each, "unit")[:1] not in ((), ("turns",)) for each in self.words)
-        numbers = [token.text for token in self.tokens if token.kind is NUMBER]
-        if len(numbers) == 1 and float(numbers[0]) >= LONG_S and not is_timed:
-            angle = numbers[0]  # `SPIN 360`: no time, and no power
-        turns = orders(self.tokens, self.names)
-        values = laid_out(self.tokens[1:])
-        is_call = all(float(number) <= MOST_POWER for number in numbers)
-        side = {"L": "left", "R": "right"}.get(way, "")
-        if angle and way and not is_timed:
-            right = f"{way}({angle} DEG, 60)"
-            return self.says(codes.WHICH_WAY, word=way, way=side, right=right)
-        if angle and not is_timed:
-            turned = f"({angle} DEG, 60)"
-        elif len(turns) == 1 and turns[0].is_side_free and len(turns[0].samples) < 2:
-            turned = turns[0].text[1:]
-        elif not way and is_call and lines.is_right(lexemes(f"L{values}"), self.names):
-            turned = values  # `VOLTA(2, 80)`
-        else:
-            return self.says(codes.WHICH_WAY, word=way, way=side, usage=_usage(way))
-        return self.says(codes.WHICH_WAY, to_left=f"L{turned}", to_right=f"R{turned}")
-
-    def orders(self, meant: str) -> Diagnostic | None:
-        """Words that say a block, or orders, of which `meant` is a word; offered, never made."""
-        if text := self.block():
-            return self.translated(self.signs[0], text)
-        said = orders(self.tokens, self.names) if meant else []
-        if len(said) == 1 and not said[0].is_side_free:
-            return self.translated(meant, said[0].text, bool(said[0].samples))
-        if len(said) < 2:
-            return None
-        fix, example = written(said), made_up(said)
-        if any(each.is_side_free for each in said):
-            values = {"right": fix, "example": example, "fix": ""}  # right is no change
-            return Diagnostic(codes.SEVERAL_ORDERS, self.piece, values)
-        return self.offers(codes.SEVERAL_ORDERS, fix, example=example)
-
-    def own_word(self) -> Diagnostic | None:
-        """A word of the program's own that nothing teaches."""
-        piece = plain(self.source[self.piece])
-        match = _OWN.fullmatch(piece)
-        if match is None:
-            return self.with_values(piece)
-        name, is_call, number = match.groups()
-        if number and self.text.lacks_loop:
-            return self.adds(near="LOOP")
-        given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.source.text)
-        if number or len({*given}) > 1:
-            return self.with_values(piece)  # seconds, or how often: who writes it knows
-        if self.names.meant(name):
-            return None  # a function of another language
-        lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.source.text)
-        times = len(lone)
-        if is_call or len(lone) > 1 or self.names.defs or said_of(name, "taught"):
-            often = f"LOOP({times});{name};END_LOOP" if times > 1 else ""
-            return self.says(codes.UNTAUGHT, name=name, often=often)
-        return self.adds(own="" if said_of(name, *_NO_NAMES) else name)
-
-    def with_values(self, piece: str) -> Diagnostic | None:
-        """`SIDE(30, 60)`, where no DEF has this name."""
-        match = _CALL.fullmatch(piece)
-        if match is None or self.names.meant(match[1]) or said_of(match[1], *_NO_NAMES):
-            return None
-        return self.adds(taught=match[1])
-
-    def forever(self) -> Diagnostic | None:
-        """`F(50, FOREVER)`: FOREVER is a time, and goes first."""
-        match = _FOREVER_BEHIND.fullmatch(self.source[self.piece])
-        if match is None:
-            return None
-        until = match[3] or f" UNTIL({WORDS['UNTIL'].arguments[0].sample})"
-        return self.adds(fix=f"{match[1].upper()}(FOREVER, {match[2].strip()}){until}")
-
-    def until(self) -> Diagnostic:
-        asked = re.match(r"\s*(\([^()\n]+\))", self.source.text[self.found.span.start + 5 :])
-        return self.adds(example=f"F(2, 80) UNTIL{asked[1]}" if asked else "")
-
-    def no_button(self) -> Diagnostic:
-        """A button that nobody can ask for; a program may begin with the one that starts it."""
-        asked = next((it.source for it in self.tokens if self.is_button(it.text)), "")
-        begun = "SB|" if self.text.begun == "SB" else ""
-        when = self.source[self.piece] if self.signs[:1] == ["WHEN"] and not begun else ""
-        return self.says(codes.NO_BUTTON, begun=begun, asked=asked or "BUTTON", when=when)
-
     def is_button(self, word: str) -> bool:
         return "BUTTON" not in self.names.sensors and concept_of(word) == "BUTTON"
 
+    @cached_property
     def ordered(self) -> dict[str, str]:
-        """Return the words of no program that mean an order, and which."""
+        """The words of no program that mean an order, and which."""
         meant = {word: self.names.meant(word) for word in self.words if word not in WORDS}
         return {
             it: its for it, its in meant.items() if its in WORDS and WORDS[its].role.is_instruction
         }
 
-    def brackets(self) -> Diagnostic:
-        """A word without its values; alone it gets an example of them."""
-        word = self.found.values["word"]
-        if any(map(self.is_button, self.signs)):
-            return self.no_button()
-        if self.is_first and (said := self.orders(word)):
-            if said.code is codes.SEVERAL_ORDERS:
-                return said
-            return self.adds(fix=said.values["fix"])._replace(place=self.piece, repair=said.repair)
-        if word in ASKING and (asked := self.asked_in_words(word)):
-            return asked
-        is_alone = len(self.tokens) == 1 and word in WORDS and WORDS[word].arguments
-        example = WORDS[word].example if is_alone else ""
-        return self.adds(example=example, usage=self.usage(word))
+    @property
+    def meant(self) -> str:
+        """The first word that means an order; without brackets it is the one that lacks them."""
+        is_bare = self.found.code is codes.MISSING_OPEN
+        return self.found.values["word"] if is_bare else next(iter(self.ordered), "")
 
-    def condition(self) -> Diagnostic | None:
-        """A condition in words, in the brackets of a header; or nothing in brackets."""
-        if self.found.code is codes.MISSING_COMMA and (said := self.unit() or self.no_value()):
-            return said
-        if self.signs[1:] == ["("] and self.signs[0] in WORDS:
-            return self.adds(usage=self.usage(self.signs[0]))
-        if (said := self.foreign() or self.amount()) is not None:
-            return said
-        if self.words[1:] and self.names.meant(self.signs[0]) == "SHOW":
-            return self.says(codes.WORDS_SHOWN)
-        before = lexemes(self.source[Span(self.piece.start, self.found.span.start)])
-        heads = [self.names.meant(it.text) for it, sign in pairwise(before) if sign.text == "("]
-        own = {*WORDS, *self.names.known.values} - {"SI"}
-        if not heads or heads[-1] not in ASKING or {*self.words} <= own:
-            return None
-        return self.in_words(heads[-1])
+    @cached_property
+    def orders(self) -> list[Order]:
+        return orders(self.row, self.names) if self.meant else []
 
-    def asked_in_words(self, word: str) -> Diagnostic | None:
-        """A question in words without brackets: `IF BRIGHT THEN STOP`."""
-        said = worded(self.asked(word), self.names) or {}
-        is_told = said.get("asked") or said.get("question")
-        return self.says(codes.IN_WORDS, word=word, **said) if is_told else None
+    def named(self, right: str, other: str) -> str:
+        """Return the word that means another one, else `other`."""
+        return next((it for it in self.signs if self.names.meant(it) == right != it), other)
 
-    def in_words(self, word: str) -> Diagnostic:
-        """A question in words: what its words ask, else an example."""
-        start = next(k for k, each in enumerate(self.tokens) if self.names.meant(each.text) == word)
-        asked = self.tokens[start + 2 : closed(self.tokens, start + 1) - 1]
-        sample = {"example": WORDS[word].arguments[0].sample, "question": ""}
-        return self.says(codes.IN_WORDS, word=word, **(worded(asked, self.names) or sample))
+    @cached_property
+    def turn(self) -> _Turn:
+        """A turn that says no way, or no number."""
+        said = (*self.words, "_".join(self.words[:2]))
+        way = next((it for it in map(self.names.meant, self.words) if it in ("L", "R")), "")
+        degrees = {"half": "180", "whole": "360"}
+        halves = (it for it in degrees if any(said_of(each, it) for each in said))
+        angle = degrees.get(next(halves, ""), "")
+        is_timed = any(said_of(each, "unit")[:1] not in ((), ("turns",)) for each in self.words)
+        numbers = [token.text for token in self.row if token.kind is NUMBER]
+        if len(numbers) == 1 and float(numbers[0]) >= LONG_S and not is_timed:
+            angle = numbers[0]  # `SPIN 360`: no time, and no power
+        turns = orders(self.row, self.names)
+        values = laid_out(self.row[1:])
+        is_call = all(float(number) <= MOST_POWER for number in numbers)
+        if angle and not is_timed:
+            return _Turn(way, angle, f"({angle} DEG, 60)")
+        if len(turns) == 1 and turns[0].is_side_free and len(turns[0].samples) < 2:
+            return _Turn(way, "", turns[0].text[1:])
+        if not way and is_call and lines.is_right(lexemes(f"L{values}"), self.names):
+            return _Turn(way, "", values)  # `VOLTA(2, 80)`
+        return _Turn(way, "", "")
 
-    def name_in_words(self) -> Diagnostic | None:
-        """A name that nobody knows, which asks something in words: DARK of `X > 5 OR DARK`."""
-        before = lexemes(self.source[Span(self.piece.start, self.found.span.start)])
-        heads = [one.text for one, after in pairwise(before) if after.text == "("]
-        name = plain(self.source[self.found.span])
-        if self.names.meant(name) == "FOREVER" and self.signs[:1] and self.signs[0] in MOVES:
-            start, end = (place - self.piece.start for place in self.found.span)
-            said = self.source[self.piece]
-            endless = (
-                f"{said[:start]}FOREVER{said[end:]} UNTIL({WORDS['UNTIL'].arguments[0].sample})"
-            )
-            return self.adds(near="", meant="FOREVER", endless=endless)
-        is_asked = bool(said_of(name, "light", "ahead"))
-        if not heads or heads[-1] not in ASKING or not is_asked or before[-1].text in COMPARISONS:
-            return None
-        told = self.in_words(heads[-1])
-        return told if told.values.get("question") else None
+    @cached_property
+    def own(self) -> _Own:
+        """A word of the program's own that nothing teaches."""
+        piece = plain(self.source[self.piece])
+        match = _OWN.fullmatch(piece)
+        name, is_call, number = match.groups() if match else ("", "", "")
+        given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.text) if name else []
+        if not name or number or len({*given}) > 1:  # seconds, or how often: who writes it knows
+            call = _CALL.fullmatch(piece)
+            is_other = call is None or self.names.meant(call[1]) or said_of(call[1], *_NO_NAMES)
+            is_often = bool(number and self.around.lacks_loop)
+            return _Own("", "" if is_other or call is None else call[1], is_often, 0, False)
+        if self.names.meant(name):
+            return _Own("", "", False, 0, False)  # a function of another language
+        lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.text)
+        is_taught = bool(is_call or len(lone) > 1 or self.names.defs or said_of(name, "taught"))
+        return _Own(name, "", False, len(lone), is_taught)
 
-    def unit(self) -> Diagnostic | None:
-        """A unit behind a calculation: `F(RANDOM(1, 3) sec, 50)`."""
-        span = self.found.span
-        unit = said_of(plain(self.source[span]), "unit")
-        end = len(self.source.text[: span.start].rstrip())  # of the value
-        if not unit or self.source.text[end - 1] != ")":
-            return None
-        fix = self.source[Span(self.piece.start, end)] + self.source[Span(span.end, self.piece.end)]
-        told = self.offers(
-            codes.UNIT, fix if unit == ("s", "1000") else "", found=self.source[span]
-        )
-        return told._replace(span=span, repair=told.repair if unit == ("s", "1000") else None)
+    def before(self) -> list[Lexeme]:
+        """Return the tokens of the instruction before the place."""
+        return lexemes(self.source[Span(self.piece.start, self.found.span.start)])
 
-    def no_value(self) -> Diagnostic | None:
+    def header(self) -> str:
+        """Return the word before the brackets that the place is in, "" where none asks."""
+        heads = [
+            self.names.meant(it.text) for it, sign in pairwise(self.before()) if sign.text == "("
+        ]
+        return heads[-1] if heads and heads[-1] in ASKING else ""
+
+    @cached_property
+    def amount(self) -> dict[str, str]:
+        """Words that say how much, in the place of a number, and the call with numbers."""
+        is_word = self.source[self.found.span][:1].isalnum()
+        return with_number(self.text, self.found.span) if is_word else {}
+
+    @cached_property
+    def no_value(self) -> _NoValue | None:
         """A word behind a number, which is no value: a unit of something else, or nothing."""
-        span = self.found.span
-        before = lexemes(self.source[Span(self.piece.start, span.start)])
+        before = self.before()
         calls = [one.text for one, after in pairwise(before) if after.text == "("]
-        word, found = WORDS.get("".join(calls[-1:])), plain(self.source[span])
+        word, found = WORDS.get("".join(calls[-1:])), plain(self.source[self.found.span])
         is_word = found.isidentifier() and found not in WORDS and not self.names.is_name(found)
         if word is None or not word.arguments or before[-1].kind is not NUMBER or not is_word:
             return None
-        values = {"word": word.text, "usage": word.usage}
         at = min(sum(each.text == "," for each in before), len(word.arguments) - 1)
-        if not (wanted := _WANTED.get(word.arguments[at].unit)):
-            return None
-        if unit := said_of(found, "unit"):
-            number, way = before[-1].text, UNIT_OF.get(word.text, "")
-            said = f"{number} {self.source[span]}"
-            if unit[0] == word.arguments[at].unit:
-                return self.says(codes.UNIT, found=said, fix="")
-            if way and unit == (WAYS[way].unit, "1000"):
-                return self.says(codes.UNIT, found=said, fix="", right=f"{number} {way}")
-            name = word.arguments[at].name
-            return self.says(codes.OTHER_UNIT, name=name, wanted=wanted, unit=found, **values)
-        return self.says(codes.OTHER_CALL, fix="", extra=found, **values)
+        argument = word.arguments[at]
+        unit = said_of(found, "unit")
+        way = UNIT_OF.get(word.text, "")
+        is_of_way = bool(way) and unit == (WAYS[way].unit, "1000")
+        said = f"{before[-1].text} {way}" if is_of_way else ""
+        return (
+            _NoValue(word, argument, before[-1].text, found, unit[0] if unit else "", said)
+            if (argument.unit in _WANTED)
+            else None
+        )
 
-    def foreign(self) -> Diagnostic | None:
-        """The values of a word that this robot does not have: whoever writes it wants the word."""
-        word, start = "".join(self.words[:1]), self.piece.start
-        is_call = self.signs[:2] == [word, "("]
-        if not is_call or self.names.meant(word) or self.names.is_name(word):
-            return None
-        told = Diagnostic(codes.UNKNOWN_WORD, Span(start, start + len(word)), {"found": word})
-        return _Usage(self.text, told).unknown() or told
+    def button(self) -> dict[str, str]:
+        """A button that nobody can ask for; a program may begin with the one that starts it."""
+        asked = next((it.source for it in self.row if self.is_button(it.text)), "")
+        begun = "SB|" if self.around.begun == "SB" else ""
+        when = self.source[self.piece] if self.signs[:1] == ["WHEN"] and not begun else ""
+        return {"begun": begun, "asked": asked or "BUTTON", "when": when}
 
-    def setup(self) -> Diagnostic | None:
-        """Another word before the bar: one that says the button, or looks like it."""
-        word = self.found.values["found"]
-        return self.adds(right="SB|") if word == "S8" or concept_of(word) == "BUTTON" else None
+    def in_words(self, word: str) -> dict[str, str]:
+        """A question in words without brackets: `IF BRIGHT THEN STOP`."""
+        said = worded(self.asked(word), self.names) or {}
+        return said if said.get("asked") or said.get("question") else {}
 
-    def begins(self) -> Diagnostic:
-        """`SI` in the midst of a program begins a condition, or the program once more."""
-        word = self.source[self.found.span].upper()
-        arm = self.names.meant("_".join(self.words[:2]))
-        if arm == "ELSE" and len(self.tokens) == 2:  # `si no`
-            found = self.source[self.piece]
-            return self.offers(codes.OTHER_LANGUAGE, arm, found=found, right=arm, usage=arm)
-        if word == "CHECK_CONNECTION":
-            return self.says(codes.PING_ALONE)
-        if word == "PING":
-            return self.says(codes.SETUP_NEEDS_BAR, found=word, fix="PING|")
-        is_bar = self.behind_it.lstrip()[:1] == "|"
-        if text := self.block():
-            return self.offers(codes.SPANISH_IF, text)._replace(span=self.found.span)
-        if word == "SI" and not is_bar:
-            return self.asked_in_words("IF") or self.says(codes.SPANISH_IF)
-        here = word + "|" * is_bar
-        button = "SB" if word == "SB" else ""
-        twice = here if word == self.text.begun == "SB" else ""
-        return self.adds(found=here, button=button, pause="W(2)", here=here, twice=twice,
-                         instead=self.text.begun)  # fmt: skip
+    def in_brackets(self, word: str) -> dict[str, str]:
+        """A question in words in the brackets of a header: what they ask, else an example."""
+        start = next(k for k, each in enumerate(self.row) if self.names.meant(each.text) == word)
+        asked = self.row[start + 2 : closed(self.row, start + 1) - 1]
+        sample = {"example": WORDS[word].arguments[0].sample, "question": ""}
+        return worded(asked, self.names) or sample
 
-    # -- blocks, signs and names ------------------------------------------------------------------
+    def dots(self) -> dict[str, str]:
+        """Dots for what goes inside a block, as the poster has them."""
+        match = self.matched(_DOTS)
+        if match is None:
+            return {}
+        head, end = match["head"], (match["end"] or "").upper()
+        right = BLOCK_ENDS[(match["word"] or "DEF").upper()]
+        values = {"head": head, "right": right, "out": "" if end else match["here"].strip()}
+        called = (match["name"] or "").upper()
+        rest = self.text[match.end() :] if end == right else ""
+        below = _row(rest) or (_before_blocks(rest, called) if called else [])
+        calls = [each for each in below if _calls(each, called)]
+        if inside := [each for each in below if each not in calls]:
+            values["example"] = "; ".join((head, *inside, right, *calls))
+        return values
 
-    def unended(self) -> Diagnostic:
-        """A block without its end: where its indentation, or its line, says that it ends."""
-        rows = self.source.text.splitlines()
+    def unended(self) -> dict[str, str]:
+        """Where a block ends that has no end: its indentation, or its line, says so."""
+        rows = self.text.splitlines()
         k = self.source.position(self.found.span.start)[0] - 1
         behind = without_note(self.behind_it[: len(rows[k])])[0]
         rest = [each.strip() for each in behind.split("\n")[0].split(";") if _WORD.search(each)]
         below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
         if rest and k + 1 == len(rows):
-            return self.adds(behind=rest[-1])
+            return {"behind": rest[-1]}
         if not below:
-            return self.adds(head=self.source[self.found.span])
+            return {"head": self.source[self.found.span]}
         depth = [len(row) - len(row.lstrip()) for row in rows]
         top = min((n for n in below if _TOP.match(rows[n])), default=0)  # which no block is around
         inside = [*takewhile(lambda n: n < top if top else depth[n] > depth[k], below)]
         if not inside:
-            return self.found
-        last = without_note(rows[inside[-1]])[0].strip(" \t;")
-        return self.adds(line=str(inside[-1] + 1), last=last)
+            return {}
+        return {
+            "line": str(inside[-1] + 1),
+            "last": without_note(rows[inside[-1]])[0].strip(" \t;"),
+        }
 
-    def break_outside(self) -> Diagnostic | None:
-        """A BREAK in an IF that no loop is around: what follows may be what is left out."""
-        match = self.around(_BREAK)
-        rest = _row(self.source.text[match.end() :]) if match else []
-        if match is None or not rest:
-            return None
-        return self.adds(skipped=";".join((match[1], "S", "ELSE", *rest, BLOCK_ENDS["IF"])))
-
-    def unopened_part(self) -> Diagnostic | None:
-        """An ELSE in a WHEN."""
-        before = self.source.text[: self.found.span.start]
-        is_open = re.search(r"(?is)\bWHEN\b(?!.*\bEND_?WHEN\b)", before)
-        return self.adds(part=self.found.values["found"]) if is_open else None
-
-    def sign(self) -> Diagnostic | None:
-        text, (start, end) = self.source.text, self.found.span
-        sign = text[start:end]
-        if sign in "\u00a1\u00bf" and len(self.words) > 1:
-            return self.offers(codes.PROSE, f"// {self.source[self.piece]}")
-        if right := concept_of(sign):
-            return self.says(codes.OTHER_LANGUAGE, found=sign, right=right, usage=_usage(right))
-        if sign in ".\u2026" and (said := self.dots()) is not None:
-            return said
-        if sign == "!" and text[end : end + 1] not in ("", "\n", " "):
-            return self.says(codes.OTHER_SIGN, found="!", right="NOT")
-        if re.fullmatch("[0-9]:[0-9]", around := text[start - 1 : end + 1]):
-            return self.says(codes.BAD_NUMBER, found=around)
-        if sign in ("{", "}"):
-            return self.says(codes.BRACES, found=sign)
-        if sign not in QUOTES:
-            return None
-        closed = re.compile(rf"[^\n]*?{sign}").match(text, end)
-        span = Span(start, closed.end() if closed else end)
-        if self.names.meant(self.signs[0]) == "SHOW":
-            return Diagnostic(codes.WORDS_SHOWN, span)
-        return Diagnostic(codes.QUOTE, span, {"found": sign})
-
-    def dots(self) -> Diagnostic | None:
-        """Dots for what goes inside a block, as the poster has them."""
-        match = self.around(_DOTS)
-        if match is None:
-            return None
-        head, end = match["head"], (match["end"] or "").upper()
-        right = BLOCK_ENDS[(match["word"] or "DEF").upper()]
-        values = {"head": head, "right": right, "out": "" if end else match["here"].strip()}
-        called = (match["name"] or "").upper()
-        rest = self.source.text[match.end() :] if end == right else ""
-        below = _row(rest) or (_before_blocks(rest, called) if called else [])
-        calls = [each for each in below if _calls(each, called)]
-        if inside := [each for each in below if each not in calls]:
-            values["example"] = "; ".join((head, *inside, right, *calls))
-        return Diagnostic(codes.DOTS, Span(*match.span("here")), values)
-
-    def name(self) -> Diagnostic:
-        """A word of the language as a name: another one for it."""
-        word, text, start = self.found.values["word"], self.source.text, self.found.span.start
+    @cached_property
+    def other_name(self) -> _OtherName:
+        """Another name for a word of the language that stands for one."""
+        word, text, start = self.found.values["word"], self.text, self.found.span.start
         is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
         is_taught = _TAUGHT.search(text[max(0, start - _LONG_HEAD) : start])
         right = in_place_of(text, word) if is_set or is_taught else ""
-        near = nearest(word, self.names.variables - {word}) if is_set else None
-        if right and (word in SINCE or not (near or (is_set and word == "TIME" and not is_set[1]))):
-            return self.renamed(word, right, is_taught is not None)
-        if is_set is None or word != "TIME":
-            return self.adds(right=near or right)  # `ROUND = ROUNDS + 1`
-        places = [each.start() for each in re.finditer(r"(?i)\bTIME\b", text)][1:]
-        used = [str(self.source.position(place)[0]) for place in places]
-        values = {"line" if len(used) == 1 else "lines": ", ".join(used)}
-        return self.adds(**{"right" if is_set[1] else "clock": right}, **values)
+        near = (nearest(word, self.names.variables - {word}) or "") if is_set else ""
+        is_clock = bool(is_set and word == "TIME" and not is_set[1])
+        is_everywhere = bool(right) and (word in SINCE or not (near or is_clock))
+        return _OtherName(word, right, near, is_taught is not None, is_set, is_everywhere)
 
-    def renamed(self, word: str, right: str, is_def: bool) -> Diagnostic:
-        """Another name in each place where a word is meant as one: S of `F(S, 80)`, not S alone."""
-        tokens = scan(self.source.text).tokens
+    def renamed(self) -> list[Span]:
+        """Return each place where a word is meant as a name: S of `F(S, 80)`, not S alone."""
+        word, _, _, is_def, _, _ = self.other_name
+        tokens = scan(self.text).tokens
         places = range(len(tokens)) if word in SINCE else _meant_as_name(tokens, word, is_def)
-        spans = [
+        return [
             tokens[k].span for k in places
             if tokens[k].text == word and (k == 0 or tokens[k - 1].kind not in (NUMBER, ")"))
         ]  # fmt: skip
-        rows = [str(self.source.position(each.start)[0]) for each in spans]
-        others = list(dict.fromkeys(rows))[1:]
-        repair = Repair(tuple(Edit(span, right) for span in spans), False)
-        values = {
-            "word": word, "since": SINCE.get(word, ""), "right": right, "line": "".join(others[:1]),
-            "lines": ", ".join(others) if len(others) > 1 else "",
-            "times": str(len(rows)) if len(rows) > 1 and not others else "",
-        }  # fmt: skip
-        return Diagnostic(codes.RESERVED, self.found.span, values, None, repair)
 
-    def no_order(self) -> Diagnostic | None:
-        is_note = self.source.text.startswith("/*", self.found.span.start)
-        return self.says(codes.OTHER_NOTE, found="/*") if is_note else None
+    @property
+    def function(self) -> str:
+        return self.found.values["found"]
 
-    def function(self) -> Diagnostic | None:
-        name = self.found.values["found"]
-        if name in self.names.sensors:
-            return self.says(codes.NO_BRACKETS_HERE, word=name, right=name)
-        return self.says(codes.NO_INPUT) if said_of(name, "input") else None
+    @cached_property
+    def letters(self) -> tuple[str, str]:
+        """A name without the letters that a name has not, and what it means."""
+        right = re.sub(r"^[^A-Za-z]+|\W", "", plain(self.source[self.found.span]))
+        return right, self.names.meant(right)
 
-    def amount(self) -> Diagnostic | None:
-        """Words that say how much, in the place of a number."""
-        values = with_number(self.source.text, self.found.span)
-        if not values or not self.source[self.found.span][:1].isalnum():
-            return None
-        start = self.source.text.index(values["amount"], self.piece.start)
-        value = Span(start, start + len(values["amount"]))
-        return Diagnostic(codes.UNKNOWN_NAME, value, {"found": values["amount"], **values})
 
-    def behind(self) -> Diagnostic | None:
-        """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
-        span = Span(self.found.span.start, self.piece.end)
-        right = lines.right(lexemes(self.source[span]), self.names)
-        words = shortened(self.source[span])
-        values = {"before": self.found.values["before"], "words": words, "order": words}
-        is_none = isinstance(right, Failure) and right.at == 0
-        return Diagnostic(codes.WORDS_BEHIND, span, values) if is_none else None
+class _Turn(NamedTuple):
+    """A turn: `way` is L or R, "" where no word says it; `values` are those of its call."""
 
-    def letters(self) -> Diagnostic | None:
-        """A name with letters that a name has not."""
-        if (said := self.amount()) is not None:
-            return said
-        word = self.source[self.found.span]
-        right = re.sub(r"^[^A-Za-z]+|\W", "", plain(word))
-        concept = self.names.meant(right)
-        if concept in WORDS or self.names.has(concept):
-            usage = self.usage(concept)
-            return self.says(codes.OTHER_LANGUAGE, found=right, right=concept, usage=usage)
-        if self.behind_it.lstrip(" ").startswith("("):
-            return self.says(codes.UNKNOWN_WORD, found=word.upper(), near="")
-        if self.is_first and (said_of(right, "filler") or self.is_button(right)):
-            return _Usage(self.text, self.says(codes.UNKNOWN_WORD, found=right)).unknown()
-        return self.adds(right=right if word.isupper() else right.capitalize()) if right else None
+    way: str
+    angle: str
+    values: str
+
+
+class _Own(NamedTuple):
+    """A `name` that stands alone `times` times, or the name of a call with values, `taught`."""
+
+    name: str
+    taught: str
+    is_often: bool
+    times: int
+    is_taught: bool
+
+
+class _NoValue(NamedTuple):
+    word: Word
+    argument: Argument
+    number: str
+    found: str
+    unit: str
+    right: str
+
+
+class _OtherName(NamedTuple):
+    word: str
+    right: str
+    near: str
+    is_def: bool
+    is_set: re.Match[str] | None
+    is_everywhere: bool
 
 
 def _meant_as_name(tokens: Sequence[Token], word: str, is_def: bool) -> Iterator[int]:
@@ -766,25 +614,427 @@ def _usage(word: str) -> str:
     return (known.example if is_asking else known.usage) if known else word
 
 
-_SAYS: dict[Code, Callable[[_Usage], Diagnostic | None]] = {
-    codes.UNKNOWN_WORD: _Usage.unknown,
-    codes.MISSING_OPEN: _Usage.brackets,
-    codes.MISSING_SEPARATOR: _Usage.behind,
-    **dict.fromkeys(
-        (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE), _Usage.condition
-    ),
-    codes.SETUP_UNKNOWN: _Usage.setup,
-    codes.SETUP_TWICE: _Usage.begins,
-    codes.NEVER_ENDS: _Usage.unended,
-    codes.BREAK_OUTSIDE: _Usage.break_outside,
-    codes.NOT_OPEN: _Usage.unopened_part,
-    codes.ODD_CHARACTER: _Usage.sign,
-    codes.RESERVED: _Usage.name,
-    codes.NOT_AN_INSTRUCTION: _Usage.no_order,
-    codes.NO_FUNCTION: _Usage.function,
-    codes.NO_BUTTON: _Usage.no_button,
-    codes.UNTIL_ALONE: _Usage.until,
-    codes.FOREVER_NOT_HERE: _Usage.forever,
-    codes.BAD_NAME: _Usage.letters,
-    codes.UNKNOWN_NAME: _Usage.name_in_words,
-}
+# -- gaps -----------------------------------------------------------------------------------------
+
+
+def _named_by(gaps: Gaps) -> str:
+    """The word that means what is written in its place."""
+    return _found(gaps).named(_right(gaps), _found(gaps).meant)
+
+
+def _right(gaps: Gaps) -> str:
+    """The word that what is offered begins with."""
+    return re.split("[(;]", gaps.filled["fix"])[0]
+
+
+def _block(gaps: Gaps) -> str:
+    """The block that words say."""
+    found = _found(gaps)
+    below = found.text[found.piece.end :].lstrip("; \t\r\n").upper()
+    is_open = bool(re.match(r"SI ?NO\b|ELSE", below))
+    return block(found.row, found.names, is_open)
+
+
+def _order(gaps: Gaps) -> str:
+    """The one order that words say."""
+    said = _found(gaps).orders
+    return said[0].text if len(said) == 1 and not said[0].is_side_free else ""
+
+
+def _several(gaps: Gaps, is_sided: bool) -> str:
+    """The orders that words say; `is_sided`: of one nobody says which way it turns."""
+    said = _found(gaps).orders
+    is_free = any(each.is_side_free for each in said)
+    return written(said) if len(said) > 1 and is_free is is_sided else ""
+
+
+def _other_orders(gaps: Gaps) -> set[str]:
+    """Orders beside a turn, which it alone would lose."""
+    said = _found(gaps).ordered.items()
+    return {its for word, its in said if not said_of(word, "right")} - {"L", "R", "B", "S"}
+
+
+def _endless(gaps: Gaps) -> str:
+    """The word for FOREVER, where words say no order."""
+    found = _found(gaps)
+    endless = (each for each in found.words if found.names.meant(each) == "FOREVER")
+    return "" if found.meant else next(endless, "")
+
+
+def _word_said(gaps: Gaps) -> str:
+    """The word of another language that begins an instruction, or says one."""
+    found = _found(gaps)
+    return next(filter(found.names.meant, (*found.words[:1], found.meant)), "")
+
+
+def _concept(gaps: Gaps) -> str:
+    """The word of the language that it means."""
+    found, word = _found(gaps), _word_said(gaps)
+    concept = found.names.meant(word)
+    is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
+    is_among = concept == "S" and {*found.ordered.values()} != {"S"}  # `ve para adelante`
+    return concept if is_order and concept != word and not is_among else ""
+
+
+def _concept_alone(gaps: Gaps, is_numbered: bool) -> str:
+    """The same of one without values, alone or with a number, which it would lose."""
+    concept, row = _concept(gaps), _found(gaps).row
+    if not concept or WORDS[concept].arguments:
+        return ""
+    has_number = any(each.kind is NUMBER for each in row)
+    return concept if (has_number if is_numbered else len(row) == 1) else ""
+
+
+def _asking(word: str) -> str:
+    return word if word in ASKING else ""
+
+
+def _variable(gaps: Gaps) -> str:
+    found = _found(gaps)
+    return next((each for each in found.words if each in found.names.variables), "")
+
+
+def _often(gaps: Gaps) -> str:
+    """The loop of a word that stands several times."""
+    own = _found(gaps).own
+    return f"LOOP({own.times});{own.name};END_LOOP" if own.times > 1 else ""
+
+
+def _own_name(gaps: Gaps) -> str:
+    own = _found(gaps).own
+    return "" if own.is_taught or said_of(own.name, *_NO_NAMES) else own.name
+
+
+def _end(gaps: Gaps) -> str:
+    """The end that words say, or that of the block which is open."""
+    found = _found(gaps)
+    named = (BLOCK_ENDS.get(found.names.meant(word), "") for word in found.words[1:])
+    return next(named, "") or found.around.end_at(found.piece.start)
+
+
+def _done(gaps: Gaps) -> str:
+    """What a part of a thing does, if that is a call: WRITE of `servo.write`."""
+    thing, _, done = plain(gaps.place.text[slice(*_member(_found(gaps)))]).rpartition(".")
+    right = "" if said_of(thing, "device") else gaps.place.names.meant(done)
+    return right if gaps.place.names.takes(right) else ""
+
+
+def _member(found: Found) -> Span:
+    match = _MEMBER.match(found.text, found.found.span.start)
+    return Span(*match.span()) if match else Span(0, 0)
+
+
+def _unit_behind(gaps: Gaps) -> str:
+    """A unit behind a calculation: `F(RANDOM(1, 3) sec, 50)`."""
+    found = _found(gaps)
+    here = found.source[found.found.span]
+    end = _end_of_value(found)
+    return here if said_of(plain(here), "unit") and found.text[end - 1] == ")" else ""
+
+
+def _end_of_value(found: Found) -> int:
+    return len(found.text[: found.found.span.start].rstrip())
+
+
+def _without_seconds(gaps: Gaps) -> str:
+    """The instruction without a word for seconds."""
+    found = _found(gaps)
+    span, piece, source = found.found.span, found.piece, found.source
+    if said_of(plain(source[span]), "unit") != ("s", "1000"):
+        return ""
+    return source[Span(piece.start, _end_of_value(found))] + source[Span(span.end, piece.end)]
+
+
+def _no_value(gaps: Gaps, is_unit: bool) -> _NoValue | None:
+    found = _found(gaps).no_value
+    return found if found and bool(found.unit) is is_unit else None
+
+
+def _number_said(gaps: Gaps) -> str:
+    """A number with a unit that values have, or with that of a way."""
+    said = _no_value(gaps, is_unit=True)
+    is_own = said is not None and (said.unit == said.argument.unit or bool(said.right))
+    here = _found(gaps).source[_found(gaps).found.span]
+    return f"{said.number} {here}" if said and is_own else ""
+
+
+def _way_said(gaps: Gaps) -> str:
+    said = _no_value(gaps, is_unit=True)
+    return said.right if said and said.unit != said.argument.unit else ""
+
+
+def _foreign(gaps: Gaps) -> str:
+    """A word with values that this robot does not have: whoever writes it wants the word."""
+    found = _found(gaps)
+    word = "".join(found.words[:1])
+    is_other = found.names.meant(word) or found.names.is_name(word)
+    return "" if found.signs[:2] != [word, "("] or is_other else word
+
+
+def _in_words(gaps: Gaps) -> str:
+    """The header with a question in words in its brackets."""
+    found = _found(gaps)
+    own = {*WORDS, *found.names.known.values} - {"SI"}
+    return "" if {*found.words} <= own else found.header()
+
+
+def _in_dark(gaps: Gaps) -> str:
+    """The header of a name that asks something in words: DARK of `X > 5 OR DARK`."""
+    found = _found(gaps)
+    name = plain(found.source[found.found.span])
+    is_asked = bool(said_of(name, "light", "ahead"))
+    return found.header() if is_asked and found.before()[-1].text not in COMPARISONS else ""
+
+
+def _endless_move(gaps: Gaps) -> str:
+    """A move with FOREVER as its time, and an UNTIL."""
+    found = _found(gaps)
+    is_endless = found.names.meant(plain(found.source[found.found.span])) == "FOREVER"
+    if not is_endless or not found.signs or found.signs[0] not in MOVES:
+        return ""
+    start, end = (place - found.piece.start for place in found.found.span)
+    said = found.source[found.piece]
+    return f"{said[:start]}FOREVER{said[end:]} UNTIL({WORDS['UNTIL'].arguments[0].sample})"
+
+
+def _forever_first(gaps: Gaps) -> str:
+    """`F(50, FOREVER)`: FOREVER is a time, and goes first."""
+    match = _FOREVER_BEHIND.fullmatch(_found(gaps).source[_found(gaps).piece])
+    if match is None:
+        return ""
+    until = match[3] or f" UNTIL({WORDS['UNTIL'].arguments[0].sample})"
+    return f"{match[1].upper()}(FOREVER, {match[2].strip()}){until}"
+
+
+def _asked_behind(gaps: Gaps) -> str:
+    """An UNTIL with the move that it lacks."""
+    found = _found(gaps)
+    asked = re.match(r"\s*(\([^()\n]+\))", found.text[found.found.span.start + 5 :])
+    return f"F(2, 80) UNTIL{asked[1]}" if asked else ""
+
+
+def _arm(gaps: Gaps) -> str:
+    """`si no`, alone."""
+    found = _found(gaps)
+    arm = found.names.meant("_".join(found.words[:2]))
+    return arm if arm == "ELSE" and len(found.row) == 2 else ""
+
+
+def _begun_again(gaps: Gaps) -> str:
+    """A beginning in the midst of a program, with its bar."""
+    found = _found(gaps)
+    is_bar = found.behind_it.lstrip()[:1] == "|"
+    return found.source[found.found.span].upper() + "|" * is_bar
+
+
+def _question_begun(gaps: Gaps) -> str:
+    """IF, where SI has no bar behind it."""
+    return "IF" if _begun_again(gaps) == "SI" else ""
+
+
+def _saying_button(gaps: Gaps) -> str:
+    """A word before the bar that says the button, or looks like it."""
+    word = _found(gaps).found.values["found"]
+    return word if word == "S8" or concept_of(word) == "BUTTON" else ""
+
+
+def _skipped(gaps: Gaps) -> str:
+    """An IF that leaves out what follows its BREAK, which no loop is around."""
+    found = _found(gaps)
+    match = found.matched(_BREAK)
+    rest = _row(found.text[match.end() :]) if match else []
+    return ";".join((match[1], "S", "ELSE", *rest, BLOCK_ENDS["IF"])) if match and rest else ""
+
+
+def _part_of_when(gaps: Gaps) -> str:
+    """An ELSE in a WHEN."""
+    found = _found(gaps)
+    before = found.text[: found.found.span.start]
+    is_open = re.search(r"(?is)\bWHEN\b(?!.*\bEND_?WHEN\b)", before)
+    return found.found.values["found"] if is_open else ""
+
+
+def _two_digits(gaps: Gaps) -> str:
+    """A colon between digits, and these."""
+    start, end = _found(gaps).found.span
+    around = _found(gaps).text[max(0, start - 1) : end + 1]
+    return around if re.fullmatch("[0-9]:[0-9]", around) else ""
+
+
+def _quoted(found: Found) -> Span:
+    """Return the place from a quotation mark to the next one of its line."""
+    start, end = found.found.span
+    closed = re.compile(rf"[^\n]*?{found.text[start:end]}").match(found.text, end)
+    return Span(start, closed.end() if closed else end)
+
+
+def _dotted(found: Found) -> Span:
+    match = found.matched(_DOTS)
+    return Span(*match.span("here")) if match else found.found.span
+
+
+def _rows_of_name(gaps: Gaps) -> list[str]:
+    """The lines in which a word is meant as a name."""
+    found = _found(gaps)
+    return [str(found.source.position(each.start)[0]) for each in found.renamed()]
+
+
+def _other_rows(gaps: Gaps) -> list[str]:
+    return list(dict.fromkeys(_rows_of_name(gaps)))[1:]
+
+
+def _later_rows(gaps: Gaps) -> list[str]:
+    """The lines in which TIME stands behind the first place."""
+    found = _found(gaps)
+    places = [each.start() for each in re.finditer(r"(?i)\bTIME\b", found.text)][1:]
+    return [str(found.source.position(place)[0]) for place in places]
+
+
+def _one(lines: Sequence[str]) -> str:
+    return lines[0] if len(lines) == 1 else ""
+
+
+def _many(lines: Sequence[str]) -> str:
+    return "" if len(lines) == 1 else ", ".join(lines)
+
+
+def _times_in_line(gaps: Gaps) -> str:
+    rows = _rows_of_name(gaps)
+    return str(len(rows)) if len(rows) > 1 and not _other_rows(gaps) else ""
+
+
+def _words_behind(gaps: Gaps) -> str:
+    """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
+    found = _found(gaps)
+    said = found.source[_behind(found)]
+    right = lines.right(lexemes(said), found.names)
+    return shortened(said) if isinstance(right, Failure) and right.at == 0 else ""
+
+
+def _behind(found: Found) -> Span:
+    return Span(found.found.span.start, found.piece.end)
+
+
+def _plain_letters(gaps: Gaps) -> str:
+    """A name in the letters that a name has, which the language knows."""
+    right, concept = _found(gaps).letters
+    return right if concept in WORDS or _found(gaps).names.has(concept) else ""
+
+
+def _called_here(gaps: Gaps) -> str:
+    found = _found(gaps)
+    is_call = found.behind_it.lstrip(" ").startswith("(")
+    return found.source[found.found.span].upper() if is_call else ""
+
+
+def _said_first(gaps: Gaps) -> str:
+    """A word that says nothing, or the button, and begins an instruction."""
+    found, right = _found(gaps), _found(gaps).letters[0]
+    is_said = said_of(right, "filler") or found.is_button(right)
+    return right if found.is_first and is_said else ""
+
+
+def _cased(gaps: Gaps) -> str:
+    found, right = _found(gaps), _found(gaps).letters[0]
+    return right if found.source[found.found.span].isupper() else right.capitalize()
+
+
+def _amount_place(found: Found) -> Span:
+    start = found.text.index(found.amount["amount"], found.piece.start)
+    return Span(start, start + len(found.amount["amount"]))
+
+
+def _found(gaps: Gaps) -> Found:
+    assert isinstance(gaps.place, Found)
+    return gaps.place
+
+
+def _of(get: Callable[[Found], str | None]) -> Callable[[Gaps], str]:
+    return lambda gaps: get(_found(gaps)) or ""
+
+
+# Where a row tells what it says, but where it was found.
+_PLACES: dict[str, Callable[[Found], Span]] = {
+    "here": lambda it: it.piece, "behind": _behind, "member": _member, "quoted": _quoted,
+    "dots": _dotted,
+    "first": lambda it: Span(it.piece.start, it.piece.start + len(it.words[0])),
+    "amount": _amount_place,
+}  # fmt: skip
+# Values that come together, of a place and the word that is told of.
+_SEVERAL: dict[str, Callable[[Found, str], Mapping[str, str]]] = {
+    "amount": lambda it, _: it.amount, "button": lambda it, _: it.button(),
+    "dots": lambda it, _: it.dots(), "unended": lambda it, _: it.unended(),
+    "instead": lambda it, _: said_instead(it.signs[0]), "in_words": Found.in_words,
+    "in_brackets": Found.in_brackets,
+    "in_dark": lambda it, word: said if (said := it.in_brackets(word)).get("question") else {},
+}  # fmt: skip
+GAPS: dict[str, Callable[[Gaps], str]] = {
+    "said": _of(lambda it: it.source[it.piece]), "here": _of(lambda it: it.source[it.found.span]),
+    "first": _of(lambda it: it.signs[0]), "sign": _of(lambda it: it.signs[1]),
+    "step": _of(lambda it: it.signs[1][0]), "number": _of(lambda it: it.number),
+    "found": _of(lambda it: it.found.values["found"]),
+    "word": _of(lambda it: it.found.values["word"]),
+    "right": _right, "named": _named_by,
+    "named_first": lambda gaps: _found(gaps).named(_right(gaps), _found(gaps).signs[0]),
+    "usage": lambda gaps: _usage(_right(gaps)),
+    "takes": lambda gaps: _usage(_right(gaps)) if _found(gaps).orders[0].samples else "",
+    "block": _block, "order": _order, "sided": lambda gaps: _several(gaps, is_sided=True),
+    "several": lambda gaps: _several(gaps, is_sided=False),
+    "made_up": _of(lambda it: made_up(it.orders)), "endless": _endless,
+    "others": lambda gaps: ", ".join(_other_orders(gaps)),
+    "way": _of(lambda it: it.turn.way), "angle": _of(lambda it: it.turn.angle),
+    "side": _of(lambda it: {"L": "left", "R": "right"}.get(it.turn.way)),
+    "turned": _of(lambda it: it.turn.values), "way_usage": _of(lambda it: _usage(it.turn.way)),
+    "word_said": _word_said, "concept": _concept, "asking": lambda gaps: _asking(_concept(gaps)),
+    "concept_alone": lambda gaps: _concept_alone(gaps, is_numbered=False),
+    "concept_numbered": lambda gaps: _concept_alone(gaps, is_numbered=True),
+    "concept_usage": lambda gaps: _found(gaps).usage(_concept(gaps)), "variable": _variable,
+    "often_taught": _of(lambda it: "LOOP" * it.own.is_often),
+    "taught": _of(lambda it: it.own.taught),
+    "untaught": _of(lambda it: it.own.name * it.own.is_taught), "often": _often,
+    "own": _own_name, "end": _end, "done": _done,
+    "done_usage": lambda gaps: _found(gaps).usage(_done(gaps)),
+    "member": _of(lambda it: it.text[slice(*_member(it))]),
+    "bare_asking": _of(lambda it: _asking(it.found.values["word"])),
+    "bare_example": _of(lambda it: WORDS[it.meant].example
+                        if len(it.row) == 1 and it.meant in WORDS and WORDS[it.meant].arguments
+                        else ""),
+    "bare_usage": _of(lambda it: it.usage(it.found.values["word"])),
+    "first_usage": _of(lambda it: it.usage(it.signs[0])),
+    "unit": _unit_behind, "without_seconds": _without_seconds, "number_said": _number_said,
+    "way_said": _way_said,
+    "value_name": lambda gaps: it.argument.name if (it := _no_value(gaps, True)) else "",
+    "wanted": lambda gaps: _WANTED[it.argument.unit] if (it := _no_value(gaps, True)) else "",
+    "extra": lambda gaps: it.found if (it := _no_value(gaps, False)) else "",
+    "value_found": _of(lambda it: it.no_value and it.no_value.found),
+    "value_word": _of(lambda it: it.no_value and it.no_value.word.text),
+    "value_usage": _of(lambda it: it.no_value and it.no_value.word.usage),
+    "foreign": _foreign, "in_words": _in_words, "in_dark": _in_dark,
+    "amount": _of(lambda it: it.amount.get("amount")),
+    "endless_move": _endless_move, "forever_first": _forever_first, "asked_behind": _asked_behind,
+    "arm": _arm, "begun_again": _begun_again, "question_begun": _question_begun,
+    "twice": lambda gaps: _begun_again(gaps) if _found(gaps).around.begun == "SB" else "",
+    "named_endless": lambda gaps: _found(gaps).named("LOOP", _endless(gaps)),
+    "instead": _of(lambda it: it.around.begun), "saying_button": _saying_button,
+    "skipped": _skipped, "part": _part_of_when, "two_digits": _two_digits,
+    "sign_means": _of(lambda it: concept_of(it.source[it.found.span])),
+    "sign_usage": _of(lambda it: _usage(concept_of(it.source[it.found.span]) or "")),
+    "everywhere": _of(lambda it: it.other_name.right if it.other_name.is_everywhere else ""),
+    "since": _of(lambda it: SINCE.get(it.other_name.word)),
+    "name_line": lambda gaps: "".join(_other_rows(gaps)[:1]),
+    "name_lines": lambda gaps: _many(_other_rows(gaps)), "name_times": _times_in_line,
+    "name_right": _of(lambda it: it.other_name.near or it.other_name.right),
+    "time_right": _of(lambda it: it.other_name.right
+                      if it.other_name.is_set and it.other_name.is_set[1] else ""),
+    "clock": _of(lambda it: it.other_name.right
+                 if it.other_name.is_set and not it.other_name.is_set[1] else ""),
+    "time_line": lambda gaps: _one(_later_rows(gaps)),
+    "time_lines": lambda gaps: _many(_later_rows(gaps)),
+    "note": _of(lambda it: "/*" if it.text.startswith("/*", it.found.span.start) else ""),
+    "sensor": _of(lambda it: it.function if it.function in it.names.sensors else ""),
+    "input": _of(lambda it: it.function if said_of(it.function, "input") else ""),
+    "words_behind": _words_behind, "before": _of(lambda it: it.found.values["before"]),
+    "plain_letters": _plain_letters, "letters_mean": _of(lambda it: it.letters[1]),
+    "letters_usage": _of(lambda it: it.usage(it.letters[1])), "called_here": _called_here,
+    "said_first": _said_first, "cased": _cased,
+}  # fmt: skip
