@@ -25,6 +25,7 @@ from tiniscript.base.words import (
     lexicon,
 )
 from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.recovery.labels import labels
 from tiniscript.recovery.meanings import (
     ASKING,
     CALLED,
@@ -62,12 +63,10 @@ _AS = {
 }  # fmt: skip
 _TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
 _NEGATES = ("no", "without", "unless", "different")
-# What frames a program and says nothing: its setup, the tags of a page, numbers that count lines.
+# What frames a program and says nothing: its setup, the tags of a page; and labels of lines.
 _FRAME = re.compile(
     r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>"
-    r"|^\s*(?:(?:paso|passo|step|linea|linha|line)\s*)?\d+\s*[.):-]+\s*(?=[a-z])"
 )
-_NUMBERED = re.compile(r"(?m)^[ \t]*(\d{1,4})(?=[ \t]+[A-Za-z])")
 _ESCAPED = {"¡=": "!=", "&lt;": "<", "&gt;": ">", "&nbsp;": " ", "½": ".5", "¼": ".25", "¾": ".75"}
 _PARTS = {"1/2": ".5", "1/4": ".25", "3/4": ".75"}
 _GLUED = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
@@ -208,10 +207,8 @@ class _Said:
         for sign, meant in _ESCAPED.items():
             text = re.sub(rf"(?<=\d) ?{sign}", meant, text) if meant[0] == "." else text
             text = text.replace(sign, f"0{meant}" if meant[0] == "." else meant)
-        text = _FRAME.sub(";", text)
-        counted = [int(each) for each in _NUMBERED.findall(text)]
-        is_counting = len(counted) > 1 and counted == sorted(set(counted))
-        return _NUMBERED.sub("", text) if is_counting else text
+        text = applied(text, [Edit(span, "") for span in labels(text)])
+        return _FRAME.sub(";", text)
 
     def _apart(self, line: str) -> str:
         """Return a line in which numbers stand alone, but for those of names: `F2,80`, `F_2_80`."""

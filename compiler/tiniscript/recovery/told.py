@@ -20,6 +20,7 @@ from tiniscript.recovery import slips
 from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.dedupe import dedupe
 from tiniscript.recovery.findings import meant_in
+from tiniscript.recovery.labels import labelled
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
 from tiniscript.recovery.setup import SEAL, beginning, other_word
@@ -90,6 +91,11 @@ def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
 # -- readers --------------------------------------------------------------------------------------
 
 
+def _labels(wrong: Wrong) -> Findings:
+    """Return what counts the instructions of a text, before each of them."""
+    return _with_edits(labelled(wrong.source))
+
+
 def _beginning(wrong: Wrong) -> Findings:
     """Return what is wrong with the lines before the program, and with its `SI|`."""
     return _with_edits(beginning(wrong.source, wrong.found, wrong.check, wrong.kit))
@@ -138,7 +144,8 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
 
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _beginning, _other_beginning, _meant_surely, _words_behind, _guessed, _words_of_blocks,
+    _labels, _beginning, _other_beginning, _meant_surely, _words_behind, _guessed,
+    _words_of_blocks,
 )  # fmt: skip
 
 
