@@ -25,6 +25,7 @@ from tiniscript.base.words import (
     lexicon,
 )
 from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.recovery.keys import key_edits
 from tiniscript.recovery.labels import labels
 from tiniscript.recovery.meanings import (
     ASKING,
@@ -64,9 +65,7 @@ _AS = {
 _TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
 _NEGATES = ("no", "without", "unless", "different")
 # What frames a program and says nothing: its setup, the tags of a page; and labels of lines.
-_FRAME = re.compile(
-    r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>"
-)
+_FRAME = re.compile(r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>")
 _ESCAPED = {"¡=": "!=", "&lt;": "<", "&gt;": ">", "&nbsp;": " ", "½": ".5", "¼": ".25", "¾": ".75"}
 _PARTS = {"1/2": ".5", "1/4": ".25", "3/4": ".75"}
 _GLUED = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
@@ -98,7 +97,8 @@ class Difference(NamedTuple):
 
 def difference(text: str, repaired: str, kit: Kit) -> Difference:
     """Return what a text says that a repaired one doesn't, and what only that does."""
-    before, after = _Said(text, repaired, kit), _Said(repaired, repaired, kit)
+    said = applied(text, key_edits(text, kit))
+    before, after = _Said(said, repaired, kit), _Said(repaired, repaired, kit)
     lost = [*_amounts(before, after), *_words(before, after), *_questions(before, after)]
     lost += before.sums() - after.sums()
     more = [word for word in _DRIVES if after.words[word] > before.meant[word]]
@@ -496,10 +496,12 @@ class _Said:
 def _amounts(before: _Said, after: _Said) -> Iterator[str]:
     """Give the numbers that are gone, or have another sign or unit."""
     left, lost = list(after.amounts), list(before.amounts)
+    read: list[float] = []  # the parts of the run that was read last, which is one number
     for value, parts in _runs(before.body):
         written = next((it for it in left if abs(it.value) == value), None)
-        gone = _all_in(parts, lost)
+        gone = _all_in(parts, lost) if parts is not read else []
         if written and gone and not _all_in(parts, left):
+            read = parts
             left.remove(written)
             for each in gone:
                 lost.remove(each)

@@ -17,9 +17,11 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, without_wrong
 from tiniscript.recovery import slips
+from tiniscript.recovery.calls import misplaced_values
 from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.dedupe import dedupe
 from tiniscript.recovery.findings import meant_in
+from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
@@ -96,9 +98,21 @@ def _labels(wrong: Wrong) -> Findings:
     return _with_edits(labelled(wrong.source))
 
 
+def _keys(wrong: Wrong) -> Findings:
+    """Return what is wrong with the keys that are asked for, of which one stands for an unknown."""
+    told = asked_keys(wrong.source, wrong.kit)
+    edits = _with_edits(told).edits
+    return Findings(told, edits + [Edit(it.span, KEYS[0]) for it in told if not it.repair])
+
+
 def _beginning(wrong: Wrong) -> Findings:
     """Return what is wrong with the lines before the program, and with its `SI|`."""
     return _with_edits(beginning(wrong.source, wrong.found, wrong.check, wrong.kit))
+
+
+def _calls(wrong: Wrong) -> Findings:
+    """Return what is wrong with calls that have all their values in another form."""
+    return _with_edits(misplaced_values(wrong.source))
 
 
 def _other_beginning(wrong: Wrong) -> Findings:
@@ -144,7 +158,7 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
 
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _labels, _beginning, _other_beginning, _meant_surely, _words_behind, _guessed,
+    _labels, _beginning, _keys, _calls, _other_beginning, _meant_surely, _words_behind, _guessed,
     _words_of_blocks,
 )  # fmt: skip
 
