@@ -16,6 +16,7 @@ from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import search, slips
+from tiniscript.recovery.ends import added_end, header_of, possible_places, shown
 from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.meanings import ENDED, Lexeme, lexemes, meant_by, texts
 from tiniscript.recovery.search import Candidate
@@ -278,14 +279,18 @@ class _Explainer:
 
     def unended(self, k: int, part: Change) -> Iterator[tuple[str, str]]:
         """Yield what is said of a block that lacks its end on the line where it begins."""
-        now, inside = texts(part.after), without_setup(part.before)
-        word = next((each for each in now if each in BLOCK_ENDS), "")
-        end = BLOCK_ENDS.get(word) or next((it for it in now if it in ENDED), "")
-        yield "word", word or ENDED.get(end, "")
-        yield "right", end
-        yield "behind", laid_out(inside[-1]) if word and inside else ""
+        now, at = texts(part.after), added_end(part.before, part.after) or 0
+        word = ENDED.get(now[at], "")
+        inside = [each for each in instructions(part.after[:at]) if each]
+        is_here = word in now[:at]
+        yield "word", word
+        yield "right", now[at]
+        yield "behind", laid_out(inside[-1]) if is_here and inside else ""
+        if is_here:
+            block = part.after[header_of(part.after, at) : at]
+            yield "places", shown(possible_places(block))
         above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
-        if not word and k and above:  # its indentation says where it ends
+        if not is_here and k and above:  # its indentation says where it ends
             yield "line", str(above.last + 1)
             yield "last", laid_out(tokens_of(above.text.split("\n")[0]))
 

@@ -28,6 +28,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
+from tiniscript.recovery.ends import possible_places, shown
 from tiniscript.recovery.meanings import (
     ASKING,
     DONE,
@@ -562,7 +563,8 @@ class _Usage:
         rest = [each.strip() for each in behind.split("\n")[0].split(";") if _WORD.search(each)]
         below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
         if rest and k + 1 == len(rows):
-            return self.adds(behind=rest[-1])
+            block = tokens_of(self.source[Span(self.found.span.start, self.piece.end)] + ";" + behind)
+            return self.adds(behind=rest[-1], places=shown(possible_places(block)))
         if not below:
             return self.adds(head=self.source[self.found.span])
         depth = [len(row) - len(row.lstrip()) for row in rows]
