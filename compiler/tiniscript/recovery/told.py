@@ -23,6 +23,7 @@ from tiniscript.recovery.dedupe import dedupe
 from tiniscript.recovery.findings import meant_in
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
+from tiniscript.recovery.leftovers import leftovers
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
 from tiniscript.recovery.setup import SEAL, beginning, other_word
@@ -115,6 +116,11 @@ def _calls(wrong: Wrong) -> Findings:
     return _with_edits(misplaced_values(wrong.source))
 
 
+def _leftovers(wrong: Wrong) -> Findings:
+    """Return what is left over in instructions that are whole without it."""
+    return _with_edits(leftovers(wrong.source, wrong.kit))
+
+
 def _other_beginning(wrong: Wrong) -> Findings:
     begun = other_word(wrong.source, wrong.found)
     if begun is None:
@@ -158,7 +164,7 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
 
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _labels, _beginning, _keys, _calls, _other_beginning, _meant_surely, _words_behind, _guessed,
+    _labels, _beginning, _keys, _calls, _leftovers, _other_beginning, _meant_surely, _words_behind, _guessed,
     _words_of_blocks,
 )  # fmt: skip
 
