@@ -19,6 +19,7 @@ from tiniscript.diagnostics.fixing import Check, without_wrong
 from tiniscript.recovery import slips
 from tiniscript.recovery.calls import misplaced_values
 from tiniscript.recovery.conserved import conserving, with_sample
+from tiniscript.recovery.counters import counters
 from tiniscript.recovery.dedupe import dedupe
 from tiniscript.recovery.findings import meant_in
 from tiniscript.recovery.keys import KEYS, asked_keys
@@ -116,6 +117,11 @@ def _calls(wrong: Wrong) -> Findings:
     return _with_edits(misplaced_values(wrong.source))
 
 
+def _counters(wrong: Wrong) -> Findings:
+    """Return what is wrong with loops that count, in whose place LOOP counts nothing."""
+    return _with_edits(counters(wrong.source))
+
+
 def _leftovers(wrong: Wrong) -> Findings:
     """Return what is left over in instructions that are whole without it."""
     return _with_edits(leftovers(wrong.source, wrong.kit))
@@ -164,7 +170,7 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
 
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _labels, _beginning, _keys, _calls, _leftovers, _other_beginning, _meant_surely, _words_behind, _guessed,
+    _labels, _beginning, _keys, _calls, _counters, _leftovers, _other_beginning, _meant_surely, _words_behind, _guessed,
     _words_of_blocks,
 )  # fmt: skip
 
