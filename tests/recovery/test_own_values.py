@@ -59,7 +59,7 @@ def test_the_seconds_of_motors_are_those_of_a_wait(
 ) -> None:
     wrong = place.replace("SI|", "SI|V = 12;").format(f"M({left}, {right}, {time})")
     (found,) = [each for each in check(wrong) if each.is_mistake]
-    shown = f"M({left}, {right});W({time})"
+    shown = f"M({left}, {right});W({time})" + ";S" * place.endswith("|{}")
     assert message(found, Source(wrong), "en").fix == shown
     made = applied(wrong, edits_of(found) or [])
     assert made == wrong.replace(f"M({left}, {right}, {time})", shown)

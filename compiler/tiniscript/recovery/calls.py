@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Word
+from tiniscript.base.words import POWER, UNIT_OF, WAYS, WORDS, Word, shortened
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import LONG_S, MOST_POWER
@@ -22,8 +22,11 @@ _CALL = re.compile(rf"(?<!\w)([A-Za-z]+)[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
 _COMMA = re.compile(r",(?![^()]*\))")  # outside of inner brackets
 _THOUSANDS = re.compile(r"([1-9]\d{0,2})((?:,\d{3})+)")
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+_ANY_CALL = re.compile(rf"\w+[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
+_SHORT = 3  # letters: a phone may have added some to one
 _UNIT = rf"(?P<unit>{'|'.join(WAYS)})"
 _UNIT_BEFORE = re.compile(rf"(?i){_UNIT}[ \t]+(?P<value>[\w.]+)")
+_STORED = re.compile(rf"(?i)(\w+)[ \t]*=[ \t]*(-?[\d.]+)[ \t]*({'|'.join(WAYS)})")
 
 
 class _Call(NamedTuple):
@@ -44,7 +47,7 @@ def misplaced_values(source: Source) -> list[Diagnostic]:
     start = 0
     for line in source.text.split("\n"):
         for call in _calls(without_note(line)[0], start):
-            laws = (_unit_apart(call), _thousands(call), _seconds_of_motors(call))
+            laws = (_unit_apart(call), _thousands(call), _seconds_of_motors(call, source.text))
             told += [found for found in laws if found][:1]
         start += len(line) + 1
     return told
@@ -101,7 +104,7 @@ def _thousands(call: _Call) -> Diagnostic | None:
     return _told(call, codes.BAD_NUMBER, fix, True, found=found[0])
 
 
-def _seconds_of_motors(call: _Call) -> Diagnostic | None:
+def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
     """`M(50, 80, 3)`: how long the motors run is said by a W after them."""
     if call.word.text != "M" or len(call.values) != len(call.word.arguments) + 1:
         return None
@@ -111,5 +114,57 @@ def _seconds_of_motors(call: _Call) -> Diagnostic | None:
     if not is_time or not are_powers:
         return None
     fix = f"{call.with_values(powers)};W({time})"
+    fix += "" if text[call.span.end :].strip() else ";S"
     values = {"word": "M", "usage": call.word.usage, "wanted": "2", "found": "3", "number": ""}
     return _told(call, codes.ARGUMENT_COUNT, fix, False, **values)
+
+
+# -- what is shown of a call that nothing reads ---------------------------------------------------
+
+
+def own_example(text: str) -> str:
+    """Return how an instruction with CM or DEG in another place is written with its own values."""
+    if stored := _STORED.fullmatch(text):
+        name, number, unit = stored[1], stored[2], stored[3].upper()
+        word = next(word for word, its in UNIT_OF.items() if its == unit)
+        return f"{name} = {number}; {word}({name} {unit}, {POWER.sample})"
+    call = next(_calls(text, 0), None)
+    unit = UNIT_OF.get(call.word.text, "") if call else ""
+    if call is None or not unit:
+        return ""
+    values = [re.sub(rf"(?i)\b{unit}\b", "", each).strip() for each in call.values]
+    values = [re.sub(r"  +", " ", each) for each in values if each]
+    is_whole = len(values) == len(call.word.arguments)
+    return call.with_values([f"{values[0]} {unit}", *values[1:]]) if is_whole else ""
+
+
+def likely_word(word: str, text: str) -> str:
+    """Return the word of a call that an unknown one may be by its letters and its values."""
+    call = _ANY_CALL.fullmatch(text)
+    values = _parted(call[1]) if call else []
+    numbers = [number for number in map(_NUMBER.match, values) if number]
+    if not values or len(numbers) != len(values):
+        return ""
+    is_tone = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
+    short = shortened(word)
+    if is_tone:
+        found = "BEEP" if word[:1] == "B" or "BEEP" in short else ""
+    elif len(short) == 1:
+        found = short[0]
+    else:
+        found = word[:1] if len(word) <= _SHORT else ""
+    return found if found in WORDS and len(WORDS[found].arguments) == len(values) else ""
+
+
+def usage_with(word: str, number: str) -> str:
+    """Return how a word is written with the one number that is there, "" where that may be other.
+
+    So much of a turn is degrees; of a way it may be a power.
+    """
+    known = WORDS.get(word)
+    is_long = float(number) >= LONG_S
+    if known is None or not known.role.is_call or (is_long and word not in ("L", "R")):
+        return ""
+    names = [argument.name for argument in known.arguments][1:]
+    unit = f" {UNIT_OF[word]}" if is_long else ""
+    return f"{word}({', '.join((number + unit, *names))})" if known.role.lasts else ""

@@ -50,6 +50,8 @@ from tiniscript.syntax.operators import SUMS
 _SENSES = {"<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>": ">", "!=": "<>",
            "=!": "<>", "≤": "<", "≥": ">", "≠": "<>"}  # fmt: skip
 _UNITS = ("s", "cm", "°", "%", "Hz")
+_OF_WAYS = tuple(way.unit for way in WAYS.values())
+_STORED = "="  # the unit of what a variable keeps that no use of it has: a move takes seconds
 _COUNTED_UNITS = (*_UNITS, "turns")  # with a number before them
 _ARMS = ("ELSE", "ELSEIF")
 _HEADS = frozenset((*BLOCK_ENDS, *_ARMS))
@@ -405,6 +407,9 @@ class _Said:
                 at = min(k + 3 if other.text == "-" else k + 2, len(slots) - 1)
                 slots[at] = slots[at] or self.units.get(one.text, "")
                 slots[k] = slots[k] or self.units.get(other.text, "")
+                before = self.tokens[k - 1] if k else _END
+                is_set = sign.text == "=" and before.text in ("|", ";", _END.text)
+                slots[at] = slots[at] or (_STORED if is_set else "")
         return slots
 
     def _arguments(self, k: int) -> list[str]:
@@ -412,6 +417,8 @@ class _Said:
         word = self.tokens[k - 1] if k else _END
         if word.kind is not WORD:
             return []
+        if word.text in self.names.parameters:
+            return [self.units.get(name, "") for name in self.names.parameters[word.text]]
         if word.text not in WORDS or not WORDS[word.text].role.is_call:
             return [""]
         units = [argument.unit for argument in WORDS[word.text].arguments]
@@ -536,6 +543,7 @@ def _is_same(before: Amount, after: Amount) -> bool:
         return abs(before.value * LAP - after.value) < 0.001
     units = {*after.unit.split("/")} - {""}
     is_unit = not before.unit or units <= {*before.unit.split("/")}
+    is_unit |= units == {_STORED} and before.unit not in _OF_WAYS
     return is_unit and abs(before.value - after.value) < 0.001
 
 

@@ -46,7 +46,9 @@ def counters(source: Source) -> list[Diagnostic]:
         spans = _spans(row, start)
         for each in own:
             in_header = [it.text for it in row[each.start : each.end]].count(each.name)
-            ends = sum(_is_end(a, b, each.name) for k in rows for a, b in zip(k, k[1:], strict=False))
+            ends = sum(
+                _is_end(a, b, each.name) for k in rows for a, b in zip(k, k[1:], strict=False)
+            )
             is_used = words.count(each.name) > in_header + ends
             if is_used or any(said_of(it.text, "each") for it in row[each.start : each.end]):
                 span = Span(spans[each.start].start, spans[each.end - 1].end)

@@ -211,7 +211,8 @@ class _Explainer:
                 found.append(Change(place, edit, steps.get(n, []), part, meant))
                 if not steps.get(n) and text.isascii():
                     return []
-        return found if len(found) > 1 else []
+        is_alone = not self.found.is_whole and all(it.after for it in found)  # others are not read
+        return found if len(found) > 1 or (len(was) > 1 and is_alone) else []
 
     def walk(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
         """Open and close blocks; return the first one that began in an earlier change."""

@@ -24,7 +24,7 @@ from tiniscript.recovery.dedupe import dedupe
 from tiniscript.recovery.findings import meant_in
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
-from tiniscript.recovery.leftovers import leftovers
+from tiniscript.recovery.leftovers import leftovers, of_its_frame
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
 from tiniscript.recovery.setup import SEAL, beginning, other_word
@@ -122,8 +122,13 @@ def _counters(wrong: Wrong) -> Findings:
     return _with_edits(counters(wrong.source))
 
 
+def _frame(wrong: Wrong) -> Findings:
+    """Return what begins a program once more, and what ends it, which needs no word."""
+    return _with_edits(of_its_frame(wrong.source, wrong.kit))
+
+
 def _leftovers(wrong: Wrong) -> Findings:
-    """Return what is left over in instructions that are whole without it."""
+    """Return words that are left over in instructions, which are whole without them."""
     return _with_edits(leftovers(wrong.source, wrong.kit))
 
 
@@ -170,7 +175,7 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
 
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _labels, _beginning, _keys, _calls, _counters, _leftovers, _other_beginning, _meant_surely, _words_behind, _guessed,
+    _labels, _beginning, _keys, _calls, _counters, _frame, _other_beginning, _meant_surely, _leftovers, _words_behind, _guessed,
     _words_of_blocks,
 )  # fmt: skip
 

@@ -28,6 +28,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
+from tiniscript.recovery.calls import likely_word, own_example, usage_with
 from tiniscript.recovery.ends import possible_places, shown
 from tiniscript.recovery.meanings import (
     ASKING,
@@ -208,6 +209,9 @@ class _Usage:
         if word in ("L", "R") and (angle := _ANGLE.search(self.source[self.piece])):
             if float(angle[1]) >= LONG_S:  # `turnLeft(90, 70)`: no seconds
                 return f"{word}({angle[1]} DEG, {angle[2]})"
+        numbers = [token.text for token in self.tokens if token.kind is NUMBER]
+        if len(numbers) == 1 and "(" not in self.signs and (own := usage_with(word, numbers[0])):
+            return own
         is_ended = _ENDS.search(plain(self.source.text)) is not None
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
@@ -273,6 +277,8 @@ class _Usage:
             if sign in ("++", "--", "+", "-"):
                 fix = f"{first} = {first} {sign[0]} {self.number}"
                 return self.offers(codes.OTHER_ASSIGNMENT, fix, found=sign)
+        if near := likely_word(first, self.source[self.piece]):
+            return self.adds(near=near)
         return self.sentence() or self.own_word()
 
     def sentence(self) -> Diagnostic | None:
@@ -526,6 +532,11 @@ class _Usage:
         told = Diagnostic(codes.UNKNOWN_WORD, Span(start, start + len(word)), {"found": word})
         return _Usage(self.text, told).unknown() or told
 
+    def unit_place(self) -> Diagnostic | None:
+        """CM or DEG in another place, shown with the values of its own instruction."""
+        example = own_example(self.source[self.piece])
+        return self.adds(example=example) if example else None
+
     def setup(self) -> Diagnostic | None:
         """Another word before the bar: one that says the button, or looks like it."""
         word = self.found.values["found"]
@@ -563,7 +574,9 @@ class _Usage:
         rest = [each.strip() for each in behind.split("\n")[0].split(";") if _WORD.search(each)]
         below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
         if rest and k + 1 == len(rows):
-            block = tokens_of(self.source[Span(self.found.span.start, self.piece.end)] + ";" + behind)
+            block = tokens_of(
+                self.source[Span(self.found.span.start, self.piece.end)] + ";" + behind
+            )
             return self.adds(behind=rest[-1], places=shown(possible_places(block)))
         if not below:
             return self.adds(head=self.source[self.found.span])
@@ -775,6 +788,7 @@ _SAYS: dict[Code, Callable[[_Usage], Diagnostic | None]] = {
     **dict.fromkeys(
         (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE), _Usage.condition
     ),
+    codes.UNIT_PLACE: _Usage.unit_place,
     codes.SETUP_UNKNOWN: _Usage.setup,
     codes.SETUP_TWICE: _Usage.begins,
     codes.NEVER_ENDS: _Usage.unended,
