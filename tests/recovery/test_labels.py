@@ -11,7 +11,8 @@ from tiniscript.diagnostics.fixing import fixed
 
 ALONE = ("{n})", "{n}.", "{n} -", "{n}.-", "({n})", "{n}º", "{n}:", "{a})", "{a}.", "{A})", "{a}:")
 WORDS = (
-    "Questão", "Questao", "Passo", "Paso", "Step", "Linha", "Ejercicio", "Exercício", "Pregunta", "Item", "Parte", "Mission",
+    "Questão", "Questao", "Passo", "Paso", "Step", "Linha", "Ejercicio", "Exercício", "Pregunta",
+    "Item", "Parte", "Mission",
 )  # fmt: skip
 WITH_WORD = ("{w} {n}:", "{w} {n} -", "{w} {n})", "{w} {n}.", "{w} {a}:", "{w} nº {n}:", "{w}{n}:")
 LABELS = [*ALONE, *(it.replace("{w}", w) for w, it in product(WORDS, WITH_WORD))]

@@ -7,6 +7,7 @@ rows read is left to them.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Source, Span
@@ -46,14 +47,12 @@ def counters(source: Source) -> list[Diagnostic]:
         spans = _spans(row, start)
         for each in own:
             in_header = [it.text for it in row[each.start : each.end]].count(each.name)
-            ends = sum(
-                _is_end(a, b, each.name) for k in rows for a, b in zip(k, k[1:], strict=False)
-            )
+            ends = sum(_is_end(a, b, each.name) for k in rows for a, b in pairwise(k))
             is_used = words.count(each.name) > in_header + ends
             if is_used or any(said_of(it.text, "each") for it in row[each.start : each.end]):
                 span = Span(spans[each.start].start, spans[each.end - 1].end)
                 told.append(_told(span, row[each.start].source or "", "LOOP", _loop(each, is_used)))
-        for k, (end, name) in enumerate(zip(row, row[1:], strict=False)):
+        for k, (end, name) in enumerate(pairwise(row)):
             if name.text in names and _is_end(end, name, name.text):
                 span = Span(spans[k].start, spans[k + 1].end)
                 told.append(_told(span, source[span], "END_LOOP", "END_LOOP"))

@@ -360,8 +360,8 @@ a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => 
 ^ give to the? v=@name the? sensing? e=@num $
     | $v = $e | 1 | TS050 | offered
     | dar a X el valor 5⏎F(X, 80) => X = 5⏎F(X, 80)
-^ ⟨multiply¦divide¦increase¦decrease⟩ the? v=@name by|over n=@num|@val $
-    | $v = $v ⟨*¦/¦+¦-⟩ $n | 1 | TS050 | offered
+^ ⟨multiply¦divide¦increase¦decrease⟩ the? v=@name by|over s='-'? n=@num|@val $
+    | $v = $v ⟨*¦/¦+¦-⟩ $s $n | 1 | TS050 | offered
     | X = 40⏎⟨multiply¦divide¦increase¦decrease⟩ X by 2 => X = 40⏎X = X ⟨*¦/¦+¦-⟩ 2
 ^ keep the? e=@val|@num to v=@word $
     | $v = $e | 1.5 | TS050 | applied

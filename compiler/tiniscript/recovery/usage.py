@@ -212,6 +212,8 @@ class _Usage:
         numbers = [token.text for token in self.tokens if token.kind is NUMBER]
         if len(numbers) == 1 and "(" not in self.signs and (own := usage_with(word, numbers[0])):
             return own
+        if word == "SHOW" and (shown := [it for it in self.words if it in self.names.variables]):
+            return f"{word}({shown[0]})"
         is_ended = _ENDS.search(plain(self.source.text)) is not None
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
@@ -316,7 +318,8 @@ class _Usage:
         if len(words) < 2 or {*self.signs} & {*COMPARISONS, "(", "="} or len(text) > _LONGEST:
             return None
         if name := next((each for each in words if each in self.names.variables), ""):
-            example = f"{name} = {name} + {self.number}"
+            sign = "-" if f"-{self.number}" in "".join(self.signs) else "+"
+            example = f"{name} = {name} {sign} {self.number}"
             values = {"name": name, "example": example, "fix": ""}
             return Diagnostic(codes.PROSE, self.piece, values)
         return self.offers(codes.PROSE, f"// {text}")
