@@ -53,7 +53,8 @@ def test_one_that_is_not_used_says_how_often(text: str, name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["FOR 3 TO 5", "FOR I = 5 TO 1", "FOR I = 1 TO V", "REPEAT 4", "FOR F = 1 TO 3", "I = 1 TO"]
+    "text",
+    ["FOR 3 TO 5", "FOR I = 5 TO 1", "FOR I = 1 TO V", "REPEAT 4", "FOR F = 1 TO 3", "I = 1 TO"],
 )  # fmt: skip
 def test_what_counts_otherwise_is_left(text: str) -> None:
     made = [each.values.get("fix", "") for each in check(f"SI|{text}\nSHOW(I)\nEND_LOOP")]

@@ -20,7 +20,7 @@ from tiniscript.recovery.ends import added_end, header_of, possible_places, show
 from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.meanings import ENDED, Lexeme, lexemes, meant_by, texts
 from tiniscript.recovery.search import Candidate
-from tiniscript.recovery.slips import OF_BLOCKS, Change, Slip, alike, instructions, without_setup
+from tiniscript.recovery.slips import OF_BLOCKS, Change, Slip, alike, instructions
 from tiniscript.recovery.writing import in_one_line, laid_out, tokens_of, without_note
 
 _DEDUPED = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)

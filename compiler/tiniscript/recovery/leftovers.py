@@ -27,8 +27,8 @@ _HEADS = frozenset((*BLOCK_ENDS, *ASKING, "ELSE", "FOREVER"))
 _MOST = 3  # words
 _ALONE = frozenset(("BREAK", "S", "START", "STOP", *ENDED))
 _MEANS_NOTHING = frozenset((
-    "filler", "small", "please", "the", "of", "to", "in", "is", "soon", "there", "this", "so", "bye",
-    "above", "program", "all", "moment", "one", "ahead", "first", "idle",
+    "filler", "small", "please", "the", "of", "to", "in", "is", "soon", "there", "this", "so",
+    "bye", "above", "program", "all", "moment", "one", "ahead", "first", "idle",
 ))  # fmt: skip
 
 

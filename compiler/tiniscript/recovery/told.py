@@ -175,8 +175,8 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
 
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _labels, _beginning, _keys, _calls, _counters, _frame, _other_beginning, _meant_surely, _leftovers, _words_behind, _guessed,
-    _words_of_blocks,
+    _labels, _beginning, _keys, _calls, _counters, _frame, _other_beginning, _meant_surely,
+    _leftovers, _words_behind, _guessed, _words_of_blocks,
 )  # fmt: skip
 
 
