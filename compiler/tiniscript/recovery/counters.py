@@ -24,9 +24,13 @@ _IN = ("IN", "EN", "EM")
 
 
 class _Counter(NamedTuple):
-    """A header: tokens from `start` up to `end` count `times` with `name`, from `first` on."""
+    """A header: tokens from `start` up to `end` count `times` with `name`, from `first` on.
+
+    The words before `begun` say that it is one: `for each`.
+    """
 
     start: int
+    begun: int
     end: int
     name: str
     first: int
@@ -51,7 +55,14 @@ def counters(source: Source) -> list[Diagnostic]:
             is_used = words.count(each.name) > in_header + ends
             if is_used or any(said_of(it.text, "each") for it in row[each.start : each.end]):
                 span = Span(spans[each.start].start, spans[each.end - 1].end)
-                told.append(_told(span, row[each.start].source or "", "LOOP", _loop(each, is_used)))
+                told.append(
+                    _told(
+                        span,
+                        _said(source, spans[each.start : each.begun]),
+                        "LOOP",
+                        _loop(each, is_used),
+                    )
+                )
         for k, (end, name) in enumerate(pairwise(row)):
             if name.text in names and _is_end(end, name, name.text):
                 span = Span(spans[k].start, spans[k + 1].end)
@@ -64,6 +75,10 @@ def _told(span: Span, found: str, right: str, fix: str) -> Diagnostic:
     code: Code = codes.OTHER_LANGUAGE
     values = {"found": found, "right": right, "fix": fix, "usage": WORDS[right].usage}
     return Diagnostic(code, span, values, span, Repair((Edit(span, fix),), False))
+
+
+def _said(source: Source, spans: Sequence[Span]) -> str:
+    return source[Span(spans[0].start, spans[-1].end)].partition("(")[0].strip()
 
 
 def _loop(counter: _Counter, is_used: bool) -> str:
@@ -99,7 +114,7 @@ def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
     is_open = rest.take("(")
     while rest.says("each", "every", "declare"):
         rest.k += 1
-    name = rest.text()
+    begun, name = rest.k, rest.text()
     if name in WORDS or not name.isidentifier() or concept_of(name):
         return None
     rest.k += 1
@@ -129,7 +144,7 @@ def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
     rest.k += rest.text() == ":" or rest.says("do")
     if not is_whole or first is None or behind is None or behind <= first:
         return None
-    return _Counter(start, rest.k, name, first, behind - first)
+    return _Counter(start, begun, rest.k, name, first, behind - first)
 
 
 def _plus(number: int | None, more: int) -> int | None:
