@@ -58,3 +58,20 @@ def test_a_second_start_behind_an_instruction_is_a_separator(
         return  # one word: SSI
     text = f"SI|F(2, 80);{before}{sign}{behind};W(1)"
     assert fixed(text, check).text == f"SI|F(2, 80);{before}; {behind};W(1)"
+
+
+@pytest.mark.parametrize("between", [";", "\n"])
+def test_a_task_that_is_called_has_no_name_and_begins_by_itself(between: str) -> None:
+    wrong = between.join(("SI|TASK siren", "BEEP(1, 440)", "END_TASK", "START siren", "F(4, 70)"))
+    said = [message(each, Source(wrong), "en").fix for each in check(wrong)]
+    assert said == ["TASK", "Take out siren"]
+
+
+@pytest.mark.parametrize("word", ["Fim", "FIM.", "Fin;", "end", "End."])
+@pytest.mark.parametrize("above", ["F(2, 80)", "Espere(1)", "Br(2, 80)", "R(1 60);S"])
+def test_an_end_of_all_is_not_needed_whatever_else_is_wrong(above: str, word: str) -> None:
+    wrong = f"SI|W(1)\n{above}\n{word}"
+    assert "TS044" in {each.code.number for each in check(wrong)}
+    for head, end in (("LOOP(2)", "END_LOOP"), ("IF(DISTANCE < 9)", "ENDIF")):
+        block = f"SI|{head}\nF(2, 80)\n{word.rstrip('.;')}"
+        assert fixed(block, check).text == f"SI|{head}\nF(2, 80)\n{end}"

@@ -6,7 +6,7 @@ Each is told to be taken out as what it is: an instruction without values is don
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from itertools import accumulate
 
 from tiniscript.base.kit import Kit
@@ -15,12 +15,13 @@ from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of, lexicon, said_o
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.calls import likely_word
-from tiniscript.recovery.meanings import ASKING, ENDED, Lexeme, Names, lexemes
+from tiniscript.recovery.meanings import ASKING, ENDED, Lexeme, Names, lexemes, plain
 from tiniscript.recovery.writing import without_note
 from tiniscript.syntax.lexer import WORD
 
 _SETUP = re.compile(r"(?i)(?P<before>\)|\w)?[ \t]*\b(?P<setup>S[IB][ \t]*\|)(?!\|)[ \t]*")
 _BEGUN = re.compile(r"(?i)^\s*S[IB]\s*\|")
+_TASK = re.compile(r"\bTASK[ \t]+([A-Z]\w*)")
 _PART = re.compile(r"[^;{}|]+")
 _CALL = re.compile(r"\s*(\w+)\s*(?:\([^()]*\))?[\s.]*")
 _HEADS = frozenset((*BLOCK_ENDS, *ASKING, "ELSE", "FOREVER"))
@@ -38,9 +39,10 @@ def leftovers(source: Source, kit: Kit) -> list[Diagnostic]:
     names = Names([lexemes(row) for row in rows], kit)
     lines = source.text.split("\n")
     starts = [0, *accumulate(len(line) + 1 for line in lines)]
+    tasks = frozenset(_TASK.findall(plain(source.text)))  # which have no name
     told: list[Diagnostic] = []
     for row, start in zip(rows, starts, strict=False):
-        told += _words(row, start, names)
+        told += _words(row, start, names, tasks)
     return told
 
 
@@ -87,12 +89,12 @@ def _setups(row: str, start: int) -> Iterator[Diagnostic]:
         yield Diagnostic(codes.SETUP_TWICE, place, values, place, Repair((edit,), True))
 
 
-def _words(row: str, start: int, names: Names) -> Iterator[Diagnostic]:
+def _words(row: str, start: int, names: Names, tasks: Set[str]) -> Iterator[Diagnostic]:
     for part in _PART.finditer(row):
         tokens = lexemes(part[0])
         if not 1 < len(tokens) <= 1 + _MOST or tokens[0].text not in _ALONE:
             continue
-        if all(_says_nothing(token, names) for token in tokens[1:]):
+        if all(it.text in tasks or _says_nothing(it, names) for it in tokens[1:]):
             end = start + part.start() + len(part[0].rstrip())
             begin = start + part.start() + part[0].index(tokens[0].source or "")
             begin += len(tokens[0].source or "")
