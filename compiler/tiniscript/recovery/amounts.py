@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Container
+from collections.abc import Container, Sequence
 
 from tiniscript.base.source import Span
 from tiniscript.base.words import WORDS, said_of
@@ -48,6 +48,15 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
         said = [said_of(each, "power")[0] for each in words if said_of(each, "power")]
         if said or is_amount(*words) or k == place:
             sample = said[0] if said and its.unit == "%" else _SAMPLES.get(its.name, its.sample)
+            sample = _own_number(words, its.unit) or sample
             values[k] = f"{' ' * (k > 0)}{sample}"
     head = call[0][: len(call[0]) - len(call[2])]
     return {"amount": amount, "example": f"{head.lstrip()}{','.join(values)})"}
+
+
+def _own_number(words: Sequence[str], unit: str) -> str:
+    """Return the number that words for an amount say in its unit: `muy lento 5 segundos`."""
+    units = {said_of(word, "unit")[0] for word in words if said_of(word, "unit")}
+    numbers = [(said_of(word, "number") or (word,))[0] for word in words]
+    found = [it for it in numbers if it.replace(".", "", 1).isdecimal() and (units or it != "1")]
+    return found[0] if len(found) == 1 and units <= {unit} else ""

@@ -260,7 +260,8 @@ class Matching:
                 return True
             if is_inside:
                 self.open.pop()
-                self.is_sure = self.is_sure and (block.is_begun or block.line == k)
+                is_here = block.line == k and (block.is_endless or not self.is_parted(block))
+                self.is_sure = self.is_sure and (block.is_begun or is_here)
                 self.edit(0, block.end, ";")
         if self.open and self.open[-1].word == want:
             block = self.open.pop()
@@ -293,8 +294,9 @@ class Matching:
             self.tails.setdefault(self.k, []).append(block.end)
 
     def is_parted(self, block: _Block) -> bool:
-        """Whether a block may end before its line: at a `;` of the text, or at another block."""
-        items = [each for each in self.line.reading.items or () if each.start >= block.start]
+        """Whether a block may end before this: at a `;` of the text, or at another block."""
+        last = self.item.start
+        items = [it for it in self.line.reading.items or () if block.start <= it.start <= last]
         arm = max((k for k, each in enumerate(items) if each.kind == "arm"), default=0)
         told = [item for item in items[arm:] if item.kind == "do"]
         between = self.line.reading.tokens[told[0].end : told[-1].start] if told else []

@@ -25,6 +25,8 @@ from tiniscript.base.words import (
     lexicon,
 )
 from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.recovery.keys import key_edits
+from tiniscript.recovery.labels import labels
 from tiniscript.recovery.meanings import (
     ASKING,
     CALLED,
@@ -48,6 +50,8 @@ from tiniscript.syntax.operators import SUMS
 _SENSES = {"<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>": ">", "!=": "<>",
            "=!": "<>", "≤": "<", "≥": ">", "≠": "<>"}  # fmt: skip
 _UNITS = ("s", "cm", "°", "%", "Hz")
+_OF_WAYS = tuple(way.unit for way in WAYS.values())
+_STORED = "="  # the unit of what a variable keeps that no use of it has: a move takes seconds
 _COUNTED_UNITS = (*_UNITS, "turns")  # with a number before them
 _ARMS = ("ELSE", "ELSEIF")
 _HEADS = frozenset((*BLOCK_ENDS, *_ARMS))
@@ -62,12 +66,8 @@ _AS = {
 }  # fmt: skip
 _TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
 _NEGATES = ("no", "without", "unless", "different")
-# What frames a program and says nothing: its setup, the tags of a page, numbers that count lines.
-_FRAME = re.compile(
-    r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>"
-    r"|^\s*(?:(?:paso|passo|step|linea|linha|line)\s*)?\d+\s*[.):-]+\s*(?=[a-z])"
-)
-_NUMBERED = re.compile(r"(?m)^[ \t]*(\d{1,4})(?=[ \t]+[A-Za-z])")
+# What frames a program and says nothing: its setup, the tags of a page; and labels of lines.
+_FRAME = re.compile(r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>")
 _ESCAPED = {"¡=": "!=", "&lt;": "<", "&gt;": ">", "&nbsp;": " ", "½": ".5", "¼": ".25", "¾": ".75"}
 _PARTS = {"1/2": ".5", "1/4": ".25", "3/4": ".75"}
 _GLUED = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
@@ -99,7 +99,8 @@ class Difference(NamedTuple):
 
 def difference(text: str, repaired: str, kit: Kit) -> Difference:
     """Return what a text says that a repaired one doesn't, and what only that does."""
-    before, after = _Said(text, repaired, kit), _Said(repaired, repaired, kit)
+    said = applied(text, key_edits(text, kit))
+    before, after = _Said(said, repaired, kit), _Said(repaired, repaired, kit)
     lost = [*_amounts(before, after), *_words(before, after), *_questions(before, after)]
     lost += before.sums() - after.sums()
     more = [word for word in _DRIVES if after.words[word] > before.meant[word]]
@@ -208,10 +209,8 @@ class _Said:
         for sign, meant in _ESCAPED.items():
             text = re.sub(rf"(?<=\d) ?{sign}", meant, text) if meant[0] == "." else text
             text = text.replace(sign, f"0{meant}" if meant[0] == "." else meant)
-        text = _FRAME.sub(";", text)
-        counted = [int(each) for each in _NUMBERED.findall(text)]
-        is_counting = len(counted) > 1 and counted == sorted(set(counted))
-        return _NUMBERED.sub("", text) if is_counting else text
+        text = applied(text, [Edit(span, "") for span in labels(text)])
+        return _FRAME.sub(";", text)
 
     def _apart(self, line: str) -> str:
         """Return a line in which numbers stand alone, but for those of names: `F2,80`, `F_2_80`."""
@@ -408,6 +407,9 @@ class _Said:
                 at = min(k + 3 if other.text == "-" else k + 2, len(slots) - 1)
                 slots[at] = slots[at] or self.units.get(one.text, "")
                 slots[k] = slots[k] or self.units.get(other.text, "")
+                before = self.tokens[k - 1] if k else _END
+                is_set = sign.text == "=" and before.text in ("|", ";", _END.text)
+                slots[at] = slots[at] or (_STORED if is_set else "")
         return slots
 
     def _arguments(self, k: int) -> list[str]:
@@ -415,6 +417,8 @@ class _Said:
         word = self.tokens[k - 1] if k else _END
         if word.kind is not WORD:
             return []
+        if word.text in self.names.parameters:
+            return [self.units.get(name, "") for name in self.names.parameters[word.text]]
         if word.text not in WORDS or not WORDS[word.text].is_call:
             return [""]
         units = [argument.unit for argument in WORDS[word.text].arguments]
@@ -499,10 +503,12 @@ class _Said:
 def _amounts(before: _Said, after: _Said) -> Iterator[str]:
     """Give the numbers that are gone, or have another sign or unit."""
     left, lost = list(after.amounts), list(before.amounts)
+    read: list[float] = []  # the parts of the run that was read last, which is one number
     for value, parts in _runs(before.body):
         written = next((it for it in left if abs(it.value) == value), None)
-        gone = _all_in(parts, lost)
+        gone = _all_in(parts, lost) if parts is not read else []
         if written and gone and not _all_in(parts, left):
+            read = parts
             left.remove(written)
             for each in gone:
                 lost.remove(each)
@@ -537,6 +543,7 @@ def _is_same(before: Amount, after: Amount) -> bool:
         return abs(before.value * LAP - after.value) < 0.001
     units = {*after.unit.split("/")} - {""}
     is_unit = not before.unit or units <= {*before.unit.split("/")}
+    is_unit |= units == {_STORED} and before.unit not in _OF_WAYS
     return is_unit and abs(before.value - after.value) < 0.001
 
 

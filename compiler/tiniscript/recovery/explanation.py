@@ -17,10 +17,11 @@ from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import search, slips
+from tiniscript.recovery.ends import added_end, header_of, possible_places, shown
 from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.meanings import ENDED, Lexeme, lexemes, meant_by, texts
 from tiniscript.recovery.search import Candidate
-from tiniscript.recovery.slips import OF_BLOCKS, Change, Slip, alike, instructions, without_setup
+from tiniscript.recovery.slips import OF_BLOCKS, Change, Slip, alike, instructions
 from tiniscript.recovery.writing import in_one_line, laid_out, tokens_of, without_note
 
 _DEDUPED = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)
@@ -63,14 +64,16 @@ class Slipped(NamedTuple):
 class Unended:
     """A block that begins with `word` and lacks its end, `right`.
 
-    It has `behind` on its own line, or it is `begun` on another line than that of the place, and
-    line `line`, `last`, is its last one. Of `several` instructions the last one may as well be
-    behind it: there `last` is empty. It may end `early`, on the line before one that `begins`.
+    It has `behind` on its own line, where it may end after any of `places`, or it is `begun` on
+    another line than that of the place, and line `line`, `last`, is its last one. Of `several`
+    instructions the last one may as well be behind it: there `last` is empty. It may end `early`,
+    on the line before one that `begins`.
     """
 
     word: str
     right: str
     behind: str = ""
+    places: str = ""
     begun: str = ""
     line: str = ""
     last: str = ""
@@ -257,7 +260,8 @@ class _Explainer:
                 found.append(Change(place, edit, steps.get(n, []), part, meant))
                 if not steps.get(n) and text.isascii():
                     return []
-        return found if len(found) > 1 else []
+        is_alone = not self.found.is_whole and all(it.after for it in found)  # others are not read
+        return found if len(found) > 1 or (len(was) > 1 and is_alone) else []
 
     def walk(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
         """Open and close blocks; return the first one that began in an earlier change."""
@@ -320,13 +324,15 @@ class _Explainer:
 
     def unended(self, k: int, part: Change) -> Unended:
         """Return what is said of a block that lacks its end on the line where it begins."""
-        now, inside = texts(part.after), without_setup(part.before)
-        word = next((each for each in now if each in BLOCK_ENDS), "")
-        end = BLOCK_ENDS.get(word) or next((it for it in now if it in ENDED), "")
-        found = Unended(word or ENDED.get(end, ""), end)
-        found.behind = laid_out(inside[-1]) if word and inside else ""
+        now, at = texts(part.after), added_end(part.before, part.after) or 0
+        found = Unended(ENDED.get(now[at], ""), now[at])
+        inside = [each for each in instructions(part.after[:at]) if each]
+        is_here = found.word in now[:at]
+        if is_here:
+            found.behind = laid_out(inside[-1]) if inside else ""
+            found.places = shown(possible_places(part.after[header_of(part.after, at) : at]))
         above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
-        if not word and k and above:  # its indentation says where it ends
+        if not is_here and k and above:  # its indentation says where it ends
             found.line, found.last = str(above.last + 1), _first_line(above)
         return found
 

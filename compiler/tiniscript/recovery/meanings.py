@@ -171,6 +171,8 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         and (bare := [part for part in parts if not said_of(part, "sensing")]) != parts
     ):
         return meanings("_".join(bare))  # `SENSOR_LUZ_DERECHA`
+    if found := _of_stem(parts):
+        return (Meaning(found, KNOWN),)
     alike, near = _speller().alike(word), _speller().near(word)
     guesses = (
         (concept_of(alike or ""), KNOWN),
@@ -179,6 +181,18 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         (nearest(word, WORDS), NEAR),
     )
     return next(((Meaning(each, cost),) for each, cost in guesses if each), ())
+
+
+def _of_stem(parts: Sequence[str]) -> str:
+    """Return the sensor that two words say, one of them its side: `LEFT_LIGHT`, `luzDer`."""
+    glued = [(parts[0][:k], parts[0][k:]) for k in range(3, len(parts[0]) - 2)]
+    pairs = [tuple(parts)] if len(parts) == 2 else glued if len(parts) == 1 else []
+    for stem, side in (*pairs, *(pair[::-1] for pair in pairs)):
+        named = next((it.value for it in lexicon().get(stem, ()) if it.kind == "stem"), "")
+        way = side if side in ("L", "R") else concept_of(side)
+        if named and way in ("L", "R"):
+            return f"{named}_{way}"
+    return ""
 
 
 def meant_by(word: str) -> str | None:

@@ -154,7 +154,10 @@ SIGNS = r"""
 \A\s*tsc(?: \w+)? (?:(["'])(S[IB]\|.*)\1\Z|(?=S[IB]\|))
     | `\2` | TS044 | applied
     | tsc live "SI|F(2, 80)" => SI|F(2, 80)
-^\s*(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z]) | `` | TS054 | applied | ⟨*¦•¦a)⟩ F(2,80) => F(2,80)
+⟨(?<=\w)\s+\[\s*$$¦^^\s*\]\s*$$⟩
+    | `⟨ {¦}⟩` | TS047 | applied
+    | REPEAT 6 [⏎F(1, 50)⏎⟨]¦ ]⟩ => LOOP(6);⏎F(1, 50)⏎END_LOOP
+^\s*[•·►▶✔✓*–—-]\s+(?=[A-Za-z]) | `` | TS054 | applied | ⟨*¦•⟩ F(2,80) => F(2,80)
 ^\s*(?:-(?=[A-Z]\w*\()|[=-]?>+\s*) | `` | TS054 | applied | ⟨> ¦=> ¦-> ¦-⟩F(2,80) => F(2,80)
 ^\s*(?![⛔✋🛑])[➤↑↓⏫⏬⬅-⬇\u2600-\u27A1\U0001F300-\U0001FAFF]\uFE0F?\s*(?=[A-Za-z]+\s*\()
     | `` | TS054 | applied
@@ -168,9 +171,6 @@ SIGNS = r"""
 (?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))|(?<=\d)[|¿?!"]+(?=\s*\))
     | `` | TS005 | applied
     | F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
-^\s*(?:(?:paso|step|linea|line)\s*\d+\s*[.):-]*\s|\d+\s*(?:[.)]|[.):-]+\s))\s*(?=[A-Za-z])
-    | `` | TS054 | applied
-    | 1) F(2,80)⏎2) S => F(2,80)⏎S
 (?<![\w.])([1-9])[oO]⟨[oO]¦⟩\b | `\g<1>0⟨0¦⟩` | TS008 | applied | F(2,⟨1OO¦8O⟩) => F(2,⟨100¦80⟩)
 \b[oO]\.(\d+) | `0.\1` | TS008 | applied | F(O.5, 60) => F(0.5, 60)
 (?<=\d)\.(?=\s*[,);]) | `` | TS008 | offered | F(2, 80.) => F(2, 80)
@@ -352,8 +352,8 @@ a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => 
 ^ give to the? v=@name the? sensing? e=@num $
     | $v = $e | 1 | TS050 | offered
     | dar a X el valor 5⏎F(X, 80) => X = 5⏎F(X, 80)
-^ ⟨multiply¦divide¦increase¦decrease⟩ the? v=@name by|over n=@num|@val $
-    | $v = $v ⟨*¦/¦+¦-⟩ $n | 1 | TS050 | offered
+^ ⟨multiply¦divide¦increase¦decrease⟩ the? v=@name by|over s='-'? n=@num|@val $
+    | $v = $v ⟨*¦/¦+¦-⟩ $s $n | 1 | TS050 | offered
     | X = 40⏎⟨multiply¦divide¦increase¦decrease⟩ X by 2 => X = 40⏎X = X ⟨*¦/¦+¦-⟩ 2
 ^ keep the? e=@val|@num to v=@word $
     | $v = $e | 1.5 | TS050 | applied

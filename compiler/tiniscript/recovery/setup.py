@@ -1,4 +1,4 @@
-"""How a program begins: what stands for its `SI|`, above it, or before each of its lines."""
+"""How a program begins: what stands for its `SI|`, or above it."""
 
 from __future__ import annotations
 
@@ -17,10 +17,8 @@ from tiniscript.recovery.writing import without_note
 
 SEAL = "~"  # begins a checksum: what has one is copied again
 _LONGEST = 4_000  # characters of a first line that are read
-_FIRST_NUMBERS = (1, 10, 100)
 _CALL = re.compile(r"(?i)\s*(?:[FBLRMW]|BEEP)\s*\(")
 _BEGUN, _ROW = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
-_NUMBER = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
 _INSIDE = re.compile(r"(?:[^()]|\([^()]*\))*(?=\))")  # brackets that are open before it
 
 
@@ -37,7 +35,7 @@ def beginning(
         is_call = _CALL.match(source.text, said.repair.edits[0].span.end) is not None
         if is_call or is_better(after, found, said.repair.edits):
             return [said]
-    return _titles(source, kit) or _numbers(source)
+    return _titles(source, kit)
 
 
 def other_word(source: Source, found: Sequence[Diagnostic]) -> Diagnostic | None:
@@ -105,17 +103,3 @@ def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
         values = {"command": title} if words[0].text == "TSC" else {"fix": fix}
         told.append(Diagnostic(codes.PROSE, span, values, span, Repair((Edit(span, fix),), False)))
     return told
-
-
-def _numbers(source: Source) -> list[Diagnostic]:
-    """Return numbers that count the lines: `1 F(1, 50)`, `2 S`."""
-    numbers = [*_NUMBER.finditer(source.text)]
-    counted = [int(number[1]) for number in numbers]
-    is_counting = len(counted) > 1 and counted[0] in _FIRST_NUMBERS
-    if not is_counting or counted != [*range(counted[0], counted[-1] + 1, counted[0])]:
-        return []
-    return [
-        Diagnostic(codes.LINE_NUMBER, Span(*number.span(1)), {"found": number[1]}, None,
-                   Repair((Edit(Span(*number.span()), ""),), True))
-        for number in numbers
-    ]  # fmt: skip

@@ -241,9 +241,11 @@ class _Reader:
                 self.mark = marked[0]
         elif word in names.known.values and self.command:
             self._take(word, marked[0] if marked else self.mark)
-        elif self.command == "BEEP" and (
-            note := said_of(word, "note") or said_of(word + "4", "note")
-        ):
+        elif (
+            self.command == "BEEP"
+            and (note := said_of(word, "note") or said_of(word + "4", "note"))
+            and not (len(word) == 1 and self._is_number(k + 1))
+        ):  # `pita 1 segundo a 440`
             self.values.append(_Value(note[0], "Hz"))
             self.is_sure = self.is_sure and len(word) > 1  # `C`
         elif names.meant(word) == "FOREVER" and self.command in MOVES and self._is_said():

@@ -252,6 +252,7 @@ SUGGESTIONS = """
 ^ @strange @loose ++|--|+|-
     | TS050 offered here | found={sign}; fix={first} = {first} {step} {number}
     | x++ => found=++
+^ @strange | = | near={likely} | BESO(1, 880) => near=BEEP
 # … a sentence that says a block, an order or several: branch, two, code
 ^ @strange
     | TS102 offered | fix={block}; right={right}; found={named_first}; usage={usage}; takes=
@@ -288,8 +289,8 @@ SUGGESTIONS = """
 ^ @strange | TS074 here | ?={concept_numbered} | salir 3 => TS074
 ^ @strange | TS102 | found={word_said}; right={concept}; usage={concept_usage?} | fd 50 => found=FD
 ^ @sentence
-    | TS073 here | name={variable}; example={variable} = {variable} + {number}; fix=
-    | N = 5⏎cambiar N por -1 => name=N
+    | TS073 here | name={variable}; example={variable} = {variable} {plus} {number}; fix=
+    | N = 5⏎cambiar N por -1 => example=N = N - 1
 ^ @sentence | TS073 offered here | fix=// {said} | CALL DANCE => fix=// CALL DANCE
 ^ @strange | = | near={often_taught} | Si|Loco(4)⏎F(1, 60)⏎L(0.39, 60)⏎End_loop => near=LOOP
 ^ @strange | = | taught={taught} | SALTO(3) => taught=SALTO
@@ -320,6 +321,7 @@ SUGGESTIONS = """
 ^ TS017
     | TS076 | fix=; extra={extra}; word={value_word}; usage={value_usage}
     | F(2 VEL)⏎S => extra=VEL
+^ TS088 | = | example={own_example} | F(1 + 20 CM + 3, 60) => example=F(1 + 20 + 3 CM, 60)
 ^ @values @known ( $ | = | usage={first_usage} | W( => usage=W(seconds)
 ^ @values | TS101 first again | found={foreign} | CUADRADO(2 3) => found=CUADRADO
 ^ @values|TS009 | TS103 amount | found={amount}; *=amount | W(más) => found=más

@@ -439,8 +439,9 @@ def _asked(gaps: Gaps, name: str = "q") -> list[Lexeme]:
 def _shown(gaps: Gaps) -> str:
     """A word to show, which is no letter and like no name of the program."""
     word = gaps["s"]
-    is_name = len(word) < _SHORTEST_WORD or nearest(plain(word), gaps.part.names.known.values)
-    return "" if is_name else word
+    names = gaps.part.names
+    is_name = len(word) < _SHORTEST_WORD or nearest(plain(word), names.known.values)
+    return "" if is_name or plain(word) in names.in_brackets else word
 
 
 def _rest(gaps: Gaps, name: str) -> str:

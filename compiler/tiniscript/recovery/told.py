@@ -17,9 +17,14 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, without_wrong
 from tiniscript.recovery import slips
+from tiniscript.recovery.calls import misplaced_values
 from tiniscript.recovery.conserved import conserving, with_sample
+from tiniscript.recovery.counters import counters
 from tiniscript.recovery.dedupe import dedupe
 from tiniscript.recovery.findings import meant_in
+from tiniscript.recovery.keys import KEYS, asked_keys
+from tiniscript.recovery.labels import labelled
+from tiniscript.recovery.leftovers import leftovers, of_its_frame
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
 from tiniscript.recovery.setup import SEAL, beginning, other_word
@@ -90,9 +95,41 @@ def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
 # -- readers --------------------------------------------------------------------------------------
 
 
+def _labels(wrong: Wrong) -> Findings:
+    """Return what counts the instructions of a text, before each of them."""
+    return _with_edits(labelled(wrong.source))
+
+
+def _keys(wrong: Wrong) -> Findings:
+    """Return what is wrong with the keys that are asked for, of which one stands for an unknown."""
+    told = asked_keys(wrong.source, wrong.kit)
+    edits = _with_edits(told).edits
+    return Findings(told, edits + [Edit(it.span, KEYS[0]) for it in told if not it.repair])
+
+
 def _beginning(wrong: Wrong) -> Findings:
     """Return what is wrong with the lines before the program, and with its `SI|`."""
     return _with_edits(beginning(wrong.source, wrong.found, wrong.check, wrong.kit))
+
+
+def _calls(wrong: Wrong) -> Findings:
+    """Return what is wrong with calls that have all their values in another form."""
+    return _with_edits(misplaced_values(wrong.source))
+
+
+def _counters(wrong: Wrong) -> Findings:
+    """Return what is wrong with loops that count, in whose place LOOP counts nothing."""
+    return _with_edits(counters(wrong.source))
+
+
+def _frame(wrong: Wrong) -> Findings:
+    """Return what begins a program once more, and what ends it, which needs no word."""
+    return _with_edits(of_its_frame(wrong.source, wrong.kit))
+
+
+def _leftovers(wrong: Wrong) -> Findings:
+    """Return words that are left over in instructions, which are whole without them."""
+    return _with_edits(leftovers(wrong.source, wrong.kit))
 
 
 def _other_beginning(wrong: Wrong) -> Findings:
@@ -138,7 +175,8 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
 
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _beginning, _other_beginning, _meant_surely, _words_behind, _guessed, _words_of_blocks,
+    _labels, _beginning, _keys, _calls, _counters, _frame, _other_beginning, _meant_surely,
+    _leftovers, _words_behind, _guessed, _words_of_blocks,
 )  # fmt: skip
 
 

@@ -32,6 +32,8 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
+from tiniscript.recovery.calls import likely_word, own_example, usage_with
+from tiniscript.recovery.ends import possible_places, shown
 from tiniscript.recovery.meanings import (
     ASKING,
     DONE,
@@ -298,6 +300,11 @@ class Found:
         if word in ("L", "R") and (angle := _ANGLE.search(self.source[self.piece])):
             if float(angle[1]) >= LONG_S:  # `turnLeft(90, 70)`: no seconds
                 return f"{word}({angle[1]} DEG, {angle[2]})"
+        numbers = [token.text for token in self.row if token.kind is NUMBER]
+        if len(numbers) == 1 and "(" not in self.signs and (own := usage_with(word, numbers[0])):
+            return own
+        if word == "SHOW" and (given := [it for it in self.words if it in self.names.variables]):
+            return f"{word}({given[0]})"
         is_ended = _ENDS.search(plain(self.text)) is not None
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
@@ -471,7 +478,9 @@ class Found:
         rest = [each.strip() for each in behind.split("\n")[0].split(";") if _WORD.search(each)]
         below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
         if rest and k + 1 == len(rows):
-            return {"behind": rest[-1]}
+            begun = self.source[Span(self.found.span.start, self.piece.end)]
+            places = possible_places(tokens_of(f"{begun};{behind}"))
+            return {"behind": rest[-1], "places": shown(places)}
         if not below:
             return {"head": self.source[self.found.span]}
         depth = [len(row) - len(row.lstrip()) for row in rows]
@@ -692,6 +701,13 @@ def _asking(word: str) -> str:
 def _variable(gaps: Gaps) -> str:
     found = _found(gaps)
     return next((each for each in found.words if each in found.names.variables), "")
+
+
+def _own_example(gaps: Gaps) -> str:
+    """The instruction with its unit where that goes, if that makes it right."""
+    found = _found(gaps)
+    example = own_example(found.source[found.piece])
+    return example if lines.is_right(lexemes(example.split("; ")[-1]), found.names) else ""
 
 
 def _often(gaps: Gaps) -> str:
@@ -992,6 +1008,9 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "often_taught": _of(lambda it: "LOOP" * it.own.is_often),
     "taught": _of(lambda it: it.own.taught),
     "untaught": _of(lambda it: it.own.name * it.own.is_taught), "often": _often,
+    "likely": _of(lambda it: likely_word(it.signs[0], it.source[it.piece])),
+    "plus": _of(lambda it: "-" if f"-{it.number}" in "".join(it.signs) else "+"),
+    "own_example": _own_example,
     "own": _own_name, "end": _end, "done": _done,
     "done_usage": lambda gaps: _found(gaps).usage(_done(gaps)),
     "member": _of(lambda it: it.text[slice(*_member(it))]),

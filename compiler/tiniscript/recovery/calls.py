@@ -1,0 +1,170 @@
+"""Calls whose values are all there, but in another form: each gets all of them where it has them.
+
+`F(20, CM, 60)` has its unit as a value of its own, `BEEP(1, 1,000)` a comma between thousands, and
+`M(50, 80, 3)` the seconds of a W.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.base.words import POWER, UNIT_OF, WAYS, WORDS, Word, shortened
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.recovery.meanings import LONG_S, MOST_POWER
+from tiniscript.recovery.writing import without_note
+
+_VALUE = r"[^(),;{}\n]*(?:\([^()\n]*\)[^(),;{}\n]*)*"
+_CALL = re.compile(rf"(?<!\w)([A-Za-z]+)[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
+_COMMA = re.compile(r",(?![^()]*\))")  # outside of inner brackets
+_THOUSANDS = re.compile(r"([1-9]\d{0,2})((?:,\d{3})+)")
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+_ANY_CALL = re.compile(rf"\w+[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
+_SHORT = 3  # letters: a phone may have added some to one
+_UNIT = rf"(?P<unit>{'|'.join(WAYS)})"
+_UNIT_BEFORE = re.compile(rf"(?i){_UNIT}[ \t]+(?P<value>[\w.]+)")
+_STORED = re.compile(rf"(?i)(\w+)[ \t]*=[ \t]*(-?[\d.]+)[ \t]*({'|'.join(WAYS)})")
+
+
+class _Call(NamedTuple):
+    """A call of a word, its values as they are written, and where the text has it."""
+
+    word: Word
+    values: Sequence[str]
+    span: Span
+    text: str
+
+    def with_values(self, values: Sequence[str]) -> str:
+        return f"{self.text.partition('(')[0]}({', '.join(values)})"
+
+
+def misplaced_values(source: Source) -> list[Diagnostic]:
+    """Return what is told of calls whose values are in another form."""
+    told = []
+    start = 0
+    for line in source.text.split("\n"):
+        for call in _calls(without_note(line)[0], start):
+            laws = (_unit_apart(call), _thousands(call), _seconds_of_motors(call, source.text))
+            told += [found for found in laws if found][:1]
+        start += len(line) + 1
+    return told
+
+
+def _calls(body: str, start: int) -> Iterator[_Call]:
+    for match in _CALL.finditer(body):
+        word = WORDS.get(match[1].upper())
+        if word is not None and word.arguments:
+            span = Span(start + match.start(), start + match.end())
+            yield _Call(word, _parted(match[2]), span, match[0])
+
+
+def _parted(values: str) -> list[str]:
+    return [each.strip() for each in _COMMA.split(values)]
+
+
+def _told(call: _Call, code: codes.Code, fix: str, is_sure: bool, **values: str) -> Diagnostic:
+    repair = Repair((Edit(call.span, fix),), is_sure)
+    return Diagnostic(code, call.span, {**values, "fix": fix}, call.span, repair)
+
+
+def _unit_apart(call: _Call) -> Diagnostic | None:
+    """`F(20, CM, 60)`, `F(CM, 20, 60)`, `F(20, 60, CM)`, `F(CM SIDE, 60)`."""
+    unit = UNIT_OF.get(call.word.text, "")
+    values = [each for each in call.values if each.upper() != unit]
+    before = _UNIT_BEFORE.fullmatch(values[0]) if values else None
+    if before and before["unit"].upper() == unit and len(values) == len(call.values):
+        values[0] = before["value"]
+    elif len(values) != len(call.values) - 1:
+        return None
+    if not unit or len(values) != len(call.word.arguments) or not all(values):
+        return None
+    first, second = (word for word, its in UNIT_OF.items() if its == unit)
+    fix = call.with_values([f"{values[0]} {unit}", *values[1:]])
+    return _told(call, codes.UNIT_PLACE, fix, True, found=unit, first=first, second=second)
+
+
+def _thousands(call: _Call) -> Diagnostic | None:
+    """`BEEP(1, 1,000)`: a comma parts thousands, where nothing that has decimals goes."""
+    wanted, found = call.word.arguments, _THOUSANDS.search(call.text)
+    if found is None or len(call.values) <= len(wanted):
+        return None
+    joined = _THOUSANDS.sub(lambda it: it[0].replace(",", ""), call.text)
+    inside = joined.partition("(")[2].rpartition(")")[0]
+    values = _parted(inside)
+    is_of_time = any(
+        argument.unit == "s" and value not in call.values
+        for argument, value in zip(wanted, values, strict=False)
+    )
+    if len(values) != len(wanted) or is_of_time:
+        return None
+    fix = call.with_values(values)
+    return _told(call, codes.BAD_NUMBER, fix, True, found=found[0])
+
+
+def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
+    """`M(50, 80, 3)`: how long the motors run is said by a W after them."""
+    if call.word.text != "M" or len(call.values) != len(call.word.arguments) + 1:
+        return None
+    *powers, time = call.values
+    is_time = bool(_NUMBER.fullmatch(time)) and 0 < float(time) < LONG_S
+    are_powers = all(not _NUMBER.fullmatch(it) or abs(float(it)) <= MOST_POWER for it in powers)
+    if not is_time or not are_powers:
+        return None
+    fix = f"{call.with_values(powers)};W({time})"
+    fix += "" if text[call.span.end :].strip() else ";S"
+    values = {"word": "M", "usage": call.word.usage, "wanted": "2", "found": "3", "number": ""}
+    return _told(call, codes.ARGUMENT_COUNT, fix, False, **values)
+
+
+# -- what is shown of a call that nothing reads ---------------------------------------------------
+
+
+def own_example(text: str) -> str:
+    """Return how an instruction with CM or DEG in another place is written with its own values."""
+    if stored := _STORED.fullmatch(text):
+        name, number, unit = stored[1], stored[2], stored[3].upper()
+        word = next(word for word, its in UNIT_OF.items() if its == unit)
+        return f"{name} = {number}; {word}({name} {unit}, {POWER.sample})"
+    call = next(_calls(text, 0), None)
+    unit = UNIT_OF.get(call.word.text, "") if call else ""
+    if call is None or not unit:
+        return ""
+    values = [re.sub(rf"(?i)\b{unit}\b", "", each).strip() for each in call.values]
+    values = [re.sub(r"  +", " ", each) for each in values if each]
+    is_whole = len(values) == len(call.word.arguments)
+    return call.with_values([f"{values[0]} {unit}", *values[1:]]) if is_whole else ""
+
+
+def likely_word(word: str, text: str) -> str:
+    """Return the word of a call that an unknown one may be by its letters and its values."""
+    call = _ANY_CALL.fullmatch(text)
+    values = _parted(call[1]) if call else []
+    numbers = [number for number in map(_NUMBER.match, values) if number]
+    if not values or len(numbers) != len(values):
+        return ""
+    is_tone = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
+    short = shortened(word)
+    if is_tone:
+        found = "BEEP" if word[:1] == "B" or "BEEP" in short else ""
+    elif len(short) == 1:
+        found = short[0]
+    else:
+        found = word[:1] if len(word) <= _SHORT else ""
+    return found if found in WORDS and len(WORDS[found].arguments) == len(values) else ""
+
+
+def usage_with(word: str, number: str) -> str:
+    """Return how a word is written with the one number that is there, "" where that may be other.
+
+    So much of a turn is degrees; of a way it may be a power.
+    """
+    known = WORDS.get(word)
+    is_long = float(number) >= LONG_S
+    if known is None or not known.is_call or (is_long and word not in ("L", "R")):
+        return ""
+    names = [argument.name for argument in known.arguments][1:]
+    unit = f" {UNIT_OF[word]}" if is_long else ""
+    return f"{word}({', '.join((number + unit, *names))})" if known.role.lasts else ""

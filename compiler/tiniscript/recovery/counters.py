@@ -1,0 +1,179 @@
+"""Loops of other languages that count: `FOR I = 1 TO 5`, `for each i from 1 to 4`, `NEXT I`.
+
+LOOP counts nothing: a counter that the body uses becomes a variable that grows there. What the
+rows read is left to them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.base.words import WORDS, concept_of, said_of
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
+from tiniscript.recovery.meanings import Lexeme, lexemes
+from tiniscript.recovery.trailing_tokens import width
+from tiniscript.recovery.writing import without_note
+from tiniscript.syntax.lexer import NUMBER, WORD
+
+_BEGINS = (";", "{", "}", "|")
+_IN = ("IN", "EN", "EM")
+
+
+class _Counter(NamedTuple):
+    """A header: tokens from `start` up to `end` count `times` with `name`, from `first` on.
+
+    The words before `begun` say that it is one: `for each`.
+    """
+
+    start: int
+    begun: int
+    end: int
+    name: str
+    first: int
+    times: int
+
+
+def counters(source: Source) -> list[Diagnostic]:
+    """Return what is told of headers with a counter that is used, and of the ends that name it."""
+    told: list[Diagnostic] = []
+    rows = [lexemes(without_note(line)[0]) for line in source.text.split("\n")]
+    found = [[*_headers(row)] for row in rows]
+    names = {each.name for row in found for each in row}
+    if not names:
+        return []
+    words = [token.text for row in rows for token in row]
+    start = 0
+    for row, own, line in zip(rows, found, source.text.split("\n"), strict=True):
+        spans = _spans(row, start)
+        for each in own:
+            in_header = [it.text for it in row[each.start : each.end]].count(each.name)
+            ends = sum(_is_end(a, b, each.name) for k in rows for a, b in pairwise(k))
+            is_used = words.count(each.name) > in_header + ends
+            if is_used or any(said_of(it.text, "each") for it in row[each.start : each.end]):
+                span = Span(spans[each.start].start, spans[each.end - 1].end)
+                told.append(
+                    _told(
+                        span,
+                        _said(source, spans[each.start : each.begun]),
+                        "LOOP",
+                        _loop(each, is_used),
+                    )
+                )
+        for k, (end, name) in enumerate(pairwise(row)):
+            if name.text in names and _is_end(end, name, name.text):
+                span = Span(spans[k].start, spans[k + 1].end)
+                told.append(_told(span, source[span], "END_LOOP", "END_LOOP"))
+        start += len(line) + 1
+    return told
+
+
+def _told(span: Span, found: str, right: str, fix: str) -> Diagnostic:
+    code: Code = codes.OTHER_LANGUAGE
+    values = {"found": found, "right": right, "fix": fix, "usage": WORDS[right].usage}
+    return Diagnostic(code, span, values, span, Repair((Edit(span, fix),), False))
+
+
+def _said(source: Source, spans: Sequence[Span]) -> str:
+    return source[Span(spans[0].start, spans[-1].end)].partition("(")[0].strip()
+
+
+def _loop(counter: _Counter, is_used: bool) -> str:
+    name, before = counter.name, counter.first - 1
+    loop = f"LOOP({counter.times})"
+    return f"{name} = {before};{loop};{name} = {name} + 1" if is_used else loop
+
+
+def _spans(row: Sequence[Lexeme], start: int) -> list[Span]:
+    found = []
+    for token in row:
+        start += width(token)
+        found.append(Span(start - len(token.source or ""), start))
+    return found
+
+
+def _is_end(end: Lexeme, name: Lexeme, counter: str) -> bool:
+    return concept_of(end.text) == "END_LOOP" and name.text == counter
+
+
+def _headers(row: Sequence[Lexeme]) -> Iterator[_Counter]:
+    for k in range(len(row)):
+        is_begun = k == 0 or row[k - 1].text in _BEGINS
+        if is_begun and (found := _header(row, k)):
+            yield found
+
+
+def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
+    """Return what a header counts that begins at a token."""
+    if not said_of(row[start].text, "count") and concept_of(row[start].text) != "LOOP":
+        return None
+    rest = _Rest(row, start + 1)
+    is_open = rest.take("(")
+    while rest.says("each", "every", "declare"):
+        rest.k += 1
+    begun, name = rest.k, rest.text()
+    if name in WORDS or not name.isidentifier() or concept_of(name):
+        return None
+    rest.k += 1
+    if rest.text() in _IN and rest.text(1) == "RANGE" and rest.text(2) == "(":
+        rest.k += 3
+        numbers = [rest.number()]
+        numbers += [rest.number()] if rest.take(",") else []
+        first, behind = (0, *numbers)[-2:]
+        is_whole = rest.take(")")
+    elif rest.take("=", ":=") or rest.says("from", "to"):
+        rest.k += rest.says("from", "to")
+        first = rest.number()
+        if rest.take(";"):
+            is_whole = rest.take(name)
+            is_closed = rest.text() == "<="
+            is_whole &= rest.take("<", "<=")
+            behind = _plus(rest.number(), int(is_closed))
+            is_whole &= rest.take(";") and rest.take(name) and rest.take("++")
+        else:
+            is_whole = rest.says("to", "until")
+            while rest.says("to", "until"):
+                rest.k += 1
+            behind = _plus(rest.number(), 1)
+    else:
+        return None
+    is_whole = is_whole and (not is_open or rest.take(")"))
+    rest.k += rest.text() == ":" or rest.says("do")
+    if not is_whole or first is None or behind is None or behind <= first:
+        return None
+    return _Counter(start, begun, rest.k, name, first, behind - first)
+
+
+def _plus(number: int | None, more: int) -> int | None:
+    return None if number is None else number + more
+
+
+class _Rest:
+    """What follows in a row of tokens, from `k` on."""
+
+    def __init__(self, row: Sequence[Lexeme], k: int) -> None:
+        self.row = row
+        self.k = k
+
+    def text(self, ahead: int = 0) -> str:
+        return self.row[self.k + ahead].text if self.k + ahead < len(self.row) else ""
+
+    def says(self, *kinds: str) -> bool:
+        is_word = self.k < len(self.row) and self.row[self.k].kind is WORD
+        return is_word and bool(said_of(self.text(), *kinds))
+
+    def take(self, *signs: str) -> bool:
+        """Pass one of these signs, or say that there is none."""
+        is_there = self.text() in signs
+        self.k += is_there
+        return is_there
+
+    def number(self) -> int | None:
+        """Pass a whole number, None for anything else."""
+        is_there = self.k < len(self.row) and self.row[self.k].kind is NUMBER
+        found = int(self.text()) if is_there and self.text().isdecimal() else None
+        self.k += is_there
+        return found

@@ -1,0 +1,66 @@
+"""Where a block of one line may end that lacks its end: after one of its instructions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tiniscript.base.words import BLOCK_ENDS
+from tiniscript.recovery.meanings import ENDED, Lexeme, texts
+from tiniscript.recovery.slips import instructions
+from tiniscript.recovery.writing import laid_out
+
+_SHOWN = 4  # places, of which the last is always one
+_ARMS = ("ELSE", "ELSEIF")
+_ENDLESS = (("(", "FOREVER", ")"), ("(", "TRUE", ")"))
+
+
+def possible_places(tokens: Sequence[Lexeme]) -> list[str]:
+    """Return the instructions after which the block may end that these tokens begin, in order.
+
+    What comes after an endless loop is never done: that ends after all of them.
+    """
+    header, *inside = instructions(tokens)
+    places: list[str] = []
+    depth = 0
+    for each in inside:
+        word = each[0].text if each else ""
+        depth += word in BLOCK_ENDS
+        if word in ENDED:
+            if not depth:
+                break  # of a block around it
+            depth -= 1
+        if word in _ARMS and not depth:
+            places = []  # it ends in its last branch
+        elif each and not depth:
+            places.append(laid_out(each))
+    is_endless = texts(header[1:]) in _ENDLESS
+    return places[-1:] if is_endless else places
+
+
+def shown(places: Sequence[str]) -> str:
+    """Return places for a message, nothing for one alone: that is no guess."""
+    if len(places) < 2:
+        return ""
+    parts = [*places[: _SHOWN - 1], "...", places[-1]] if len(places) > _SHOWN else places
+    return ", ".join(parts)
+
+
+def added_end(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> int | None:
+    """Return where the first end is that only the repaired tokens have, None for none."""
+    left = list(texts(before))
+    for k, word in enumerate(texts(after)):
+        if word in left:
+            del left[: left.index(word) + 1]
+        elif word in ENDED:
+            return k
+    return None
+
+
+def header_of(tokens: Sequence[Lexeme], end: int) -> int:
+    """Return where the block begins that ends at a token."""
+    depth = 0
+    for k in range(end, -1, -1):
+        depth += (tokens[k].text in ENDED) - (tokens[k].text in BLOCK_ENDS)
+        if tokens[k].text in BLOCK_ENDS and not depth:
+            return k
+    return 0

@@ -1,0 +1,251 @@
+"""Keys of a remote control in a pupil's own words: `KEY = UP`, `botón A`, `flecha arriba`.
+
+Each leads to one of the readings that a robot has of them, and a key that there is not to all of
+these. Where an order is given to a key, `flecha arriba = F(1, 60)`, the key is asked.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Set
+from functools import cache
+from itertools import product
+from typing import NamedTuple
+
+from tiniscript.base.kit import REMOTE, Kit
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of, lexicon, said_of
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.recovery.meanings import ASKING, ENDED, Names, lexemes, plain, words_of
+from tiniscript.recovery.writing import without_note
+
+KEYS = tuple(device.name for device in REMOTE if device.is_yes_no)
+_SIDES = {"F": "UP", "B": "DOWN", "L": "LEFT", "R": "RIGHT"}  # what arrows say alone
+_PART = re.compile(r"([^;{}|]*)(\|?)")
+_PIECE = re.compile(r"\d[\d.]*|[^\W\d_]+|<>|!=|==|\S")
+_HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-ZÀ-Ý])")  # of `upKey`
+_EQUAL = ("=", "==", "_", "-", '"', "'", "<>", "!=", "(")
+_GIVEN = re.compile(r"(?i)\s*(?:=>?|:|->)\s*((?:[FBLRSMW]|BEEP|STOP)\b[^;{}\n]*)")
+_SET = re.compile(r"(?m)(?:^|[;|{}])\s*(\w+)\s*=(?!=|>|\s*(?:[FBLRSMW]|BEEP|STOP)\b)")
+_LINKS = ("the", "of", "to", "is", "filler", "small", "pressed")
+
+
+class _Piece(NamedTuple):
+    """A word, or a part of one, or a sign: `KEY_UP` is three."""
+
+    word: str
+    span: Span
+
+
+class _Key(NamedTuple):
+    """Pieces that say a key, from `first` up to `end`; `right` is "" for one that there is not."""
+
+    first: int
+    end: int
+    right: str
+
+
+def asked_keys(source: Source, kit: Kit) -> list[Diagnostic]:
+    """Return what is told of the keys that a text has in other words."""
+    if not kit.has_remote or not re.search(_guard(), plain(source.text)):
+        return []
+    rows = [without_note(line)[0] for line in source.text.split("\n")]
+    names = Names([lexemes(row) for row in rows], kit)
+    own = names.defs.union(*names.parameters.values(), _SET.findall(plain(source.text)))
+    told: list[Diagnostic] = []
+    start = depth = 0
+    for row, line in zip(rows, source.text.split("\n"), strict=True):
+        for part in _PART.finditer(row):
+            if part[2]:
+                continue  # `SI|`
+            told += _Part(part[1], start + part.start(), names, own).told(depth > 0)
+            words = [each.text for each in lexemes(part[1])]
+            depth += sum((it in BLOCK_ENDS) - (it in ENDED) for it in map(names.meant, words))
+        start += len(line) + 1
+    return told
+
+
+def key_edits(text: str, kit: Kit) -> list[Edit]:
+    """Return the edits that make the keys of a text the readings that they are."""
+    repairs = (each.repair for each in asked_keys(Source(text), kit))
+    return [edit for each in repairs if each and each.is_sure for edit in each.edits]
+
+
+class _Part:
+    """An instruction, which begins at a place of a text that has names of its `own`."""
+
+    def __init__(self, text: str, at: int, names: Names, own: Set[str]) -> None:
+        self.own = own
+        self.text = text
+        self.at = at
+        self.names = names
+        self.pieces = [*self._pieces()]
+
+    def _pieces(self) -> Iterator[_Piece]:
+        end = 0
+        for token in lexemes(self.text):
+            source = token.source or ""
+            start = self.text.index(source, end)
+            end = start + len(source)
+            if token.text in self.own:
+                yield _Piece("", Span(start, end))  # a variable may be called KEY
+                continue
+            for piece in _PIECE.finditer(_HUMP.sub(" ", source)):
+                humps = len(_HUMP.findall(source[: piece.end()]))
+                at = start + piece.start() - min(humps, piece.start())
+                yield from _parted(plain(piece[0]), at if humps else start + piece.start())
+
+    def told(self, is_inside: bool) -> Iterator[Diagnostic]:
+        """Give what is told of an instruction, which is inside a block or not."""
+        if order := self._given():
+            yield self._order(*order, "IF" if is_inside else "WHEN")
+            return
+        asks = (k for k, each in enumerate(self.pieces) if self._meant(each) in ASKING)
+        k = next(asks, len(self.pieces))
+        while k < len(self.pieces):
+            key = self._key(k) or self._side(k)
+            if key is not None:
+                yield from self._said(key)
+            k = key.end if key else k + 1
+
+    def _meant(self, piece: _Piece) -> str:
+        return self.names.meant(piece.word) if piece.word.isalpha() else ""
+
+    def _span(self, key: _Key) -> Span:
+        first, last = self.pieces[key.first], self.pieces[key.end - 1]
+        return Span(self.at + first.span.start, self.at + last.span.end)
+
+    def _said(self, key: _Key) -> Iterator[Diagnostic]:
+        span = self._span(key)
+        found = self.text[span.start - self.at : span.end - self.at]
+        if not key.right:
+            yield Diagnostic(codes.UNKNOWN_NAME, span, {"no_key": found, "keys": ", ".join(KEYS)})
+        elif found.upper() != key.right:
+            values = {"found": found, "right": key.right, "fix": key.right}
+            repair = Repair((Edit(span, key.right),), True)
+            yield Diagnostic(codes.OTHER_LANGUAGE, span, values, span, repair)
+
+    # -- an order that is given to a key ----------------------------------------------------------
+
+    def _given(self) -> tuple[_Key, str] | None:
+        key = self._key(0) if self.pieces else None
+        if key is None or not key.right:
+            return None
+        given = _GIVEN.fullmatch(self.text, self.pieces[key.end - 1].span.end)
+        return (key, given[1].strip()) if given else None
+
+    def _order(self, key: _Key, order: str, head: str) -> Diagnostic:
+        begin = self._span(key)
+        span = Span(begin.start, self.at + len(self.text.rstrip()))
+        fix = f"{head}({key.right});{order};{BLOCK_ENDS[head]}"
+        found = self.text[begin.start - self.at : begin.end - self.at]
+        values, repair = (
+            {"found": found, "right": key.right, "fix": fix},
+            Repair((Edit(span, fix),), False),
+        )
+        if found.upper() != key.right:
+            return Diagnostic(codes.OTHER_LANGUAGE, begin, values, span, repair)
+        values = {"word": re.split(r"\W", order)[0].upper(), "fix": fix}
+        return Diagnostic(codes.NO_VALUE, span, values, span, repair)
+
+    # -- what says a key --------------------------------------------------------------------------
+
+    def _key(self, k: int) -> _Key | None:
+        """Return the key that pieces from one on say: its side goes before it or behind it."""
+        begun = self._while(k, lambda it: it.isalpha() and _says(it, *_LINKS))
+        side = _side(self._word(begun))
+        at = (
+            self._while(begun + 1, lambda it: _says(it, "the", "of") or it == "_")
+            if side
+            else begun
+        )
+        if not _is_key(self._word(at)):
+            return None
+        end = self._while(at, lambda it: _is_key(it) or _says(it, "the", "of"))
+        end = self._while(at, _is_key) if self._word(end) in ("A", "B") else end
+        signs: list[str] = []
+        if not side:
+            behind = self._while(end, lambda it: it in _EQUAL or _says(it, *_LINKS))
+            letters = (n for n in range(end, behind + 1) if self._word(n) in ("A", "B"))
+            side = _side(self._word(behind))
+            last = behind if side else next(letters, None)
+            side = side or (self._word(last) if last is not None else "")
+            if not side and begun - k > 1 and self._word(begun - 1) in ("A", "B"):
+                side, last = self._word(begun - 1), end - 1  # `the A button`
+            signs = [self._word(n) for n in range(end, behind)]
+            is_button = concept_of(self._word(at)) == "BUTTON"
+            if not side and is_button:
+                return None
+            is_compared = bool({*signs} & {"=", "==", "_"}) and self._word(behind) not in ("", ")")
+            end = (last if last is not None else behind if is_compared else end - 1) + 1
+        closing = self._while(end, lambda it: it in ('"', "'") or _says(it, "is", "the", "pressed"))
+        end = closing if self._says_pressed(end, closing) or '"' in signs or "'" in signs else end
+        if "(" in signs and self._word(end) == ")":
+            end += 1
+        is_not = bool({*signs} & {"<>", "!="})
+        if self._word(end) in ("=", "==") and self._word(end + 1) in ("0", "1"):
+            is_not, end = self._word(end + 1) == "0", end + 2
+        first = k if self._says_pressed(k, begun) else begun
+        before = self.pieces[k - 1] if k else _Piece("", Span(0, 0))
+        if before.word == "(" or self._meant(before) in ASKING:
+            first = k  # with its article
+        return _Key(first, end, f"{'NOT ' if is_not else ''}KEY_{side}" if side else "")
+
+    def _side(self, k: int) -> _Key | None:
+        """Return the key that a side alone says, which nothing else is asked with: `WHEN(UP)`."""
+        side = _side(self._word(k))
+        end = self._while(k + 1, lambda it: _says(it, "is", "pressed"))
+        is_alone = self._word(k - 1) == "(" and self._word(end) == ")"
+        is_upright = side in ("UP", "DOWN") or self._says_pressed(k + 1, end)
+        return _Key(k, end, f"KEY_{side}") if side and is_alone and is_upright else None
+
+    def _word(self, k: int) -> str:
+        return self.pieces[k].word if 0 <= k < len(self.pieces) else ""
+
+    def _while(self, k: int, fits: Callable[[str], bool]) -> int:
+        while k < len(self.pieces) and fits(self._word(k)):
+            k += 1
+        return k
+
+    def _says_pressed(self, start: int, end: int) -> bool:
+        return any(_says(self._word(k), "pressed") for k in range(start, end))
+
+
+def _says(word: str, *kinds: str) -> bool:
+    return bool(said_of(word, *kinds)) and not {word, concept_of(word)} & {*WORDS, *ASKING}
+
+
+def _is_key(word: str) -> bool:
+    return bool(said_of(plain(word), "key")) or concept_of(plain(word)) == "BUTTON"
+
+
+def _side(word: str) -> str:
+    if word and not word.isascii():
+        return _SIDES.get(concept_of(word) or "", "")
+    return "".join(said_of(word, "up", "down", "left", "right")).upper()
+
+
+@cache
+def _guard() -> str:
+    """Return the pattern of what is in a text that speaks of keys."""
+    return rf"{words_of('key', 'up', 'down', 'pressed', 'BUTTON')}"
+
+
+@cache
+def _words() -> tuple[str, ...]:
+    return tuple(word for word in lexicon() if _is_key(word) and word.isascii())
+
+
+def _parted(word: str, start: int) -> Iterator[_Piece]:
+    """Give a word, in two where a key and its side are glued: `KEYUP`."""
+    for key, ends in product(_words(), (str.removeprefix, str.removesuffix)):
+        rest = ends(word, key)
+        is_letter = rest in ("A", "B") and bool(said_of(key, "key")) and word.startswith(key)
+        if rest != word and (_side(rest) or is_letter):
+            parts = (key, rest) if word.startswith(key) else (rest, key)
+            middle = start + len(parts[0])
+            yield _Piece(parts[0], Span(start, middle))
+            yield _Piece(parts[1], Span(middle, start + len(word)))
+            return
+    yield _Piece(word, Span(start, start + len(word)))

@@ -1,0 +1,97 @@
+"""Labels before instructions, which count them: `1)`, `a.`, `Step 2 -`, `Questão 3:`.
+
+A label stands where an instruction begins, in any language: a number or a letter with a sign, or
+any word that is no order with one of these. Numbers alone are labels where they count all lines.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.base.words import WORDS, concept_of, lexicon, said_of
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.recovery.meanings import meant_by, plain
+from tiniscript.recovery.writing import without_note
+
+_FIRST_NUMBERS = (1, 10, 100)
+_COUNTED = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
+_PLACE = re.compile(r"(?i)(?:^|[;{}]|\bS[IB][ \t]*\|)[ \t]*(?=[(\w])")
+_LABEL = re.compile(
+    r"(?:(?P<word>[^\W\d_]{2,})[ \t]*(?:n[º°o]?\.?|#)?[ \t]*(?=[\d(]|\b[A-Za-z]\b))?\(?"
+    r"(?P<count>\d{1,3}(?:\.\d{1,2})*|[A-Ha-h])(?P<sign>[ºª°]?[ \t]*[.):\]–—-]+|[ºª°])?"
+    r"(?P<space>[ \t]*)(?=(?P<next>[^\W\d]\w*)[ \t]*(?P<after>[|(=])?)"
+)
+
+
+@lru_cache(100)
+def labels(text: str) -> tuple[Span, ...]:
+    """Return where the labels of a text are, each with the spaces behind it."""
+    numbers = [*_COUNTED.finditer(text)]
+    counted = [int(number[1]) for number in numbers]
+    is_counting = len(counted) > 1 and counted[0] in _FIRST_NUMBERS
+    if is_counting and counted == [*range(counted[0], counted[-1] + 1, counted[0])]:
+        return tuple(Span(number.start(1), number.end()) for number in numbers)
+    return tuple(_in_lines(text))
+
+
+def labelled(source: Source) -> list[Diagnostic]:
+    """Return what is told of the labels of a text: each is taken out."""
+    return [
+        Diagnostic(codes.LINE_NUMBER, Span(span.start, span.start + len(found)), {"found": found},
+                   None, Repair((Edit(span, ""),), True))
+        for span in labels(source.text)
+        if (found := source[span].rstrip())
+    ]  # fmt: skip
+
+
+def _in_lines(text: str) -> Iterator[Span]:
+    start, is_open = 0, False
+    for line in text.split("\n"):
+        body = without_note(line)[0]
+        for place in _PLACE.finditer(body):
+            before = body[: place.start()]
+            label = _LABEL.match(body, place.end())
+            if label and not is_open and before.count("(") <= before.count(")"):
+                if _is_label(label, text):
+                    yield Span(start + label.start(), start + label.end())
+        is_open = body.rstrip()[-1:] in ("(", ",")  # it goes on in the next line
+        start += len(line) + 1
+
+
+def _is_label(label: re.Match[str], text: str) -> bool:
+    word, sign = plain(label["word"] or ""), (label["sign"] or "").strip()
+    is_order = _is_order(plain(label["next"]), label["after"] or "", text)
+    if word:
+        return is_order and (_is_step(word) if not sign else _is_step(word) or _is_free(word, text))
+    if label["count"].isalpha():
+        is_apart = bool(label["space"]) or sign == ")"
+        is_name = sign != ")" and _is_name(label["count"], text)
+        return bool(sign) and is_apart and is_order and not is_name
+    return bool(sign) and (bool(label["space"]) or sign[-1] in ".)]º" or is_order)
+
+
+def _is_order(word: str, sign: str, text: str) -> bool:
+    """Whether an instruction begins with a word and the sign after it."""
+    meant = {word, concept_of(word), meant_by(word)} & WORDS.keys()
+    return bool(sign or meant or said_of(word, "set", "declare")) or _is_name(word, text)
+
+
+def _is_step(word: str) -> bool:
+    """Whether a word counts what is done: `paso`, `step`, `line`."""
+    said = {(each.kind, each.value) for each in lexicon().get(word, ())}
+    return ("unit", "steps") in said or ("stem", "LINE") in said
+
+
+def _is_free(word: str, text: str) -> bool:
+    """Whether a word is none of the language, and no name of the text."""
+    is_order = (meant_by(word) or "S") not in ("S", "STOP")  # PARTE is no PARE with a number
+    return not (word in WORDS or lexicon().get(word) or is_order or _is_name(word, text))
+
+
+def _is_name(word: str, text: str) -> bool:
+    """Whether a text sets a word, teaches it or calls it."""
+    return re.search(rf"(?i)\bDEF\s+{word}\b|\b{word}\s*[=(]", plain(text)) is not None

@@ -1,0 +1,114 @@
+"""What is left over in an instruction: words that say nothing, and a second `SI|`.
+
+Each is told to be taken out as what it is: an instruction without values is done with its word.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence, Set
+from itertools import accumulate
+
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of, lexicon, said_of
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.recovery.calls import likely_word
+from tiniscript.recovery.meanings import ASKING, ENDED, Lexeme, Names, lexemes, plain
+from tiniscript.recovery.writing import without_note
+from tiniscript.syntax.lexer import WORD
+
+_SETUP = re.compile(r"(?i)(?P<before>\)|\w)?[ \t]*\b(?P<setup>S[IB][ \t]*\|)(?!\|)[ \t]*")
+_BEGUN = re.compile(r"(?i)^\s*S[IB]\s*\|")
+_TASK = re.compile(r"\bTASK[ \t]+([A-Z]\w*)")
+_PART = re.compile(r"[^;{}|]+")
+_CALL = re.compile(r"\s*(\w+)\s*(?:\([^()]*\))?[\s.]*")
+_HEADS = frozenset((*BLOCK_ENDS, *ASKING, "ELSE", "FOREVER"))
+_MOST = 3  # words
+_ALONE = frozenset(("BREAK", "S", "START", "STOP", *ENDED))
+_MEANS_NOTHING = frozenset((
+    "filler", "small", "please", "the", "of", "to", "in", "is", "soon", "there", "this", "so",
+    "bye", "above", "program", "all", "moment", "one", "ahead", "first", "idle",
+))  # fmt: skip
+
+
+def leftovers(source: Source, kit: Kit) -> list[Diagnostic]:
+    """Return what is told of all that is left over in a text."""
+    rows = [without_note(line)[0] for line in source.text.split("\n")]
+    names = Names([lexemes(row) for row in rows], kit)
+    lines = source.text.split("\n")
+    starts = [0, *accumulate(len(line) + 1 for line in lines)]
+    tasks = frozenset(_TASK.findall(plain(source.text)))  # which have no name
+    told: list[Diagnostic] = []
+    for row, start in zip(rows, starts, strict=False):
+        told += _words(row, start, names, tasks)
+    return told
+
+
+def of_its_frame(source: Source, kit: Kit) -> list[Diagnostic]:
+    """Return what is told of each `SI|` after an instruction, and of a word for the end of all."""
+    rows = [without_note(line)[0] for line in source.text.split("\n")]
+    starts = [0, *accumulate(len(line) + 1 for line in source.text.split("\n"))]
+    told = [each for row, start in zip(rows, starts, strict=False) for each in _setups(row, start)]
+    return [*told, *_ending(rows, starts, Names([lexemes(row) for row in rows], kit))]
+
+
+def _ending(rows: Sequence[str], starts: Sequence[int], names: Names) -> Iterator[Diagnostic]:
+    """Give the word for an end below a program in which no block begins: `Fim.`"""
+    last = max((k for k, row in enumerate(rows) if row.strip()), default=0)
+    tokens = [token for token in lexemes(rows[last]) if token.text not in (".", ";")]
+    above = [part for row in rows[:last] for part in _BEGUN.sub("", row).split(";") if part.strip()]
+    calls = [_CALL.fullmatch(part) for part in above]
+    is_open = any(it is None or not _is_call(it, names) for it in calls)
+    is_end = len(tokens) == 1 and last > 0 and bool(said_of(tokens[0].text, "end"))
+    if is_end and not is_open and not names.is_name(tokens[0].text):
+        begin = starts[last] + len(rows[last]) - len(rows[last].lstrip())
+        span = Span(begin, starts[last] + len(rows[last]))
+        word = tokens[0].source or ""
+        repair = Repair((Edit(span, ""),), True)
+        yield Diagnostic(codes.EXTRA_WORD, span, {"found": word}, span, repair)
+
+
+def _is_call(part: re.Match[str], names: Names) -> bool:
+    """Whether an instruction begins no block: it is one of the language, or nearly so."""
+    word = part[1].upper()
+    meant = names.meant(word) or likely_word(word, part[0].strip())
+    return names.is_name(word) or (meant in WORDS and meant not in _HEADS)
+
+
+def _setups(row: str, start: int) -> Iterator[Diagnostic]:
+    """Give each `SI|` behind an instruction of its line: what follows it comes next."""
+    for match in _SETUP.finditer(row):
+        is_behind = match["before"] == ")" or bool(_BEGUN.search(row[: match.start("setup")]))
+        if match["before"] is None or not is_behind or match["setup"][1:2] in "Bb":
+            continue
+        place = Span(start + match.start("setup"), start + match.end("setup"))
+        edit = Edit(Span(start + match.end("before"), start + match.end()), "; ")
+        values = {"found": match["setup"], "between": match["setup"]}
+        yield Diagnostic(codes.SETUP_TWICE, place, values, place, Repair((edit,), True))
+
+
+def _words(row: str, start: int, names: Names, tasks: Set[str]) -> Iterator[Diagnostic]:
+    for part in _PART.finditer(row):
+        tokens = lexemes(part[0])
+        if not 1 < len(tokens) <= 1 + _MOST or tokens[0].text not in _ALONE:
+            continue
+        if all(it.text in tasks or _says_nothing(it, names) for it in tokens[1:]):
+            end = start + part.start() + len(part[0].rstrip())
+            begin = start + part.start() + part[0].index(tokens[0].source or "")
+            begin += len(tokens[0].source or "")
+            words = " ".join(token.source or "" for token in tokens[1:])
+            span = Span(end - len(part[0].rstrip()[begin - start - part.start() :].lstrip()), end)
+            repair = Repair((Edit(Span(begin, end), ""),), False)
+            values = {"words": words, "needless": words}
+            yield Diagnostic(codes.WORDS_BEHIND, span, values, span, repair)
+
+
+def _says_nothing(token: Lexeme, names: Names) -> bool:
+    """Whether a token is a word that is no order, no name and no part of a sentence."""
+    word = token.text
+    if token.kind is not WORD or word in WORDS or names.is_name(word) or names.meant(word):
+        return False
+    kinds = {said.kind for said in lexicon().get(word, ())}
+    return concept_of(word) is None and kinds <= _MEANS_NOTHING

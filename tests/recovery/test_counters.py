@@ -1,0 +1,61 @@
+"""A counter of a loop keeps its values: LOOP counts nothing, so a variable grows in its body."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.base.source import Source, applied
+from tiniscript.diagnostics.fixing import edits_of
+from tiniscript.diagnostics.rendering import message
+
+HEADS = (
+    "FOR {v} = {a} TO {b}", "for each {v} from {a} to {b}", "PARA {v} = {a} HASTA {b}",
+    "para {v} de {a} ate {b} faca", "desde {v} = {a} hasta {b}", "for {v} in range({a}, {c}):",
+    "para cada {v} de {a} a {b}", "for ({v} = {a}; {v} <= {b}; {v}++)",
+    "for (int {v} = {a}; {v} < {c}; {v}++)",
+)  # fmt: skip
+ENDS = ("NEXT {v}", "END_LOOP")
+NAMES = ("I", "n", "vuelta2")
+RANGES = ((1, 5), (0, 3), (2, 4), (1, 10))
+BODIES = ("F(1, {v} * 10)", "W(1);SHOW({v});S", "IF({v} > 2);S;ENDIF")
+BETWEEN = ("\n", "\n  ")
+
+
+def mended(wrong: str) -> str:
+    """Return a program with all that its messages offer."""
+    edits = [edit for each in check(wrong) for edit in edits_of(each) or []]
+    return applied(wrong, edits)
+
+
+@pytest.mark.parametrize("head", HEADS)
+@pytest.mark.parametrize("end", ENDS)
+def test_a_counter_that_is_used_grows_from_its_first_value(head: str, end: str) -> None:
+    for name, (first, last), body, between in product(NAMES, RANGES, BODIES, BETWEEN):
+        values = {"v": name, "a": first, "b": last, "c": last + 1}
+        begun, inside, ended = (each.format(**values) for each in (head, body, end))
+        wrong = f"SI|W(3)\n{begun}{between}{inside}\n{ended}\nS"
+        loop = f"LOOP({last - first + 1});{name.upper()} = {name.upper()} + 1"
+        right = f"{name.upper()} = {first - 1};{loop}"
+        assert right in [message(it, Source(wrong), "en").fix for it in check(wrong)], wrong
+        assert mended(wrong) == f"SI|W(3)\n{right}{between}{inside}\nEND_LOOP\nS"
+        assert not check(mended(wrong))
+
+
+@pytest.mark.parametrize("text", ["for each {v} from {a} to {b}", "para cada {v} de {a} a {b}"])
+@pytest.mark.parametrize("name", NAMES)
+def test_one_that_is_not_used_says_how_often(text: str, name: str) -> None:
+    for first, last in RANGES:
+        wrong = f"SI|{text.format(v=name, a=first, b=last)}\nF(1, 60)\nEND_LOOP"
+        assert mended(wrong) == f"SI|LOOP({last - first + 1})\nF(1, 60)\nEND_LOOP"
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["FOR 3 TO 5", "FOR I = 5 TO 1", "FOR I = 1 TO V", "REPEAT 4", "FOR F = 1 TO 3", "I = 1 TO"],
+)  # fmt: skip
+def test_what_counts_otherwise_is_left(text: str) -> None:
+    made = [each.values.get("fix", "") for each in check(f"SI|{text}\nSHOW(I)\nEND_LOOP")]
+    assert not any("+ 1" in each for each in made)

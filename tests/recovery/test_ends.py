@@ -1,0 +1,89 @@
+"""A block of one line that lacks its end: the message says where it may end, `--fix` guesses none.
+
+Where only one place is possible, the message names it, and what is repaired is that block.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.base.source import Source, applied
+from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.diagnostics.rendering import message
+
+BLOCKS = (
+    ("WHEN(DISTANCE < 15)", "END_WHEN"), ("TASK", "END_TASK"), ("LOOP(3)", "END_LOOP"),
+    ("IF(DISTANCE < 15)", "ENDIF"), ("WHILE(DISTANCE > 15)", "END_WHILE"),
+)  # fmt: skip
+BODIES = (
+    ("BEEP(1, 880)", "F(10, 40)"), ("W(1)", "S"), ("F(1, 60)", "F(1, 60)", "S"),
+    ("S", "LOOP(2);R(1, 60);END_LOOP", "B(1, 60)"),
+)  # fmt: skip
+AROUND = (("LOOP(2)", "END_LOOP"), ("DEF PASSO", "END_DEF;PASSO"), ("LOOP(FOREVER)", "END_LOOP"))
+BEFORE = ("SI|", "SI|W(3);", "SB|V = 3;F(V, 60);")
+
+
+def said(text: str) -> tuple[str, str]:
+    (found,) = [each for each in check(text) if each.is_mistake]
+    told = message(found, Source(text), "en")
+    assert told.code == "TS024"
+    return told.message, told.fix
+
+
+def places(body: tuple[str, ...]) -> str:
+    return ", ".join(each.split(";")[-1] for each in body)
+
+
+@pytest.mark.parametrize("between", [";", "; ", " ; "])
+@pytest.mark.parametrize(("begun", "block"), [*product(BEFORE, BLOCKS)])
+def test_each_place_is_named_and_none_is_made(
+    begun: str, block: tuple[str, str], between: str
+) -> None:
+    for body in BODIES:
+        text = begun + between.join((block[0], *body))
+        _, tried = said(text)
+        assert tried == f"Where does it end? Write ;{block[1]} after one of these: {places(body)}"
+        assert fixed(text, check).text == text
+
+
+@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("block", BLOCKS[2:])
+@pytest.mark.parametrize("body", BODIES[:3])
+def test_the_inner_block_lacks_its_end_where_the_outer_one_has_its_own(
+    body: tuple[str, ...], block: tuple[str, str], around: tuple[str, str]
+) -> None:
+    if (block[1], around[1]) == ("END_LOOP", "END_LOOP"):
+        return  # the end may be of either
+    text = "SI|" + ";".join((around[0], block[0], *body, around[1]))
+    name = block[0].partition("(")[0]
+    assert said(text) == (
+        f"This {name} has no {block[1]}",
+        f"Where does it end? Write ;{block[1]} after one of these: {places(body)}",
+    )
+    assert fixed(text, check).text == text
+
+
+@pytest.mark.parametrize("body", BODIES)
+@pytest.mark.parametrize("behind", ["", ";F(8, 50)"])
+def test_an_endless_loop_in_a_task_ends_where_that_ends(body: tuple[str, ...], behind: str) -> None:
+    text = "SI|" + ";".join(("TASK", "LOOP(FOREVER)", *body, "END_TASK")) + behind
+    last = body[-1]
+    assert said(text) == ("This LOOP has no END_LOOP", f"Write ;END_LOOP after {last}")
+    assert fixed(text, check).text == text.replace("END_TASK", "END_LOOP;END_TASK")
+
+
+@pytest.mark.parametrize("block", BLOCKS)
+def test_one_place_is_no_question(block: tuple[str, str]) -> None:
+    text = f"SI|{block[0]}; F(1, 60)"
+    assert said(text)[1] == f"Write ;{block[1]} after F(1, 60)"
+
+
+def test_it_ends_in_its_last_branch_and_before_the_end_of_another() -> None:
+    text = "SI|IF(DISTANCE < 9);S;W(2);ELSE;W(1);F(1, 60)"
+    assert said(text)[1] == "Where does it end? Write ;ENDIF after one of these: W(1), F(1, 60)"
+    (found,) = check("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP")
+    made = applied("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP", edits_of(found) or [])
+    assert made == "SI|LOOP(2);IF(DISTANCE < 9);S;ENDIF;END_LOOP"

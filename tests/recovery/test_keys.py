@@ -1,0 +1,96 @@
+"""Keys and lights in a pupil's own words lead to the readings that they are, in each place."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.base.source import Source, applied
+from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.diagnostics.rendering import message
+from tiniscript.recovery.keys import KEYS
+
+SIDES = {
+    "UP": ("UP", "ARRIBA", "CIMA"), "DOWN": ("DOWN", "ABAJO", "BAIXO"),
+    "LEFT": ("LEFT", "IZQUIERDA", "ESQUERDA"), "RIGHT": ("RIGHT", "DERECHA", "DIREITA"),
+    "A": ("A",), "B": ("B",),
+}  # fmt: skip
+OF_KEYS = ("KEY", "tecla", "botón", "SETA")
+AFTER = ("{k}_{s}", "{k} {s}", "{k} = {s}", '{k} == "{s}"', "{k}({s})",
+         "{k} {s} pressed", "pulso {k} {s}", "{k}{s}")  # fmt: skip
+BEFORE = ("{s}_{k}", "{s} {k}", "{s}{k}")
+CASES = [
+    (form.format(k=key, s=word), side)
+    for side, words in SIDES.items()
+    for key, word in product(OF_KEYS, words)
+    for form in (*AFTER, *(BEFORE if len(side) > 1 else ()))
+    if not (len(side) == 1 and form == "{k}{s}" and key == "botón")
+]
+PLACES = (
+    "SI|W(1);WHEN({});F(1, 60);END_WHEN", "SI|W(1)\nWHILE({})\nS\nEND_WHILE",
+    "SI|F(FOREVER, 60) UNTIL({});S", "SI|IF(DISTANCE < 9 AND {});W(1);ELSEIF({});S;ENDIF",
+)  # fmt: skip
+ORDERS = ("F(1, 60)", "S")
+
+
+@pytest.mark.parametrize(("said", "side"), CASES)
+def test_a_key_in_own_words_becomes_its_reading_wherever_it_is_asked(said: str, side: str) -> None:
+    for place in PLACES:
+        assert fixed(place.replace("{}", said), check).text == place.replace("{}", f"KEY_{side}"), (
+            place
+        )
+
+
+@pytest.mark.parametrize("key", ["KEY", "TECLA", "FLECHA", "SETA"])
+@pytest.mark.parametrize("other", [" = SPACE", "", " = 1", " == ENTER", "_ESPACIO", " = Z"])
+def test_another_key_is_told_all_that_there_are_and_asks_for_no_number(
+    key: str, other: str
+) -> None:
+    for place in PLACES:
+        text = place.replace("{}", key + other, 1).replace("{}", "KEY_A")
+        (found,) = check(text)
+        said = message(found, Source(text), "en").message
+        assert found.code.number == "TS103" and all(each in said for each in KEYS), text
+        assert fixed(text, check).text == text
+
+
+@pytest.mark.parametrize("sign", [" = ", ": ", " -> "])
+@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("side", SIDES)
+def test_an_order_for_a_key_is_asked_for_it(side: str, order: str, sign: str) -> None:
+    for key, word in product((*OF_KEYS, "KEY_"), SIDES[side]):
+        said = f"KEY_{side}" if key == "KEY_" else f"{key} {word}"
+        wrong = f"SI|{said}{sign}{order}\nW(3)"
+        (found,) = check(wrong)
+        right = f"SI|WHEN(KEY_{side});{order};END_WHEN\nW(3)"
+        assert applied(wrong, edits_of(found) or []) == right
+        inside = f"SI|LOOP(FOREVER);{said}{sign}{order};END_LOOP"
+        (found,) = check(inside)
+        assert found.values["fix"] == f"IF(KEY_{side});{order};ENDIF"
+
+
+@pytest.mark.parametrize("stem", ["LIGHT", "luz"])
+@pytest.mark.parametrize(
+    ("way", "side"), [(way, side) for side in ("LEFT", "RIGHT") for way in SIDES[side]]
+)
+def test_a_light_in_own_words_becomes_its_reading(stem: str, way: str, side: str) -> None:
+    for form, place in product(("{0}_{1}", "{1}_{0}", "{0}{1}", "{1}{0}"), PLACES):
+        asked = f"{form.format(stem, way)} > 300"
+        assert fixed(place.replace("{}", asked), check).text == place.replace(
+            "{}", f"LIGHT_{side[0]} > 300"
+        )
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["KEY = 3;IF(KEY > 2);F(1 60);ENDIF", "UP = 3;F(UP, 60);F(2 80)", "IF(KEY_A);F(1 60);ENDIF",
+     "DEF TECLA(UP);F(UP, 60);END_DEF;TECLA(2);F(1 60)", "F(2 60) // press key A"],
+)  # fmt: skip
+def test_names_of_a_program_and_notes_are_no_keys(text: str) -> None:
+    assert {each.code.number for each in check(f"SI|{text}")} == {"TS017"}
+
+
+def test_a_button_of_the_robot_is_still_none() -> None:
+    assert [each.code.number for each in check("SI|IF(BUTTON);F(1, 60);ENDIF")] == ["TS120"]

@@ -1,0 +1,57 @@
+"""Labels: whatever counts an instruction is taken out, alike in each place and language."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.diagnostics.fixing import fixed
+
+ALONE = ("{n})", "{n}.", "{n} -", "{n}.-", "({n})", "{n}º", "{n}:", "{a})", "{a}.", "{A})", "{a}:")
+WORDS = (
+    "Questão", "Questao", "Passo", "Paso", "Step", "Linha", "Ejercicio", "Exercício", "Pregunta",
+    "Item", "Parte", "Mission",
+)  # fmt: skip
+WITH_WORD = ("{w} {n}:", "{w} {n} -", "{w} {n})", "{w} {n}.", "{w} {a}:", "{w} nº {n}:", "{w}{n}:")
+LABELS = [*ALONE, *(it.replace("{w}", w) for w, it in product(WORDS, WITH_WORD))]
+PROGRAMS = (
+    ("F(2, 60)", "L(90 DEG, 60)", "BEEP(1, 500)", "S"),
+    ("LOOP(2)", "F(25 CM, 60)", "END_LOOP", "S"),
+    ("IF(DISTANCE < 9)", "S", "ELSE", "F(1, 60)", "ENDIF"),
+    ("V = 3", "DEF LADO", "W(V)", "END_DEF", "LADO"),
+)
+PLACES = (("", "\n"), ("", ";"), ("", "; "), ("SI|", "\n"), ("SI|", ";"), ("SB|", "\n  "))
+
+
+def labelled(label: str, program: tuple[str, ...]) -> list[str]:
+    letters = "abcde"
+    names = (label.format(n=k + 1, a=letters[k], A=letters[k].upper()) for k in range(len(program)))
+    return [f"{name} {order}" for name, order in zip(names, program, strict=True)]
+
+
+@pytest.mark.parametrize("label", LABELS)
+def test_a_label_is_taken_out_wherever_its_instruction_stands(label: str) -> None:
+    for program, (begun, between) in product(PROGRAMS, PLACES):
+        wrong = begun + between.join(labelled(label, program))
+        assert {each.code.number for each in check(wrong)} == {"TS054"}, wrong
+        assert fixed(wrong, check).text == begun + between.join(program), wrong
+
+
+@pytest.mark.parametrize("label", LABELS)
+def test_it_is_told_before_the_setup_below_a_title_and_beside_another_mistake(label: str) -> None:
+    rows = labelled(label, ("SI|F(2, 60)", "R(2 60)"))
+    found = [each.code.number for each in check("\n".join(["My square", *rows]))]
+    assert found == ["TS073", "TS054", "TS054", "TS017"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["F(2; 80) S", "F(2,\n80) S", "DEF B;S;END_DEF;B. F(2, 80)", "4) 80", "F(2;80) R(1;50)",
+     "Ejercicio 3. El cuadrado", "REPEAT 4: F(2, 80)", "espera 2. F(1, 60)", "F: F(2, 80)",
+     "avanza 2) F(1, 60)", "S. F(2, 80)", "IF 3: F(2, 80)", "PASO 1 = 3", "4 vueltas: F(2, 80)",
+     "TASK 1: F(2, 80)", "X = |5 - DISTANCE|"],
+)  # fmt: skip
+def test_what_may_be_more_than_a_label_stays(text: str) -> None:
+    assert "TS054" not in {each.code.number for each in check(f"SI|{text}")}

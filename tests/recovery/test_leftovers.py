@@ -1,0 +1,77 @@
+"""What is left over in an instruction is told to be taken out as what it is, in each place."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.base.source import Source, applied
+from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.diagnostics.rendering import message
+
+WORDS = ("OUT", "NOW", "here", "ahora", "aquí", "XYZ", "here now")
+PLACES = (
+    "SI|LOOP(2);W(1);{};END_LOOP", "SI|LOOP(2)\n  {}\nEND_LOOP", "SI|LOOP(2);{};F(1, 60);END_LOOP",
+    "SI|LOOP(2);IF(DISTANCE < 9);{};ELSE;W(1);ENDIF;END_LOOP",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("words", WORDS)
+@pytest.mark.parametrize("order", ["BREAK", "S", "STOP"])
+@pytest.mark.parametrize("place", PLACES)
+def test_words_after_an_order_without_values_are_taken_out(
+    place: str, order: str, words: str
+) -> None:
+    wrong = place.format(f"{order} {words}")
+    (found,) = [each for each in check(wrong) if each.is_mistake]
+    assert message(found, Source(wrong), "en").fix == f"Take out {words}"
+    assert applied(wrong, edits_of(found) or []) == place.format(order)
+    assert fixed(wrong, check).text == wrong
+
+
+@pytest.mark.parametrize("words", WORDS)
+@pytest.mark.parametrize("end", ["END_LOOP", "END_WHILE"])
+def test_and_so_are_words_after_an_end(end: str, words: str) -> None:
+    head = {"END_LOOP": "LOOP(2)", "END_WHILE": "WHILE(DISTANCE > 9)"}[end]
+    for behind in ("", ";S", "\nW(1)"):
+        wrong = f"SI|{head};F(1, 60);{end} {words}{behind}"
+        (found,) = [each for each in check(wrong) if each.is_mistake]
+        assert applied(wrong, edits_of(found) or []) == wrong.replace(f" {words}", "")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["S F(1, 60)", "S vuelta", "S DISTANCE", "DEF PASO;W(1);END_DEF;S PASO", "S otra vez", "S 3",
+     "V = 3;S V", "STOP UNTIL(DISTANCE > 9)", "S stop", "S // now"],
+)  # fmt: skip
+def test_what_may_be_an_order_or_a_value_is_no_leftover(text: str) -> None:
+    assert not any(each.values.get("needless") for each in check(f"SI|{text}"))
+
+
+@pytest.mark.parametrize("before", ["R(1, 60)", "S", "LOOP(2);W(1);END_LOOP", "SHOW(DISTANCE)"])
+@pytest.mark.parametrize("sign", ["SI|", " SI|", "SI|  ", " si | "])
+@pytest.mark.parametrize("behind", ["B(2, 80)", "IF(DISTANCE < 9);S;ENDIF", "S"])
+def test_a_second_start_behind_an_instruction_is_a_separator(
+    before: str, sign: str, behind: str
+) -> None:
+    if sign[0] != " " and not before.endswith(")"):
+        return  # one word: SSI
+    text = f"SI|F(2, 80);{before}{sign}{behind};W(1)"
+    assert fixed(text, check).text == f"SI|F(2, 80);{before}; {behind};W(1)"
+
+
+@pytest.mark.parametrize("between", [";", "\n"])
+def test_a_task_that_is_called_has_no_name_and_begins_by_itself(between: str) -> None:
+    wrong = between.join(("SI|TASK siren", "BEEP(1, 440)", "END_TASK", "START siren", "F(4, 70)"))
+    said = [message(each, Source(wrong), "en").fix for each in check(wrong)]
+    assert said == ["TASK", "Take out siren"]
+
+
+@pytest.mark.parametrize("word", ["Fim", "FIM.", "Fin;", "end", "End."])
+@pytest.mark.parametrize("above", ["F(2, 80)", "Espere(1)", "Br(2, 80)", "R(1 60);S"])
+def test_an_end_of_all_is_not_needed_whatever_else_is_wrong(above: str, word: str) -> None:
+    wrong = f"SI|W(1)\n{above}\n{word}"
+    assert "TS044" in {each.code.number for each in check(wrong)}
+    for head, end in (("LOOP(2)", "END_LOOP"), ("IF(DISTANCE < 9)", "ENDIF")):
+        block = f"SI|{head}\nF(2, 80)\n{word.rstrip('.;')}"
+        assert fixed(block, check).text == f"SI|{head}\nF(2, 80)\n{end}"

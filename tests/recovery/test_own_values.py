@@ -1,0 +1,66 @@
+"""What is told to try has the pupil's own values, each of them, in each place."""
+
+from __future__ import annotations
+
+import re
+from itertools import product
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.base.source import Source, applied
+from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.diagnostics.rendering import message
+
+PLACES = (
+    "SI|{}", "SI|W(3);{};S", "SI|W(3)\n{}\nS", "SI|LOOP(2);{};END_LOOP",
+    "SI|DEF PASO;{};END_DEF;PASO", "SI|IF(DISTANCE < 9)\n{}\nELSE\nS\nENDIF",
+)  # fmt: skip
+TRAVELS = (("F", "CM"), ("B", "CM"), ("L", "DEG"), ("R", "DEG"))
+APART = ("{w}({v}, {u}, {p})", "{w}({u}, {v}, {p})", "{w}({v}, {p}, {u})", "{w}({u} {v}, {p})")
+THOUSANDS = ("1,000", "2,500", "12,000", "1,500")
+
+
+@pytest.mark.parametrize("form", APART)
+@pytest.mark.parametrize(("word", "unit"), TRAVELS)
+@pytest.mark.parametrize(("value", "power"), [("40", "70"), ("7.5", "35"), ("V", "V"), ("V", "45")])
+def test_a_unit_that_is_a_value_goes_to_its_own(
+    form: str, word: str, unit: str, value: str, power: str
+) -> None:
+    begun = "V = 12;" if "V" in (value, power) else ""
+    for place in PLACES:
+        wrong, right = (
+            place.replace("SI|", f"SI|{begun}").format(each)
+            for each in (
+                form.format(w=word, u=unit, v=value, p=power),
+                f"{word}({value} {unit}, {power})",
+            )
+        )
+        assert fixed(wrong, check).text.replace("; ", ";") == right.replace("; ", ";")
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_a_comma_between_thousands_is_none_between_values(place: str) -> None:
+    for one, other in product(THOUSANDS, THOUSANDS):
+        wrong = place.format(f"BEEP(1, {one});SHOW({other});BEEP(1, {other})")
+        assert fixed(wrong, check).text == re.sub(r",(?=\d{3})", "", wrong)
+
+
+@pytest.mark.parametrize("text", ["W(1,500)", "BEEP(1,500, 440)", "F(1,500)", "MAX(1,500)"])
+def test_where_decimals_go_the_comma_may_be_theirs(text: str) -> None:
+    assert not any("1500" in each.values.get("fix", "") for each in check(f"SI|{text}"))
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("time", ["3", "0.5", "12"])
+@pytest.mark.parametrize(("left", "right"), [("50", "80"), ("-30", "30"), ("V", "V")])
+def test_the_seconds_of_motors_are_those_of_a_wait(
+    place: str, time: str, left: str, right: str
+) -> None:
+    wrong = place.replace("SI|", "SI|V = 12;").format(f"M({left}, {right}, {time})")
+    (found,) = [each for each in check(wrong) if each.is_mistake]
+    shown = f"M({left}, {right});W({time})" + ";S" * place.endswith("|{}")
+    assert message(found, Source(wrong), "en").fix == shown
+    made = applied(wrong, edits_of(found) or [])
+    assert made == wrong.replace(f"M({left}, {right}, {time})", shown)
+    assert fixed(wrong, check).text == wrong  # it may run on, too
