@@ -16,6 +16,7 @@ BENCHMARKS = (
     "machine",
     "code_size",
     "link",
+    "keys",
     "text",
     "tasks",
     "virtual",
