@@ -29,7 +29,7 @@ from tiniscript.link.messages import (
     written,
 )
 from tiniscript.link.outcomes import CANCELLED, LOST
-from tiniscript.link.remote import NOTHING, Pressed, pressed
+from tiniscript.link.remote import GAP_MS, NOTHING, Pressed, pressed
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -118,6 +118,23 @@ def test_a_word_every_200_ms_while_something_is_held_and_none_while_nothing_is()
     assert len(one.words) == 12
     numbers = [seq for seq, _ in one.words]
     assert len(set(numbers)) == len(numbers), "no word is sent twice"
+
+
+def test_a_word_waits_only_while_the_one_before_has_no_answer() -> None:
+    one = hand()
+    for held in (UP, NOTHING, A, UP, NOTHING):
+        one.holds(held)
+        one.talk(5)
+        assert one.words[-1][1] == held
+    one.loses = lambda: True
+    count = len(one.words)
+    one.holds(UP)
+    one.talk(1)
+    one.holds(NOTHING)
+    one.talk(GAP_MS - 1)
+    assert [word for _, word in one.words[count:]] == [UP]
+    one.talk(1)
+    assert [word for _, word in one.words[count:]] == [UP, NOTHING]
 
 
 def test_words_alone_keep_an_attached_program_alive() -> None:

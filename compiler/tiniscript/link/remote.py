@@ -17,7 +17,7 @@ from tiniscript.link.payloads import EmptyReply
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 
 EVERY_MS = 200  # what is held is said so often
-GAP_MS = 30  # between two words: a frame and its answer at 9600 baud
+GAP_MS = 30  # between two words while one is unanswered: a frame and its answer at 9600 baud
 ANEW_MS = 100  # after which a word is said anew that was not answered
 AHEAD = 3  # words that may be unanswered: on a slow line no more of them queue up
 _LONG_AGO_MS = -1_000_000
@@ -101,7 +101,8 @@ class RemoteControl:
         times = [until for each in self._held if (until := self._until_ms[each]) is not None]
         newest = self.newest
         if newest != self._said:
-            times.append(self._said_ms + (GAP_MS if self._unanswered < AHEAD else EVERY_MS))
+            gap_ms = EVERY_MS if self._unanswered == AHEAD else GAP_MS if self._unanswered else 0
+            times.append(self._said_ms + gap_ms)
         elif 0 < self._unanswered < AHEAD:
             times.append(self._said_ms + ANEW_MS)
         elif newest != NOTHING or self._unanswered == AHEAD:

@@ -1,0 +1,145 @@
+"""Prints how quick a remote control is, from the hand to the motor pins, on a simulated Uno.
+
+Builds the firmware of the robot `tinibot` for each baud, offline stand-ins included. A session says
+what a hand holds: at any moment of its own heartbeat and of the robot's main loop the hand changes
+it, or the line is lost. Cycles are exact; radio modules and USB chips are not in them.
+"""
+
+from __future__ import annotations
+
+import random
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+
+from tests.support.images import image_of
+from tiniscript import robots
+from tiniscript.link.messages import HOLD_MS
+from tiniscript.link.remote import GAP_MS, NOTHING, Pressed
+from tools import ROOT, uno
+from tools.bench.firmware_stack import connected, must
+from tools.bench.link import BAUDS, KIT, MOTORS, ROBOT, built, row
+from tools.uno import CYCLES_PER_MS, Uno
+
+AT_ONCE = "SI|LOOP(FOREVER); M(PAD_Y, PAD_Y); END_LOOP"
+EXAMPLE = ROOT / "examples" / "remote.ts"  # it looks 20 times in a second
+AHEAD = Pressed(0, 0, 80)
+PWM_PINS = MOTORS[:2]
+TRIES = 300
+HELD_MS = (100, 400)  # and let go
+SAID_MS = 100
+ANEW_MS = 400  # after a loss, until words arrive
+LOST_MS = HOLD_MS + 50  # it stays attached
+# At most, at the slowest, where the program looks at once, by baud. What is let go may come just
+# after what is held was said anew, and waits for the answer or for GAP_MS.
+HELD_MOST_MS = {9600: 25.0, 115_200: 4.0}
+LET_GO_MOST_MS = {9600: 25.0 + GAP_MS, 115_200: 8.0}
+LOST_MOST_MS = HOLD_MS + 3  # the clock and the program look after that time
+ROWS = (
+    "what is held, to the motor pins",
+    "what is let go, to the motor pins",
+    "what is held, to the motor pins, by `examples/remote.ts`",
+    "a lost line, to motors off",
+)
+
+
+class Hand:
+    """Drives a robot with a stick."""
+
+    def __init__(self, firmware: Path, baud: int, text: str) -> None:
+        """Switch it on, and send it a program that reads a stick."""
+        self._chance = random.Random(1)
+        self._board = Uno(firmware, baud=baud, tells_sleep=False)
+        self._wired = connected(self._board, robots.load(ROBOT), baud)
+        must(self._wired, self._wired.session.hello())
+        must(self._wired, self._wired.session.upload(image_of(text, KIT)))
+
+    def __enter__(self) -> Hand:
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self._board.close()
+
+    def change(self, held: Pressed) -> float:
+        """Return the ms from a change of what is held to the last of the pins that it changes."""
+        begun, told = self._begin()
+        self._hold(held)
+        return self._ms_from(begun, told, held != NOTHING)
+
+    def lose(self) -> float:
+        """Return the ms from where a line is lost, over which somebody drives, to motors off."""
+        self._hold(AHEAD, ANEW_MS)
+        begun, told = self._begin()
+        for _ in range(LOST_MS):  # what both say does not arrive
+            self._wired.session.poll(self._wired.now_ms)
+            self._board.run_ms(1)
+        heard = [event.cycle for event in self._board.events[told:] if event.what == "received"]
+        return self._ms_from(max([begun, *heard]), told, False)
+
+    def _hold(self, held: Pressed, more_ms: int = 0) -> None:
+        for ms in range(more_ms + self._chance.randint(*HELD_MS)):
+            if ms % SAID_MS == 0:  # who says nothing for a while holds nothing
+                self._wired.session.press(*held)
+            self._wired.run(1)
+
+    def _begin(self) -> tuple[int, int]:
+        """Return some cycle within the millisecond, and how many events there were before."""
+        self._board.run_to(self._board.cycle + self._chance.randrange(CYCLES_PER_MS))
+        return self._board.cycle, len(self._board.events)
+
+    def _ms_from(self, begun: int, told: int, are_on: bool) -> float:
+        """Raises RuntimeError where the motors are not as they must be in the end."""
+        found = [
+            event
+            for event in self._board.events[told:]
+            if event.what == "pin" and event["pin"] in MOTORS
+        ]
+        last = {event["pin"]: event["is"] for event in found}
+        if {last.get(pin) for pin in PWM_PINS} != {"pwm" if are_on else "low"}:
+            raise RuntimeError(f"the motors have not gone {'on' if are_on else 'off'}: {last}")
+        return (found[-1].cycle - begun) / CYCLES_PER_MS
+
+
+def measured(firmware: Path, baud: int) -> list[list[float]]:
+    """Return the ms of each try, by row."""
+    with Hand(firmware, baud, AT_ONCE) as hand:
+        changes = [(hand.change(AHEAD), hand.change(NOTHING)) for _ in range(TRIES)]
+        losses = [hand.lose() for _ in range(TRIES)]
+    with Hand(firmware, baud, EXAMPLE.read_text(encoding="utf-8")) as hand:
+        seldom = [(hand.change(AHEAD), hand.change(NOTHING))[0] for _ in range(TRIES)]
+    return [*map(list, zip(*changes, strict=True)), seldom, losses]
+
+
+def main() -> int:
+    if uno.missing():
+        print(uno.missing(), file=sys.stderr)
+        return 2
+    with tempfile.TemporaryDirectory() as name:
+        try:
+            found = {baud: measured(built(baud, Path(name)), baud) for baud in BAUDS}
+        except RuntimeError as why:
+            print(why, file=sys.stderr)
+            return 2
+    head = " | ".join(f"{baud} baud, half | slowest" for baud in BAUDS)
+    print(f"| on a simulated Uno, each {TRIES} times, ms | {head} |")
+    print("|---|---:|---:|---:|---:|")
+    for number, what in enumerate(ROWS):
+        times = [rows[number] for rows in found.values()]
+        row(what, [f"{of(ms):.1f}" for ms in times for of in (statistics.median, max)])
+    return int(not all(is_kept(baud, *rows) for baud, rows in found.items()))
+
+
+def is_kept(
+    baud: int, held: list[float], let_go: list[float], _: list[float], lost: list[float]
+) -> bool:
+    """Return whether the slowest are as they must be."""
+    return (
+        max(held) <= HELD_MOST_MS[baud]
+        and max(let_go) <= LET_GO_MOST_MS[baud]
+        and max(lost) <= LOST_MOST_MS
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())
