@@ -177,7 +177,7 @@ def _write(path: Path, text: str) -> None:
 
 
 def _without_end(texts: list[Forms]) -> list[Forms]:
-    """Return texts without the empty ones behind all others."""
+    """Return texts without the empty ones after all others."""
     return texts[: max((k for k, each in enumerate(texts, 1) if each), default=0)]
 
 

@@ -71,7 +71,7 @@ def test_it_goes_on_where_it_was(
 
 
 def interrupted_after(monkeypatch: pytest.MonkeyPatch, pieces: int) -> None:
-    """Have Ctrl-C come behind so many pieces, once."""
+    """Have Ctrl-C come after so many pieces, once."""
     piece, left = campaign.piece, [pieces]
 
     def interrupted(*given: Any) -> Result:

@@ -195,7 +195,7 @@ def test_a_port_that_vanishes_is_no_bug(
     asked = []
 
     def do(self: connect.Connection, make: Any, limit_ms: int | None = None) -> Any:
-        if limit_ms is None:  # a request behind HELLO
+        if limit_ms is None:  # a request after HELLO
             asked.append(make)
         if len(asked) == which:
             pty_robot.pull()

@@ -1,5 +1,5 @@
 """Ctrl-C while a program goes to many robots: at whatever stage each of them is, and whoever still
-connects, behind it none starts anything, and all stand."""
+connects, after it none starts anything, and all stand."""
 
 from __future__ import annotations
 

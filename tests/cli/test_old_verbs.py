@@ -64,7 +64,7 @@ def test_what_is_searched_for_is_found() -> None:
 
 
 def commands_in(text: str, is_document: bool) -> Iterator[str]:
-    """Yield the commands of a text: between backticks, and in messages behind two blanks, too."""
+    """Yield the commands of a text: between backticks, and in messages after two blanks, too."""
     yield from re.findall(r"`tsc ([^`\n]+)`", text)
     yield from re.findall(r"^\$ tsc (.+)$", text, re.M)
     if not is_document:

@@ -168,7 +168,7 @@ def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.Monk
 def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Behind HELLO and behind what came of it: whoever has waited for one waits for the other."""
+    """After HELLO and after what came of it: whoever has waited for one waits for the other."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     now_s = 0.0
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)

@@ -182,8 +182,8 @@ PHASES = [
 def glitched(width_us: float) -> list[tuple[int, int]]:
     """Return each phase at which the wire says for a moment the opposite, and what is read.
 
-    The sensor itself does it, so phases are to the cycle: a glitch moves the pings behind it by
-    some us, and its end must not be taken for a line that stays high behind the echo.
+    The sensor itself does it, so phases are to the cycle: a glitch moves the pings after it by
+    some us, and its end must not be taken for a line that stays high after the echo.
     """
     robot = robots.load("tinibot")
     trigger, echo = wire(robot)

@@ -20,12 +20,12 @@ Test = TypeVar("Test", bound=Callable[..., None])
 
 AWAY = (ROOT / "examples" / "away.ts").read_text(encoding="utf-8")
 LOOK_MS = (
-    90.0  # until a WHEN has seen what comes near: 20 ms, and an echo 30 ms behind the one before
+    90.0  # until a WHEN has seen what comes near: 20 ms, and an echo 30 ms after the one before
 )
 BUSY = "F(FOREVER, 60);" + "TASK;X = 0;LOOP(FOREVER);X = X + 1;END_LOOP;END_TASK;" * 4
 STOP = bytes(8)
 STOP_RUN = (
-    3  # the last zero of a stop that a robot must have seen behind a frame, which ends with one
+    3  # the last zero of a stop that a robot must have seen after a frame, which ends with one
 )
 STOP_US = 12
 
@@ -107,7 +107,7 @@ def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
 @BOARDS
 @pytest.mark.parametrize("later_ms", [100, 200, 500, 5000])
 def test_an_echo_from_before_an_interruption_ends_no_move(later_ms: int, robot: Uno) -> None:
-    """A ping is under way when a WHEN takes the motors: behind that a new one is heard."""
+    """A ping is under way when a WHEN takes the motors: after that a new one is heard."""
     robot.sonar("trigger", "echo", 350)
     wired = computer(robot)
     back = f"WHEN(LIGHT_R + LIGHT_L > 1000);B({later_ms / 1000}, 60);END_WHEN"

@@ -43,7 +43,7 @@ def bytes_of(image: Image) -> bytes:
 
 def sent_until(robot: HostFirmware, session: Session, count: int) -> bytes:
     """Let an upload begin, until so many of its bytes have reached the robot; return what the
-    computer has sent behind them. Nothing: the upload is over."""
+    computer has sent after them. Nothing: the upload is over."""
     request = session.upload(NEW, saves=True)
     while request.outcome is None:
         data = session.poll(robot.now_ms)

@@ -221,7 +221,7 @@ def test_who_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: R
 
 
 def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Room) -> None:
-    """In the first hello, in the certificate, behind the handshake; and in pieces of 7 bytes."""
+    """In the first hello, in the certificate, after the handshake; and in pieces of 7 bytes."""
     cuts = CuttingNetwork(room.broker.port, (3, 200, 1500))
     keys = Keys()
     robot, owner = joined(keys)

@@ -218,7 +218,7 @@ CONNECT, SUBSCRIBE, PING = 1, 8, 12
 
 
 class CutBroker:
-    """A broker that breaks its connections off behind so many bytes; then it says `rest` first."""
+    """A broker that breaks its connections off after so many bytes; then it says `rest` first."""
 
     def __init__(self) -> None:
         self.listening = socket.create_server(("127.0.0.1", 0))

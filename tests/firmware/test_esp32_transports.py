@@ -295,7 +295,7 @@ def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
-    """An app may end none behind one that does: it runs after three seconds all the same."""
+    """An app may end none after one that does: it runs after three seconds all the same."""
     robot = booted()
     end, typed = make(robot), Bytes(b"SHOW(1)\n")
     talk(robot, [(end, typed)], 100)

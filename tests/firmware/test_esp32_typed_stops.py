@@ -156,7 +156,7 @@ def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_what_is_lost_stops_nobody(make: Make) -> None:
-    """Nor does a frame with a line S in it that arrives whole, behind what was lost."""
+    """Nor does a frame with a line S in it that arrives whole, after what was lost."""
     robot = booted()
     driver, end = session(1, robot), make(robot)
     ends = drives(robot, driver)
@@ -183,7 +183,7 @@ LINES = b"".join(b"F(1,%d)\n" % (20 + k % 70) for k in range(100))
 @pytest.mark.parametrize("make", RADIOS)
 @pytest.mark.parametrize("stop", [b"S\n", b"PARA\n", b"SSS", b"STOP STOP ", bytes(4), b"\x03\n"])
 def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
-    """Nothing that came before it starts afterwards, and what comes behind it counts again."""
+    """Nothing that came before it starts afterwards, and what comes after it counts again."""
     robot = booted()
     driver, end = session(1, robot), make(robot)
     ends = drives(robot, driver)

@@ -233,7 +233,7 @@ def test_a_counter_at_its_end_begins_another_seal() -> None:
 
 
 def test_a_seal_that_has_expired_is_made_again_for_the_same_request() -> None:
-    """Behind more requests than numbers: AUTHENTICATE has one after those of the sealed ones."""
+    """After more requests than numbers: AUTHENTICATE has one after those of the sealed ones."""
     table, session, _ = opened()
     before = session._sealing.seal
     for _ in range(200):

@@ -3,7 +3,7 @@
 A random program is stopped, ends, loses its computer or is written over at a random moment, while
 somebody holds the button or a wheel, or the supply is low; then comes another, the same way or
 another, from the same computer or the next. All that can be seen of that one, motors, devices and
-what the computer hears, is what a robot does that was switched on for it. Behind a stop nothing
+what the computer hears, is what a robot does that was switched on for it. After a stop nothing
 starts before it.
 
 `python -m tests.firmware.test_second_time 2000` tries more.
@@ -154,7 +154,7 @@ ENDS: dict[str, Callable[[Scene], object]] = {
 }
 
 
-# Behind these it stands still until the second one.
+# After these it stands still until the second one.
 STOPS = ("zeros", "a message", "a line", "its computer")
 
 # What goes on beside the first, and what that is over with: before the second, or during it.

@@ -1,9 +1,9 @@
 """A typed stop on a simulated Uno: in every state of the receiver, in all spellings, at both rates.
 
 From the end of its line to the motor pins it takes less than a millisecond, in what began as a
-frame less than that behind 100 ms of silence; there only the strict spellings count. What came
+frame less than that after 100 ms of silence; there only the strict spellings count. What came
 before it starts nothing afterwards.
-`python -m tests.firmware.test_typed_stops 10000` types it behind so many random bytes.
+`python -m tests.firmware.test_typed_stops 10000` types it after so many random bytes.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ HELD_MS, MOST_MS = 100, 1.0
 TURN_MS = 2.1  # the clock counts one or two milliseconds each 1.024 ms
 BUSY_TURN_MS = 5.0  # and the main loop comes late that has lines to read and answers to write
 
-# What comes before the line of the stop, behind a program that runs and a second of silence.
+# What comes before the line of the stop, after a program that runs and a second of silence.
 PREFIXES = {
     "nothing": b"",
     "CR LF": b"\r\n",
@@ -168,8 +168,8 @@ def stop_behind(
 
 @pytest.mark.parametrize("name", ALL)
 def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> None:
-    """No sample here: a commit that loses a stop must not pass. Each spelling is typed behind each
-    prefix at one of the rates, the others at the other one. Behind the last one the robot is asked
+    """No sample here: a commit that loses a stop must not pass. Each spelling is typed after each
+    prefix at one of the rates, the others at the other one. After the last one the robot is asked
     whether it is latched."""
     uno, baud = driving_at
     spellings = spellings_behind(name)[(list(ALL).index(name) + BAUDS.index(baud)) % 2 :: 2]
@@ -181,7 +181,7 @@ def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> 
 
 
 def spellings_behind(name: str) -> tuple[bytes, ...]:
-    """Return which are a stop behind a prefix. What a 0x00 ends or begins has to be printable."""
+    """Return which are a stop after a prefix. What a 0x00 ends or begins has to be printable."""
     if name in FRAMED:
         return STRICT
     prefix = PREFIXES[name]
@@ -380,7 +380,7 @@ def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> No
 def test_a_mistake_that_waits_to_be_said_is_forgotten_by_the_next_line(
     uno_at: tuple[Uno, int],
 ) -> None:
-    """A stop behind them is looked for before the wire is free; here it belongs to a block."""
+    """A stop after them is looked for before the wire is free; here it belongs to a block."""
     uno, _ = uno_at
     uno.run_ms(SILENCE_MS + 50)
     before = len(uno.sent)
@@ -422,7 +422,7 @@ def random_prefix(draw: random.Random) -> bytes:
 
 
 def stop_behind_random_bytes(sketch: Path, baud: int, draw: random.Random, count: int) -> float:
-    """Type so many stops behind random bytes; return the ms that the slowest took."""
+    """Type so many stops after random bytes; return the ms that the slowest took."""
     slowest_ms = 0.0
     with switched_on(sketch, baud) as uno:
         for k in range(count):

@@ -18,7 +18,7 @@ PRESSED = "if (press == Press::kPressed) firmware_on_pressed();"
 WATCHDOG, STALL = 4, 66  # a reset and a fault in docs/develop/link.md
 HANGS, HANGS_ALONE = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
 TIMER_MS, WATCHDOG_MS = 110, 300
-MOVE_AT = 2  # the offset in AWAY, behind what it takes
+MOVE_AT = 2  # the offset in AWAY, after what it takes
 
 
 def built(folder: Path, hang: str, environment: str = "uno") -> Path:

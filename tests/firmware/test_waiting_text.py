@@ -1,4 +1,4 @@
-"""Text that waits in front of a program of frames, or behind it: what runs is what was verified.
+"""Text that waits in front of a program of frames, or after it: what runs is what was verified.
 
 `python -m tests.firmware.test_waiting_text 100000` is a campaign.
 """

@@ -57,7 +57,7 @@ def located(text: str) -> list[tuple[str, str]]:
         ("F(1, 80) UNTIL(DISTANCE < 9)",
          [(name, "F(1, 80) UNTIL(DISTANCE < 9)")
           for name in ("PUSH_NUM_1", "PUSH_NUM_80", "WATCH_F", "PUSH_READ_2", "UNTIL8_LT")]),
-        # a condition belongs to its arm, and the jump behind an arm to what ends it
+        # a condition belongs to its arm, and the jump after an arm to what ends it
         ("X = 1\nIF(X = 1); S; ELSEIF(X = 2); W(1); ENDIF",
          [("PUSH_NUM_1", "X = 1"), ("SET_VAR_0", "X = 1"), ("IF_VAR8_EQ", "IF(X = 1)"),
           ("STOP", "S"), ("ELSE", "S"),

@@ -1,6 +1,6 @@
 """What people, apps and radio modules really send, to the whole link of a robot.
 
-A right line behind their bytes runs, or an answer says why not: nothing is met with silence. A
+A right line after their bytes runs, or an answer says why not: nothing is met with silence. A
 glitch that is a 0x00, at any byte, has no other program run than the one that was typed, and a
 person and a computer in turns at one port are both heard.
 `python -m tests.link.test_field 100000` tries more than the tests.

@@ -113,7 +113,7 @@ def test_live_code_of_a_large_frame_runs() -> None:
 
 
 def test_a_large_frame_without_its_zero_is_damaged() -> None:
-    """Whether it is looked at while it arrives or behind its end; nothing of it runs.
+    """Whether it is looked at while it arrives or after its end; nothing of it runs.
 
     On the wire it begins as a large frame does: its epoch is 0.
     """
@@ -258,7 +258,7 @@ class Taking:
         return None if number in self.unanswered else (OK, len(self.found))
 
 
-WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # what lies behind the checksum
+WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # what lies after the checksum
 
 
 @pytest.mark.parametrize(

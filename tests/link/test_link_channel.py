@@ -263,7 +263,7 @@ def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> N
 
 @pytest.mark.parametrize(("is_large", "count", "least"), [(False, 150, 0.85), (True, 50, 0.6)])
 def test_uploads_in_pieces(is_large: bool, count: int, least: float) -> None:
-    """Behind a second of silence the rest of a frame is text; the frame comes again."""
+    """After a second of silence the rest of a frame is text; the frame comes again."""
     found = Counter(one_upload(cpp_link(is_large), seed, Split) for seed in range(count))
     assert found["done"] > count * least, found
 

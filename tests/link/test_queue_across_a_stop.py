@@ -1,4 +1,4 @@
-"""What was asked for before a stop starts nothing behind it, whoever has stopped the robot, and
+"""What was asked for before a stop starts nothing after it, whoever has stopped the robot, and
 whatever of that is lost on the way.
 
 Random requests wait for each other; at any moment somebody stops the robot. `Session` knows of it

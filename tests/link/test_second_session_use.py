@@ -1,4 +1,4 @@
-"""What a session does behind anything is what a fresh one does with the same robot.
+"""What a session does after anything is what a fresh one does with the same robot.
 
 Random requests, losses of the line, stops, a reset and a silence come first, the same for two
 robots. Then the one robot is asked by the session that has seen all that, the other one by a fresh

@@ -575,7 +575,7 @@ def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
 
 
 def test_an_upload_that_waits_for_the_button_tells_the_end_of_the_run_before_it() -> None:
-    """It has ended that, and nothing of it is told behind what the button begins."""
+    """It has ended that, and nothing of it is told after what the button begins."""
     robot = HostFirmware(ROBOT.kit)
     robot.wait(200)
     session = Session(1, kit=KIT)

@@ -179,7 +179,7 @@ class Late(TextSender):
 
 
 class WithoutFirst(TextSender):
-    """Sends none before the first frame, and none behind text."""
+    """Sends none before the first frame, and none after text."""
 
     def frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         self._sent_ms = now_ms if self._sent_ms is None else self._sent_ms
@@ -201,7 +201,7 @@ class Twice(TextSender):
 
 
 class Hasty(TextSender):
-    """Sends text right behind a frame."""
+    """Sends text right after a frame."""
 
     text_ms = 100
 

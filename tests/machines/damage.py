@@ -51,7 +51,7 @@ class CppDamage(Process):
         return int.from_bytes(answer[:4], "little"), int.from_bytes(answer[4:], "little")
 
     def type_behind(self, seed: int, prefix: int, prefixes: int) -> None:
-        """Type a stop behind so many prefixes. Raise what must not be."""
+        """Type a stop after so many prefixes. Raise what must not be."""
         wrong = self.ask(b"T", pack("<III", seed, prefix, prefixes))[4:].decode()
         assert not wrong, f"{wrong} of seed {seed}"
 

@@ -221,7 +221,7 @@ def _named(device: Device, hashed: int) -> bytes:
 
 
 def texts(*parts: bytes) -> bytes:
-    """Return parts of a request, each behind its length."""
+    """Return parts of a request, each after its length."""
     return b"".join(pack("<I", len(part)) + part for part in parts)
 
 
@@ -231,7 +231,7 @@ def first_number(answer: bytes) -> tuple[int, bytes]:
 
 
 def first_text(answer: bytes) -> tuple[bytes, bytes]:
-    """Return what is behind its length at the beginning of an answer, and the rest."""
+    """Return what is after its length at the beginning of an answer, and the rest."""
     length, rest = first_number(answer)
     return rest[:length], rest[length:]
 
@@ -343,7 +343,7 @@ def kept(
 
 
 def contents(*folders: Path) -> list[bytes]:
-    """Return what is in the sources and headers of folders, each behind its path."""
+    """Return what is in the sources and headers of folders, each after its path."""
     paths = (path for each in folders for path in each.rglob("*.[chS]*"))
     return [part for path in sorted(paths) for part in (bytes(path), path.read_bytes())]
 

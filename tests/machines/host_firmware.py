@@ -111,7 +111,7 @@ class HostFirmware(Process):
     def discs(self, cm: int, degrees: int, left: int = 0, right: int = 0) -> None:
         """Put discs on both wheels; what they go between two edges is as a robot's header says it.
 
-        They stand so many thousandths of the way behind an edge.
+        They stand so many thousandths of the way after an edge.
         """
         self.ask(b"G", pack("<IIHH", cm, degrees, left, right))
 

@@ -1,4 +1,4 @@
-"""Reads the expressions of a program, and what stands in parentheses behind its words."""
+"""Reads the expressions of a program, and what stands in parentheses after its words."""
 
 from __future__ import annotations
 

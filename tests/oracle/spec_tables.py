@@ -117,7 +117,7 @@ def instructions() -> dict[int, Instruction]:
 
 
 def code_at(code: bytes, at: int) -> int:
-    """Return the byte that begins an instruction; behind `ff` the next one belongs to it."""
+    """Return the byte that begins an instruction; after `ff` the next one belongs to it."""
     return int.from_bytes(code[at : at + 1 + (code[at] == ESCAPE)], "big")
 
 

@@ -72,7 +72,7 @@ class TaskRobot(Robot):
     who: Runner = field(default_factory=lambda: Runner(0, False))  # has its turn
     owner: Runner | None = None  # of the motors
     wheels: Powers = (0, 0)
-    is_first_round: bool = True  # behind the main task's first turn
+    is_first_round: bool = True  # after the main task's first turn
     is_slow: IsSlow = always_ready
     every_ms: int = 1  # it goes on at multiples of this
     was_slow: bool = False  # a reading was not ready in this round

@@ -2,10 +2,10 @@
 
 They are in `en.txt`, `es.txt` and `pt.txt`, by the language of their words; those with words of
 TiniScript alone are in `en.txt`. Below a program stands a row for each message,
-`> 1 TS012 F(1.5, 80)`: its line, its code and what to try, in Spanish. Behind `>=` that is what
+`> 1 TS012 F(1.5, 80)`: its line, its code and what to try, in Spanish. After `>=` that is what
 `tsc check --fix` makes of the line, or of the part of it that is named: `>= 1 TS036 SI|  for  SI-`.
 `=3 F(1, 80)` is another line that it changes; where it changes how many lines there are, all that
-it makes stands there, each line behind a `=`. None has spaces at its end. A program of which
+it makes stands there, each line after a `=`. None has spaces at its end. A program of which
 nothing is said has a `>` alone below it; so has a new one until `--accept` writes what is said.
 
 Where its writer said it, `>? forward for two seconds` is what a program was to do, `>! F(2, 80)`

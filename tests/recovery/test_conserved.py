@@ -20,7 +20,7 @@ from tiniscript.recovery.conserved import difference
 KIT = robots.load(robots.DEFAULT).kit
 # A number that stands alone, and has no unit.
 NUMBER = re.compile(r"(?<![\w.,:'´])(?<!\d )\d+(?:\.\d+)?(?![\w.,:'´%°]| ?[a-z]| \d)")
-# Which unit a number has by what stands before it, and what is behind it.
+# Which unit a number has by what stands before it, and what is after it.
 PLACES = (
     (re.compile(r"\b[FBLR]\(-?$"), ""),
     (re.compile(r"\b[FBLR]\([^(),]*,\s*-?$|\bM\([^()]*$"), "%"),

@@ -1,4 +1,4 @@
-"""The findings of wrong programs, and what comes behind them."""
+"""The findings of wrong programs, and what comes after them."""
 
 from __future__ import annotations
 
@@ -137,7 +137,7 @@ def test_a_long_text_is_not_read_as_a_whole() -> None:
 
 
 def test_many_blanks_take_no_time() -> None:
-    """They stand where a value may begin, and behind one; a minute for each would be seen."""
+    """They stand where a value may begin, and after one; a minute for each would be seen."""
     for blank in (" ", "( ", "5 ", "(5) "):
         assert check(f"SI|F({blank * 20_000}((5)+1), 60) hola amigo\n")
         assert check(f"SI|F(5{blank * 20_000}hola amigo\n")

@@ -69,7 +69,7 @@ def test_a_right_program_is_read_without_a_rewrite() -> None:
 
 
 def is_whole(line: list[Lexeme]) -> bool:
-    """Whether no bracket of a line is closed on another one, and no `=` compares behind `=`."""
+    """Whether no bracket of a line is closed on another one, and no `=` compares after `=`."""
     signs = [each.text for each in line]
     return signs.count("(") == signs.count(")") and signs[3:4] != ["="]
 

@@ -57,7 +57,7 @@ _OF_BLOCKS = {word for word, row in WORDS.items() if row.role.is_of_blocks} | {"
 @pytest.mark.sampled("seed", keep=IN_CI // 3)
 @pytest.mark.parametrize("seed", range(IN_CI))
 def test_a_wrong_line_is_told_of_alone(seed: int) -> None:
-    """Behind, before and between right ones, which are no longer looked at for warnings."""
+    """After, before and between right ones, which are no longer looked at for warnings."""
     chance = random.Random(seed)
     program, line = chance.choice(right()), chance.choice(wrong())
     rows = program.split("\n")

@@ -1,4 +1,4 @@
-"""The rows of suggestions: what is told of words behind an instruction, and what is read then."""
+"""The rows of suggestions: what is told of words after an instruction, and what is read then."""
 
 from __future__ import annotations
 

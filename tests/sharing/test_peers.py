@@ -163,7 +163,7 @@ def test_whoever_listens_at_a_port_has_its_user(monkeypatch: pytest.MonkeyPatch)
 def test_a_robot_at_whose_port_another_user_listens_is_none(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """As behind a crash: its file is still there."""
+    """As after a crash: its file is still there."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         number = server.getsockname()[1]
         address = f"socket://127.0.0.1:{number}"

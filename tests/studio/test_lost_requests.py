@@ -232,7 +232,7 @@ PAGE_SCRIPT = Path(__file__).with_name("lost_requests_in_node.mjs")
 
 
 def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
-    """Nothing comes behind its end. Where a few in a row are lost, all is done, and once; and the
+    """Nothing comes after its end. Where a few in a row are lost, all is done, and once; and the
     page's next connection is as the first one of a fresh page.
     """
     try:

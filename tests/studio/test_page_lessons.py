@@ -70,7 +70,7 @@ def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
 
 
 def rest(page: Page) -> list[str]:
-    """Return what is said behind the first sentence, which may be nothing."""
+    """Return what is said after the first sentence, which may be nothing."""
     return page.locator("#lesson_findings li").all_inner_texts()[1:]
 
 

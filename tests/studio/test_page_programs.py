@@ -54,7 +54,7 @@ def test_a_link_brings_the_program_and_runs_nothing(pages: Pages, page: Page) ->
     page.keyboard.press("Escape")
     page.select_option("#robot", "tinibot")
     write(page, "SI|F(9, 90)")
-    page.goto(link)  # in an open tab: only the part behind # changes
+    page.goto(link)  # in an open tab: only the part after # changes
     noted(page, "This program came with a link")
     checked(page)
     assert content(page).rstrip() == TEXT.rstrip()

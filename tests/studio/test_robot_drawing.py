@@ -100,7 +100,7 @@ def test_a_cone_is_as_long_as_what_is_read() -> None:
     state = after("W(1)", "tinibot", 300)
     [drawn] = pictures(("tinibot", state, STILL))
     [cone] = of(drawn, "fill", "#e0452f33")
-    assert cone[4] == state["readings"][2]["value"] > 0  # behind the tip and the middle
+    assert cone[4] == state["readings"][2]["value"] > 0  # after the tip and the middle
     far, near = json.loads(json.dumps(state)), json.loads(json.dumps(state))
     far["readings"][0]["value"], near["readings"][0]["value"] = 0, 1023
     dim, bright = (

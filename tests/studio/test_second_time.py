@@ -1,6 +1,6 @@
 """The second time of whatever a studio does is as the first one, however the first one has ended.
 
-Who comes late, comes back or comes again finds what a fresh one finds: behind a STOP for all nobody
+Who comes late, comes back or comes again finds what a fresh one finds: after a STOP for all nobody
 starts, each silence of a page stops its robot, and a connection carries any number of requests.
 """
 
@@ -106,7 +106,7 @@ def hosting(monkeypatch: pytest.MonkeyPatch) -> Hosting:
     return Hosting()
 
 
-# -- a STOP for all, and whoever comes behind it
+# -- a STOP for all, and whoever comes after it
 
 
 class ComingPage:

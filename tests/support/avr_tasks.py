@@ -1,6 +1,6 @@
 """Programs with tasks that show what the assembly of an Uno could get wrong and little else shows.
 
-In most of them what tasks do lies behind the first 256 bytes of code, and ticks come late. Times
+In most of them what tasks do lies after the first 256 bytes of code, and ticks come late. Times
 are milliseconds.
 """
 

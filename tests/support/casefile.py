@@ -132,7 +132,7 @@ def _said(case: Case, fence: str, text: str, end: int) -> Iterator[Case]:
 
 class Example(NamedTuple):
     """A fence `python`: code that runs in a namespace of its own, and the fence `output` right
-    behind it. `has_robot`: it is `python robot`, and connects to the robot on /dev/ttyUSB0."""
+    after it. `has_robot`: it is `python robot`, and connects to the robot on /dev/ttyUSB0."""
 
     path: Path
     line: int

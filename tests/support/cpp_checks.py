@@ -217,7 +217,7 @@ FAR = f"A = 0;N = 0;IF(N > 0);{'SHOW(8);' * 140}ENDIF;"  # more than 256 bytes
 def some_task_programs(first: int, count: int, before: str = "") -> Iterator[tuple[bytes, Senses]]:
     """Yield images of random programs with tasks, and what their sensors read.
 
-    All that a program does lies behind the code of the text `before`.
+    All that a program does lies after the code of the text `before`.
     """
     for seed in range(first, first + count):
         text, readings = task_program(random.Random(seed))

@@ -95,7 +95,7 @@ def _tried(each: Try, items: Sequence[pytest.Item]) -> str:
 
 
 def _in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> str:
-    """Run tests behind `begin`; an endless loop fails."""
+    """Run tests after `begin`; an endless loop fails."""
     child = os.fork()
     if child == 0:
         code = TROUBLE

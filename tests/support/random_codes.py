@@ -161,7 +161,7 @@ def deep_code(rng: random.Random) -> bytes:
         body = jump("CALL", False, ways + 2)
         for depth in range(rng.choice((10, 11, 12, 13))):
             body = simple("LOOP8") + b"\x01" + body + jump("NEXT", False, 4 + 4 * depth)
-            # the call lies further behind the procedure with each loop around it
+            # the call lies further after the procedure with each loop around it
             at = body.index(BY_NAME["CALL"].code)
             body = body[: at + 1] + bytes([ways + at + 2]) + body[at + 2 :]
         code += body

@@ -180,7 +180,7 @@ class Pages:
     def open(self, view: str = "text", **options: Any) -> Page:
         """Open a page of a new visitor, and wait until its program is compiled.
 
-        `view` is `start`, which a new visitor sees, `blocks` behind it, or `text`, which most tests
+        `view` is `start`, which a new visitor sees, `blocks` after it, or `text`, which most tests
         write; the others are those of `visit`.
         """
         return self.visit(self.entrance(), view, **options)

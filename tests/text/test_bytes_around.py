@@ -1,4 +1,4 @@
-"""Whatever real apps and modules send before and behind a right line: it runs, or an answer says
+"""Whatever real apps and modules send before and after a right line: it runs, or an answer says
 why not. Nothing passes in silence.
 
 `python -m tests.text.test_bytes_around 20000` tries more.
@@ -38,7 +38,7 @@ class SmallRobot(HostFirmware):
 
 
 def drawn(rng: random.Random) -> list[bytes]:
-    """Return what comes before and behind."""
+    """Return what comes before and after."""
     return [b"".join(rng.choices(PIECES, k=rng.choice((0, 1, 1, 2, 4)))) for _ in "12"]
 
 

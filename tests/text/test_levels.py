@@ -136,7 +136,7 @@ def most(text: str, level: Level = UNO) -> int:
         ("S", 1),  # a letter of a word lies where the code comes
         ("STOP", 4),
         ("S;STOP", 5),
-        # a value's own byte, and one byte of code behind it
+        # a value's own byte, and one byte of code after it
         ("W(5)", 2),
         ("F(5, 5)", 3),  # code, the second value, code
         ("W(((5)))", 4),
@@ -153,7 +153,7 @@ def most(text: str, level: Level = UNO) -> int:
         ("SHOW(TRUE AND TRUE)", 3 + 3 + 4),
         ("TASK;END_TASK", 3 + 9 + 8),
         ("WHEN(TRUE);END_WHEN", 5 + 9 + 8),
-        ("F(1 DEG,5)", 1 + 1 + 3),  # a word lies behind the code
+        ("F(1 DEG,5)", 1 + 1 + 3),  # a word lies after the code
         ("F(1°,5)", 4),
     ],
 )

@@ -78,7 +78,7 @@ def names(text: str, kit: Kit = TINIBOT) -> str:
         ("F(1, 50) UNTIL(TIME > 1)", "PUSH_NUM_1 PUSH_NUM_50 WATCH_F TIME PUSH_NUM_1 GT UNTIL"),
         ("W(FOREVER) UNTIL(TRUE)", "WATCH_FOREVER_WAIT PUSH_TRUE UNTIL"),
         ("L(FOREVER, 9) UNTIL(TRUE)", "PUSH_NUM_9 WATCH_FOREVER_L PUSH_TRUE UNTIL"),
-        # readings: in front of the instruction, and those of UNTIL behind WATCH
+        # readings: in front of the instruction, and those of UNTIL after WATCH
         (
             "F(DISTANCE, LIGHT_L) UNTIL(DISTANCE < 5)",
             "READ_2 READ_1 PUSH_SENSOR_2 PUSH_SENSOR_1 WATCH_F"
@@ -125,7 +125,7 @@ NUMBERS = [
     ("32768", "04 00 00 f4 01"), ("-32768", "02 00 80"), ("-32769", "04 18 fc 0b fe"),
     ("300.5", "04 d4 95 04 00"), ("2147483.647", "04 ff ff ff 7f"),
     ("-2147483.6484", "04 00 00 00 80"),
-    # what is behind the third decimal is rounded
+    # what is after the third decimal is rounded
     ("1.0005", "03 e9 03"), ("0.0995", "0c 01"), ("0.9995", "b1"), ("0.0004999", "b0"),
     ("-0.0005", "03 ff ff"), ("000000000000000005.000000000", "b5"),
 ]  # fmt: skip

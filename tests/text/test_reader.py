@@ -227,7 +227,7 @@ RIGHT = (
 def test_what_is_missing_at_the_end_is_missing_behind_the_last_character(
     line: str, behind: str
 ) -> None:
-    """Of a right line that is cut behind any of its tokens nothing but its rest is missing.
+    """Of a right line that is cut after any of its tokens nothing but its rest is missing.
 
     It belongs before a comment.
     """
@@ -384,7 +384,7 @@ def test_what_lies_in_the_buffer() -> None:
 
 
 def test_a_forever_waits_for_the_tasks_that_let_it_last() -> None:
-    """They may come behind it, as long as the program goes on."""
+    """They may come after it, as long as the program goes on."""
     move = "SI|F(FOREVER, 60)"
     assert one(f"{move}; TASK; END_TASK").is_program
     assert one(f"TASK; END_TASK; {move[3:]}").is_program

@@ -120,7 +120,7 @@ def check_code(data: bytes, kit: Kit, answer: Answer, room: int) -> None:
 def takes_more(data: bytes, kit: Kit) -> bool:
     """Whether the reader takes a text that the compiler does not.
 
-    It only passes over the bytes of a comment, and a backspace behind a letter takes that back.
+    It only passes over the bytes of a comment, and a backspace after a letter takes that back.
     """
     text = data.decode("utf-8", "replace")
     return ("\ufffd" in text and "//" in text) or (

@@ -158,7 +158,7 @@ def test_a_lost_link_ends_it() -> None:
 
 
 def test_a_task_that_takes_the_motors_gives_them_back_and_the_way_goes_on() -> None:
-    """The turn comes with the motors, and the rest of the way is behind it."""
+    """The turn comes with the motors, and the rest of the way is after it."""
     robot, talk = begun(
         "X = 0; F(60 CM, 60)\nWHEN(X = 0 AND TIME > 0.6)\nX = 1; R(90 DEG, 60)\nEND_WHEN"
     )

@@ -1,4 +1,4 @@
-"""What a virtual robot does behind anything is what one does that was switched on where it stands.
+"""What a virtual robot does after anything is what one does that was switched on where it stands.
 
 A random program ends, or is ended in a random way at any moment; then comes another one. A second
 robot begins in a world whose start is the place where the first one stands by then: both do the

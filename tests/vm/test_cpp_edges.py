@@ -227,7 +227,7 @@ def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
         yield jump("ELSE", far, 1), len(skip) + 1
     yield jump("ELSE", True, 0x7FFF), 0x7FFF + 3
     yield jump("AGAIN", True, 4), 0xFFFF
-    # an instruction that is cut takes what lies behind the code for the rest of it
+    # an instruction that is cut takes what lies after the code for the rest of it
     yield simple("PUSH16"), 3
     yield simple("PUSH32") + b"\x01\x02", 5
     for code in range(256):

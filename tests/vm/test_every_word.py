@@ -1,6 +1,6 @@
 """Every word of the language and of a kit, at every limit: for all it is a program, or for none.
 
-Each stands in the deepest block of each kind and one deeper, in tasks, in a DEF and behind an
+Each stands in the deepest block of each kind and one deeper, in tasks, in a DEF and after an
 UNTIL, and its arguments at and beyond their edges. The oracle says what is right and what a robot
 does; the compiler, the machines, the formatter, the blocks, the robot's reader of text and the
 sketch have to agree. The words come from the table: what one of these lacks fails by itself.
@@ -85,7 +85,7 @@ def nested(head: str, end: str, times: int) -> str:
 
 
 def in_defs(calls: int) -> str:
-    """Return a word behind so many calls."""
+    """Return a word after so many calls."""
     defs = ["DEF D1;{};END_DEF", *(f"DEF D{k};D{k - 1};END_DEF" for k in range(2, calls + 1))]
     return ";".join([*defs, f"D{calls}"])
 

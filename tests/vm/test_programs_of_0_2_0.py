@@ -2,7 +2,7 @@
 
 `programs_of_0_2_0.txt` has the programs of the documents, examples, cases, lessons and pupils of
 that version, with the trace that its `tsc run` printed: a row `= robot`, the program, and rows of
-the trace behind `>`. Of a long one the first rows, how many there are, and the checksum of all.
+the trace after `>`. Of a long one the first rows, how many there are, and the checksum of all.
 """
 
 from __future__ import annotations

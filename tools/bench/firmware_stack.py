@@ -25,7 +25,7 @@ from tiniscript.robots.text_levels import NO_TEXT, level_of
 from tools.uno import CYCLES_PER_MS, HERTZ, Stack, Uno
 
 LEAST_FREE = 150  # bytes
-FREE_FROM = "_end"  # the symbol behind all variables
+FREE_FROM = "_end"  # the symbol after all variables
 RAM = 0x800000  # where avr-nm begins to count it
 BOARDS = {"uno": "uno", "nano": "uno", "mega": "mega"}  # the simulated one for each
 CALLS = 8  # at once

@@ -3,7 +3,7 @@
     python -m tools.builds.function_order     writes the order into `boards/avr/order.ld`
 
 On an AVR a call that leads at most 4 KB far takes two bytes less. An order that is old does no
-harm but to the size: a function that is not in it lies behind the others. So run this again when
+harm but to the size: a function that is not in it lies after the others. So run this again when
 the sketch of an Uno comes near to its limit.
 """
 
@@ -24,7 +24,7 @@ from tools.bench import firmware_size
 SCRIPT = firmware_size.PROJECT / "src" / "boards" / "avr" / "order.ld"
 BEGIN, END = "/* begin of the order */\n", "    /* end of the order */"
 BOARD = "uno"
-NEAR = range(-4096, 4096)  # bytes, from behind a short call
+NEAR = range(-4096, 4096)  # bytes, from just after a short call
 TRIES = 200_000
 # What the compiler appends to a name may be another number after the next change.
 _APPENDED = re.compile(r"\.(lto_priv|constprop|part|isra)\.\d+")

@@ -24,7 +24,7 @@ Pair = tuple[int, int]
 
 
 class Packed(NamedTuple):
-    """Texts, one behind the other; the codes of 4 bits, and those of which the pairs are made."""
+    """Texts, one after the other; the codes of 4 bits, and those of which the pairs are made."""
 
     common: tuple[int, ...]
     pairs: list[Pair]

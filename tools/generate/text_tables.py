@@ -53,7 +53,7 @@ def role_of(word: Word) -> str:
 
 
 def opcode_of(word: Word) -> int:
-    """Return the code of the instruction that a reader makes of a word behind its arguments."""
+    """Return the code of the instruction that a reader makes of a word after its arguments."""
     name = OPCODES.get(word.text, f"MOVE_{word.text}")
     if name not in BY_NAME:
         raise LookupError(

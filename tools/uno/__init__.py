@@ -144,7 +144,7 @@ class Uno:
 
     @contextmanager
     def aside(self) -> Iterator[None]:
-        """Try something: behind it the chip is where it was, and nothing of it has happened.
+        """Try something: after it the chip is where it was, and nothing of it has happened.
 
         The chip has paused before. It has no `eeprom` file, which would keep what was written.
         """

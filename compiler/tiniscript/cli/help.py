@@ -88,7 +88,7 @@ def groups(language: str) -> list[tuple[str, list[Row]]]:
     """Return the headings of all verbs with the commands below each, and what these do."""
     found: dict[str, list[Row]] = {}
     for verb, group in VERBS.items():
-        own = [] if verb == SET else [verb]  # which does nothing without a word behind it
+        own = [] if verb == SET else [verb]  # which does nothing without a word after it
         rows = [_row(command, language) for command in (*own, *steps_of(verb))]
         found.setdefault(said(f"group/{group}", language), []).extend(rows)
     return list(found.items())

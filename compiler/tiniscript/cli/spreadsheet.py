@@ -45,7 +45,7 @@ def beginnings() -> tuple[bytes, ...]:
 
 
 def no_formula(text: str) -> str:
-    """Return what somebody wrote so that a spreadsheet takes it for text, in cells behind commas.
+    """Return what somebody wrote so that a spreadsheet takes it for text, in cells after commas.
 
     It may take ; for their end, which no quotation marks keep in a cell then.
     """

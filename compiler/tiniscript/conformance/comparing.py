@@ -19,7 +19,7 @@ MOST_SILENT = 20  # nor for a machine whose first so many runs gave no answer
 
 class Verdict(NamedTuple):
     """`what` is AGREES, DIFFERS, LACKS, hang, crash, flood or more. `line` counts from 1; `want`
-    and `got` are that line of the two answers, None behind their ends."""
+    and `got` are that line of the two answers, None after their ends."""
 
     name: str
     what: str

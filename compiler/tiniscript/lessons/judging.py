@@ -238,7 +238,7 @@ def _order(criterion: Criterion, task: Task) -> Finding | None:
     happened = iter(task.run.happened)
     before = ""
     for k, word in enumerate(criterion.words):
-        if word not in happened:  # which goes on behind the one that it has found
+        if word not in happened:  # which goes on after the one that it has found
             times = criterion.words[:k].count(before) if word in criterion.words[:k] else 1
             return Finding("order", f"order/{before}/{word}", {"times": str(times)})
         before = word

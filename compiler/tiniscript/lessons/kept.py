@@ -15,7 +15,7 @@ from tiniscript.syntax.lexer import NUMBER, WORD, Token
 MOVES = frozenset("FBLRM")
 AHEAD = frozenset("FBM")  # what is more than a turn
 FIXED = frozenset({"TRUE", "FALSE", "NOT", "AND", "OR"})  # of a question
-STATEMENTS = frozenset({"W", "S", "BEEP", "SHOW"})  # an UNTIL behind them is not that of a move
+STATEMENTS = frozenset({"W", "S", "BEEP", "SHOW"})  # an UNTIL after them is not that of a move
 
 
 class Question(NamedTuple):
@@ -71,7 +71,7 @@ def _has_power(tokens: Sequence[Token], at: int) -> bool:
 
 
 def _values(tokens: Sequence[Token], at: int) -> list[list[Token]]:
-    """Return the values between the brackets behind a word."""
+    """Return the values between the brackets after a word."""
     values: list[list[Token]] = [[]]
     depth = 0
     for token in tokens[at + 1 :]:
@@ -86,7 +86,7 @@ def _values(tokens: Sequence[Token], at: int) -> list[list[Token]]:
 
 
 def end_of_values(tokens: Sequence[Token], at: int) -> int:
-    """Return where in the text the bracket behind a word closes, or where the word ends."""
+    """Return where in the text the bracket after a word closes, or where the word ends."""
     values = [token for value in _values(tokens, at) for token in value]
     behind = [token for token in tokens[at + 1 :] if token.text == ")"]
     last = values[-1].end if values else tokens[at].end

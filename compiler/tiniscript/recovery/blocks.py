@@ -16,7 +16,7 @@ from tiniscript.recovery.meanings import ENDED, Lexeme, made
 from tiniscript.recovery.rewrites import negated
 from tiniscript.syntax.outline import Item
 
-LONGEST = 200  # items behind an ELSE whose ends are counted
+LONGEST = 200  # items after an ELSE whose ends are counted
 
 
 class Line(NamedTuple):
@@ -63,7 +63,7 @@ class _Block:
 
 
 class Matching:
-    """What each line needs so that all blocks end: edits, ends behind its text, and on new lines.
+    """What each line needs so that all blocks end: edits, ends after its text, and on new lines.
 
     `run` takes item after item of all lines; `after` is the next one, of no kind at the end.
     `is_sure`: no end is a guess.
@@ -156,7 +156,7 @@ class Matching:
         return True
 
     def is_made_up(self) -> bool:
-        """Whether a header is a word behind an instruction, and nothing more: `F(1, 80) LOP`."""
+        """Whether a header is a word after an instruction, and nothing more: `F(1, 80) LOP`."""
         tokens, (_, _, start, end) = self.line.reading.tokens, self.item
         around = [*tokens[max(0, start - 1) : start], *tokens[start + 1 : end]]
         is_begun = [each.text for each in around[:2]] == [";", "("]
@@ -212,7 +212,7 @@ class Matching:
         return True
 
     def is_before_arm(self) -> bool:
-        """Whether an end comes too early, and is dropped: the ELSE behind it belongs to its IF."""
+        """Whether an end comes too early, and is dropped: the ELSE after it belongs to its IF."""
         item = self.item
         is_its = item.word == ANY_END or ENDED[item.word] == "IF"
         if not (is_its and self.after.kind == "arm" and self.open and self.open[-1].word == "IF"):
@@ -272,7 +272,7 @@ class Matching:
             return True
         return False
 
-    # -- the end of a line: a body behind its header ends there, unless an end is left for it ----
+    # -- the end of a line: a body after its header ends there, unless an end is left for it ----
 
     def end_line(self, indent_below: int) -> None:
         after = self.after
@@ -302,7 +302,7 @@ class Matching:
         return headers > 1 or any(each.text == ";" and each.source is not None for each in between)
 
     def parts(self) -> Iterator[tuple[int, Item]]:
-        """Give the arms and ends behind a place, but those of blocks that begin behind it."""
+        """Give the arms and ends after a place, but those of blocks that begin after it."""
         depth = 0
         for line, item in self.flat[self.place + 1 :]:
             is_end = item.kind in ("end", "}")

@@ -194,7 +194,7 @@ class _Said:
         self.meant: Counter[str] = Counter()  # that it may say
         self.written: dict[str, str] = {}
         self.amounts: list[Amount] = []
-        self.loose: list[tuple[str, str]] = []  # units behind no number, and how they are written
+        self.loose: list[tuple[str, str]] = []  # units after no number, and how they are written
         self.foreign: Counter[str] = Counter()  # of those, in words of another language
         self.strange = 0  # words of other languages, or of none
         self._read()
@@ -318,7 +318,7 @@ class _Said:
         return self.tokens[k + 1] if k + 1 < len(self.tokens) else _END
 
     def _is_label(self, k: int) -> bool:
-        """Whether a word behind an end says which one ends."""
+        """Whether a word after an end says which one ends."""
         back = k - 2 if k > 1 and self.tokens[k - 1].text in ("-", "_", ".") else k - 1
         before = self.tokens[back] if k else _END
         is_end = before.text in ENDED or bool(said_of(before.text, "end"))
@@ -365,7 +365,7 @@ class _Said:
         return not (is_value and is_even)
 
     def _unit_behind(self, k: int) -> tuple[str, float] | None:
-        """Return the unit behind a number, and how many thousandths of it one is."""
+        """Return the unit after a number, and how many thousandths of it one is."""
         token, next_one = self._after(k), self._after(k + 1).text
         if token.text == "%" and next_one in (")", ",", ";"):  # no remainder of a division
             return "%", 1000
@@ -435,7 +435,7 @@ class _Said:
     # -- branches --------------------------------------------------------------------------------
 
     def calls(self, name: str) -> int:
-        """Return how often a DEF is called: behind DEF, or behind an end, its name is no call."""
+        """Return how often a DEF is called: after DEF, or after an end, its name is no call."""
         found = 0
         for k, (before, each) in enumerate(pairwise([_END, *self.tokens])):
             found += each.text == name and not ("DEF" in self._may_be(before) or self._is_label(k))

@@ -45,7 +45,7 @@ class Explanation:
     `gaps` are what its message says beside that: of its block, or of other lines. Where more of the
     block changes, that becomes `whole`, and ends with `ends`. A block that begins with `word` and
     lacks its end, `right`, has `behind` on its own line, and line `line`, `last`, is its last one;
-    of `several` instructions the last one may as well be behind it, and there `last` is empty.
+    of `several` instructions the last one may as well be after it, and there `last` is empty.
 
     `place` is what `fix` stands for; `edits` are all that belong to it: ends, braces. It begins in
     change `first`, from 0; `last` is a change, and how many of its lines belong to it; `opened` are
@@ -158,7 +158,7 @@ class _Explainer:
             place = Span(self.starts[change.first], self.starts[change.first] + len(old))
             edit = trimmed(place.start, old, own)
             if ends and edit.span.start == place.end:
-                edit = Edit(place, own)  # the ends that are missing behind it come behind all of it
+                edit = Edit(place, own)  # the ends that are missing after it come after all of it
             part = Change(place, edit, self.changes[k].steps, before, after)
             code, step = slips.code_of(part)
             is_brace = code is codes.BRACES and before[0].text in BRACES
@@ -206,7 +206,7 @@ class _Explainer:
                 place = Span(first + start, first + end)
                 edit = trimmed(place.start, text, new)
                 if edit.span.start == place.end:
-                    edit = Edit(place, new)  # an end that is missing comes behind all of it
+                    edit = Edit(place, new)  # an end that is missing comes after all of it
                 found.append(Change(place, edit, steps.get(n, []), part, meant))
                 if not steps.get(n) and text.isascii():
                     return []
@@ -290,7 +290,7 @@ class _Explainer:
             yield "last", laid_out(tokens_of(above.text.split("\n")[0]))
 
     def end(self, last: tuple[int, int], change: search.Change, end: str, text: str) -> None:
-        """Tell of an end that is missing behind a line."""
+        """Tell of an end that is missing after a line."""
         block = self.open.pop() if self.open else None
         behind = self.starts[change.last] + len(self.lines[change.last].rstrip("\r"))
         edit = Edit(Span(behind, behind), text)
@@ -321,7 +321,7 @@ class _Explainer:
     def may_end_earlier(self, block: _Block, last: int) -> bool:
         """Whether nothing says that the last instruction of a block is in it.
 
-        A sign or a stop behind others may as well come when a LOOP or a DEF is over.
+        A sign or a stop after others may as well come when a LOOP or a DEF is over.
         """
         inside = block.inside
         header, end = (self.changes[k].text.split("\n")[0] for k in (block.first, last))

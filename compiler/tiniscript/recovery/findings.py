@@ -84,7 +84,7 @@ def _carried(found: Diagnostic, text: str) -> Diagnostic:
 
 
 def _way(unit: str) -> str:
-    """Return the word for a unit behind the first value of a move, "" where none is."""
+    """Return the word for a unit after the first value of a move, "" where none is."""
     said = said_of(plain(unit), "unit")
     return next((way for way, its in WAYS.items() if said and its.unit == said[0]), "")
 

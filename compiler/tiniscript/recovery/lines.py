@@ -56,7 +56,7 @@ _EDGES = {word for word in WORDS if WORDS[word].role.is_of_blocks} | {";", "UNTI
 
 
 class Step(NamedTuple):
-    """A rewrite that was made: what it was for, and the line before and behind it."""
+    """A rewrite that was made: what it was for, and the line before and after it."""
 
     code: Code
     before: Sequence[Lexeme]
@@ -274,7 +274,7 @@ class _Search:
                 break
 
     def with_slips(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
-        """One sign wrong, missing, too much or behind its neighbour, where the line fails."""
+        """One sign wrong, missing, too much or after its neighbour, where the line fails."""
         tokens, (start, at) = reading.tokens, failure
         for k in reversed(range(max(0, start - 1), min(len(tokens) + 1, at + 2))):
             head, rest = tokens[:k], tokens[k + 1 :]
@@ -326,7 +326,7 @@ def _touches(failure: Failure, start: int, end: int) -> bool:
 
 
 def _is_long(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
-    """Whether the number behind a translated word is rarely meant for seconds: `move(50, 50)`."""
+    """Whether the number after a translated word is rarely meant for seconds: `move(50, 50)`."""
     numbers = [token for token in tokens[k + 1 : k + 3] if token.kind is NUMBER]
     least = LONG_S if concept in (*MOVES, "BEEP") else MILLISECONDS_FROM
     is_timed = concept in (*MOVES, "BEEP", "W")

@@ -214,7 +214,7 @@ class _OfLine(NamedTuple):
     defs: set[str]
     in_brackets: set[str]
     rows: set[tuple[str, ...]]
-    parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets behind its own
+    parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets after its own
     pairs: set[tuple[str, str]]  # the name of a DEF, or one and that of a value
     begun: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
     called: set[str]  # words that are an instruction alone

@@ -91,7 +91,7 @@ def _joined(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
 
 
 def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
-    """Return orders and the condition behind them; a move that it stops is watched meanwhile."""
+    """Return orders and the condition after them; a move that it stops is watched meanwhile."""
     asked = block(words, names, is_open=False)
     if not asked and [each.word for each in first[-1:]] in (["S"], ["STOP"]):
         return _stopped_when(first[:-1], words, names)
@@ -213,7 +213,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
         header = _head(word, tokens[1:k], names)
         body = orders(tokens[k:arm], names) if header else []
         if header and not body and _begins(tokens[k], names):
-            return ""  # another order than the words behind it say
+            return ""  # another order than the words after it say
         if not body or any(each.is_side_free for each in (*body, *other)):
             continue
         if word != "LOOP" and tokens[k].source and names.meant(texts[k]) in _SIDES:

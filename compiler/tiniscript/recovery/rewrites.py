@@ -252,7 +252,7 @@ class Encoded:
         return (self.index[start], self.index[end]) if start >= 0 else (0, 0)
 
     def rewritten(self, row: Row, match: re.Match[str]) -> list[Lexeme] | None:
-        """Return the line behind a row, or None where it does not hold here."""
+        """Return the line after a row, or None where it does not hold here."""
         new: list[Lexeme] = []
         for part in row.becomes:
             made_of = self._made(part, match)
@@ -370,7 +370,7 @@ def _same(place: _Place) -> _Made:
 
 
 def _label(place: _Place) -> _Made:
-    """A name behind the end of its DEF says which one ends, where something else calls it."""
+    """A name after the end of its DEF says which one ends, where something else calls it."""
     return [] if place.captured[0][0].text in place.line.names.called else None
 
 

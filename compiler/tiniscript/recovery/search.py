@@ -178,7 +178,7 @@ class Recovery:
                 line.body = body
 
     def join_until(self) -> None:
-        """Put an UNTIL on a line of its own behind the instruction before it."""
+        """Put an UNTIL on a line of its own after the instruction before it."""
         kept: list[_Text] = []
         until = re.compile(rf"^\s*{words_of('until')}\b", re.MULTILINE)
         text = plain(self.program)
@@ -335,7 +335,7 @@ class Recovery:
 
 
 def _is_key(old: Sequence[Lexeme], new: Sequence[Lexeme]) -> bool:
-    """Whether a digit may be meant for the bracket that is missing behind it: `DISTANCE < 209`."""
+    """Whether a digit may be meant for the bracket that is missing after it: `DISTANCE < 209`."""
     written = texts(old)
     return written.count("(") > written.count(")") and any(
         sign.text == ")" and sign.source is None and re.fullmatch(f".+{rows.CLOSE_KEY}", one.text)

@@ -220,12 +220,12 @@ def _foreign(slip: Slip) -> Slip:
 
 
 def _is_counting(token: Lexeme) -> bool:
-    """Whether a word says that something is done several times: FOR, and EACH behind it."""
+    """Whether a word says that something is done several times: FOR, and EACH after it."""
     return meant_by(token.text) == "LOOP" or bool(said_of(token.text, "count", "each"))
 
 
 def _torn(slip: Slip) -> Slip:
-    """A number in two pieces: the sign that goes, and the piece behind it."""
+    """A number in two pieces: the sign that goes, and the piece after it."""
     end = slip.start + len(slip.found)
     return slip if slip.right else slip._replace(found=slip.old[end - 1 : end + 1])
 

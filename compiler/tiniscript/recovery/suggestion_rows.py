@@ -5,7 +5,7 @@
     pattern | code | values | example => one of the values
 
 A pattern is one of `rows`. Its first token is a whole instruction, with its brackets and its UNTIL;
-the others are the words behind it. Classes of the instruction, beside its word: @cmd (of the
+the others are the words after it. Classes of the instruction, beside its word: @cmd (of the
 language), @did (a DEF), @more (others stand before it on its line), @later (others stand before
 it), @outer (in no block), @move, @clock (its first value is its time), @asked (has its UNTIL) and
 @unasked (may get one). Words without an instruction have @none there, also @after where one stands
@@ -19,7 +19,7 @@ language: with values, or without). What `s` captures is pointed at. `h` is a he
 read with what is asked as its question, else with TRUE.
 
 Values are texts with gaps. A gap is a capture, or a function in `suggestions`; a row with a gap
-that cannot be filled does not hold, unless `?` stands behind its name. `⟨less¦more⟩` makes a row of
+that cannot be filled does not hold, unless `?` stands after its name. `⟨less¦more⟩` makes a row of
 each, and a row goes on in lines that are indented, as in `rows`. Rows are sorted by what is asked
 for.
 """

@@ -1,6 +1,6 @@
 """Suggestions: what is told of words that no repair reads surely.
 
-Reads each instruction of a line with the words behind it, and words without one, by the rows of
+Reads each instruction of a line with the words after it, and words without one, by the rows of
 `suggestion_rows`. Knows no row and no sentence of any language.
 """
 
@@ -40,7 +40,7 @@ from tiniscript.syntax.free_names import for_a_number
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.operators import COMPARISONS
 
-LONGEST = 24  # words behind an instruction that are read
+LONGEST = 24  # words after an instruction that are read
 MOST = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
 _ASIDE = (codes.REPEATED.number, codes.WORDS_BEHIND.number)
@@ -87,7 +87,7 @@ def _places() -> rewrites.Places:
 
 
 def suggested(text: str, kit: Kit) -> list[Suggestion]:
-    """Return what is told of words behind each instruction of a text, or in place of one."""
+    """Return what is told of words after each instruction of a text, or in place of one."""
     bodies = [without_note(line)[0] for line in text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
     found: list[Suggestion] = []
@@ -124,7 +124,7 @@ def _as_orders(line: str, is_right: bool) -> str | None:
 
 
 def _parts(body: str, start: int, around: Around) -> Iterator[Trailing]:
-    """Give each instruction of a line that has words behind it, and words without one."""
+    """Give each instruction of a line that has words after it, and words without one."""
     names = around.names
     before: list[str | None] = []
     for match in _PART.finditer(body):
@@ -390,7 +390,7 @@ def _calls(part: Trailing) -> list[Order]:
 
 
 def _orders(gaps: _Gaps) -> str:
-    """The instruction, and those that the words behind it say."""
+    """The instruction, and those that the words after it say."""
     found = _calls(gaps.part)
     return f"{gaps.part.call};{written(found)}" if found else ""
 

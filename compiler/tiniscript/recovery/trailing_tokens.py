@@ -1,4 +1,4 @@
-"""What words behind an instruction say, beside what the instruction says itself.
+"""What words after an instruction say, beside what the instruction says itself.
 
 Knows which words begin an order, and which numbers and words only repeat. Knows no row.
 """
@@ -74,7 +74,7 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
 
 
 class Trailing:
-    """An instruction of `size` tokens and the words behind it; or words without one, where it is 0.
+    """An instruction of `size` tokens and the words after it; or words without one, where it is 0.
 
     `before` are the other instructions of its line, None for one of a block. `own` is the word of
     the language that it begins with, "" for none. `said` is the call where words say it.

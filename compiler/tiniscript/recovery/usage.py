@@ -79,7 +79,7 @@ _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
 _OF_NAMES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
-_BEGINS = (";", "newline", "|")  # what an instruction begins behind
+_BEGINS = (";", "newline", "|")  # what an instruction begins after
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _WANTED = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
 _MOST_OF_END = 4  # words: `fin del bucle`
@@ -227,7 +227,7 @@ class _Usage:
         return f"{word}({said})" if said else WORDS[word].usage
 
     def asked(self, word: str) -> list[Lexeme]:
-        """Return what stands behind a header, up to what is done."""
+        """Return what stands after a header, up to what is done."""
         behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.tokens)][1:]
         begun = DONE - {"L", "R"}  # `pared a la derecha`
         meant = [_is_over(each) or self.names.meant(each.text) in begun for each in behind]
@@ -480,7 +480,7 @@ class _Usage:
         return told if told.values.get("question") else None
 
     def unit(self) -> Diagnostic | None:
-        """A unit behind a calculation: `F(RANDOM(1, 3) sec, 50)`."""
+        """A unit after a calculation: `F(RANDOM(1, 3) sec, 50)`."""
         span = self.found.span
         unit = said_of(plain(self.source[span]), "unit")
         end = len(self.source.text[: span.start].rstrip())  # of the value
@@ -493,7 +493,7 @@ class _Usage:
         return told._replace(span=span, repair=told.repair if unit == ("s", "1000") else None)
 
     def no_value(self) -> Diagnostic | None:
-        """A word behind a number, which is no value: a unit of something else, or nothing."""
+        """A word after a number, which is no value: a unit of something else, or nothing."""
         span = self.found.span
         before = lexemes(self.source[Span(self.piece.start, span.start)])
         calls = [one.text for one, after in pairwise(before) if after.text == "("]
@@ -680,7 +680,7 @@ class _Usage:
         return Diagnostic(codes.UNKNOWN_NAME, value, {"found": values["amount"], **values})
 
     def behind(self) -> Diagnostic | None:
-        """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
+        """What begins no instruction comes after one: with a `;` between them it is as wrong."""
         span = Span(self.found.span.start, self.piece.end)
         right = lines.right(lexemes(self.source[span]), self.names)
         words = shortened(self.source[span])

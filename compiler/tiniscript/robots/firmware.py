@@ -24,7 +24,7 @@ BOARDS = (*AVRS, *ESP32S)
 def header(wired: Sequence[Robot], made_by: str) -> str:
     """Return the header of a robot. `wired` is one robot, repeated for each board that it fits.
 
-    What is the same on all of these boards is there once, behind the rest.
+    What is the same on all of these boards is there once, after the rest.
     """
     parts: dict[tuple[str, ...], list[Robot]] = {}
     for robot in wired:

@@ -93,7 +93,7 @@ class Arm(NamedTuple):
 
 
 class If(NamedTuple):
-    """`has_else`: the text has an ELSE, perhaps with nothing behind it."""
+    """`has_else`: the text has an ELSE, perhaps with nothing after it."""
 
     arms: tuple[Arm, ...]
     otherwise: "tuple[Statement, ...]"
@@ -190,7 +190,7 @@ def walk(body: Body) -> Iterator[Statement]:
 def with_calls(
     body: Body, procedures: Sequence[Procedure], called: set[int] | None = None
 ) -> Iterator[Statement]:
-    """Yield every statement of `body`, and behind a call those of its DEF: of each DEF once."""
+    """Yield every statement of `body`, and after a call those of its DEF: of each DEF once."""
     called = set() if called is None else called
     for statement in walk(body):
         yield statement

@@ -44,7 +44,7 @@ _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
 _NAMED = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
-_NEAR = 500  # characters behind a value for a sensor in which its use is looked for
+_NEAR = 500  # characters after a value for a sensor in which its use is looked for
 
 
 class WrongCalls:
@@ -244,7 +244,7 @@ _ASKED = re.compile(r"\b(DISTANCE)[ \t]{0,9}(<=?)[ \t]{0,9}([0-9]+(?:\.[0-9]+)?)
 def asked_next(source: Source, span: Span) -> str:
     """Return the condition of an IF that follows what is at `span`.
 
-    Else what the program asks of the same sensor, behind it first; else an example.
+    Else what the program asks of the same sensor, after it first; else an example.
     """
     if found := _NEXT_QUESTION.match(source.text, span.end):
         return found[1].strip()

@@ -19,10 +19,10 @@ NOWHERE: Place = (0, 0, 0, 0)
 
 class Block(NamedTuple):
     """`word` is the word or name that it has, or the text of a comment and of a grey block;
-    where a unit is behind the first value, that one too: `F CM`.
+    where a unit is after the first value, that one too: `F CM`.
 
     `if` has a value and a body for each arm, and one body more for ELSE; `def` has the names in its
-    brackets as values. `note` is the comment behind it; `is_apart`: an empty line stands before it.
+    brackets as values. `note` is the comment after it; `is_apart`: an empty line stands before it.
     """
 
     kind: str

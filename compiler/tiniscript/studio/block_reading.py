@@ -118,7 +118,7 @@ class _Reader:
         return [*found, *self._comments()]
 
     def _blocks(self, node: Instruction) -> list[Block]:
-        """Return the block of an instruction, and the comment behind its end."""
+        """Return the block of an instruction, and the comment after its end."""
         first = self._take()
         if isinstance(node, Command):
             block = self._command(node, first)

@@ -34,7 +34,7 @@ from tiniscript.virtual.score import Score
 from tiniscript.virtual.world import World
 
 MISTAKES = "mistakes"
-STEPS, TASK = 2, 3  # of a page's headings, behind what is needed
+STEPS, TASK = 2, 3  # of a page's headings, after what is needed
 CODE, WORD = re.compile("`([^`]+)`"), re.compile(r"\w+")  # in its sentences
 
 

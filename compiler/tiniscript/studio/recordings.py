@@ -96,7 +96,7 @@ def read(data: bytes) -> Recording:
         if ms > MOST_MS:
             raise BadRecording("too_long", number)
         if events and not events[-1].event.startswith("SHOW"):
-            raise BadRecording("unreadable", number)  # behind the end
+            raise BadRecording("unreadable", number)  # after the end
         events.append(Recorded(ms, str(event)))
     return Recording(int(str(program), 16), tuple(events), robot)
 

@@ -2,7 +2,7 @@
 
 Knows which requests it answers. All of the page is read before: an update of the package does not
 change a page that is open. What a page asks of robots goes to `hosting`, if it shows the token of
-this run: a page gets it for the code that is in the address which `tsc studio` opens, behind a #,
+this run: a page gets it for the code that is in the address which `tsc studio` opens, after a #,
 which no browser sends (`entrances`). With `--class` the address is one of the room's network, the
 token is the teacher's, and pupils have tokens of their own (`classroom`). What the page may do in a
 browser is its Content-Security-Policy. Knows no robots.

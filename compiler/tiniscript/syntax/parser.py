@@ -309,7 +309,7 @@ class Parser:
             right = BLOCK_ENDS[block.word]
             values = {"found": word.text, "word": block.word, "line": line, "right": right}
             last = block.here[-1] if len(block.here) > 1 and block.word != "LOOP" else None
-            if last and not isinstance(last, Break):  # nothing comes behind one
+            if last and not isinstance(last, Break):  # nothing comes after one
                 values["several"] = self.cursor.source[last.span]
             self.early.append((len(self.reporter.diagnostics), inside))
             self.reporter.report(codes.WRONG_END, word.span, **values)
@@ -343,7 +343,7 @@ class Parser:
         return arguments[0]
 
     def no_units(self, arguments: Sequence[Argument]) -> None:
-        """CM and DEG stand behind the way of a move alone."""
+        """CM and DEG stand after the way of a move alone."""
         for unit in (argument.unit for argument in arguments if argument.unit is not None):
             self.expressions.wrong_unit(unit.op, Span(unit.start, unit.end))
 

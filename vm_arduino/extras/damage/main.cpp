@@ -1,5 +1,5 @@
 // Frames that are damaged on their way, as many as one likes, and the receiver of a robot. None that
-// was changed may be accepted, and damage may cost the frame behind it, no other.
+// was changed may be accepted, and damage may cost the frame after it, no other.
 //
 // A line is a thousand frames, half of them damaged; its seed determines all of it. A request is
 // four bytes of length and a letter with what it asks, an answer four bytes of length and what was
@@ -228,7 +228,7 @@ void judge_line(uint64_t seed) {
 // -- typed stops ------------------------------------------------------------------------------------
 
 // How many typed stops a line of frames holds for the receiver, as the link takes them: where bytes
-// arrive, or behind a frame that is not whole.
+// arrive, or after a frame that is not whole.
 uint32_t count_typed_stops() {
   Receiver receiver = Receiver();
   uint32_t stops = 0;
@@ -326,7 +326,7 @@ Law of_unended(const std::string& line) {
   return near.find("//") == std::string::npos ? Law::kStop : Law::kNone;
 }
 
-// Whether the part of a frame behind its last control byte is one S or STOP, blanks and `;`.
+// Whether the part of a frame after its last control byte is one S or STOP, blanks and `;`.
 bool is_strict(const std::string& packet) {
   std::string line;
   for (const char byte : small(packet)) {
@@ -425,7 +425,7 @@ Item one_of(const Item (&some)[kCount], Draw* draw) {
   return some[draw->below(kCount)];
 }
 
-// So many typed stops behind bytes that are anything: each byte does what `law_of` says, by a
+// So many typed stops after bytes that are anything: each byte does what `law_of` says, by a
 // receiver and by what an ESP32 has beside it, and the last line stops.
 void judge_typed(uint64_t seed) {
   Draw draw(seed);
@@ -439,7 +439,7 @@ void judge_typed(uint64_t seed) {
   Law law = Law::kNone;
   const bool is_running = draw.below(2) == 0;
   status.state = is_running ? State::kRunning : State::kIdle;
-  // Notes what was wrong first, and behind which bytes.
+  // Notes what was wrong first, and after which bytes.
   const auto note = [&](const char* complaint) {
     if (!what.empty()) return;
     what = complaint;

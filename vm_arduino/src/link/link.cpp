@@ -61,7 +61,7 @@ void Link::pass(uint16_t now_ms) {
   console_.pass(passed, left_ms_[kSilence]);
 }
 
-// What the silence behind a typed stop does: that of kHeldMs in what began as a frame, that of
+// What the silence after a typed stop does: that of kHeldMs in what began as a frame, that of
 // kSilenceMs where its line has not ended.
 inline void Link::end_silence(bool is_held, bool is_at_stop, uint16_t before_ms) {
   constexpr uint16_t kHeldLeftMs = kSilenceMs - kHeldMs;

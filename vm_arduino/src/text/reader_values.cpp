@@ -173,14 +173,14 @@ Problem Reader::operators(uint8_t token) {
 
 #ifdef tiniscript_reads_defs
 
-// CM or DEG behind the first value of a move, where the kit says how fast it goes or turns.
+// CM or DEG after the first value of a move, where the kit says how fast it goes or turns.
 Problem Reader::end_way(bool is_turn) {
   if (what_ > kWordR || kinds_ < 16 || is_turn != (what_ >= kWordL) || !robot_has_way(is_turn)) {
     return Problem::kReserved;
   }
   is_way_ = true;
   const Problem problem = end_value();
-  push(kBase);  // as behind FOREVER: the bracket is open
+  push(kBase);  // as after FOREVER: the bracket is open
   state_ = kAfterForever;
   return problem == Problem::kNone ? problem : before(problem);
 }

@@ -1,6 +1,6 @@
 """`tsc help --completion`: what a shell needs so that the Tab key completes commands of `tsc`.
 
-A shell's script asks `tsc` at each Tab what fits the typed words: they come behind `--`, the last
+A shell's script asks `tsc` at each Tab what fits the typed words: they come after `--`, the last
 one with a dot before it, as PowerShell 5 leaves out an empty one. The first line of the answer says
 whether a file would fit, too; each other one has a word, a tab, and what it does.
 """
@@ -115,7 +115,7 @@ def _fitting(before: list[str], last: str, language: str) -> tuple[str, list[tup
 
 
 def _verb(before: list[str]) -> tuple[str, list[str]]:
-    """Return the verb, or `tsc` where there is none, and the words behind it."""
+    """Return the verb, or `tsc` where there is none, and the words after it."""
     at = first_word("tsc", before)
     if at is None:
         return "tsc", before

@@ -132,7 +132,7 @@ def _assigned(compiled: Compiled, start: int) -> tuple[str, ...]:
 
 
 def _map_of(compiled: Compiled, end: int) -> Map:
-    """Return the map of the text up to `end`; what is behind comes from nowhere."""
+    """Return the map of the text up to `end`; what is after it comes from nowhere."""
     nowhere = Span(end, end)
     places = (
         place if place.span.end <= end else place._replace(span=nowhere)

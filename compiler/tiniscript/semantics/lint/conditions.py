@@ -112,7 +112,7 @@ class _Conditions:
         self._look.report(codes.FROZEN_UNTIL, move.span, **values)
 
     def _with(self, move: ir.Move, written: str) -> str:
-        """Return a move as it is written, with another condition behind UNTIL."""
+        """Return a move as it is written, with another condition after UNTIL."""
         text = self._source[move.span]
         end = max((each.start() for each in re.finditer(r"(?i)\bUNTIL\b", text)), default=0)
         return f"{text[:end].rstrip()} UNTIL({written})" if end else ""
@@ -283,7 +283,7 @@ class _Conditions:
         self, condition: ir.Expression, held: Mapping[str, str], span: Span, word: str,
         direction: str = "",
     ) -> str:  # fmt: skip
-        """Return a condition as it is written behind `word`, asking the sensors themselves.
+        """Return a condition as it is written after `word`, asking the sensors themselves.
 
         Nothing where it is none to write, as where a move in this direction never makes it true.
         """

@@ -52,7 +52,7 @@ class Look:
         return Variables(self.program, self.kit)
 
     def condition(self, span: Span, word: str) -> str:
-        """Return what is in the brackets behind `word`, the last of that name in `span`.
+        """Return what is in the brackets after `word`, the last of that name in `span`.
 
         Nothing where it is long, or goes over several lines.
         """

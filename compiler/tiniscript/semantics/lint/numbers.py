@@ -34,12 +34,12 @@ LOW_HERTZ = 100_000  # thousandths: a power was meant
 ANGLES = (360 * SECOND, 720 * SECOND)
 _PART = 45 * SECOND  # turns of more than one round have such parts
 _LENGTHS = ("cm", "mm", "m")
-_ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing behind its 0
+_ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing after its 0
 _ZERO_OF_TURN = re.compile(r"(?i)[LR]\s*\(\s*(0[1-9])\s*,\s*[1-9]")  # `L(03, 60)`
-# `R(90`, with brackets in a calculation, and what is behind it: the power, and UNTIL.
+# `R(90`, with brackets in a calculation, and what is after it: the power, and UNTIL.
 _FIRST = re.compile(r"\w+\s*\((\s*(?:[^(),/]|/(?!/)|\((?:[^()]|\([^()]*\))*\))*?)(\s*[,)].*)", re.S)
 _UNTIL = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its condition
-_OF_ROUND = 4  # tokens behind its word, up to the second value
+_OF_ROUND = 4  # tokens after its word, up to the second value
 LITTLE_POWER = 10_000  # thousandths of a percent
 
 
@@ -162,7 +162,7 @@ def _long(move: Move, time: int, power: int | None, kit: Kit, text: str) -> list
     length = as_text(time)
     parts = _FIRST.fullmatch(text)
     first, rest = parts.groups() if parts else ("", f", {shown})")
-    way = first and f"{word}({first} {UNIT_OF.get(word, '')}{rest}"  # not behind a note
+    way = first and f"{word}({first} {UNIT_OF.get(word, '')}{rest}"  # not after a note
     speed = kit.speed or USUAL_SPEED
     is_far = is_round and time >= LONG_TIME and speed * (power or 0) * time >= FAR
     if turns and _is_turn(time, kit, is_long) and not (is_very_long and time % _PART):

@@ -2,7 +2,7 @@
 
 The lower of two waits, or never gets the motors; that is not said where a task lets the motors go
 now and then, as far as that can be seen. `TASK;BEEP(0.2, 440);W(1);END_TASK` waits before nothing,
-and behind `WHEN(DISTANCE < 10);S;END_WHEN` a loop drives on.
+and after `WHEN(DISTANCE < 10);S;END_WHEN` a loop drives on.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class _Motors:
         return self._repeated(rest, False) is not None or self._repeated(rest, True) is True
 
     def _after(self, body: ir.Body, wants: bool) -> bool | None:
-        """Return whether the motors are wanted behind a body, None where it may let them go."""
+        """Return whether the motors are wanted after a body, None where it may let them go."""
         found: bool | None = wants
         for each in body:
             if found is None or isinstance(each, ir.Break):

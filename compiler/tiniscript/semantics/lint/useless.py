@@ -1,6 +1,6 @@
 """Warns of what is written for nothing: the robot never does it, or nothing comes of it.
 
-Instructions behind an endless loop or in a note, a DEF that nobody calls, a variable or a reading
+Instructions after an endless loop or in a note, a DEF that nobody calls, a variable or a reading
 that nobody uses, a loop that only repeats, a block with nothing inside.
 """
 
@@ -34,7 +34,7 @@ LONGEST = 200  # characters of a note that is looked at
 
 
 def never_reached(body: ir.Body, around: Around, look: Look) -> None:
-    """What stands behind a loop without an end, or behind BREAK."""
+    """What stands after a loop without an end, or after BREAK."""
     for before, after in pairwise(body):
         if not ir.goes_on((before,)):
             values = {"found": look.source[after.span].split("\n")[0]}
@@ -49,9 +49,9 @@ def never_reached(body: ir.Body, around: Around, look: Look) -> None:
 def in_notes(look: Look) -> None:
     """`F(2, 80)//R(1, 60)`: instructions that stand in a note.
 
-    Only a note that is a row of calls with numbers, or that has such a call behind a `;`, is taken
-    for a slip, and only behind an instruction, where a `;` would do: a whole line may be set aside,
-    and behind a header or `SI|` a note tells what comes.
+    Only a note that is a row of calls with numbers, or that has such a call after a `;`, is taken
+    for a slip, and only after an instruction, where a `;` would do: a whole line may be set aside,
+    and after a header or `SI|` a note tells what comes.
     """
     source, tokens = look.source, look.scan.tokens
     short = [comment for comment in look.scan.comments if len(comment.text) <= LONGEST]
@@ -84,7 +84,7 @@ def _all_of_it(notes: Sequence[Token], look: Look) -> None:
 
 
 def swallowed(note: str) -> list[str]:
-    """Return the instructions behind the words of a note: `// voy; W(2) // compro`.
+    """Return the instructions after the words of a note: `// voy; W(2) // compro`.
 
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
@@ -138,7 +138,7 @@ def empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
     """`LOOP(4)`, `END_LOOP`, and the moves below: beside what was probably meant to be in it.
 
     Nothing is said of an endless LOOP or a WHILE, which wait, nor of a block with a note inside or
-    behind its end.
+    after its end.
     """
     source = look.source
     for k, statement in enumerate(body):
@@ -163,7 +163,7 @@ def empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
 
 
 def _end_of_head(text: str) -> int:
-    """Return the place behind the brackets of a header at the beginning of a right text."""
+    """Return the place after the brackets of a header at the beginning of a right text."""
     depth = 0
     for k, sign in enumerate(text):
         depth += (sign == "(") - (sign == ")")

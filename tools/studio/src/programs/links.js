@@ -1,4 +1,4 @@
-// A program in the address of the page, behind `#program=`: no server sees that part.
+// A program in the address of the page, after `#program=`: no server sees that part.
 //
 // It is JSON with the text and the robot's name, deflated, in the letters of base64url. Whatever
 // somebody else has put there is only ever shown as text.
