@@ -376,7 +376,7 @@ Law law_of(const std::vector<Typed>& all, size_t restart, bool is_running) {
   size_t line = last;
   while (line > text && !is_end(all[line - 1].byte)) line--;
   const std::string bytes = without_keys(between(std::max(line, restart), last));
-  const bool is_behind_zero = is_framed && line == text;
+  const bool is_after_zero = is_framed && line == text;
   // A line of text that has begun before a silence is the same one for some: a control byte in it, say.
   size_t before = line;
   while (line == quiet && before > 0 && all[before - 1].byte != 0 && !is_end(all[before - 1].byte)) before--;
@@ -389,7 +389,7 @@ Law law_of(const std::vector<Typed>& all, size_t restart, bool is_running) {
   if (byte == 3 && !is_new) return Law::kEither;
   if (is_end(byte)) {
     const Law law = of_line(bytes);
-    return law == Law::kStop && is_behind_zero && !is_strict(bytes) ? Law::kWaits : law;
+    return law == Law::kStop && is_after_zero && !is_strict(bytes) ? Law::kWaits : law;
   }
   if (byte != 0) {
     return is_running ? of_unended(without_keys(between(std::max(line, restart), last + 1))) : Law::kNone;
@@ -403,7 +403,7 @@ Law law_of(const std::vector<Typed>& all, size_t restart, bool is_running) {
   }
   const Law law = of_line(bytes);
   if (law != Law::kStop) return law;
-  if (is_behind_zero) return Law::kWaits;
+  if (is_after_zero) return Law::kWaits;
   return is_new ? law : Law::kEither;
 }
 

@@ -301,7 +301,7 @@ inline Console::Act Console::end_line(bool is_heard) {
   switch (text) {
     case Text::kMore:
       awaited_ = reader_.awaited();
-      if (reader_.is_stop_behind(before)) return Act::kEnd;
+      if (reader_.is_stop_after(before)) return Act::kEnd;
       break;
     case Text::kProgram:
       is_ignoring_ = false;

@@ -46,10 +46,10 @@ class Reader {
   bool may_end() const { return brackets_ == 0 && stack_ == names_; }
 
   // Whether all that was added to so many bytes of code is S.
-  bool is_stop_behind(uint8_t before) const;
+  bool is_stop_after(uint8_t before) const;
 
   // Whether the program so far is S.
-  bool is_stop() const { return !has_setup_ && is_stop_behind(0); }
+  bool is_stop() const { return !has_setup_ && is_stop_after(0); }
 
   // After kProblem: the number of the first word in a table of words in flash, if that is what is
   // wrong. Else the number of words there, or 255.

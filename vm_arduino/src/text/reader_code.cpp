@@ -22,7 +22,7 @@ static_assert(byte_of(Op::kPushMilli) == tini_push_milli, "");
 
 }  // namespace
 
-tini_noinline bool Reader::is_stop_behind(uint8_t before) const {
+tini_noinline bool Reader::is_stop_after(uint8_t before) const {
   return length_ == static_cast<uint8_t>(before + 1) && buffer_[before] == byte_of(Op::kStop);
 }
 

@@ -99,14 +99,14 @@ export class Teacher {
     const stop = element('stop', HTMLButtonElement);
     stop.dataset['text'] = 'class_stop_all';
     stop.textContent = text('class_stop_all');
-    const come = button('', () => this.#bigCode.show(this.#code.textContent ?? ''), made('span', 'class_address'), made('strong', '', location.origin), made('span', 'class_code'), this.#code);
-    come.id = 'class_come';
+    const door = button('', () => this.#bigCode.show(this.#code.textContent ?? ''), made('span', 'class_address'), made('strong', '', location.origin), made('span', 'class_code'), this.#code);
+    door.id = 'class_come';
     const studio = button('class_studio', () => {
       this.#showWall(false);
       element('side_virtual', HTMLButtonElement).click();
     });
     studio.id = 'class_studio';
-    stop.before(studio, come, element('stops', HTMLElement));
+    stop.before(studio, door, element('stops', HTMLElement));
     head.append(stop);
   }
 
@@ -189,7 +189,7 @@ export class Teacher {
 
   async #lookForPorts() {
     try {
-      const found = await hostPorts();
+      const ports = await hostPorts();
       this.#ports.replaceChildren(...found.map(({ port, name }) => new Option(shown([name, port].filter(Boolean).join(' · ')), port)));
     } catch {
       this.#say('why_host_gone');
@@ -293,8 +293,8 @@ export class Teacher {
     this.#fetching.set(key, version);
     try {
       const pupil = this.#pupil(key);
-      const found = await post({ do: 'class_text', ...(pupil ? { pupil: pupil.number } : { key: keptOf(key) }) });
-      const known = { text: String(found.text), robot: String(found.robot || 'tinibot'), version: Number(found.version) };
+      const answer = await post({ do: 'class_text', ...(pupil ? { pupil: pupil.number } : { key: keptOf(key) }) });
+      const known = { text: String(answer.text), robot: String(answer.robot || 'tinibot'), version: Number(answer.version) };
       this.#known.set(key, known);
       this.#pictures.want(key, known, (address) => {
         if (!this.#wall.picture(key, address)) URL.revokeObjectURL(address);
@@ -343,7 +343,7 @@ export class Teacher {
 /** A button of what cannot be taken back: it acts at the second press. @param {'class_end' | 'class_anew'} key @param {() => void} act */
 function pressedTwice(key, act) {
   let isSure = false;
-  const found = button(key, (event) => {
+  const pressed = button(key, (event) => {
     if (isSecond(event)) return; // a habit is no second thought
     if (isSure) act();
     sure(!isSure);
@@ -351,11 +351,11 @@ function pressedTwice(key, act) {
   const sure = (/** @type {boolean} */ now) => {
     isSure = now;
     const said = now ? known(`${key}_sure`) : key;
-    found.dataset['text'] = said;
-    found.textContent = text(said);
+    pressed.dataset['text'] = said;
+    pressed.textContent = text(said);
     if (now) setTimeout(() => sure(false), SURE_MS);
   };
-  return found;
+  return pressed;
 }
 
 /** @param {number} pupil */
