@@ -68,13 +68,13 @@ def stepping(
 
 @pytest.fixture
 def fleet() -> Iterator[RobotFleet]:
-    with known_fleet([TINIBOT] * 3) as found:
-        yield found
+    with known_fleet([TINIBOT] * 3) as robot_fleet:
+        yield robot_fleet
 
 
 @pytest.mark.sampled("seed", keep=3)
 @pytest.mark.parametrize("seed", range(8))
-def test_behind_ctrl_c_nothing_starts(
+def test_after_ctrl_c_nothing_starts(
     fleet: RobotFleet, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     rng = random.Random(seed)

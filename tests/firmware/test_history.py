@@ -185,7 +185,9 @@ def without_counts(values: Any, *but: str) -> object:
     """Return values without some, and without what is counted since the robot was switched on."""
     if not hasattr(values, "_asdict"):
         return values
-    return [(name, each) for name, each in values._asdict().items() if name not in (*COUNTS, *but)]
+    return [
+        (name, value) for name, value in values._asdict().items() if name not in (*COUNTS, *but)
+    ]
 
 
 # -- what comes before --------------------------------------------------------------------------

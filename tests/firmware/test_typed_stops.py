@@ -98,21 +98,21 @@ def sketch(
     folder, run = tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory)
     if baud == BAUDS[0]:
         return firmware("uno", folder, run), baud
-    return once(run / f"uno_{baud}.elf", lambda made: shutil.copy(built(baud, folder), made)), baud
+    return once(run / f"uno_{baud}.elf", lambda path: shutil.copy(built(baud, folder), path)), baud
 
 
 @pytest.fixture
 def uno_at(sketch: tuple[Path, int]) -> Iterator[tuple[Uno, int]]:
-    with switched_on(*sketch) as found:
-        yield found, sketch[1]
+    with switched_on(*sketch) as uno:
+        yield uno, sketch[1]
 
 
 @pytest.fixture(scope="module")
 def driving_at(sketch: tuple[Path, int]) -> Iterator[tuple[Uno, int]]:
     """A robot that drives, and has heard nothing for a second: tests go aside from there."""
-    with switched_on(*sketch) as found:
-        drive(found)
-        yield found, sketch[1]
+    with switched_on(*sketch) as uno:
+        drive(uno)
+        yield uno, sketch[1]
 
 
 def switched_on(sketch: Path, baud: int) -> Uno:
@@ -133,9 +133,7 @@ def drive(uno: Uno) -> None:
     assert states(uno) == FORWARD, said(uno, 0)[-200:]
 
 
-def stop_behind(
-    uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: bool = False
-) -> float:
+def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: bool = False) -> float:
     """Type a stop while the robot drives. Its pins are off in time, and nothing starts again.
 
     Returns the ms from the end of the line to the pins.
@@ -172,15 +170,15 @@ def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> 
     prefix at one of the rates, the others at the other one. After the last one the robot is asked
     whether it is latched."""
     uno, baud = driving_at
-    spellings = spellings_behind(name)[(list(ALL).index(name) + BAUDS.index(baud)) % 2 :: 2]
+    spellings = spellings_after(name)[(list(ALL).index(name) + BAUDS.index(baud)) % 2 :: 2]
     for spelling in spellings:
         with uno.aside():
-            stop_behind(uno, baud, ALL[name], spelling)
+            stop_after(uno, baud, ALL[name], spelling)
             if spelling == spellings[-1]:
                 is_latched(uno)
 
 
-def spellings_behind(name: str) -> tuple[bytes, ...]:
+def spellings_after(name: str) -> tuple[bytes, ...]:
     """Return which are a stop after a prefix. What a 0x00 ends or begins has to be printable."""
     if name in FRAMED:
         return STRICT
@@ -262,12 +260,12 @@ def test_what_is_none_without_a_line_end(driving_at: tuple[Uno, int], data: byte
 
 @pytest.mark.parametrize("prefix", [b"", b"\n", b"F(1,80)\r\n"])
 @pytest.mark.parametrize("data", [b"\x03", b"\x03\x03\x03", b"\x03\r\n"])
-def test_ctrl_c_alone_stops_behind_silence(
+def test_ctrl_c_alone_stops_after_silence(
     driving_at: tuple[Uno, int], prefix: bytes, data: bytes
 ) -> None:
     uno, baud = driving_at
     with uno.aside():
-        late_ms = off_behind_silence(uno, prefix + data, 10_000 / baud)
+        late_ms = off_after_silence(uno, prefix + data, 10_000 / baud)
         assert HELD_MS - TURN_MS < late_ms < HELD_MS + BUSY_TURN_MS
         is_latched(uno)
     for other in (b"x" + data, b"\0" + data, data + b"x", b" " + data):
@@ -277,7 +275,7 @@ def test_ctrl_c_alone_stops_behind_silence(
             assert states(uno) == FORWARD, other
 
 
-def off_behind_silence(uno: Uno, data: bytes, byte_ms: float) -> float:
+def off_after_silence(uno: Uno, data: bytes, byte_ms: float) -> float:
     uno.send(data)
     uno.run_ms(len(data) * byte_ms + HELD_MS + 2 * BUSY_TURN_MS)
     assert states(uno) == OFF, data
@@ -319,7 +317,7 @@ def test_a_remote_that_repeats_is_heard_again_after_a_second(
         assert said(uno, before).count(PAUSE) == 1, "what is dropped is told once"
 
 
-def test_behind_the_stop_sequence_a_second_of_silence_is_needed(
+def test_after_the_stop_sequence_a_second_of_silence_is_needed(
     driving_at: tuple[Uno, int],
 ) -> None:
     uno, _ = driving_at
@@ -421,7 +419,7 @@ def random_prefix(draw: random.Random) -> bytes:
     return b"".join(parts).replace(b"\0\0\0", b"\0") + end
 
 
-def stop_behind_random_bytes(sketch: Path, baud: int, draw: random.Random, count: int) -> float:
+def stop_after_random_bytes(sketch: Path, baud: int, draw: random.Random, count: int) -> float:
     """Type so many stops after random bytes; return the ms that the slowest took."""
     slowest_ms = 0.0
     with switched_on(sketch, baud) as uno:
@@ -431,7 +429,7 @@ def stop_behind_random_bytes(sketch: Path, baud: int, draw: random.Random, count
             prefix, spelling = random_prefix(draw), draw.choice(STRICT)
             is_last = k % FROM_ONE_STATE == FROM_ONE_STATE - 1
             with nullcontext() if is_last else uno.aside():
-                late_ms = stop_behind(uno, baud, prefix, spelling, is_busy=True)
+                late_ms = stop_after(uno, baud, prefix, spelling, is_busy=True)
             slowest_ms = max(slowest_ms, late_ms)
     return slowest_ms
 
@@ -459,7 +457,7 @@ def quick_uno(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Uno]:
         yield uno
 
 
-def told(uno: Uno, data: bytes) -> list[str]:
+def lines_said(uno: Uno, data: bytes) -> list[str]:
     """Return the lines that the robot says to this, until it is silent and no program runs."""
     before, seen = len(uno.sent), -1
     uno.send(data)
@@ -476,10 +474,10 @@ def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
     them, and while it answers it reads none."""
     uno, data = quick_uno, line.encode() + b"\r\n"
     with uno.aside():
-        one = [each for each in told(uno, data) if each not in ("// DONE", "// 1", LOST)]
+        one = [each for each in lines_said(uno, data) if each not in ("// DONE", "// 1", LOST)]
         for count in (TWENTY // 2, TWENTY):
             with uno.aside():
-                many = told(uno, data * count)
+                many = lines_said(uno, data * count)
                 answers = sum(each in one for each in many)
                 is_told = LOST in many or MUTE in many
                 assert is_told or answers == len(one) * count, many
@@ -492,7 +490,7 @@ def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
 
 def test_a_line_of_227_bytes_is_pasted_whole(quick_uno: Uno) -> None:
     with quick_uno.aside():
-        assert told(quick_uno, b"SI|" + b"F(2,80);" * 28 + b"\n") == ["// OK"]
+        assert lines_said(quick_uno, b"SI|" + b"F(2,80);" * 28 + b"\n") == ["// OK"]
 
 
 if __name__ == "__main__":
@@ -503,5 +501,5 @@ if __name__ == "__main__":
             made = built(rate, Path(folder))
             for first in range(0, given.count // 2, 500):
                 some = min(500, given.count // 2 - first)
-                slowest = stop_behind_random_bytes(made, rate, drawn, some)
+                slowest = stop_after_random_bytes(made, rate, drawn, some)
                 print(f"{some} stops at {rate} baud, the slowest {slowest:.1f} ms", flush=True)

@@ -137,13 +137,13 @@ class Trials:
         may_run = {image[HEADER_BYTES:]}
         for frame in self.frames(image):
             before, codes = self.text()
-            behind, more = self.text()
+            after, more = self.text()
             may_run |= codes | more
             data = before + frame
             most = min(12, len(frame))
             cut = len(data) - rng.choice((rng.randrange(1, most), rng.randrange(len(frame))))
             self.put(data[:cut], rng.choice((0, 0, 1)))
-            self.put(data[cut:] + rng.choice((b"", behind)), rng.choice((1, 4, 20)))
+            self.put(data[cut:] + rng.choice((b"", after)), rng.choice((1, 4, 20)))
         self.put(b"", rng.choice((5, 30, 1100)))
         for line in self.robot.did:
             assert "UNVERIFIED" not in line and "CHANGED" not in line, self.robot.did

@@ -90,7 +90,7 @@ def command(*words: str) -> list[str]:
 
 
 def tsc(package: Path, *words: str, **variables: str) -> Done:
-    done = subprocess.run(
+    completed = subprocess.run(
         command(*words),
         env={**os.environ, "PYTHONPATH": str(package), **variables},
         capture_output=True,
@@ -98,15 +98,15 @@ def tsc(package: Path, *words: str, **variables: str) -> Done:
         timeout=180,
         check=False,
     )
-    return Done(done.returncode, done.stdout, done.stderr)
+    return Done(completed.returncode, completed.stdout, completed.stderr)
 
 
-def interrupted(told: Path, *words: str, **variables: str) -> Done:
+def interrupted(path: Path, *words: str, **variables: str) -> Done:
     """Return what it did where Ctrl-C comes as soon as something is in a file."""
     running = subprocess.Popen(
         command(*words), env={**os.environ, **variables}, stderr=subprocess.PIPE, text=True
     )
-    while not (told.exists() and told.read_text()):
+    while not (path.exists() and path.read_text()):
         assert running.poll() is None
     running.send_signal(signal.SIGINT)
     _, said = running.communicate(timeout=HANGS_S)
@@ -224,14 +224,14 @@ def test_half_a_firmware_is_said(package: Path, board: Uno, tmp_path: Path) -> N
 def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
     package: Path, board: Uno, tmp_path: Path
 ) -> None:
-    told = tmp_path / "told"
+    path = tmp_path / "told"
     body = (
-        f'{PROGRESS}\nimport os\nopen({str(told)!r}, "w").write(str(os.getpid()))\ntime.sleep(60)'
+        f'{PROGRESS}\nimport os\nopen({str(path)!r}, "w").write(str(os.getpid()))\ntime.sleep(60)'
     )
     variables = {"PYTHONPATH": str(package), **fake(tmp_path, body)}
-    said = interrupted(told, "--port", board.pty, **variables).gives(2).err
+    said = interrupted(path, "--port", board.pty, **variables).gives(2).err
     assert "half of its" in said or said.strip() == "Stopped."  # it may not have read that far
-    assert not Path(f"/proc/{told.read_text()}").exists()
+    assert not Path(f"/proc/{path.read_text()}").exists()
 
 
 @pytest.mark.parametrize("count", range(4))
@@ -332,10 +332,10 @@ def test_a_firmware_is_the_same_however_it_is_built(
     package: Path, tmp_path: Path, with_platformio: None
 ) -> None:
     """As `pio run` builds a shipped robot, and as `tsc firmware` builds any, in another folder."""
-    made = firmware_files.build(robots.load("tinibot"), tmp_path)
-    assert made.name.startswith("tinibot-uno-")
+    path = firmware_files.build(robots.load("tinibot"), tmp_path)
+    assert path.name.startswith("tinibot-uno-")
     one, other = (file.read_text().split() for file in (
-        made, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
+        path, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
     assert one == other
 
 
@@ -363,11 +363,11 @@ def test_the_licence_of_the_core_goes_with_it(tmp_path: Path) -> None:
 def test_what_came_with_the_package_is_listed(package: Path) -> None:
     done = tsc(package, "--list").gives(0)
     files = ready.files(package / "tiniscript" / "flash" / "ready")
-    assert [(each.title, each.board) for each in files] == [
+    assert [(file.title, file.board) for file in files] == [
         ("grabber", "mega"), ("tinibot", "nano"), ("tinibot", "uno")
     ]  # fmt: skip
-    for each in files:
-        assert f"{each.title} on {each.board}: ready, {each.bytes:,} bytes" in done.out
+    for file in files:
+        assert f"{file.title} on {file.board}: ready, {file.bytes:,} bytes" in done.out
     assert "liner on nano: is built when it is first written" in done.out
 
 

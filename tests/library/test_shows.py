@@ -24,7 +24,7 @@ def shown(text: str) -> list[Show | None]:
 
 
 def names(text: str) -> list[str]:
-    return ["" if each is None else each.text for each in shown(text)]
+    return ["" if show is None else show.text for show in shown(text)]
 
 
 @pytest.mark.parametrize(
@@ -53,8 +53,8 @@ def test_each_show_has_its_own_instruction_between_others() -> None:
 
 
 def test_shows_of_one_expression_are_told_apart_by_their_lines() -> None:
-    found = shown("SHOW(TIME)\nSHOW( time ); SHOW(LIGHT_L); SHOW(LIGHT_L)\nSHOW(LIGHT_R)")
-    assert found == [
+    shows = shown("SHOW(TIME)\nSHOW( time ); SHOW(LIGHT_L); SHOW(LIGHT_L)\nSHOW(LIGHT_R)")
+    assert shows == [
         Show("TIME", 1, 1, shares_text=True),
         Show("TIME", 2, 1, shares_text=True),
         Show("LIGHT_L", 2, 15, shares_text=True, shares_line=True),
@@ -115,4 +115,4 @@ def test_the_same_code_of_another_text_is_called_as_that_text_says() -> None:
     names = [finder.of(event(program, at))]
     maps[program] = mapped(second)
     names += [finder.of(event(program, at)), finder.of(event(program, at, run=2))]
-    assert [each and each.text for each in names] == ["NEAR", "NEAR", "FAR"], "until its next run"
+    assert [name and name.text for name in names] == ["NEAR", "NEAR", "FAR"], "until its next run"

@@ -32,7 +32,11 @@ def located(text: str) -> list[tuple[str, str]]:
     found = compiled(text)
     pairs = []
     for row in rows(found.code):
-        place = [each for each in found.places if each.offset <= row.offset][-1]
+        place = [
+            source_location
+            for source_location in found.places
+            if source_location.offset <= row.offset
+        ][-1]
         pairs.append((row.text.split()[0], found.source[place.span]))
     return pairs
 
@@ -153,10 +157,10 @@ def test_what_is_no_map_is_refused(changed: dict[str, object]) -> None:
 
 def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(source_map, "KEPT", 3)
-    found = [compiled(f"W({k})") for k in range(1, 6)]
-    for k, each in enumerate(found):
+    programs = [compiled(f"W({k})") for k in range(1, 6)]
+    for k, each in enumerate(programs):
         source_map.remember(each.image, mapped(each))
         path = source_map._path(checksum(each.image))
         os.utime(path, (k + 1, k + 1))
-    kept = [source_map.recall(checksum(each.image)) is not None for each in found]
+    kept = [source_map.recall(checksum(program.image)) is not None for program in programs]
     assert kept == [False, False, True, True, True]

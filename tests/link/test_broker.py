@@ -32,14 +32,16 @@ PIECE = bytes(65_536)
 @pytest.fixture
 def school(tmp_path: Path) -> Iterator[Mosquitto]:
     """A broker that knows thirty robots of the class 3b."""
-    found = Mosquitto(tmp_path, "robots", "word")
+    mosquitto = Mosquitto(tmp_path, "robots", "word")
     robots = [
         {"topic": f"{broker.ROOT}/3b/{k:08x}", "payload": f"+R{k}", "retain": True}
         for k in range(ROBOTS)
     ]
-    paho.multiple(robots, "127.0.0.1", found.port, auth={"username": "robots", "password": "word"})
-    yield found
-    found.kill()
+    paho.multiple(
+        robots, "127.0.0.1", mosquitto.port, auth={"username": "robots", "password": "word"}
+    )
+    yield mosquitto
+    mosquitto.kill()
 
 
 # -- the list of a class ------------------------------------------------------------------------

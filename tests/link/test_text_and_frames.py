@@ -31,8 +31,8 @@ SEEDS = 20
 FRAMES = 300  # of a seed
 PAUSES_MS = (0, 1, 5, 100, 200, 399, 400, 401, 700, 999, 1000, 1001, 1099, 1100, 1101, 5000)
 LINES = (b"SI|F(1,60)", b"// OK", b"OK+LOST", b"a\xc3\xb1o = 5", b"F(2,80)", b"1", b";")
-REQUESTS = [each.number for each in MESSAGES if each.number < FIRST_EVENT]
-EVENTS = [each.number for each in MESSAGES if each.number >= FIRST_EVENT]
+REQUESTS = [message.number for message in MESSAGES if message.number < FIRST_EVENT]
+EVENTS = [message.number for message in MESSAGES if message.number >= FIRST_EVENT]
 
 
 class TextSender(Sender):

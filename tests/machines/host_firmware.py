@@ -198,7 +198,7 @@ def built(sources: Path, defines: tuple[str, ...] = ()) -> Path:
     parts = ("vm", "link", "text", "store", "firmware")
     folders = ("src", *(f"src/{part}" for part in parts), "extras/host_firmware")
     inputs = files_in(sources, *folders)
-    flags = (*FLAGS, *(f"-D{each}" for each in defines))
+    flags = (*FLAGS, *(f"-D{define}" for define in defines))
     return compiled([*inputs, sources / "extras/host" / "wire.h"], flags)
 
 

@@ -31,8 +31,8 @@ _TOKEN = re.compile(
 
 def without_checksum(line: str) -> str:
     """A line without the checksum at its first ~, if there is one; it must fit."""
-    before, _, behind = line.partition("~")
-    digits = behind.rstrip(" \t\u00a0\u202f")
+    before, _, after = line.partition("~")
+    digits = after.rstrip(" \t\u00a0\u202f")
     if not re.fullmatch(r"[0-9A-Fa-f]{8}", digits):
         return line
     if int(digits, 16) != zlib.crc32(before.encode()):
@@ -44,7 +44,7 @@ def tokens_of(text: str) -> list[Token]:
     """Cuts a text into tokens; an end of line inside parentheses is white space."""
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     text = "\n".join(map(without_checksum, text.split("\n")))
-    found: list[Token] = []
+    tokens: list[Token] = []
     line, depth, at = 1, 0, 0
     while at < len(text):
         match = _TOKEN.match(text, at)
@@ -59,13 +59,13 @@ def tokens_of(text: str) -> list[Token]:
         if kind == "degrees":
             kind, word = "word", "DEG"
         if word in FIXED:
-            found += (each._replace(line=line) for each in tokens_of(FIXED[word])[:-1])
+            tokens += (token._replace(line=line) for token in tokens_of(FIXED[word])[:-1])
         elif kind != "space" and not (kind == "newline" and depth > 0):
-            found.append(Token(kind, word, line))
+            tokens.append(Token(kind, word, line))
         if kind == "newline":
             line += 1
-    found.append(Token("end", "", line))
-    return found
+    tokens.append(Token("end", "", line))
+    return tokens
 
 
 def thousandths(text: str) -> int:

@@ -73,7 +73,7 @@ class Instruction(NamedTuple):
         """Return where it jumps, or the next offset."""
         after = at + self.size
         distances = [each for each in self.read(code, at) if each[0].is_distance]
-        return after + sum(-v if each.kind[:4] == "back" else v for each, v in distances)
+        return after + sum(-v if operand.kind[:4] == "back" else v for operand, v in distances)
 
 
 def rows(name: str) -> list[list[str]]:

@@ -101,9 +101,9 @@ def check(text: str) -> list[Diagnostic]:
 def found_in(entry: Entry) -> Entry:
     """Return what is said of a program now, and what becomes of it."""
     program = entry.program
-    found = check(program)
+    diagnostics = check(program)
     source = Source(program)
-    messages = [message(each, source, "es") for each in found]
+    messages = [message(diagnostic, source, "es") for diagnostic in diagnostics]
     mended = fixed(program, check).text
     said = tuple(f"{each.line} {each.code} {each.fix}".rstrip() for each in messages)
     kept = "\n".join(line.rstrip() for line in mended.split("\n"))  # as the file keeps it

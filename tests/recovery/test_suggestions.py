@@ -17,9 +17,12 @@ KIT = robots.load(robots.DEFAULT).kit
 def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
     wrong, told = row.example
     name, _, value = told.partition("=")
-    (found,) = suggested(wrong, KIT)
-    assert (found.diagnostic.code.number, found.diagnostic.values[name]) == (row.code, value)
-    assert {*row.values} <= {*found.diagnostic.values}
+    (suggestion,) = suggested(wrong, KIT)
+    assert (suggestion.diagnostic.code.number, suggestion.diagnostic.values[name]) == (
+        row.code,
+        value,
+    )
+    assert {*row.values} <= {*suggestion.diagnostic.values}
 
 
 @pytest.mark.parametrize(
@@ -36,18 +39,18 @@ def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
     ],
 )
 def test_what_is_no_note_is_left_to_others(wrong: str) -> None:
-    found = {each.diagnostic.code.number for each in suggested(wrong, KIT)}
+    found = {suggestion.diagnostic.code.number for suggestion in suggested(wrong, KIT)}
     assert not found & {"TS071", "TS085"}
 
 
 def test_a_block_is_no_note_of_what_stands_before_it() -> None:
-    found = {each.code.number for each in check("B(1, 60) IF(DISTANCE < 10)\nS\nENDIF")}
+    found = {diagnostic.code.number for diagnostic in check("B(1, 60) IF(DISTANCE < 10)\nS\nENDIF")}
     assert not found & {"TS071", "TS085"}
 
 
 def test_what_is_wrong_beside_the_words_is_told_too() -> None:
-    found = check("F(2 80) hola\nW(2) espero; AVANZA(1, 80)")
-    assert [(each.code.number, each.values["fix"]) for each in found] == [
+    diagnostics = check("F(2 80) hola\nW(2) espero; AVANZA(1, 80)")
+    assert [(diagnostic.code.number, diagnostic.values["fix"]) for diagnostic in diagnostics] == [
         ("TS017", "F(2, 80)"),
         ("TS085", "// hola"),  # its instruction has a repair of its own
         ("TS085", ""),  # something else follows on the line
@@ -67,12 +70,15 @@ def test_what_stands_above_is_meant_again(wrong: str, told: dict[str, str]) -> N
 
 @pytest.mark.parametrize("wrong", ["LOOP(2)\n...\nEND_LOOP", "idem", '"\nF(2, 80)', "F(2, 80)."])
 def test_nothing_stands_above_that_could_be_meant(wrong: str) -> None:
-    assert not {each.code.number for each in check(wrong)} & {"TS130", "TS131"}
+    assert not {diagnostic.code.number for diagnostic in check(wrong)} & {"TS130", "TS131"}
 
 
 def test_what_follows_a_question_in_words_is_told_with_it() -> None:
-    asked, end = check("IF(mucha luz) S ENDIF")
-    assert (asked.values["question"], asked.values["another"]) == ("LIGHT_L > 500", "LIGHT_R > 500")
+    diagnostic, end = check("IF(mucha luz) S ENDIF")
+    assert (diagnostic.values["question"], diagnostic.values["another"]) == (
+        "LIGHT_L > 500",
+        "LIGHT_R > 500",
+    )
     assert end.values["fix"] == "IF(LIGHT_L > 500);S;ENDIF"
     assert fixed("IF(mucha luz) S ENDIF", check).text == "IF(mucha luz);S;ENDIF"
 
@@ -87,8 +93,8 @@ def test_a_repair_beside_words_does_not_drop_them() -> None:
 
 
 def test_a_number_of_another_unit_is_converted() -> None:
-    (found,) = check("S 500 ms")
-    assert found.values["fix"] == "S;W(0.5)"
+    (diagnostic,) = check("S 500 ms")
+    assert diagnostic.values["fix"] == "S;W(0.5)"
 
 
 @pytest.mark.parametrize(
@@ -104,5 +110,5 @@ def test_a_number_of_another_unit_is_converted() -> None:
     ],
 )  # fmt: skip
 def test_values_of_a_row_are_filled(wrong: str, values: dict[str, str]) -> None:
-    (found,) = check(wrong)
-    assert values.items() <= found.values.items()
+    (diagnostic,) = check(wrong)
+    assert values.items() <= diagnostic.values.items()

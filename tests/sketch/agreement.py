@@ -297,8 +297,8 @@ def check(example: Example, robot: Robot, language: str = "en") -> None:
     assert found.program is not None and found.is_right
     board = SketchBoard(robot, sketch_of(found.source, found.program, robot, language))
     pins = {
-        each.name: wiring.pins
-        for each, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True)
+        device.name: wiring.pins
+        for device, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True)
     }
     for name in ("LIGHT_R", "LIGHT_L", "TEMPERATURE", "LINE"):
         board.count(pins[name]["pin"], [example.counts[name]])

@@ -79,8 +79,8 @@ def hosting() -> Iterator[Hosting]:
 
 @pytest.fixture
 def robot() -> Iterator[PtyRobot]:
-    with PtyRobot(KIT) as made:
-        yield made
+    with PtyRobot(KIT) as pty_robot:
+        yield pty_robot
 
 
 @pytest.fixture

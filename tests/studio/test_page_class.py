@@ -60,8 +60,8 @@ HELD = "() => held.length === 1"
 
 @pytest.fixture(scope="module")
 def robot() -> Iterator[PtyRobot]:
-    with PtyRobot(KIT) as made:
-        yield made
+    with PtyRobot(KIT) as pty_robot:
+        yield pty_robot
 
 
 @pytest.fixture(scope="module")
@@ -331,7 +331,7 @@ def test_a_picture_is_seen_large_while_the_next_one_is_made(
     teacher.evaluate(HOLDS)
     for language in ("es", "en"):  # each makes it anew
         with teacher.expect_response(
-            lambda found: '"class_text"' in (found.request.post_data or "")
+            lambda response: '"class_text"' in (response.request.post_data or "")
         ):
             speak(teacher, language)
         teacher.wait_for_function(HELD)
@@ -389,7 +389,7 @@ def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, taught: Cla
 
     def changes(text: str) -> None:
         with teacher.expect_response(
-            lambda found: '"class_text"' in (found.request.post_data or "")
+            lambda response: '"class_text"' in (response.request.post_data or "")
         ):
             write(first, text)
 

@@ -57,7 +57,7 @@ def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> 
         page.click("#pause")
     in_phase(page, "ended")
     assert value(page, "X") == "3"
-    wanted = [f"{each.ms} {each.text}" for each in run(COUNT).events]
+    wanted = [f"{event.ms} {event.text}" for event in run(COUNT).events]
     assert (page.locator("#trace").text_content() or "").split("\n") == wanted
 
 

@@ -291,7 +291,7 @@ WAYS = [op.opcode for op in ESCAPED.values()]
 def way_code(rng: random.Random) -> bytes:
     """Return a move by any way and power, mostly right; with an UNTIL or without."""
     values = (any_number(rng), rng.choice((any_number(rng), rng.randrange(-5, 105) * 1000)))
-    pushes = [simple("PUSH32") + each.to_bytes(4, "little", signed=True) for each in values]
+    pushes = [simple("PUSH32") + value.to_bytes(4, "little", signed=True) for value in values]
     code = b"".join(pushes) + rng.choice(WAYS)
     if (code[-1] & 8) and rng.random() < 0.9:
         code += simple(rng.choice(("PUSH_TRUE", "PUSH_FALSE"))) + simple("UNTIL")

@@ -228,7 +228,7 @@ def branches(rng: random.Random) -> bytes:
         op = rng.choice([op for op in UNO_OPS if op.control_role == "if"])
         near = rng.choice((0, 1, 2, 9, 200))
         code += simple("PUSH16") + near.to_bytes(2, "little") + simple("SET_VAR") + b"\x01"
-        *variable, compared, _ = [None, None, *(each.kind for each in op.operands)][-3:]
+        *variable, compared, _ = [None, None, *(operand.kind for operand in op.operands)][-3:]
         if compared is None:
             code += simple(rng.choice(("PUSH_TRUE", "PUSH_FALSE"))) + bytes([op.code])
         else:

@@ -99,7 +99,7 @@ def check(seed: int) -> str:
     robot.step(robot.now_ms + 20, b"\0S\n")
     robot.step(robot.now_ms + 1500)  # until it stands
     pose = robot.pose
-    is_done = "DONE" in [each.what for each in robot.take_events()][-2:]
+    is_done = "DONE" in [event.what for event in robot.take_events()][-2:]
     text = program(rng, name)
     other = robot_in(floor(WALL)._replace(start=pose), name, baud=0)
     other.step(1500)

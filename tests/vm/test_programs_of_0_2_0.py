@@ -40,9 +40,9 @@ def trace_of(old: Old) -> str:
     """Return the trace as the file has it."""
     kit = robots.load(old.robot).kit
     sensors: dict[str, list[float | bool]] = {
-        each.name: [False, True, False, True] if each.is_yes_no
-        else [min(max(value, each.low / 1000), each.high / 1000) for value in READINGS]
-        for each in kit.sensors
+        sensor.name: [False, True, False, True] if sensor.is_yes_no
+        else [min(max(value, sensor.low / 1000), sensor.high / 1000) for value in READINGS]
+        for sensor in kit.sensors
     }  # fmt: skip
     trace = str(run(old.text, old.robot, sensors=sensors, max_time=20, max_steps=100_000))
     rows = trace.splitlines()
@@ -72,10 +72,10 @@ def test_a_newer_word_of_the_kit_gives_way_and_a_warning_says_so() -> None:
     """Each of these words is a name in one of them."""
     named = set()
     for old in programs():
-        told = [each for each in check(old.text, old.robot) if each.code == "TS842"]
-        if told:
-            assert all(each.severity == "warning" for each in told)
-            named |= {each.message.split()[0] for each in told}
+        messages = [message for message in check(old.text, old.robot) if message.code == "TS842"]
+        if messages:
+            assert all(message.severity == "warning" for message in messages)
+            named |= {message.message.split()[0] for message in messages}
     assert named == KIT_WORDS_SINCE.keys()
 
 
@@ -83,10 +83,10 @@ def test_of_those_with_a_newer_word_as_a_name_it_is_told_since_when() -> None:
     olds = [old for old in programs() if names_a_newer_word(old.text)]
     assert len(olds) >= 5
     for old in olds:
-        (told,) = check(old.text, old.robot)
-        assert told.code == "TS105" and "is a word of TiniScript since 0.3" in told.message
-        word = told.message.split()[0]
-        assert told.fix.startswith(f"MY_{word}")
+        (message,) = check(old.text, old.robot)
+        assert message.code == "TS105" and "is a word of TiniScript since 0.3" in message.message
+        word = message.message.split()[0]
+        assert message.fix.startswith(f"MY_{word}")
         new = re.sub(rf"(?i)\b{word}\b", f"MY_{word}", old.text)  # as it says
         assert trace_of(old._replace(text=new)) == old.said
 

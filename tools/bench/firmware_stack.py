@@ -183,8 +183,8 @@ def longest(kit: Kit, room: int) -> Image:
     more = 0
     while len((larger := image_of(deep(kit, more + 1), kit)).code) <= room:
         more += 1
-        found = larger
-    return found
+        image = larger
+    return image
 
 
 def all_devices(kit: Kit) -> list[str]:

@@ -108,8 +108,8 @@ def jitter_ms(firmware: Path, others: int) -> float:
         for number in range(LOOKS):
             board.run_ms(LOOK_MS * number / LOOKS + 0.3)
             board.analog(SENSOR_PIN, 900)
-            seen = board.run_until("left", "pwm", 3 * LOOK_MS)
-            at_ms.append(seen.cycle / CYCLES_PER_MS)
+            pin_change = board.run_until("left", "pwm", 3 * LOOK_MS)
+            at_ms.append(pin_change.cycle / CYCLES_PER_MS)
             board.analog(SENSOR_PIN, 100)
             board.run_ms(120)
         first = at_ms[0]

@@ -142,8 +142,8 @@ def main() -> int:
         del os.environ["PLATFORMIO_BUILD_FLAGS"]
         among, sections = pieces(linked.read_text(encoding="utf-8"))
     command = ["avr-objdump", "-d", str(sketch.firmware)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    all_calls = calls(done.stdout, sections)
+    completed = subprocess.run(command, capture_output=True, text=True, check=True)
+    all_calls = calls(completed.stdout, sections)
     order = best(among, all_calls, TRIES, random.Random(1))
     print(f"{sketch.flash:,} bytes before; calls that lead far: "
           f"{far(list(range(len(among))), among, all_calls)} before, "

@@ -315,8 +315,8 @@ def devices() -> Iterator[Run]:
             code += assembled(name)
         code += assembled(f"PUSH_READ{sensor}") + assembled("SHOW")
     readings = {
-        each.name: [0, 1, 1, 0] if each.is_yes_no else [1000 * k + many for many in range(4)]
-        for k, each in enumerate(kit.sensors)
+        device.name: [0, 1, 1, 0] if device.is_yes_no else [1000 * k + many for many in range(4)]
+        for k, device in enumerate(kit.sensors)
     }
     yield Run("devices: 32 of each", kit, image_for(code, kit), Senses(readings))
 

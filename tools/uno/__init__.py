@@ -269,8 +269,8 @@ class Uno:
         mark = len(self.events)
         self._tell("masked")
         self.wait_for(lambda event: event.what == "masked" and "places" in event.rest, since=mark)
-        told = [event for event in self.events[mark:] if event.what == "masked"]
-        return [Masked.of(event) for event in told if "vector" in event.rest]
+        events = [event for event in self.events[mark:] if event.what == "masked"]
+        return [Masked.of(event) for event in events if "vector" in event.rest]
 
     # -- inside -------------------------------------------------------------------------------
 

@@ -113,8 +113,8 @@ class Options(ArgumentParser):
         self._refuse_of_step(unknown.partition("=")[0])
         near = self._near(unknown)
         for key, pattern in _MESSAGES.items():
-            if found := re.fullmatch(pattern, message):
-                message = said(f"wrong/{key}", self.language).format(*found.groups())
+            if match := re.fullmatch(pattern, message):
+                message = said(f"wrong/{key}", self.language).format(*match.groups())
         raise CommandError(2, "bad_option", detail=message, verb=self.verb, near=near)
 
     def _refuse_of_step(self, unknown: str) -> None:

@@ -114,10 +114,10 @@ def _weights(verb: str) -> dict[str, int]:
     options = [option for option in of_verb(verb) if option.verbs not in ("*", "tsc")]
 
     def said(what: str) -> set[str]:
-        return {stem for each in languages() for stem in _stems(said_of(verb, what, each))}
+        return {stem for language in languages() for stem in _stems(said_of(verb, what, language))}
 
-    helps = (each.help(language) for each in options for language in languages())
-    flags = (each.flags for each in options)
+    helps = (option.help(language) for option in options for language in languages())
+    flags = (option.flags for option in options)
     weights = dict.fromkeys(_stems(" ".join((*flags, *helps))) | said("ends"), 1)
     weights |= dict.fromkeys(said("says"), 2)
     weights |= dict.fromkeys(said("summary"), 4)

@@ -56,8 +56,8 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
         try:
             got = ask(case.request(), sum(len(row) + 2 for row in case.answer))
         except Problem as problem:
-            found = compared(case.name, case.answer, problem.rows)
-            yield found._replace(what=problem.what, detail=problem.detail)
+            verdict = compared(case.name, case.answer, problem.rows)
+            yield verdict._replace(what=problem.what, detail=problem.detail)
             endless += problem.what in ("hang", "flood")
             silent += not answers
             if endless == MOST_ENDLESS or silent == MOST_SILENT:

@@ -90,8 +90,12 @@ def all_checks(kit: LinkKit) -> list[Check]:
             for program in kit.programs
         ),
         *(
-            Check(f"refused: {each.name}", (f"{each.rule} {each.at}",), _refused(each.code))
-            for each in kit.refused
+            Check(
+                f"refused: {link_refused.name}",
+                (f"{link_refused.rule} {link_refused.at}",),
+                _refused(link_refused.code),
+            )
+            for link_refused in kit.refused
         ),
         *IMAGE_CHECKS,
         *STOP_CHECKS,

@@ -29,7 +29,7 @@ class Line(NamedTuple):
     @property
     def is_do(self) -> bool:
         """Whether it begins a block whose condition comes at its end."""
-        return any(step.code is codes.ASKED_BEHIND for step in self.reading.steps)
+        return any(step.code is codes.ASKED_AFTER for step in self.reading.steps)
 
 
 class Edit(NamedTuple):
@@ -104,7 +104,7 @@ class Matching:
                 self.tails.setdefault(last, []).append(block.end)
                 continue
             self.is_sure = self.is_sure and bool(block.body) and block.is_begun
-            self.close_behind(last if block.last is None else block.last, block)
+            self.close_after(last if block.last is None else block.last, block)
         return True
 
     def edit(self, old: int, *new: str) -> None:
@@ -113,7 +113,7 @@ class Matching:
     def edit_tokens(self, at: int, old: int, new: list[Lexeme]) -> None:
         self.edits.setdefault(self.k, []).append(Edit(at, old, new))
 
-    def close_behind(self, k: int, block: _Block) -> None:
+    def close_after(self, k: int, block: _Block) -> None:
         self.behind.setdefault(k, []).append(" " * block.indent + block.end)
 
     # -- the beginning of a line: its indentation may close what is open -----------------------
@@ -127,7 +127,7 @@ class Matching:
                 break
             self.open.pop()
             self.is_sure = self.is_sure and block.is_begun
-            self.close_behind(last, block)
+            self.close_after(last, block)
         for block in self.open:
             if block.body is None and block.line < self.k:
                 block.body = indent if indent > block.indent else 0
@@ -159,7 +159,7 @@ class Matching:
         """Whether a header is a word after an instruction, and nothing more: `F(1, 80) LOP`."""
         tokens, (_, _, start, end) = self.line.reading.tokens, self.item
         around = [*tokens[max(0, start - 1) : start], *tokens[start + 1 : end]]
-        is_begun = [each.text for each in around[:2]] == [";", "("]
+        is_begun = [lexeme.text for lexeme in around[:2]] == [";", "("]
         return is_begun and end == len(tokens) and all(it.source is None for it in around)
 
     def is_when(self) -> bool:
@@ -280,7 +280,7 @@ class Matching:
             block = self.open[-1]
             if block.has_brace or not block.word or indent_below > block.indent:
                 break
-            is_closed = any(each.kind != "arm" or block.word == "IF" for _, each in self.parts())
+            is_closed = any(item.kind != "arm" or block.word == "IF" for _, item in self.parts())
             is_arm = block.word == "IF" and after.kind == "arm"
             if is_closed and (len(self.open) == 1 or is_arm):
                 break
@@ -294,12 +294,14 @@ class Matching:
 
     def is_parted(self, block: _Block) -> bool:
         """Whether a block may end before its line: at a `;` of the text, or at another block."""
-        items = [each for each in self.line.reading.items or () if each.start >= block.start]
-        arm = max((k for k, each in enumerate(items) if each.kind == "arm"), default=0)
+        items = [item for item in self.line.reading.items or () if item.start >= block.start]
+        arm = max((k for k, item in enumerate(items) if item.kind == "arm"), default=0)
         told = [item for item in items[arm:] if item.kind == "do"]
         between = self.line.reading.tokens[told[0].end : told[-1].start] if told else []
         headers = sum(item.kind == "open" and item.word == "IF" for item in items)
-        return headers > 1 or any(each.text == ";" and each.source is not None for each in between)
+        return headers > 1 or any(
+            lexeme.text == ";" and lexeme.source is not None for lexeme in between
+        )
 
     def parts(self) -> Iterator[tuple[int, Item]]:
         """Give the arms and ends after a place, but those of blocks that begin after it."""

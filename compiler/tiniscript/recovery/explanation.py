@@ -25,11 +25,11 @@ from tiniscript.recovery.writing import in_one_line, laid_out, tokens_of, withou
 _DEDUPED = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)
 # Codes of what belongs to the beginning of its block, where something is wrong with that, too.
 _OF_BLOCK = (codes.NEVER_ENDS, codes.END_ALONE, codes.END_SPLIT, codes.BRACES,
-             codes.ASKED_BEHIND, codes.OTHER_LANGUAGE)  # fmt: skip
+             codes.ASKED_AFTER, codes.OTHER_LANGUAGE)  # fmt: skip
 _SHOW_WHOLE = frozenset((
     codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.MISSING_OPEN, codes.MISSING_CLOSE,
     codes.END_SPLIT, codes.END_ALONE, codes.FOREVER_NOT_HERE, codes.SPANISH_IF,
-    codes.BRACES, codes.OTHER_ASSIGNMENT, codes.ASKED_BEHIND, codes.GROUPED, codes.OTHER_LANGUAGE,
+    codes.BRACES, codes.OTHER_ASSIGNMENT, codes.ASKED_AFTER, codes.GROUPED, codes.OTHER_LANGUAGE,
 ))  # fmt: skip
 _OF_ARM = (codes.BRACES, codes.OTHER_LANGUAGE, codes.HEADER_SEPARATOR)
 _WORD, _WORD_BEFORE = re.compile(r"\w+"), re.compile(r"\w+\Z")
@@ -73,13 +73,13 @@ class Explanation:
         return self.gaps.get("fix") or (slips.fix_of(self.slip) if self.slip else "")
 
 
-def explained(program: str, found: Candidate) -> list[Explanation]:
+def explained(program: str, candidate: Candidate) -> list[Explanation]:
     """Return what is wrong with each line that a candidate changes, in the order of the text."""
-    explainer = _Explainer(program, found)
-    for k, change in enumerate(found.changes):
+    explainer = _Explainer(program, candidate)
+    for k, change in enumerate(candidate.changes):
         explainer.tell(k, change)
-    for each in explainer.out:
-        explainer.complete(each)
+    for explanation in explainer.out:
+        explainer.complete(explanation)
     return explainer.out
 
 
@@ -124,10 +124,10 @@ class _Explainer:
             change for change in self.changes if lines & {*range(change.first, change.last + 1)}
         ]
         touched += [self.changes[k] for k in (told.first, *told.opened)]
-        text = " ".join(f"{each.text} {self.lines[each.first]}" for each in touched)
+        text = " ".join(f"{change.text} {self.lines[change.first]}" for change in touched)
         has_blocks = bool({*re.findall(r"\w+|[{}]", text.upper())} & OF_BLOCKS)
         is_block_sure = self.found.has_sure_blocks or not has_blocks
-        return is_block_sure and all(each.is_sure for each in touched)
+        return is_block_sure and all(change.is_sure for change in touched)
 
     def words(self, span: Span) -> Span:
         """Return a span with all of the words that it begins and ends in."""
@@ -135,9 +135,9 @@ class _Explainer:
         if start < end:
             line = self.program.rfind("\n", 0, start) + 1
             before = _WORD_BEFORE.search(self.program, line, start + 1)
-            behind = _WORD.match(self.program, end - 1)
+            after = _WORD.match(self.program, end - 1)
             start -= len(before[0]) - 1 if before else 0
-            end += len(behind[0]) - 1 if behind else 0
+            end += len(after[0]) - 1 if after else 0
         return Span(start, end)
 
     def whole(self, first: int, last: tuple[int, int]) -> str:
@@ -164,16 +164,16 @@ class _Explainer:
             is_brace = code is codes.BRACES and before[0].text in BRACES
             is_arm = bool(after) and after[0].text in _ARMS
             is_more = code in (_OF_ARM if is_arm else _OF_BLOCK) and (closed or is_brace or is_arm)
-            told = self.added(closed or around, edit, (k, 1), after) if is_more else None
-            told = told or self.new(k, part, code, step)
-            told.opened |= {closed.first} if closed else set()
-            if code is codes.WRONG_END and told.slip:
-                right = slips.right_of(told.slip)
+            explanation = self.added(closed or around, edit, (k, 1), after) if is_more else None
+            explanation = explanation or self.new(k, part, code, step)
+            explanation.opened |= {closed.first} if closed else set()
+            if code is codes.WRONG_END and explanation.slip:
+                right = slips.right_of(explanation.slip)
                 line = str(self.changes[closed.first if closed else k].first + 1)
-                told.gaps |= {"word": ENDED.get(right, ""), "line": line, "fix": right}
+                explanation.gaps |= {"word": ENDED.get(right, ""), "line": line, "fix": right}
             for block in self.open:
                 if block.first == k or is_brace:
-                    block.told = block.told or told
+                    block.told = block.told or explanation
         line_end = "\r\n" if "\r" in self.program else "\n"
         for count, end in enumerate(ends, 2):
             self.end((k, count), change, end.strip(), line_end + end)
@@ -185,7 +185,7 @@ class _Explainer:
         steps: dict[int, list[Step]] = {}
         for step in self.changes[k].steps:
             one, other = (instructions(each) for each in step[1:])
-            if len(one) != len(other) or step.code is codes.ASKED_BEHIND:
+            if len(one) != len(other) or step.code is codes.ASKED_AFTER:
                 return []
             pairs = enumerate(zip(one, other, strict=True))
             n = next((n for n, (a, b) in pairs if texts(a) != texts(b)), len(one) - 1)
@@ -196,7 +196,7 @@ class _Explainer:
             return []
         if _is_closed(before) and not all(map(_is_closed, was)):
             return []  # a separator is in brackets
-        found = []
+        changes = []
         first, end = self.starts[self.changes[k].first], 0
         for n, (part, meant) in enumerate(zip(was, now, strict=True)):
             text, new = slips.written(part), slips.written(meant)
@@ -207,10 +207,10 @@ class _Explainer:
                 edit = trimmed(place.start, text, new)
                 if edit.span.start == place.end:
                     edit = Edit(place, new)  # an end that is missing comes after all of it
-                found.append(Change(place, edit, steps.get(n, []), part, meant))
+                changes.append(Change(place, edit, steps.get(n, []), part, meant))
                 if not steps.get(n) and text.isascii():
                     return []
-        return found if len(found) > 1 else []
+        return changes if len(changes) > 1 else []
 
     def walk(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
         """Open and close blocks; return the first one that began in an earlier change."""
@@ -222,7 +222,7 @@ class _Explainer:
             if token.text in BLOCK_ENDS:
                 self.open.append(_Block(token.text, k))
             elif token.text in ENDED and self.open:
-                ended = (each for each in self.open[::-1] if each.word == ENDED[token.text])
+                ended = (block for block in self.open[::-1] if block.word == ENDED[token.text])
                 block = next(ended, self.open[-1])  # ends may be crossed
                 self.open.remove(block)
                 closed = closed or (block if block.first < k else None)
@@ -234,17 +234,17 @@ class _Explainer:
         self, block: _Block | None, edit: Edit, last: tuple[int, int], after: Sequence[Lexeme]
     ) -> Explanation | None:
         """Make an edit part of what is told of the beginning of its block, None where too long."""
-        told = block.told if block else None
-        if block is None or told is None or told.code not in _SHOW_WHOLE:
+        explanation = block.told if block else None
+        if block is None or explanation is None or explanation.code not in _SHOW_WHOLE:
             return None
-        first = min(told.first, block.first)
+        first = min(explanation.first, block.first)
         if not self.whole(first, last):
             return None
-        told.edits.append(edit)
-        told.first, told.last = first, max(told.last, last)
-        ends = next((each.text for each in after if each.text in ENDED), "")
-        told.gaps["ends"] = told.gaps.get("ends") or ends
-        return told
+        explanation.edits.append(edit)
+        explanation.first, explanation.last = first, max(explanation.last, last)
+        ends = next((lexeme.text for lexeme in after if lexeme.text in ENDED), "")
+        explanation.gaps["ends"] = explanation.gaps.get("ends") or ends
+        return explanation
 
     def new(self, k: int, part: Change, code: Code, step: Step | None) -> Explanation:
         is_end = code is codes.NEVER_ENDS
@@ -265,8 +265,8 @@ class _Explainer:
         if code is codes.OTHER_NOTE:
             yield "right", self.changes[k].text.strip()
         if code is codes.EXTRA_WORD and not step:
-            behind = _BEHIND.match(self.program, self.words(part.edit.span).start)
-            arm = behind[1].upper() if behind else ""
+            after = _BEHIND.match(self.program, self.words(part.edit.span).start)
+            arm = after[1].upper() if after else ""
             if {arm, meant_by(arm)} & {*_ARMS}:
                 yield "early", slips.found_in(slip)
         if code in _DEDUPED:  # LIGHT_L and LIGHT_R
@@ -292,21 +292,23 @@ class _Explainer:
     def end(self, last: tuple[int, int], change: search.Change, end: str, text: str) -> None:
         """Tell of an end that is missing after a line."""
         block = self.open.pop() if self.open else None
-        behind = self.starts[change.last] + len(self.lines[change.last].rstrip("\r"))
-        edit = Edit(Span(behind, behind), text)
+        after = self.starts[change.last] + len(self.lines[change.last].rstrip("\r"))
+        edit = Edit(Span(after, after), text)
         if self.added(block, edit, last, lexemes(end)):
             return
         first, word = (block.first, block.word) if block else (last[0], "")
-        behind_this = laid_out(tokens_of(change.text.split("\n")[0]))
-        place = Span(self.starts[self.changes[first].first], behind)
-        gaps = {"word": word, "right": end, "line": str(change.last + 1), "last": behind_this,
+        after_this = laid_out(tokens_of(change.text.split("\n")[0]))
+        place = Span(self.starts[self.changes[first].first], after)
+        gaps = {"word": word, "right": end, "line": str(change.last + 1), "last": after_this,
                 "whole": self.whole(first, last)}  # fmt: skip
         if block and self.may_end_earlier(block, last[0]):
-            gaps |= {"several": behind_this, "last": "", "whole": ""} | self.early(block, last[0])
+            gaps |= {"several": after_this, "last": "", "whole": ""} | self.early(block, last[0])
         if first < last[0]:
             gaps["begun"] = str(self.changes[first].first + 1)
-        told = Explanation(codes.NEVER_ENDS, place, place, None, gaps, [edit], first, (first, 1))
-        self.out.append(told)
+        explanation = Explanation(
+            codes.NEVER_ENDS, place, place, None, gaps, [edit], first, (first, 1)
+        )
+        self.out.append(explanation)
 
     def early(self, block: _Block, last: int) -> dict[str, str]:
         """Return the line before the first header in a block: it may end there as well."""

@@ -30,7 +30,7 @@ _VALUE = re.compile(r"(\w+)[ \t]+(\w+)(?=[ \t]*[,)])")
 
 
 def meant_in(
-    source: Source, found: Sequence[Diagnostic], recovery: Recovery, is_sure: bool
+    source: Source, diagnostics: Sequence[Diagnostic], recovery: Recovery, is_sure: bool
 ) -> list[Diagnostic]:
     """Return what is wrong with a text where it is known what is meant by it.
 
@@ -41,46 +41,56 @@ def meant_in(
         return []
     text = recovery.program
     written = _CR_ALONE.sub("\n", source.text)  # its lines are those of the recovery
-    told = explained(written, meant)
-    if not told and meant.is_whole:
-        misplaced = [each for each in found if each.code in rows.MISPLACED]
-        said_of_it = misplaced or [each for each in found if each.is_mistake]
-        return [_moved(each, written, meant, recovery.kit) for each in said_of_it][:1]
-    if not told:
+    explanations = explained(written, meant)
+    if not explanations and meant.is_whole:
+        misplaced = [diagnostic for diagnostic in diagnostics if diagnostic.code in rows.MISPLACED]
+        said_of_it = misplaced or [
+            diagnostic for diagnostic in diagnostics if diagnostic.is_mistake
+        ]
+        return [_moved(diagnostic, written, meant, recovery.kit) for diagnostic in said_of_it][:1]
+    if not explanations:
         return []
-    told_of = [(each, _diagnostic(each, meant, found)) for each in told]
+    told_of = [
+        (explanation, _diagnostic(explanation, meant, diagnostics)) for explanation in explanations
+    ]
     is_part = is_sure or not meant.is_whole  # what is read of a part gives up nothing
     if is_part and difference(text, meant.text, recovery.kit).lost:
         told_of = [] if is_sure else [it for it in told_of if _keeps_all(it[1], source, recovery)]
-    others = [each for other in recovery.others for each in explained(written, other)]
-    return [_either(_carried(own, source.text), each, others) for each, own in told_of]
+    others = [explanation for other in recovery.others for explanation in explained(written, other)]
+    return [
+        _either(_carried(own, source.text), explanation, others) for explanation, own in told_of
+    ]
 
 
-def _keeps_all(found: Diagnostic, source: Source, recovery: Recovery) -> bool:
+def _keeps_all(diagnostic: Diagnostic, source: Source, recovery: Recovery) -> bool:
     """Whether the changes of a diagnostic alone lose nothing that was written."""
-    edits = found.repair.edits if found.repair else ()
+    edits = diagnostic.repair.edits if diagnostic.repair else ()
     return not difference(source.text, applied(source.text, edits), recovery.kit).lost
 
 
-def _carried(found: Diagnostic, text: str) -> Diagnostic:
+def _carried(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """Return a mistake of a unit in a variable; moves that take the value get it: `carried`."""
-    set_to = _SET.fullmatch(found.values.get("fix", "")) if found.code is codes.UNIT else None
-    unit = _UNIT.search(found.values.get("found", ""))
+    set_to = (
+        _SET.fullmatch(diagnostic.values.get("fix", "")) if diagnostic.code is codes.UNIT else None
+    )
+    unit = _UNIT.search(diagnostic.values.get("found", ""))
     way = _way(unit[0]) if unit else ""
     uses = [*_uses(set_to[1], way).finditer(text)] if set_to and way else []
     uses = uses or [
         use
         for head, use, _ in _in_bodies(text, text)
-        if found.code is codes.UNIT and found.span.start < head.end and found.span.end > head.start
+        if diagnostic.code is codes.UNIT
+        and diagnostic.span.start < head.end
+        and diagnostic.span.end > head.start
     ]
-    if not uses or not found.repair:
-        return found
-    edits = (Edit(Span(*each.span("unit")), f" {way}") for each in uses)
+    if not uses or not diagnostic.repair:
+        return diagnostic
+    edits = (Edit(Span(*match.span("unit")), f" {way}") for match in uses)
     start, end = uses[0].span()
     place = uses[0].start("unit")
     carried = laid_out(lexemes(f"{text[start:place]} {way}{text[place:end]}"))
-    repair = found.repair._replace(edits=(*found.repair.edits, *edits))
-    return found._replace(values={**found.values, "carried": carried}, repair=repair)
+    repair = diagnostic.repair._replace(edits=(*diagnostic.repair.edits, *edits))
+    return diagnostic._replace(values={**diagnostic.values, "carried": carried}, repair=repair)
 
 
 def _way(unit: str) -> str:
@@ -99,10 +109,10 @@ def _in_bodies(written: str, meant: str) -> Iterator[tuple[Span, re.Match[str], 
     """Give where a name has a unit in the brackets of a DEF, and the moves that take it, each."""
     for head in _HEAD.finditer(written):
         body = re.search(rf"(?is)\bDEF\s+{head[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant)
-        for each in _VALUE.finditer(written, head.start("values"), head.end()):
-            way = _way(each[2])
-            for use in _uses(each[1], way).finditer(meant, *body.span()) if body and way else ():
-                yield Span(*each.span()), use, way
+        for match in _VALUE.finditer(written, head.start("values"), head.end()):
+            way = _way(match[2])
+            for use in _uses(match[1], way).finditer(meant, *body.span()) if body and way else ():
+                yield Span(*match.span()), use, way
 
 
 def _with_units(written: str, meant: str) -> str:
@@ -111,16 +121,18 @@ def _with_units(written: str, meant: str) -> str:
     return applied(meant, edits)
 
 
-def _either(found: Diagnostic, told: Explanation, others: Sequence[Explanation]) -> Diagnostic:
+def _either(
+    diagnostic: Diagnostic, explanation: Explanation, others: Sequence[Explanation]
+) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
-    fixes = (each.fix for each in others if each.place == told.place)
-    other = next((fix for fix in fixes if fix and fix != told.fix), "")
+    fixes = (each.fix for each in others if each.place == explanation.place)
+    other = next((fix for fix in fixes if fix and fix != explanation.fix), "")
     if not other:
-        return found
-    values = {**found.values, "rival": other}
-    if found.code is codes.MISSING_CLOSE:
-        values |= dict(zip(("one", "another"), _in_brackets(told.fix, other), strict=True))
-    return found._replace(values=values)
+        return diagnostic
+    values = {**diagnostic.values, "rival": other}
+    if diagnostic.code is codes.MISSING_CLOSE:
+        values |= dict(zip(("one", "another"), _in_brackets(explanation.fix, other), strict=True))
+    return diagnostic._replace(values=values)
 
 
 def _in_brackets(one: str, other: str) -> tuple[str, str]:
@@ -134,31 +146,35 @@ def _in_brackets(one: str, other: str) -> tuple[str, str]:
     return inside[0][0] if inside[0] else "", inside[1][0] if inside[1] else ""
 
 
-def _diagnostic(told: Explanation, meant: Candidate, found: Sequence[Diagnostic]) -> Diagnostic:
-    is_said = told.code is not codes.ASKED_BEHIND or "BREAK" in meant.text.upper()  # how often
-    is_sure = meant.is_applied or (meant.is_whole and told.is_sure)
-    repair = Repair(tuple(told.edits), is_said and is_sure)
-    if not meant.has_sure_blocks and "FOREVER" not in told.fix:
-        told.gaps["whole"] = ""  # where it ends is a guess
-    code, values = _in_words(told)
+def _diagnostic(
+    explanation: Explanation, meant: Candidate, diagnostics: Sequence[Diagnostic]
+) -> Diagnostic:
+    is_said = (
+        explanation.code is not codes.ASKED_AFTER or "BREAK" in meant.text.upper()
+    )  # how often
+    is_sure = meant.is_applied or (meant.is_whole and explanation.is_sure)
+    repair = Repair(tuple(explanation.edits), is_said and is_sure)
+    if not meant.has_sure_blocks and "FOREVER" not in explanation.fix:
+        explanation.gaps["whole"] = ""  # where it ends is a guess
+    code, values = _in_words(explanation)
     asked = codes.ARGUMENT_COUNT if code is codes.OTHER_CALL else code
-    counted = (each for each in found if each.code is asked)
-    for each in counted if asked in _AS_CHECKED else ():
-        if told.place.start <= each.span.start < told.place.end:
-            values = {**each.values, "fix": told.fix}
-            return Diagnostic(each.code, each.span, values, told.place, repair)
+    counted = (diagnostic for diagnostic in diagnostics if diagnostic.code is asked)
+    for diagnostic in counted if asked in _AS_CHECKED else ():
+        if explanation.place.start <= diagnostic.span.start < explanation.place.end:
+            values = {**diagnostic.values, "fix": explanation.fix}
+            return Diagnostic(diagnostic.code, diagnostic.span, values, explanation.place, repair)
     if code in _AS_CHECKED[:2]:  # its values are not counted
-        code, values = codes.OTHER_CALL, told.values_as(codes.OTHER_CALL)
-    return Diagnostic(code, told.span, values, told.place, repair)
+        code, values = codes.OTHER_CALL, explanation.values_as(codes.OTHER_CALL)
+    return Diagnostic(code, explanation.span, values, explanation.place, repair)
 
 
-def _in_words(told: Explanation) -> tuple[Code, dict[str, str]]:
+def _in_words(explanation: Explanation) -> tuple[Code, dict[str, str]]:
     """Return the code of the sentence that has a word for what is told, and its values."""
-    code, slip = told.code, told.slip
+    code, slip = explanation.code, explanation.slip
     if slip and code in _WITH_RIGHT and not slips.right_of(slip):
         has_bracket = "(" in slips.before_it(slip) + slips.found_in(slip)
         code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
-    values = told.values_as(code)
+    values = explanation.values_as(code)
     found, near = values.get("found", "").upper(), values.get("right", "")
     is_near = nearest(found, [near]) or (near in WAYS and is_slip(found, near))
     if code is codes.OTHER_LANGUAGE and is_near:
@@ -167,21 +183,21 @@ def _in_words(told: Explanation) -> tuple[Code, dict[str, str]]:
     return code, values
 
 
-def _moved(found: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Diagnostic:
+def _moved(diagnostic: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Diagnostic:
     """Return a mistake that goes when lines change their places."""
     made = _with_units(text, meant.text)
     lost = [each for each in difference(text, made, kit).lost
             if (unit := _UNIT.search(each)) and _way(unit[0])]  # fmt: skip
-    values = {**found.values, "whole": in_one_line(made), "lost": ", ".join(lost)}
-    if found.code is codes.WRONG_END:
-        values |= {"swapped": found.values["right"], "apart": ""}
+    values = {**diagnostic.values, "whole": in_one_line(made), "lost": ", ".join(lost)}
+    if diagnostic.code is codes.WRONG_END:
+        values |= {"swapped": diagnostic.values["right"], "apart": ""}
     elif (move := meant.move) is not None:
         values |= {"name": move.name, "line": str(move.before), "last": str(move.last)}
-        if found.code is codes.UNKNOWN_WORD:  # `CALL SALTO`, before its DEF
-            found = found._replace(code=codes.CALL_BEFORE_DEF)
+        if diagnostic.code is codes.UNKNOWN_WORD:  # `CALL SALTO`, before its DEF
+            diagnostic = diagnostic._replace(code=codes.CALL_BEFORE_DEF)
         is_one_line = move.first == move.last and not move.is_end
         values |= {"row": values.pop("last")} if is_one_line else {"first": str(move.first)}
         if move.is_end and move.last > len(text.splitlines()):
             values |= {"open": move.name}  # its end is in no line
     repair = Repair((trimmed(0, text, made),), meant.is_applied and not lost)
-    return found._replace(values=values, repair=repair)
+    return diagnostic._replace(values=values, repair=repair)

@@ -28,23 +28,23 @@ Check = Callable[[str], Sequence[Diagnostic]]
 
 
 def beginning(
-    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
+    source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
     """Return what is told of a text by the way that it begins: with it the rest is read."""
-    said = setup(source.text)
-    if said and said.repair:
-        after = check(applied(source.text, said.repair.edits))
-        is_call = _CALL.match(source.text, said.repair.edits[0].span.end) is not None
-        if is_call or is_better(after, found, said.repair.edits):
-            return [said]
+    diagnostic = setup(source.text)
+    if diagnostic and diagnostic.repair:
+        after = check(applied(source.text, diagnostic.repair.edits))
+        is_call = _CALL.match(source.text, diagnostic.repair.edits[0].span.end) is not None
+        if is_call or is_better(after, diagnostics, diagnostic.repair.edits):
+            return [diagnostic]
     return _titles(source, kit) or _numbers(source)
 
 
-def other_word(source: Source, found: Sequence[Diagnostic]) -> Diagnostic | None:
+def other_word(source: Source, diagnostics: Sequence[Diagnostic]) -> Diagnostic | None:
     """Return what is told of a word before the bar that is no `SI`."""
     first = lexemes(source.text[:_LONGEST].lstrip().partition("\n")[0])[:1]
     is_own = SEAL in source.text or (first and first[0].text in ("SI", "SB"))
-    told = (each for each in found if each.code is codes.SETUP_UNKNOWN)
+    told = (diagnostic for diagnostic in diagnostics if diagnostic.code is codes.SETUP_UNKNOWN)
     return None if is_own else next(told, None)
 
 
@@ -92,7 +92,7 @@ def _begins(rest: str, sign: str, is_apart: bool) -> bool:
 def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
     """Return lines before `SI|` that are none of a program: its title, who wrote it."""
     begun = _BEGUN.search(source.text)
-    told: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     for row in _ROW.finditer(source.text[: begun.start() if begun else 0]):
         title = without_note(row[0])[0].strip()
         words = lexemes(title)
@@ -103,8 +103,10 @@ def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
             return []
         span, fix = Span(row.start(), row.start() + len(title)), f"// {title}"
         values = {"command": title} if words[0].text == "TSC" else {"fix": fix}
-        told.append(Diagnostic(codes.PROSE, span, values, span, Repair((Edit(span, fix),), False)))
-    return told
+        diagnostics.append(
+            Diagnostic(codes.PROSE, span, values, span, Repair((Edit(span, fix),), False))
+        )
+    return diagnostics
 
 
 def _numbers(source: Source) -> list[Diagnostic]:

@@ -369,7 +369,7 @@ class _Reader:
                 unit, self.is_sure = WAYS[way].unit, False
                 value = _Value(number_text(value.number * LAP), unit)
             if way and unit == WAYS[way].unit:
-                if slots[0] is not None or any(each.unit is None for each in values[:k]):
+                if slots[0] is not None or any(value.unit is None for value in values[:k]):
                     return None
                 slots[0], order[k], self.way = value, 0, way
             elif unit is not None:
@@ -399,7 +399,7 @@ class _Reader:
                     return None  # of another language: rarely seconds, as in `move(50, 50)`
                 self.is_sure = False
         if None in slots:
-            if any(each.unit == "%" and each.number < LONG_S for each in values):
+            if any(value.unit == "%" and value.number < LONG_S for value in values):
                 return None  # `F(2 VEL)`: the name of a power, and a time
             is_move = self.command in MOVES and rest == [0]
             if self.command == "SHOW" or (is_move and values[0].number >= LONG_S):

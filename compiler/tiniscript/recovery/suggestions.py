@@ -43,7 +43,7 @@ from tiniscript.syntax.operators import COMPARISONS
 LONGEST = 24  # words after an instruction that are read
 MOST = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
-_ASIDE = (codes.REPEATED.number, codes.WORDS_BEHIND.number)
+_ASIDE = (codes.REPEATED.number, codes.WORDS_AFTER.number)
 _MOST_BEFORE = 8  # instructions that an example repeats
 _FARTHEST = 40  # lines and instructions that are looked at for what is done again
 _BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
@@ -74,7 +74,7 @@ class Suggestion(NamedTuple):
 def rows() -> tuple[Row, ...]:
     found = []
     for pattern, code, values, example in rewrites.cells(suggestion_rows.SUGGESTIONS):
-        named = dict(each.split("=", 1) for each in values.split("; ") if each)
+        named = dict(part.split("=", 1) for part in values.split("; ") if part)
         wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
         compiled = rewrites.compiled(pattern, suggestion_rows.PARTS)
         found.append(Row(compiled, code, named, (wrong, right)))
@@ -90,7 +90,7 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
     """Return what is told of words after each instruction of a text, or in place of one."""
     bodies = [without_note(line)[0] for line in text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
-    found: list[Suggestion] = []
+    suggestions: list[Suggestion] = []
     above: list[str | None] = []
     start = depth = 0
     left = MOST
@@ -101,17 +101,19 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
         if "~" not in body and not is_right:
             for part in islice(_parts(body, start, Around(text, names, depth, above)), left):
                 left -= 1
-                each = _told(part)
-                if each and not (told and overlap([told[-1].passed], [each.passed])):
-                    told.append(each)
-        found += told
-        if body.strip() and not any(each.diagnostic.code is codes.SAME_AGAIN for each in told):
+                suggestion = _told(part)
+                if suggestion and not (told and overlap([told[-1].passed], [suggestion.passed])):
+                    told.append(suggestion)
+        suggestions += told
+        if body.strip() and not any(
+            suggestion.diagnostic.code is codes.SAME_AGAIN for suggestion in told
+        ):
             bare = _COUNTED.sub("", body)  # `2. S`
             is_right = is_right or (bare != body and lines.is_right(lexemes(bare), names))
             above.append(_as_orders(bare.partition("|")[2] or bare, is_right))
         depth += sum((word.text in BLOCK_ENDS) - (word.text in ENDED) for word in words)
         start += len(line) + 1
-    return found
+    return suggestions
 
 
 def _as_orders(line: str, is_right: bool) -> str | None:
@@ -142,7 +144,7 @@ def _parts(body: str, start: int, around: Around) -> Iterator[Trailing]:
                 yield Trailing(around, at, tokens, 0, before)
                 break
             if any(token.text in ASKING for token in tokens[:size]):
-                is_ended = all(said_of(each.text, "do") for each in rest)  # by a THEN
+                is_ended = all(said_of(lexeme.text, "do") for lexeme in rest)  # by a THEN
                 yield Trailing(around, at, tokens if is_ended else tokens[:size], 0, before)
             if not whole(rest, names) or rest[0].text in ("IF", "WHILE"):
                 yield Trailing(around, at, tokens, size, before)
@@ -160,9 +162,9 @@ def _told(part: Trailing) -> Suggestion | None:
         row = rows()[k]
         if match := next(line.matches(row.pattern), None):
             with suppress(_NoGap):
-                found = _suggestion(row, _Gaps(part, line, match))
+                suggestion = _suggestion(row, _Gaps(part, line, match))
                 is_aside = row.code in _ASIDE and part.tokens and _is_read_surely(part)
-                return None if is_aside else found
+                return None if is_aside else suggestion
     return None
 
 
@@ -170,8 +172,8 @@ def _is_read_surely(part: Trailing) -> bool:
     """Whether a repair of the whole instruction can mean nothing else."""
     if part.own == "DEF":
         return False  # it may be called by its first word
-    found = lines.read([*part.tokens, *part.row], part.names, is_quick=True)
-    return bool(found) and found[0].is_sure and len(found[0].items or ()) == 1
+    readings = lines.read([*part.tokens, *part.row], part.names, is_quick=True)
+    return bool(readings) and readings[0].is_sure and len(readings[0].items or ()) == 1
 
 
 def _suggestion(row: Row, gaps: _Gaps) -> Suggestion:
@@ -190,15 +192,17 @@ def _suggestion(row: Row, gaps: _Gaps) -> Suggestion:
     code = CODES[row.code]
     if code is codes.OTHER_LANGUAGE and values["found"].upper() == values["right"]:
         code, values = codes.MISSING_OPEN, {**values, "word": values["right"], "words": ""}
-    found = Diagnostic(code, span, values, place)
+    diagnostic = Diagnostic(code, span, values, place)
     if "h" in named:
         place = Span(part.spans[gaps.span("h")[0]].start, part.behind.end)
         condition = values.get("asked") or values.get("question") or "TRUE"
-        return Suggestion(found, Edit(place, f"{gaps['head']}({condition})"))
+        return Suggestion(diagnostic, Edit(place, f"{gaps['head']}({condition})"))
     if part.is_said:
-        return Suggestion(found, Edit(part.place, values["fix"] or part.call))
+        return Suggestion(diagnostic, Edit(part.place, values["fix"] or part.call))
     fix = "" if part.tokens else values["fix"]
-    return Suggestion(found, Edit(part.behind, fix or " " * (part.behind.end - part.behind.start)))
+    return Suggestion(
+        diagnostic, Edit(part.behind, fix or " " * (part.behind.end - part.behind.start))
+    )
 
 
 def _said_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
@@ -284,9 +288,9 @@ def _all(gaps: _Gaps, times: str) -> str:
 def _worded(gaps: _Gaps, is_not: bool) -> dict[str, str]:
     """What the words of a condition ask, or the opposite."""
     row, names = gaps.tokens("s"), gaps.part.names
-    is_bare = [each.text for each in gaps.from_on("s")[len(row) :][:1]] != [")"]
+    is_bare = [lexeme.text for lexeme in gaps.from_on("s")[len(row) :][:1]] != [")"]
     is_order = is_bare and gaps["head"] == "UNTIL" and not gaps.part.tokens
-    is_order |= is_bare and any("|@start|" in names.label(each) for each in row)
+    is_order |= is_bare and any("|@start|" in names.label(lexeme) for lexeme in row)
     is_read = is_order or bool(_asked(gaps, "s"))
     found = None if is_read else worded([*[made("NOT")] * is_not, *row], names)
     if found is None:
@@ -386,7 +390,7 @@ def _rest(gaps: _Gaps, name: str) -> str:
 def _calls(part: Trailing) -> list[Order]:
     """The orders that the words say, nothing where a turn of them says no way."""
     found = orders(part.row, part.names)
-    return [] if any(each.is_side_free or each.is_repeated for each in found) else found
+    return [] if any(order.is_side_free or order.is_repeated for order in found) else found
 
 
 def _orders(gaps: _Gaps) -> str:

@@ -56,8 +56,8 @@ class Wrong:
         return Recovery(text, self.kit, lambda to: self._mistakes(to, is_own=to == text))
 
     def _mistakes(self, text: str, is_own: bool) -> list[Code]:
-        found = self.found if is_own else self.check(text)
-        return [each.code for each in found if each.is_mistake]
+        diagnostics = self.found if is_own else self.check(text)
+        return [diagnostic.code for diagnostic in diagnostics if diagnostic.is_mistake]
 
 
 def told_of(
@@ -65,26 +65,33 @@ def told_of(
 ) -> list[Diagnostic]:
     """Return what is told of a wrong text, of which the parser and the checker say `found`."""
     text = source.text
-    told = _read(Wrong(source, found, check, kit), ROUNDS)
-    told = without_wrong(told, text, check)  # what is offered is right
-    told = conserving(told, text, kit)  # what is made keeps what was written
-    told = with_sample(told, text, kit)  # what was not written is said to be an example
-    return codes.in_order([pointed(each, source) for each in told])
+    diagnostics = _read(Wrong(source, found, check, kit), ROUNDS)
+    diagnostics = without_wrong(diagnostics, text, check)  # what is offered is right
+    diagnostics = conserving(diagnostics, text, kit)  # what is made keeps what was written
+    diagnostics = with_sample(
+        diagnostics, text, kit
+    )  # what was not written is said to be an example
+    return codes.in_order([pointed(diagnostic, source) for diagnostic in diagnostics])
 
 
 def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
     """Return what the readers say of a text, and then of what their edits leave wrong."""
     findings = (reader(wrong) for reader in READERS if rounds)
-    told, edits = next((each for each in findings if each.told), Findings([], []))
-    if not told:
-        told = with_usage(wrong.found, wrong.source, wrong.kit)
-    elif len(told) <= ENOUGH:
+    diagnostics, edits = next((finding for finding in findings if finding.told), Findings([], []))
+    if not diagnostics:
+        diagnostics = with_usage(wrong.found, wrong.source, wrong.kit)
+    elif len(diagnostics) <= ENOUGH:
         rest = applied(wrong.source.text, edits)
         left = wrong.check(rest)
-        if any(each.is_mistake for each in left):  # else its warnings come when it is repaired
-            behind = _read(Wrong(Source(rest), left, wrong.check, wrong.kit), rounds - 1)
-            told = [*told, *(moved_back(each, edits, wrong.source) for each in behind)]
-    return dedupe(told, wrong.source)
+        if any(
+            diagnostic.is_mistake for diagnostic in left
+        ):  # else its warnings come when it is repaired
+            after = _read(Wrong(Source(rest), left, wrong.check, wrong.kit), rounds - 1)
+            diagnostics = [
+                *diagnostics,
+                *(moved_back(diagnostic, edits, wrong.source) for diagnostic in after),
+            ]
+    return dedupe(diagnostics, wrong.source)
 
 
 # -- readers --------------------------------------------------------------------------------------
@@ -99,8 +106,8 @@ def _other_beginning(wrong: Wrong) -> Findings:
     begun = other_word(wrong.source, wrong.found)
     if begun is None:
         return Findings([], [])
-    told = with_usage([begun], wrong.source, wrong.kit)
-    return Findings(told, [Edit(begun.span, "SI")])
+    diagnostics = with_usage([begun], wrong.source, wrong.kit)
+    return Findings(diagnostics, [Edit(begun.span, "SI")])
 
 
 def _meant_surely(wrong: Wrong) -> Findings:
@@ -111,12 +118,19 @@ def _meant_surely(wrong: Wrong) -> Findings:
     return _with_edits(meant_in(wrong.source, wrong.found, recovery, is_sure=True))
 
 
-def _words_behind(wrong: Wrong) -> Findings:
+def _words_after(wrong: Wrong) -> Findings:
     """Return what words say after instructions, or in the place of one."""
-    behind = suggested(wrong.source.text, wrong.kit)
+    after = suggested(wrong.source.text, wrong.kit)
     if recovery := wrong.recovery:  # they belong to the instruction by its sign: `X = 20 x 3`
-        behind = [each for each in behind if not recovery.has_signs(each.passed.span.start)]
-    return Findings([each.diagnostic for each in behind], [each.passed for each in behind])
+        after = [
+            suggestion
+            for suggestion in after
+            if not recovery.has_signs(suggestion.passed.span.start)
+        ]
+    return Findings(
+        [suggestion.diagnostic for suggestion in after],
+        [suggestion.passed for suggestion in after],
+    )
 
 
 def _guessed(wrong: Wrong) -> Findings:
@@ -132,39 +146,50 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
     Else what is inside would be told of as well.
     """
-    told = [each for each in wrong.found if each.code is codes.UNKNOWN_WORD
-            and each.values.get("near") in slips.OF_BLOCKS]  # fmt: skip
-    return Findings(told, [Edit(each.span, each.values["near"]) for each in told])
+    diagnostics = [diagnostic for diagnostic in wrong.found if diagnostic.code is codes.UNKNOWN_WORD
+            and diagnostic.values.get("near") in slips.OF_BLOCKS]  # fmt: skip
+    return Findings(
+        diagnostics,
+        [Edit(diagnostic.span, diagnostic.values["near"]) for diagnostic in diagnostics],
+    )
 
 
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _beginning, _other_beginning, _meant_surely, _words_behind, _guessed, _words_of_blocks,
+    _beginning, _other_beginning, _meant_surely, _words_after, _guessed, _words_of_blocks,
 )  # fmt: skip
 
 
-def _with_edits(told: list[Diagnostic]) -> Findings:
-    return Findings(told, [edit for each in told if each.repair for edit in each.repair.edits])
+def _with_edits(diagnostics: list[Diagnostic]) -> Findings:
+    return Findings(
+        diagnostics,
+        [
+            edit
+            for diagnostic in diagnostics
+            if diagnostic.repair
+            for edit in diagnostic.repair.edits
+        ],
+    )
 
 
 # -- places ---------------------------------------------------------------------------------------
 
 
-def moved_back(found: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
+def moved_back(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
     """Return a diagnostic of the text with these edits, as one of the text without them.
 
     A condition that nobody can read is shown as it is written, and not what it was passed over for.
     """
-    values = dict(found.values)
+    values = dict(diagnostic.values)
     for edit in edits:
         if edit.text.endswith("(TRUE)") and "TRUE" not in (was := source[edit.span].strip()):
             values = {name: text.replace(edit.text, was) for name, text in values.items()}
-    place = found.place and _before(found.place, edits)
-    repair = found.repair
+    place = diagnostic.place and _before(diagnostic.place, edits)
+    repair = diagnostic.repair
     if repair is not None:
         own = tuple(Edit(_before(edit.span, edits), edit.text) for edit in repair.edits)
         passed = [edit for edit in edits if edit.text.isspace()]  # words that nothing may drop
         repair = Repair((), False) if overlap(own, passed) else repair._replace(edits=own)
-    return Diagnostic(found.code, _before(found.span, edits), values, place, repair)
+    return Diagnostic(diagnostic.code, _before(diagnostic.span, edits), values, place, repair)
 
 
 def _before(span: Span, edits: Sequence[Edit]) -> Span:
@@ -172,12 +197,12 @@ def _before(span: Span, edits: Sequence[Edit]) -> Span:
     start = end = shift = 0
     for edit in sorted(edits):
         begin = edit.span.start + shift
-        behind = begin + len(edit.text)
-        shift = behind - edit.span.end
-        if span.start >= behind:
+        after = begin + len(edit.text)
+        shift = after - edit.span.end
+        if span.start >= after:
             start = shift
         elif span.start > begin:
             start = span.start - edit.span.start
         if span.end > begin:
-            end = shift if span.end >= behind else span.end - edit.span.end
+            end = shift if span.end >= after else span.end - edit.span.end
     return Span(span.start - start, max(span.start - start, span.end - end))

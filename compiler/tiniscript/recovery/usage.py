@@ -73,7 +73,7 @@ _LONG_HEAD = 100  # characters of a DEF before the name of a value
 _TAUGHT = re.compile(r"(?i)\bDEF\s+(\w+[ \t]*\([^()\n]*)?$")
 _OWN = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
 _ANGLE = re.compile(r"\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)$")
-_FOREVER_BEHIND = re.compile(r"(?i)([FBLR])\s*\(([^(),]+),\s*FOREVER\s*\)(\s*UNTIL.*)?")
+_FOREVER_AFTER = re.compile(r"(?i)([FBLR])\s*\(([^(),]+),\s*FOREVER\s*\)(\s*UNTIL.*)?")
 _TURNED = re.compile(r"(?im)\b[FBLR]\s*\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)(?!\s*UNTIL)")
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
@@ -86,25 +86,29 @@ _MOST_OF_END = 4  # words: `fin del bucle`
 _NO_NAMES = ("leaves", "again", "filler", "same", "etc", "end")
 
 
-def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
+def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is wrong with a text, in words that say how it is written."""
     text = _Text(source, kit)
-    text.lacks_loop = [it.values["right"] for it in found if it.code is codes.NOT_OPEN] == ["LOOP"]
-    found = text.with_name(found)
+    text.lacks_loop = [it.values["right"] for it in diagnostics if it.code is codes.NOT_OPEN] == [
+        "LOOP"
+    ]
+    diagnostics = text.with_name(diagnostics)
     told: list[Diagnostic] = []
-    for each in found[:_MANY]:
-        say = _SAYS.get(each.code) if each.repair is None else None
-        told.append((say(_Usage(text, each)) if say else None) or each)
+    for diagnostic in diagnostics[:_MANY]:
+        say = _SAYS.get(diagnostic.code) if diagnostic.repair is None else None
+        told.append((say(_Usage(text, diagnostic)) if say else None) or diagnostic)
     parts = [it for it in told if it.values.get("part")]
-    if parts and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
+    if parts and any(diagnostic.code is codes.TASK_NOT_TOP for diagnostic in told):  # rather an IF
         part = {"part": parts[0].values["part"]}
         told = [it._replace(values={**it.values, **part}) for it in told if it not in parts]
-    if any("usage" in each.values for each in told if each.code is codes.OUT_OF_RANGE):
+    if any(
+        "usage" in diagnostic.values for diagnostic in told if diagnostic.code is codes.OUT_OF_RANGE
+    ):
         told += text.turned()
     return [
-        each
-        for each in (*told, *found[_MANY:])
-        if not (each.code in _OF_NAMES and text.is_in_wrong_def(each, told))
+        diagnostic
+        for diagnostic in (*told, *diagnostics[_MANY:])
+        if not (diagnostic.code in _OF_NAMES and text.is_in_wrong_def(diagnostic, told))
     ]
 
 
@@ -123,13 +127,13 @@ class _Text:
 
     def turned(self) -> list[Diagnostic]:
         """Return moves with the power before the time, as another call of the text has them."""
-        found: list[Diagnostic] = []
-        for each in _TURNED.finditer(self.source.text):
-            if LONG_S <= float(each[1]) <= MOST_POWER and 0 < float(each[2]) < LONG_S:
-                fix = f"{each[0][0].upper()}({each[2]}, {each[1]})"
-                values = {"time": each[1], "power": each[2], "fix": fix}
-                found.append(Diagnostic(codes.SWAPPED, Span(*each.span()), values))
-        return found
+        diagnostics: list[Diagnostic] = []
+        for match in _TURNED.finditer(self.source.text):
+            if LONG_S <= float(match[1]) <= MOST_POWER and 0 < float(match[2]) < LONG_S:
+                fix = f"{match[0][0].upper()}({match[2]}, {match[1]})"
+                values = {"time": match[1], "power": match[2], "fix": fix}
+                diagnostics.append(Diagnostic(codes.SWAPPED, Span(*match.span()), values))
+        return diagnostics
 
     def end_at(self, place: int) -> str:
         """Return the end of the innermost block that is open at a place, "" for none."""
@@ -146,8 +150,8 @@ class _Text:
 
     def with_name(self, found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
         """Return diagnostics in which the one DEF without a name has that of an unknown call."""
-        nameless = [each for each in found if each.code is codes.DEF_NEEDS_NAME]
-        unknown = (each for each in found if each.code is codes.UNKNOWN_WORD)
+        nameless = [diagnostic for diagnostic in found if diagnostic.code is codes.DEF_NEEDS_NAME]
+        unknown = (diagnostic for diagnostic in found if diagnostic.code is codes.UNKNOWN_WORD)
         wholes = ((it, self.source[instruction_at(it.span, self.source)]) for it in unknown)
         called = (it.values["found"] for it, whole in wholes if len(lexemes(whole)) == 1)
         name = next(called, "") if len(nameless) == 1 else ""
@@ -155,8 +159,12 @@ class _Text:
             return found
         own, end = nameless[0], nameless[0].span.end
         repair = Repair((Edit(Span(end, end), f" {name}"),), False)
-        said = own._replace(values={"name": name}, repair=repair)
-        return [said if each is own else each for each in found if each.values.get("found") != name]
+        diagnostic = own._replace(values={"name": name}, repair=repair)
+        return [
+            diagnostic if each is own else each
+            for each in found
+            if each.values.get("found") != name
+        ]
 
 
 class _Usage:
@@ -169,7 +177,7 @@ class _Usage:
         self.found = found
         self.piece = instruction_at(found.span, text.source)
         self.is_first = found.span.start == self.piece.start
-        self.behind_it = text.source.text[found.span.end :]
+        self.after_it = text.source.text[found.span.end :]
         self.tokens = lexemes(self.source[self.piece])
         self.words = [token.text for token in self.tokens if token.kind is WORD]
         self.signs = [token.text for token in self.tokens]
@@ -177,8 +185,8 @@ class _Usage:
 
     def around(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return the match of a pattern whose part `here` begins at the place."""
-        found = pattern.finditer(self.source.text)
-        return next((it for it in found if it.start("here") == self.found.span.start), None)
+        matches = pattern.finditer(self.source.text)
+        return next((it for it in matches if it.start("here") == self.found.span.start), None)
 
     def adds(self, **values: str) -> Diagnostic:
         """Return the diagnostic with values beside its own."""
@@ -197,8 +205,8 @@ class _Usage:
         right = re.split("[(;]", fix)[0]
         found = next((it for it in self.signs if self.names.meant(it) == right != it), found)
         values = {"right": right, "usage": _usage(right), "takes": _usage(right) * is_longer}
-        told = self.offers(codes.OTHER_LANGUAGE, fix, found=found, **values)
-        return told._replace(span=self.found.span)
+        diagnostic = self.offers(codes.OTHER_LANGUAGE, fix, found=found, **values)
+        return diagnostic._replace(span=self.found.span)
 
     def usage(self, word: str) -> str:
         """Return how an instruction is written: a block with its end, where the text has none."""
@@ -210,9 +218,9 @@ class _Usage:
         is_ended = _ENDS.search(plain(self.source.text)) is not None
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
-        found = lines.read(self.tokens, self.names) if word == "LOOP" else []  # else a guess
-        is_head = bool(found) and [each.kind for each in found[0].items or ()] == ["open"]
-        head = laid_out(found[0].tokens).strip("; ") if is_head else _usage(word)
+        readings = lines.read(self.tokens, self.names) if word == "LOOP" else []  # else a guess
+        is_head = bool(readings) and [item.kind for item in readings[0].items or ()] == ["open"]
+        head = laid_out(readings[0].tokens).strip("; ") if is_head else _usage(word)
         return head if is_ended else f"{head}; ...; {BLOCK_ENDS[word]}"
 
     def question(self, word: str) -> str:
@@ -221,17 +229,17 @@ class _Usage:
         Nothing where no number is asked for.
         """
         asked = self.asked(word)
-        if not any(each.kind is NUMBER for each in asked):
+        if not any(lexeme.kind is NUMBER for lexeme in asked):
             return ""
         said = laid_out(condition_in(asked, self.names))
         return f"{word}({said})" if said else WORDS[word].usage
 
     def asked(self, word: str) -> list[Lexeme]:
         """Return what stands after a header, up to what is done."""
-        behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.tokens)][1:]
+        after = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.tokens)][1:]
         begun = DONE - {"L", "R"}  # `pared a la derecha`
-        meant = [_is_over(each) or self.names.meant(each.text) in begun for each in behind]
-        return behind[: [*meant, True].index(True)]
+        meant = [_is_over(lexeme) or self.names.meant(lexeme.text) in begun for lexeme in after]
+        return after[: [*meant, True].index(True)]
 
     def block(self) -> str:
         below = self.source.text[self.piece.end :].lstrip("; \t\r\n").upper()
@@ -286,18 +294,18 @@ class _Usage:
             return self.says(codes.SWITCH_WHAT)
         if any(map(self.is_button, words)) and self.signs[1:2] != ["("]:
             return self.no_button()
-        endless = next((each for each in words if self.names.meant(each) == "FOREVER"), "")
+        endless = next((word for word in words if self.names.meant(word) == "FOREVER"), "")
         if endless and not meant:
             return self.translated(endless, "LOOP(FOREVER)")
-        if any(said_of(each, "turn", "lap") for each in words):
+        if any(said_of(word, "turn", "lap") for word in words):
             return self.turn(said, ordered)
         word = next(filter(self.names.meant, (*words[:1], meant)), "")
         concept = self.names.meant(word)
         is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
         is_among = concept == "S" and {*ordered.values()} != {"S"}  # `ve para adelante`
         if is_order and concept != word and not is_among:
-            if concept in ASKING and (asked := self.asked_in_words(concept)):
-                return asked
+            if concept in ASKING and (diagnostic := self.asked_in_words(concept)):
+                return diagnostic
             if len(self.tokens) == 1 and not WORDS[concept].arguments:
                 return self.translated(word, concept)
             if not WORDS[concept].arguments and any(it.kind is NUMBER for it in self.tokens):
@@ -308,7 +316,7 @@ class _Usage:
         text = self.source[self.piece]
         if len(words) < 2 or {*self.signs} & {*COMPARISONS, "(", "="} or len(text) > _LONGEST:
             return None
-        if name := next((each for each in words if each in self.names.variables), ""):
+        if name := next((word for word in words if word in self.names.variables), ""):
             example = f"{name} = {name} + {self.number}"
             values = {"name": name, "example": example, "fix": ""}
             return Diagnostic(codes.PROSE, self.piece, values)
@@ -323,7 +331,7 @@ class _Usage:
         degrees = {"half": "180", "whole": "360"}
         halves = (it for it in degrees if any(said_of(each, it) for each in said))
         angle = degrees.get(next(halves, ""), "")
-        is_timed = any(said_of(each, "unit")[:1] not in ((), ("turns",)) for each in self.words)
+        is_timed = any(said_of(word, "unit")[:1] not in ((), ("turns",)) for word in self.words)
         numbers = [token.text for token in self.tokens if token.kind is NUMBER]
         if len(numbers) == 1 and float(numbers[0]) >= LONG_S and not is_timed:
             angle = numbers[0]  # `SPIN 360`: no time, and no power
@@ -354,7 +362,7 @@ class _Usage:
         if len(said) < 2:
             return None
         fix, example = written(said), made_up(said)
-        if any(each.is_side_free for each in said):
+        if any(order.is_side_free for order in said):
             values = {"right": fix, "example": example, "fix": ""}  # right is no change
             return Diagnostic(codes.SEVERAL_ORDERS, self.piece, values)
         return self.offers(codes.SEVERAL_ORDERS, fix, example=example)
@@ -389,15 +397,15 @@ class _Usage:
 
     def forever(self) -> Diagnostic | None:
         """`F(50, FOREVER)`: FOREVER is a time, and goes first."""
-        match = _FOREVER_BEHIND.fullmatch(self.source[self.piece])
+        match = _FOREVER_AFTER.fullmatch(self.source[self.piece])
         if match is None:
             return None
         until = match[3] or f" UNTIL({WORDS['UNTIL'].arguments[0].sample})"
         return self.adds(fix=f"{match[1].upper()}(FOREVER, {match[2].strip()}){until}")
 
     def until(self) -> Diagnostic:
-        asked = re.match(r"\s*(\([^()\n]+\))", self.source.text[self.found.span.start + 5 :])
-        return self.adds(example=f"F(2, 80) UNTIL{asked[1]}" if asked else "")
+        match = re.match(r"\s*(\([^()\n]+\))", self.source.text[self.found.span.start + 5 :])
+        return self.adds(example=f"F(2, 80) UNTIL{match[1]}" if match else "")
 
     def no_button(self) -> Diagnostic:
         """A button that nobody can ask for; a program may begin with the one that starts it."""
@@ -425,20 +433,22 @@ class _Usage:
             if said.code is codes.SEVERAL_ORDERS:
                 return said
             return self.adds(fix=said.values["fix"])._replace(place=self.piece, repair=said.repair)
-        if word in ASKING and (asked := self.asked_in_words(word)):
-            return asked
+        if word in ASKING and (diagnostic := self.asked_in_words(word)):
+            return diagnostic
         is_alone = len(self.tokens) == 1 and word in WORDS and WORDS[word].arguments
         example = WORDS[word].example if is_alone else ""
         return self.adds(example=example, usage=self.usage(word))
 
     def condition(self) -> Diagnostic | None:
         """A condition in words, in the brackets of a header; or nothing in brackets."""
-        if self.found.code is codes.MISSING_COMMA and (said := self.unit() or self.no_value()):
-            return said
+        if self.found.code is codes.MISSING_COMMA and (
+            diagnostic := self.unit() or self.no_value()
+        ):
+            return diagnostic
         if self.signs[1:] == ["("] and self.signs[0] in WORDS:
             return self.adds(usage=self.usage(self.signs[0]))
-        if (said := self.foreign() or self.amount()) is not None:
-            return said
+        if (diagnostic := self.foreign() or self.amount()) is not None:
+            return diagnostic
         if self.words[1:] and self.names.meant(self.signs[0]) == "SHOW":
             return self.says(codes.WORDS_SHOWN)
         before = lexemes(self.source[Span(self.piece.start, self.found.span.start)])
@@ -456,7 +466,9 @@ class _Usage:
 
     def in_words(self, word: str) -> Diagnostic:
         """A question in words: what its words ask, else an example."""
-        start = next(k for k, each in enumerate(self.tokens) if self.names.meant(each.text) == word)
+        start = next(
+            k for k, lexeme in enumerate(self.tokens) if self.names.meant(lexeme.text) == word
+        )
         asked = self.tokens[start + 2 : closed(self.tokens, start + 1) - 1]
         sample = {"example": WORDS[word].arguments[0].sample, "question": ""}
         return self.says(codes.IN_WORDS, word=word, **(worded(asked, self.names) or sample))
@@ -476,8 +488,8 @@ class _Usage:
         is_asked = bool(said_of(name, "light", "ahead"))
         if not heads or heads[-1] not in ASKING or not is_asked or before[-1].text in COMPARISONS:
             return None
-        told = self.in_words(heads[-1])
-        return told if told.values.get("question") else None
+        diagnostic = self.in_words(heads[-1])
+        return diagnostic if diagnostic.values.get("question") else None
 
     def unit(self) -> Diagnostic | None:
         """A unit after a calculation: `F(RANDOM(1, 3) sec, 50)`."""
@@ -487,10 +499,12 @@ class _Usage:
         if not unit or self.source.text[end - 1] != ")":
             return None
         fix = self.source[Span(self.piece.start, end)] + self.source[Span(span.end, self.piece.end)]
-        told = self.offers(
+        diagnostic = self.offers(
             codes.UNIT, fix if unit == ("s", "1000") else "", found=self.source[span]
         )
-        return told._replace(span=span, repair=told.repair if unit == ("s", "1000") else None)
+        return diagnostic._replace(
+            span=span, repair=diagnostic.repair if unit == ("s", "1000") else None
+        )
 
     def no_value(self) -> Diagnostic | None:
         """A word after a number, which is no value: a unit of something else, or nothing."""
@@ -502,7 +516,7 @@ class _Usage:
         if word is None or not word.arguments or before[-1].kind is not NUMBER or not is_word:
             return None
         values = {"word": word.text, "usage": word.usage}
-        at = min(sum(each.text == "," for each in before), len(word.arguments) - 1)
+        at = min(sum(lexeme.text == "," for lexeme in before), len(word.arguments) - 1)
         if not (wanted := _WANTED.get(word.arguments[at].unit)):
             return None
         if unit := said_of(found, "unit"):
@@ -522,8 +536,8 @@ class _Usage:
         is_call = self.signs[:2] == [word, "("]
         if not is_call or self.names.meant(word) or self.names.is_name(word):
             return None
-        told = Diagnostic(codes.UNKNOWN_WORD, Span(start, start + len(word)), {"found": word})
-        return _Usage(self.text, told).unknown() or told
+        diagnostic = Diagnostic(codes.UNKNOWN_WORD, Span(start, start + len(word)), {"found": word})
+        return _Usage(self.text, diagnostic).unknown() or diagnostic
 
     def setup(self) -> Diagnostic | None:
         """Another word before the bar: one that says the button, or looks like it."""
@@ -541,7 +555,7 @@ class _Usage:
             return self.says(codes.PING_ALONE)
         if word == "PING":
             return self.says(codes.SETUP_NEEDS_BAR, found=word, fix="PING|")
-        is_bar = self.behind_it.lstrip()[:1] == "|"
+        is_bar = self.after_it.lstrip()[:1] == "|"
         if text := self.block():
             return self.offers(codes.SPANISH_IF, text)._replace(span=self.found.span)
         if word == "SI" and not is_bar:
@@ -558,8 +572,8 @@ class _Usage:
         """A block without its end: where its indentation, or its line, says that it ends."""
         rows = self.source.text.splitlines()
         k = self.source.position(self.found.span.start)[0] - 1
-        behind = without_note(self.behind_it[: len(rows[k])])[0]
-        rest = [each.strip() for each in behind.split("\n")[0].split(";") if _WORD.search(each)]
+        after = without_note(self.after_it[: len(rows[k])])[0]
+        rest = [part.strip() for part in after.split("\n")[0].split(";") if _WORD.search(part)]
         below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
         if rest and k + 1 == len(rows):
             return self.adds(behind=rest[-1])
@@ -594,8 +608,8 @@ class _Usage:
             return self.offers(codes.PROSE, f"// {self.source[self.piece]}")
         if right := concept_of(sign):
             return self.says(codes.OTHER_LANGUAGE, found=sign, right=right, usage=_usage(right))
-        if sign in ".\u2026" and (said := self.dots()) is not None:
-            return said
+        if sign in ".\u2026" and (diagnostic := self.dots()) is not None:
+            return diagnostic
         if sign == "!" and text[end : end + 1] not in ("", "\n", " "):
             return self.says(codes.OTHER_SIGN, found="!", right="NOT")
         if re.fullmatch("[0-9]:[0-9]", around := text[start - 1 : end + 1]):
@@ -629,7 +643,7 @@ class _Usage:
     def name(self) -> Diagnostic:
         """A word of the language as a name: another one for it."""
         word, text, start = self.found.values["word"], self.source.text, self.found.span.start
-        is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
+        is_set = re.match(r"\s*=\s*([1-9]?)", self.after_it)
         is_taught = _TAUGHT.search(text[max(0, start - _LONG_HEAD) : start])
         right = in_place_of(text, word) if is_set or is_taught else ""
         near = nearest(word, self.names.variables - {word}) if is_set else None
@@ -637,7 +651,7 @@ class _Usage:
             return self.renamed(word, right, is_taught is not None)
         if is_set is None or word != "TIME":
             return self.adds(right=near or right)  # `ROUND = ROUNDS + 1`
-        places = [each.start() for each in re.finditer(r"(?i)\bTIME\b", text)][1:]
+        places = [match.start() for match in re.finditer(r"(?i)\bTIME\b", text)][1:]
         used = [str(self.source.position(place)[0]) for place in places]
         values = {"line" if len(used) == 1 else "lines": ", ".join(used)}
         return self.adds(**{"right" if is_set[1] else "clock": right}, **values)
@@ -650,7 +664,7 @@ class _Usage:
             tokens[k].span for k in places
             if tokens[k].text == word and (k == 0 or tokens[k - 1].kind not in (NUMBER, ")"))
         ]  # fmt: skip
-        rows = [str(self.source.position(each.start)[0]) for each in spans]
+        rows = [str(self.source.position(span.start)[0]) for span in spans]
         others = list(dict.fromkeys(rows))[1:]
         repair = Repair(tuple(Edit(span, right) for span in spans), False)
         values = {
@@ -686,19 +700,19 @@ class _Usage:
         words = shortened(self.source[span])
         values = {"before": self.found.values["before"], "words": words, "order": words}
         is_none = isinstance(right, Failure) and right.at == 0
-        return Diagnostic(codes.WORDS_BEHIND, span, values) if is_none else None
+        return Diagnostic(codes.WORDS_AFTER, span, values) if is_none else None
 
     def letters(self) -> Diagnostic | None:
         """A name with letters that a name has not."""
-        if (said := self.amount()) is not None:
-            return said
+        if (diagnostic := self.amount()) is not None:
+            return diagnostic
         word = self.source[self.found.span]
         right = re.sub(r"^[^A-Za-z]+|\W", "", plain(word))
         concept = self.names.meant(right)
         if concept in WORDS or self.names.has(concept):
             usage = self.usage(concept)
             return self.says(codes.OTHER_LANGUAGE, found=right, right=concept, usage=usage)
-        if self.behind_it.lstrip(" ").startswith("("):
+        if self.after_it.lstrip(" ").startswith("("):
             return self.says(codes.UNKNOWN_WORD, found=word.upper(), near="")
         if self.is_first and (said_of(right, "filler") or self.is_button(right)):
             return _Usage(self.text, self.says(codes.UNKNOWN_WORD, found=right)).unknown()

@@ -203,10 +203,10 @@ def _bytes(data: bytes) -> list[str]:
     return [f"0x{each:02x}," for each in data]
 
 
-def _with_remote(before: Sequence[str], remote: Sequence[str], behind: Sequence[str]) -> list[str]:
+def _with_remote(before: Sequence[str], remote: Sequence[str], after: Sequence[str]) -> list[str]:
     """Return the rows of an array, some of them only where there is a remote control."""
     condition = ["#ifdef tiniscript_has_remote", *_in_rows(remote), "#endif"] if remote else []
-    return [*_in_rows(before), *condition, *_in_rows(behind)]
+    return [*_in_rows(before), *condition, *_in_rows(after)]
 
 
 def _in_rows(values: Sequence[str]) -> list[str]:

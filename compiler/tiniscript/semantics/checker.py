@@ -203,10 +203,10 @@ class _Checker(Scope):
             wanted = (WAYS[UNIT_OF[word.text]], *wanted[1:])
         said = len(self.diagnostics)
         values = [
-            self.types.value(each)
+            self.types.value(argument)
             if its is VALUE
-            else self.number(each, its, word.text, (node, word))
-            for each, its in zip(arguments[forever:], wanted[forever:], strict=True)
+            else self.number(argument, its, word.text, (node, word))
+            for argument, its in zip(arguments[forever:], wanted[forever:], strict=True)
         ]
         if len(self.diagnostics) > said:
             self.wrong.values(node, word, said)
@@ -332,7 +332,7 @@ class _Checker(Scope):
             names = [self.variables[k] for k in procedure.values]
             if names_one(node, names) and self.wrong.named_values(node, names):
                 return
-        values = [self.types.value(each) for each in arguments]
+        values = [self.types.value(argument) for argument in arguments]
         for argument, value, number in zip(arguments, values, procedure.values, strict=True):
             wanted = self.types.of_variables[number]
             if ANY not in (wanted, value.type) and wanted != value.type:
@@ -439,19 +439,21 @@ class _Checker(Scope):
             self.report(codes.TOO_MANY_PARAMETERS, node.parameters[PARAMETERS].span,
                         name=node.name, limit=str(PARAMETERS))  # fmt: skip
         parameters: list[int] = []
-        for each, kind in zip(node.parameters, self.kinds.of(node), strict=True):
-            known = self.names.get(each.name)
-            is_free = known is None and each.name not in self.taken_names
-            parameters.append(self.new_variable(each.name, each.span, kind if is_free else ANY))
+        for parameter, kind in zip(node.parameters, self.kinds.of(node), strict=True):
+            known = self.names.get(parameter.name)
+            is_free = known is None and parameter.name not in self.taken_names
+            parameters.append(
+                self.new_variable(parameter.name, parameter.span, kind if is_free else ANY)
+            )
             if known is None:  # even if it is taken below: that is said once
-                self.names[each.name] = Name("variable", parameters[-1])
+                self.names[parameter.name] = Name("variable", parameters[-1])
             if is_free:
                 continue
             if known is not None and known.what == "variable" and known.number in parameters:
-                self.report(codes.PARAMETER_TWICE, each.span, name=each.name)
+                self.report(codes.PARAMETER_TWICE, parameter.span, name=parameter.name)
             else:
-                other = self.wrong.free_name(each.name, self.procedures)
-                self.report(codes.PARAMETER_TAKEN, each.span, name=each.name, other=other)
+                other = self.wrong.free_name(parameter.name, self.procedures)
+                self.report(codes.PARAMETER_TAKEN, parameter.span, name=parameter.name, other=other)
         return parameters
 
     def task(self, node: ast.Task, made: list[Statement]) -> None:
@@ -494,11 +496,13 @@ def _spelled_out(word: Word, span: Span) -> ast.Command:
     (command,) = parse(Source(word.stands_for)).program.body
     assert isinstance(command, ast.Command)
     arguments = tuple(
-        each._replace(
-            expression=tuple(part._replace(start=span[0], end=span[1]) for part in each.expression),
+        argument._replace(
+            expression=tuple(
+                part._replace(start=span[0], end=span[1]) for part in argument.expression
+            ),
             span=span,
         )
-        for each in command.arguments or ()
+        for argument in command.arguments or ()
     )
     return command._replace(word_span=span, arguments=arguments, span=span)
 

@@ -207,7 +207,7 @@ def every(program: Program) -> Iterator[Statement]:
 
 def first_way(program: Program) -> Span | None:
     """Return where the first move is that goes by centimetres or degrees."""
-    moves = (each for each in every(program) if isinstance(each, Move) and each.unit)
+    moves = (move for move in every(program) if isinstance(move, Move) and move.unit)
     return min((move.span for move in moves), default=None)
 
 

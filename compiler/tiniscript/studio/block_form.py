@@ -59,7 +59,7 @@ def data_of(form: Form) -> dict[str, Any]:
     return {
         **form._asdict(),
         "body": _data_of_all(form.body),
-        "loose": [{"body": _data_of_all(each.body), "value": each.value} for each in form.loose],
+        "loose": [{"body": _data_of_all(stack.body), "value": stack.value} for stack in form.loose],
     }
 
 

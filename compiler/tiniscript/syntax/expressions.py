@@ -273,8 +273,8 @@ class ExpressionParser:
         fix = f"{cursor.source[Span(call.start, tokens[k].start)].rstrip()}, "
         fix += cursor.source[Span(tokens[k + 1].start, call.end)]
         repair = Repair((Edit(tokens[k].span, ","),), False)
-        told = Diagnostic(codes.SEMICOLON_INSIDE, tokens[k].span, {"fix": fix}, call, repair)
-        self.reporter.diagnostics.append(told)
+        diagnostic = Diagnostic(codes.SEMICOLON_INSIDE, tokens[k].span, {"fix": fix}, call, repair)
+        self.reporter.diagnostics.append(diagnostic)
         raise Failed
 
     def no_close(self, bracket: int) -> NoReturn:

@@ -72,7 +72,7 @@ def listed(language: str, only: str | None = None, in_reach: InReach = NOWHERE) 
         names += [port for port in virtual if port not in (*names, *in_reach.others)]
         listed = {same_for_all(port) for port in names}
         names += [port for port in held if port not in listed]
-    about |= {port: about_virtual(each, language) for port, each in virtual.items()}
+    about |= {port: about_virtual(value, language) for port, value in virtual.items()}
     return [
         {
             "port": port,
@@ -102,7 +102,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             shown(device_info.name) or shipped_of_kit(device_info.kit) or f"{device_info.id:08x}"
         )
         owner = whose(device_info)
-        said = text("port_whose", language).format(
+        sentence = text("port_whose", language).format(
             said=text("port_robot", language).format(name=called),
             whose=text(f"whose_{owner}", language),
         )
@@ -111,7 +111,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             "id": f"{device_info.id:08x}",
             "kit": f"{device_info.kit:04x}",
             "owner": owner,
-            "said": said,
+            "said": sentence,
         }
     return {"answer": None, "said": text("port_other" if heard else "port_quiet", language)}
 

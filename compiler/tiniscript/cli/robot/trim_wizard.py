@@ -96,15 +96,15 @@ class TrimWizard(Conversation):
 
     def _wired(self) -> Trim:
         """Turn each motor; return the trim with which they are those of their wheels."""
-        seen = []
+        turns = []
         for side in ("left", "right"):
-            seen.append(self.turned(side))
-            if not seen[-1].wheel:
+            turns.append(self.turned(side))
+            if not turns[-1].wheel:
                 raise CommandError(3, "trim_no_wheel")
-        found = as_seen(Trim(), *seen)
-        if found is None:
+        trim = as_seen(Trim(), *turns)
+        if trim is None:
             raise CommandError(3, "trim_same_wheel")
-        return found
+        return trim
 
     def _least(self) -> int:
         """Return the smallest power that moves both wheels, or 0 if the smallest step does."""
@@ -163,10 +163,10 @@ class TrimWizard(Conversation):
 
 def measured(answer: str, is_turn: bool) -> float | None:
     """Return the centimetres or degrees that a person wrote, with a comma or a point; else None."""
-    found = re.fullmatch(NUMBER + r" *(\S*?)\.?", answer.strip().lower())
-    if found is None:
+    match = re.fullmatch(NUMBER + r" *(\S*?)\.?", answer.strip().lower())
+    if match is None:
         return None
-    number, unit = float(found[1].replace(",", ".")), found[2]
+    number, unit = float(match[1].replace(",", ".")), match[2]
     if is_turn:
         return number if unit in ("", *DEGREES) else None
     if unit in INCHES:

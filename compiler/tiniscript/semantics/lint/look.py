@@ -57,7 +57,7 @@ class Look:
         Nothing where it is long, or goes over several lines.
         """
         text = self.source[span]
-        places = [each.end() for each in re.finditer(rf"\b{word}\s*\(", text, re.IGNORECASE)]
+        places = [match.end() for match in re.finditer(rf"\b{word}\s*\(", text, re.IGNORECASE)]
         if not places:
             return ""
         begin = places[-1] if word == "UNTIL" else places[0]

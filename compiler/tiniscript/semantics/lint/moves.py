@@ -107,7 +107,7 @@ class _LateConditions:
         before = _nearest(body, range(k - 1, -1, -1))
         after = _nearest(body, range(k + 1, len(body)))
         stands = [each for each in branch.arms[0].body if isinstance(each, (ir.Move, ir.Beep))]
-        if any(isinstance(each, ir.Move) and each.direction == "W" for each in stands):
+        if any(isinstance(move, ir.Move) and move.direction == "W" for move in stands):
             return  # S with its wait is a pause
         pauses = bool(stands)
         for move, place in ((before, "move"), (after, "next")):

@@ -21,7 +21,7 @@ from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import NEWLINE, Token
 
 _LASTING = (ir.Move, ir.Beep, ir.Motors)
-_NOTE_BEHIND = r"[ \t;]{0,99}//"
+_NOTE_AFTER = r"[ \t;]{0,99}//"
 MANY = 12  # instructions that an example has
 _CALL = r"(?:[FBLRM]|BEEP)\(\s*-?[0-9.]+\s*,\s*-?[0-9.]+\s*\)|W\(\s*[0-9.]+\s*\)"
 # Few programs have notes: these are not compiled before there are some.
@@ -58,7 +58,7 @@ def in_notes(look: Look) -> None:
     if all(token.kind in AT_END for token in tokens):
         _all_of_it(short, look)
         return
-    rows = [each for each in short if re.fullmatch(_CALLS, each.text) or swallowed(each.text)]
+    rows = [token for token in short if re.fullmatch(_CALLS, token.text) or swallowed(token.text)]
     is_ping = [token.text for token in tokens[:2]] == ["PING", "|"]
     depth = k = 0
     for note in rows:
@@ -88,7 +88,7 @@ def swallowed(note: str) -> list[str]:
 
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
-    first, *others = (each.strip() for each in re.split(r";|//", note.removeprefix("//")))
+    first, *others = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
     found = [other for other in others if re.fullmatch(_CALL_IN_IT, other)]
     is_row = all(each in found or not set("()") & set(each) for each in (first, *others))
     is_row = is_row and bool(found) and found != ["S"] * len(found)
@@ -145,18 +145,18 @@ def empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
         if not _is_empty(statement):
             continue
         text = source[statement.span]
-        is_noted = re.compile(_NOTE_BEHIND).match(source.text, statement.span.end)
+        is_noted = re.compile(_NOTE_AFTER).match(source.text, statement.span.end)
         if "//" in text or is_noted:
             continue
         word = "IF" if isinstance(statement, ir.If) else "LOOP"
         span = Span(statement.span.start, statement.span.start + _end_of_head(text))
-        behind = _said(body[k + 1 :], source)
-        before = [] if behind else _said(body[k - 1 :: -1] if k else (), source)[::-1]
-        if not behind and not before:
+        after = _said(body[k + 1 :], source)
+        before = [] if after else _said(body[k - 1 :: -1] if k else (), source)[::-1]
+        if not after and not before:
             continue
         shown, end = " ".join(source[span].split()), BLOCK_ENDS[word]
         values = {"head": shown, "end": end}
-        for name, rows in (("example", behind), ("before", before)):
+        for name, rows in (("example", after), ("before", before)):
             if 0 < len(rows) <= MANY:
                 values[name] = "; ".join((shown, *rows, end))
         look.report(codes.EMPTY_BLOCK, span, **values)
