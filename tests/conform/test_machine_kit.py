@@ -147,7 +147,7 @@ BREAKS = [
     ("machine", "self.begin()\n            move.has_begun", "move.has_begun",
      "time: UNTIL begins 21 ms late"),
     ("machine", "(self.now - self.clock) % WRAP // 20", "(self.now - self.clock) // 20",
-     "time: UNTIL behind 2^32 ms"),
+     "time: UNTIL past 2^32 ms"),
     ("machine", "self.stack.append(taken[0])\n ", "self.stack.append(1)\n ",
      "OR_ELSE leaves its value"),
     ("machine", "within(1000 * whole(value),", "within(value,", "An actuator gets whole numbers"),

@@ -96,7 +96,7 @@ def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
     talk(robot, ends, LATE_MS)
     other.taken()
     assert other.has_ended == (is_for_robot(word + page) is False)
-    stops(robot, end, drives(robot, owner), b"S\n", "behind one that has stopped nothing")
+    stops(robot, end, drives(robot, owner), b"S\n", "after one that has stopped nothing")
     end.leave()
     other.leave()
 
@@ -151,7 +151,7 @@ def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
         ends = drives(robot, driver)
         end.send(b"(" * ROOM + b"\n" + stop[:lost])
         talk(robot, ends, 20)
-        stops(robot, end, ends, stop[lost:], f"the rest behind {lost} of {stop!r}")
+        stops(robot, end, ends, stop[lost:], f"the rest after {lost} of {stop!r}")
 
 
 @pytest.mark.parametrize("make", RADIOS)

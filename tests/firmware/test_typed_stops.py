@@ -64,7 +64,7 @@ PREFIXES = {
     "a damaged frame": b"\0\x08\x02\x02\x0b\x62\xe4\x10\x1c\0",
     "a zero": b"\0",
     "zeros": b"\0\0",
-    "a line behind a zero": b"\0F(1,80)\r\n",
+    "a line after a zero": b"\0F(1,80)\r\n",
     "a mistake": b"FORWARD!\n",
     "six questions": b"HELP\n" * 6,
     "eight questions": b"HELP\n" * 8,

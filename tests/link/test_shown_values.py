@@ -100,7 +100,7 @@ def test_nothing_but_values_waits_for_the_answer() -> None:
     done = event("DONE", 2, {"run": 3}, EPOCH)
     assert heard(session, done) == [shown(), DoneEvent(3)]
     assert heard(session, value(3, 4)) == []
-    assert heard(session, value(5, 4)) == [shown(), MissedEvent(1)], "the one behind it waits"
+    assert heard(session, value(5, 4)) == [shown(), MissedEvent(1)], "the one after it waits"
     session.stop(20)
     assert session.events() == [shown()], "a stop asks nothing"
 

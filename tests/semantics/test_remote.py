@@ -10,7 +10,7 @@ import pytest
 from tests.machines.text_reader import NO_DEFS, TextReader
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
-from tests.vm.test_programs_of_0_2_0 import programs
+from tests.vm.test_programs_of_releases import programs
 from tiniscript import robots
 from tiniscript.base import kit as kits
 from tiniscript.base.fixed_point import ONE
@@ -167,7 +167,7 @@ GIVES_WAY = {
     "set where nothing comes": "IF(FALSE);{n} = 3;ENDIF;SHOW({n})",
     "set in a task": "TASK;{n} = TRUE;LED_IS = {n};SHOW(LED_IS);END_TASK",
     "over two lines": "SI|{n} = (1 +\n 2)\nSHOW({n})",
-    "behind a note that names it": "// {n} is mine\n{n} = 3;SHOW({n})",
+    "after a note that names it": "// {n} is mine\n{n} = 3;SHOW({n})",
     "a DEF": "DEF {n};S;END_DEF;{n}",
     "a DEF with a value": "DEF {n}(A);SHOW(A);END_DEF;{n}(2)",
     "a value of a DEF": "DEF DO_IT({n});{n} = {n} + 1;SHOW({n});END_DEF;DO_IT(3)",

@@ -123,7 +123,7 @@ def main() -> int:
             print(why, file=sys.stderr)
             return 2
     head = " | ".join(f"{baud} baud" for baud in BAUDS)
-    print(f"| on a simulated Uno, behind HELLO | {head} | must |\n|---|---:|---:|---:|")
+    print(f"| on a simulated Uno, after HELLO | {head} | must |\n|---|---:|---:|---:|")
     row(f"first start bit of `{SHORT}` to the motor pins, ms",
         [f"{each.start_ms:.2f}" for each in found.values()],
         " and ".join(f"{each:g}" for each in MUST_MS.values()))  # fmt: skip

@@ -62,7 +62,7 @@ def main() -> int:
     rounds = [turns_cycles(tasks) for tasks in range(5)]
     for tasks, (before, after) in enumerate(pairwise(rounds), 1):
         print(f"{tasks:25} {(after - before) / TURNS:30,.0f}")
-    print("tasks that count   latest look behind the earliest one")
+    print("tasks that count   latest look after the earliest one")
     for others in range(4):
         spread_ms = jitter_ms(firmware, others)
         print(f"{others:16} {spread_ms * 1000:37.0f} us")

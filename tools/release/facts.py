@@ -72,7 +72,7 @@ def complaints(root: Path) -> Iterator[str]:
         if found != PEOPLE:
             yield f"{name} names {found or 'nobody'}, not {PEOPLE}."
     if _first(root / "SECURITY.md", "(?m)^Contact: (.+)$") in ("", NO_CONTACT):
-        yield "SECURITY.md does not say how to reach somebody: write an address behind Contact."
+        yield "SECURITY.md does not say how to reach somebody: write an address after Contact."
     if not address(root):
         yield (
             "pyproject.toml does not say where it is published. Add there:  [project.urls]  and "

@@ -275,7 +275,7 @@ LINK_CHECKS = (
           lambda robot: (said(robot.ask_frame(BY_NAME["COMMIT"].number, b"abc")),)),
     Check("link: a request of another epoch", ("STALE",), _stale),
     Check("link: a damaged frame", ("no answer", "damaged: 1 more"), _damaged),
-    Check("link: a request behind noise", ("OK",), _noise),
+    Check("link: a request after noise", ("OK",), _noise),
     Check("link: a request that comes twice", ("OK", "the same answer", "1 SHOW"), _twice),
 )  # fmt: skip
 
