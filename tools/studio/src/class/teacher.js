@@ -190,7 +190,7 @@ export class Teacher {
   async #lookForPorts() {
     try {
       const ports = await hostPorts();
-      this.#ports.replaceChildren(...found.map(({ port, name }) => new Option(shown([name, port].filter(Boolean).join(' · ')), port)));
+      this.#ports.replaceChildren(...ports.map(({ port, name }) => new Option(shown([name, port].filter(Boolean).join(' · ')), port)));
     } catch {
       this.#say('why_host_gone');
     }
