@@ -161,8 +161,8 @@ def sketch(sketches: Callable[[str], Path]) -> Path:
 @pytest.fixture
 def pty_robot() -> Iterator[PtyRobot]:
     """A robot of the kit `tinibot`."""
-    with PtyRobot(robots.load("tinibot").kit) as found:
-        yield found
+    with PtyRobot(robots.load("tinibot").kit) as robot:
+        yield robot
 
 
 @pytest.fixture

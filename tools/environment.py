@@ -109,17 +109,17 @@ def make(extras: str, root: Path = ROOT) -> Path:
         pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
         # Python compiles what it imports, a third of what there is.
         pip += ["--no-input", "--no-compile", "--editable", f"{root}{extras}"]
-        done = subprocess.run(
+        completed = subprocess.run(
             pip,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             encoding="utf-8",
             errors="replace",
         )
-        if done.returncode:
+        if completed.returncode:
             log = root / ".venv" / "pip.log"
-            log.write_text(done.stdout, encoding="utf-8")
-            rows = [row.strip() for row in done.stdout.splitlines() if "ERROR:" in row]
+            log.write_text(completed.stdout, encoding="utf-8")
+            rows = [row.strip() for row in completed.stdout.splitlines() if "ERROR:" in row]
             _fail(said("no_pip", log=log.relative_to(root).as_posix(), end="\n".join(rows[-2:])))
         stamp.write_text("\n".join((source, *done_extras, extras)), encoding="utf-8")
     return python

@@ -44,8 +44,8 @@ def sources() -> dict[str, Catalogue]:
     """
     paths = [path for path in (FOLDER / SOURCE).glob("*.toml") if path.name != ITSELF]
     found = {path.stem: catalogue_source.load(path) for path in paths}
-    lasts = {each.key: each for each in found.get("messages", Catalogue()).entries.values()}
-    programs = {key: each.english.splitlines() for key, each in lasts.items()}
+    lasts = {entry.key: entry for entry in found.get("messages", Catalogue()).entries.values()}
+    programs = {key: entry.english.splitlines() for key, entry in lasts.items()}
     for key, entry in lasts.items():
         code, _, part = key.partition("/")
         if code in CODES and part in ("message", "try"):
@@ -55,13 +55,13 @@ def sources() -> dict[str, Catalogue]:
 
 def names() -> Catalogue:
     """Return the catalogue of what is said in other TOML files of the package, each text once."""
-    made = Catalogue()
+    catalogue = Catalogue()
     for folder in ("robots", "virtual/worlds", "lessons"):
         for path in sorted((FOLDER.parent / folder).rglob("*.toml")):
             place = path.relative_to(FOLDER.parent).as_posix()
             for said in _said_in(tomllib.loads(path.read_text(encoding="utf-8"))):
-                made.entries.setdefault((said, said), Entry(said, said, notes=[place]))
-    return made
+                catalogue.entries.setdefault((said, said), Entry(said, said, notes=[place]))
+    return catalogue
 
 
 def _said_in(value: object) -> Iterator[str]:
@@ -77,12 +77,12 @@ def _said_in(value: object) -> Iterator[str]:
 
 def pseudo(source: Catalogue) -> Catalogue:
     """Return the English texts with translations that are a third longer and have accents."""
-    made = Catalogue()
+    catalogue = Catalogue()
     for at, entry in source.entries.items():
         said = {name: _longer(form) for name, form in entry.forms.items()}
         said = entry.forms if entry.is_same and not entry.like else said
-        made.entries[at] = Entry(*at, entry.plural, said, entry.hash, is_same=entry.is_same)
-    return made
+        catalogue.entries[at] = Entry(*at, entry.plural, said, entry.hash, is_same=entry.is_same)
+    return catalogue
 
 
 def _longer(text: str) -> str:
@@ -101,10 +101,10 @@ def make_pseudo(english: dict[str, Catalogue]) -> None:
         path.unlink()
     itself = heading(PSEUDO, PSEUDO, ("one", "other"), "n != 1")
     (folder / ITSELF).write_text(itself, encoding="utf-8")
-    made = Translation(PSEUDO, english)
+    translation = Translation(PSEUDO, english)
     for name, source in english.items():
-        made.put_all(name, pseudo(source))
-    made.write()
+        translation.put_all(name, pseudo(source))
+    translation.write()
 
 
 def check_robot(own: Catalogue) -> Iterator[Problem]:
@@ -144,7 +144,9 @@ def main() -> int:
     if options.pseudo:
         make_pseudo(english)
         return 0
-    wrong = sum(tell(files(name, SOURCE)[0], each.problems) for name, each in english.items())
+    wrong = sum(
+        tell(files(name, SOURCE)[0], catalogue.problems) for name, catalogue in english.items()
+    )
     wrong += tell(FOLDER / SOURCE / ITSELF, read_language(FOLDER / SOURCE / ITSELF).problems)
     if wrong:
         return 1
@@ -210,17 +212,21 @@ def report(own: Translation) -> int:
     entries: list[Entry] = []
     lacks = stale = 0
     for name in own.english:
-        found = own.joined(name)
+        catalogue = own.joined(name)
         path = own.path(name)
-        wrong += tell(path, [*check_robot(found)] if name == "robot" else [])
-        there = [entry for entry in found.entries.values() if entry.seen or not entry.is_same]
+        wrong += tell(path, [*check_robot(catalogue)] if name == "robot" else [])
+        there = [entry for entry in catalogue.entries.values() if entry.seen or not entry.is_same]
         entries += there
-        stales = [each for each in there if each.is_stale]
+        stales = [entry for entry in there if entry.is_stale]
         was = "its English text has changed, and so it is said in English"
-        stale += tell(path, [(each.line, f"{each.key}: {was}: {each.english}") for each in stales])
+        stale += tell(
+            path, [(stale.line, f"{stale.key}: {was}: {stale.english}") for stale in stales]
+        )
         if own.language.is_complete:
-            empty = [each for each in there if not each.said]
-            lacks += tell(path, [(1, f"{each.key} is missing: {each.english}") for each in empty])
+            empty = [entry for entry in there if not entry.said]
+            lacks += tell(
+                path, [(1, f"{entry.key} is missing: {entry.english}") for entry in empty]
+            )
     new = [entry for entry in entries if entry.seen == UNKNOWN]
     if new:
         print(f"{own.code}: {len(new)} texts are new. Note of which English texts they are:  "
@@ -229,7 +235,7 @@ def report(own: Translation) -> int:
         print(f"{own.code}: {stale} texts are stale. Note of which English texts they are now:  "
               f"python -m tools.languages --seen {own.code} KEY ...")  # fmt: skip
     asked = [entry for entry in entries if not entry.is_same]
-    done = sum(each.is_translated for each in asked)
+    done = sum(entry.is_translated for entry in asked)
     print(f"{own.code}: {done} of {len(asked)} texts are translated")
     return wrong + (lacks + stale + len(new) if own.language.is_complete else 0)
 

@@ -144,17 +144,17 @@ STILL = {
 
 def braces_edits(text: str, suffix: str) -> Iterator[Edit]:
     """Yield the edits of a text in C++ or JavaScript."""
-    plain = STILL[suffix].sub(lambda found: re.sub(r"[^\n]", "\0", found[0]), text)
-    for found in OPERATOR.finditer(plain):
-        yield found.start(), found.end(), SHARED[found[0]]
-    for found in NOT.finditer(plain):
-        yield found.start(), found.end(), ""
-    for found in NUMBER.finditer(plain):
-        yield found.start(), found.end(), str(int(found[0], 0) + 1)
-    for found in IF.finditer(plain):
-        yield found.end(), _closing(plain, found.end()), "false"
-    for found in STATEMENT.finditer(plain):
-        yield found.end() - len(found[0].lstrip()), found.end(), ";"
+    plain = STILL[suffix].sub(lambda match: re.sub(r"[^\n]", "\0", match[0]), text)
+    for match in OPERATOR.finditer(plain):
+        yield match.start(), match.end(), SHARED[match[0]]
+    for match in NOT.finditer(plain):
+        yield match.start(), match.end(), ""
+    for match in NUMBER.finditer(plain):
+        yield match.start(), match.end(), str(int(match[0], 0) + 1)
+    for match in IF.finditer(plain):
+        yield match.end(), _closing(plain, match.end()), "false"
+    for match in STATEMENT.finditer(plain):
+        yield match.end() - len(match[0].lstrip()), match.end(), ";"
 
 
 def _closing(text: str, at: int) -> int:
@@ -168,11 +168,11 @@ def _closing(text: str, at: int) -> int:
 
 def assembly_edits(text: str) -> Iterator[Edit]:
     """Yield the edits of a text in assembly: an instruction less, or the opposite one."""
-    for found in re.finditer(r"^(?:\d+:)? +([a-z]\w*)(?: [^;\n]*)?", text, re.M):
-        start, end = found.span(1)
-        if found[1] in OPPOSITE:
-            yield start, end, OPPOSITE[found[1]]
-        yield start, found.end(), ""
+    for match in re.finditer(r"^(?:\d+:)? +([a-z]\w*)(?: [^;\n]*)?", text, re.M):
+        start, end = match.span(1)
+        if match[1] in OPPOSITE:
+            yield start, end, OPPOSITE[match[1]]
+        yield start, match.end(), ""
 
 
 def python_edits(text: str) -> Iterator[Edit]:
@@ -368,7 +368,7 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     chosen = drawn(MODULES, options.count, options.seed, options.file)
     if options.list:
-        print("\n".join(each.name for each in chosen))
+        print("\n".join(mutant.name for mutant in chosen))
         return 0
     kept = cache_folder() / f"mutation-{_code()}.json"
     results: dict[str, str] = json.loads(kept.read_text("utf-8")) if kept.is_file() else {}
@@ -377,15 +377,15 @@ def main(arguments: list[str] | None = None) -> int:
     def work(rest: Iterator[Mutant]) -> None:
         with tempfile.TemporaryDirectory() as folder:
             copy = Copy(Path(folder))
-            for each in rest:
-                if each.name not in results:
-                    results[each.name] = copy.tried(each)
+            for mutant in rest:
+                if mutant.name not in results:
+                    results[mutant.name] = copy.tried(mutant)
                     kept.write_text(json.dumps(results.copy(), indent=1), encoding="utf-8")
-                print(f"{each.name}: {results[each.name] or '**nothing**'}", flush=True)
+                print(f"{mutant.name}: {results[mutant.name] or '**nothing**'}", flush=True)
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
         list(pool.map(work, [iter(chosen)] * AT_ONCE))
-    survivors = [each.name for each in chosen if not results[each.name]]
+    survivors = [mutant.name for mutant in chosen if not results[mutant.name]]
     print(f"\n{len(chosen)} mutants, {len(survivors)} survived:", *survivors, sep="\n  ")
     return int(bool(survivors))
 

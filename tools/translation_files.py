@@ -36,7 +36,7 @@ class Translation:
         self.code = code
         self.folder = FOLDER / code
         self.english = english
-        self.groups = {name: each.groups() for name, each in english.items()}
+        self.groups = {name: catalogue.groups() for name, catalogue in english.items()}
         self.own = {name: read_own(self.path(name)) for name in english}
         self.seen, self.seen_problems = read_seen(self.folder / SEEN)
         self.language = read_language(self.folder / ITSELF)
@@ -63,7 +63,7 @@ class Translation:
         hashes = self.seen.get(f"{name} {row.key}", [])
         known = {*hashes} - {UNKNOWN}
         new = [key for key, group in self.groups[name].items()
-               if key not in own.texts and known <= {each.hash for each in group}]  # fmt: skip
+               if key not in own.texts and known <= {entry.hash for entry in group}]  # fmt: skip
         if not known:
             return  # somebody has mistyped a key: it is wrong
         del self.seen[f"{name} {row.key}"]
@@ -81,15 +81,15 @@ class Translation:
     def _follow_places(self, name: str, own: Own, row: Row) -> None:
         group, texts = self.paired(name, row.key), own.texts[row.key]
         if group and (len(group) > 1 or len(texts) > 1):
-            if (now := _without_end([each.said for each in group])) != texts:
+            if (now := _without_end([entry.said for entry in group])) != texts:
                 own.texts[row.key] = now
                 row.text = written(row.key, now, len(group) > 1)
-                self._note(name, row.key, [each.seen for each in group])
+                self._note(name, row.key, [entry.seen for entry in group])
 
     def paired(self, name: str, key: str) -> list[Entry]:
         """Return the texts of a key with their translations, none where that is not possible."""
         texts = self.own[name].texts.get(key, [])
-        group = [untold(each) for each in self.groups[name].get(key, [])]
+        group = [untold(entry) for entry in self.groups[name].get(key, [])]
         unknown = [UNKNOWN] * len(texts)
         hashes = [*self.seen.get(f"{name} {key}", []), *unknown][: len(texts)]
         return [] if pair(group, texts, hashes) else group
@@ -113,9 +113,9 @@ class Translation:
                 fitting = {pattern for pattern in patterns if fnmatchcase(key, pattern)}
                 unused -= fitting
                 if group := self.paired(name, key):
-                    new = (UNKNOWN, *[each.seen for each in group if fitting and each.seen])
-                    self._note(name, key, [each.hash if each.seen in new else each.seen
-                                           for each in group])  # fmt: skip
+                    new = (UNKNOWN, *[entry.seen for entry in group if fitting and entry.seen])
+                    self._note(name, key, [entry.hash if entry.seen in new else entry.seen
+                                           for entry in group])  # fmt: skip
             there = {f"{name} {key}" for key in own.texts}
             for gone in [at for at in self.seen if at.startswith(f"{name} ") and at not in there]:
                 self._note(name, gone.removeprefix(f"{name} "), [])
@@ -123,15 +123,15 @@ class Translation:
 
     def put(self, name: str, key: str, group: list[Entry]) -> None:
         """Take what these entries say as the texts of a key."""
-        own, texts = self.own[name], _without_end([each.said for each in group])
-        row = next((each for each in own.rows if each.key == key), None)
+        own, texts = self.own[name], _without_end([entry.said for entry in group])
+        row = next((row for row in own.rows if row.key == key), None)
         if own.texts.get(key) != texts and texts:
             if row is None:
                 own.rows.append(row := Row(key, None, 0, ""))
             row.text = written(key, texts, len(group) > 1)
             own.texts[key], own.lines[key] = texts, row.line
         if name != NAMES:
-            self._note(name, key, [each.seen for each in group])
+            self._note(name, key, [entry.seen for entry in group])
 
     def put_all(self, name: str, texts: Catalogue) -> None:
         """Take what these entries say of each text that somebody translates."""
@@ -177,7 +177,7 @@ def _write(path: Path, text: str) -> None:
 
 
 def _without_end(texts: list[Forms]) -> list[Forms]:
-    """Return texts without the empty ones behind all others."""
+    """Return texts without the empty ones after all others."""
     return texts[: max((k for k, each in enumerate(texts, 1) if each), default=0)]
 
 
@@ -212,7 +212,7 @@ def _basic(text: str) -> str:
 
 def _control(text: str) -> str:
     """Return a text with signs that TOML does not take as numbers."""
-    return re.sub(r"[\x01-\x08\x0b-\x1f\x7f]", lambda found: f"\\u{ord(found[0]):04x}", text)
+    return re.sub(r"[\x01-\x08\x0b-\x1f\x7f]", lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
 def heading(name: str, english_name: str, forms: Iterable[str], rule: str) -> str:

@@ -44,31 +44,31 @@ def exchange(what: str, english: dict[str, Catalogue]) -> int:
 
 def give(path: Path, own: Translation) -> int:
     """Write the texts of a language; return their number."""
-    said = own.language
-    made = Catalog(
+    language = own.language
+    catalog = Catalog(
         locale=own.code, project="TiniScript", version=__version__, fuzzy=False, charset="utf-8",
-        header_comment=f"# {said.english_name} texts of TiniScript, in {END} for translators",
-        language_team=said.english_name,
+        header_comment=f"# {language.english_name} texts of TiniScript, in {END} for translators",
+        language_team=language.english_name,
     )  # fmt: skip
-    plurals = f"nplurals={len(said.forms)}; plural=({said.rule});"
-    made.mime_headers = [("Plural-Forms", plurals)]
+    plurals = f"nplurals={len(language.forms)}; plural=({language.rule});"
+    catalog.mime_headers = [("Plural-Forms", plurals)]
     for name in own.english:
         for entry in own.joined(name).entries.values():
             if not entry.is_same:
-                _add(made, name, entry, said.forms)
+                _add(catalog, name, entry, language.forms)
     with path.open("wb") as file:
-        write_po(file, made, width=0)
-    return len(made)
+        write_po(file, catalog, width=0)
+    return len(catalog)
 
 
-def _add(made: Catalog, name: str, entry: Entry, forms: tuple[str, ...]) -> None:
+def _add(catalog: Catalog, name: str, entry: Entry, forms: tuple[str, ...]) -> None:
     english: str | tuple[str, str] = entry.english
     own: str | tuple[str, ...] = entry.said.get("", "")
     if entry.plural:
         english = (entry.english, entry.plural)
         own = tuple(entry.said.get(form, "") for form in forms)
     flags = {BRACES} if "{" in entry.english else set()
-    message = made.add(
+    message = catalog.add(
         english, own, context=_context(name, entry.key), auto_comments=entry.notes,
         flags=flags | ({"fuzzy"} if entry.is_stale else set()),
     )  # fmt: skip
@@ -83,7 +83,7 @@ def take(path: Path, own: Translation) -> int:
     """Read texts of a language; say what is wrong with one, and return 1 then."""
     try:
         with path.open("rb") as file:
-            found = read_po(file, abort_invalid=True)
+            catalog = read_po(file, abort_invalid=True)
     except PoFileError as error:
         print(f"{path}:{error.lineno + 1}: this is no row of a catalogue: {error.line[:40]}")
         return 1
@@ -91,7 +91,7 @@ def take(path: Path, own: Translation) -> int:
         print(f"{path}: this cannot be read: {error}")
         return 1
     taken = wrong = 0
-    for message in found:
+    for message in catalog:
         forms = _forms(message, own.language)
         if message.id and not message.fuzzy and all(forms.values()):
             if why := _take(message, forms, own):
@@ -118,7 +118,7 @@ def _take(message: Message, forms: Forms, own: Translation) -> str:
         return f"there is no English text with the context {message.context or 'of nothing'}"
     group = own.paired(name, key)
     wanted = (english, "".join(plural))
-    entry = next((each for each in group if (each.english, each.plural) == wanted), None)
+    entry = next((entry for entry in group if (entry.english, entry.plural) == wanted), None)
     if entry is None:
         return f"{message.context}: its English text is not this one now: {english[:40]}"
     said, seen = entry.said, entry.seen

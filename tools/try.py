@@ -102,8 +102,8 @@ def main() -> int:
 def _wants_studio(python: Path) -> bool:
     """Ask whether the studio shall open, and say how much is downloaded for it."""
     try:
-        asked = subprocess.run([str(python), "-c", MEGABYTES], capture_output=True, text=True)
-        size = asked.stdout.strip()
+        completed = subprocess.run([str(python), "-c", MEGABYTES], capture_output=True, text=True)
+        size = completed.stdout.strip()
         said = f" ({size} MB)" if size not in ("", "0") else ""
         return input(environment.in_language(SAID["studio"], size=said)).strip().lower() in YES
     except (EOFError, KeyboardInterrupt):

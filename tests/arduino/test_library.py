@@ -76,9 +76,9 @@ def sources(folder: Path) -> list[Path]:
 def elf(made: Path, example: str, board: str, folder: Path) -> Path:
     """Return an example as the Arduino IDE builds it: no warning, and it fits."""
     need(boards.missing())
-    found = folder / f"{example}-{board}.elf"
-    if found.exists():
-        return found
+    path = folder / f"{example}-{board}.elf"
+    if path.exists():
+        return path
     sketch = folder / f"{example}.cpp"
     text = (made / "examples" / example / f"{example}.ino").read_text(encoding="utf-8")
     sketch.write_text(PRELUDE + text, encoding="utf-8")
@@ -91,9 +91,9 @@ def elf(made: Path, example: str, board: str, folder: Path) -> Path:
     ]
     boards.run(
         "avr-g++", *flags, "-Wl,--gc-sections", f"-I{made / 'src'}", sketch, *sources(made),
-        sketch_board.core(board), "-o", found,
+        sketch_board.core(board), "-o", path,
     )  # fmt: skip
-    return found
+    return path
 
 
 @pytest.mark.sampled("board")
@@ -163,12 +163,12 @@ def test_platformio_packs_it(made: Path, tmp_path: Path) -> None:
         "from platformio.__main__ import main\n"
         "sys.exit(main(['pio', 'pkg', 'pack', sys.argv[1], '-o', sys.argv[2]]))\n"
     )
-    done = subprocess.run([sys.executable, "-c", code, made, tmp_path], capture_output=True,
+    completed = subprocess.run([sys.executable, "-c", code, made, tmp_path], capture_output=True,
                           text=True, check=False)  # fmt: skip
-    assert done.returncode == 0, done.stdout + done.stderr
+    assert completed.returncode == 0, completed.stdout + completed.stderr
     (packed,) = tmp_path.glob("*.tar.gz")
-    with tarfile.open(packed) as found:
-        names = set(found.getnames())
+    with tarfile.open(packed) as tar_file:
+        names = set(tar_file.getnames())
     assert {
         "src/TiniScript.h",
         "src/vm/machine.h",

@@ -100,7 +100,7 @@ class Teller(Terminal):
         """Whether it is connected to another command."""
         with suppress(OSError):
             files = Path(f"/proc/{self.process.pid}/fd").iterdir()
-            return any(str(each.readlink()).startswith("socket:") for each in files)
+            return any(str(file.readlink()).startswith("socket:") for file in files)
         return False
 
     def has_said(self, pattern: str) -> bool:

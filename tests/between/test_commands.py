@@ -86,14 +86,14 @@ COMMANDS = (
     Words("doctor --selftest --yes", ("doctor", "--selftest", "--yes"), may_fail=True),
     Words("doctor --yes", ("doctor", "--yes"), may_fail=True),
 )
-BY_NAME = {each.name: each for each in COMMANDS}
+BY_NAME = {words.name: words for words in COMMANDS}
 CLIENTS = tuple(
     BY_NAME[name]._replace(name=f"{name}, beside monitor --hold", is_client=True)
     for name in ("upload", "upload, Ctrl-C", "start", "live LINE", "stop", "doctor --yes")
 )
 ON_ESP32 = tuple(
-    each._replace(name=f"{each.name}, ESP32", robot=("--robot", ESP32))
-    for each in (
+    words._replace(name=f"{words.name}, ESP32", robot=("--robot", ESP32))
+    for words in (
         *(BY_NAME[name] for name in ("upload", "upload, long", "upload, Ctrl-C", "live LINE")),
         Words("live LONG LINE", ("live", "; ".join(f"SHOW(TIME * 1.234 + {k})" for k in range(6)))),
         *(BY_NAME[name] for name in ("stop", "doctor --yes", "set name")),
@@ -285,7 +285,7 @@ def test_a_sample_of_commands_keeps_the_laws_behind_bad_lines(
 
 @pytest.mark.parametrize("name", ["nothing", "very late", "robot hears nothing"])
 def test_a_second_ctrl_c_ends_the_wait_and_is_no_second_word(name: str, tmp_path: Path) -> None:
-    fault = next(each for each in FAULTS if each.name == name)
+    fault = next(fault for fault in FAULTS if fault.name == name)
     with ExitStack() as stack:
         line = BadLine(Fault("nothing"), Random(1), 0)
         stack.callback(line.clear_away)

@@ -118,11 +118,14 @@ def test_an_image_that_uses_no_device_runs_anywhere() -> None:
         loaded(pack("SI", 1, CODE), KIT)
 
 
-def test_a_kit_may_grow_behind() -> None:
+def test_a_kit_may_grow_after() -> None:
     """And anything may change that a program does not use."""
     image = compile_text("LOOP(FOREVER);IF(DISTANCE < 10);STOP;ENDIF;END_LOOP", KIT).image
     more = (*KIT.sensors, Device("SONAR", NUMBER, "cm", 0, 1000))
-    others = (*(each._replace(name="X" + each.name) for each in KIT.sensors[:2]), KIT.sensors[2])
+    others = (
+        *(sensor._replace(name="X" + sensor.name) for sensor in KIT.sensors[:2]),
+        KIT.sensors[2],
+    )
     for sensors in (more, others):
         kit = KIT._replace(sensors=sensors)
         assert kit.fingerprint != KIT.fingerprint
@@ -209,9 +212,9 @@ def test_the_spec_promises_no_number_that_is_taken() -> None:
 
 def test_the_spec_has_a_whole_image() -> None:
     text = SPEC.read_text(encoding="utf-8")
-    found = re.search(r"The whole image:\n\n```\n([0-9a-f \n]+)```", text)
-    assert found
-    data = bytes.fromhex(found[1])
+    match = re.search(r"The whole image:\n\n```\n([0-9a-f \n]+)```", text)
+    assert match
+    data = bytes.fromhex(match[1])
     source = (
         "SI|START;LOOP(FOREVER);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP"
     )

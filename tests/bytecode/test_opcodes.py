@@ -146,7 +146,7 @@ def test_an_instruction_of_one_byte_has_its_operand_in_its_last_bits() -> None:
         assert op.size == 1 and op.name == f"{op.family}_{op.code % SHORTS}"
         assert op.implied.value == op.code % SHORTS
         long = BY_NAME[op.family]
-        assert [each.kind for each in long.operands] == [op.implied.kind]
+        assert [operand.kind for operand in long.operands] == [op.implied.kind]
         assert (long.effect, long.control_role) == (op.effect, op.control_role)
 
 
@@ -162,13 +162,13 @@ def test_a_byte_begins_the_codes_of_two() -> None:
     for code, op in ESCAPED.items():
         assert op_at(bytes([0, ESCAPE, code]), 1) is op
         assert op.opcode == bytes([ESCAPE, code]) and op.size == 2 + sum(
-            each.kind.size for each in op.operands
+            operand.kind.size for operand in op.operands
         )
     assert op_at(bytes([ESCAPE]), 0) is None
     assert op_at(bytes([ESCAPE, 0]), 0) is None
 
 
-def test_a_way_has_the_code_of_a_time_behind_the_escape() -> None:
+def test_a_way_has_the_code_of_a_time_after_the_escape() -> None:
     """So a machine's tables of decode forms serve both."""
     for code, op in ESCAPED.items():
         of_time = opcodes.BY_CODE[code]
@@ -212,7 +212,7 @@ def test_a_disassembly_names_the_devices_that_the_kit_has() -> None:
     names = [sensor.name for sensor in kit.readings]
     code = unpack(compile_text("; ".join(f"SHOW({name})" for name in names), kit).image).code
     remarks = (line.partition(" ; ")[2] for line in disassemble(code, kit=kit).splitlines())
-    assert [each for each in remarks if each] == names
+    assert [remark for remark in remarks if remark] == names
     assert ";" not in disassemble(code)
 
 

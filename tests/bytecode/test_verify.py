@@ -44,7 +44,7 @@ def test_code_may_be_as_long_as_the_limit() -> None:
     assert refusal(stop * (CODE_BYTES + 1)) == "CODE_LENGTH"
 
 
-def test_a_way_that_is_cut_behind_its_first_byte() -> None:
+def test_a_way_that_is_cut_after_its_first_byte() -> None:
     assert refusal(bytes.fromhex("bcbfff")) == "CUT_OPERAND"
     assert refusal(bytes.fromhex("bcbfff40")) == ""
     with pytest.raises(Refused, match="UNKNOWN_OPCODE"):

@@ -54,12 +54,12 @@ def test_it_goes_on_where_it_was(
     interrupted_after(monkeypatch, 1)
     assert campaign.main(["done"]) == 2
     assert (kept("done").done, kept("done").seed, kept("done").next_seed) == (10, 7, 12)
-    said = capsys.readouterr().out
-    assert "goes on from here" in said and "10: less" in said
+    output = capsys.readouterr().out
+    assert "goes on from here" in output and "10: less" in output
     assert campaign.main(["done"]) == 0
     assert (kept("done").done, kept("done").seed, kept("done").next_seed) == (25, 7, 22)
-    said = capsys.readouterr().out
-    assert [line.split("; ")[1] for line in said.splitlines()[:2]] == [
+    output = capsys.readouterr().out
+    assert [line.split("; ")[1] for line in output.splitlines()[:2]] == [
         f"-m {HERE} 10 --seed 12",
         f"-m {HERE} 5 --seed 17",
     ]
@@ -71,7 +71,7 @@ def test_it_goes_on_where_it_was(
 
 
 def interrupted_after(monkeypatch: pytest.MonkeyPatch, pieces: int) -> None:
-    """Have Ctrl-C come behind so many pieces, once."""
+    """Have Ctrl-C come after so many pieces, once."""
     piece, left = campaign.piece, [pieces]
 
     def interrupted(*given: Any) -> Result:
@@ -147,7 +147,7 @@ def test_a_figure_is_old_when_what_it_tried_has_changed(
 @pytest.mark.parametrize("goal", GOALS, ids=lambda goal: goal.name)
 def test_each_goal_names_what_it_tries(goal: Goal) -> None:
     assert goal.paths
-    assert [each for each in goal.paths if not (ROOT / each).exists()] == []
+    assert [path for path in goal.paths if not (ROOT / path).exists()] == []
 
 
 def test_each_figure_is_of_a_commit_that_led_here(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -158,8 +158,8 @@ def test_each_figure_is_of_a_commit_that_led_here(monkeypatch: pytest.MonkeyPatc
     figures = results.read()
     assert figures
     is_there = ("merge-base", "--is-ancestor")
-    lost = {name: each.commit for name, each in figures.items()
-            if results.git(*is_there, each.commit, "HEAD").returncode}  # fmt: skip
+    lost = {name: result.commit for name, result in figures.items()
+            if results.git(*is_there, result.commit, "HEAD").returncode}  # fmt: skip
     assert lost == {}, "run these again: python -m tools.campaign NAME"
 
 

@@ -157,10 +157,10 @@ def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
     if not Path("/dev/full").exists():
         pytest.skip("this system has no full device")
     with Path("/dev/full").open("wb") as full:
-        done = subprocess.run([*TSC, "upload", "-e", SHOWS, "--port", pty_robot.port],
+        completed = subprocess.run([*TSC, "upload", "-e", SHOWS, "--port", pty_robot.port],
                               stdout=full, stderr=subprocess.PIPE, timeout=HANGS_S)  # fmt: skip
-    assert done.returncode == 2
-    said = done.stderr.decode()
+    assert completed.returncode == 2
+    said = completed.stderr.decode()
     assert "stopped the robot" in said and "cannot be written" in said and "Traceback" not in said
 
 
@@ -174,11 +174,11 @@ def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
     ours, theirs = os.pipe()
     os.close(ours)
     try:
-        done = subprocess.run([*TSC, *words], stdin=subprocess.DEVNULL, stdout=theirs,
+        completed = subprocess.run([*TSC, *words], stdin=subprocess.DEVNULL, stdout=theirs,
                               stderr=theirs, timeout=HANGS_S)  # fmt: skip
     finally:
         os.close(theirs)
-    assert done.returncode == CLOSED
+    assert completed.returncode == CLOSED
 
 
 # -- a port that vanishes -----------------------------------------------------------------------
@@ -195,7 +195,7 @@ def test_a_port_that_vanishes_is_no_bug(
     asked = []
 
     def do(self: connect.Connection, make: Any, limit_ms: int | None = None) -> Any:
-        if limit_ms is None:  # a request behind HELLO
+        if limit_ms is None:  # a request after HELLO
             asked.append(make)
         if len(asked) == which:
             pty_robot.pull()

@@ -80,9 +80,9 @@ def room(tmp_path: Path) -> Iterator[Class]:
 @pytest.fixture
 def broker(tmp_path: Path) -> Iterator[Mosquitto]:
     """One that lets in everybody."""
-    found = Mosquitto(tmp_path)
-    yield found
-    found.kill()
+    mosquitto = Mosquitto(tmp_path)
+    yield mosquitto
+    mosquitto.kill()
 
 
 def tsc(room: Class, *words: str) -> Done:
@@ -181,10 +181,10 @@ def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
     )  # fmt: skip
     here = [Present("00000001", "A", True), Present("00000002", "B", False)]
     for verb, attends in (("class", False), ("stop", False), ("upload", True)):
-        found = Classroom.targets(cast(Classroom, room), here, verb)
-        assert found.verb == verb  # of an upload, who no longer reads stops the robots
-        assert hasattr(found, "attend") == attends
-        assert found.ports == ["mqtt://h:1/c/00000001"]
+        options = Classroom.targets(cast(Classroom, room), here, verb)
+        assert options.verb == verb  # of an upload, who no longer reads stops the robots
+        assert hasattr(options, "attend") == attends
+        assert options.ports == ["mqtt://h:1/c/00000001"]
 
 
 def test_values_are_collected(room: Class, tmp_path: Path) -> None:
@@ -195,9 +195,9 @@ def test_values_are_collected(room: Class, tmp_path: Path) -> None:
         words = ("show", "--max-time", listens_s, "--json", "--csv", str(tmp_path / "rows.csv"))
         done = tsc(room, *words).gives(0)
         values = [json.loads(line) for line in done.out.splitlines() if '"SHOW"' in line]
-        if len({each["port"] for each in values}) == 2:
+        if len({value["port"] for value in values}) == 2:
             break
-    assert len({each["port"] for each in values}) == 2, done
+    assert len({value["port"] for value in values}) == 2, done
     with (tmp_path / "rows.csv").open(encoding="utf-8", newline="") as file:
         first, *rows = csv.reader(file)
     assert first == ["robot", "id", "ms", "event", "value", "name"]
@@ -339,9 +339,9 @@ def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
     )  # fmt: skip
     told.ask = partial(Connection.ask, cast(Connection, told))
     told.ask_or = partial(Connection.ask_or, cast(Connection, told))
-    with pytest.raises(CommandError) as found:
+    with pytest.raises(CommandError) as exception_info:
         robot_broker.use(cast(Connection, told), None, Namespace())
-    assert "older than this tsc" in found.value.sentence("en")
+    assert "older than this tsc" in exception_info.value.sentence("en")
 
 
 def keep(client: Broker, topic: str, payload: bytes) -> None:

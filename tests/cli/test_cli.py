@@ -24,7 +24,7 @@ def test_compile_writes_the_image_and_nothing_else(tsc: Tsc, program: Path) -> N
         0, "", out="18 bytes (3 of code)   stack 0 of 16   runs 5 s"
     )
     assert unpack(target.read_bytes()).code.hex() == "448c50"
-    assert sorted(each.name for each in program.parent.glob("*.*")) == ["drive.ts", "out.bin"]
+    assert sorted(path.name for path in program.parent.glob("*.*")) == ["drive.ts", "out.bin"]
     assert tsc("compile", program).code == 0
     assert program.with_suffix(".bin").read_bytes() == target.read_bytes()
     assert tsc("compile", program, "--map", "-").code == 2
@@ -51,16 +51,16 @@ def test_a_failed_compile_leaves_the_old_image(tsc: Tsc, tmp_path: Path) -> None
     target.write_bytes(b"TS\2 an old image")
     tsc("compile", "-e", "S = 5", "-o", target).gives(1, "TS")
     assert target.read_bytes() == b"TS\2 an old image"
-    assert [each.name for each in tmp_path.glob("*.*")] == ["old.bin"]
+    assert [path.name for path in tmp_path.glob("*.*")] == ["old.bin"]
 
 
 def test_compile_to_standard_output(
     program: Path, capsysbinary: pytest.CaptureFixture[bytes]
 ) -> None:
     assert main(["compile", str(program), "-o", "-"]) == 0
-    done = capsysbinary.readouterr()
-    assert unpack(done.out).code.hex() == "448c50"
-    assert b"18 bytes" in done.err
+    capture_result = capsysbinary.readouterr()
+    assert unpack(capture_result.out).code.hex() == "448c50"
+    assert b"18 bytes" in capture_result.err
 
 
 def test_map_says_which_line(tsc: Tsc, tmp_path: Path) -> None:

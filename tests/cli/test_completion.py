@@ -63,8 +63,8 @@ def test_verbs_options_and_values(tsc: Tsc) -> None:
 
 def test_every_option_of_every_verb(tsc: Tsc) -> None:
     for command, parser in parsers().items():
-        flags = {flag for each in parser._actions for flag in each.option_strings}
-        flags |= {flag for each in choosers_of(command) for flag in each.flags.split()}
+        flags = {flag for action in parser._actions for flag in action.option_strings}
+        flags |= {flag for option in choosers_of(command) for flag in option.flags.split()}
         words = typed(command).split()
         valued = [] if words[-1] in words_of(command) else ["x"]
         assert offered(tsc, *words, *valued, "-") == flags, command

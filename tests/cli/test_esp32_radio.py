@@ -24,27 +24,29 @@ DROVE = ["MOTORS 80 80", "MOTORS 0 0"]
 
 @pytest.fixture
 def robot() -> Iterator[Esp32PtyRobot]:
-    found = Esp32PtyRobot("tinibot32")
-    with found:
-        yield found
+    esp32_pty_robot = Esp32PtyRobot("tinibot32")
+    with esp32_pty_robot:
+        yield esp32_pty_robot
 
 
 def asked(robot: Esp32PtyRobot, what: str) -> str:
     """Return what the robot's radios are set to, or the address where it listens."""
     said: list[str] = []
 
-    def ask(found: HostFirmware) -> None:
-        assert isinstance(found, Esp32Robot)
-        said.append(str(port_of(found) if what == "port" else getattr(radios(found), what)))
+    def ask(host_firmware: HostFirmware) -> None:
+        assert isinstance(host_firmware, Esp32Robot)
+        said.append(
+            str(port_of(host_firmware) if what == "port" else getattr(radios(host_firmware), what))
+        )
 
     robot.ask(ask)
     return said[0]
 
 
 def near(robot: Esp32PtyRobot, password: bytes = PASSWORD) -> None:
-    def reach(found: HostFirmware) -> None:
-        assert isinstance(found, Esp32Robot)
-        in_reach(found, NETWORK, password.decode())
+    def reach(host_firmware: HostFirmware) -> None:
+        assert isinstance(host_firmware, Esp32Robot)
+        in_reach(host_firmware, NETWORK, password.decode())
 
     robot.ask(reach)
 

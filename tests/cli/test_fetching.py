@@ -144,9 +144,9 @@ class Clone:
 
     def unasked(self, command: list[str]) -> Done:
         """Return what a command does where there is no terminal."""
-        done = subprocess.run(command, env=self.variables(), capture_output=True,
+        completed = subprocess.run(command, env=self.variables(), capture_output=True,
                               stdin=subprocess.DEVNULL, text=True, timeout=HANGS_S)  # fmt: skip
-        return Done(done.returncode, done.stdout, done.stderr)
+        return Done(completed.returncode, completed.stdout, completed.stderr)
 
 
 class Person(Terminal):
@@ -221,9 +221,9 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     person.sees("[#")  # the progress
     person.sees("http://127.0.0.1:")
     first, second = (text(step, words[-1] if words else "en") for step in page_build.STEPS[:2])
-    before, _, behind = person.seen.partition(second)
+    before, _, after = person.seen.partition(second)
     shown = before.rpartition(first)[2]
-    assert behind and re.search(r"\r {40,}\r", shown), "nothing is left of the step before"
+    assert after and re.search(r"\r {40,}\r", shown), "nothing is left of the step before"
     assert clone.page.exists()
     person.interrupt()
     assert person.ended() == 0
@@ -331,14 +331,14 @@ def test_what_fails_has_a_sentence_and_leaves_no_page(clone: Clone, said: str, w
 
 def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, begin: Begin) -> None:
     clone.has_node()
-    told = clone.root / "told"
-    clone.works(f"Path({str(told)!r}).write_text(str(os.getpid())); time.sleep(600)")
+    path = clone.root / "told"
+    clone.works(f"Path({str(path)!r}).write_text(str(os.getpid())); time.sleep(600)")
     person = begin(clone.studio("--yes"))
-    until(lambda: told.exists() and bool(told.read_text()), "the build has begun")
+    until(lambda: path.exists() and bool(path.read_text()), "the build has begun")
     person.interrupt()
     assert person.ended() == 2 and "Stopped." in person.seen
     assert not clone.page.exists()
-    assert has_ended(told.read_text())
+    assert has_ended(path.read_text())
 
 
 # -- PlatformIO and its compiler
@@ -444,5 +444,5 @@ def test_what_pip_fetches_for_the_page_is_known_by_its_digests() -> None:
     assert metadata.requires(name) in (None, [rows[1][0]])
     for _, *digests in rows:
         assert digests and all(
-            re.fullmatch(r"--hash=sha256:[0-9a-f]{64}", each) for each in digests
+            re.fullmatch(r"--hash=sha256:[0-9a-f]{64}", digest) for digest in digests
         )

@@ -145,7 +145,7 @@ def test_a_link_stays_a_link_and_a_circle_of_them_ends(tmp_path: Path) -> None:
     link.symlink_to(target)
     files.replace(link, b"2")
     assert link.is_symlink() and target.read_bytes() == b"2"
-    assert [each.name for each in (tmp_path / "folder").iterdir()] == ["x"]
+    assert [path.name for path in (tmp_path / "folder").iterdir()] == ["x"]
     (tmp_path / "a").symlink_to("b")
     (tmp_path / "b").symlink_to("a")
     with pytest.raises(OSError, match="symbolic links"):
@@ -162,7 +162,7 @@ def test_what_goes_wrong_leaves_nothing(tmp_path: Path, monkeypatch: pytest.Monk
         monkeypatch.setattr(Path, "replace", fail)
         with pytest.raises(type(failure)):
             files.replace(tmp_path / "x", b"2")
-        assert [each.name for each in tmp_path.iterdir()] == ["x"]
+        assert [path.name for path in tmp_path.iterdir()] == ["x"]
         assert (tmp_path / "x").read_bytes() == b"1"
 
 
@@ -196,13 +196,13 @@ def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
     )
     output = tmp_path / "a.bin"
     output.write_bytes(b"TS\2mine")
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-B", "-c", code, "compile", str(program), "-o", str(output)],
         capture_output=True,
     )
-    assert done.returncode == 2 and b"cannot be written" in done.stderr
+    assert completed.returncode == 2 and b"cannot be written" in completed.stderr
     assert output.read_bytes() == b"TS\2mine"
-    left = sorted(each.name for each in tmp_path.rglob("*") if each.is_file())
+    left = sorted(path.name for path in tmp_path.rglob("*") if path.is_file())
     assert left == ["a.bin", "a.ts"], "nor is there an empty map"
 
 
@@ -223,12 +223,12 @@ def test_abandoned_files_of_the_cache_go(tsc: Tsc, tmp_path: Path) -> None:
     folder.mkdir(parents=True)
     old, new = folder / ".x.json.00.new", folder / ".y.json.00.new"
     older = folder / "0badcafe.1234"  # as older versions called them
-    for each in (old, new, older):
-        each.write_bytes(b"")
-    for each in (old, older):
-        os.utime(each, (time() - 7200, time() - 7200))
+    for path in (old, new, older):
+        path.write_bytes(b"")
+    for path in (old, older):
+        os.utime(path, (time() - 7200, time() - 7200))
     assert tsc("compile", "-e", PROGRAM, "-o", tmp_path / "x.bin").code == 0
-    left = {each.name for each in folder.iterdir()}
+    left = {path.name for path in folder.iterdir()}
     assert {old.name, older.name} & left == set()
     assert new.name in left, "another command may be writing it now"
     empty = folder / "00000001.json"
@@ -238,7 +238,7 @@ def test_abandoned_files_of_the_cache_go(tsc: Tsc, tmp_path: Path) -> None:
 
 
 def names() -> set[str]:
-    return {each.name for each in registry._folder().iterdir()}
+    return {path.name for path in registry._folder().iterdir()}
 
 
 def test_a_lock_goes_with_its_command() -> None:

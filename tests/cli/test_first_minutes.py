@@ -165,7 +165,7 @@ def test_stop_stops_all_that_are_in_use() -> None:
         done = inside("stop").gives(0)
         assert done.err == "Done: 3 of 3.\n"
         assert {found.port, first.port, second.port} <= set(re.findall(r"socket:\S*\d", done.out))
-        assert [each.command.ended().code for each in (first, second)] == [3, 3]
+        assert [upload.command.ended().code for upload in (first, second)] == [3, 3]
         assert found.until("STOP")
 
 
@@ -262,7 +262,7 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     assert "tinibot no tiene BUTTON; lo tiene el robot liner." in done.err
     assert "Si lo es, escribe encima del programa: // robot: liner " in done.err
     done = tsc("check", "-e", "LED(BUTTON)", "--json")
-    (found,) = [each for each in json.loads(done.out) if each["column"] == 1]
+    (found,) = [load for load in json.loads(done.out) if load["column"] == 1]
     assert found["code"] == "TS119"
     assert found["message"] == "tinibot has no LED; the robots grabber and liner have it."
     assert found["fix"].endswith("If it is, write above the program: // robot: grabber")
@@ -291,13 +291,13 @@ def test_up_to_three_robots_are_named() -> None:
 
 def test_the_robot_that_answers_says_which_kit_it_has() -> None:
     with robot("--robot", "liner", "--world", "line") as found:
-        here = "The robot here: liner. tsc compiles for it.\n"
+        here = "The connected robot: liner. tsc compiles for it.\n"
         done = inside("check", *LINE, "--virtual")
         assert (done.code, done.err) == (0, here)
         done = inside("upload", *LINE, "--port", found.port, "--no-run")
         assert (done.code, done.err) == (0, here)
         done = inside("live", "SHOW(LINE_L)", "--lang", "es").gives(0)
-        assert done.err == "El robot de aquí: liner. tsc compila para él.\n"
+        assert done.err == "El robot conectado: liner. tsc compila para él.\n"
         # a program of the default robot would be for another kit than the robot has
         inside("upload", "-e", "SHOW(DISTANCE)").gives(1, "liner has no DISTANCE")
         # nothing is said of a program that any robot can do, and no robot is asked about a slip
@@ -316,7 +316,7 @@ def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
         assert "TS103" in inside("upload", "-e", text).err  # nobody knows it yet
         assert inside("doctor", "--robot", profile).code == 0
         done = inside("upload", "-e", text)
-        assert (done.code, done.err) == (0, "The robot here: own. tsc compiles for it.\n")
+        assert (done.code, done.err) == (0, "The connected robot: own. tsc compiles for it.\n")
     [(path, found)] = given.profiles()
     assert path == str(profile)
     profile.write_text("")  # it has changed
@@ -348,7 +348,7 @@ def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture
         for value in (*[MARK] * before, MARK, MARK, 7):
             assert catch.hold(ShownEvent(value, 0))
         assert catch.hold(DoneEvent(1))
-        assert {name: each.value for name, each in known.values.items()} == {"X": MARK, "Y": 7}
+        assert {name: value.value for name, value in known.values.items()} == {"X": MARK, "Y": 7}
         assert capsys.readouterr().out == "SHOW -2147483.648\n" * before
         known.values.clear()
 

@@ -1,5 +1,5 @@
 """Ctrl-C while a program goes to many robots: at whatever stage each of them is, and whoever still
-connects, behind it none starts anything, and all stand."""
+connects, after it none starts anything, and all stand."""
 
 from __future__ import annotations
 
@@ -76,13 +76,13 @@ def stepping(
 
 @pytest.fixture
 def fleet() -> Iterator[RobotFleet]:
-    with known_fleet([TINIBOT] * 3) as found:
-        yield found
+    with known_fleet([TINIBOT] * 3) as robot_fleet:
+        yield robot_fleet
 
 
 @pytest.mark.sampled("seed", keep=3)
 @pytest.mark.parametrize("seed", range(8))
-def test_behind_ctrl_c_nothing_starts(
+def test_after_ctrl_c_nothing_starts(
     fleet: RobotFleet, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     rng = random.Random(seed)

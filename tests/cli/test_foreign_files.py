@@ -97,16 +97,20 @@ def test_a_pipe_in_a_folder_is_no_file(words: list[str], tmp_path: Path) -> None
     for name in ("pipe", "pipe.ts", "pipe.toml", "lesson.toml"):
         (tmp_path / name).unlink(missing_ok=True)
         os.mkfifo(tmp_path / name)
-    given = [each.format(pipe=tmp_path / "pipe", lesson=tmp_path) for each in words]
-    done = subprocess.run([*TSC, *given], capture_output=True, text=True, timeout=HANGS_S)
-    assert (done.returncode == 2 and done.stderr.startswith("tsc: ")) or "cannot" in done.stderr
+    given = [word.format(pipe=tmp_path / "pipe", lesson=tmp_path) for word in words]
+    completed = subprocess.run([*TSC, *given], capture_output=True, text=True, timeout=HANGS_S)
+    assert (
+        completed.returncode == 2 and completed.stderr.startswith("tsc: ")
+    ) or "cannot" in completed.stderr
 
 
 @pytest.mark.skipif(not Path("/dev/fd").is_dir(), reason="this system has no /dev/fd")
 def test_a_pipe_of_the_shell_is_read() -> None:
     line = f"{sys.executable} -m tiniscript check <(echo 'SI|S')"
-    done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, timeout=HANGS_S)
-    assert (done.returncode, done.stderr) == (0, "")
+    completed = subprocess.run(
+        ["bash", "-c", line], capture_output=True, text=True, timeout=HANGS_S
+    )
+    assert (completed.returncode, completed.stderr) == (0, "")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has other permissions")
@@ -121,7 +125,7 @@ def test_nobody_else_reads_the_programs_in_the_cache(
     assert inside("compile", tmp_path / "p.ts").code == 0
     (kept,) = maps.iterdir()
     assert "mine" in kept.read_text()
-    assert [stat.S_IMODE(each.stat().st_mode) for each in (maps, kept)] == [0o700, 0o600]
+    assert [stat.S_IMODE(path.stat().st_mode) for path in (maps, kept)] == [0o700, 0o600]
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such pipes")

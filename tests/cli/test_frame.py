@@ -51,11 +51,11 @@ class Terminal:
 
 
 def line(chance: random.Random) -> Text:
-    found = Text()
-    while found.cell_len < chance.randrange(COLUMNS - 2):
-        found.append(chance.choice(SIGNS), style=chance.choice(STYLES))
-    found.rstrip()
-    return found
+    text = Text()
+    while text.cell_len < chance.randrange(COLUMNS - 2):
+        text.append(chance.choice(SIGNS), style=chance.choice(STYLES))
+    text.rstrip()
+    return text
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -66,7 +66,7 @@ def test_what_is_seen_is_the_last_picture_below_all_that_was_said(seed: int) -> 
     said: list[str] = []
     lines = [line(chance) for _ in range(5)]
     for number in range(30):
-        lines = [each.copy() for each in lines]
+        lines = [text.copy() for text in lines]
         for k in range(len(lines)):
             if chance.random() < 0.3:
                 lines[k] = line(chance)
@@ -77,7 +77,7 @@ def test_what_is_seen_is_the_last_picture_below_all_that_was_said(seed: int) -> 
         above = f"said {number}" if chance.random() < 0.3 else ""
         said += [above] if above else []
         terminal.draw(lines, above)
-        expected = [*said, *(each.plain for each in lines)]
+        expected = [*said, *(text.plain for text in lines)]
         seen = terminal.seen()
         assert seen[: len(expected)] == expected
         assert not any(seen[len(expected) :])
@@ -87,7 +87,7 @@ def test_nothing_is_written_where_nothing_changes() -> None:
     terminal = Terminal()
     lines = [Text("one"), Text("two", style="red")]
     assert terminal.draw(lines)
-    assert terminal.draw([each.copy() for each in lines]) == ""
+    assert terminal.draw([text.copy() for text in lines]) == ""
 
 
 def test_a_line_that_has_not_changed_is_not_written_again() -> None:
@@ -98,7 +98,7 @@ def test_a_line_that_has_not_changed_is_not_written_again() -> None:
     said = terminal.draw(lines)
     assert said.startswith(BEGIN) and said.endswith(END)
     assert "other" in said and "value" not in said
-    assert [each for each in terminal.seen() if each] == [each.plain for each in lines]
+    assert [each for each in terminal.seen() if each] == [text.plain for text in lines]
 
 
 @pytest.mark.parametrize("rows", [1, 3, 4, 5, 30])
@@ -112,7 +112,7 @@ def test_what_is_long_or_much_is_said_whole(rows: int) -> None:
     terminal.draw(lines, "x" * COLUMNS * 2)
     terminal.draw(lines, "y" * (COLUMNS - 1))
     expected = [*much.split("\n"), "x" * COLUMNS, "x" * COLUMNS, "y" * (COLUMNS - 1)]
-    expected += [each.plain for each in lines]
+    expected += [text.plain for text in lines]
     assert [each for each in terminal.seen() if each] == expected
 
 
@@ -157,9 +157,9 @@ def test_a_small_change_of_the_values_does_not_move_the_axis() -> None:
     before = plot.lines(80, 20, 200)
     plot.take(200, 98_900, False)
     after = plot.lines(80, 20, 300)
-    assert [each.plain[:8] for each in before[1:]] == [each.plain[:8] for each in after[1:]]
+    assert [text.plain[:8] for text in before[1:]] == [text.plain[:8] for text in after[1:]]
     assert len(after) <= ROWS + 1
-    assert sum(bool(each.plain[:5].strip()) for each in after[1:]) >= 3, "marks"
+    assert sum(bool(text.plain[:5].strip()) for text in after[1:]) >= 3, "marks"
 
 
 def test_columns_of_values_only_grow() -> None:
@@ -170,7 +170,7 @@ def test_columns_of_values_only_grow() -> None:
     places = []
     for k, value in enumerate((5, 400, 7)):
         picture.take(Event(k * 100, "READ", (2, value * 1000), ""))
-        row = next(each for each in picture.lines(100, 20, k * 100) if "DISTANCE" in each.plain)
+        row = next(text for text in picture.lines(100, 20, k * 100) if "DISTANCE" in text.plain)
         places.append(row.plain.index(" cm"))
     assert places[0] <= places[1] == places[2]
 

@@ -43,9 +43,9 @@ def rows_of(said: str) -> list[str]:
 
 def flags_in_help(verb: str) -> list[str]:
     """Return the flags that a verb takes, without those that it takes in silence."""
-    taken = {flag for each in PARSERS[verb]._actions for flag in each.option_strings}
-    silent = [each for each in of_verb(verb) if each not in shown_of(verb)]
-    unsaid = {flag for each in silent if not each.is_argument for flag in each.flags.split()}
+    taken = {flag for action in PARSERS[verb]._actions for flag in action.option_strings}
+    silent = [option for option in of_verb(verb) if option not in shown_of(verb)]
+    unsaid = {flag for option in silent if not option.is_argument for flag in option.flags.split()}
     assert unsaid <= taken
     return sorted(taken - unsaid)
 
@@ -63,17 +63,21 @@ def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
     said = [flag for row in rows for flag in re.findall(FLAG, row)]
     assert sorted(said) == flags_in_help(verb)
     arguments = [row for row in rows if not row.startswith("-")]
-    assert len(arguments) == sum(each.is_argument for each in shown_of(verb))
+    assert len(arguments) == sum(option.is_argument for option in shown_of(verb))
     for argument in arguments:
         assert re.search(rf"\b{argument}\b", done.out.splitlines()[0])
     known = {
-        flag for of in PARSERS.values() for each in of._actions for flag in each.option_strings
+        flag for of in PARSERS.values() for action in of._actions for flag in action.option_strings
     }
     assert set(re.findall(FLAG, done.out)) <= known | {"-N", "-Uz"}  # a number; of zsh
-    for each in PARSERS[verb]._actions:
-        if set(each.option_strings) & set(said):
-            (row,) = (row for row in rows if each.option_strings[0] in row.split(" ")[0].split(","))
-            assert (each.nargs == 0) == (re.fullmatch(rf"{FLAG}(, {FLAG})*", row) is not None), row
+    for action in PARSERS[verb]._actions:
+        if set(action.option_strings) & set(said):
+            (row,) = (
+                row for row in rows if action.option_strings[0] in row.split(" ")[0].split(",")
+            )
+            assert (action.nargs == 0) == (re.fullmatch(rf"{FLAG}(, {FLAG})*", row) is not None), (
+                row
+            )
 
 
 @in_both
@@ -171,8 +175,8 @@ def test_every_row_of_the_table_is_for_a_verb_and_says_something_in_both(option:
 
 def test_every_text_of_help_is_shown() -> None:
     """The catalogue has none that no verb or option asks for."""
-    known = {f"option/{each.flags}/{each.verbs.split()[0]}" for each in OPTIONS}
-    known |= {f"value/{each.value}" for each in OPTIONS} | {
+    known = {f"option/{option.flags}/{option.verbs.split()[0]}" for option in OPTIONS}
+    known |= {f"value/{option.value}" for option in OPTIONS} | {
         f"group/{each}" for each in VERBS.values()
     }
     known |= {f"verb/{verb}/{each}" for verb in (*COMMANDS, "--version")
@@ -199,7 +203,7 @@ WRITTEN = [name for name in robots.names() if robots.load(name).board.chip in AV
 def test_names_that_help_lists_are_those_that_there_are(
     verb: str, flag: str, names: list[str], language: str
 ) -> None:
-    (option,) = (each for each in of_verb(verb) if each.flags == flag)
+    (option,) = (option for option in of_verb(verb) if option.flags == flag)
     listed = re.split(r"[^a-z0-9-]+", option.help(language))
     assert set(names) <= set(listed)
 
@@ -208,14 +212,14 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
     tsc: Tsc, tmp_path: Path
 ) -> None:
     """`upload`, which takes one too, needs a robot, `class` some, `lesson` a task: see theirs."""
-    takes = [verb for verb in VERBS if any(each.kind is A_PROGRAM for each in of_verb(verb))]
+    takes = [verb for verb in VERBS if any(option.kind is A_PROGRAM for option in of_verb(verb))]
     assert takes == ["lesson", "check", "run", "compile", "show", "fmt", "upload", "class"]
     for verb in takes:
-        assert "-e" in {flag for each in PARSERS[verb]._actions for flag in each.option_strings}
+        assert "-e" in {flag for action in PARSERS[verb]._actions for flag in action.option_strings}
         if verb not in ("upload", "class", "lesson"):
             more = ["-o", str(tmp_path / "a.bin")] if verb == "compile" else []
             assert tsc(verb, "-e", PROGRAM, *more).code == 0
-    assert "-e" in {flag for each in PARSERS["live"]._actions for flag in each.option_strings}
+    assert "-e" in {flag for action in PARSERS["live"]._actions for flag in action.option_strings}
 
 
 @pytest.mark.parametrize("language", DOCUMENTED)
@@ -223,7 +227,7 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
 def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) -> None:
     common, *sections = page(language, "a test", table).split("\n## ")
     sections = [each for part in sections for each in part.split("\n### ")]
-    (section,) = (each for each in sections if each.startswith(f"`tsc {typed(verb)}`\n"))
+    (section,) = (section for section in sections if section.startswith(f"`tsc {typed(verb)}`\n"))
     found = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)
     said = [flag for each in found for flag in re.findall(FLAG, each)]
     assert sorted(said) == flags_in_help(verb)
@@ -324,8 +328,8 @@ def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
     terminal.until("begun")
     terminal.type("\x03")
     assert terminal.end() == 0
-    behind = terminal.written.decode().partition("begun\r\n")[2]
-    assert behind.replace("^C", "") == said
+    after = terminal.written.decode().partition("begun\r\n")[2]
+    assert after.replace("^C", "") == said
 
 
 @each_row("words, english, spanish", [

@@ -66,7 +66,7 @@ def program(number: int) -> bytes:
 
 def found_maps() -> list[int]:
     numbers = (FIRST, SECOND, THIRD)
-    return [each for each in numbers if source_map.recall(images.checksum(program(each)))]
+    return [number for number in numbers if source_map.recall(images.checksum(program(number)))]
 
 
 def output() -> Path:
@@ -85,7 +85,7 @@ def found_output() -> list[int]:
 KEPT = {
     "ports": Kept(
         lambda number: known_ports.remember(f"/dev/ttyUSB{number}", LONG),
-        lambda: [int(each[-1]) for each in known_ports.known().names],
+        lambda: [int(name[-1]) for name in known_ports.known().names],
         known_ports,
     ),
     "keys": Kept(add_key, lambda: [key.id for key in key_file().all()], keys),
@@ -186,8 +186,8 @@ def lines_of(kept: Kept, number: int) -> int:
 def fresh(kept: Kept, tmp_path: Path) -> list[int]:
     """Begin anew, with the first one kept; return what is kept."""
     for folder in tmp_path.iterdir():
-        for each in sorted(folder.rglob("*"), reverse=True):
-            each.unlink() if each.is_file() else each.rmdir()
+        for path in sorted(folder.rglob("*"), reverse=True):
+            path.unlink() if path.is_file() else path.rmdir()
     kept.add(FIRST)
     assert kept.all() == [FIRST]
     return [FIRST]

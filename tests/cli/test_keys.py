@@ -24,17 +24,17 @@ SECRET = ONE.key.hex()
 
 
 @pytest.fixture
-def own(tmp_path: Path) -> KeyFile:
+def key_file(tmp_path: Path) -> KeyFile:
     return KeyFile(tmp_path / "settings" / "keys.json")
 
 
-def test_only_this_person_reads_the_file(own: KeyFile) -> None:
-    own.made(1, KEY_OWNER, "A")
-    assert stat.S_IMODE(own.path.stat().st_mode) == 0o600
-    assert stat.S_IMODE(own.path.parent.stat().st_mode) == 0o700
-    own.path.chmod(0o644)
-    own.made(2, KEY_OWNER, "B")
-    assert stat.S_IMODE(own.path.stat().st_mode) == 0o600
+def test_only_this_person_reads_the_file(key_file: KeyFile) -> None:
+    key_file.made(1, KEY_OWNER, "A")
+    assert stat.S_IMODE(key_file.path.stat().st_mode) == 0o600
+    assert stat.S_IMODE(key_file.path.parent.stat().st_mode) == 0o700
+    key_file.path.chmod(0o644)
+    key_file.made(2, KEY_OWNER, "B")
+    assert stat.S_IMODE(key_file.path.stat().st_mode) == 0o600
 
 
 @pytest.mark.parametrize(
@@ -46,28 +46,30 @@ def test_only_this_person_reads_the_file(own: KeyFile) -> None:
      written([ONE]).replace(b"12345678", b"1234567"), b"[" * 100_000,
      written([ONE]).replace(b"12345678", b"-1234567"), written([ONE] * (MOST + 1))],
 )  # fmt: skip
-def test_a_file_that_is_none_is_left_as_it_is(own: KeyFile, data: bytes) -> None:
-    own.path.parent.mkdir()
-    own.path.write_bytes(data)
-    with pytest.raises(BadKeys) as found:
-        own.all()
-    assert SECRET not in repr(found.value)
-    assert own.of_robot(1) == []
-    assert own.made(1, KEY_OWNER, "A") is None
-    own.settle(ONE)
-    own.drop(ONE)
-    assert own.path.read_bytes() == data
+def test_a_file_that_is_none_is_left_as_it_is(key_file: KeyFile, data: bytes) -> None:
+    key_file.path.parent.mkdir()
+    key_file.path.write_bytes(data)
+    with pytest.raises(BadKeys) as exception_info:
+        key_file.all()
+    assert SECRET not in repr(exception_info.value)
+    assert key_file.of_robot(1) == []
+    assert key_file.made(1, KEY_OWNER, "A") is None
+    key_file.settle(ONE)
+    key_file.drop(ONE)
+    assert key_file.path.read_bytes() == data
 
 
-def test_what_is_known_of_a_robots_seals_outlives_a_list_that_does_not_say_it(own: KeyFile) -> None:
-    own.settle(ONE._replace(seals=True))
-    own.settle(ONE._replace(id=7))
-    assert [key.seals for key in own.of_robot(None)] == [True, False]
-    own.add([ONE, ONE._replace(id=7)])
-    assert [key.seals for key in own.of_robot(ONE.id)] == [True]
-    assert KeyFile(own.path, is_for_virtual=True).of_robot(ONE.id) == [ONE]
-    own.add([ONE._replace(key=b"\2" * 16)])  # another one: nothing is known of it
-    assert [key.seals for key in own.of_robot(ONE.id)] == [False]
+def test_what_is_known_of_a_robots_seals_outlives_a_list_that_does_not_say_it(
+    key_file: KeyFile,
+) -> None:
+    key_file.settle(ONE._replace(seals=True))
+    key_file.settle(ONE._replace(id=7))
+    assert [key.seals for key in key_file.of_robot(None)] == [True, False]
+    key_file.add([ONE, ONE._replace(id=7)])
+    assert [key.seals for key in key_file.of_robot(ONE.id)] == [True]
+    assert KeyFile(key_file.path, is_for_virtual=True).of_robot(ONE.id) == [ONE]
+    key_file.add([ONE._replace(key=b"\2" * 16)])  # another one: nothing is known of it
+    assert [key.seals for key in key_file.of_robot(ONE.id)] == [False]
 
 
 def test_the_keys_of_one_robot_are_forgotten(tsc: Tsc) -> None:
@@ -100,55 +102,58 @@ for robot in range(first, first + 25):
 """
 
 
-def test_many_claims_at_once_lose_no_key(own: KeyFile) -> None:
+def test_many_claims_at_once_lose_no_key(key_file: KeyFile) -> None:
     """Each is a process of its own, as each `tsc set owner` is."""
-    commands = [[sys.executable, "-c", CLAIMS, str(own.path), str(100 * k)] for k in range(4)]
+    commands = [[sys.executable, "-c", CLAIMS, str(key_file.path), str(100 * k)] for k in range(4)]
     running = [subprocess.Popen(command) for command in commands]
-    assert [each.wait() for each in running] == [0] * 4
-    found = own.all()
-    assert sorted(key.id for key in found) == [100 * k + n for k in range(4) for n in range(25)]
-    assert not any(key.is_pending for key in found)
-    assert [key.is_stale for key in found] == [key.id % 5 == 0 for key in found]
+    assert [process.wait() for process in running] == [0] * 4
+    robot_keys = key_file.all()
+    assert sorted(key.id for key in robot_keys) == [
+        100 * k + n for k in range(4) for n in range(25)
+    ]
+    assert not any(key.is_pending for key in robot_keys)
+    assert [key.is_stale for key in robot_keys] == [key.id % 5 == 0 for key in robot_keys]
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_a_key_that_its_robot_may_have_taken_stays_until_that_is_known(
-    own: KeyFile, seed: int
+    key_file: KeyFile, seed: int
 ) -> None:
     """Whatever else comes into the file, or goes out of it: a robot keeps no second copy."""
-    own.add([ONE, ONE._replace(id=7)])
-    claim = own.made(ONE.id, ONE.which, ONE.name)
+    key_file.add([ONE, ONE._replace(id=7)])
+    claim = key_file.made(ONE.id, ONE.which, ONE.name)
     assert claim is not None
     other = ONE._replace(key=bytes(range(1, 17)))
     changes: list[Callable[[], object]] = [
-        lambda: own.add([ONE]), lambda: own.add([other, ONE._replace(which=KEY_TEACHER)]),
-        lambda: own.add([ONE._replace(id=7)]), lambda: own.forget(7), lambda: own.refuse(ONE),
-        lambda: own.drop(ONE), lambda: own.drop(other), lambda: own.settle(ONE._replace(id=7)),
-        lambda: own.settle(ONE._replace(which=KEY_TEACHER)),
-        lambda: own.made(ONE.id, KEY_TEACHER, ONE.name),
+        lambda: key_file.add([ONE]), lambda: key_file.add([other, ONE._replace(which=KEY_TEACHER)]),
+        lambda: key_file.add([ONE._replace(id=7)]), lambda: key_file.forget(7),
+        lambda: key_file.refuse(ONE), lambda: key_file.drop(ONE), lambda: key_file.drop(other),
+        lambda: key_file.settle(ONE._replace(id=7)),
+        lambda: key_file.settle(ONE._replace(which=KEY_TEACHER)),
+        lambda: key_file.made(ONE.id, KEY_TEACHER, ONE.name),
     ]  # fmt: skip
     chance = random.Random(seed)
     for change in chance.choices(changes, k=6):
         change()
-        assert claim in own.all()
-    own.settle(claim)
-    assert [key for key in own.of_robot(ONE.id) if key.which == ONE.which] == [
+        assert claim in key_file.all()
+    key_file.settle(claim)
+    assert [key for key in key_file.of_robot(ONE.id) if key.which == ONE.which] == [
         claim._replace(is_pending=False)
     ]
 
 
 def test_a_command_that_stands_still_keeps_no_other_one_waiting_for_ever(
-    own: KeyFile, monkeypatch: pytest.MonkeyPatch
+    key_file: KeyFile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own.add([ONE])
+    key_file.add([ONE])
     monkeypatch.setattr(files, "LOCK_S", 0.1)
-    with files.alone(own.path):
-        assert own.made(1, KEY_OWNER, "A") is None
+    with files.alone(key_file.path):
+        assert key_file.made(1, KEY_OWNER, "A") is None
         with pytest.raises(BadKeys):
-            own.add([ONE._replace(id=2)])
-        own.drop(ONE)
-        assert own.all() == [ONE]
-    assert own.made(1, KEY_OWNER, "A")
+            key_file.add([ONE._replace(id=2)])
+        key_file.drop(ONE)
+        assert key_file.all() == [ONE]
+    assert key_file.made(1, KEY_OWNER, "A")
 
 
 def test_no_text_of_a_key_has_its_bytes() -> None:
@@ -195,16 +200,16 @@ def test_a_class_list_goes_out_and_in(
 
 def test_keys_that_do_not_fit_leave_those_that_are_there(tsc: Tsc, tmp_path: Path) -> None:
     """As a list of a stranger, who would have a person's own robots gone."""
-    own, many = KeyFile(), tmp_path / "many.json"
-    own.add([ONE])
+    key_file, many = KeyFile(), tmp_path / "many.json"
+    key_file.add([ONE])
     others = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST)]
     many.write_bytes(written(others))
     for language, words in (("en", "2000 keys"), ("es", "2000 llaves")):
         tsc("set", "owner", "--import", str(many), "--lang", language).gives(2, words, out="")
-    assert own.all() == [ONE]
-    assert own.add(others[1:]) == MOST - 1
-    assert own.made(5_000, KEY_OWNER, "A") is None, "no key is dropped for a new one"
-    assert ONE in own.all() and len(own.all()) == MOST
+    assert key_file.all() == [ONE]
+    assert key_file.add(others[1:]) == MOST - 1
+    assert key_file.made(5_000, KEY_OWNER, "A") is None, "no key is dropped for a new one"
+    assert ONE in key_file.all() and len(key_file.all()) == MOST
 
 
 def test_a_broken_file_and_one_that_others_may_read_are_told(tsc: Tsc) -> None:
@@ -219,39 +224,39 @@ def test_a_broken_file_and_one_that_others_may_read_are_told(tsc: Tsc) -> None:
 
 def test_claims_that_were_left_leave_few_keys() -> None:
     """Each key that is shown takes time: of pending ones the last two are kept, of each kind."""
-    own = KeyFile()
+    key_file = KeyFile()
     for _ in range(6):
-        own.made(ONE.id, ONE.which, "TINI")
-        last = own.made(ONE.id, 1 - ONE.which, "TINI")
-    other = own.made(7, 0, "")
+        key_file.made(ONE.id, ONE.which, "TINI")
+        last = key_file.made(ONE.id, 1 - ONE.which, "TINI")
+    other = key_file.made(7, 0, "")
     assert last and other
-    own.refuse(last)
-    found = own.of_robot(ONE.id)
-    assert sorted(key.which for key in found) == [0, 0, 1, 1]
-    assert found[-1] == last._replace(is_stale=True) and own.of_robot(7) == [other]
+    key_file.refuse(last)
+    robot_keys = key_file.of_robot(ONE.id)
+    assert sorted(key.which for key in robot_keys) == [0, 0, 1, 1]
+    assert robot_keys[-1] == last._replace(is_stale=True) and key_file.of_robot(7) == [other]
 
 
 PLACE = "tcp://ana"
 
 
-def test_where_a_robot_was_met_is_kept_for_this_person_alone(own: KeyFile) -> None:
-    own.meet(PLACE, ONE.id)
-    own.meet("/dev/ttyUSB0", 7)
-    own.meet(PLACE, 8)
-    path = own.path.with_name("robots.json")
+def test_where_a_robot_was_met_is_kept_for_this_person_alone(key_file: KeyFile) -> None:
+    key_file.meet(PLACE, ONE.id)
+    key_file.meet("/dev/ttyUSB0", 7)
+    key_file.meet(PLACE, 8)
+    path = key_file.path.with_name("robots.json")
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
-    again = KeyFile(own.path)
+    again = KeyFile(key_file.path)
     assert (again.robot_at(PLACE), again.robot_at("/dev/ttyUSB0"), again.robot_at("")) == (
         8,
         7,
         None,
     )
     assert not again.accepts(9)
-    own.accept(9)
+    key_file.accept(9)
     assert again.accepts(9) and again.robot_at(PLACE) == 8
-    assert KeyFile(own.path, accepts_all=True).accepts(10)
-    KeyFile(own.path, is_for_virtual=True).meet(PLACE, 11)
+    assert KeyFile(key_file.path, accepts_all=True).accepts(10)
+    KeyFile(key_file.path, is_for_virtual=True).meet(PLACE, 11)
     assert again.robot_at(PLACE) == 8
 
 
@@ -260,29 +265,29 @@ def test_where_a_robot_was_met_is_kept_for_this_person_alone(own: KeyFile) -> No
     [b"", b"[]", b"{", b"\xff", b"[" * 100_000, b'{"places": [], "accepted": []}',
      b'{"places": {"a": 7}, "accepted": []}', b'{"places": {}, "accepted": ["x"]}'],
 )  # fmt: skip
-def test_a_file_of_places_that_is_none_is_made_anew(own: KeyFile, data: bytes) -> None:
-    own.path.parent.mkdir()
-    own.path.with_name("robots.json").write_bytes(data)
-    assert own.robot_at(PLACE) is None and not own.accepts(7)
-    own.meet(PLACE, 7)
-    assert own.robot_at(PLACE) == 7
+def test_a_file_of_places_that_is_none_is_made_anew(key_file: KeyFile, data: bytes) -> None:
+    key_file.path.parent.mkdir()
+    key_file.path.with_name("robots.json").write_bytes(data)
+    assert key_file.robot_at(PLACE) is None and not key_file.accepts(7)
+    key_file.meet(PLACE, 7)
+    assert key_file.robot_at(PLACE) == 7
 
 
-def test_places_that_cannot_be_kept_end_nothing(own: KeyFile) -> None:
-    own.path.parent.write_bytes(b"a file where the folder should be")
-    own.meet(PLACE, 7)
-    assert own.robot_at(PLACE) is None
+def test_places_that_cannot_be_kept_end_nothing(key_file: KeyFile) -> None:
+    key_file.path.parent.write_bytes(b"a file where the folder should be")
+    key_file.meet(PLACE, 7)
+    assert key_file.robot_at(PLACE) is None
     with pytest.raises(BadKeys):
-        own.accept(7)
+        key_file.accept(7)
 
 
 def test_no_more_places_are_kept_than_a_file_holds(
-    own: KeyFile, monkeypatch: pytest.MonkeyPatch
+    key_file: KeyFile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(met_robots, "KEPT", 3)
     for number in range(5):
-        own.meet(f"tcp://{number}", number)
-    assert [own.robot_at(f"tcp://{number}") for number in range(5)] == [None, None, 2, 3, 4]
+        key_file.meet(f"tcp://{number}", number)
+    assert [key_file.robot_at(f"tcp://{number}") for number in range(5)] == [None, None, 2, 3, 4]
 
 
 @pytest.mark.parametrize("robot", ["", "7", "ANA", "1234567g", "123456789", "-1234567"])

@@ -54,10 +54,10 @@ def test_the_world_of_a_failure_can_be_repeated(tsc: Tsc, tmp_path: Path) -> Non
     path = tmp_path / "left.ts"
     path.write_text("SI|F(2.6, 60);L(0.42, 60);IF(TRUE);F(2.4, 60);ENDIF", encoding="utf-8")
     done = tsc("lesson", "check", "8", path).gives(1)
-    said = re.search(r"--seed (\d+)", done.out)
-    assert said and f"not yet, in world {said[1]}." in done.out
+    match = re.search(r"--seed (\d+)", done.out)
+    assert match and f"not yet, in world {match[1]}." in done.out
     (sentence,) = [row for row in done.out.splitlines() if row.startswith("- ")]
-    tsc("lesson", "check", "8", path, "--seed", said[1]).gives(1, out=sentence)
+    tsc("lesson", "check", "8", path, "--seed", match[1]).gives(1, out=sentence)
     assert tsc("lesson", "check", "8", path, "--seed", "1").code == 0
 
 

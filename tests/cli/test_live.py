@@ -141,6 +141,6 @@ def test_mistakes_and_warnings_are_those_of_the_line() -> None:
     assert known.line("DEF A; S; END_DEF", 55).compiled.diagnostics == []
     (warning,) = known.line("LOOP(FOREVER); X = 1; END_LOOP", 55).compiled.diagnostics
     assert warning.code.number == "TS804"
-    assert [each.code.number for each in known.line("SHOW(NEW)", 55).compiled.diagnostics] == [
-        "TS103"
-    ]
+    assert [
+        diagnostic.code.number for diagnostic in known.line("SHOW(NEW)", 55).compiled.diagnostics
+    ] == ["TS103"]

@@ -33,8 +33,8 @@ NOISY = (5, 13, 17, 21)
 
 @pytest.fixture
 def class_() -> Iterator[RobotFleet]:
-    with known_fleet([TINIBOT] * 4) as found:
-        yield found
+    with known_fleet([TINIBOT] * 4) as robot_fleet:
+        yield robot_fleet
 
 
 def results(done: Done) -> dict[str, dict[str, object]]:
@@ -87,12 +87,16 @@ def test_one_that_babbles_holds_up_no_other(class_: RobotFleet, babble: bytes) -
     done = inside("upload", "-e", FOREVER, "--all", "--detach", "--json")
     rows = results(done)
     assert done.code == 3 and len(done.out) < 10_000
-    assert {port for port, row in rows.items() if row["is_done"]} == {each.port for each in others}
-    assert all(each.moves for each in others)
+    assert {port for port, row in rows.items() if row["is_done"]} == {
+        pupil.port for pupil in others
+    }
+    assert all(pupil.moves for pupil in others)
     done = inside("stop", "--all", "--json")
     rows = results(done)
-    assert {port for port, row in rows.items() if row["is_done"]} >= {each.port for each in others}
-    assert not any(each.moves for each in class_.pupils)
+    assert {port for port, row in rows.items() if row["is_done"]} >= {
+        pupil.port for pupil in others
+    }
+    assert not any(pupil.moves for pupil in class_.pupils)
 
 
 def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
@@ -104,15 +108,15 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
     holder = ports.opened(last.port, 115_200)
     with monkeypatch.context() as short, closing(holder):
         short.setattr(opening, "STOP_BUSY_S", 0.5)
-        for options in (("--all",), tuple(f"--port={each.port}" for each in class_.pupils)):
+        for options in (("--all",), tuple(f"--port={pupil.port}" for pupil in class_.pupils)):
             done = inside("stop", *options, "--json")
             rows = results(done)
             assert done.code == 3 and not rows[last.port]["is_done"]
-            assert all(rows[each.port]["is_done"] for each in others)
-            assert not any(each.moves for each in others)
+            assert all(rows[pupil.port]["is_done"] for pupil in others)
+            assert not any(pupil.moves for pupil in others)
             inside("start", "--port", others[0].port, "--detach")
     inside("stop", "--all").gives(0)
-    assert not any(each.moves for each in class_.pupils)
+    assert not any(pupil.moves for pupil in class_.pupils)
 
 
 def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
@@ -180,7 +184,7 @@ def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> 
     assert [each["cause"] for each in wrong] == ["low_supply"]
     findings = found[weak.port]["findings"]
     assert isinstance(findings, list)
-    assert [each for each in findings if each["is_wrong"]] == wrong
+    assert [finding for finding in findings if finding["is_wrong"]] == wrong
     assert wrong[0]["said"] in str(found[weak.port]["said"])
     for pupil in class_.pupils:
         assert found[pupil.port]["is_done"] == (pupil is not weak)
@@ -190,7 +194,7 @@ def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> 
 
 def pings(heard: bytes) -> int:
     frames = [decoded(packet) for packet in heard.split(b"\0") if packet]
-    return sum(each is not None and each.number == BY_NAME["PING"].number for each in frames)
+    return sum(frame is not None and frame.number == BY_NAME["PING"].number for frame in frames)
 
 
 def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:

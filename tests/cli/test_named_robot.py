@@ -122,8 +122,8 @@ def test_python_takes_it_too() -> None:
     assert tiniscript.compile(LINER).robot == "liner"
     assert tiniscript.check(LINER) == []
     assert [event.name for event in tiniscript.run(LINER).events] == ["READ", "SHOW", "DONE"]
-    assert [each.code for each in tiniscript.check(LINER, "tinibot")] == ["TS119"]
-    assert [each.code for each in tiniscript.check(UNKNOWN)] == ["TS138"]
+    assert [message.code for message in tiniscript.check(LINER, "tinibot")] == ["TS119"]
+    assert [message.code for message in tiniscript.check(UNKNOWN)] == ["TS138"]
     assert tiniscript.check(UNKNOWN, "liner") == []
     with pytest.raises(ProgramError, match="No robot is called linar"):
         tiniscript.compile(UNKNOWN)

@@ -47,7 +47,7 @@ def test_no_file_names_an_old_verb() -> None:
     for path in files():
         seen += 1
         text = path.read_text(encoding="utf-8", errors="replace")
-        found += [f"{path.relative_to(ROOT)}: {each[0]}" for each in NAMED.finditer(text)]
+        found += [f"{path.relative_to(ROOT)}: {match[0]}" for match in NAMED.finditer(text)]
     assert seen > 1000 and not found, "\n".join(found)
 
 
@@ -64,7 +64,7 @@ def test_what_is_searched_for_is_found() -> None:
 
 
 def commands_in(text: str, is_document: bool) -> Iterator[str]:
-    """Yield the commands of a text: between backticks, and in messages behind two blanks, too."""
+    """Yield the commands of a text: between backticks, and in messages after two blanks, too."""
     yield from re.findall(r"`tsc ([^`\n]+)`", text)
     yield from re.findall(r"^\$ tsc (.+)$", text, re.M)
     if not is_document:
@@ -145,7 +145,7 @@ def test_an_old_name_says_what_it_is_now(tsc: Tsc, name: str) -> None:
     ("wifi --help", "set wifi --help"), ("completion bash", "help --completion bash"),
     ("text on", "set text on"), ("link", "monitor --hold"),
 ])  # fmt: skip
-def test_what_was_typed_behind_it_stands_behind_the_new_one(tsc: Tsc, was: str, now: str) -> None:
+def test_what_was_typed_after_it_stands_after_the_new_one(tsc: Tsc, was: str, now: str) -> None:
     done = tsc(*shlex.split(was), "--lang", "en").gives(2, out="")
     assert done.err.rstrip("\n").rpartition("  tsc ")[2].removesuffix(" --lang en") == now
 
@@ -176,7 +176,7 @@ def test_an_option_of_another_step_is_named_with_it(tsc: Tsc, words: str, other:
     tsc(*words.split(), "--lang", "en").gives(2, said, f"Try:  tsc {other} --help", out="")
 
 
-def test_the_word_behind_set_may_come_behind_options(tsc: Tsc) -> None:
+def test_the_word_after_set_may_come_after_options(tsc: Tsc) -> None:
     for words in (["--port", "trim", "name"], ["--lang", "en", "name"], ["name", "--port", "x"]):
         tsc("set", *words).gives(2, "which name?", out="")
     tsc("set", "--lang", "en").gives(2, "owner, name, trim, text or wifi")

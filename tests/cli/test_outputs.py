@@ -152,11 +152,13 @@ def test_two_outputs_that_are_not_there_yet_are_told_apart(tsc: Tsc, here: Path)
     "compile a.ts -o /dev/stdout >> a.ts", "compile a.ts -o /dev/fd/3 3>> a.ts",
     "live --virtual --plot a.ts < a.ts",
 ])  # fmt: skip
-def test_a_file_behind_a_standard_stream_is_a_file(tmp_path: Path, words: str) -> None:
+def test_a_file_after_a_standard_stream_is_a_file(tmp_path: Path, words: str) -> None:
     (tmp_path / "a.ts").write_text(PROGRAM)
     command = ["sh", "-c", f"{' '.join(TSC)} {words}"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=HANGS_S)
-    assert Done(done.returncode, done.stdout, done.stderr).code == 2
+    completed = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=HANGS_S
+    )
+    assert Done(completed.returncode, completed.stdout, completed.stderr).code == 2
     assert (tmp_path / "a.ts").read_text() == PROGRAM
 
 

@@ -49,8 +49,8 @@ CASES = [(verb, dest) for verb, parser in PARSERS.items() for dest in values_of(
 
 def assert_plain(*said: str) -> None:
     for each in said:
-        found = BAD.search(each)
-        assert found is None, f"{found[0]!r} in {each!r}"
+        match = BAD.search(each)
+        assert match is None, f"{match[0]!r} in {each!r}"
         assert "tsc: done" not in each.splitlines(), "a line that tsc has not said"
 
 
@@ -147,9 +147,9 @@ def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, 
 
     monkeypatch.setattr("tiniscript.cli.commands.check.run", broken)
     assert main(["check"]) == 2
-    said = capsys.readouterr().err
-    assert "RuntimeError: the moon" in said and "Traceback" not in said
-    assert_plain(said)
+    output = capsys.readouterr().err
+    assert "RuntimeError: the moon" in output and "Traceback" not in output
+    assert_plain(output)
 
 
 def test_a_sentence_keeps_the_lines_of_other_sentences_alone() -> None:
@@ -226,13 +226,13 @@ def test_a_port_without_a_robot_says_what_it_is(
 
     Port.device, Port.description = device, description  # type: ignore[attr-defined]
     monkeypatch.setattr("serial.tools.list_ports.comports", lambda: [Port()])
-    (row,) = [each for each in tsc("doctor", "--ports").out.splitlines() if device in each]
+    (row,) = [line for line in tsc("doctor", "--ports").out.splitlines() if device in line]
     assert (said in row) if said else row == device
     (found,) = json.loads(tsc("doctor", "--ports", "--json").out)
     assert found["description"].startswith(said)
 
 
-def told(text: str, is_json: bool) -> tuple[str, str]:
+def printed(text: str, is_json: bool) -> tuple[str, str]:
     """Return what is printed of a robot's text, and its row."""
     said: list[str] = []
     rows = io.StringIO()
@@ -246,14 +246,14 @@ def told(text: str, is_json: bool) -> tuple[str, str]:
 @each_row("sign", ACTING)
 def test_a_text_is_printed_without_them(sign: str) -> None:
     for is_json in (False, True):
-        said, row = told(f"AB{sign}C", is_json)
+        said, row = printed(f"AB{sign}C", is_json)
         assert is_harmless(said) and is_harmless(row)
         assert is_harmless(json.loads(said)["text"]) if is_json else "AB" in said
 
 
 @each_row("separator, text", product((",", ";", "\t"), FORMULAS))
 def test_no_cell_of_a_row_is_a_formula(text: str, separator: str) -> None:
-    _, row = told(text, is_json=False)
+    _, row = printed(text, is_json=False)
     [cells] = csv.reader([row.strip("\n")], delimiter=separator)
     quoted = [cell.strip(' "') for cell in cells]
     assert not [cell for cell in quoted[-1:] + quoted if cell[:1] in tuple("=+-@\uff1d")]

@@ -37,10 +37,10 @@ def test_a_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.jsonl"
     program.write_text(TEXT)
     inside("upload", program, "--virtual", "--record", file).gives(1, "3")
-    found = read(file.read_bytes())
-    assert found.program == CHECKSUM
-    assert [each.event for each in found.events] == ["SHOW 5", "FAULT DIVIDE_BY_ZERO"]
-    assert 0 < found.events[0].ms <= found.events[1].ms < 2000
+    recording = read(file.read_bytes())
+    assert recording.program == CHECKSUM
+    assert [event.event for event in recording.events] == ["SHOW 5", "FAULT DIVIDE_BY_ZERO"]
+    assert 0 < recording.events[0].ms <= recording.events[1].ms < 2000
     assert not is_foreign(file)
     done = tsc("run", program, "--replay", file)
     assert (done.code, done.out) == (
@@ -60,7 +60,7 @@ def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
     program.write_text("X = 0; LOOP(6); W(2); X = X + 1; SHOW(X); END_LOOP; W(3)")
     inside("upload", program, "--virtual", "--hurry", hurry, "--record", file).gives(0)
     events = read(file.read_bytes()).events
-    assert [each.event for each in events] == [*(f"SHOW {k}" for k in range(1, 7)), "DONE"]
+    assert [event.event for event in events] == [*(f"SHOW {k}" for k in range(1, 7)), "DONE"]
     for each, wanted_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
         assert wanted_ms <= each.ms <= wanted_ms + 100, events
     done = inside("run", program, "--replay", file)
@@ -219,16 +219,16 @@ def test_a_recording_has_an_end_and_no_more(
         ((("MISSED", "3"), ("SHOW", "2"), ("DONE", "")), ["SHOW 1", "MISSED"]),
         ((("TEXT", "hello"), ("STOPPED", "BUTTON"), ("DONE", "")), ["SHOW 1", "STOPPED"]),
     ):
-        found = recorded(file, show, *ends, began_s=monotonic())
-        assert [each.event for each in found] == wanted
+        events = recorded(file, show, *ends, began_s=monotonic())
+        assert [event.event for event in events] == wanted
     monkeypatch.setattr(recorder, "MOST", 3)
-    found = recorded(file, *(("SHOW", str(k)) for k in range(9)), end="LOST")
-    assert [each.event for each in found] == ["SHOW 0", "SHOW 1", "STOPPED"]
-    assert found[0] == Recorded(0, "SHOW 0")  # it began with that
+    events = recorded(file, *(("SHOW", str(k)) for k in range(9)), end="LOST")
+    assert [event.event for event in events] == ["SHOW 0", "SHOW 1", "STOPPED"]
+    assert events[0] == Recorded(0, "SHOW 0")  # it began with that
     began_s = monotonic()
     monkeypatch.setattr(recorder, "monotonic", lambda: 1e9)
-    found = recorded(file, show, began_s=began_s)
-    assert found == (Recorded(600_000, "STOPPED"),)  # as long as may be
+    events = recorded(file, show, began_s=began_s)
+    assert events == (Recorded(600_000, "STOPPED"),)  # as long as may be
     assert recorded(file) == (Recorded(0, "STOPPED"),)
 
 

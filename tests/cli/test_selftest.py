@@ -45,7 +45,7 @@ def found_by(pty_robot: PtyRobot, *words: str) -> tuple[int, dict[str, dict[str,
     done = on(pty_robot, "doctor", "--selftest", "--yes", "--json", *words)
     rows = json.loads(done.out)["found"]
     return done.code, {
-        f"{each['what']} {each['values'].get('name', '')}".strip(): each for each in rows
+        f"{row['what']} {row['values'].get('name', '')}".strip(): row for row in rows
     }
 
 
@@ -53,8 +53,8 @@ def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
     code, found = found_by(pty_robot)
     assert code == 0
-    verdicts = {name: each["verdict"] for name, each in found.items()}
-    sensors = {f"sensor {each.name}" for each in pty_robot.kit.sensors}
+    verdicts = {name: value["verdict"] for name, value in found.items()}
+    sensors = {f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors}
     asked = {"left", "right", "buzzer"}
     sizes = found["firmware"]["values"]
     assert isinstance(sizes, dict)
@@ -65,10 +65,10 @@ def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
     times = found["line"]["values"]
     assert isinstance(times, dict)
     assert float(times["least"]) <= float(times["ms"]) <= float(times["most"])
-    assert {name for name, each in verdicts.items() if each == "ok"} == {
+    assert {name for name, value in verdicts.items() if value == "ok"} == {
         "answers", "kit", "firmware", "line", "supply", "store", "trim", *sensors
     }  # fmt: skip
-    assert {name for name, each in verdicts.items() if each == "open"} == asked
+    assert {name for name, value in verdicts.items() if value == "open"} == asked
     assert {each["cause"] for each in found.values()} == {
         "is_there", "kit_is", "firmware_is", "line_is", "supply_is", "empty", "trim_is", "reads",
         "unasked",
@@ -83,8 +83,8 @@ def test_every_board_has_its_sensors_tested(name: str) -> None:
     with PtyRobot(kit) as robot:
         code, found = found_by(robot)
         # an ESP32's robot has the words of the paper's
-        kits = {each: robots.load(each).kit for each in robots.names()}
-        same = [{"robot": each} for each, its in kits.items() if its[:2] == kit[:2]]
+        kits = {name: robots.load(name).kit for name in robots.names()}
+        same = [{"robot": value} for value, its in kits.items() if its[:2] == kit[:2]]
         assert found["kit"]["values"] in same and {"robot": name} in same
         assert len([each for each in found if each.startswith("sensor")]) == len(kit.sensors)
         assert code == 0
@@ -131,7 +131,7 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     low = pty_robot.kit.sensors[0].low
     pty_robot.ask(lambda robot: robot.sense(low, LIGHT, DISTANCE))
     _, found = found_by(pty_robot)
-    first, second = (f"sensor {each.name}" for each in pty_robot.kit.sensors[:2])
+    first, second = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
     assert found[first]["cause"] == "stuck"
     assert found[second]["verdict"] == "ok"
     pty_robot.damages = 100
@@ -222,7 +222,9 @@ class Wires(NamedTuple):
     def seen(self, did: Sequence[str]) -> str:
         """Return what a person answers who has seen the last motor turn."""
         outputs = [each.split()[-2:] for each in did if "MOTORS" in each]
-        left, right = next([*map(int, each)] for each in reversed(outputs) if {*each} != {"0"})
+        left, right = next(
+            [*map(int, output)] for output in reversed(outputs) if {*output} != {"0"}
+        )
         if self.is_dead:
             return "5"
         if self.is_exchanged:

@@ -120,11 +120,16 @@ def test_two_on_one_line_are_told_apart_in_a_table() -> None:
 def test_the_library_names_values() -> None:
     found = compiled("SHOW(DISTANCE)")
     reader = Reader()
-    told = reader.told(0, event("SHOW(DISTANCE)", 0, program=5))
-    assert told and dict(told.values) == {"value": 2}
+    robot_event = reader.told(0, event("SHOW(DISTANCE)", 0, program=5))
+    assert robot_event and dict(robot_event.values) == {"value": 2}
     reader.maps[checksum(found.image)] = mapped(found)
-    told = reader.told(0, event("SHOW(DISTANCE)", 0))
-    assert told and dict(told.values) == {"value": 2, "name": "DISTANCE", "line": 1, "column": 1}
+    robot_event = reader.told(0, event("SHOW(DISTANCE)", 0))
+    assert robot_event and dict(robot_event.values) == {
+        "value": 2,
+        "name": "DISTANCE",
+        "line": 1,
+        "column": 1,
+    }
 
 
 def test_each_name_has_a_curve_of_its_own() -> None:

@@ -57,7 +57,7 @@ def test_a_robot_that_its_button_has_started_again_is_stopped(pty_robot: PtyRobo
 def test_who_stops_at_the_same_time_is_told_so(pty_robot: PtyRobot, is_shared: bool) -> None:
     server = uploading(pty_robot) if is_shared else None
     stops = [Command("stop", "--port", pty_robot.port) for _ in range(3)]
-    done = [each.ended() for each in stops]
+    done = [command.ended() for command in stops]
     assert [(each.code, each.err) for each in done] == [(0, "")] * 3
     assert not pty_robot.moves
     if server is not None:
@@ -100,9 +100,9 @@ def test_a_stop_waits_for_a_port_longer_than_others(
 
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_nobody_is_told_to_push_the_button_of_a_robot_that_may_stand(language: str) -> None:
-    said = text("not_confirmed", language)
-    assert not re.search(r"press its button|pulsa su botón", said)
-    assert re.search(r"batter|pilas", said)
+    sentence = text("not_confirmed", language)
+    assert not re.search(r"press its button|pulsa su botón", sentence)
+    assert re.search(r"batter|pilas", sentence)
 
 
 def test_the_doctor_tells_what_the_uart_has_noticed(pty_robot: PtyRobot) -> None:
@@ -231,8 +231,8 @@ def test_who_holds_up_a_stop_is_named(is_known: bool, monkeypatch: pytest.Monkey
 
 
 def test_a_process_that_has_ended_holds_nothing() -> None:
-    done = Command("--version")
-    pid = done.process.pid
-    done.ended()
+    command = Command("--version")
+    pid = command.process.pid
+    command.ended()
     assert not holders.is_suspended(pid)
     assert holders.holder("/nowhere", pid) is None

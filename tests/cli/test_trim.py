@@ -40,8 +40,8 @@ def keeps(pty_robot: PtyRobot) -> Trim:
     done = on(pty_robot, "--show", "--json").gives(0)
     fields = json.loads(done.out)
     pace = fields["pace"]
-    found = Trim(*(fields[name] for name in Trim._fields))
-    return found._replace(pace=pace and Pace(**pace))
+    trim = Trim(*(fields[name] for name in Trim._fields))
+    return trim._replace(pace=pace and Pace(**pace))
 
 
 def switched_on(memory: bytes = EMPTY) -> HostFirmware:

@@ -88,7 +88,7 @@ SILENT_VERBS = [
 
 
 @pytest.mark.parametrize("words", SILENT_VERBS, ids=lambda words: " ".join(words))
-def test_a_robot_that_is_silent_behind_hello_is_said_to_be_waited_for_once(
+def test_a_robot_that_is_silent_after_hello_is_said_to_be_waited_for_once(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str]
 ) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
@@ -97,10 +97,10 @@ def test_a_robot_that_is_silent_behind_hello_is_said_to_be_waited_for_once(
     real = connect.Connection.meet
 
     def meet(self: connect.Connection) -> DeviceInfo:
-        found = real(self)
+        device_info = real(self)
         monkeypatch.setattr("tiniscript.link.session.reply_of", lambda *_: None)
         monkeypatch.setattr(progress, "MOMENT_S", 0.0)
-        return found
+        return device_info
 
     monkeypatch.setattr(connect.Connection, "meet", meet)
     done = tsc(*words, "--port", pty_robot.port)
@@ -152,8 +152,8 @@ def test_a_bar_is_not_full_before_all_is_done(
     bar = progress.Progress("en", 200)
     for done in range(201):
         bar.draw(done)
-    said = capsys.readouterr().err
-    assert " 99 %" in said and "100 %" not in said and "." in said.rpartition("[")[2]
+    output = capsys.readouterr().err
+    assert " 99 %" in output and "100 %" not in output and "." in output.rpartition("[")[2]
 
 
 def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -168,7 +168,7 @@ def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.Monk
 def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Behind HELLO and behind what came of it: whoever has waited for one waits for the other."""
+    """After HELLO and after what came of it: whoever has waited for one waits for the other."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     now_s = 0.0
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)

@@ -137,7 +137,7 @@ def test_the_right_side_of_an_and_is_skipped_where_it_matters(right: str, has_ju
 # -- relaxing branches ----------------------------------------------------------------------------
 
 # A text with a row of one-byte instructions, the most of them with which a jump over them is short,
-# and that jump: forward to the byte behind what it skips, backward from behind itself.
+# and that jump: forward to the byte after what it skips, backward from just after itself.
 JUMPS = [
     ("X = TRUE; IF(X); {} ENDIF", 255, "IF"),
     ("X = TRUE; IF(X); {} ELSE; S; ENDIF", 253, "IF"),  # over the ELSE as well
@@ -147,7 +147,7 @@ JUMPS = [
     ("X = 3; LOOP(X); {} END_LOOP", 253, "LOOP"),
     ("LOOP(FOREVER); {} END_LOOP", 253, "AGAIN"),
     ("X = TRUE; WHILE(X); {} END_WHILE", 250, "WHILE"),
-    ("X = TRUE; WHILE(X); {} END_WHILE", 252, "IF"),  # the AGAIN behind it has become far before
+    ("X = TRUE; WHILE(X); {} END_WHILE", 252, "IF"),  # the AGAIN after it has become far before
     ("X = TRUE; LOOP(FOREVER); IF(X); BREAK; ENDIF; {} END_LOOP", 252, "BREAK"),
     ("X = TRUE; LOOP(3); IF(X); BREAK; ENDIF; {} END_LOOP", 252, "BREAK_LOOP"),
     ("DEF A; {} END_DEF; A", 252, "CALL"),

@@ -79,7 +79,7 @@ def _devices(code: bytes, hashes: dict[str, list[int]]) -> int:
     total = at = 0
     while at < len(code):
         row = instruction_at(code, at)
-        used = [(each.kind, value) for each, value in row.read(code, at)]
+        used = [(operand.kind, value) for operand, value in row.read(code, at)]
         for kind, value in (*used, *row.implied):
             if kind in hashes:
                 total = total << 1 & 0xFFFF ^ 0x2D * (total >> 15) ^ hashes[kind][value]

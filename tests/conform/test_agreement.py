@@ -133,8 +133,11 @@ def judged(run: Run) -> str:
 
 def oracle_kit(kit: Kit) -> interpreter.Kit:
     sensors, actuators = (
-        tuple(interpreter.Device(each.name, each.is_yes_no, each.low, each.high) for each in found)
-        for found in (kit.sensors, kit.actuators)
+        tuple(
+            interpreter.Device(device.name, device.is_yes_no, device.low, device.high)
+            for device in devices
+        )
+        for devices in (kit.sensors, kit.actuators)
     )
     return interpreter.Kit(sensors, actuators, kit.speed, kit.turn)
 

@@ -18,7 +18,7 @@ def by_name() -> dict[str, Run]:
     return {run.name: run for run in runs()}
 
 
-@pytest.mark.parametrize("fault", [pytest.param(each, id=each.says) for each in faults()])
+@pytest.mark.parametrize("fault", [pytest.param(fault, id=fault.says) for fault in faults()])
 def test_the_case_notices_the_fault(fault: Fault) -> None:
     run = by_name()[fault.noticed_by]
     right = answer_of(run)
@@ -34,5 +34,5 @@ def test_the_case_notices_the_fault(fault: Fault) -> None:
 
 
 def test_each_fault_is_another_one() -> None:
-    assert len({each.says for each in faults()}) == len({each.changes for each in faults()})
-    assert len(faults()) == len({each.says for each in faults()})
+    assert len({fault.says for fault in faults()}) == len({fault.changes for fault in faults()})
+    assert len(faults()) == len({fault.says for fault in faults()})

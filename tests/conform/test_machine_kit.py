@@ -45,7 +45,11 @@ FROM_SPEC = shlex.join([sys.executable, "-m", "tests.conform.spec_machine"])
 
 def test_a_sensor_without_readings_has_a_line_without_values() -> None:
     """As docs/develop/conformance.md says; the machine that is made from it reads 0 then."""
-    case = next(each for each in machine_cases() if not each.needs and each.readings)
+    case = next(
+        machine_case
+        for machine_case in machine_cases()
+        if not machine_case.needs and machine_case.readings
+    )
     rows = case._replace(readings={0: (), 1: (5000, -1)}).request().splitlines()
     assert [row for row in rows if row.startswith("readings")] == [
         "readings 0",
@@ -57,7 +61,7 @@ def test_a_sensor_without_readings_has_a_line_without_values() -> None:
     assert Spec().answer(rows) == ["0 READ LIGHT_R 0", "0 SHOW 0", "0 DONE"]
 
 
-def test_a_sensor_that_is_late_has_a_line_behind_the_readings() -> None:
+def test_a_sensor_that_is_late_has_a_line_after_the_readings() -> None:
     image = compile_text("SHOW(LIGHT_R + TIME)", robots.load("tinibot").kit).image
     case = machine_cases()[0]._replace(
         devices=TINIBOT, image=image, readings={0: (5000,)}, slow={0: (100, 0, 32)},
@@ -112,13 +116,13 @@ def test_a_machine_lacks_tasks_only_if_it_refuses_the_first_image_with_some(refu
     cases = [case for case in machine_cases() if case.needs][:4]
     answers = iter([f"REFUSED {refusal}"])
     found = list(verdicts(cases, lambda request, most: [next(answers)]))
-    assert [each.what for each in found] == [LACKS] * 4
+    assert [verdict.what for verdict in found] == [LACKS] * 4
     last = iter([*(case.answer for case in cases[:3]), [f"REFUSED {refusal}"]])
     found = list(verdicts(cases, lambda request, most: next(last)))
-    assert [each.what for each in found] == [AGREES] * 3 + [DIFFERS]
+    assert [verdict.what for verdict in found] == [AGREES] * 3 + [DIFFERS]
     other = iter([["REFUSED DAMAGED"], *(case.answer for case in cases[1:])])
     found = list(verdicts(cases, lambda request, most: next(other)))
-    assert [each.what for each in found] == [DIFFERS] + [AGREES] * 3
+    assert [verdict.what for verdict in found] == [DIFFERS] + [AGREES] * 3
 
 
 # A file of `tests/oracle`, what it says, what it says then, and a case that must be named.
@@ -143,7 +147,7 @@ BREAKS = [
     ("machine", "self.begin()\n            move.has_begun", "move.has_begun",
      "time: UNTIL begins 21 ms late"),
     ("machine", "(self.now - self.clock) % WRAP // 20", "(self.now - self.clock) // 20",
-     "time: UNTIL behind 2^32 ms"),
+     "time: UNTIL past 2^32 ms"),
     ("machine", "self.stack.append(taken[0])\n ", "self.stack.append(1)\n ",
      "OR_ELSE leaves its value"),
     ("machine", "within(1000 * whole(value),", "within(value,", "An actuator gets whole numbers"),
@@ -198,7 +202,7 @@ def test_a_broken_machine_is_told(file: str, old: str, new: str, named: str) -> 
         except LookupError:  # it has crashed
             return []
 
-    assert any(each.what == DIFFERS for each in verdicts(cases, asked))
+    assert any(verdict.what == DIFFERS for verdict in verdicts(cases, asked))
 
 
 def test_each_instruction_runs() -> None:

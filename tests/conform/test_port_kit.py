@@ -136,11 +136,11 @@ def test_what_is_changed_on_its_way_is_named(what: str, pty_robot: PtyRobot) -> 
     assert checks
     with asked(pty_robot, lambda frame: frame) as robot:
         met(robot)
-        assert {each.what for each in verdicts(robot, checks)} == {AGREES}
+        assert {verdict.what for verdict in verdicts(robot, checks)} == {AGREES}
     with asked(pty_robot, change) as robot:
         met(robot)
         found = list(verdicts(robot, checks))
-    assert any(each.what != AGREES for each in found), found
+    assert any(verdict.what != AGREES for verdict in found), found
 
 
 def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
@@ -150,7 +150,7 @@ def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
         assert isinstance(robot.wire, ChangedWire)
         robot.wire.change = lambda frame: None
         found = list(verdicts(robot, all_checks(link_kit())))
-    assert [(each.what, each.detail) for each in found] == [("silent", "PING")] * 3
+    assert [(verdict.what, verdict.detail) for verdict in found] == [("silent", "PING")] * 3
 
 
 def test_json_names_the_checks(pty_robot: PtyRobot) -> None:

@@ -86,7 +86,7 @@ def test_a_place_over_several_lines_is_marked_to_the_end_of_the_first() -> None:
     assert picture("SHOW(1,\r\n2)", 4, 11) == ["line 1:  SHOW(1,", "             ^^^"]
 
 
-def test_a_place_at_a_line_end_is_marked_behind_the_line() -> None:
+def test_a_place_at_a_line_end_is_marked_after_the_line() -> None:
     assert picture("SHOW(\n", 5, 6) == ["line 1:  SHOW(", "              ^"]
     assert picture("\n\n", 0, 1) == ["line 1:", "         ^"]
 

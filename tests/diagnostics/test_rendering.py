@@ -101,8 +101,8 @@ def test_a_translator_sees_the_wrong_program_of_a_message() -> None:
 @each_row("code", EXAMPLES)
 def test_the_wrong_example_has_its_diagnostic_first(code: str) -> None:
     for texts in TEXTS.values():
-        found = compile_text(texts[f"{code}/wrong"], KIT).diagnostics
-        assert [diagnostic.code.number for diagnostic in found][:1] == [code]
+        diagnostics = compile_text(texts[f"{code}/wrong"], KIT).diagnostics
+        assert [diagnostic.code.number for diagnostic in diagnostics][:1] == [code]
 
 
 @each_row("code", EXAMPLES)
@@ -193,8 +193,8 @@ def test_colors_change_nothing_but_colors() -> None:
 
 def test_as_json() -> None:
     found = check_text("F()\nX = 0.0001\nSHOW(X)", KIT)
-    said = [message(diagnostic, found.source, "en") for diagnostic in found.diagnostics]
-    assert as_json(said) == [
+    messages = [message(diagnostic, found.source, "en") for diagnostic in found.diagnostics]
+    assert as_json(messages) == [
         {
             "code": "TS020",
             "severity": "mistake",
@@ -203,7 +203,7 @@ def test_as_json() -> None:
             "end_line": 1,
             "end_column": 4,
             "message": "F needs 2 values in the brackets, F(time, power), but got 0",
-            "fix": said[0].fix,
+            "fix": messages[0].fix,
         },
         {
             "code": "TS801",

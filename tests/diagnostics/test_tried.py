@@ -16,11 +16,11 @@ from tiniscript.library.named_robot import robot_of
 TINIBOT = robots.load(robots.DEFAULT)
 
 
-def told(program: str, language: str = "en") -> list[Message]:
+def messages_of(program: str, language: str = "en") -> list[Message]:
     """Return what is said of a program for the robot that it names."""
     robot = robot_of(program.encode(), TINIBOT)
     found = compile_source(program.encode(), robot, "", is_strict=True)
-    return [message(each, found.source, language) for each in found.diagnostics]
+    return [message(diagnostic, found.source, language) for diagnostic in found.diagnostics]
 
 
 @each_row("language", LANGUAGES)
@@ -28,7 +28,7 @@ def told(program: str, language: str = "en") -> list[Message]:
 @each_row("number", (1, 2, 19, 20, 30, 45, 60, 90, 100, 101, 180, 360))
 def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: int) -> None:
     """As power, centimetres or degrees: never with a gap between the brackets."""
-    (said,) = told(f"{word}({number})", language)
+    (said,) = messages_of(f"{word}({number})", language)
     calls = re.findall(r"\b[FBLR]\([^()]*\d[^()]*\)", said.fix)
     assert calls or number < 20, said
     for call in calls:
@@ -59,7 +59,7 @@ def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted:
     ],
 )
 def test_what_a_pin_is_said_to_be_is_a_yes_or_no(program: str, fix: str) -> None:
-    assert [each.fix for each in told(program)] == [fix]
+    assert [each.fix for each in messages_of(program)] == [fix]
 
 
 @each_row(
@@ -75,18 +75,18 @@ def test_what_a_pin_is_said_to_be_is_a_yes_or_no(program: str, fix: str) -> None
 )
 def test_words_of_another_kit_are_one_mistake(program: str, words: list[tuple[str, str]]) -> None:
     """And what it says to write makes all of them known."""
-    found = told(program)
+    messages = messages_of(program)
     source = Source(program)
     named = []
-    for each in found:
+    for each in messages:
         if each.code == "TS119":
             rows = source.text.split("\n")
             word = rows[each.line - 1][each.column - 1 : each.end_column - 1]
             named.append((word, each.fix.rpartition(" ")[2]))
-    assert named == words and len(found) == max(1, len(words))
+    assert named == words and len(messages) == max(1, len(words))
     if len(words) == 1:
         changed = f"// robot: {words[0][1]}\n{program.rpartition(chr(10))[2]}"
-        assert not [each for each in told(changed) if each.severity == "mistake"]
+        assert not [each for each in messages_of(changed) if each.severity == "mistake"]
 
 
 @each_row(
@@ -106,7 +106,7 @@ def test_words_of_another_kit_are_one_mistake(program: str, words: list[tuple[st
 )  # fmt: skip
 def test_what_is_tried_does_what_was_written(program: str, fixes: list[str]) -> None:
     """A robot that stands goes on standing, and one condition is told of once."""
-    assert [each.fix for each in told(program)] == fixes
+    assert [each.fix for each in messages_of(program)] == fixes
 
 
 @each_row(
@@ -128,7 +128,7 @@ def test_what_is_done_beside_is_a_task(program: str, wanted: str) -> None:
 
 def test_what_spanish_pupils_say_for_when_is_shown() -> None:
     """SIEMPRE QUE may be a WHILE as well: it is shown, and nobody makes it."""
-    (said,) = told("SIEMPRE QUE DISTANCE < 9\nB(1, 60)\nFIN", "es")
+    (said,) = messages_of("SIEMPRE QUE DISTANCE < 9\nB(1, 60)\nFIN", "es")
     assert said.fix == "WHEN(DISTANCE < 9); B(1, 60); END_WHEN"
 
 
@@ -142,4 +142,4 @@ def test_what_spanish_pupils_say_for_when_is_shown() -> None:
     ],
 )
 def test_an_unknown_word_is_one_mistake(program: str, lines: list[int]) -> None:
-    assert [each.line for each in told(program)] == lines
+    assert [each.line for each in messages_of(program)] == lines

@@ -70,7 +70,7 @@ def test_anything_at_the_other_end(kind: type[Chance | Damaged], seed: int) -> N
     for is_radio in (False, True):
         wire = SimulatedWire(kind(seed))
         findings = looked(wire, Line(9600, is_radio, 1), Expected(None, "", lambda kit: None))
-        assert findings and {each.cause for each in findings} <= set(CAUSES)
+        assert findings and {finding.cause for finding in findings} <= set(CAUSES)
         assert wire.now_ms < LONGEST_MS
     found(SimulatedWire(Chance(seed)))
 

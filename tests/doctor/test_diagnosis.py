@@ -129,8 +129,8 @@ class Case:
             return nullcontext(cast(LinkConnection, self.watched))
 
         doors = Doors(self.system, open_wire, join, may_open, lambda name: "rfcomm" in name, share)
-        asked = Question(port, self.last, 9600, self.expected, 7, self.watch_ms, self.virtual)
-        return diagnosed(doors, asked)
+        question = Question(port, self.last, 9600, self.expected, 7, self.watch_ms, self.virtual)
+        return diagnosed(doors, question)
 
     def cause(self, port: str | None = CABLE) -> tuple[str, bool]:
         (finding,) = self.diagnosis(port).findings
@@ -329,7 +329,7 @@ def test_a_port_that_vanishes(case: Case, port: str, cause: str, is_sure: bool) 
 def test_through_another_tsc(case: Case, replies: list[Reply[Any]], cause: str) -> None:
     case.shared = Shared(*replies)
     diagnosis = case.diagnosis()
-    assert [each.cause for each in diagnosis.findings] == [cause]
+    assert [finding.cause for finding in diagnosis.findings] == [cause]
     assert diagnosis.is_opened and case.shared.is_closed
     assert case.opened == []
 
@@ -342,9 +342,9 @@ def test_a_robot_that_falls_silent_behind_another_tsc_is_given_up(
     known = [Reply(OK, 0, HELLO), Reply(OK, 0, STATUS), *[Reply(OK, 0, PONG)] * answered]
     lost: list[Reply[Any]] = [Reply(LOST)] * SILENT
     case.shared = Shared(*known, *lost)
-    assert "falls_silent" in [each.cause for each in case.diagnosis().findings]
+    assert "falls_silent" in [finding.cause for finding in case.diagnosis().findings]
     case.shared = Shared(*known, *lost[1:], *[Reply(OK, 0, PONG)] * 3, *lost)
-    assert "falls_silent" in [each.cause for each in case.diagnosis().findings]
+    assert "falls_silent" in [finding.cause for finding in case.diagnosis().findings]
     assert case.shared.replies == [], "one that is heard again has all of them again"
 
 
@@ -383,12 +383,12 @@ def test_the_key_of_a_robot_with_an_owner_is_shown_by_the_connection(
     assert case.diagnosis(RADIO).findings[0].cause == cause
 
 
-def test_whose_a_robot_is_says_what_it_says_behind_a_key(case: Case) -> None:
+def test_whose_a_robot_is_says_what_it_says_after_a_key(case: Case) -> None:
     case.expected = case.expected._replace(has_key=lambda robot: True)
     case.shared = Shared(Reply(OK, 0, HELLO._replace(features=OWNED)), Reply(LOST))
-    assert "of_another_owner" in [each.cause for each in case.diagnosis().findings]
+    assert "of_another_owner" in [finding.cause for finding in case.diagnosis().findings]
     case.shared = Shared(Reply(OK, 0, HELLO._replace(features=OWNED | YOURS)), Reply(LOST))
-    assert "of_another_owner" not in [each.cause for each in case.diagnosis().findings]
+    assert "of_another_owner" not in [finding.cause for finding in case.diagnosis().findings]
 
 
 def test_what_was_not_opened_is_not_said_to_have_been(case: Case) -> None:

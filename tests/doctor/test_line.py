@@ -63,7 +63,7 @@ def watched(end: OtherEnd, watch_ms: int) -> dict[str, Finding]:
     reply = robot.hello()
     assert reply is not None
     expected = Expected(KIT, "tinibot", NAMES.get)
-    return {each.cause: each for each in examined(robot, reply, expected, watch_ms)}
+    return {finding.cause: finding for finding in examined(robot, reply, expected, watch_ms)}
 
 
 def only(end: OtherEnd, **how: object) -> tuple[str, bool]:
@@ -72,7 +72,7 @@ def only(end: OtherEnd, **how: object) -> tuple[str, bool]:
 
 
 def causes(end: OtherEnd, **how: object) -> dict[str, Finding]:
-    return {each.cause: each for each in found(end, **how)}  # type: ignore[arg-type]
+    return {finding.cause: finding for finding in found(end, **how)}  # type: ignore[arg-type]
 
 
 # -- a robot ------------------------------------------------------------------------------------
@@ -124,8 +124,11 @@ def test_what_a_robot_tells(values: dict[str, int], cause: str) -> None:
 )
 def test_what_is_good_to_know_is_nothing_wrong(values: dict[str, int], cause: str) -> None:
     findings = found(Firmware(**values), kit=KIT)
-    assert [(each.cause, each.is_sure) for each in findings] == [(cause, True), ("fine", True)]
-    assert not any(each.is_wrong for each in findings)
+    assert [(finding.cause, finding.is_sure) for finding in findings] == [
+        (cause, True),
+        ("fine", True),
+    ]
+    assert not any(finding.is_wrong for finding in findings)
 
 
 def test_a_robot_whose_key_this_computer_has_is_fine() -> None:
@@ -239,7 +242,7 @@ def test_a_robot_at_another_speed(baud: int) -> None:
 
 def test_a_robot_at_another_speed_with_another_trouble() -> None:
     end = Firmware(115200, saved=SAVED_BY_NAME["LOW_SUPPLY"])
-    assert [each.cause for each in found(end)] == ["wrong_baud", "low_supply"]
+    assert [finding.cause for finding in found(end)] == ["wrong_baud", "low_supply"]
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,7 @@ VALUES = {
 
 
 # Of a part that is looked at whole nothing more is seen; several causes may have one next step.
-OF_A_PART = [each for each, row in CAUSES.items() if row.then or (row.verdict == OK and row.part)]
+OF_A_PART = [value for value, row in CAUSES.items() if row.then or (row.verdict == OK and row.part)]
 
 
 def sentences(cause: str, *kinds: str) -> Iterator[str]:

@@ -38,8 +38,8 @@ def brokers(request: pytest.FixtureRequest, tmp_path: Path) -> Callable[..., Mos
     """What begins a broker of the test's own; the words are those of `Mosquitto`."""
 
     def begin(user: str = "", password: str = "", more: str = "") -> Mosquitto:
-        found = Mosquitto(tmp_path, user, password, more)
-        request.addfinalizer(found.kill)
-        return found
+        mosquitto = Mosquitto(tmp_path, user, password, more)
+        request.addfinalizer(mosquitto.kill)
+        return mosquitto
 
     return begin

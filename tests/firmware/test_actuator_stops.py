@@ -107,4 +107,4 @@ def test_the_virtual_robot_says_and_draws_it(
             picture.take(event)
     assert picture.settings == drawn == robot.actuators
     robot.press()
-    assert not [each for each in robot.take_events() if each.what in ("SET", "RELEASE")]
+    assert not [event for event in robot.take_events() if event.what in ("SET", "RELEASE")]

@@ -107,7 +107,7 @@ def test_a_recorded_tag_opens_nothing_in_its_own_epoch() -> None:
     table.claimed(keys)
     owner = table.session(keys, nonce=4)
     recorded, _ = table.frames(owner, owner.hello())
-    (shown,) = (each for each in map(decoded, recorded) if each and len(each.payload) == 9)
+    (shown,) = (frame for frame in map(decoded, recorded) if frame and len(frame.payload) == 9)
     assert table.outcome(owner, owner.trim()) == "OK"
 
     def answers(thief: Session, tag: bytes) -> int:
@@ -178,7 +178,7 @@ def test_the_same_seed_after_a_reset_is_another_challenge_or_needs_the_key() -> 
         session = later.session(keys, nonce=4)
         _, answers = later.frames(session, session.hello())
         reply = max(answers, key=len)
-        challenges.add(b"".join(each for each in answers if each != reply))
+        challenges.add(b"".join(answer for answer in answers if answer != reply))
     assert len(challenges) == 12
 
 
@@ -216,7 +216,9 @@ def forged(frames: int, seed: int) -> int:
         if how == 0:
             data = chance.choice(recorded) + b"\0"
         else:
-            message = chance.choice([each for each in BY_NAME.values() if each.number < 32])
+            message = chance.choice(
+                [message for message in BY_NAME.values() if message.number < 32]
+            )
             low = sum(field.low for field in message.request)
             high = sum(field.high for field in message.request)
             payload = chance.randbytes(chance.randint(low, high))

@@ -267,11 +267,11 @@ def test_a_reading_of_the_last_program_is_none_of_the_next() -> None:
 
 
 @pytest.mark.parametrize("name", ["tinibot", "liner", "grabber"])
-def test_a_remote_control_is_read_behind_the_sensors_of_the_kit(name: str) -> None:
+def test_a_remote_control_is_read_after_the_sensors_of_the_kit(name: str) -> None:
     robot = on_board(name, "mega")
     board = started(robot, "SI|IF(KEY_DOWN AND NOT KEY_A);M(PAD_X, PAD_Y);ENDIF;W(5)")
     board.ran(START + 50)
-    found = [each for each in board.motors(START + 40) if each.startswith("pwm")]
+    found = [motor for motor in board.motors(START + 40) if motor.startswith("pwm")]
     assert found == [f"pwm {60 * 653 >> 8}", f"pwm {70 * 653 >> 8}"]
 
 
@@ -289,7 +289,7 @@ def test_interrupts_are_never_off_for_long(name: str) -> None:
     text = "SI|LOOP(30);M(80, 80);BEEP(0.001, 20000);A = DISTANCE;END_LOOP"
     if name == "grabber":
         text = text.replace("A = DIS", "GRIPPER(90);A = DIS")
-    at = [each.driver for each in robot.board.sensors].index("hc_sr04")
+    at = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
     pins = robot.board.sensors[at].pins
     board = started(robot, text)
     board.echoes(pins["trigger"], pins["echo"], [1000])

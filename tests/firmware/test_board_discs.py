@@ -207,9 +207,9 @@ def test_a_typed_stop_gets_through_while_both_discs_flicker(
         assert robot.until(robot.session.upload(image, is_detached=True)) == OK
         robot.run(50)
         begun = len(uno.events)
-        asked = robot.session.ping()
+        pending_request = robot.session.ping()
         flicker(uno, hertz, 350, robot.run)  # wheels that show no edge are stuck later
-        assert asked.outcome and asked.outcome.status == OK
+        assert pending_request.outcome and pending_request.outcome.status == OK
         assert not any(event.what in ("reset", "watchdog") for event in uno.events[begun:])
         assert [uno.pins[pin].state for pin in MOTORS] == ["pwm", "pwm"]
         begun = len(uno.events)

@@ -54,7 +54,7 @@ def test_pings_leave_30_ms_apart_and_hear_how_far_it_is(name: str, distance_cm: 
     """A program that does nothing but look does not look more often. A sensor wants 10 us, and the
     loop does not wait for it."""
     robot = robots.load(name)
-    at = [each.driver for each in robot.board.sensors].index("hc_sr04")
+    at = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
     trigger, echo = wire(robot, at)
     board = started(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);END_LOOP")
     board.watch(trigger)
@@ -150,7 +150,7 @@ def test_two_sensors_never_hear_each_other(text: str) -> None:
     for number, distances in rows:
         trigger, echo = wire(robot, number)
         board.watch(trigger)
-        board.echoes(trigger, echo, [each * US_PER_CM for each in distances])
+        board.echoes(trigger, echo, [distance * US_PER_CM for distance in distances])
     board.ran(START + 600)
     each = [pings(board, wire(robot, number)[0]) for number, _ in rows]
     both = sorted(ms for times in each for ms in times)
@@ -182,8 +182,8 @@ PHASES = [
 def glitched(width_us: float) -> list[tuple[int, int]]:
     """Return each phase at which the wire says for a moment the opposite, and what is read.
 
-    The sensor itself does it, so phases are to the cycle: a glitch moves the pings behind it by
-    some us, and its end must not be taken for a line that stays high behind the echo.
+    The sensor itself does it, so phases are to the cycle: a glitch moves the pings after it by
+    some us, and its end must not be taken for a line that stays high after the echo.
     """
     robot = robots.load("tinibot")
     trigger, echo = wire(robot)

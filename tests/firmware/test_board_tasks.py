@@ -20,21 +20,21 @@ Test = TypeVar("Test", bound=Callable[..., None])
 
 AWAY = (ROOT / "examples" / "away.ts").read_text(encoding="utf-8")
 LOOK_MS = (
-    90.0  # until a WHEN has seen what comes near: 20 ms, and an echo 30 ms behind the one before
+    90.0  # until a WHEN has seen what comes near: 20 ms, and an echo 30 ms after the one before
 )
 BUSY = "F(FOREVER, 60);" + "TASK;X = 0;LOOP(FOREVER);X = X + 1;END_LOOP;END_TASK;" * 4
 STOP = bytes(8)
 STOP_RUN = (
-    3  # the last zero of a stop that a robot must have seen behind a frame, which ends with one
+    3  # the last zero of a stop that a robot must have seen after a frame, which ends with one
 )
 STOP_US = 12
 
 
 def without_readings() -> list[Case]:
     """Return the cases of tasks that a simulated board can follow to the millisecond."""
-    found = [each for each in read(ROOT / "tests" / "cases" / "tasks.md") if "robot" in each.parts]
-    found = [each for each in found if "tiniscript" in each.parts]
-    return [each for each in found if not {"READ", "FAULT"} & set(each.parts["robot"].split())]
+    cases = [each for each in read(ROOT / "tests" / "cases" / "tasks.md") if "robot" in each.parts]
+    cases = [each for each in cases if "tiniscript" in each.parts]
+    return [each for each in cases if not {"READ", "FAULT"} & set(each.parts["robot"].split())]
 
 
 BOARDS = pytest.mark.parametrize("board", ["uno", "mega"])
@@ -63,7 +63,7 @@ def test_while_four_tasks_count_the_clock_goes_on(robot: Uno) -> None:
 
 def driven(robot: Uno, since: int) -> list[Setting]:
     """Return how the motors have driven since a cycle, without the time in which they stand."""
-    return [each for each in seen(robot, since) if each[1:] != (0, 0)]
+    return [setting for setting in seen(robot, since) if setting[1:] != (0, 0)]
 
 
 @each_board
@@ -82,8 +82,8 @@ def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
         robot.sonar("trigger", "echo", 80)
         wired.run(800)
         found = driven(robot, near)
-        assert [each[1:] for each in found] == [(-60, -60), (60, -60), (60, 60)]
-        begins, turns, goes_on = (each.ms for each in found)
+        assert [setting[1:] for setting in found] == [(-60, -60), (60, -60), (60, 60)]
+        begins, turns, goes_on = (setting.ms for setting in found)
         assert begins < LOOK_MS and abs(turns - begins - 500) < OFF_MS
         assert 500 - OFF_MS < goes_on - turns < 500 + LOOK_MS
 
@@ -97,9 +97,9 @@ def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
          is_detached=True)  # fmt: skip
     wired.run(2000)
     found = driven(robot, last_zero(robot, heard))
-    assert [each[1:] for each in found] == [(60, 60), (-60, -60)] * 4
-    for number, each in enumerate(found):
-        assert abs(each.ms - 200 * number) < OFF_MS, found
+    assert [setting[1:] for setting in found] == [(60, 60), (-60, -60)] * 4
+    for number, setting in enumerate(found):
+        assert abs(setting.ms - 200 * number) < OFF_MS, found
     assert states(robot) == OFF
 
 
@@ -107,7 +107,7 @@ def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
 @BOARDS
 @pytest.mark.parametrize("later_ms", [100, 200, 500, 5000])
 def test_an_echo_from_before_an_interruption_ends_no_move(later_ms: int, robot: Uno) -> None:
-    """A ping is under way when a WHEN takes the motors: behind that a new one is heard."""
+    """A ping is under way when a WHEN takes the motors: after that a new one is heard."""
     robot.sonar("trigger", "echo", 350)
     wired = computer(robot)
     back = f"WHEN(LIGHT_R + LIGHT_L > 1000);B({later_ms / 1000}, 60);END_WHEN"
@@ -123,7 +123,7 @@ def test_an_echo_from_before_an_interruption_ends_no_move(later_ms: int, robot: 
     robot.sonar("trigger", "echo", 350)
     robot.analog("A0", 0)
     wired.run(later_ms + 200)
-    assert [each[1:] for each in driven(robot, begun.cycle)] == [(-60, -60), (60, 60)]
+    assert [setting[1:] for setting in driven(robot, begun.cycle)] == [(-60, -60), (60, 60)]
     assert states(robot) == FORWARD
 
 

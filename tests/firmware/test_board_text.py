@@ -67,7 +67,7 @@ def test_a_program_whose_line_never_ends_runs(
 def test_a_start_begins_a_line_anew(
     sketch_name: str, sketches: Callable[[str], Path], memory: Path
 ) -> None:
-    """Behind a module's message, and behind a program that never ended; nowhere else."""
+    """After a module's message, and after a program that never ended; nowhere else."""
     with switched_on(sketches(sketch_name), memory) as robot:
         for message in ("OK+CONN", "OK+CONN", "+CONNECTED:12 ", "OK+LOST\r\nOK+CONN"):
             assert typed(robot, message + "SI|F(0.5, 60)\r\n", 80) == ["// OK"]

@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import pytest
 
-from tests.firmware.test_button import told
+from tests.firmware.test_button import answers_to
 from tests.firmware.test_host_firmware import computer, send, stored, switched_on
 from tests.firmware.test_text import typed
 from tests.machines.host_firmware import HostFirmware
@@ -51,7 +51,7 @@ FOR_EVER = "held for ever"
 @lru_cache
 def letters() -> dict[str, list[tuple[int, str]]]:
     """Return what the button tells of each press: the millisecond, and P, H or R."""
-    found = told([(100, 0, edges) for edges, _ in PRESSES.values()])
+    found = answers_to([(100, 0, edges) for edges, _ in PRESSES.values()])
     rows = {}
     for name, row in zip(PRESSES, found, strict=True):
         rows[name] = [(us // 1000, letter) for us, letter in row]

@@ -43,7 +43,7 @@ def bytes_of(image: Image) -> bytes:
 
 def sent_until(robot: HostFirmware, session: Session, count: int) -> bytes:
     """Let an upload begin, until so many of its bytes have reached the robot; return what the
-    computer has sent behind them. Nothing: the upload is over."""
+    computer has sent after them. Nothing: the upload is over."""
     request = session.upload(NEW, saves=True)
     while request.outcome is None:
         data = session.poll(robot.now_ms)
@@ -110,8 +110,8 @@ def test_a_program_that_an_upload_has_cost_is_told_no_more() -> None:
     assert before.length == len(image_of(OLD).code)
     assert sent_until(robot, session, 300)
     again = computer(2)
-    hello, found = robot.done(again, again.hello()), robot.done(again, again.status())
-    assert (found.saved, found.program, found.length) == (SAVED_NOTHING, 0, 0)
+    hello, status_reply = robot.done(again, again.hello()), robot.done(again, again.status())
+    assert (status_reply.saved, status_reply.program, status_reply.length) == (SAVED_NOTHING, 0, 0)
     assert (hello.saved, hello.program, hello.length) == (SAVED_NOTHING, 0, 0)
     assert again.robot and again.robot.values.program == 0
 

@@ -129,7 +129,7 @@ class Between:
 
     def done(self, frame: Frame) -> bytes:
         """Return an answer that says done, where nothing was: of the right length."""
-        message = next(each for each in BY_NAME.values() if each.number == frame.number)
+        message = next(message for message in BY_NAME.values() if message.number == frame.number)
         least = sum(field.low for field in message.reply)
         payload = bytearray(self.draw.randbytes(least))
         if frame.number == STATUS:

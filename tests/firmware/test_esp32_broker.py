@@ -33,9 +33,9 @@ BROKER_KEY = b"broker"
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mosquitto]:
-    found = Mosquitto(tmp_path_factory.mktemp("broker"))
-    yield found
-    found.kill()
+    mosquitto = Mosquitto(tmp_path_factory.mktemp("broker"))
+    yield mosquitto
+    mosquitto.kill()
 
 
 @pytest.fixture
@@ -51,10 +51,10 @@ def at(
     robot, owner = joined(keys)
     request = owner.use_broker(settings or broker.settings())
     assert ended(robot, [(None, owner)], request) == "OK"
-    until(robot, lambda: told(robot, owner)[1] == "READY")
+    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     talk(robot, [], AUTHORITY_MS + 100)
     # that is less of this computer's time: a broker that had no turn was given up
-    until(robot, lambda: told(robot, owner)[1] == "READY")
+    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     return robot, owner
 
 
@@ -68,12 +68,12 @@ def until(robot: Esp32Robot, holds: Callable[[], bool], limit_ms: int = 60_000) 
     raise AssertionError("not in time")
 
 
-def told(robot: Esp32Robot, owner: Session) -> tuple[str, str, str]:
+def broker_settings_of(robot: Esp32Robot, owner: Session) -> tuple[str, str, str]:
     """Return the mode, the state and the class of its broker."""
     request = owner.broker()
     assert ended(robot, [(None, owner)], request) == "OK" and request.outcome
-    found = request.outcome.values
-    return wifi.MODES[found.mode], wifi.STATES[found.state], found.network.decode()
+    wifi_reply = request.outcome.values
+    return wifi.MODES[wifi_reply.mode], wifi.STATES[wifi_reply.state], wifi_reply.network.decode()
 
 
 def present(robot: Esp32Robot, at: Broker, group: str = "aula") -> list[Present]:
@@ -108,9 +108,9 @@ def test_a_broker_for_which_there_is_no_memory_is_told_and_tried_again(broker: M
     robot.radio("H", b"\1")
     assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
     talk(robot, [(None, owner)], 1500)
-    assert told(robot, owner)[1] == "NO_TLS"
+    assert broker_settings_of(robot, owner)[1] == "NO_TLS"
     robot.radio("H", b"\0")
-    until(robot, lambda: told(robot, owner)[1] == "READY")
+    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
 
 
 # -- the road -----------------------------------------------------------------------------------
@@ -147,17 +147,17 @@ def test_a_long_program_and_what_it_shows(broker: Mosquitto) -> None:
 
 def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
     robot, owner = at(broker, Keys())
-    assert told(robot, owner) == ("STATION", "READY", "aula")
+    assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
     again = Esp32Robot(kept=robot.kept())
     school_in_reach(again)
     again.wait(400)
     teacher = broker.connected()
     until(again, lambda: present(again, teacher) == [Present(ID, "tini-5678", True)])
     assert ended(robot, [(None, owner)], owner.use_broker(None)) == "OK"
-    assert told(robot, owner) == ("OFF", "OFF", "")
+    assert broker_settings_of(robot, owner) == ("OFF", "OFF", "")
     assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
     assert ended(robot, [(None, owner)], owner.forget_wifi()) == "OK"
-    assert told(robot, owner)[0] == "OFF", "who gives a robot away forgets both"
+    assert broker_settings_of(robot, owner)[0] == "OFF", "who gives a robot away forgets both"
     assert b"hunter" not in b"".join(robot.kept().entries.values())
 
 
@@ -172,7 +172,7 @@ def test_what_is_no_broker_is_refused(broker: Mosquitto) -> None:
     ):
         assert not settings.is_sound
         assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE", settings
-        assert told(robot, owner) == ("STATION", "READY", "aula")
+        assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
 
 
 def test_a_name_and_a_password_where_the_broker_asks_for_them(
@@ -184,7 +184,7 @@ def test_a_name_and_a_password_where_the_broker_asks_for_them(
     assert b"40 letters" in robot.kept().entries[BROKER_KEY], "it has come whole"
     wrong = own.settings("aula", user, "another one")
     assert ended(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
-    until(robot, lambda: told(robot, owner)[1] == "REFUSED")
+    until(robot, lambda: broker_settings_of(robot, owner)[1] == "REFUSED")
     for access in (Access(), Access(user, "another one"), Access("who", "x")):
         with pytest.raises(PortError) as failure:
             own.connected(access)
@@ -216,7 +216,7 @@ def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosqui
     robot, owner = at(broker, Keys())
     for _ in range(20):
         assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
-    until(robot, lambda: told(robot, owner)[1] == "READY", 10_000)
+    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY", 10_000)
 
 
 # -- stops --------------------------------------------------------------------------------------
@@ -234,9 +234,9 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
     for _ in range(20):  # an unfinished frame would spoil the owner's next one
         stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", b"\3\2\1")
         talk(robot, ends, 10)
-    asked = owner.status()
-    assert ended(robot, ends, asked) == "OK" and asked.outcome
-    assert asked.outcome.values.damaged == 0
+    pending_request = owner.status()
+    assert ended(robot, ends, pending_request) == "OK" and pending_request.outcome
+    assert pending_request.outcome.values.damaged == 0
     topic = f"{ROOT}/aula/{ID}/in/{teacher.peer}"
     for junk in (b"SI|B(9, 90)\n", b"\3\2\1\0" * 50, bytes(range(1, 255)), b"GET / HTTP/1.1\r\n"):
         stranger.publish(topic, junk)
@@ -298,10 +298,10 @@ def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
         for _ in range(600):  # a broker says what it retains when the robot comes back
             talk(robot, cable, 10)
             time.sleep(0.005)
-            if told(robot, owner)[1] == "READY":
+            if broker_settings_of(robot, owner)[1] == "READY":
                 break
         talk(robot, cable, 300)
-        assert told(robot, owner)[1] == "READY" and motors(robot) == "MOTORS 80 80"
+        assert broker_settings_of(robot, owner)[1] == "READY" and motors(robot) == "MOTORS 80 80"
     finally:
         for topic in topics:
             stranger._client.publish(topic, b"", retain=True)
@@ -378,7 +378,7 @@ def test_a_broker_that_is_gone_ends_the_run(brokers: Callable[..., Mosquitto], h
     school_in_reach(robot)
     cable = remote(robot, keys, 20)
     assert ended(robot, [(None, cable)], cable.ping()) == "OK"
-    until(robot, lambda: told(robot, cable)[1] == "READY", 15_000)
+    until(robot, lambda: broker_settings_of(robot, cable)[1] == "READY", 15_000)
     again, end = remote(robot, keys, 13), own.connected()
     talk(robot, [], AUTHORITY_MS + 3000)
     assert uploaded(robot, [(AtBroker(robot, end), again)], again) == "OK"

@@ -14,7 +14,15 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.firmware.test_esp32_broker import DEAD_MAN_MS, ID, at, motors, present, told, until
+from tests.firmware.test_esp32_broker import (
+    DEAD_MAN_MS,
+    ID,
+    at,
+    broker_settings_of,
+    motors,
+    present,
+    until,
+)
 from tests.firmware.test_esp32_transports import Ends, ended, uploaded
 from tests.firmware.test_esp32_wifi import joined, remote, school_in_reach
 from tests.machines.esp32 import HAS_TLS, Esp32Robot
@@ -103,14 +111,14 @@ def test_who_is_not_trusted_gets_nothing(
         settings = settings._replace(port=brokers().port)
     robot, owner = joined(Keys())
     assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
-    until(robot, lambda: told(robot, owner)[1] == state)
+    until(robot, lambda: broker_settings_of(robot, owner)[1] == state)
     talk(robot, [(None, owner)], 1000)
-    assert told(robot, owner)[1] == state, "it stays while the robot tries again"
+    assert broker_settings_of(robot, owner)[1] == state, "it stays while the robot tries again"
     if state != "NO_TLS":
         teacher = room.connected()
         assert not [each for each in present(robot, teacher) if each.is_here]
         assert ended(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
-        until(robot, lambda: told(robot, owner)[1] == "READY")
+        until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
 
 
 def test_a_broker_that_is_set_anew_is_not_answered_with_what_was_wrong_before(
@@ -121,11 +129,11 @@ def test_a_broker_that_is_set_anew_is_not_answered_with_what_was_wrong_before(
     known(robot, NAME, "127.0.0.1", wait_ms=3000)
     wrong = room.settings(trust=Authority(tmp_path).der)
     assert ended(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
-    until(robot, lambda: told(robot, owner)[1] == "UNTRUSTED")
+    until(robot, lambda: broker_settings_of(robot, owner)[1] == "UNTRUSTED")
     talk(robot, [(None, owner)], 4500)
-    assert told(robot, owner)[1] == "UNTRUSTED"
+    assert broker_settings_of(robot, owner)[1] == "UNTRUSTED"
     assert ended(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
-    while (state := told(robot, owner)[1]) != "READY":
+    while (state := broker_settings_of(robot, owner)[1]) != "READY":
         assert state == "SEARCHING"
         talk(robot, [(None, owner)], 20)
         assert robot.now_ms < 30_000
@@ -160,7 +168,7 @@ def test_an_old_tls_is_none(tmp_path: Path, version: ssl.TLSVersion, state: str)
         settings = PLAIN._replace(port=server.getsockname()[1], name=NAME.encode(), tls=tls)
         assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
         until(robot, lambda: not thread.is_alive())
-        until(robot, lambda: told(robot, owner)[1] == state)
+        until(robot, lambda: broker_settings_of(robot, owner)[1] == state)
         thread.join()
     assert spoken == ([] if state == "NO_TLS" else ["TLSv1.2"])
 
@@ -182,7 +190,7 @@ def test_the_brokers_own_certificate_is_enough_and_no_other_of_its_authority(
     ):  # fmt: skip
         assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
         talk(robot, [(None, owner)], 50)
-        until(robot, lambda state=state: told(robot, owner)[1] == state)  # type: ignore[misc]
+        until(robot, lambda state=state: broker_settings_of(robot, owner)[1] == state)  # type: ignore[misc]
 
 
 def test_a_broker_that_dies_ends_the_run_over_tls(
@@ -217,18 +225,18 @@ def test_who_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: R
         silent.settimeout(120)
         for _ in range(2):  # it has tried again
             silent.accept()[0].close()
-        assert told(robot, owner)[1] == "SEARCHING"
+        assert broker_settings_of(robot, owner)[1] == "SEARCHING"
 
 
 def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Room) -> None:
-    """In the first hello, in the certificate, behind the handshake; and in pieces of 7 bytes."""
+    """In the first hello, in the certificate, after the handshake; and in pieces of 7 bytes."""
     cuts = CuttingNetwork(room.broker.port, (3, 200, 1500))
     keys = Keys()
     robot, owner = joined(keys)
     try:
         settings = room.settings()._replace(port=cuts.port)
         assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
-        until(robot, lambda: told(robot, owner)[1] == "READY")
+        until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
         assert cuts.left[:2] == [0, 0] and cuts.left[2] < 1500
         teacher = room.connected()
         far = remote(robot, keys)
@@ -248,9 +256,9 @@ def test_a_broker_is_found_by_its_name_or_where_it_was(
     settings = brokers().settings()._replace(name=name.encode(), address=address)
     assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
     if is_found:
-        until(robot, lambda: told(robot, owner)[1] == "READY")
+        until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     talk(robot, [(None, owner)], 500)
-    assert told(robot, owner)[1] == ("READY" if is_found else "SEARCHING")
+    assert broker_settings_of(robot, owner)[1] == ("READY" if is_found else "SEARCHING")
 
 
 TRUST = bytes(range(1, 201))
@@ -267,7 +275,7 @@ def test_what_is_no_tls_is_refused() -> None:
     ):  # fmt: skip
         assert not settings.is_sound
         assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE", settings
-        assert told(robot, owner) == ("OFF", "OFF", "")
+        assert broker_settings_of(robot, owner) == ("OFF", "OFF", "")
     most = PLAIN._replace(name=b"x" * BROKER_NAME_BYTES, tls=wifi.Tls(bytes(TRUST_BYTES), TODAY))
     assert most.is_sound
     assert ended(robot, [(None, owner)], owner.use_broker(most)) == "OK"
@@ -278,7 +286,7 @@ def test_it_is_kept_and_used_after_a_reset_also_where_another_finds_no_room(room
     robot.fill_nvs()
     assert ended(robot, [(None, owner)], owner.use_broker(PLAIN)) == "NOT_KEPT"
     talk(robot, [(None, owner)], 100)
-    assert told(robot, owner) == ("STATION", "READY", "aula")
+    assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
     again = Esp32Robot(kept=robot.kept())
     school_in_reach(again)
     again.wait(400)

@@ -179,7 +179,7 @@ def test_every_file_says_for_which_chip_it_is() -> None:
             assert lines[-1].strip() == "#endif", path.name
 
 
-def test_our_macros_come_behind_the_headers_of_the_core() -> None:
+def test_our_macros_come_after_the_headers_of_the_core() -> None:
     """And each has a name of ours: none may meet one of theirs."""
     for path in sorted((BOARD / "esp32").glob("*.*")):
         text = path.read_text(encoding="utf-8")

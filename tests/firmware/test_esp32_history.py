@@ -97,7 +97,7 @@ class Scene:
 
     def come(self, place: int, what: str) -> Guest | None:
         """Let somebody connect, over a radio or the cable, unless its place is taken."""
-        if place != NETWORK and any(each.place == place for each in self.guests):
+        if place != NETWORK and any(guest.place == place for guest in self.guests):
             return None
         make = MAKES[place]
         guest = Guest(make and make(self.robot), self.new(what), what, place)
@@ -169,14 +169,14 @@ def seen(scene: Scene, first: int, rng: random.Random) -> list[object]:
             who.said = rng.choice(LINES)
         scene.talk(rng.choice((100, 400, 1500)))
         found.append((name, told_of(request, *OF_MEMORY)))
-        for _, each, *_ in guests:
-            if isinstance(each, Session):
-                found.append([without_counts(event) for event in each.events()])
+        for _, client, *_ in guests:
+            if isinstance(client, Session):
+                found.append([without_counts(event) for event in client.events()])
         rows = (line.split(" ", 1) for line in robot.did)
         found.append([(int(ms) - begun_ms, what) for ms, what in rows])
         robot.did.clear()
     scene.talk(1200)  # an answer in text waits behind a frame that told nobody of the stop
-    said = [each.heard for _, each, *_ in guests if isinstance(each, Bytes)]
+    said = [client.heard for _, client, *_ in guests if isinstance(client, Bytes)]
     return [*found, [sorted(re.findall(rb"// [^\r\n]*\r\n", each)) for each in said]]
 
 

@@ -34,7 +34,7 @@ PLACES: list[Make] = [LowEnergy, SerialPort, Network]
 
 def with_wrong_key(robot: Esp32Robot, keys: Keys, nonce: int) -> Session:
     wrong = Keys()
-    wrong.found = [each._replace(key=bytes([nonce + 99] * 16)) for each in keys.found]
+    wrong.found = [robot_key._replace(key=bytes([nonce + 99] * 16)) for robot_key in keys.found]
     return remote(robot, wrong, nonce)
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.firmware.test_esp32_broker import told, until
+from tests.firmware.test_esp32_broker import broker_settings_of, until
 from tests.firmware.test_esp32_transports import Ends, ended
 from tests.firmware.test_esp32_wifi import HOTSPOT, joined, owned, state
 from tests.machines.esp32 import Esp32Robot
@@ -76,14 +76,14 @@ class StrictBroker:
 
 @pytest.fixture
 def brokers() -> Iterator[list[StrictBroker]]:
-    found: list[StrictBroker] = []
-    yield found
-    for each in found:
-        each.close()
+    strict_brokers: list[StrictBroker] = []
+    yield strict_brokers
+    for strict_broker in strict_brokers:
+        strict_broker.close()
 
 
-def using(broker: StrictBroker, found: list[StrictBroker]) -> tuple[Esp32Robot, Session]:
-    found.append(broker)
+def using(broker: StrictBroker, strict_brokers: list[StrictBroker]) -> tuple[Esp32Robot, Session]:
+    strict_brokers.append(broker)
     robot, owner = joined(Keys())
     assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
     return robot, owner
@@ -96,10 +96,10 @@ def test_a_broker_that_refuses_what_the_robot_wants_to_hear_is_not_ready(
     """As where a class was left out of its list of who may read what."""
     robot, owner = using(broker := StrictBroker(granted), brokers)
     until(robot, lambda: broker.asked >= 3)
-    assert told(robot, owner)[1] == "REFUSED", "and it is tried again"
+    assert broker_settings_of(robot, owner)[1] == "REFUSED", "and it is tried again"
     assert broker.said == [], "nobody is told that the robot is there"
     broker.granted = b"\0\0"
-    until(robot, lambda: told(robot, owner)[1] == "READY")
+    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     until(robot, lambda: len(broker.said) == 1)
 
 
@@ -107,7 +107,7 @@ def test_a_broker_that_refuses_what_the_robot_wants_to_hear_is_not_ready(
 def test_an_answer_to_something_else_is_none(granted: bytes, brokers: list[StrictBroker]) -> None:
     robot, owner = using(broker := StrictBroker(granted), brokers)
     until(robot, lambda: broker.asked >= 2)
-    assert told(robot, owner)[1] == "SEARCHING"
+    assert broker_settings_of(robot, owner)[1] == "SEARCHING"
     assert broker.said == []
 
 
@@ -124,7 +124,7 @@ def test_a_stop_before_the_answer_is_a_stop(brokers: list[StrictBroker]) -> None
 
     until(robot, is_stopped)
     assert ended(robot, [(None, owner)], owner.hello()) == "OK"
-    until(robot, lambda: told(robot, owner)[1] == "READY")
+    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     assert broker.asked == 1, "it was the first answer"
 
 

@@ -62,11 +62,11 @@ def test_two_chips_with_the_same_noise_are_two_robots() -> None:
         for maker in (b"\x24\x0a\xc4", b"\xa0\xb7\x65"):
             robot = Esp32Robot(mac=maker + bytes((0, 0, last)))
             robot.wait(300)
-            found = hello(robot)
-            found_ids.add(found.id)
-            assert found.nonce == found.id
+            hello_reply = hello(robot)
+            found_ids.add(hello_reply.id)
+            assert hello_reply.nonce == hello_reply.id
             again = Esp32Robot(kept=robot.kept(), mac=bytes(6), seed=5)
             again.wait(300)
-            assert hello(again).id == found.id, "it is made once"
+            assert hello(again).id == hello_reply.id, "it is made once"
     assert len(found_ids) == 16
     assert len({found & 0xFFFF for found in found_ids}) == 8, "what names show is that of one maker"

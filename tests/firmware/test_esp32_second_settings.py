@@ -197,9 +197,9 @@ def test_damaged_settings_are_none(key: bytes) -> None:
         again.wait(400)
         owner = remote(again, keys, 30)
         ends = [(None, owner)]
-        asked = owner.wifi() if key == WIFI_KEY else owner.broker()
-        assert ended(again, ends, asked) == "OK" and asked.outcome
-        values = asked.outcome.values
+        pending_request = owner.wifi() if key == WIFI_KEY else owner.broker()
+        assert ended(again, ends, pending_request) == "OK" and pending_request.outcome
+        values = pending_request.outcome.values
         found = wifi.MODES[values.mode], wifi.STATES[values.state], values.network
         assert found == ("OFF", "OFF", b""), entry
         assert (radios(again).joins == 0) == (key == WIFI_KEY)
@@ -218,7 +218,7 @@ CONNECT, SUBSCRIBE, PING = 1, 8, 12
 
 
 class CutBroker:
-    """A broker that breaks its connections off behind so many bytes; then it says `rest` first."""
+    """A broker that breaks its connections off after so many bytes; then it says `rest` first."""
 
     def __init__(self) -> None:
         self.listening = socket.create_server(("127.0.0.1", 0))
@@ -287,9 +287,9 @@ class CutBroker:
 
 @pytest.fixture
 def cut_broker() -> Iterator[CutBroker]:
-    found = CutBroker()
-    yield found
-    found.close()
+    broker = CutBroker()
+    yield broker
+    broker.close()
 
 
 def broker_state(robot: Esp32Robot, owner: Session) -> str:

@@ -58,9 +58,9 @@ def run(
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [3, 389, 8192])
 def test_old_or_new(size: int) -> None:
-    done = run(program(), 1, size)
-    assert done.returncode == 0, (done.stdout + done.stderr)[-2000:]
-    cases, writes = (int(line.split()[1]) for line in done.stdout.splitlines())
+    completed = run(program(), 1, size)
+    assert completed.returncode == 0, (completed.stdout + completed.stderr)[-2000:]
+    cases, writes = (int(line.split()[1]) for line in completed.stdout.splitlines())
     assert cases > 5_000
     blobs = -(-(size + HEADER_BYTES) // BLOB_BYTES)
     assert writes <= WRITES + blobs, "a program takes a few writes, not one for each byte"
@@ -81,6 +81,6 @@ def test_nvs_has_room_for_two_programs_and_a_third() -> None:
 
 @pytest.mark.parametrize(("pages", "is_enough"), [(15, True), (MIN_SPIFFS_PAGES - 1, False)])
 def test_the_largest_programs_are_saved_again_and_again(pages: int, is_enough: bool) -> None:
-    done = run(program(), 1, 8192, pages)
-    assert (done.returncode == 0) == is_enough, (done.stdout + done.stderr)[-2000:]
-    assert is_enough or "a save fails" in done.stdout
+    completed = run(program(), 1, 8192, pages)
+    assert (completed.returncode == 0) == is_enough, (completed.stdout + completed.stderr)[-2000:]
+    assert is_enough or "a save fails" in completed.stdout

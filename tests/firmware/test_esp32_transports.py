@@ -104,8 +104,8 @@ def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
     end = make(robot)
     ends: Ends = [(None, driver), (end, other)]
     assert uploaded(robot, ends, driver) == "OK"
-    for asked in (other.hello(), other.ping(), other.status(), other.identify()):
-        assert ended(robot, ends, asked) == "OK"
+    for pending_request in (other.hello(), other.ping(), other.status(), other.identify()):
+        assert ended(robot, ends, pending_request) == "OK"
     for refused in (other.live(image_of("F(1, 10)").code), other.start(), other.name(b"mine"),
                     other.upload(image_of(AWAY)), other.undo(), other.trim()):  # fmt: skip
         assert ended(robot, ends, refused) == "OTHER_DRIVER"
@@ -116,7 +116,7 @@ def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
     robot.wait(3)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     talk(robot, ends, 200)
-    assert [each.name for each in driver.events()] == ["STOPPED"]
+    assert [event.name for event in driver.events()] == ["STOPPED"]
     assert ended(robot, ends, other.start()) == "OTHER_DRIVER"
     assert uploaded(robot, ends, driver) == "OK", "who drives goes on after it"
 
@@ -276,12 +276,12 @@ def test_slow_notifications_delay_nobody_else() -> None:
     robot = booted()
     driver, slow = session(1, robot), session(2, robot)
     ends: Ends = [(None, driver), (LowEnergy(robot, slow=100), slow)]
-    asked = slow.status()
+    pending_request = slow.status()
     assert uploaded(robot, ends, driver) == "OK"
     begun_ms = robot.now_ms
     assert ended(robot, ends, driver.ping()) == "OK"
     assert robot.now_ms - begun_ms < 30
-    assert ended(robot, ends, asked, 20_000) == "OK"
+    assert ended(robot, ends, pending_request, 20_000) == "OK"
     slow.stop(robot.now_ms)
     talk(robot, ends, 20)
     assert happened(robot)[-1] == "MOTORS 0 0", "a stop needs no notification"
@@ -358,7 +358,7 @@ def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
-    """An app may end none behind one that does: it runs after three seconds all the same."""
+    """An app may end none after one that does: it runs after three seconds all the same."""
     robot = booted()
     end, typed = make(robot), Bytes(b"SHOW(1)\n")
     talk(robot, [(end, typed)], 100)
@@ -414,7 +414,7 @@ def test_the_button_of_two_who_claim_is_nobodys() -> None:
     talk(robot, ends, 500)
     talk(robot, ends, 2300, flags=1)
     talk(robot, ends, 500, flags=2)
-    assert [each.outcome for each in claims] == [None, None]
+    assert [claim.outcome for claim in claims] == [None, None]
     talk(robot, ends[:1], AUTHORITY_MS + 100)  # the second one has gone
     talk(robot, ends[:1], 2300, flags=1)
     talk(robot, ends[:1], 500, flags=2)

@@ -52,5 +52,5 @@ def run(sources: Path = SOURCES, seconds: int = 2) -> subprocess.CompletedProces
 
 
 def test_no_two_cores_touch_the_same_at_once() -> None:
-    done = run()
-    assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
+    completed = run()
+    assert completed.returncode == 0, (completed.stdout + completed.stderr)[-4000:]

@@ -11,7 +11,7 @@ import pytest
 from tests.firmware.test_esp32_transports import RADIOS, Ends, Make, booted, ended, uploaded
 from tests.firmware.test_esp32_wifi import joined
 from tests.firmware.test_host_firmware import happened
-from tests.firmware.test_typed_stops import ALL, HELD_MS, SILENCE_MS, spellings_behind
+from tests.firmware.test_typed_stops import ALL, HELD_MS, SILENCE_MS, spellings_after
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Bytes, End, Network, session, talk
 from tests.support.images import image_of
@@ -50,11 +50,11 @@ def stops(robot: Esp32Robot, end: End | None, ends: Ends, data: bytes, what: str
     assert stands(robot), what
 
 
-def stops_behind_every_prefix(
+def stops_after_every_prefix(
     robot: Esp32Robot, driver: Session, driver_end: End | None, end: End | None
 ) -> None:
     for k, (name, prefix) in enumerate(ALL.items()):
-        spellings = spellings_behind(name)
+        spellings = spellings_after(name)
         for spelling in (spellings[k % len(spellings)], spellings[-1 - k % len(spellings)]):
             ends = drives(robot, driver, driver_end)
             stops(robot, end, ends, prefix + spelling, f"{name} {spelling!r}")
@@ -63,7 +63,7 @@ def stops_behind_every_prefix(
 @pytest.mark.parametrize("make", RADIOS)
 def test_a_typed_stop_over_a_radio_while_the_cable_drives(make: Make) -> None:
     robot = booted()
-    stops_behind_every_prefix(robot, session(1, robot), None, make(robot))
+    stops_after_every_prefix(robot, session(1, robot), None, make(robot))
 
 
 def test_a_typed_stop_over_a_network() -> None:
@@ -71,7 +71,7 @@ def test_a_typed_stop_over_a_network() -> None:
     robot, owner = joined(Keys())
     end = Network(robot)
     end.send(b"\0\0")
-    stops_behind_every_prefix(robot, owner, None, end)
+    stops_after_every_prefix(robot, owner, None, end)
     end.leave()
 
 
@@ -96,7 +96,7 @@ def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
     talk(robot, ends, LATE_MS)
     other.taken()
     assert other.has_ended == (is_for_robot(word + page) is False)
-    stops(robot, end, drives(robot, owner), b"S\n", "behind one that has stopped nothing")
+    stops(robot, end, drives(robot, owner), b"S\n", "after one that has stopped nothing")
     end.leave()
     other.leave()
 
@@ -117,7 +117,7 @@ def test_a_stranger_who_sends_no_line_end_stops(words: list[bytes]) -> None:
 
 def test_a_typed_stop_over_the_cable_while_a_radio_drives() -> None:
     robot = booted()
-    stops_behind_every_prefix(robot, session(1, robot), RADIOS[0](robot), None)
+    stops_after_every_prefix(robot, session(1, robot), RADIOS[0](robot), None)
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -151,12 +151,12 @@ def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
         ends = drives(robot, driver)
         end.send(b"(" * ROOM + b"\n" + stop[:lost])
         talk(robot, ends, 20)
-        stops(robot, end, ends, stop[lost:], f"the rest behind {lost} of {stop!r}")
+        stops(robot, end, ends, stop[lost:], f"the rest after {lost} of {stop!r}")
 
 
 @pytest.mark.parametrize("make", RADIOS)
 def test_what_is_lost_stops_nobody(make: Make) -> None:
-    """Nor does a frame with a line S in it that arrives whole, behind what was lost."""
+    """Nor does a frame with a line S in it that arrives whole, after what was lost."""
     robot = booted()
     driver, end = session(1, robot), make(robot)
     ends = drives(robot, driver)
@@ -183,7 +183,7 @@ LINES = b"".join(b"F(1,%d)\n" % (20 + k % 70) for k in range(100))
 @pytest.mark.parametrize("make", RADIOS)
 @pytest.mark.parametrize("stop", [b"S\n", b"PARA\n", b"SSS", b"STOP STOP ", bytes(4), b"\x03\n"])
 def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
-    """Nothing that came before it starts afterwards, and what comes behind it counts again."""
+    """Nothing that came before it starts afterwards, and what comes after it counts again."""
     robot = booted()
     driver, end = session(1, robot), make(robot)
     ends = drives(robot, driver)

@@ -63,7 +63,7 @@ def joined(keys: Keys, network: wifi.Network = SCHOOL) -> tuple[Esp32Robot, Sess
     return robot, owner
 
 
-def told(robot: Esp32Robot, ends: Ends, who: Session) -> WifiReply:
+def wifi_reply_of(robot: Esp32Robot, ends: Ends, who: Session) -> WifiReply:
     request = who.wifi()
     assert ended(robot, ends, request) == "OK"
     assert request.outcome
@@ -71,8 +71,8 @@ def told(robot: Esp32Robot, ends: Ends, who: Session) -> WifiReply:
 
 
 def state(robot: Esp32Robot, owner: Session) -> tuple[str, str]:
-    found = told(robot, [(None, owner)], owner)
-    return wifi.MODES[found.mode], wifi.STATES[found.state]
+    wifi_reply = wifi_reply_of(robot, [(None, owner)], owner)
+    return wifi.MODES[wifi_reply.mode], wifi.STATES[wifi_reply.state]
 
 
 def remote(robot: Esp32Robot, keys: Keys | None, nonce: int = 9) -> Session:
@@ -85,9 +85,9 @@ def remote(robot: Esp32Robot, keys: Keys | None, nonce: int = 9) -> Session:
 @pytest.mark.parametrize("network", [SCHOOL, HOTSPOT])
 def test_the_owner_gives_the_robot_a_network(network: wifi.Network) -> None:
     robot, owner = joined(Keys(), network)
-    found = told(robot, [(None, owner)], owner)
-    assert (found.network, wifi.STATES[found.state]) == (network.name, "READY")
-    assert wifi.address(found) == ("192.168.4.1" if network.is_access_point else "127.0.0.1")
+    wifi_reply = wifi_reply_of(robot, [(None, owner)], owner)
+    assert (wifi_reply.network, wifi.STATES[wifi_reply.state]) == (network.name, "READY")
+    assert wifi.address(wifi_reply) == ("192.168.4.1" if network.is_access_point else "127.0.0.1")
     asked = radios(robot)
     assert asked.network.encode() == network.name and asked.password.encode() == network.password
     assert asked.is_access_point == network.is_access_point
@@ -200,7 +200,7 @@ def test_it_is_kept_when_the_motors_stand_and_whole_or_not_at_all() -> None:
     robot.fill_nvs()
     assert ended(robot, ends, owner.join(HOTSPOT)) == "NOT_KEPT"
     assert robot.kept().entries[WIFI_KEY] == before
-    assert told(robot, ends, owner).network == SCHOOL.name
+    assert wifi_reply_of(robot, ends, owner).network == SCHOOL.name
     kept = robot.kept()
     for entry in (b"", b"\1" * 5, b"\xff" * 98, b"\1" + b"x" * 97):
         again = Esp32Robot(kept=Kept(kept.noinit, {**kept.entries, WIFI_KEY: entry}, 0))
@@ -423,7 +423,7 @@ def test_after_three_restarts_wifi_rests_and_the_cable_brings_it_back(reset: int
         assert rests(robot) == is_third
     owner = remote(robot, keys, 41)
     assert state(robot, owner) == ("STATION", "RESTS")
-    assert told(robot, [(None, owner)], owner).network == SCHOOL.name
+    assert wifi_reply_of(robot, [(None, owner)], owner).network == SCHOOL.name
     robot = restarted(robot, POWER_ON, 1000)
     assert rests(robot), "until somebody sets it again"
     owner = remote(robot, keys, 42)

@@ -97,7 +97,7 @@ LINES = (
 )  # fmt: skip
 ENDS = ("\n", "\n", "\r\n", "")
 TEXT = tuple(piece for piece in PIECES if b"\0" not in piece)
-# Behind these another line with its SETUP word is read at once, as it would be alone.
+# After these another line with its SETUP word is read at once, as it would be alone.
 HARMLESS = (b" ", b"\t", b";", b"\xef\xbb\xbf", b"AT", b"AT+NAMEx", b"OK+CONN", b"+CONNECTED", b"F",
             b"x", b"1", b"// note", b"~1234ABCD", b"\x1b[A", b"\x1b", b"\x7f", b"\xff",
             b"\xc3", b"x" * 300, b"FOO(1)", b"SI|FOO()", b"SI|F(1,500)", b"SB|9",
@@ -185,7 +185,9 @@ def without_counts(values: Any, *but: str) -> object:
     """Return values without some, and without what is counted since the robot was switched on."""
     if not hasattr(values, "_asdict"):
         return values
-    return [(name, each) for name, each in values._asdict().items() if name not in (*COUNTS, *but)]
+    return [
+        (name, value) for name, value in values._asdict().items() if name not in (*COUNTS, *but)
+    ]
 
 
 # -- what comes before --------------------------------------------------------------------------
@@ -310,7 +312,7 @@ def settled(scene: Scene, saves: bool) -> bytes:
     return memory
 
 
-# -- what comes behind --------------------------------------------------------------------------
+# -- what comes after --------------------------------------------------------------------------
 
 
 class Behind(NamedTuple):
@@ -334,7 +336,7 @@ def behind(rng: random.Random, before: str) -> Behind:
         waits = (1100, 1100, 1300, 2500)
     elif is_typed:
         waits = (UNHEARD_MS, 6000, FORGETS_MS)
-    # In an open block S is an instruction of it. Behind frames it waits, as it may be one of them.
+    # In an open block S is an instruction of it. After frames it waits, as it may be one of them.
     stops = STOPS if before == "anything" else STOPS[:2]
     is_cut = before != "lines" and rng.random() < 0.6
     return Behind(rng.choice(stops), rng.choice(waits), is_cut, rng.choice((1, 2, 3, 5)), is_typed)

@@ -273,7 +273,7 @@ def test_a_line_that_replaces_a_run_begins_at_its_own_beginning(is_line: bool) -
     robot.talk(session, 300)
     moves = [line for line in happened(robot) if line.startswith("MOTORS")]
     assert moves[-2:] == ["MOTORS 60 60", "MOTORS 0 0"] and "MOTORS 40 40" not in moves
-    shown = [each.value for each in session.events() if each.name == "SHOW"]
+    shown = [event.value for event in session.events() if event.name == "SHOW"]
     assert shown == [1, 5000]
 
 
@@ -294,4 +294,4 @@ def test_a_damaged_line_changes_nothing_of_the_one_that_runs(at: int) -> None:
     robot.talk(session, 600)
     moves = [line for line in happened(robot) if line.startswith("MOTORS")]
     assert "MOTORS 50 50" in moves and "MOTORS 90 90" not in moves
-    assert [each.value for each in session.events() if each.name == "SHOW"] == [7000]
+    assert [event.value for event in session.events() if event.name == "SHOW"] == [7000]

@@ -80,7 +80,7 @@ class Client:
         self.replies.clear()
         sent = self.epoch if epoch is None else epoch
         self.put(self.zero() + encoded(Frame(number, self.seq, sent, payload)))
-        [reply] = [each for each in self.replies if each.seq == self.seq]
+        [reply] = [frame for frame in self.replies if frame.seq == self.seq]
         assert reply.number == number and reply.is_reply
         assert reply.payload[0] == OK or len(reply.payload) == 3, reply
         return reply.payload
@@ -98,7 +98,7 @@ class Client:
     def request(self) -> None:
         """Any message, of a right or a wrong length, in any epoch."""
         rng = self.rng
-        number = rng.choice((*(each.number for each in REQUESTS[1:]), rng.choice(UNKNOWN), 0))
+        number = rng.choice((*(message.number for message in REQUESTS[1:]), rng.choice(UNKNOWN), 0))
         fields = BY_NUMBER[number].request if number in BY_NUMBER else ()
         least, most = sizes(fields)
         most = min(most, payload_bytes(LARGEST))
@@ -134,7 +134,7 @@ class Client:
         epoch = self.epoch
         self.put(b"\0" + encoded(Frame(BY_NAME[name].number, self.seq, epoch, mode)))
         if self.epoch == epoch and first[0] != STALE:
-            assert [each.payload for each in self.replies] == [first]
+            assert [reply.payload for reply in self.replies] == [first]
 
     def upload(self) -> None:
         """A program in pieces; something comes between. What is confirmed is what was sent."""

@@ -110,7 +110,7 @@ def test_in_an_open_block_the_line_is_the_programs() -> None:
 
 
 @pytest.mark.parametrize("how", ["text", "zeros", "button"])
-def test_behind_a_stop_they_count_as_silence_and_release_nothing(how: str) -> None:
+def test_after_a_stop_they_count_as_silence_and_release_nothing(how: str) -> None:
     """Who goes on holding a key types a program a second later."""
     robot = booted()
     typed(robot, DRIVES + "\n", 100)

@@ -150,17 +150,17 @@ def test_a_plug_pulled_while_a_pace_is_kept_leaves_a_whole_one() -> None:
     after = Trim(balance=5, least=7, pace=Pace(11, 30, 70, 260))
     assert robot.until(session, session.trim(before.data())) == OK
     request = session.trim(after.data())
-    seen: list[Trim] = []
+    trims: list[Trim] = []
     while request.outcome is None or robot.now_ms % 7:
         robot.talk(session, 1)
         if robot.now_ms % 7 == 0:
-            seen.append(trim_after_power_off(robot))
+            trims.append(trim_after_power_off(robot))
     assert robot.until(session, request) == OK
-    assert {each.pace for each in seen} == {before.pace, after.pace}
-    assert {each._replace(pace=Pace()) for each in seen} == {
-        each._replace(pace=Pace()) for each in (before, after)
+    assert {trim.pace for trim in trims} == {before.pace, after.pace}
+    assert {trim._replace(pace=Pace()) for trim in trims} == {
+        trim._replace(pace=Pace()) for trim in (before, after)
     }
-    assert trim_after_power_off(robot) == seen[-1] == after
+    assert trim_after_power_off(robot) == trims[-1] == after
 
 
 def trim_after_power_off(robot: HostFirmware) -> Trim:

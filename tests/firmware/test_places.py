@@ -32,8 +32,8 @@ DRIVE = PROGRAMS[0]
 def asked(robot: HostFirmware, seq: int, epoch: int) -> tuple[int, int, bytes]:
     """Ask for the place in one frame; return state, run and place of the reply."""
     data = b"\0" + encoded(Frame(BY_NAME["PING"].number, seq & 0xFF, epoch, b"\1"))
-    frames = [decoded(each) for each in robot.step(data).split(b"\0") if each]
-    frame = next(each for each in frames if each and each.number == BY_NAME["PING"].number)
+    frames = [decoded(part) for part in robot.step(data).split(b"\0") if part]
+    frame = next(frame for frame in frames if frame and frame.number == BY_NAME["PING"].number)
     assert frame.payload[0] == OK
     values = read(BY_NAME["PING"].reply, frame.payload[1:])
     state, run, place = values["state"], values["run"], values["place"]
@@ -61,15 +61,15 @@ def test_a_place_is_that_of_the_machine_in_python(text: str) -> None:
     assert robot.until(session, session.upload(image, saves=False)) == OK
     begun_ms = int(robot.did[0].split()[0])
     machine = places(image, begun_ms, 30_000)
-    told = []
+    place_events_of = []
     for _ in range(robot.now_ms - begun_ms + 1):
         next(machine)
     for seq, at in enumerate(machine, 50):
         state, _, place = asked(robot, seq, session._epoch)
         assert state == STATE_RUNNING
         assert place == at.to_bytes(2, "little") + image.checksum.to_bytes(4, "little")
-        told.append(at)
-    assert len(set(told)) >= 3
+        place_events_of.append(at)
+    assert len(set(place_events_of)) >= 3
     robot.wait(20)
     assert asked(robot, 40, session._epoch)[2] == b""
 
@@ -85,39 +85,43 @@ def heard(robot: HostFirmware, session: Session, milliseconds: int) -> list[Even
     return session.events()
 
 
-def told(events: list[Event]) -> list[PlaceEvent]:
-    return [each for each in events if isinstance(each, PlaceEvent)]
+def place_events_of(events: list[Event]) -> list[PlaceEvent]:
+    return [event for event in events if isinstance(event, PlaceEvent)]
 
 
 def test_a_session_that_wants_it_hears_each_place_of_each_run_once() -> None:
     robot, session = switched_on(), computer()
     image = image_of(DRIVE)
     assert robot.until(session, session.upload(image, saves=False)) == OK
-    assert told(heard(robot, session, 3000)) == [], "it has not asked"
+    assert place_events_of(heard(robot, session, 3000)) == [], "it has not asked"
     session.tells_places = True
     assert robot.until(session, session.start()) == OK
     events = heard(robot, session, 3000)
-    found = told(events)
-    assert [each.at for each in found] == sorted({each.at for each in found})
-    assert len(found) == 3 and all(each[:2] == (2, image.checksum) for each in found)
-    assert [each.name for each in events].count("DONE") == 1
+    place_events = place_events_of(events)
+    assert [place_event.at for place_event in place_events] == sorted(
+        {event.at for event in place_events}
+    )
+    assert len(place_events) == 3 and all(
+        place_event[:2] == (2, image.checksum) for place_event in place_events
+    )
+    assert [event.name for event in events].count("DONE") == 1
     for run in (3, 4):
         assert robot.until(session, session.start()) == OK
-        assert told(heard(robot, session, 500))[0].run == run
+        assert place_events_of(heard(robot, session, 500))[0].run == run
         session.stop(robot.now_ms)
-        assert told(heard(robot, session, 1500)) == [], "after a stop there is none"
+        assert place_events_of(heard(robot, session, 1500)) == [], "after a stop there is none"
 
 
 def test_what_the_button_starts_and_a_line_have_places_too() -> None:
     robot, session = switched_on(), listener()
     waits = image_of("SB" + DRIVE[2:])
     assert robot.until(session, session.upload(waits, saves=False)) == OK
-    assert told(heard(robot, session, 1500)) == []
+    assert place_events_of(heard(robot, session, 1500)) == []
     robot.push()
-    assert told(heard(robot, session, 1500))[0].program == waits.checksum
+    assert place_events_of(heard(robot, session, 1500))[0].program == waits.checksum
     line = image_of("SI|L(3, 20)")
     assert robot.until(session, session.live(line.code)) == OK
-    assert told(heard(robot, session, 500))[0].program == line.checksum
+    assert place_events_of(heard(robot, session, 500))[0].program == line.checksum
 
 
 def test_a_sealed_session_hears_places_sealed() -> None:
@@ -135,6 +139,6 @@ def test_a_sealed_session_hears_places_sealed() -> None:
         there += data
         session.receive(table.robot.step(data), table.robot.now_ms)
         found += session.events()
-    frames = [decoded(each) for each in there.split(b"\0") if each]
+    frames = [decoded(part) for part in there.split(b"\0") if part]
     assert frames and all(frame and frame.is_sealed for frame in frames)
-    assert {each.program for each in told(found)} == {image.checksum}
+    assert {place_event.program for place_event in place_events_of(found)} == {image.checksum}

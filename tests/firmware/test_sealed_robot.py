@@ -110,8 +110,8 @@ def test_a_stranger_keeps_no_program_running() -> None:
         while table.robot.now_ms < begun_ms + 1010:
             table.robot.wait(50, b"\0" + encoded(Frame(ping, 1, 0)))
         assert "MOTORS 0 0" in table.robot.did[-2] + table.robot.did[-1]
-        said = table.answer(Frame(ping, 1, 0))
-        assert said and said.payload[1] == STATE_FAULTED
+        frame = table.answer(Frame(ping, 1, 0))
+        assert frame and frame.payload[1] == STATE_FAULTED
 
 
 def test_a_relay_cannot_say_that_it_worked() -> None:
@@ -168,7 +168,7 @@ def test_no_refusal_of_a_stranger_takes_a_key(is_pending: bool, is_cut: bool) ->
     """A refusal has no seal: the robot's own answer, which has one, is waited for. Whoever cuts the
     line may refuse a key for ever; without that it opens the robot again."""
     table, _, keys = opened()
-    keys.found = [each._replace(is_pending=is_pending) for each in keys.found]
+    keys.found = [robot_key._replace(is_pending=is_pending) for robot_key in keys.found]
     session = table.session(keys, nonce=8)
     assert refused_by_a_stranger(table, session, is_cut).status == 0
     assert session.robot and whose(session.robot) == (OF_ANOTHER if is_cut else YOUR_OWN)
@@ -189,9 +189,11 @@ def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
         session.poll(table.robot.now_ms)
         session.receive(forged, table.robot.now_ms)
         table.robot.step()
-    assert not [each for each in session.events() if each.name == "STOPPED"]
+    assert not [
+        stopped_event for stopped_event in session.events() if stopped_event.name == "STOPPED"
+    ]
     table.pass_time(session, 50)
-    assert [each for each in session.events() if each.name == "STOPPED"]
+    assert [event for event in session.events() if event.name == "STOPPED"]
     assert table.robot.is_latched
     recorded(table, session, FOREVER)
     table.robot.step(flags=PRESSED)
@@ -236,7 +238,7 @@ def test_a_counter_at_its_end_begins_another_seal() -> None:
 
 
 def test_a_seal_that_has_expired_is_made_again_for_the_same_request() -> None:
-    """Behind more requests than numbers: AUTHENTICATE has one after those of the sealed ones."""
+    """After more requests than numbers: AUTHENTICATE has one after those of the sealed ones."""
     table, session, _ = opened()
     before = session._sealing.seal
     for _ in range(200):
@@ -359,7 +361,7 @@ def attacked(frames: int, seed: int) -> Counter[str]:
         how, data = thief.frame(session._epoch, (session._seq + 1 + count % 3) & 0xFF)
         found[how] += 1
         sent = robot.wait(2, b"\0" + data + b"\0")
-        said = [each for each in sent.split(b"\0") if each]
+        said = [part for part in sent.split(b"\0") if part]
         found["accepted"] += sum(is_accepted(each) or _is_sealed(each) for each in said)
         found["accepted"] += len([line for line in robot.did if "MOTORS" in line])
         robot.did.clear()

@@ -3,7 +3,7 @@
 A random program is stopped, ends, loses its computer or is written over at a random moment, while
 somebody holds the button or a wheel, or the supply is low; then comes another, the same way or
 another, from the same computer or the next. All that can be seen of that one, motors, devices and
-what the computer hears, is what a robot does that was switched on for it. Behind a stop nothing
+what the computer hears, is what a robot does that was switched on for it. After a stop nothing
 starts before it.
 
 `python -m tests.firmware.test_second_time 2000` tries more.
@@ -154,7 +154,7 @@ ENDS: dict[str, Callable[[Scene], object]] = {
 }
 
 
-# Behind these it stands still until the second one.
+# After these it stands still until the second one.
 STOPS = ("zeros", "a message", "a line", "its computer")
 
 # What goes on beside the first, and what that is over with: before the second, or during it.
@@ -246,7 +246,7 @@ def passed(scene: Scene, begins: str, milliseconds: int) -> list[str]:
     scene.robot.talk(scene.session, milliseconds)
     events = scene.session.events()
     if scene.before is not None:
-        events = [each for each in events if getattr(each, "run", None) != scene.before]
+        events = [event for event in events if getattr(event, "run", None) != scene.before]
     return [re.sub(r"run=\d+", "run", str(event)) for event in events]
 
 
@@ -361,7 +361,7 @@ def test_what_the_button_has_asked_for_begins_once() -> None:
 
 
 @pytest.mark.parametrize("ends", STOPS)
-def test_what_the_button_has_asked_for_begins_not_behind_a_stop(ends: str) -> None:
+def test_what_the_button_has_asked_for_begins_not_after_a_stop(ends: str) -> None:
     scene, _ = waiting_start()
     scene.robot.step(flags=2)
     ENDS[ends](scene)
@@ -369,7 +369,7 @@ def test_what_the_button_has_asked_for_begins_not_behind_a_stop(ends: str) -> No
     assert scene.robot.codes() == [] and scene.robot.is_latched
 
 
-def test_what_the_button_has_asked_for_begins_not_behind_another_program() -> None:
+def test_what_the_button_has_asked_for_begins_not_after_another_program() -> None:
     scene, _ = waiting_start()
     robot = scene.robot
     other = image_of("SI|B(60, 40)", KIT).code
@@ -457,7 +457,7 @@ def check_ways(seed: int) -> str:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(PARTS))
-def test_ways_behind_anything_are_as_on_a_fresh_robot(part: int) -> None:
+def test_ways_after_anything_are_as_on_a_fresh_robot(part: int) -> None:
     found = Counter(check_ways(seed) for seed in range(part * 60, (part + 1) * 60))
     assert found["from where it stood"] > 20 and found["from a move"] > 0, found
 

@@ -125,8 +125,8 @@ def test_who_stops_with_zeros_is_answered_with_a_frame_whatever_was_typed_before
     robot.wait(1500, line)
     sent = robot.wait(60, bytes(8))
     assert b"//" not in sent
-    frames = [decoded(each) for each in sent.split(b"\0") if each]
-    assert [each and each.number for each in frames] == [BY_NAME["STOPPED"].number]
+    frames = [decoded(part) for part in sent.split(b"\0") if part]
+    assert [frame and frame.number for frame in frames] == [BY_NAME["STOPPED"].number]
 
 
 # -- in every state of the firmware, in every way, once, twice and again and again ----------------
@@ -153,7 +153,7 @@ PAIRS = [
 ]
 
 
-def begun(state: str) -> Table:
+def table_in_state(state: str) -> Table:
     table = Table()
     STATES[state](table)
     table.robot.did.clear()
@@ -168,7 +168,7 @@ def after_power_off(table: Table) -> HostFirmware:
 
 @pytest.mark.parametrize(("state", "way"), PAIRS)
 def test_a_stop_in_every_state(state: str, way: str) -> None:
-    table = begun(state)
+    table = table_in_state(state)
     robot = table.robot
     was_running = not robot.is_latched
     WAYS[way](robot)
@@ -230,7 +230,7 @@ def test_a_robot_that_is_not_heard_any_more_is_not_kept_driving_by_who_looks_for
     if is_asked == "upload":
         request = session.upload(image_of("SI|F(60, 80)"), saves=False)
     while lost_ms is None or robot.now_ms < lost_ms + 6000:
-        if robot.now_ms % 10 == 0 and any(each.name == "LOST" for each in session.events()):
+        if robot.now_ms % 10 == 0 and any(event.name == "LOST" for event in session.events()):
             lost_ms = lost_ms or robot.now_ms
             if is_asked == "search":
                 request = session.hello()

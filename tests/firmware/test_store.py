@@ -58,9 +58,9 @@ def parts(sources: Path) -> list[Path]:
 
 def run(program: Path, seed: int, sample: tuple[str, ...]) -> Found:
     words = [str(program), str(seed), *sample]
-    done = subprocess.run(words, capture_output=True, text=True)
-    assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
-    return Found(*(int(line.split()[1]) for line in done.stdout.splitlines()))
+    completed = subprocess.run(words, capture_output=True, text=True)
+    assert completed.returncode == 0, (completed.stdout + completed.stderr)[-4000:]
+    return Found(*(int(line.split()[1]) for line in completed.stdout.splitlines()))
 
 
 # -- the plug -----------------------------------------------------------------------------------
@@ -107,14 +107,14 @@ def test_the_document_says_where_everything_lies(column: int, flags: tuple[str, 
     probe = f'#include "{STORE.parent}/layout.h"\nusing namespace tiniscript;\n'
     probe += "".join(f'static_assert({a} == {b}, "{a}");\n' for a, b in facts.items())
     command = ["g++", "-std=c++11", "-fsyntax-only", *flags, "-xc++", "-"]
-    done = subprocess.run(command, input=probe, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    completed = subprocess.run(command, input=probe, capture_output=True, text=True)
+    assert completed.returncode == 0, completed.stderr
 
 
 # -- on a chip ----------------------------------------------------------------------------------
 
 
-def kept(image: bytes) -> list[str]:
+def expected_lines(image: bytes) -> list[str]:
     return [f"KEPT {len(image)}", f"CRC {crc32(image)}"]
 
 
@@ -130,10 +130,10 @@ def test_on_a_chip(size: int, ticks: int) -> None:
     *said, start, save = avr_bench.run(avr_bench.built("store"), request)
     saved, saving = f"STATE {SAVED}", f"STATE {SAVING}"
     assert said == [
-        *kept(b""),
-        *(saved, *kept(first)),
-        *(saving, *kept(first)),
-        *(saved, *kept(second)),
+        *expected_lines(b""),
+        *(saved, *expected_lines(first)),
+        *(saving, *expected_lines(first)),
+        *(saved, *expected_lines(second)),
     ]
     assert int(start.split()[1]) < 16_000 * 8  # cycles: 8 ms, the checksum of a program
     assert int(save.split()[1]) < 16 * 25  # 25 microseconds

@@ -433,7 +433,7 @@ def test_frames_during_and_after_text() -> None:
 
 @pytest.mark.parametrize("burst", [True, False])
 @pytest.mark.parametrize("less", range(1, 12))
-def test_a_live_line_right_behind_text_is_what_its_frame_says(less: int, burst: bool) -> None:
+def test_a_live_line_right_after_text_is_what_its_frame_says(less: int, burst: bool) -> None:
     """Its image is made before its frame ends: text that comes between must not be run for it."""
     robot, session = switched_on(), computer()
     robot.until(session, session.hello())
@@ -513,7 +513,7 @@ def test_values_wait_for_room_and_none_is_lost() -> None:
     values = [f"// {(k + 1) * 1.001:.3f}" for k in range(50)]
     assert said == [
         "// OK",
-        *(each.rstrip("0").rstrip(".") for each in values),
+        *(value.rstrip("0").rstrip(".") for value in values),
         "// TRUE",
         "// DONE",
     ]
@@ -544,9 +544,9 @@ def test_many_long_names_until_it_is_full() -> None:
     for count in range(1, 12):
         text = "SI|" + "".join(f"{name}=0;" for name in names[:count]) + "SHOW(1)\n"
         answers.append(typed(robot, text, 1100))
-    fits = [each == ["// OK", "// 1", "// DONE"] for each in answers]
+    fits = [answer == ["// OK", "// 1", "// DONE"] for answer in answers]
     assert fits == sorted(fits, reverse=True) and True in fits and False in fits
-    assert {len(each) for each in answers if each[0] != "// OK"} == {1}
+    assert {len(answer) for answer in answers if answer[0] != "// OK"} == {1}
     assert done_after(robot, "F(0.2,50)\n") == LINE
 
 

@@ -152,11 +152,11 @@ class Fuzz:
         for _ in range(20):
             answers = self.type(LINE) + self.wait(1050)
             lines = answers.split(b"\r\n")
-            is_taken = any(each.startswith(b"// OK") for each in lines)
+            is_taken = any(line.startswith(b"// OK") for line in lines)
             if is_taken and self.moving():
                 return
             if SAVING not in lines:
-                is_open = is_taken or any(MISTAKE.match(each) for each in lines)
+                is_open = is_taken or any(MISTAKE.match(line) for line in lines)
                 assert is_open and not was_open, answers
                 was_open = True
                 self.wait(1050)  # `moving` has stopped it

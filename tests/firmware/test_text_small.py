@@ -174,7 +174,7 @@ def test_s_alone_stops_what_tsc_live_runs(line: str, stops: bool) -> None:
     assert robot.until(session, session.live(image_of("SI|F(5, 60)").code)) == OK
     assert happened(robot) == ["MOTORS 60 60"]
     typed(robot, line, 0)
-    for _ in range(600):  # a heartbeat behind a line is text, and repeated
+    for _ in range(600):  # a heartbeat after a line is text, and repeated
         robot.talk(session, 1)
     assert happened(robot)[:2] == ["MOTORS 60 60"] + ["MOTORS 0 0"] * stops
     assert (status(robot, session).state == STATE_STOPPED) == stops

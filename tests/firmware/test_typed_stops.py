@@ -1,9 +1,9 @@
 """A typed stop on a simulated Uno: in every state of the receiver, in all spellings, at both rates.
 
 From the end of its line to the motor pins it takes less than a millisecond, in what began as a
-frame less than that behind 100 ms of silence; there only the strict spellings count. What came
+frame less than that after 100 ms of silence; there only the strict spellings count. What came
 before it starts nothing afterwards.
-`python -m tests.firmware.test_typed_stops 10000` types it behind so many random bytes.
+`python -m tests.firmware.test_typed_stops 10000` types it after so many random bytes.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ HELD_MS, MOST_MS = 100, 1.0
 TURN_MS = 2.1  # the clock counts one or two milliseconds each 1.024 ms
 BUSY_TURN_MS = 5.0  # and the main loop comes late that has lines to read and answers to write
 
-# What comes before the line of the stop, behind a program that runs and a second of silence.
+# What comes before the line of the stop, after a program that runs and a second of silence.
 PREFIXES = {
     "nothing": b"",
     "CR LF": b"\r\n",
@@ -64,7 +64,7 @@ PREFIXES = {
     "a damaged frame": b"\0\x08\x02\x02\x0b\x62\xe4\x10\x1c\0",
     "a zero": b"\0",
     "zeros": b"\0\0",
-    "a line behind a zero": b"\0F(1,80)\r\n",
+    "a line after a zero": b"\0F(1,80)\r\n",
     "a mistake": b"FORWARD!\n",
     "six questions": b"HELP\n" * 6,
     "eight questions": b"HELP\n" * 8,
@@ -98,21 +98,21 @@ def sketch(
     folder, run = tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory)
     if baud == BAUDS[0]:
         return firmware("uno", folder, run), baud
-    return once(run / f"uno_{baud}.elf", lambda made: shutil.copy(built(baud, folder), made)), baud
+    return once(run / f"uno_{baud}.elf", lambda path: shutil.copy(built(baud, folder), path)), baud
 
 
 @pytest.fixture
 def uno_at(sketch: tuple[Path, int]) -> Iterator[tuple[Uno, int]]:
-    with switched_on(*sketch) as found:
-        yield found, sketch[1]
+    with switched_on(*sketch) as uno:
+        yield uno, sketch[1]
 
 
 @pytest.fixture(scope="module")
 def driving_at(sketch: tuple[Path, int]) -> Iterator[tuple[Uno, int]]:
     """A robot that drives, and has heard nothing for a second: tests go aside from there."""
-    with switched_on(*sketch) as found:
-        drive(found)
-        yield found, sketch[1]
+    with switched_on(*sketch) as uno:
+        drive(uno)
+        yield uno, sketch[1]
 
 
 def switched_on(sketch: Path, baud: int) -> Uno:
@@ -133,9 +133,7 @@ def drive(uno: Uno) -> None:
     assert states(uno) == FORWARD, said(uno, 0)[-200:]
 
 
-def stop_behind(
-    uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: bool = False
-) -> float:
+def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: bool = False) -> float:
     """Type a stop while the robot drives. Its pins are off in time, and nothing starts again.
 
     Returns the ms from the end of the line to the pins.
@@ -168,20 +166,20 @@ def stop_behind(
 
 @pytest.mark.parametrize("name", ALL)
 def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> None:
-    """No sample here: a commit that loses a stop must not pass. Each spelling is typed behind each
-    prefix at one of the rates, the others at the other one. Behind the last one the robot is asked
+    """No sample here: a commit that loses a stop must not pass. Each spelling is typed after each
+    prefix at one of the rates, the others at the other one. After the last one the robot is asked
     whether it is latched."""
     uno, baud = driving_at
-    spellings = spellings_behind(name)[(list(ALL).index(name) + BAUDS.index(baud)) % 2 :: 2]
+    spellings = spellings_after(name)[(list(ALL).index(name) + BAUDS.index(baud)) % 2 :: 2]
     for spelling in spellings:
         with uno.aside():
-            stop_behind(uno, baud, ALL[name], spelling)
+            stop_after(uno, baud, ALL[name], spelling)
             if spelling == spellings[-1]:
                 is_latched(uno)
 
 
-def spellings_behind(name: str) -> tuple[bytes, ...]:
-    """Return which are a stop behind a prefix. What a 0x00 ends or begins has to be printable."""
+def spellings_after(name: str) -> tuple[bytes, ...]:
+    """Return which are a stop after a prefix. What a 0x00 ends or begins has to be printable."""
     if name in FRAMED:
         return STRICT
     prefix = PREFIXES[name]
@@ -262,12 +260,12 @@ def test_what_is_none_without_a_line_end(driving_at: tuple[Uno, int], data: byte
 
 @pytest.mark.parametrize("prefix", [b"", b"\n", b"F(1,80)\r\n"])
 @pytest.mark.parametrize("data", [b"\x03", b"\x03\x03\x03", b"\x03\r\n"])
-def test_ctrl_c_alone_stops_behind_silence(
+def test_ctrl_c_alone_stops_after_silence(
     driving_at: tuple[Uno, int], prefix: bytes, data: bytes
 ) -> None:
     uno, baud = driving_at
     with uno.aside():
-        late_ms = off_behind_silence(uno, prefix + data, 10_000 / baud)
+        late_ms = off_after_silence(uno, prefix + data, 10_000 / baud)
         assert HELD_MS - TURN_MS < late_ms < HELD_MS + BUSY_TURN_MS
         is_latched(uno)
     for other in (b"x" + data, b"\0" + data, data + b"x", b" " + data):
@@ -277,7 +275,7 @@ def test_ctrl_c_alone_stops_behind_silence(
             assert states(uno) == FORWARD, other
 
 
-def off_behind_silence(uno: Uno, data: bytes, byte_ms: float) -> float:
+def off_after_silence(uno: Uno, data: bytes, byte_ms: float) -> float:
     uno.send(data)
     uno.run_ms(len(data) * byte_ms + HELD_MS + 2 * BUSY_TURN_MS)
     assert states(uno) == OFF, data
@@ -319,7 +317,7 @@ def test_a_remote_that_repeats_is_heard_again_after_a_second(
         assert said(uno, before).count(PAUSE) == 1, "what is dropped is told once"
 
 
-def test_behind_the_stop_sequence_a_second_of_silence_is_needed(
+def test_after_the_stop_sequence_a_second_of_silence_is_needed(
     driving_at: tuple[Uno, int],
 ) -> None:
     uno, _ = driving_at
@@ -380,7 +378,7 @@ def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> No
 def test_a_mistake_that_waits_to_be_said_is_forgotten_by_the_next_line(
     uno_at: tuple[Uno, int],
 ) -> None:
-    """A stop behind them is looked for before the wire is free; here it belongs to a block."""
+    """A stop after them is looked for before the wire is free; here it belongs to a block."""
     uno, _ = uno_at
     uno.run_ms(SILENCE_MS + 50)
     before = len(uno.sent)
@@ -421,8 +419,8 @@ def random_prefix(draw: random.Random) -> bytes:
     return b"".join(parts).replace(b"\0\0\0", b"\0") + end
 
 
-def stop_behind_random_bytes(sketch: Path, baud: int, draw: random.Random, count: int) -> float:
-    """Type so many stops behind random bytes; return the ms that the slowest took."""
+def stop_after_random_bytes(sketch: Path, baud: int, draw: random.Random, count: int) -> float:
+    """Type so many stops after random bytes; return the ms that the slowest took."""
     slowest_ms = 0.0
     with switched_on(sketch, baud) as uno:
         for k in range(count):
@@ -431,7 +429,7 @@ def stop_behind_random_bytes(sketch: Path, baud: int, draw: random.Random, count
             prefix, spelling = random_prefix(draw), draw.choice(STRICT)
             is_last = k % FROM_ONE_STATE == FROM_ONE_STATE - 1
             with nullcontext() if is_last else uno.aside():
-                late_ms = stop_behind(uno, baud, prefix, spelling, is_busy=True)
+                late_ms = stop_after(uno, baud, prefix, spelling, is_busy=True)
             slowest_ms = max(slowest_ms, late_ms)
     return slowest_ms
 
@@ -459,7 +457,7 @@ def quick_uno(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Uno]:
         yield uno
 
 
-def told(uno: Uno, data: bytes) -> list[str]:
+def lines_said(uno: Uno, data: bytes) -> list[str]:
     """Return the lines that the robot says to this, until it is silent and no program runs."""
     before, seen = len(uno.sent), -1
     uno.send(data)
@@ -476,10 +474,10 @@ def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
     them, and while it answers it reads none."""
     uno, data = quick_uno, line.encode() + b"\r\n"
     with uno.aside():
-        one = [each for each in told(uno, data) if each not in ("// DONE", "// 1", LOST)]
+        one = [each for each in lines_said(uno, data) if each not in ("// DONE", "// 1", LOST)]
         for count in (TWENTY // 2, TWENTY):
             with uno.aside():
-                many = told(uno, data * count)
+                many = lines_said(uno, data * count)
                 answers = sum(each in one for each in many)
                 is_told = LOST in many or MUTE in many
                 assert is_told or answers == len(one) * count, many
@@ -492,7 +490,7 @@ def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
 
 def test_a_line_of_227_bytes_is_pasted_whole(quick_uno: Uno) -> None:
     with quick_uno.aside():
-        assert told(quick_uno, b"SI|" + b"F(2,80);" * 28 + b"\n") == ["// OK"]
+        assert lines_said(quick_uno, b"SI|" + b"F(2,80);" * 28 + b"\n") == ["// OK"]
 
 
 if __name__ == "__main__":
@@ -503,5 +501,5 @@ if __name__ == "__main__":
             made = built(rate, Path(folder))
             for first in range(0, given.count // 2, 500):
                 some = min(500, given.count // 2 - first)
-                slowest = stop_behind_random_bytes(made, rate, drawn, some)
+                slowest = stop_after_random_bytes(made, rate, drawn, some)
                 print(f"{some} stops at {rate} baud, the slowest {slowest:.1f} ms", flush=True)

@@ -297,7 +297,7 @@ IN_MEMORY = {
 NOT_OWNER = STATUSES["NOT_OWNER"]
 
 
-def begun(state: str, has_draft: bool = True) -> tuple[Table, Session]:
+def robot_in_state(state: str, has_draft: bool = True) -> tuple[Table, Session]:
     """Return a robot in a state, and who asks it: who talks with it, or another one."""
     table = Table(has_draft)
     table.robot.wait(200)
@@ -336,7 +336,7 @@ def back_in(state: str) -> int:
 @pytest.mark.parametrize("has_draft", [True, False])
 @pytest.mark.parametrize("state", STATES)
 def test_undo_in_every_state(state: str, has_draft: bool) -> None:
-    table, session = begun(state, has_draft)
+    table, session = robot_in_state(state, has_draft)
     robot, back = table.robot, back_in(state)
     assert robot.has_draft == has_draft
     was_running = not robot.is_latched
@@ -361,12 +361,12 @@ def test_undo_in_every_state(state: str, has_draft: bool) -> None:
 @pytest.mark.parametrize("state", STATES)
 def test_two_at_once_are_two(state: str) -> None:
     """The second request is on its way before the first is answered."""
-    table, session = begun(state)
+    table, session = robot_in_state(state)
     robot, back = table.robot, back_in(state)
     requests = [session.undo(), session.undo()]
-    found = [robot.until(session, each) for each in requests]
+    found = [robot.until(session, request) for request in requests]
     assert found == [OK if back else NO_PREVIOUS] * 2
-    programs = [outcome(each).values.program for each in requests if back]
+    programs = [outcome(pending_request).values.program for pending_request in requests if back]
     assert len(set(programs)) == len(programs)
     stored(robot, session)
     assert after_power_off(table) == held(robot, session)
@@ -376,7 +376,7 @@ def test_two_at_once_are_two(state: str) -> None:
 @pytest.mark.parametrize("cut_ms", [0, 10, 20, 30, 60, 140])
 @pytest.mark.parametrize("state", STATES)
 def test_a_plug_that_is_pulled_leaves_a_program_that_was_there(state: str, cut_ms: int) -> None:
-    table, session = begun(state)
+    table, session = robot_in_state(state)
     robot = table.robot
     kept = {after_power_off(table), program_of(EARLIER), program_of(SAVED)}
     kept |= {program_of(OTHER)} if state == "brings the program before back" else set()
@@ -386,7 +386,7 @@ def test_a_plug_that_is_pulled_leaves_a_program_that_was_there(state: str, cut_m
 
 
 def test_a_stranger_brings_nothing_back() -> None:
-    table, _ = begun("has an owner")
+    table, _ = robot_in_state("has an owner")
     before = after_power_off(table)
     stranger = computer(9)
     assert undo(table.robot, stranger) == NOT_OWNER

@@ -77,7 +77,7 @@ def driving(uno: Uno) -> Wired:
     return wired
 
 
-def told(uno: Uno, since: int) -> list[Frame]:
+def frames_since(uno: Uno, since: int) -> list[Frame]:
     """Return the frames that the robot has sent since a cycle."""
     sent = bytes(byte.value for byte in uno.sent if byte.cycle > since)
     return [frame for part in sent.split(b"\0") if (frame := decoded(part)) is not None]
@@ -94,7 +94,7 @@ def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(uno: Uno) 
     # the chip has told it once, and so does the robot
     uno.run_ms(980)
     assert [byte.cycle > began for byte in uno.received].count(True) == 1
-    assert [frame.number for frame in told(uno, began)] == [BY_NAME["STOPPED"].number]
+    assert [frame.number for frame in frames_since(uno, began)] == [BY_NAME["STOPPED"].number]
     # a cable that was pulled out stays as it is, and the robot has its button
     uno.press("button", ms=100)
     uno.run_ms(300)

@@ -90,7 +90,9 @@ def test_an_undo_writes_eight_bytes(uno: Uno) -> None:
     begun = uno.cycle
     assert wired.until(wired.session.undo()) == OK
     wired.run(500)
-    written = [each.cycle for each in uno.events if each.what == "eeprom" and each.cycle > begun]
+    written = [
+        event.cycle for event in uno.events if event.what == "eeprom" and event.cycle > begun
+    ]
     assert len(written) == 13
     assert written[-1] - written[0] < 60 * CYCLES_PER_MS
     uno.press("button")
@@ -150,7 +152,11 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
         uno.run_to(uno.cycle + 7 * turn)
         assert wired.until(wired.session.live(code)) == OK
         on = max(
-            next(each.cycle for each in reversed(uno.pins.history(name)) if each.state == "pwm")
+            next(
+                pin_change.cycle
+                for pin_change in reversed(uno.pins.history(name))
+                if pin_change.state == "pwm"
+            )
             for name in ("left", "right")
         )
         zero = max(byte.cycle for byte in uno.received if byte.cycle < on)
@@ -278,9 +284,9 @@ def test_what_tasks_show_is_of_their_own_shows(uno: Uno) -> None:
     while not any(event.name == "DONE" for event in events):
         wired.run(20)
         events += wired.session.events()
-    shown = [each for each in events if isinstance(each, ShownEvent)]
+    shown = [shown_event for shown_event in events if isinstance(shown_event, ShownEvent)]
     names = {1: "ONE", 2: "TWO", 3: "THREE"}
     for event in shown:
         show = finder.of(event)
         assert show and show.text == names[event.value // 1000], event
-    assert [sum(each.value == 1000 * k for each in shown) for k in names] == [8, 8, 8]
+    assert [sum(shown_event.value == 1000 * k for shown_event in shown) for k in names] == [8, 8, 8]

@@ -146,7 +146,11 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
                       if event.name == "SHOW"]  # fmt: skip
         assert wired.session.is_running
         kept = [event for event in uno.events if event.what == "eeprom" and event.cycle > begun]
-        left = [each.cycle for each in uno.pins.history("trigger") if each.state == "low"]
+        left = [
+            pin_change.cycle
+            for pin_change in uno.pins.history("trigger")
+            if pin_change.state == "low"
+        ]
     assert len(kept) > 300
     assert len(shown) > 30
     distances = [value for value in shown if value not in (200_000, 800_000)]

@@ -67,7 +67,7 @@ def power(uno: Uno, side: str, cycle: int) -> int:
     return round(-level / 2.55 if is_backward else level / 2.55)
 
 
-def told(trace: str) -> tuple[list[Setting], list[float]]:
+def parsed_trace(trace: str) -> tuple[list[Setting], list[float]]:
     """Return the motors and the times of readings that a trace has; its end turns them off."""
     rows = [line.split() for line in trace.splitlines()]
     settings = [
@@ -82,14 +82,14 @@ def told(trace: str) -> tuple[list[Setting], list[float]]:
 def lasting(settings: list[Setting]) -> list[Setting]:
     """Return the settings that are different from the one before, and last; the last one does."""
     settings = [
-        each for before, each in pairwise([Setting(-1.0, 101, 0), *settings])
-        if before[1:] != each[1:]
+        setting for before, setting in pairwise([Setting(-1.0, 101, 0), *settings])
+        if before[1:] != setting[1:]
     ]  # fmt: skip
-    ends = [each.ms for each in settings[1:]] + [float("inf")]
+    ends = [setting.ms for setting in settings[1:]] + [float("inf")]
     found = [Setting(-1.0, 0, 0)]
-    for each, end_ms in zip(settings, ends[: len(settings)], strict=True):
-        if end_ms - each.ms >= SHORT_MS and each[1:] != found[-1][1:]:
-            found.append(each)
+    for setting, end_ms in zip(settings, ends[: len(settings)], strict=True):
+        if end_ms - setting.ms >= SHORT_MS and setting[1:] != found[-1][1:]:
+            found.append(setting)
     return found[1:]
 
 
@@ -104,7 +104,7 @@ def check_pins(case: Case, uno: Uno) -> None:
     robot, senses = robot_and_senses(case)
     image = unpack(compiled(case).image)
     trace = MACHINES["python"](compiled(case).image, robot.kit, senses)
-    expected, reads = told(trace)
+    expected, reads = parsed_trace(trace)
     end_ms = float(trace.splitlines()[-1].split()[0])
     is_over = not trace.endswith("LIMIT\n")
     distances = [each / 1000 for each in senses.readings.get("DISTANCE", [0])]
@@ -127,7 +127,9 @@ def check_pins(case: Case, uno: Uno) -> None:
     triggers = 0
     while (uno.cycle - began) / CYCLES_PER_MS < end_ms + READING_MS * len(reads) + TELLING_MS:
         wired.run(2)
-        pulses = [each for each in uno.pins.history("trigger") if each.state == "high"]
+        pulses = [
+            pin_change for pin_change in uno.pins.history("trigger") if pin_change.state == "high"
+        ]
         if len(pulses) > triggers:
             triggers = len(pulses)
             wired.run(READING_MS)
@@ -135,16 +137,16 @@ def check_pins(case: Case, uno: Uno) -> None:
     found = seen(uno, began)
     events = wired.session.events()
     if not is_over:
-        found = [each for each in found if each.ms < end_ms]
-        expected = [each for each in expected if each.ms < end_ms]
-    assert [each[1:] for each in found] == [each[1:] for each in expected]
+        found = [setting for setting in found if setting.ms < end_ms]
+        expected = [setting for setting in expected if setting.ms < end_ms]
+    assert [setting[1:] for setting in found] == [setting[1:] for setting in expected]
     for pins, line in zip(found, expected, strict=True):
         late_ms = OFF_MS + READING_MS * sum(read_ms <= line.ms for read_ms in reads)
         assert -OFF_MS <= pins.ms - line.ms <= late_ms, (pins, line)
     if is_over:
         said = [line.split(" ", 1)[1] for line in trace.splitlines()]
         shown = [line for line in said if line.startswith("SHOW") or line == "DONE"]
-        names = [each.name for each in events]
+        names = [event.name for event in events]
         assert [name for name in names if name in ("SHOW", "DONE")] == [
             line.split()[0] for line in shown
         ]
@@ -168,7 +170,9 @@ def test_a_thousand_short_waits_take_a_minute(sketch: Path, tmp_path: Path) -> N
              is_detached=True)  # fmt: skip
         began = last_zero(uno, heard)
         uno.run_ms(60_000)
-        changes = [each.cycle for each in uno.pins.history("left") if each.cycle > began]
+        changes = [
+            pin_change.cycle for pin_change in uno.pins.history("left") if pin_change.cycle > began
+        ]
     times = [(cycle - began) / CYCLES_PER_MS for cycle in changes]
     assert len(times) == 1002  # on and off 500 times, and once more at the end
     assert all(abs(after - before - 60) < 2 for before, after in pairwise(times[:-1]))

@@ -18,7 +18,7 @@ PRESSED = "if (press == Press::kPressed) firmware_on_pressed();"
 WATCHDOG, STALL = 4, 66  # a reset and a fault in docs/develop/link.md
 HANGS, HANGS_ALONE = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
 TIMER_MS, WATCHDOG_MS = 110, 300
-MOVE_AT = 2  # the offset in AWAY, behind what it takes
+MOVE_AT = 2  # the offset in AWAY, after what it takes
 
 
 def built(folder: Path, hang: str, environment: str = "uno") -> Path:
@@ -28,7 +28,7 @@ def built(folder: Path, hang: str, environment: str = "uno") -> Path:
     return changed(folder, "main.cpp", PRESSED, hangs, environment)
 
 
-def told(wired: Wired) -> HelloReply:
+def hello_of(wired: Wired) -> HelloReply:
     """Return what HELLO says of the robot."""
     return wired.done(wired.session.hello())
 
@@ -67,17 +67,17 @@ def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: 
         uno.drive("button", None)
         uno.run_ms(1000)
         assert states(uno) == OFF
-        found = told(computer(uno, 2))
-        assert found.reset == WATCHDOG
-        what = (found.fault, found.fault_program, found.fault_at)
+        hello_reply = hello_of(computer(uno, 2))
+        assert hello_reply.reset == WATCHDOG
+        what = (hello_reply.fault, hello_reply.fault_program, hello_reply.fault_at)
         assert what == (STALL, image_of(AWAY).checksum, MOVE_AT)
         uno.run_ms(500)
         assert states(uno) == OFF
     with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept) as again:
         again.run_ms(300)
-        found = told(computer(again, 3))
-        assert (found.reset, found.fault) == (1, STALL)
-        assert found.fault_program == image_of(AWAY).checksum
+        hello_reply = hello_of(computer(again, 3))
+        assert (hello_reply.reset, hello_reply.fault) == (1, STALL)
+        assert hello_reply.fault_program == image_of(AWAY).checksum
 
 
 def test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program(tmp_path: Path) -> None:
@@ -91,8 +91,8 @@ def test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program(tmp_pat
         uno.run_ms(100)
         assert states(uno) == OFF
         wired = computer(uno, 2)
-        found = told(wired)
-        assert (found.reset, found.fault) == (1, STALL)
+        hello_reply = hello_of(wired)
+        assert (hello_reply.reset, hello_reply.fault) == (1, STALL)
         send(wired, AWAY)
         wired.run(300)
         assert states(uno) == FORWARD
@@ -103,8 +103,13 @@ def test_a_hang_without_a_program_is_a_fault_of_none(tmp_path: Path) -> None:
         uno.run_ms(300)
         uno.press("button")
         uno.run_ms(600)
-        found = told(computer(uno))
-        what = (found.reset, found.fault, found.fault_program, found.fault_at)
+        hello_reply = hello_of(computer(uno))
+        what = (
+            hello_reply.reset,
+            hello_reply.fault,
+            hello_reply.fault_program,
+            hello_reply.fault_at,
+        )
         assert what == (WATCHDOG, STALL, 0, 0)
 
 
@@ -114,9 +119,9 @@ def test_a_reset_that_is_no_hang_is_no_fault(uno: Uno) -> None:
     nonces = []
     for number in range(5):
         wired = computer(uno, number + 1)
-        found = told(wired)
-        assert found.fault == 0
-        nonces.append(found.nonce)
+        hello_reply = hello_of(wired)
+        assert hello_reply.fault == 0
+        nonces.append(hello_reply.nonce)
         send(wired, AWAY)
         assert states(uno) == FORWARD
         uno.reset()
@@ -124,5 +129,5 @@ def test_a_reset_that_is_no_hang_is_no_fault(uno: Uno) -> None:
     for _ in range(5):
         uno.reset()
         uno.run_ms(200)
-        nonces.append(told(computer(uno, 7)).nonce)
+        nonces.append(hello_of(computer(uno, 7)).nonce)
     assert len(set(nonces)) == 10

@@ -101,9 +101,9 @@ def check(seed: int) -> str:
     # A robot that cannot keep who it is has no key of anybody.
     assert whose in owner.may_be or worn_of(worn, IDENTITY) == 2, f"{seed} {worn}"
     assert later.robot and later.robot.name.encode() in name.may_be, f"{seed} {worn} {later.robot}"
-    found = again.robot.done(later, later.trim())
-    assert found.pace in pace.may_be, f"{seed} {worn}"
-    assert pack("<BbB", *found[:3]) in trim.may_be, f"{seed} {worn}"
+    trim_reply = again.robot.done(later, later.trim())
+    assert trim_reply.pace in pace.may_be, f"{seed} {worn}"
+    assert pack("<BbB", *trim_reply[:3]) in trim.may_be, f"{seed} {worn}"
     has_program = again.robot.done(later, later.status()).length != 0
     image = held(again.robot, later) if has_program else b""
     assert image in program.may_be, f"{seed} {worn}"

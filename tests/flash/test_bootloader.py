@@ -48,7 +48,7 @@ def avrdude(uno: Uno, of: Bootloader, file: Path) -> str:
     """Write a sketch and read it back, as the Arduino IDE and PlatformIO do."""
     if not shutil.which("avrdude"):
         need("no avrdude on this computer")
-    done = subprocess.run(
+    completed = subprocess.run(
         ["avrdude", "-c", of.programmer, "-p", of.part, "-P", uno.pty, "-b", str(of.baud), "-D",
          "-U", f"flash:w:{file}:i"],
         stdout=subprocess.PIPE,
@@ -57,8 +57,8 @@ def avrdude(uno: Uno, of: Bootloader, file: Path) -> str:
         timeout=120,
         check=False,
     )  # fmt: skip
-    assert done.returncode == 0, done.stdout
-    return done.stdout
+    assert completed.returncode == 0, completed.stdout
+    return completed.stdout
 
 
 @pytest.mark.parametrize(

@@ -97,7 +97,7 @@ def test_sources_robot_and_board_make_the_digest(clone: Path, own: Path) -> None
     for name in sources.files:
         changed = building.Sources({**sources.files, name: sources.files[name] + b"\n"})
         digests.add(changed.digest(robots.load("tinibot")))
-        fewer = {each: data for each, data in sources.files.items() if each != name}
+        fewer = {value: data for value, data in sources.files.items() if value != name}
         digests.add(building.Sources(fewer).digest(robots.load("tinibot")))
     assert len(digests) == 3 + 2 * len(sources.files) > 100
 
@@ -146,8 +146,8 @@ def test_a_package_without_sources_takes_the_file_in_the_language_of_the_robot(
 
 def source_bytes(clone: Path) -> dict[str, bytes]:
     project = clone.parent / "vm_arduino"
-    found = [project / name for name in (building.SETTINGS, building.PARTITIONS)]
-    files = [*found, *sorted((project / "src").rglob("*"))]
+    paths = [project / name for name in (building.SETTINGS, building.PARTITIONS)]
+    files = [*paths, *sorted((project / "src").rglob("*"))]
     return {
         path.relative_to(project).as_posix(): path.read_bytes() for path in files if path.is_file()
     }
@@ -297,14 +297,14 @@ def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Pat
     mine = tmp_path / "mine"
     mine.mkdir()
     (mine / "serial.py").write_text('print("Compiling my own"); raise SystemExit(1)')
-    done = subprocess.run(
+    completed = subprocess.run(
         command("--build"),
         cwd=mine,
         env={**os.environ, **pretending(tmp_path, "import serial\nprint(serial.__file__)")},
         capture_output=True,
         text=True,
     )
-    assert done.returncode == 2
+    assert completed.returncode == 2
     log = (ready.cache() / "build.log").read_text()
     assert "my own" not in log and "serial" in log
 
@@ -329,17 +329,17 @@ def test_a_file_that_cannot_be_removed_yet_fails_no_build(monkeypatch: pytest.Mo
 
 
 def test_ctrl_c_ends_platformio_and_its_children(clone: Path, tmp_path: Path) -> None:
-    told = tmp_path / "told"
+    path = tmp_path / "told"
     body = f"""
 child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
-open({str(told)!r} + ".new", "w").write(f"{{os.getpid()}} {{child.pid}}")
-os.rename({str(told)!r} + ".new", {str(told)!r})
+open({str(path)!r} + ".new", "w").write(f"{{os.getpid()}} {{child.pid}}")
+os.rename({str(path)!r} + ".new", {str(path)!r})
 time.sleep(600)
 """
     variables = pretending(tmp_path, body)
     variables["PYTHONPATH"] += os.pathsep + str(clone)
-    interrupted(told, "--build", **variables).gives(2)
-    for number in told.read_text().split():
+    interrupted(path, "--build", **variables).gives(2)
+    for number in path.read_text().split():
         until(partial(has_ended, number), f"the end of {number}")
 
 
@@ -408,7 +408,7 @@ def test_all_sources_are_not_yet_all_of_it(tmp_path: Path, monkeypatch: pytest.M
     assert sources is not None
     with pytest.raises(building.CannotBuild):
         building.build(sources, robots.load("tinibot"), found.append)
-    assert {each.phase for each in found} <= {COMPILING}, "nothing is left out for what fails so"
+    assert {seen.phase for seen in found} <= {COMPILING}, "nothing is left out for what fails so"
     assert 60 < found[-1].percent < 90
 
 

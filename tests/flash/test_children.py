@@ -56,8 +56,10 @@ WAYS: dict[str, tuple[str, Callable[[str], None], type[BaseException] | None]] =
 
 def is_over(process: int) -> bool:
     """Whether it has ended, though nobody may have waited for it."""
-    done = subprocess.run(["ps", "-o", "stat=", "-p", str(process)], capture_output=True, text=True)
-    return done.stdout.strip()[:1] in ("", "Z")
+    completed = subprocess.run(
+        ["ps", "-o", "stat=", "-p", str(process)], capture_output=True, text=True
+    )
+    return completed.stdout.strip()[:1] in ("", "Z")
 
 
 @pytest.mark.parametrize("way", WAYS)

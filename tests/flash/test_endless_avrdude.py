@@ -123,17 +123,17 @@ def test_the_sentence_says_what_to_do() -> None:
 
 def test_ctrl_c_while_one_is_started_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """The signal is heard before anybody knows the program."""
-    made: list[subprocess.Popen[bytes]] = []
+    processes: list[subprocess.Popen[bytes]] = []
     begin = subprocess.Popen
 
     def interrupted(*arguments: object, **options: object) -> subprocess.Popen[bytes]:
-        made.append(begin(*arguments, **options))  # type: ignore[call-overload]
-        if len(made) == 1:  # Windows starts another program to end it
+        processes.append(begin(*arguments, **options))  # type: ignore[call-overload]
+        if len(processes) == 1:  # Windows starts another program to end it
             signal.raise_signal(signal.SIGINT)
-        return made[-1]
+        return processes[-1]
 
     monkeypatch.setattr(subprocess, "Popen", interrupted)
     with pytest.raises(KeyboardInterrupt):
         children.run([sys.executable, "-c", "import time; time.sleep(600)"], None, print)
-    assert made[0].poll() is not None
+    assert processes[0].poll() is not None
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

@@ -30,7 +30,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 def output(rng: random.Random, whole_s: float, longest_s: float) -> list[tuple[float, str]]:
-    """Return the output of an avrdude and when it comes: never later than that behind the last."""
+    """Return the output of an avrdude and when it comes: never later than that after the last."""
     parts = [SIGNATURE, "Writing | ", *"#" * MARKS, " |\nReading | ", *"#" * MARKS, " |\n"]
     gaps_s = [rng.random() ** 4 for _ in parts]
     total = sum(gaps_s)

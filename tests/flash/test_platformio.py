@@ -164,9 +164,9 @@ def test_an_interrupt_without_a_vector_is_refused(project: Path) -> None:
 @pytest.mark.parametrize(("board", "arduino"), ARDUINO_BOARDS.items())
 def test_a_board_holds_what_its_fuses_leave(board: str, arduino: str) -> None:
     """The bootloader's section is that of its high fuse, whatever the bootloader takes of it."""
-    found = ARDUINO / "boards.txt"
-    need("" if found.exists() else f"{DEBIAN[ARDUINO]} is not installed")
-    rows = dict(re.findall(rf"^{re.escape(arduino)}\.(\S+)=(\S+)$", found.read_text("utf-8"), re.M))
+    path = ARDUINO / "boards.txt"
+    need("" if path.exists() else f"{DEBIAN[ARDUINO]} is not installed")
+    rows = dict(re.findall(rf"^{re.escape(arduino)}\.(\S+)=(\S+)$", path.read_text("utf-8"), re.M))
     flash, least = {"atmega328p": (32_768, 512), "atmega2560": (262_144, 1024)}[rows["build.mcu"]]
     section = least << (~int(rows["bootloader.high_fuses"], 16) >> 1 & 3)
     assert BOARDS[board][4] == flash - section == int(rows["upload.maximum_size"])
@@ -224,14 +224,14 @@ def test_test_sketch_has_a_program_that_every_robot_can_run() -> None:
 
 
 def offline(*words: str, **variables: str) -> Done:
-    done = subprocess.run(
+    completed = subprocess.run(
         [*OFFLINE, "--offline", *words],
         env={**os.environ, **variables},
         capture_output=True,
         text=True,
         check=False,
     )
-    return Done(done.returncode, done.stdout, done.stderr)
+    return Done(completed.returncode, completed.stdout, completed.stderr)
 
 
 def test_own_installation_is_left_alone(project: Path, tmp_path: Path) -> None:

@@ -92,9 +92,9 @@ def fuzz(program: Path, folder: Path, runs: int, seed: int) -> Found:
                str(folder)]  # fmt: skip
     # no stack is kept of each allocation: where an access is wrong says enough
     options = {**os.environ, "ASAN_OPTIONS": "malloc_context_size=0"}
-    done = subprocess.run(command, capture_output=True, errors="replace", env=options)
-    said = done.stderr + done.stdout
-    if done.returncode == 0:
+    completed = subprocess.run(command, capture_output=True, errors="replace", env=options)
+    said = completed.stderr + completed.stdout
+    if completed.returncode == 0:
         count = DONE.search(said)
         assert count, said[-2000:]
         return Found(int(count[1]), "", b"")

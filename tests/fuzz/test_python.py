@@ -75,14 +75,14 @@ def changed_texts(pattern: str) -> SearchStrategy[str]:
 def check_program(text: str) -> None:
     """It has an image that the verifier takes, or mistakes that can be said in every language."""
     compiled = compile_text(text, KIT)
-    assert compiled.is_right != any(each.is_mistake for each in compiled.diagnostics)
+    assert compiled.is_right != any(diagnostic.is_mistake for diagnostic in compiled.diagnostics)
     if compiled.is_right:
         image = unpack(compiled.image)
         verify(image.code, len(KIT.readings), len(KIT.actuators))
     source = Source(text, "x.ts")
-    for each in compiled.diagnostics:
+    for diagnostic in compiled.diagnostics:
         for language in languages():
-            assert as_text(message(each, source, language), source, language)
+            assert as_text(message(diagnostic, source, language), source, language)
 
 
 def check_profile(text: str) -> None:
@@ -121,7 +121,7 @@ def check_answers(items: list[tuple[int, int, bytes, bool]]) -> None:
     for _ in range(200):
         session.poll(now_ms)
         now_ms += 50
-    assert all(each.outcome is not None for each in requests)
+    assert all(request.outcome is not None for request in requests)
 
 
 def check_message(found: object) -> None:

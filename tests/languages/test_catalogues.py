@@ -42,13 +42,13 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(language: str,
     """And each translation is of the English text that is there now."""
     found = languages.entries(name, language)
     assert found.problems == []
-    assert [at for at, each in found.entries.items() if each.said and each.is_stale] == []
-    assert [at for at, each in found.entries.items() if each.seen == UNKNOWN] == [], (
+    assert [at for at, entry in found.entries.items() if entry.said and entry.is_stale] == []
+    assert [at for at, entry in found.entries.items() if entry.seen == UNKNOWN] == [], (
         f"python -m tools.languages --seen {language}"
     )
     if read_language(FOLDER / language / ITSELF).is_complete:
-        wanted = {at for at, each in SOURCES[name].entries.items() if not each.is_same}
-        said = {at for at, each in found.entries.items() if each.is_translated}
+        wanted = {at for at, entry in SOURCES[name].entries.items() if not entry.is_same}
+        said = {at for at, entry in found.entries.items() if entry.is_translated}
         assert wanted <= said
 
 
@@ -116,12 +116,12 @@ def _of_package(place: Path, commands: list[list[str]]) -> list[tuple[int, str]]
         "    done.append((code, said.getvalue()))\n"
         "json.dump(done, sys.stdout)"
     )
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-c", script], input=json.dumps(commands), cwd=place, check=True,
         env={**os.environ, "PYTHONPATH": str(place)}, text=True, capture_output=True,
         timeout=HANGS_S,
     )  # fmt: skip
-    return [(code, said) for code, said in json.loads(done.stdout)]
+    return [(code, said) for code, said in json.loads(completed.stdout)]
 
 
 @pytest.mark.parametrize("language", languages.languages())
@@ -199,7 +199,7 @@ def test_a_terminal_has_sentences_in_its_width_and_a_pipe_each_in_one_row(
         for name, stream in zip(("stdout", "stderr"), streams, strict=True):
             monkeypatch.setattr(sys, name, stream)
         main([*words])
-        said.append("".join(each.getvalue() for each in streams))
+        said.append("".join(string_io.getvalue() for string_io in streams))
     narrow, wide = said
     assert max(map(len, narrow.split("\n"))) <= 80 < max(map(len, wide.split("\n")))
     assert narrow.split() == wide.split(), "nothing is lost, nor hidden"

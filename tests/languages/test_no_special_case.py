@@ -73,7 +73,11 @@ def test_rows_name_no_word_of_a_language() -> None:
 
 @pytest.mark.parametrize(
     "language",
-    [each for each in languages()[1:] if read_language(FOLDER / each / ITSELF).is_complete],
+    [
+        language
+        for language in languages()[1:]
+        if read_language(FOLDER / language / ITSELF).is_complete
+    ],
 )
 def test_each_language_says_how_much_and_what_pupils_call_things(language: str) -> None:
     """What a word is taken for in one language, `poco`, is in each, `pouco`."""

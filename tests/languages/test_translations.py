@@ -69,15 +69,15 @@ def opened(place: Path, own: str | None = None, seen: bool = False) -> Translati
     if own is not None:
         write(place / "xx" / "some.toml", own)
     english = {"some": catalogue_source.load(place / SOURCE / "some.toml")}
-    made = Translation("xx", english)
+    translation = Translation("xx", english)
     if seen:
-        made.see([])
-        made.write()
-    return made
+        translation.see([])
+        translation.write()
+    return translation
 
 
-def problems(made: Translation) -> list[tuple[str, int, str]]:
-    return [(path.name, *each) for path, some in made.problems() for each in some]
+def problems(translation: Translation) -> list[tuple[str, int, str]]:
+    return [(path.name, *each) for path, some in translation.problems() for each in some]
 
 
 # -- what is wrong
@@ -204,11 +204,11 @@ def test_no_bytes_in_a_file_stop_a_command(data: bytes) -> None:
         folder = Path(name)
         for each in ("some.toml", SEEN, ITSELF):
             (folder / each).write_bytes(data)
-        found = read_language(folder / ITSELF)
-        assert len(found.form_of) == NUMBERS
+        language = read_language(folder / ITSELF)
+        assert len(language.form_of) == NUMBERS
         read_seen(folder / SEEN)
         english = catalogue_source.load(folder / "some.toml")
-        joined(english, "some", read_own(folder / "some.toml"), {}, found)
+        joined(english, "some", read_own(folder / "some.toml"), {}, language)
 
 
 def test_what_cannot_be_read_is_wrong_and_costs_the_file(
@@ -371,8 +371,8 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
         '[verb]\na = "Open"\nb = ["Shut", "Open"]\n[door]\ndoor.own = "Open"\n[menu]\nd = "Open"\n',
     )
     own = opened(place, 'a = "Abrir"\nb = ["Cierra"]\ndoor = "Abierta"\n')
-    asked = [each for each in own.joined("some").entries.values() if not each.is_same]
-    assert [(each.key, each.english, each.notes, each.said[""]) for each in asked] == [
+    entries = [entry for entry in own.joined("some").entries.values() if not entry.is_same]
+    assert [(entry.key, entry.english, entry.notes, entry.said[""]) for entry in entries] == [
         ("a", "Open", ["verb", "menu"], "Abrir"), ("b", "Shut", ["verb"], "Cierra"),
         ("door", "Open", [], "Abierta"),
     ]  # fmt: skip
@@ -400,7 +400,7 @@ TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"))
 @settings(deadline=None)
 @given(TEXTS, st.lists(TEXTS, min_size=2))
 def test_what_is_written_is_what_is_read(key: str, texts: list[str]) -> None:
-    forms = [{"": each} if each else {} for each in texts]
+    forms = [{"": text} if text else {} for text in texts]
     rows = written(key, forms, True) + written(f"{key}.", [{"": texts[0] or "x"}], False)
     plural = written(f"{key}..", [{"one": texts[0], "few": texts[1]}], False)
     read, _, wrong = catalogue_source.rows(rows + plural)
@@ -421,10 +421,10 @@ def test_a_text_is_written_as_a_person_would(said: str, row: str) -> None:
 def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    said = [Entry("a", "Stop.", "", {"": each}) for each in ("x" * 41, "Arrêt", "Halte")]
-    own = Catalogue({(str(k), each.key): each for k, each in enumerate(said)})
+    entries = [Entry("a", "Stop.", "", {"": each}) for each in ("x" * 41, "Arrêt", "Halte")]
+    own = Catalogue({(str(k), entry.key): entry for k, entry in enumerate(entries)})
     assert [why for _, why in check_robot(own)] == [
-        f"a robot says at most 40 signs, in ASCII: {each.said['']}" for each in said[:2]
+        f"a robot says at most 40 signs, in ASCII: {entry.said['']}" for entry in entries[:2]
     ]
     rows = ["F | AVANCE", "F AVANCE", "QQ | RECULE", "B | recule", "B | RECULÉ", "number 2 | DEUX"]
     english = languages.table(SOURCE, "lexicon.txt")
@@ -464,10 +464,14 @@ def test_a_new_language_begins_with_what_unicode_knows_of_it(
     whole: Callable[..., int], capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     assert whole(code) == 0
-    made = read_language(place / code / ITSELF)
-    assert made.problems == []
-    assert (made.name, made.english_name, " ".join(made.forms)) == (name, english_name, forms)
-    assert "".join(made.form_of[number] for number in (1, 0, 2, 5, 11)) == of_1_0_2_5_11
+    language = read_language(place / code / ITSELF)
+    assert language.problems == []
+    assert (language.name, language.english_name, " ".join(language.forms)) == (
+        name,
+        english_name,
+        forms,
+    )
+    assert "".join(language.form_of[number] for number in (1, 0, 2, 5, 11)) == of_1_0_2_5_11
     assert f"{code}: 0 of " in capsys.readouterr().out
     before = {path: path.read_bytes() for path in (place / code).iterdir()}
     assert whole() == 0
@@ -544,7 +548,7 @@ def test_a_wrong_english_text_goes_into_no_language(
 def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own, made = place / "xx" / "some.toml", place / "xx" / f"some{languages.KEPT}"
+    own, path = place / "xx" / "some.toml", place / "xx" / f"some{languages.KEPT}"
 
     def stop() -> str:
         languages.forget()
@@ -552,23 +556,23 @@ def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
 
     write(own, OWN)
     assert stop() == "Alto."
-    made.write_bytes(made.read_bytes().replace(b"Alto.", b"Paro."))
+    path.write_bytes(path.read_bytes().replace(b"Alto.", b"Paro."))
     assert stop() == "Paro.", "it is read as it is while nothing is newer"
     for source in (own, place / "xx" / SEEN, place / "xx" / ITSELF,
                    place / SOURCE / "some.toml"):  # fmt: skip
-        made.write_bytes(made.read_bytes().replace(b"Alto.", b"Paro."))
+        path.write_bytes(path.read_bytes().replace(b"Alto.", b"Paro."))
         source.touch()
-        os.utime(source, (made.stat().st_mtime + 2,) * 2)
+        os.utime(source, (path.stat().st_mtime + 2,) * 2)
         assert stop() == "Alto.", source
         os.utime(source, (0, 0))
-    for half in (b"", made.read_bytes()[:20], b"\xff", b"[]"):
-        made.write_bytes(half)
+    for half in (b"", path.read_bytes()[:20], b"\xff", b"[]"):
+        path.write_bytes(half)
         assert stop() == "Alto.", half
     own.unlink()
     assert stop() == "Stop.", "what was made of it is no translation"
     write(own, OWN)
-    made.unlink()
-    made.mkdir()  # nobody can write this file
+    path.unlink()
+    path.mkdir()  # nobody can write this file
     assert stop() == "Alto."
 
 
@@ -673,8 +677,9 @@ def po(own: Translation) -> Catalog:
 def test_a_po_has_texts_with_their_context_notes_and_marks(own: Translation) -> None:
     assert translators.exchange("xx", own.english) == 0
     assert [
-        (each.context, each.id, each.string, each.fuzzy, each.auto_comments, {*each.flags})
-        for each in po(own) if each.id
+        (message.context, message.id, message.string, message.fuzzy, message.auto_comments,
+         {*message.flags})
+        for message in po(own) if message.id
     ] == [
         ("some/a", "Read {file}.", "Lee {file}.", False, ["note"], {"python-brace-format"}),
         ("some/b", "Stop.", "Alto.", True, ["note"], {"fuzzy"}),
@@ -702,8 +707,8 @@ def test_what_comes_back_is_of_the_english_text_beside_it(
         'a = "Mira {file}."\nb = "Alto."\n'
         """more = ["", "", '¡Fuera "x"!', "Ponlo."]\n"""
     )
-    made = opened(place)
-    assert problems(made) == [] and made.joined("some").entries["b", "Stop."].is_stale
+    translation = opened(place)
+    assert problems(translation) == [] and translation.joined("some").entries["b", "Stop."].is_stale
     write(Path("xx.po"), said.replace("#, fuzzy", "#"))
     translators.exchange("xx.po", opened(place).english)
     languages.forget()
@@ -726,7 +731,7 @@ def test_a_language_goes_out_and_comes_back_with_every_text(
     assert translators.take(Path("out.po"), Translation(language, english)) == 0
     after = Translation(language, english)
     for name in english:
-        old, new = (each.joined(name) for each in (before, after))
+        old, new = (translation.joined(name) for translation in (before, after))
         assert new.problems == []
         for at, entry in old.entries.items():
             is_asked = not entry.is_same

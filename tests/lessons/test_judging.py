@@ -43,7 +43,7 @@ def lesson_of(folder: Path, criteria: str, robot: str = "tinibot", more: str = "
 
 
 def said(lesson: Lesson, text: str) -> list[str]:
-    return [words_for(each, "en") for each in findings_of(text, lesson, range(1, 2))]
+    return [words_for(finding, "en") for finding in findings_of(text, lesson, range(1, 2))]
 
 
 CASES = [
@@ -214,7 +214,7 @@ def test_a_robot_that_nobody_drives_stands(tmp_path: Path, text: str, seconds: s
 
 def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) -> None:
     lesson = lesson_of(tmp_path, OBEYS.format(key="KEY_LEFT"), more="mirror = true\nworlds = 2")
-    assert [each.key for seed in (1, 2) for each in pressed(lesson, seed)] == [
+    assert [press.key for seed in (1, 2) for press in pressed(lesson, seed)] == [
         "KEY_LEFT",
         "KEY_RIGHT",
     ]
@@ -229,7 +229,7 @@ def test_what_is_held_is_no_heartbeat_that_a_run_needs(tmp_path: Path) -> None:
     assert said(lesson, answering("A", "BEEP(0.1, 440)").replace("W(", "SHOW(TIME); W(")) == []
 
 
-def test_what_stands_behind_a_loop_is_not_in_it(tmp_path: Path) -> None:
+def test_what_stands_after_a_loop_is_not_in_it(tmp_path: Path) -> None:
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "uses"\nwords = ["LOOP"]\n')
     (found,) = said(lesson, "LOOP(2);W(0.1);END_LOOP;BEEP(0.1, 440)")
     assert "repeats nothing" in found

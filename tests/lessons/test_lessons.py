@@ -32,7 +32,7 @@ in_both = pytest.mark.parametrize("language", LANGUAGES)
 
 def answers_of(is_right: bool) -> list[tuple[Path, Answer]]:
     which = 0 if is_right else 1
-    return [(folder, found) for folder in FOLDERS for found in catalogue.answers(folder)[which]]
+    return [(folder, answer) for folder in FOLDERS for answer in catalogue.answers(folder)[which]]
 
 
 def name_of(value: object) -> str:
@@ -65,10 +65,10 @@ def test_a_right_answer_is_right(folder: Path, answer: Answer) -> None:
 @pytest.mark.parametrize(("folder", "answer"), answers_of(False), ids=name_of)
 def test_a_wrong_answer_is_told_what_helps(folder: Path, answer: Answer) -> None:
     lesson = catalogue.load(folder)
-    found = findings_of(answer.program, lesson, range(1, lesson.worlds + 1))
-    assert found, "it passes"
+    findings = findings_of(answer.program, lesson, range(1, lesson.worlds + 1))
+    assert findings, "it passes"
     for language in languages():
-        assert sentence(found[0], language) == answer.said[language]
+        assert sentence(findings[0], language) == answer.said[language]
 
 
 @each
@@ -116,12 +116,14 @@ def test_a_sheet_draws_what_it_says(folder: Path, language: str) -> None:
     lesson = catalogue.load(folder)
     page = catalogue.page(folder, catalogue.PUPIL, language)
     made = sheet(page, lesson, False, language)
-    dashed = len({(each.place.part, each.place.number) for each in lesson.variations})
+    dashed = len(
+        {(variation.place.part, variation.place.number) for variation in lesson.variations}
+    )
     assert made.count("stroke-dasharray") == dashed
     assert (text("lessons", "sheet/moves", language) in made) is (dashed > 0)
     assert "__" not in made and made.count('class="blank"') == page.count("____")
-    told = re.search(r"</svg>\s*<p[^>]*>[^<]*\b(\d+) cm", made)
-    assert told and f'<path d="M{told[1]} 0V' in made
+    match = re.search(r"</svg>\s*<p[^>]*>[^<]*\b(\d+) cm", made)
+    assert match and f'<path d="M{match[1]} 0V' in made
 
 
 @each
@@ -148,7 +150,7 @@ def test_pages_of_all_languages_have_the_same_parts(folder: Path) -> None:
             [(block.kind, len(block.rows)) for block in blocks(catalogue.page(folder, who, lang))]
             for lang in LANGUAGES
         ]
-        assert all(each == kinds[0] for each in kinds)
+        assert all(kind == kinds[0] for kind in kinds)
 
 
 @each

@@ -341,10 +341,10 @@ def test_every_lesson_has_some() -> None:
 def test_what_a_pupil_wrote_is_marked_fairly(number: int, program: str, what: str) -> None:
     """In all worlds of the task: nothing is said of a right one, and the cause of another one."""
     lesson = lesson_of(number)
-    found = findings_of(program.replace("; ", "\n"), lesson, range(1, lesson.worlds + 1))
-    assert bool(found) is bool(what)
+    findings = findings_of(program.replace("; ", "\n"), lesson, range(1, lesson.worlds + 1))
+    assert bool(findings) is bool(what)
     if what:
-        assert what in sentence(found[0], "en")
+        assert what in sentence(findings[0], "en")
 
 
 @pytest.mark.sampled("number", "seed", "program", keep=len(RIGHT) // 16)
@@ -377,8 +377,8 @@ def test_a_task_says_the_numbers_that_are_measured(folder: Path, language: str) 
     for criterion in lesson.criteria:  # one tolerance for all that is at a place
         if "within_cm" in criterion.numbers and criterion.places and not criterion.area:
             named = {name for name in NAMED.findall(task) if name.endswith(".within_cm")}
-            told = {each.numbers["within_cm"] for each in lesson.criteria for name in named
-                    if name == f"{each.kind}.within_cm"}  # fmt: skip
+            told = {criterion.numbers["within_cm"] for criterion in lesson.criteria for name in named
+                    if name == f"{criterion.kind}.within_cm"}  # fmt: skip
             assert told == {criterion.numbers["within_cm"]}, criterion.kind
     page = catalogue.page(folder, catalogue.PUPIL, language)
     assert "{" not in page

@@ -23,9 +23,9 @@ def folder(tmp_path: Path) -> Path:
 
 def refused(folder: Path, text: str, language: str = "en") -> list[str]:
     (folder / "lesson.toml").write_text(text, encoding="utf-8")
-    with pytest.raises(LessonRefused) as found:
+    with pytest.raises(LessonRefused) as exception_info:
         catalogue.load(folder)
-    return describe(found.value, language)
+    return describe(exception_info.value, language)
 
 
 PRESS = '[[presses]]\nat_seconds = 1\nseconds = 2\nkey = "KEY_A"\n'
@@ -90,9 +90,9 @@ def test_a_world_is_read_as_any_other(folder: Path) -> None:
 
 def test_answers_are_read_strictly(folder: Path) -> None:
     (folder / "answers.toml").write_text("[[right]]\nen = 'a'\nes = 'b'\nsays = 3\n")
-    with pytest.raises(LessonRefused) as found:
+    with pytest.raises(LessonRefused) as exception_info:
         catalogue.answers(folder)
-    said = describe(found.value, "en")
+    said = describe(exception_info.value, "en")
     assert any("right[1].program is missing" in each for each in said)
     assert any("right[1].says" in each for each in said)
 
@@ -112,9 +112,9 @@ def test_what_is_said_of_a_wrong_answer_is_a_sentence_of_the_checker(
 ) -> None:
     rows = f"[[wrong]]\nen = 'a'\nprogram = 'S'\nsays = {{ {says} }}\n"
     (folder / "answers.toml").write_text(rows, encoding="utf-8")
-    with pytest.raises(LessonRefused) as found:
+    with pytest.raises(LessonRefused) as exception_info:
         catalogue.answers(folder)
-    (why,) = describe(found.value, "en")
+    (why,) = describe(exception_info.value, "en")
     assert said in why
 
 
@@ -134,9 +134,9 @@ def test_a_page_names_the_numbers_of_its_lesson(folder: Path) -> None:
     page.write_text("{pauses.at_least_seconds} s, {pauses.way_cm} cm, {} {X}", encoding="utf-8")
     assert catalogue.page(folder, catalogue.PUPIL, "en") == "2.5 s, 50 cm, {} {X}"
     page.write_text("{pauses.seconds}", encoding="utf-8")
-    with pytest.raises(LessonRefused) as found:
+    with pytest.raises(LessonRefused) as exception_info:
         catalogue.page(folder, catalogue.PUPIL, "en")
-    (said,) = describe(found.value, "en")
+    (said,) = describe(exception_info.value, "en")
     assert "pupil.en.md has {pauses.seconds}, which is no number of this lesson" in said
     assert "pauses.at_least_seconds" in said
-    assert describe(found.value, "es") != [said]
+    assert describe(exception_info.value, "es") != [said]

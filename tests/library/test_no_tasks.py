@@ -28,8 +28,8 @@ def program(tmp_path: Path) -> Path:
 
 
 def says_so(done: Done, language: str = "en") -> bool:
-    said = done.out + done.err
-    return done.code == 1 and WORDS[language] in said and "tsc run" in said
+    output = done.out + done.err
+    return done.code == 1 and WORDS[language] in output and "tsc run" in output
 
 
 @pytest.mark.parametrize("verb", [("upload",), ("compile", "--text")])
@@ -41,9 +41,9 @@ def test_a_text_is_refused_at_its_task(program: Path, verb: tuple[str, ...]) -> 
 def test_a_reader_that_lacks_them_is_told_from_a_robot_that_does(program: Path) -> None:
     """An Uno runs what is sent compiled."""
     done = inside("check", "--text-level", "uno", program, "--robot", ROBOT)
-    said = done.out + done.err
-    assert (done.code, "TS313" in said, said.count("[TS308]")) == (1, False, 2)
-    assert "line 2:" in said and "line 4:" in said and "tsc upload" in said
+    output = done.out + done.err
+    assert (done.code, "TS313" in output, output.count("[TS308]")) == (1, False, 2)
+    assert "line 2:" in output and "line 4:" in output and "tsc upload" in output
     for level in ("mega", "esp32"):
         assert inside("check", "--text-level", level, program, "--robot", ROBOT).code == 0
     assert inside("check", program, "--robot", ROBOT).code == 0
@@ -73,7 +73,7 @@ def test_the_library_sends_none() -> None:
                     assert refused.value.reason == "UNKNOWN_NEEDS"
                     assert "tsc run" in str(refused.value)
         robot.upload("SHOW(2)")  # nothing has come of the others
-        assert [each.values for each in robot.events() if each.name == "SHOW"] == [{"value": 2}]
+        assert [event.values for event in robot.events() if event.name == "SHOW"] == [{"value": 2}]
 
 
 @pytest.mark.parametrize("robot_name", ["tinibot", "grabber", "tinibot32"])
@@ -85,8 +85,8 @@ def test_the_others_run_them(sent: str, robot_name: str) -> None:
         receipt = getattr(robot, sent)(text)
         assert receipt.checksum == tiniscript.compile(text, robot_name).checksum
         shown = []
-        for each in robot.events(timeout=60):
-            shown += [each.values["value"]] if each.name == "SHOW" else []
+        for event in robot.events(timeout=60):
+            shown += [event.values["value"]] if event.name == "SHOW" else []
             if shown == [7, 8]:
                 robot.stop()
         assert (shown, robot.wait().name) == ([7, 8], "STOPPED")
@@ -124,5 +124,5 @@ def test_a_recording_is_of_another_program() -> None:
     checksum = tiniscript.compile(TEXT, ROBOT).checksum
     head = f'{{"tiniscript_recording": 1, "program": "{checksum:08x}"}}\n'
     recording = recordings.read((head + '{"ms": 1, "event": "DONE"}\n').encode())
-    found = recordings.replay(recording, TEXT.encode(), ROBOT, worlds.load("line"))
-    assert found.what == "other_program"
+    parting = recordings.replay(recording, TEXT.encode(), ROBOT, worlds.load("line"))
+    assert parting.what == "other_program"

@@ -56,7 +56,7 @@ def test_a_robot_without_speeds_refuses_an_image(program: Path, slow: Path, tmp_
 def test_what_is_lacking_has_a_text_of_its_own() -> None:
     assert [lacking(needs, robots.load("liner")) for needs in (0, TASKS, GO, TASKS | GO)] == [
         "", "no_tasks", "", "no_tasks"]  # fmt: skip
-    assert [each for each in robots.names() if lacking(TASKS, robots.load(each))] == ["liner"]
+    assert [name for name in robots.names() if lacking(TASKS, robots.load(name))] == ["liner"]
 
 
 @pytest.mark.parametrize("robot", robots.names())

@@ -32,21 +32,21 @@ def test_a_program_has_the_image_that_tsc_compile_writes(tsc: Tsc, tmp_path: Pat
     assert len(program.code) == 14
     assert program.image.endswith(program.code)
     assert program.checksum == int.from_bytes(program.image[10:14], "little")
-    assert [each.code for each in program.diagnostics] == ["TS805"]
+    assert [diagnostic.code for diagnostic in program.diagnostics] == ["TS805"]
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("text", ["SI|F(2, ", "SI|F(0,5, 80);X = 1;Q(3)", "SI|F(2, 80)", "SI|PEN"])
 def test_check_says_what_tsc_check_says(tsc: Tsc, text: str, language: str) -> None:
     said = json.loads(tsc("check", "-e", text, "--json", "--lang", language).out)
-    assert [each._asdict() for each in tiniscript.check(text, language=language)] == said
+    assert [message._asdict() for message in tiniscript.check(text, language=language)] == said
 
 
 def test_a_diagnostic_is_data() -> None:
-    [found] = tiniscript.check("SI|W(1)\nF(2 80)")
-    assert (found.code, found.severity) == ("TS017", "mistake")
-    assert (found.line, found.column, found.end_line, found.end_column) == (2, 4, 2, 5)
-    assert "," in found.fix
+    [message] = tiniscript.check("SI|W(1)\nF(2 80)")
+    assert (message.code, message.severity) == ("TS017", "mistake")
+    assert (message.line, message.column, message.end_line, message.end_column) == (2, 4, 2, 5)
+    assert "," in message.fix
 
 
 def test_a_program_with_mistakes_is_an_error_that_shows_them() -> None:
@@ -107,7 +107,7 @@ def test_a_trace_is_that_of_tsc_run(tsc: Tsc, machine: Any) -> None:
 def test_values_are_numbers_or_yes_and_no() -> None:
     trace = tiniscript.run("SHOW(1 > 0);SHOW(1);SHOW(-0.5);GRIPPER(30)", "grabber")
     values = [event.values["value"] for event in trace.events if "value" in event.values]
-    assert [(type(each), each) for each in values] == [
+    assert [(type(value), value) for value in values] == [
         (bool, True), (int, 1), (float, -0.5), (int, 30)]  # fmt: skip
 
 
@@ -285,13 +285,13 @@ def test_a_user_has_types(tmp_path: Path) -> None:
         "    tiniscript.conect()\n",
         encoding="utf-8",
     )
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-m", "mypy", "--strict", "--no-incremental", "--follow-imports=silent",
          "--config-file=", str(program)],
         capture_output=True, text=True, cwd=tmp_path,
         env={**os.environ, "MYPYPATH": str(Path(tiniscript.__file__).parent.parent)},
     )  # fmt: skip
-    said = [line.split(": ", 1)[1] for line in done.stdout.splitlines() if "use.py" in line]
+    said = [line.split(": ", 1)[1] for line in completed.stdout.splitlines() if "use.py" in line]
     assert said == [
         "note: Revealed type is \"Literal['DONE'] | Literal['FAULT'] | Literal['LIMIT']\"",
         'note: Revealed type is "tiniscript.library.simulated.VirtualRobotConnection"',
@@ -305,9 +305,9 @@ def test_without_wasmtime_the_next_step_is_said(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(sys.modules, "wasmtime", None)
     for module in ("vm.wasm_store", "vm.wasm"):
         monkeypatch.delitem(sys.modules, f"tiniscript.{module}", raising=False)
-    with pytest.raises(tiniscript.UsageError) as found:
+    with pytest.raises(tiniscript.UsageError) as exception_info:
         tiniscript.run("W(1)", machine="cpp", language="es")
-    assert install_advice.command("virtual") in str(found.value)
+    assert install_advice.command("virtual") in str(exception_info.value)
 
 
 def test_a_program_may_be_a_file(tmp_path: Path) -> None:

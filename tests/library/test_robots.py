@@ -65,13 +65,15 @@ def test_a_program_runs_there_and_tells_what_it_shows(
     receipt = virtual.upload(program)
     assert (receipt.checksum, receipt.is_running) == (program.checksum, True)
     events = list(virtual.events())
-    assert [(each.name, each.values) for each in events] == [
+    assert [(robot_event.name, robot_event.values) for robot_event in events] == [
         ("STARTED", {"checksum": program.checksum}),
         ("SHOW", {"value": 1.5}),
         ("SHOW", {"value": True, "name": "TRUE AND 1 > 0", "line": 1, "column": 23}),
         ("DONE", {}),
     ]
-    assert [each.ms for each in events] == sorted(each.ms for each in events)
+    assert [robot_event.ms for robot_event in events] == sorted(
+        robot_event.ms for robot_event in events
+    )
     assert virtual.wait() == tiniscript.Ending("DONE")
     assert virtual.driven_cm == pytest.approx(22.5, abs=1)
     assert (virtual.pose[2], virtual.bumps) == (0, 0)
@@ -91,16 +93,22 @@ def test_a_line_is_done_at_once_and_the_program_stays(
     stored = virtual.upload("SI|SHOW(7)")
     virtual.wait()
     virtual.live("SHOW(8)")
-    assert [each.values for each in virtual.events() if each.name == "SHOW"] == [{"value": 8}]
+    assert [
+        robot_event.values for robot_event in virtual.events() if robot_event.name == "SHOW"
+    ] == [{"value": 8}]
     started = virtual.start()
     assert (started.checksum, started.saved) == (stored.checksum, "STORED")
-    assert [each.values for each in virtual.events() if each.name == "SHOW"] == [{"value": 7}]
+    assert [
+        robot_event.values for robot_event in virtual.events() if robot_event.name == "SHOW"
+    ] == [{"value": 7}]
 
 
 def test_a_program_may_wait_for_the_button(virtual: tiniscript.VirtualRobotConnection) -> None:
     assert not virtual.upload("SB|SHOW(3)").is_running
     virtual.push_button()
-    assert [each.values for each in virtual.events() if each.name == "SHOW"] == [{"value": 3}]
+    assert [
+        robot_event.values for robot_event in virtual.events() if robot_event.name == "SHOW"
+    ] == [{"value": 3}]
 
 
 def test_a_program_that_goes_on_is_no_ending_and_a_line_after_its_stop_runs(
@@ -120,7 +128,7 @@ def test_a_time_limit_ends_a_stream_without_end(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
     virtual.upload("SI|LOOP(FOREVER);SHOW(1);W(0.01);END_LOOP", save=False)
-    assert "SHOW" in {each.name for each in virtual.events(0.3)}
+    assert "SHOW" in {robot_event.name for robot_event in virtual.events(0.3)}
     with fails(tiniscript.RobotError, "still_running"):
         virtual.wait(0.2)
 
@@ -130,7 +138,11 @@ def test_its_world_and_its_readings_can_be_chosen() -> None:
     with tiniscript.virtual_robot(world="light", sensors=sensors, hurry=50) as robot:
         robot.upload(OBSTACLE, save=False)
         robot.live("SHOW(DISTANCE);SHOW(DISTANCE)")
-        shown = [each.values["value"] for each in robot.events() if each.name == "SHOW"]
+        shown = [
+            robot_event.values["value"]
+            for robot_event in robot.events()
+            if robot_event.name == "SHOW"
+        ]
         assert shown[-1] == 5
 
 
@@ -406,7 +418,9 @@ def test_the_program_before_comes_back(pty_robot: PtyRobot) -> None:
 def test_a_way_through_another_command_is_a_way(pty_robot: PtyRobot, link: Command) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload("SI|SHOW(4)")
-        assert [each.values for each in robot.events() if each.name == "SHOW"] == [{"value": 4}]
+        assert [
+            robot_event.values for robot_event in robot.events() if robot_event.name == "SHOW"
+        ] == [{"value": 4}]
         robot.upload(FOREVER)
         pty_robot.until(lambda: pty_robot.moves, "it drives")
     assert not pty_robot.moves
@@ -480,7 +494,9 @@ def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
         assert again.info.port == pty_robot.port
         again.stop()
     assert other.ended().code == 3
-    until(lambda: not any(each.name == "holder" for each in threading.enumerate()), "it lets go")
+    until(
+        lambda: not any(thread.name == "holder" for thread in threading.enumerate()), "it lets go"
+    )
     process("doctor", "--identify", "--port", pty_robot.port).gives(0)
 
 

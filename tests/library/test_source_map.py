@@ -32,7 +32,11 @@ def located(text: str) -> list[tuple[str, str]]:
     found = compiled(text)
     pairs = []
     for row in rows(found.code):
-        place = [each for each in found.places if each.offset <= row.offset][-1]
+        place = [
+            source_location
+            for source_location in found.places
+            if source_location.offset <= row.offset
+        ][-1]
         pairs.append((row.text.split()[0], found.source[place.span]))
     return pairs
 
@@ -57,7 +61,7 @@ def located(text: str) -> list[tuple[str, str]]:
         ("F(1, 80) UNTIL(DISTANCE < 9)",
          [(name, "F(1, 80) UNTIL(DISTANCE < 9)")
           for name in ("PUSH_NUM_1", "PUSH_NUM_80", "WATCH_F", "PUSH_READ_2", "UNTIL8_LT")]),
-        # a condition belongs to its arm, and the jump behind an arm to what ends it
+        # a condition belongs to its arm, and the jump after an arm to what ends it
         ("X = 1\nIF(X = 1); S; ELSEIF(X = 2); W(1); ENDIF",
          [("PUSH_NUM_1", "X = 1"), ("SET_VAR_0", "X = 1"), ("IF_VAR8_EQ", "IF(X = 1)"),
           ("STOP", "S"), ("ELSE", "S"),
@@ -153,10 +157,10 @@ def test_what_is_no_map_is_refused(changed: dict[str, object]) -> None:
 
 def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(source_map, "KEPT", 3)
-    found = [compiled(f"W({k})") for k in range(1, 6)]
-    for k, each in enumerate(found):
+    programs = [compiled(f"W({k})") for k in range(1, 6)]
+    for k, each in enumerate(programs):
         source_map.remember(each.image, mapped(each))
         path = source_map._path(checksum(each.image))
         os.utime(path, (k + 1, k + 1))
-    kept = [source_map.recall(checksum(each.image)) is not None for each in found]
+    kept = [source_map.recall(checksum(program.image)) is not None for program in programs]
     assert kept == [False, False, True, True, True]

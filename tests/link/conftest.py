@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 def bluez(monkeypatch: pytest.MonkeyPatch) -> Iterator[FakeBluez]:
     from tests.support.fake_bluez import FakeBluez
 
-    with FakeBluez() as found:
-        monkeypatch.setenv("DBUS_SYSTEM_BUS_ADDRESS", found.address)
-        yield found
+    with FakeBluez() as fake_bluez:
+        monkeypatch.setenv("DBUS_SYSTEM_BUS_ADDRESS", fake_bluez.address)
+        yield fake_bluez
 
 
 @pytest.fixture
@@ -27,6 +27,6 @@ def ble(bluez: FakeBluez, pty_robot: PtyRobot) -> BleRobot:
     """An Uno with an HM-10."""
     from tests.support.ble_robot import BleRobot
 
-    found = BleRobot(pty_robot)
-    bluez.add(found)
-    return found
+    ble_robot = BleRobot(pty_robot)
+    bluez.add(ble_robot)
+    return ble_robot

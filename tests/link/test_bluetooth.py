@@ -108,7 +108,7 @@ def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: 
 
 def test_two_at_once_take_turns(ble: BleRobot) -> None:
     both = [Command("doctor", "--identify", "--port", port) for port in (NAME, PLACE)]
-    done = [each.ended() for each in both]
+    done = [command.ended() for command in both]
     assert 0 in [each.code for each in done]
     for each in done:
         assert each.code == 0 or "another program is using" in each.err or "in reach" in each.err

@@ -172,7 +172,7 @@ def test_a_bus_that_lets_nobody_in(bluez: FakeBluez, monkeypatch: pytest.MonkeyP
 def test_without_its_package_the_next_step_is_said(
     tsc: Tsc, monkeypatch: pytest.MonkeyPatch, package: str
 ) -> None:
-    for name in [each for each in sys.modules if each.partition(".")[0] == package]:
+    for name in [module for module in sys.modules if module.partition(".")[0] == package]:
         monkeypatch.setitem(sys.modules, name, None)
     transports = "tiniscript.link.transports"
     for folder, name in (
@@ -214,7 +214,7 @@ def test_an_hm10_gets_no_more_than_its_uart_passes_on(
 
     loop: Any = SimpleNamespace(run=lambda work, _: asyncio.run(work))
     port = bluetooth.BluetoothPort(loop, 9600)
-    module = next(each for each in bluetooth.MODULES if each.service == service)
+    module = next(module for module in bluetooth.MODULES if module.service == service)
     client: Any = SimpleNamespace(write_gatt_char=write, is_connected=True)
     characteristic: Any = SimpleNamespace(
         properties=["write-without-response"], max_write_without_response_size=182

@@ -129,11 +129,11 @@ def test_what_fails_leaves_the_device(
     for _ in range(2):
         device.fails_at = stage
         device.failure, reason = FAILURES[failure]
-        with monkeypatch.context() as short, pytest.raises(PortError) as found:
+        with monkeypatch.context() as short, pytest.raises(PortError) as exception_info:
             if device.failure is None:
                 short.setattr(bluetooth, "QUEUE_S", 0.1)
             connects(loop, device)
-        assert found.value.reason == reason or not reason
+        assert exception_info.value.reason == reason or not reason
         assert device.clients == []
         works(loop, device)
 
@@ -142,9 +142,9 @@ def test_what_fails_leaves_the_device(
 def test_what_is_no_robot_is_left(loop: event_loop.EventLoop, lacks: str) -> None:
     device = Device()
     device.lacks = lacks
-    with pytest.raises(PortError) as found:
+    with pytest.raises(PortError) as exception_info:
         connects(loop, device)
-    assert found.value.reason == errors.NO_ROBOT
+    assert exception_info.value.reason == errors.NO_ROBOT
     assert device.clients == []
     works(loop, device)
 

@@ -32,14 +32,16 @@ PIECE = bytes(65_536)
 @pytest.fixture
 def school(tmp_path: Path) -> Iterator[Mosquitto]:
     """A broker that knows thirty robots of the class 3b."""
-    found = Mosquitto(tmp_path, "robots", "word")
+    mosquitto = Mosquitto(tmp_path, "robots", "word")
     robots = [
         {"topic": f"{broker.ROOT}/3b/{k:08x}", "payload": f"+R{k}", "retain": True}
         for k in range(ROBOTS)
     ]
-    paho.multiple(robots, "127.0.0.1", found.port, auth={"username": "robots", "password": "word"})
-    yield found
-    found.kill()
+    paho.multiple(
+        robots, "127.0.0.1", mosquitto.port, auth={"username": "robots", "password": "word"}
+    )
+    yield mosquitto
+    mosquitto.kill()
 
 
 # -- the list of a class ------------------------------------------------------------------------
@@ -136,7 +138,7 @@ def test_stops_and_frames_are_not_retained(tmp_path: Path) -> None:
 
 
 def message(bytes_of_it: int) -> bytes:
-    """Return the head of a message with so many bytes behind it."""
+    """Return the head of a message with so many bytes after it."""
     head = bytearray((0x30,))
     while True:
         rest = bytes_of_it >> 7
@@ -148,7 +150,7 @@ def message(bytes_of_it: int) -> bytes:
 
 @pytest.mark.parametrize("size", [MESSAGE_BYTES, MESSAGE_BYTES + 1, 10_000, SKIPPED_BYTES - 1000])
 def test_a_retained_message_that_is_too_large_is_left_out(school: Mosquitto, size: int) -> None:
-    """It stands before a robot, between robots and behind one, and is named."""
+    """It stands before a robot, between robots and after one, and is named."""
     topics = [f"{broker.ROOT}/3b/{name}" for name in ("0000000f", "fff", "x" * 300)]
     more = [{"topic": topic, "payload": bytes(size), "qos": 1, "retain": True} for topic in topics]
     more.append({"topic": f"{broker.ROOT}/3b/ffffffff", "payload": "+Z", "qos": 1, "retain": True})

@@ -60,20 +60,20 @@ def frame_of(data: bytes) -> Frame:
     return Frame(number, seq, epoch, payload)
 
 
-def whole(rows: list[str]) -> list[Frame]:
+def whole_frames(rows: list[str]) -> list[Frame]:
     """Return the whole frames in what a receiver has found."""
-    found = []
+    frames = []
     for row in rows:
         if row.endswith(" whole"):
             frame = decoded(bytes.fromhex(row.split(" ", 2)[2].removesuffix(" whole")))
             assert frame
-            found.append(frame)
-    return found
+            frames.append(frame)
+    return frames
 
 
 def judge_in_python(line: DamagedLine, is_large: bool) -> None:
     """Assert that Python encodes, receives and decodes a line as the C++ does."""
-    sent = Line(line.data, [frame_of(each) for each in line.frames], line.is_damaged)
+    sent = Line(line.data, [frame_of(frame) for frame in line.frames], line.is_damaged)
     at = 0
     for frame, is_damaged in zip(sent.frames, sent.is_damaged, strict=True):
         if not is_damaged:
@@ -84,8 +84,8 @@ def judge_in_python(line: DamagedLine, is_large: bool) -> None:
     stream = [(0, byte) for byte in sent.data]
     rows = packets_of(stream, is_large=is_large)
     assert cpp_link(is_large).packets(stream) == rows
-    judge(sent, whole(rows))
-    assert [frame_of(each) for each in line.accepted] == whole(rows)
+    judge(sent, whole_frames(rows))
+    assert [frame_of(each) for each in line.accepted] == whole_frames(rows)
 
 
 def damage_frames(cpp: CppDamage, count: int, seed: int) -> tuple[int, int]:

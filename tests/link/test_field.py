@@ -1,6 +1,6 @@
 """What people, apps and radio modules really send, to the whole link of a robot.
 
-A right line behind their bytes runs, or an answer says why not: nothing is met with silence. A
+A right line after their bytes runs, or an answer says why not: nothing is met with silence. A
 glitch that is a 0x00, at any byte, has no other program run than the one that was typed, and a
 person and a computer in turns at one port are both heard.
 `python -m tests.link.test_field 100000` tries more than the tests.
@@ -124,10 +124,10 @@ def no_other_program(cpp: CppLink, seed: int) -> str:
     data = text.encode() + b"\n"
     at = draw.randrange(len(data))
     # without its first byte a first line is another one, and the next ones are lines of their own
-    behind = at + (at > 0 and draw.randrange(2))
+    after = at + (at > 0 and draw.randrange(2))
     wanted_programs = programs_of(cpp, text)
     robot = Robot(cpp)
-    robot.type(data[:at] + b"\0" + data[behind:])
+    robot.type(data[:at] + b"\0" + data[after:])
     robot.wait(4200)
     assert robot.programs <= wanted_programs, f"seed {seed}: {text!r} with a 0x00 at {at}"
     assert robot.programs or robot.answers, f"seed {seed}: silence for {text!r}, a 0x00 at {at}"

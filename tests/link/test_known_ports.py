@@ -18,7 +18,7 @@ for number in range({PORTS}):
 
 def test_commands_at_once_lose_no_port() -> None:
     running = [subprocess.Popen([sys.executable, "-c", REMEMBERS, str(k)]) for k in range(COMMANDS)]
-    assert [each.wait() for each in running] == [0] * COMMANDS
+    assert [process.wait() for process in running] == [0] * COMMANDS
     assert len(known_ports.known().names) == COMMANDS * PORTS
 
 

@@ -44,7 +44,7 @@ from tools.bench import large_upload
 DATA, HELLO, FETCH, LIVE, PING = (
     BY_NAME[name].number for name in ("DATA", "HELLO", "FETCH", "LIVE", "PING")
 )
-REQUESTS = [each.number for each in MESSAGES if each.number < FIRST_EVENT]
+REQUESTS = [message.number for message in MESSAGES if message.number < FIRST_EVENT]
 OK, STALE = STATUSES["OK"], STATUSES["STALE"]
 EPOCH = 9  # of the robot when it begins; HELLO makes it one more
 CODE = large_upload.program(1500).code
@@ -55,7 +55,7 @@ BAUD = 115_200
 # -- the robot ------------------------------------------------------------------------------------
 
 
-def begun(is_large: bool = True, epoch: int = EPOCH) -> CppLink:
+def open_link(is_large: bool = True, epoch: int = EPOCH) -> CppLink:
     """Return a robot in a session."""
     robot = cpp_link(is_large)
     robot.begin(room=8192, kit=KIT, epoch=epoch)
@@ -71,7 +71,7 @@ def begun(is_large: bool = True, epoch: int = EPOCH) -> CppLink:
 def sent_by(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[bytes]:
     """Return the packets that a robot answers to frames."""
     step = robot.step(10, b"\0" + b"".join(map(encoded, frames)), is_late=is_late)
-    return [each for each in step.sent.split(b"\0") if each]
+    return [part for part in step.sent.split(b"\0") if part]
 
 
 def answers(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[Frame]:
@@ -83,7 +83,7 @@ def answers(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[Frame
 def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
     """A robot with a window of 4 answers four that came at once, one with 1 the first."""
     for is_large, window in ((True, LARGE_WINDOW), (False, 1)):
-        robot = begun(is_large=is_large)
+        robot = open_link(is_large=is_large)
         numbers = [(FETCH, PING)[k % 2] for k in range(window + 2)]
         frames = [
             Frame(number, 2 + k, EPOCH + 1, bytes(2 * (number == FETCH)))
@@ -103,7 +103,7 @@ def test_live_code_of_a_large_frame_runs() -> None:
     most = payload_bytes(LARGE_FRAME) - 1
     for length in (54, 55, 56, 57, 58, most):
         for is_late in (False, True):
-            robot = begun()
+            robot = open_link()
             code = large_upload.program(length).code
             live = Frame(LIVE, 2, EPOCH + 1, bytes([RUN]) + code)
             step = robot.step(10, b"\0" + encoded(live), is_late)
@@ -113,13 +113,13 @@ def test_live_code_of_a_large_frame_runs() -> None:
 
 
 def test_a_large_frame_without_its_zero_is_damaged() -> None:
-    """Whether it is looked at while it arrives or behind its end; nothing of it runs.
+    """Whether it is looked at while it arrives or after its end; nothing of it runs.
 
     On the wire it begins as a large frame does: its epoch is 0.
     """
     code = large_upload.program(90).code
     for is_late in (False, True):
-        robot = begun(epoch=255)
+        robot = open_link(epoch=255)
         wire = with_checksum(bytes([LIVE, 2, 0, 7, RUN]) + code)
         assert wire[0] == HEAD_BYTES
         step = robot.step(10, wire + b"\0", is_late)
@@ -135,12 +135,16 @@ def with_checksum(body: bytes) -> bytes:
 
 @pytest.mark.parametrize(("is_large", "most"), [(True, 239), (False, 53)])
 def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, most: int) -> None:
-    robot = begun(is_large=is_large)
+    robot = open_link(is_large=is_large)
     session = Session(7, BAUD, KIT)
-    asked = session.upload(IMAGE, runs=False)
+    pending_request = session.upload(IMAGE, runs=False)
     for now_ms in range(0, 3000, 5):
         session.receive(robot.step(now_ms, session.poll(now_ms)).sent, now_ms)
-    assert asked.outcome and asked.outcome.status == OK and robot.held() == pack("SI", 0, CODE)
+    assert (
+        pending_request.outcome
+        and pending_request.outcome.status == OK
+        and robot.held() == pack("SI", 0, CODE)
+    )
     hello = struct.pack("<BBBBHI", MAJOR, MINOR, *isa_of(0), KIT, 8)
     answers(robot, Frame(HELLO, 1, 0, hello))
     image = b""
@@ -258,7 +262,7 @@ class Taking:
         return None if number in self.unanswered else (OK, len(self.found))
 
 
-WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # what lies behind the checksum
+WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # what lies after the checksum
 
 
 @pytest.mark.parametrize(

@@ -263,7 +263,7 @@ def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> N
 
 @pytest.mark.parametrize(("is_large", "count", "least"), [(False, 150, 0.85), (True, 50, 0.6)])
 def test_uploads_in_pieces(is_large: bool, count: int, least: float) -> None:
-    """Behind a second of silence the rest of a frame is text; the frame comes again."""
+    """After a second of silence the rest of a frame is text; the frame comes again."""
     found = Counter(one_upload(cpp_link(is_large), seed, Split) for seed in range(count))
     assert found["done"] > count * least, found
 
@@ -283,12 +283,12 @@ def one_undo(cpp: CppLink, seed: int) -> str:
     confirmed = 0
     for _ in range(4):
         before = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}")
-        asked = world.session.undo()
-        world.run(asked)
-        assert asked.outcome, f"seed {seed}: an undo has no end"
+        pending_request = world.session.undo()
+        world.run(pending_request)
+        assert pending_request.outcome, f"seed {seed}: an undo has no end"
         done = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}") - before
         assert done <= 1, f"seed {seed}: undone {done} times"
-        if asked.outcome.status == 0:
+        if pending_request.outcome.status == 0:
             assert done == 1, f"seed {seed}: the computer says undone, the robot has done nothing"
             confirmed += 1
         if done:

@@ -1,6 +1,6 @@
 """A robot makes the image of LIVE before its frame ends: that changes nothing but when it runs.
 
-A robot that looks at its bytes one by one does so, one that looks behind the last byte cannot.
+A robot that looks at its bytes one by one does so, one that looks after the last byte cannot.
 """
 
 from __future__ import annotations
@@ -54,13 +54,13 @@ def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
         data = live(code, draw.randrange(2, 100), (epoch + draw.randrange(20) // 19 + 1) % 256)
         if number % 3 == 0:
             data = damaged(data[:-1], draw) + b"\0"
-        found = [greeted(epoch).step(10, data, is_late=is_late) for is_late in (False, True)]
-        # one that looks late misses what comes behind the end of another packet
+        steps = [greeted(epoch).step(10, data, is_late=is_late) for is_late in (False, True)]
+        # one that looks late misses what comes after the end of another packet
         if data.count(b"\0") == 1 and not {*b"\r\n"} & {*data}:
-            assert found[0] == found[1], data.hex()
+            assert steps[0] == steps[1], data.hex()
         if number % 3 == 0 and data != live(code):
             continue
-        started += STARTED in found[0].did
+        started += STARTED in steps[0].did
     assert started > FRAMES // 4
 
 

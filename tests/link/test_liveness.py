@@ -102,10 +102,10 @@ def check(seed: int) -> str:
     name = rng.choice([*ASKED])
     assert robot.until(session, session.upload(image_of("SI|F(0.2, 50)"))) == OK
     robot.talk(session, 3000)
-    asked = [ASKED[name](session), session.status()]
+    pending_requests = [ASKED[name](session), session.status()]
     said = f"seed {seed}, {name}, {line.is_bursty} {line.likely} {line.late_ms}"
     pieces = 40 if "program" in name else 4
-    for request in asked:
+    for request in pending_requests:
         status = until(session, robot, line, request, pieces * EACH_MS)
         assert status == OK, f"{said}: {status}"
     if name == "what goes on alone":
@@ -129,7 +129,9 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
         rng = random.Random(seed)
         robot, session, line = switched_on(), computer(), BadLine(rng)
         line.is_bursty, line.likely, line.late_ms = False, 0, 0
-        asked = [rng.choice([*ASKED.values()])(session) for _ in range(rng.randint(1, 4))]
+        pending_requests = [
+            rng.choice([*ASKED.values()])(session) for _ in range(rng.randint(1, 4))
+        ]
         for _ in range(rng.choice((0, 1, 3, 10, 40))):
             turn(session, robot, line)
         silent_ms = rng.choice((200, 1000, 4000, 40_000))
@@ -141,8 +143,8 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
             fresh.now_ms = robot.now_ms
             fresh.wait(200)
             robot = fresh
-        limit_ms = len(asked) * (DEADLINE_MS + DEAF_MS) + 5000
-        for request in asked:
+        limit_ms = len(pending_requests) * (DEADLINE_MS + DEAF_MS) + 5000
+        for request in pending_requests:
             until(session, robot, line, request, limit_ms)
         robot.talk(session, 2000)
         if until(session, robot, line, session.hello(), DEADLINE_MS) != OK:

@@ -40,15 +40,15 @@ from tiniscript.robots.text_levels import LEVELS
 
 
 def test_numbers_are_used_once_and_leave_the_bits_alone() -> None:
-    numbers = [each.number for each in MESSAGES]
+    numbers = [message.number for message in MESSAGES]
     assert len(set(numbers)) == len(numbers)
     assert all(0 < number < min(REPLY, SEALED) for number in numbers)
     assert len(set(STATUSES.values())) == len(STATUSES)
     assert all(number >= FIRST_STATUS for name, number in STATUSES.items() if name != "OK")
     lower = [number for number, _ in (*REFUSALS.values(), *RULES.values())]
     assert max(lower) < FIRST_STATUS
-    for each in MESSAGES:
-        assert each.acts == (FIRST_ACTING <= each.number < FIRST_EVENT)
+    for message in MESSAGES:
+        assert message.acts == (FIRST_ACTING <= message.number < FIRST_EVENT)
 
 
 def test_no_request_is_or_ends_a_line() -> None:
@@ -56,9 +56,9 @@ def test_no_request_is_or_ends_a_line() -> None:
 
     A sealed request has a 0 as its fourth byte, so that its first one on the wire is 4 at most.
     """
-    for each in MESSAGES:
-        assert each.number < 0x20 or each.number >= FIRST_EVENT
-        assert each.number not in b"\r\n" and each.number not in RETIRED
+    for message in MESSAGES:
+        assert message.number < 0x20 or message.number >= FIRST_EVENT
+        assert message.number not in b"\r\n" and message.number not in RETIRED
     assert set(b"\r\n") == set(RETIRED)
 
 
@@ -72,11 +72,11 @@ def test_features_share_no_bit_and_levels_have_the_names_of_their_table() -> Non
 def test_every_payload_fits_a_frame() -> None:
     """A small one, but for what fills a frame: that fills a large one, too."""
     large = payload_bytes(LARGE_FRAME)
-    for each in MESSAGES:
-        for fields, before in ((each.request, 0), (each.reply, each.number < FIRST_EVENT)):
+    for message in MESSAGES:
+        for fields, before in ((message.request, 0), (message.reply, message.number < FIRST_EVENT)):
             fills = any(field.fills for field in fields)
             most = before + sizes(fields)[1]
-            assert most == large if fills else most <= PAYLOAD_BYTES, each.name
+            assert most == large if fills else most <= PAYLOAD_BYTES, message.name
     assert PAYLOAD_BYTES - MODE_BYTES == SHORT_BYTES == 55
     assert (large - MODE_BYTES, large - OFFSET_BYTES) == (241, 240)
 
@@ -84,7 +84,7 @@ def test_every_payload_fits_a_frame() -> None:
 @each_row("length", range(PAYLOAD_BYTES - 2, payload_bytes(LARGE_FRAME) + 1))
 def test_no_frame_can_be_a_line(length: int) -> None:
     """Of a computer or a robot, sealed or not: the receiver looks at two bytes."""
-    for number in (each.number for each in MESSAGES if each.number < FIRST_EVENT):
+    for number in (message.number for message in MESSAGES if message.number < FIRST_EVENT):
         for flags in ((False, False), (True, False), (False, True)):
             payload = b"\0" * flags[1] + b"\1" * (length - flags[1])
             frame = Frame(number, 77, 1, payload, *flags)
@@ -97,7 +97,7 @@ def test_no_frame_can_be_a_line(length: int) -> None:
 
 
 @pytest.mark.parametrize("is_sealed", [False, True])
-def test_a_large_frame_has_a_zero_behind_its_head(is_sealed: bool) -> None:
+def test_a_large_frame_has_a_zero_after_its_head(is_sealed: bool) -> None:
     """Also where its first byte on the wire is small for another reason: its number is 0."""
     for zero, is_whole in ((0, True), (7, False)):
         body = bytes([2 | SEALED * is_sealed, 0, 1, zero]) + bytes(PAYLOAD_BYTES)

@@ -225,8 +225,8 @@ def test_names_without_an_address_do_not_hold_up_the_list(
 
     def look(zeroconf: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
         limits_ms.append(limit_ms)
-        found: ServiceInfo | None = asked(zeroconf, name, limit_ms)
-        return found
+        service_info: ServiceInfo | None = asked(zeroconf, name, limit_ms)
+        return service_info
 
     monkeypatch.setattr(network, "ADDRESSES_S", 0.5)
     monkeypatch.setattr(network, "asked", look)

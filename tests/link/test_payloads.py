@@ -23,8 +23,8 @@ from tiniscript.link.payloads import REPLIES, ReceiptReply, ShowEvent, StatusRep
 from tiniscript.link.sharing import protocol
 from tiniscript.link.sharing.protocol import event_of, filled, of_event
 
-REPLY_MESSAGES = [each for each in MESSAGES if each.number < FIRST_EVENT]
-EVENT_MESSAGES = [each for each in MESSAGES if each.number >= FIRST_EVENT]
+REPLY_MESSAGES = [message for message in MESSAGES if message.number < FIRST_EVENT]
+EVENT_MESSAGES = [message for message in MESSAGES if message.number >= FIRST_EVENT]
 
 
 def value(field: Field) -> int | bytes:

@@ -1,4 +1,4 @@
-"""What was asked for before a stop starts nothing behind it, whoever has stopped the robot, and
+"""What was asked for before a stop starts nothing after it, whoever has stopped the robot, and
 whatever of that is lost on the way.
 
 Random requests wait for each other; at any moment somebody stops the robot. `Session` knows of it
@@ -99,16 +99,20 @@ def check(seed: int) -> str:
     robot, session = wire.robot, wire.session
     assert robot.until(session, session.upload(image_of(RUNS), saves=False)) == OK
     how = rng.choice([*STOPS, OWN])
-    asked = [rng.choice(ACTING if rng.random() < 0.6 else OTHERS)(session)
+    pending_requests = [rng.choice(ACTING if rng.random() < 0.6 else OTHERS)(session)
              for _ in range(rng.randint(2, 5))]  # fmt: skip
     wire.loses = rng.choice((NOTHING, Losses(0.3, 0.3), Losses(0, 1)))
     wire.turns(rng.choice((0, 0, 1, 2, 3, 5, 8, 13, 30)))
     if how == "the button" and not is_driving(robot):  # it would start what is held
         how = "zeros"
-    open_ones = [each for each in asked if each.outcome is None]
+    open_ones = [
+        pending_request for pending_request in pending_requests if pending_request.outcome is None
+    ]
     if how == OWN:
         session.stop(robot.now_ms)
-        assert all(each.outcome is not None for each in asked), f"seed {seed}"
+        assert all(pending_request.outcome is not None for pending_request in pending_requests), (
+            f"seed {seed}"
+        )
         wire.turns(wire.late_ms + 3)  # until it is there
         sent = b""
     else:
@@ -122,9 +126,9 @@ def check(seed: int) -> str:
     wire.turns(wire.late_ms)
     robot.step(b"".join(wire.under_way))
     robot.talk(session, 6000)
-    said = f"seed {seed}, {how}: {robot.did}, {[each.outcome for each in asked]}"
+    said = f"seed {seed}, {how}: {robot.did}, {[request.outcome for request in pending_requests]}"
     assert robot.codes() == [], said
-    assert all(each.outcome is not None for each in asked), said
+    assert all(request.outcome is not None for request in pending_requests), said
     assert robot.done(session, session.status()).state == STATE_STOPPED, said
     new = session.live(image_of("SI|F(0.2, 100)").code)
     status = robot.until(session, new)

@@ -79,9 +79,11 @@ class Hand:
             sent = robot.step(b"" if data and self.loses() else data)
             if sent and not self.loses():
                 session.receive(sent, robot.now_ms)
-        over = [each.outcome.status for each in self._requests if each.outcome is not None]
+        over = [request.outcome.status for request in self._requests if request.outcome is not None]
         self.outcomes += over
-        self._requests = [each for each in self._requests if each.outcome is None]
+        self._requests = [
+            pending_request for pending_request in self._requests if pending_request.outcome is None
+        ]
 
     def _note(self, frame: Frame) -> None:
         keys, x, y = frame.payload
@@ -253,7 +255,7 @@ def test_keys_that_never_rest_leave_others_their_turn() -> None:
         one.holds(Pressed(0, k % 101, 0))
         one.talk(1)
     assert len(requests) == 15
-    assert all(each.outcome and each.outcome.status == OK for each in requests)
+    assert all(request.outcome and request.outcome.status == OK for request in requests)
     assert len(one.words) > 20
 
 
@@ -276,7 +278,7 @@ def test_keys_go_between_the_tries_of_a_request_that_waits() -> None:
 # -- stops and starts ---------------------------------------------------------------------------
 
 
-def test_a_stop_lets_all_go_and_keys_release_nothing_behind_it() -> None:
+def test_a_stop_lets_all_go_and_keys_release_nothing_after_it() -> None:
     one = hand()
     assert one.robot.until(one.session, one.session.upload(image(DRIVES), saves=False)) == OK
     one.holds(UP)
@@ -418,8 +420,8 @@ class Wire:
 
     def answer(self, sent: bytes) -> str:
         """Return the status of the last answer."""
-        found = [decoded(packet) for packet in self.robot.wait(60, sent).split(b"\0")]
-        replies = [each for each in found if each is not None and each.is_reply]
+        frames = [decoded(packet) for packet in self.robot.wait(60, sent).split(b"\0")]
+        replies = [frame for frame in frames if frame is not None and frame.is_reply]
         return STATUS_NAMES[replies[-1].payload[0]]
 
 
@@ -522,7 +524,7 @@ def test_the_reply_says_where_the_program_is() -> None:
     program = image("SI|W(5)")
     wire.robot.wait(60, wire.frame("PROGRAM", b"\x10" + program.code))
     sent = wire.robot.wait(60, wire.keys(UP))
-    found = [decoded(packet) for packet in sent.split(b"\0")]
-    reply = next(each for each in found if each is not None and each.number == KEYS.number)
+    frames = [decoded(packet) for packet in sent.split(b"\0")]
+    reply = next(frame for frame in frames if frame is not None and frame.number == KEYS.number)
     assert reply.payload[:2] == bytes((0, STATE_RUNNING))
     assert int.from_bytes(reply.payload[5:9], "little") == program.checksum

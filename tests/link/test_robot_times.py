@@ -76,10 +76,10 @@ def test_what_is_counted_does_not_wrap() -> None:
 def test_a_line_that_is_held_low_neither_runs_the_epoch_round_nor_fills_the_line_back() -> None:
     cpp = robot_with_session()
     sent = b"".join(cpp.step(now_ms, b"\0").sent for now_ms in range(10, 70_010))
-    told = [decoded(part) for part in sent.split(b"\0") if part]
-    assert {each.epoch for each in told if each} == {11}
-    assert {each.number for each in told if each} == {BY_NAME["STOPPED"].number}
-    assert 1000 < len(told) <= 70_000 // AGAIN_MS + 1, len(told)
+    frames = [decoded(part) for part in sent.split(b"\0") if part]
+    assert {frame.epoch for frame in frames if frame} == {11}
+    assert {frame.number for frame in frames if frame} == {BY_NAME["STOPPED"].number}
+    assert 1000 < len(frames) <= 70_000 // AGAIN_MS + 1, len(frames)
 
 
 def test_many_stops_that_nobody_has_looked_at_are_not_none() -> None:
@@ -117,7 +117,7 @@ def test_a_module_that_answers_each_line_gets_few_answers(line: bytes) -> None:
     cpp = cpp_link()
     cpp.begin(kit=KIT)
     answers = [cpp.step(now_ms, line).sent for now_ms in range(0, 60_000, 500)]
-    assert sum(bool(each) for each in answers) <= ANSWERS
+    assert sum(bool(answer) for answer in answers) <= ANSWERS
     assert cpp.step(60_000, b"SI|F(1,50)\r\n").sent == b"// OK\r\n"
     for now_ms in range(60_000, 66_000, 100):
         cpp.step(now_ms)

@@ -68,7 +68,7 @@ class SealedWorld(World):
         self.session = Session(self.draw.getrandbits(32), 9600, KIT, keys=self.keys)
 
     def heard(self, data: bytes) -> None:
-        self.frames += [each + b"\0" for each in data.split(b"\0") if each]
+        self.frames += [part + b"\0" for part in data.split(b"\0") if part]
         del self.frames[:-HEARD]
         for frame in filter(None, map(decoded, filter(None, data.split(b"\0")))):
             if not frame.is_reply:
@@ -101,7 +101,7 @@ class SealedWorld(World):
             status = draw.choice((0, 0, STATUSES["NOT_OWNER"], STATUSES["STALE"]))
             payload = bytes([status]) + draw.randbytes(draw.choice((0, 2, 8)))
             return encoded(frame._replace(payload=payload, is_reply=True, is_sealed=False))
-        requests = [each for each in MESSAGES if each.number < 32]
+        requests = [message for message in MESSAGES if message.number < 32]
         message = draw.choice(requests if self.has_hello else requests[1:])
         most = sum(field.high for field in message.request)
         least = sum(field.low for field in message.request)
@@ -111,7 +111,7 @@ class SealedWorld(World):
 
     def answered(self, asked: Frame) -> bytes:
         """Return an answer that has no seal: HELLO as a robot that seals nothing, or done."""
-        message = next(each for each in MESSAGES if each.number == asked.number)
+        message = next(message for message in MESSAGES if message.number == asked.number)
         payload = b"\0" + self.draw.randbytes(sum(field.low for field in message.reply))
         if message.name == "HELLO" and self.greeting:
             values = read(message.reply, self.greeting[1:])
@@ -147,8 +147,8 @@ def test_the_frames_of_a_session_are_sealed() -> None:
     request = world.session.live(program(world.draw)[: world.line])
     world.run(request)
     assert request.outcome and request.outcome.status == 0
-    frames = [decoded(each.rstrip(b"\0")) for each in world.frames[-2:]]
-    assert [(each.number, each.is_sealed) for each in frames if each] == [(8, True), (8, True)]
+    frames = [decoded(frame.rstrip(b"\0")) for frame in world.frames[-2:]]
+    assert [(frame.number, frame.is_sealed) for frame in frames if frame] == [(8, True), (8, True)]
 
 
 def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:

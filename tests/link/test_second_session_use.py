@@ -1,4 +1,4 @@
-"""What a session does behind anything is what a fresh one does with the same robot.
+"""What a session does after anything is what a fresh one does with the same robot.
 
 Random requests, losses of the line, stops, a reset and a silence come first, the same for two
 robots. Then the one robot is asked by the session that has seen all that, the other one by a fresh
@@ -108,11 +108,11 @@ def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
 
 def check(seed: int) -> str:
     used, other = first(random.Random(seed)), first(random.Random(seed))
-    for each in (used, other):
-        each.robot.talk(each.session, QUIET_MS)
-        if not each.robot.is_latched:  # what runs detached goes on
-            each.session.stop(each.robot.now_ms)
-            each.robot.talk(each.session, 300)
+    for wire in (used, other):
+        wire.robot.talk(wire.session, QUIET_MS)
+        if not wire.robot.is_latched:  # what runs detached goes on
+            wire.session.stop(wire.robot.now_ms)
+            wire.robot.talk(wire.session, 300)
     used.session.events()
     session = computer(77)
     assert other.robot.until(session, session.hello()) == OK

@@ -164,7 +164,7 @@ def test_a_stop_cuts_everything_short() -> None:
     requests: list[PendingRequest[Any]] = [session.live(FORWARD), session.fetch()]
     session.poll(0)
     session.stop(3)
-    assert all(each.outcome and each.outcome.status == CANCELLED for each in requests)
+    assert all(request.outcome and request.outcome.status == CANCELLED for request in requests)
     assert sending(session, 250) == [(3, bytes(8)), (103, bytes(8)), (203, bytes(8))]
     session.receive(event("STOPPED", 0, {"cause": 1}), 260)
     assert [each.name for each in session.events()] == ["STOPPED"]
@@ -229,7 +229,7 @@ def test_a_robot_that_another_has_stopped_confirms_in_its_epoch(cause: int) -> N
         assert sending(session, 500) == []
 
 
-def test_a_move_behind_another_stop_does_not_go_unseen() -> None:
+def test_a_move_after_another_stop_does_not_go_unseen() -> None:
     """The button stops, then starts; the stop that was sent meanwhile is lost once."""
     session, robot = running()
     told = robot.step(flags=1) + robot.wait(60)  # stopped, and STOPPED is under way
@@ -252,7 +252,7 @@ def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> Non
     live, waits = session.live(FORWARD), session.start()
     session.poll(0)
     session.stop(5)
-    assert [reason_of(NOWHERE, each.outcome) for each in (live, waits) if each.outcome] == [
+    assert [reason_of(NOWHERE, it.outcome) for it in (live, waits) if it.outcome] == [
         "stopped_midway", "stopped_elsewhere",
     ]  # fmt: skip
     for is_cleared in (False, True):  # the latch has to be released before the program
@@ -575,7 +575,7 @@ def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
 
 
 def test_an_upload_that_waits_for_the_button_tells_the_end_of_the_run_before_it() -> None:
-    """It has ended that, and nothing of it is told behind what the button begins."""
+    """It has ended that, and nothing of it is told after what the button begins."""
     robot = HostFirmware(ROBOT.kit)
     robot.wait(200)
     session = Session(1, kit=KIT)
@@ -630,7 +630,11 @@ def places_told(*replies: bytes) -> list[tuple[int, int]]:
         assert sent and sent.number == 2 and sent.payload == b"\1"
         reply = Frame(2, sent.seq, 10, b"\0" + payload, is_reply=True)
         session.receive(b"\0" + encoded(reply), now_ms + 1)
-    return [(each.run, each.at) for each in session.events() if isinstance(each, PlaceEvent)]
+    return [
+        (place_event.run, place_event.at)
+        for place_event in session.events()
+        if isinstance(place_event, PlaceEvent)
+    ]
 
 
 def test_a_place_is_told_when_it_is_another_one() -> None:

@@ -16,7 +16,7 @@ from tiniscript.link.session import Session
 KIT = robots.load("tinibot").kit
 
 
-def begun(text: str) -> tuple[Session, HostFirmware]:
+def started(text: str) -> tuple[Session, HostFirmware]:
     """Return a robot that has just begun a program, and the session that has asked for it."""
     session, robot = Session(1, 9600, KIT.fingerprint), HostFirmware(KIT)
     robot.wait(100)
@@ -25,7 +25,7 @@ def begun(text: str) -> tuple[Session, HostFirmware]:
 
 
 def running() -> tuple[Session, HostFirmware]:
-    session, robot = begun("F(200, 80)")
+    session, robot = started("F(200, 80)")
     robot.talk(session, 500)
     assert session.is_running and not session.events()
     return session, robot
@@ -33,14 +33,14 @@ def running() -> tuple[Session, HostFirmware]:
 
 def reset(robot: HostFirmware, seed: int = 0x9ABCDEF1) -> HostFirmware:
     """Return the robot after a reset; `seed` decides its epoch, too."""
-    found = HostFirmware(KIT, seed=seed)
-    found.now_ms = robot.now_ms
-    found.wait(100)
-    return found
+    host_firmware = HostFirmware(KIT, seed=seed)
+    host_firmware.now_ms = robot.now_ms
+    host_firmware.wait(100)
+    return host_firmware
 
 
 def test_a_reset_robot_runs_its_first_program_with_a_heartbeat() -> None:
-    session, robot = begun("SHOW(1)")
+    session, robot = started("SHOW(1)")
     robot.talk(session, 500)
     assert [event.name for event in session.events()] == ["SHOW", "DONE"]
     robot = reset(robot)  # run 1 of before has ended, the next one's has not
@@ -106,7 +106,7 @@ def test_a_stop_that_nobody_has_told_is_no_reset() -> None:
 
 
 def test_a_fault_that_nobody_has_told_is_asked_for() -> None:
-    session, robot = begun("W(0.6); SHOW(1 / DISTANCE)")
+    session, robot = started("W(0.6); SHOW(1 / DISTANCE)")
     robot.wait(900)  # its end is lost
     robot.talk(session, 1500)
     assert session.events() == [FaultEvent(1, FAULTS[1][0], 5, 481506241)]

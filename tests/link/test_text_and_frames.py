@@ -31,8 +31,8 @@ SEEDS = 20
 FRAMES = 300  # of a seed
 PAUSES_MS = (0, 1, 5, 100, 200, 399, 400, 401, 700, 999, 1000, 1001, 1099, 1100, 1101, 5000)
 LINES = (b"SI|F(1,60)", b"// OK", b"OK+LOST", b"a\xc3\xb1o = 5", b"F(2,80)", b"1", b";")
-REQUESTS = [each.number for each in MESSAGES if each.number < FIRST_EVENT]
-EVENTS = [each.number for each in MESSAGES if each.number >= FIRST_EVENT]
+REQUESTS = [message.number for message in MESSAGES if message.number < FIRST_EVENT]
+EVENTS = [message.number for message in MESSAGES if message.number >= FIRST_EVENT]
 
 
 class TextSender(Sender):
@@ -179,7 +179,7 @@ class Late(TextSender):
 
 
 class WithoutFirst(TextSender):
-    """Sends none before the first frame, and none behind text."""
+    """Sends none before the first frame, and none after text."""
 
     def frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         self._sent_ms = now_ms if self._sent_ms is None else self._sent_ms
@@ -201,7 +201,7 @@ class Twice(TextSender):
 
 
 class Hasty(TextSender):
-    """Sends text right behind a frame."""
+    """Sends text right after a frame."""
 
     text_ms = 100
 

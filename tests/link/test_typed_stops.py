@@ -1,4 +1,4 @@
-"""Typed stops where bytes arrive: found behind whatever came before, and in no frame that is whole.
+"""Typed stops where bytes arrive: found after whatever came before, and in no frame that is whole.
 
 Prefixes, frames and damage are made and judged in C++ with the robot's receiver, which reads a line
 backwards to know whether it is a stop.
@@ -31,8 +31,8 @@ def false_stops(
 
 
 @pytest.mark.parametrize("is_large", [False, True])
-def test_a_stop_is_seen_behind_any_prefix(is_large: bool) -> None:
-    cpp_damage(is_large).type_behind(SEED, 0, PREFIXES)
+def test_a_stop_is_seen_after_any_prefix(is_large: bool) -> None:
+    cpp_damage(is_large).type_after(SEED, 0, PREFIXES)
 
 
 @pytest.mark.parametrize("is_large", [False, True])
@@ -53,7 +53,7 @@ if __name__ == "__main__":
     for both in (False, True):
         for begin in range(0, given.count, PREFIXES):
             some = min(PREFIXES, given.count - begin)
-            cpp_damage(both).type_behind(given.seed, begin, some)
+            cpp_damage(both).type_after(given.seed, begin, some)
     looked_at, found = false_stops(cpp_damage(), 100 * given.count, given.seed)
     assert found == 0, f"{found} of {looked_at} undamaged frames stop"
     of, found = false_stops(cpp_damage(), FRAMES, given.seed, is_damaged=True, is_odd=False)

@@ -94,7 +94,7 @@ def test_it_is_void_after_a_stop(asks: str, wanted: Ask) -> None:
 
 @pytest.mark.parametrize("wanted", [live, upload, long_upload])
 @pytest.mark.parametrize("is_told", [True, False])
-def test_it_is_done_behind_a_program_that_faults(is_told: bool, wanted: Ask) -> None:
+def test_it_is_done_after_a_program_that_faults(is_told: bool, wanted: Ask) -> None:
     session, robot = greeted()
     assert robot.until(session, session.live(image(FAULTS_SOON).code)) == OK
     session.fetch()
@@ -109,7 +109,7 @@ def test_it_is_done_behind_a_program_that_faults(is_told: bool, wanted: Ask) -> 
 
 @pytest.mark.parametrize("first", ["upload", "live"])
 @pytest.mark.parametrize("wanted", [live, upload, long_upload])
-def test_one_behind_a_program_that_faults_at_once_is_done(first: str, wanted: Ask) -> None:
+def test_one_after_a_program_that_faults_at_once_is_done(first: str, wanted: Ask) -> None:
     session, robot = greeted()
     faulty = image(FAULTS)
     begun = session.live(faulty.code) if first == "live" else session.upload(faulty)
@@ -120,7 +120,7 @@ def test_one_behind_a_program_that_faults_at_once_is_done(first: str, wanted: As
     assert "SHOW" in [event.name for event in session.events()]
 
 
-def test_a_stop_behind_that_fault_voids_it() -> None:
+def test_a_stop_after_that_fault_voids_it() -> None:
     session, robot = greeted()
     assert robot.until(session, session.live(image(FAULTS_SOON).code)) == OK
     session.fetch()

@@ -38,7 +38,7 @@ def program(chip: str) -> bytes:
     """Return the program of a chip, an ELF file."""
     folders = [SOURCES / name for name in ("src/vm", "extras/chip", "extras/avr")]
     made_from = contents(SOURCES / "src", *folders)
-    code = sorted(str(path) for each in folders for path in each.glob("*.[cS]*"))
+    code = sorted(str(path) for folder in folders for path in folder.glob("*.[cS]*"))
     mcu, *more = BUILT[chip]
     flags = (f"-mmcu={mcu}", *more, *FLAGS, *WARNINGS)
     return compiled("the C++ machine", flags, code, made_from).read_bytes()
@@ -47,10 +47,10 @@ def program(chip: str) -> bytes:
 def compiled(what: str, flags: Sequence[str], code: Sequence[str], made_from: list[bytes]) -> Path:
     """Return the program of sources; what has not changed is used again."""
 
-    def make(made: Path) -> None:
-        words = ["avr-g++", *flags, *code, "-o", str(made)]
-        done = subprocess.run(words, capture_output=True, text=True)
-        assert done.returncode == 0, f"avr-g++ refuses {what}:\n{done.stderr[:4000]}"
+    def make(path: Path) -> None:
+        words = ["avr-g++", *flags, *code, "-o", str(path)]
+        completed = subprocess.run(words, capture_output=True, text=True)
+        assert completed.returncode == 0, f"avr-g++ refuses {what}:\n{completed.stderr[:4000]}"
 
     return kept("avr-g++", flags, made_from, make)
 

@@ -57,9 +57,9 @@ def missing() -> str:
 
 
 def run(*words: object) -> str:
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
-    assert done.returncode == 0, f"{words[0]}: {done.stderr[:4000]}"
-    return done.stdout
+    completed = subprocess.run([str(word) for word in words], capture_output=True, text=True)
+    assert completed.returncode == 0, f"{words[0]}: {completed.stderr[:4000]}"
+    return completed.stdout
 
 
 @lru_cache(maxsize=1)
@@ -67,7 +67,7 @@ def simulator() -> Path:
     source = Path(__file__).with_name("simulated_board.c")
     words = ("-O2", str(source), "-lsimavr", "-lelf")
     made_from = [source.read_bytes(), SIMAVR.read_bytes()]
-    return kept("gcc", words, made_from, lambda made: run("gcc", *words, "-o", made))
+    return kept("gcc", words, made_from, lambda path: run("gcc", *words, "-o", path))
 
 
 @lru_cache(maxsize=8)
@@ -81,7 +81,7 @@ def core(board: str) -> Path:
 def library(sources: Sequence[Path], flags: Sequence[str]) -> Path:
     """Return the library of sources of an Arduino core."""
 
-    def make(made: Path) -> None:
+    def make(path: Path) -> None:
         with tempfile.TemporaryDirectory() as name:
             for source in sources:
                 compiler = {
@@ -91,7 +91,7 @@ def library(sources: Sequence[Path], flags: Sequence[str]) -> Path:
                 }[source.suffix]
                 target = Path(name) / f"{source.name}.o"
                 run(*compiler, *flags, "-w", "-c", source, "-o", target)
-            run("avr-gcc-ar", "rcs", made, *sorted(Path(name).glob("*.o")))
+            run("avr-gcc-ar", "rcs", path, *sorted(Path(name).glob("*.o")))
 
     return kept("avr-g++", (*flags, *map(str, sources)), contents(ARDUINO / "cores"), make)
 
@@ -115,20 +115,20 @@ def built(header: str, board: str, more: str = "") -> bytes:
              "-Wl,--gc-sections")  # fmt: skip
     made_from = [header.encode(), more.encode(), main.read_bytes(), bytes(core(board))]
 
-    def make(made: Path) -> None:
-        _build(header, more, (*flags, main, core(board)), made)
+    def make(path: Path) -> None:
+        _build(header, more, (*flags, main, core(board)), path)
 
     return kept("avr-g++", flags, [*made_from, *contents(SOURCES / "src")], make).read_bytes()
 
 
-def _build(header: str, more: str, words: Sequence[object], made: Path) -> None:
+def _build(header: str, more: str, words: Sequence[object], path: Path) -> None:
     with tempfile.TemporaryDirectory() as name:
         source = Path(shutil.copytree(SOURCES / "src", Path(name) / "src"))
         (source / "boards" / "kits" / "own.h").write_text(header, encoding="utf-8")
         (source / "more.cpp").write_text(more, encoding="utf-8")
         code = [
-            each
-            for each in sorted(
+            path
+            for path in sorted(
                 [
                     source / "more.cpp",
                     source / "firmware" / "trim.cpp",
@@ -137,9 +137,9 @@ def _build(header: str, more: str, words: Sequence[object], made: Path) -> None:
                     *source.rglob("vm/*"),
                 ]
             )
-            if each.suffix in (".cpp", ".S") and each.name not in LINKED
+            if path.suffix in (".cpp", ".S") and path.name not in LINKED
         ]
-        run("avr-g++", *code, f"-I{source}", *words, "-o", made)
+        run("avr-g++", *code, f"-I{source}", *words, "-o", path)
 
 
 class Change(NamedTuple):
@@ -199,15 +199,15 @@ class Simulated:
         for cycle, pin, is_high in sorted(self.events, key=lambda event: event[0]):
             port, bit = self.bit(pin)
             lines.append(f"pin {cycle} {port.upper()} {bit} {int(is_high)}")
-        done = subprocess.run(
+        completed = subprocess.run(
             [simulator(), elf, CHIPS[self.board], str(round(ms * MS))],
             input="\n".join([*lines, *self.script]) + "\n",
             capture_output=True,
             text=True,
             timeout=300,
         )
-        assert done.returncode == 0, done.stderr
-        return done.stdout
+        assert completed.returncode == 0, completed.stderr
+        return completed.stdout
 
 
 class Board(Simulated):

@@ -22,12 +22,12 @@ class Chip(NamedTuple):
     most_bytes: int = CODE_BYTES + HEADER_BYTES  # of an image
 
 
-def agrees(got: Ran, want: Ran, max_ms: int) -> bool:
+def agrees(ran: Ran, want: Ran, max_ms: int) -> bool:
     """Whether a chip has done what the machine in Python has.
 
     It counts jumps back and calls: a limit of steps cuts later than elsewhere.
     """
     before, _, last = want.trace.removesuffix("\n").rpartition("\n")
     if last.endswith(" LIMIT") and last != f"{max_ms} LIMIT":
-        return got.trace.startswith(before)
-    return got._replace(steps=0) == want._replace(steps=0) and got.steps <= want.steps
+        return ran.trace.startswith(before)
+    return ran._replace(steps=0) == want._replace(steps=0) and ran.steps <= want.steps

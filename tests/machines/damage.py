@@ -50,24 +50,24 @@ class CppDamage(Process):
         answer = self.ask(b"F", pack("<IIBBI", seed, line, is_damaged, is_odd, lines))
         return int.from_bytes(answer[:4], "little"), int.from_bytes(answer[4:], "little")
 
-    def type_behind(self, seed: int, prefix: int, prefixes: int) -> None:
-        """Type a stop behind so many prefixes. Raise what must not be."""
+    def type_after(self, seed: int, prefix: int, prefixes: int) -> None:
+        """Type a stop after so many prefixes. Raise what must not be."""
         wrong = self.ask(b"T", pack("<III", seed, prefix, prefixes))[4:].decode()
         assert not wrong, f"{wrong} of seed {seed}"
 
     def line(self, seed: int, line: int) -> DamagedLine:
         data, answer = first_text(self.ask(b"L", pack("<II", seed, line)))
-        found = DamagedLine(data, [], [], [])
+        damaged_line = DamagedLine(data, [], [], [])
         count, answer = first_number(answer)
         for _ in range(count):
-            found.is_damaged.append(bool(answer[0]))
+            damaged_line.is_damaged.append(bool(answer[0]))
             frame, answer = first_text(answer[1:])
-            found.frames.append(frame)
+            damaged_line.frames.append(frame)
         count, answer = first_number(answer)
         for _ in range(count):
             frame, answer = first_text(answer)
-            found.accepted.append(frame)
-        return found
+            damaged_line.accepted.append(frame)
+        return damaged_line
 
 
 def built(sources: Path, is_large: bool) -> Path:

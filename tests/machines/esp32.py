@@ -105,7 +105,7 @@ class Esp32Robot(HostFirmware):
 
         Return how many edges of the left and right disc the board has counted, modulo 2**16.
         """
-        rows = b"".join(pack("<IBB", *each) for each in changes)
+        rows = b"".join(pack("<IBB", *change) for change in changes)
         found: tuple[int, int] = unpack("<HH", self.ask(b"K", pack("<I", len(changes)) + rows))
         return found
 

@@ -47,8 +47,10 @@ if USER == 0:
 def of_builds(folder: Path) -> Path:
     """Return a folder, which is made. Raises PermissionError if somebody else can write into it."""
     folder.mkdir(mode=0o700, exist_ok=True)
-    found = folder.lstat()
-    if USER is not None and (found.st_uid not in (USER, os.getuid()) or found.st_mode & 0o022):
+    stat_result = folder.lstat()
+    if USER is not None and (
+        stat_result.st_uid not in (USER, os.getuid()) or stat_result.st_mode & 0o022
+    ):
         raise PermissionError(f"{folder}: somebody else may have put programs into it")
     return folder
 
@@ -135,7 +137,7 @@ class Process:
     def results(self, operations: Iterable[tuple[int, int, int]]) -> list[tuple[int, int]]:
         """Return the fault, or 0, and the result of each opcode with its two values."""
         form = Struct("<Bii")
-        answer = self.ask(b"A", b"".join(form.pack(*each) for each in operations))
+        answer = self.ask(b"A", b"".join(form.pack(*operation) for operation in operations))
         return [(fault, result) for fault, result in Struct("<Bi").iter_unpack(answer)]
 
     def ask(self, letter: bytes, request: bytes) -> bytes:
@@ -221,7 +223,7 @@ def _named(device: Device, hashed: int) -> bytes:
 
 
 def texts(*parts: bytes) -> bytes:
-    """Return parts of a request, each behind its length."""
+    """Return parts of a request, each after its length."""
     return b"".join(pack("<I", len(part)) + part for part in parts)
 
 
@@ -231,7 +233,7 @@ def first_number(answer: bytes) -> tuple[int, bytes]:
 
 
 def first_text(answer: bytes) -> tuple[bytes, bytes]:
-    """Return what is behind its length at the beginning of an answer, and the rest."""
+    """Return what is after its length at the beginning of an answer, and the rest."""
     length, rest = first_number(answer)
     return rest[:length], rest[length:]
 
@@ -258,8 +260,8 @@ def built(sources: Path, builds: Path = BUILDS) -> Path:
 
 def files_in(sources: Path, *folders: str) -> list[Path]:
     """Return the sources and headers in folders of `sources`, a folder like `vm_arduino`."""
-    found = (path for folder in folders for path in (sources / folder).glob("*"))
-    return sorted(path for path in found if path.suffix in (".h", ".cpp"))
+    paths = (path for folder in folders for path in (sources / folder).glob("*"))
+    return sorted(path for path in paths if path.suffix in (".h", ".cpp"))
 
 
 def compiled(inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS) -> Path:
@@ -305,34 +307,34 @@ def made(
     words: list[str],
 ) -> Path:  # fmt: skip
     """Return what the compiler makes of `words`, named after all that it is made from."""
-    made = builds / (_key(compiler, flags, made_from) + suffix)
-    if not made.exists():
-        same = _preprocessed(compiler, builds, flags, words) if suffix == ".o" else made
+    path = builds / (_key(compiler, flags, made_from) + suffix)
+    if not path.exists():
+        same = _preprocessed(compiler, builds, flags, words) if suffix == ".o" else path
         once(same, lambda own: _compiled(compiler, [*flags, *words, "-o", str(own)]))
-        if same != made:
-            own = made.with_suffix(f".{os.getpid()}-{get_ident()}")
+        if same != path:
+            own = path.with_suffix(f".{os.getpid()}-{get_ident()}")
             own.hardlink_to(same)
-            own.replace(made)
+            own.replace(path)
             own.unlink(missing_ok=True)  # it stays where both are one file already
-    return made
+    return path
 
 
-def once(made: Path, make: Callable[[Path], object]) -> Path:
+def once(path: Path, make: Callable[[Path], object]) -> Path:
     """Return what `make` writes into the place that it is given, which is there as a whole or not.
 
     Of several workers that need it one makes it, and the others wait.
     """
-    if not made.exists():
+    if not path.exists():
         import fcntl
 
-        made.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        with made.with_name(f"{made.name}.lock").open("w") as lock:
+        path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with path.with_name(f"{path.name}.lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
-            if not made.exists():
-                own = made.with_name(f"{made.name}.{os.getpid()}")
+            if not path.exists():
+                own = path.with_name(f"{path.name}.{os.getpid()}")
                 make(own)
-                own.replace(made)
-    return made
+                own.replace(path)
+    return path
 
 
 def kept(
@@ -343,8 +345,8 @@ def kept(
 
 
 def contents(*folders: Path) -> list[bytes]:
-    """Return what is in the sources and headers of folders, each behind its path."""
-    paths = (path for each in folders for path in each.rglob("*.[chS]*"))
+    """Return what is in the sources and headers of folders, each after its path."""
+    paths = (path for folder in folders for path in folder.rglob("*.[chS]*"))
     return [part for path in sorted(paths) for part in (bytes(path), path.read_bytes())]
 
 
@@ -375,10 +377,10 @@ def _preprocessed(compiler: str, builds: Path, flags: Sequence[str], words: list
 
 
 def _compiled(compiler: str, words: Sequence[str]) -> bytes:
-    done = subprocess.run([compiler, *words], capture_output=True)
-    said = done.stderr.decode(errors="replace")[:4000]
-    assert done.returncode == 0, f"{compiler} refuses the C++ sources:\n{said}"
-    return done.stdout
+    completed = subprocess.run([compiler, *words], capture_output=True)
+    said = completed.stderr.decode(errors="replace")[:4000]
+    assert completed.returncode == 0, f"{compiler} refuses the C++ sources:\n{said}"
+    return completed.stdout
 
 
 @lru_cache(maxsize=1)

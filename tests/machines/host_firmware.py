@@ -115,7 +115,7 @@ class HostFirmware(Process):
     def discs(self, cm: int, degrees: int, left: int = 0, right: int = 0) -> None:
         """Put discs on both wheels; what they go between two edges is as a robot's header says it.
 
-        They stand so many thousandths of the way behind an edge.
+        They stand so many thousandths of the way after an edge.
         """
         self.ask(b"G", pack("<IIHH", cm, degrees, left, right))
 
@@ -206,7 +206,7 @@ def built(sources: Path, defines: tuple[str, ...] = ()) -> Path:
     parts = ("vm", "link", "text", "store", "firmware")
     folders = ("src", *(f"src/{part}" for part in parts), "extras/host_firmware")
     inputs = files_in(sources, *folders)
-    flags = (*FLAGS, *(f"-D{each}" for each in defines))
+    flags = (*FLAGS, *(f"-D{define}" for define in defines))
     return compiled([*inputs, sources / "extras/host" / "wire.h"], flags)
 
 

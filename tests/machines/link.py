@@ -127,8 +127,8 @@ def built(sources: Path, is_large: bool = False, flags: tuple[str, ...] = FLAGS)
     inputs.append(sources / "extras/host" / "wire.h")
     # the machine is not asked here, only its verifier and its checksum
     flags = (*flags, "-Dtiniscript_like_esp32") if is_large else flags
-    asked = [each for each in inputs if each.parent.name != "vm" or is_asked(each)]
-    return compiled(asked, flags)
+    paths = [path for path in inputs if path.parent.name != "vm" or is_asked(path)]
+    return compiled(paths, flags)
 
 
 def is_asked(path: Path) -> bool:

@@ -54,10 +54,10 @@ class Emulated(Process):
     def read(self, texts: Sequence[bytes], kit: Kit, room: int) -> list[Answer]:
         """Return what the reader of text says of each."""
         data = host.texts(kit_words(kit), *texts)
-        said = BytesIO(self.ask(b"T", pack("<H", room) + data))
-        found = [_answer(said) for _ in texts]
-        assert not said.read()
-        return found
+        bytes_io = BytesIO(self.ask(b"T", pack("<H", room) + data))
+        answers = [_answer(bytes_io) for _ in texts]
+        assert not bytes_io.read()
+        return answers
 
     def ask(self, letter: bytes, request: bytes) -> bytes:
         watch = Timer(MOST_SECONDS, self.end)
@@ -68,28 +68,28 @@ class Emulated(Process):
             watch.cancel()
 
 
-def _answer(said: BytesIO) -> Answer:
-    (kind,) = said.read(1)
+def _answer(bytes_io: BytesIO) -> Answer:
+    (kind,) = bytes_io.read(1)
     if kind == 2:  # a block is open
         return Answer()
-    first, second = said.read(2)
+    first, second = bytes_io.read(2)
     if kind == 1:
         return Answer(problem=NAMES[first], column=second)
     assert kind == 0
-    return Answer(start=STARTS[first], code=said.read(second))
+    return Answer(start=STARTS[first], code=bytes_io.read(second))
 
 
 @lru_cache(maxsize=2 * len(chips.CHIPS))
 def built(name: str, sources: Path = SOURCES) -> Path:
     """Return the program of a chip made from `sources`, a folder like `vm_arduino`."""
     folders = [sources / each for each in ("src/vm", "src/text", "extras/chip", "extras/qemu")]
-    code = [path for each in folders for path in sorted(each.glob("*.cpp"))]
+    code = [path for folder in folders for path in sorted(folder.glob("*.cpp"))]
     code.append(sources / "extras/qemu" / chips.CHIPS[name].start)
     chip = chips.CHIPS[name]
     made_from = [*contents(sources / "src", *folders), (folders[-1] / "chip.ld").read_bytes()]
     words = (*chips.USUAL, *WARNINGS, *map(str, chip))
     return kept(
-        chip.compiler[0], words, made_from, lambda made: chips.build(chip, code, made, *WARNINGS)
+        chip.compiler[0], words, made_from, lambda path: chips.build(chip, code, path, *WARNINGS)
     )
 
 

@@ -50,11 +50,11 @@ def built(sketch: str, board: str) -> Path:
     words = (*boards.flags_of(board, FLAGS), *CPP, "-Wall", "-Wextra", "-Werror",
              "-Wl,--gc-sections")  # fmt: skip
 
-    def make(made: Path) -> None:
+    def make(path: Path) -> None:
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "sketch.cpp"
             file.write_text(sketch, encoding="utf-8")
-            run("avr-g++", *words, file, core(board), "-o", made)
+            run("avr-g++", *words, file, core(board), "-o", path)
 
     elf = kept("avr-g++", words, [sketch.encode(), bytes(core(board))], make)
     if board != "mega":  # it fits an Uno, with room for the stack
@@ -78,7 +78,7 @@ class SketchBoard(boards.Simulated):
 
     def ran(self, ms: float) -> Ran:
         board = self.robot.board
-        devices = [each.pins["pin"] for each in board.actuators]
+        devices = [actuator.pins["pin"] for actuator in board.actuators]
         devices += [
             pin for key, pin in board.motors.pins.items() if key in ("standby", *SERVO_KEYS)
         ]
@@ -89,7 +89,7 @@ class SketchBoard(boards.Simulated):
 
     def _seen(self, printed: str, devices: list[int]) -> Ran:
         now: dict[int, int] = {}
-        found = Ran([], [], {pin: [] for pin in devices}, "", [])
+        ran = Ran([], [], {pin: [] for pin in devices}, "", [])
         letters = bytearray()
         for line in printed.splitlines():
             words = line.split()
@@ -97,15 +97,15 @@ class SketchBoard(boards.Simulated):
                 continue
             if words[1] == "UART":
                 letters.append(int(words[2]))
-                found.sent_ms.append(int(words[0]) / MS)
+                ran.sent_ms.append(int(words[0]) / MS)
             elif words[1] != "END":
                 now[int(words[1])] = int(words[2])
                 ms = int(words[0]) / MS
-                _note(found.motors, ms, self._motors(now))
-                _note(found.tones, ms, (self._hertz(now),))
+                _note(ran.motors, ms, self._motors(now))
+                _note(ran.tones, ms, (self._hertz(now),))
                 for pin in devices:
-                    _note(found.pins[pin], ms, (self._level(now, pin),))
-        return found._replace(text=letters.decode("ascii"))
+                    _note(ran.pins[pin], ms, (self._level(now, pin),))
+        return ran._replace(text=letters.decode("ascii"))
 
     def _level(self, now: dict[int, int], pin: int) -> int:
         """Return 0 to 255: what a pin does on the average."""

@@ -50,10 +50,10 @@ class TextReader(Process):
 
 def read_lines(kit: Kit, data: bytes, room: int = LARGEST_ROOM) -> list[Answer]:
     """Return what a robot would answer to these bytes, line by line."""
-    done = subprocess.run(
+    completed = subprocess.run(
         [built(), str(room), kit_words(kit).hex()], input=data, capture_output=True, check=True
     )
-    return [answer(line) for line in done.stdout.decode().splitlines()]
+    return [answer(line) for line in completed.stdout.decode().splitlines()]
 
 
 def answer(line: str) -> Answer:

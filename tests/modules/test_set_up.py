@@ -39,7 +39,7 @@ def all_wanted(wire: SimulatedWire, end: Simulated, name: str, baud: int) -> Mod
     module = met(wire)
     wanted = Wanted(name, "135790"[: module.dialect.pin_digits], baud)
     outcomes = ended(wire, wanted, module)
-    assert [each.how in set_up.GOOD for each in outcomes] == [True] * 3
+    assert [outcome.how in set_up.GOOD for outcome in outcomes] == [True] * 3
     assert (end.name, end.pin, end.data_baud) == wanted
     return module
 
@@ -99,7 +99,7 @@ def test_a_module_that_says_no_version_is_found_all_the_same(kind: str) -> None:
     wire = SimulatedWire(Odd(end, deaf="VER"))
     module = met(wire)
     assert (module.dialect.name, module.version) == (kind, "")
-    assert [each.how in set_up.GOOD for each in ended(wire, Wanted("Tini"), module)] == [True]
+    assert [outcome.how in set_up.GOOD for outcome in ended(wire, Wanted("Tini"), module)] == [True]
     assert end.name == "Tini"
 
 
@@ -120,7 +120,7 @@ def test_nobody_and_a_wire_that_only_echoes_are_no_module() -> None:
 
 
 def test_every_dialect_has_a_simulated_module() -> None:
-    assert set(KINDS) == {each.name for each in DIALECTS}
+    assert set(KINDS) == {dialect.name for dialect in DIALECTS}
 
 
 @of_each
@@ -199,7 +199,9 @@ def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, comman
     end.breaks_after = len(end.commands) + commands
     outcomes = ended(wire, Wanted("ANA", "135790"[: module.dialect.pin_digits], 57600), module)
     is_whole = end.is_on
-    assert is_whole == (len(outcomes) == 3 and all(each.how in set_up.GOOD for each in outcomes))
+    assert is_whole == (
+        len(outcomes) == 3 and all(outcome.how in set_up.GOOD for outcome in outcomes)
+    )
     end.breaks_after = None
     if kind.startswith("HC-05"):
         end.is_on = True  # its button is still held
@@ -237,7 +239,7 @@ def test_a_module_that_refuses_is_not_said_to_have_done_it() -> None:
     end = Stubborn()
     wire = SimulatedWire(end)
     outcomes = ended(wire, Wanted("ANA", "1111", 115200))
-    assert [each.how for each in outcomes] == [set_up.UNSEEN, set_up.REFUSED]
+    assert [outcome.how for outcome in outcomes] == [set_up.UNSEEN, set_up.REFUSED]
     assert outcomes[-1].said == "ERROR:(7)"
     assert (end.pin, end.baud) == ("1234", 9600)
 
@@ -283,7 +285,7 @@ def test_what_a_module_cannot_have_is_known_before(wanted: Wanted, dialect: str,
 
 def test_a_name_from_an_id_fits_each() -> None:
     assert set_up.name_for(0x12347F3A) == "Tini-7F3A"
-    assert all(not set_up.misfit(Wanted(set_up.name_for(7)), each) for each in DIALECTS)
+    assert all(not set_up.misfit(Wanted(set_up.name_for(7)), dialect) for dialect in DIALECTS)
 
 
 @pytest.mark.parametrize("seed", range(12))

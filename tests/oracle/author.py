@@ -258,7 +258,7 @@ class Author(ValueAuthor):
         brackets = ["(", *values[1:], ")"] if values or self.chance(0.1) else []
         self.say("DEF", name, *brackets)
         names = values[1::2]
-        kinds = {each: self.chance(0.3) for each in names}
+        kinds = {name: self.chance(0.3) for name in names}
         self.kinds[name] = tuple(kinds.values())
         self.given += len(names)
         deepest, called = self.deepest, self.called

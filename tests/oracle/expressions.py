@@ -1,4 +1,4 @@
-"""Reads the expressions of a program, and what stands in parentheses behind its words."""
+"""Reads the expressions of a program, and what stands in parentheses after its words."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ class ExpressionParser:
         self.actuators = {device.name: device for device in kit.actuators}
         self.variables: dict[str, bool] = {}
         self.defs: dict[str, list[Statement]] = {}
-        self.text = Text(self.tokens, {each.name for each in kit.readings if each.is_yes_no})
+        self.text = Text(
+            self.tokens, {reading.name for reading in kit.readings if reading.is_yes_no}
+        )
         own = {device.name for device in (*kit.sensors, *kit.actuators)}
         for device in kit.readings:
             if device.name not in own and self.text.gives_way(device.name):
@@ -75,19 +77,19 @@ class ExpressionParser:
         """Exactly so many in parentheses; the first may be FOREVER (None) or have a unit."""
         has_unit = False
         self.expect("(")
-        found: list[Expression | None] = []
+        expressions: list[Expression | None] = []
         for number in range(count):
             if number > 0:
                 self.expect(",")
             if number == 0 and forever and self.accept("FOREVER"):
-                found.append(None)
+                expressions.append(None)
             else:
-                found.append(self.expression())
+                expressions.append(self.expression())
                 if number == 0 and unit and self.accept(unit):
                     has_unit = True
         self.expect(")")
         self.has_unit = has_unit
-        return tuple(found)
+        return tuple(expressions)
 
     def condition(self) -> Expression:
         """A yes/no value in parentheses."""

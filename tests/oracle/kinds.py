@@ -31,13 +31,13 @@ class Text:
         now = NOWHERE
         for at, token in enumerate(tokens):
             if token.text == "DEF" and at + 1 < len(tokens):
-                now = Def(tokens[at + 1].text, self.names_behind(at + 2))
+                now = Def(tokens[at + 1].text, self.names_after(at + 2))
                 self.defs.setdefault(now.name, now)
             self.around.append(now)
             if token.text in ("END_DEF", "ENDDEF"):
                 now = NOWHERE
 
-    def names_behind(self, at: int) -> tuple[str, ...]:
+    def names_after(self, at: int) -> tuple[str, ...]:
         """The names in the brackets that begin here, none where there are none."""
         found = []
         if self.tokens[at].text == "(":
@@ -81,12 +81,12 @@ class Text:
         for at, token in enumerate(self.tokens[:-1]):
             if not self.begins(at):
                 continue
-            behind = self.tokens[at + 1].text
-            if own and token.text == around.name and behind == "(":
+            after = self.tokens[at + 1].text
+            if own and token.text == around.name and after == "(":
                 places = self.arguments(at + 1)
                 k = around.values.index(name)
                 return k < len(places) and self.answers(*places[k], (*seen, key))
-            is_set = token.text == name and behind == "="
+            is_set = token.text == name and after == "="
             if not own and is_set and name not in self.around[at].values:
                 return self.answers(at + 2, self.end(at + 2), (*seen, key))
         return name in self.sensors

@@ -304,7 +304,7 @@ class Run:
         return fits(divided(100_000 * way, per_second))
 
     def watch(self, powers: tuple[int, int] | None, time: int | None) -> None:
-        """Keep a prepared move; its check begins behind the instruction."""
+        """Keep a prepared move; its check begins after the instruction."""
         self.watched = Watched(powers, time, self.pc)
 
     def until(self, stop: bool) -> None:

@@ -125,7 +125,9 @@ class Robot:
 
     def values(self, statement: Do) -> list[Value | None]:
         """The values of an instruction; a way becomes the time that it takes."""
-        values = [None if each is None else self.value(each) for each in statement.arguments]
+        values = [
+            None if argument is None else self.value(argument) for argument in statement.arguments
+        ]
         if statement.unit:
             way, power = max(0, values[0] or 0), within(whole(values[1] or 0), 0, 100)
             speed = self.kit.speed if statement.unit == "CM" else self.kit.turn

@@ -73,7 +73,7 @@ class Instruction(NamedTuple):
         """Return where it jumps, or the next offset."""
         after = at + self.size
         distances = [each for each in self.read(code, at) if each[0].is_distance]
-        return after + sum(-v if each.kind[:4] == "back" else v for each, v in distances)
+        return after + sum(-v if operand.kind[:4] == "back" else v for operand, v in distances)
 
 
 def rows(name: str) -> list[list[str]]:
@@ -117,7 +117,7 @@ def instructions() -> dict[int, Instruction]:
 
 
 def code_at(code: bytes, at: int) -> int:
-    """Return the byte that begins an instruction; behind `ff` the next one belongs to it."""
+    """Return the byte that begins an instruction; after `ff` the next one belongs to it."""
     return int.from_bytes(code[at : at + 1 + (code[at] == ESCAPE)], "big")
 
 

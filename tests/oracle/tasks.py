@@ -72,7 +72,7 @@ class TaskRobot(Robot):
     who: Runner = field(default_factory=lambda: Runner(0, False))  # has its turn
     owner: Runner | None = None  # of the motors
     wheels: Powers = (0, 0)
-    is_first_round: bool = True  # behind the main task's first turn
+    is_first_round: bool = True  # after the main task's first turn
     is_slow: IsSlow = always_ready
     every_ms: int = 1  # it goes on at multiples of this
     was_slow: bool = False  # a reading was not ready in this round
@@ -102,7 +102,11 @@ class TaskRobot(Robot):
 
     def round(self) -> None:
         """Goes to the next time at which something is due, and gives each its turn."""
-        due = [each.due for each in self.runners if each.turns is not None and each.due is not None]
+        due = [
+            runner.due
+            for runner in self.runners
+            if runner.turns is not None and runner.due is not None
+        ]
         next_time = min(due, default=self.max_time + 1)
         self.go_to(next_time)
         for runner in self.runners:
@@ -131,9 +135,9 @@ class TaskRobot(Robot):
         except StopIteration:
             runner.turns = None
             runner.m = None
-        if all(each.turns is None for each in self.runners):
+        if all(runner.turns is None for runner in self.runners):
             return
-        owner = next((each for each in self.runners if each.wants), None)
+        owner = next((runner for runner in self.runners if runner.wants), None)
         if owner is not self.owner:
             self.owner = owner
             powers = (0, 0) if owner is None else owner.m or (0, 0)
@@ -301,7 +305,7 @@ class TaskRobot(Robot):
                 self.begin()
                 yield from self.until_clock(duration)
             elif word == "M":
-                left, right = (within(whole(each or 0), -100, 100) for each in values)
+                left, right = (within(whole(value or 0), -100, 100) for value in values)
                 me.m, me.insists = (left, right), me.is_when
                 if not self.is_outranked:
                     self.seize()

@@ -60,7 +60,7 @@ def codes(seed: int, count: int) -> Iterator[tuple[bytes, int, dict[str, list[in
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(4))
 def test_traces(seed: int) -> None:
-    endings = {compare(*each) for each in codes(seed, 500)}
+    endings = {compare(*code) for code in codes(seed, 500)}
     assert {"DONE", "LIMIT", "FAULT OVERFLOW", "FAULT DIVIDE_BY_ZERO"} <= endings
 
 

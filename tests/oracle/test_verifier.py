@@ -88,8 +88,8 @@ def damaged(programs: list[bytes], seed: int, count: int) -> Iterator[bytes]:
 
 
 def disassemblies() -> list[pytest.ParameterSet]:
-    found = [case for case in all_cases() if "bytecode" in case.parts]
-    return [pytest.param(case, id=case.id) for case in found if "senses" not in case.parts]
+    cases = [case for case in all_cases() if "bytecode" in case.parts]
+    return [pytest.param(case, id=case.id) for case in cases if "senses" not in case.parts]
 
 
 @each_row("case", disassemblies())

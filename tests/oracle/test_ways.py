@@ -128,9 +128,9 @@ def test_a_robot_whose_speed_is_not_known_has_no_such_moves() -> None:
     assert compile_text("F(45 CM, 100)", ours).is_right
     with pytest.raises(Mistake):
         run("L(9 DEG, 100)", theirs)
-    assert [each.code.number for each in compile_text("L(9 DEG, 100)", ours).diagnostics] == [
-        "TS314"
-    ]
+    assert [
+        diagnostic.code.number for diagnostic in compile_text("L(9 DEG, 100)", ours).diagnostics
+    ] == ["TS314"]
 
 
 @each_row(
@@ -148,16 +148,16 @@ def test_a_robot_whose_speed_is_not_known_has_no_such_moves() -> None:
     ],
 )
 def test_what_is_advised(text: str, code: str, shown: str) -> None:
-    found = compile_text(text, KITS[0][1]).diagnostics
-    assert [each.code.number for each in found] == [code] * bool(code)
-    assert [each.values.get("way", "") for each in found] == [shown] * bool(code)
+    diagnostics = compile_text(text, KITS[0][1]).diagnostics
+    assert [diagnostic.code.number for diagnostic in diagnostics] == [code] * bool(code)
+    assert [diagnostic.values.get("way", "") for diagnostic in diagnostics] == [shown] * bool(code)
 
 
 def test_degrees_are_only_shown_where_the_robot_has_them() -> None:
     kit = KITS[0][1]._replace(speed=0, turn=0)
     assert not compile_text("R(20, 60)", kit).diagnostics
-    (found,) = compile_text("R(90, 60)", kit).diagnostics
-    assert found.code.number == "TS811" and "way" not in found.values
+    (diagnostic,) = compile_text("R(90, 60)", kit).diagnostics
+    assert diagnostic.code.number == "TS811" and "way" not in diagnostic.values
 
 
 def either(seed: int) -> str:

@@ -66,9 +66,9 @@ class Parser(ExpressionParser):
         for task in self.tasks:
             task.reads = sensors_in((task.condition,))
             together.append(self.settle(task.body, facts))
-        if sum(each.nesting for each in together) > MAX_NESTING:
+        if sum(facts.nesting for facts in together) > MAX_NESTING:
             self.fail("blocks nested too deep in all tasks together")
-        if sum(each.calling for each in together) > MAX_CALLS:
+        if sum(facts.calling for facts in together) > MAX_CALLS:
             self.fail("DEFs called too deep in all tasks together")
         values = {name: its.values for name, its in self.text.defs.items()}
         program = Program(main, self.defs, self.variables, values, self.tasks)

@@ -21,13 +21,21 @@ class Broken(Exception):
     """Raised with the name of the rule."""
 
 
-def _row_of(found: Instruction) -> SimpleNamespace:
+def _row_of(instruction: Instruction) -> SimpleNamespace:
     def operands(code: bytes, at: int) -> list[tuple[str, int, int, int]]:
-        read = [(each.kind, each.low, each.high, value) for each, value in found.read(code, at)]
-        return read + [(kind, value, value, value) for kind, value in found.implied]
+        read = [
+            (operand.kind, operand.low, operand.high, value)
+            for operand, value in instruction.read(code, at)
+        ]
+        return read + [(kind, value, value, value) for kind, value in instruction.implied]
 
-    parts = {"takes": found.takes, "leaves": found.leaves, "role": found.role, "name": found.name}
-    return SimpleNamespace(size=found.size, operands=operands, **parts)
+    parts = {
+        "takes": instruction.takes,
+        "leaves": instruction.leaves,
+        "role": instruction.role,
+        "name": instruction.name,
+    }
+    return SimpleNamespace(size=instruction.size, operands=operands, **parts)
 
 
 def _must(holds: object, rule: str) -> None:
@@ -38,9 +46,9 @@ def _must(holds: object, rule: str) -> None:
 @lru_cache(maxsize=1)
 def text() -> str:
     """Return the page's program."""
-    found = re.search(r"^```verifier\n(.*?)^```$", SPEC.read_text("utf-8"), re.M | re.S)
-    assert found
-    return found[1]
+    match = re.search(r"^```verifier\n(.*?)^```$", SPEC.read_text("utf-8"), re.M | re.S)
+    assert match
+    return match[1]
 
 
 @lru_cache(maxsize=2)

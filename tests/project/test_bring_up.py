@@ -23,7 +23,7 @@ from tiniscript.cli.options import Options
 from tiniscript.cli.texts.options import chosen
 from tools.site.documents import sources
 
-LISTS = {each: ROOT / name for each, name in sources(ROOT, "docs/en/bring-up.md").items()}
+LISTS = {value: ROOT / name for value, name in sources(ROOT, "docs/en/bring-up.md").items()}
 each_list = pytest.mark.parametrize(("language", "path"), LISTS.items(), ids=list(LISTS))
 
 
@@ -51,7 +51,7 @@ def commands(text: str) -> list[list[str]]:
 def test_both_lists_type_the_same() -> None:
     own = {"PUERTO": "PORT", "RED": "NETWORK", "puesta.txt": "bring-up.txt"}
     english, spanish = (
-        [[own.get(word, word) for word in each] for each in commands(path.read_text("utf-8"))]
+        [[own.get(word, word) for word in command] for command in commands(path.read_text("utf-8"))]
         for path in LISTS.values()
     )
     assert english == spanish

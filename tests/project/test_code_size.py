@@ -8,9 +8,9 @@ from tools.bench.compiler import PROGRAMS
 
 
 def test_a_statement_takes_a_fifth_less_than_in_instruction_set_1() -> None:
-    found = code_size.measured()
-    assert found.programs >= 50
-    assert found.per_statement <= 0.8 * code_size.BEFORE / code_size.STATEMENTS
+    measured = code_size.measured()
+    assert measured.programs >= 50
+    assert measured.per_statement <= 0.8 * code_size.BEFORE / code_size.STATEMENTS
 
 
 def test_the_papers_programs() -> None:

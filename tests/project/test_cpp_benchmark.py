@@ -52,6 +52,6 @@ def test_the_shipped_sketch_takes_its_main_loop_more(
 @needs_chip
 @pytest.mark.parametrize("part", sizes.MUST)
 def test_a_part_is_no_larger_than_it_may(part: str) -> None:
-    found, must = sizes.size(part), sizes.MUST[part]
-    assert must.flash * 0.8 < found.flash <= must.flash
-    assert must.ram / 2 < found.ram <= must.ram
+    size, must = sizes.size(part), sizes.MUST[part]
+    assert must.flash * 0.8 < size.flash <= must.flash
+    assert must.ram / 2 < size.ram <= must.ram

@@ -146,8 +146,8 @@ def test_each_header_compiles_alone_without_a_warning(tmp_path: Path) -> None:
         twice = f'#include "{header}"\n' * 2
         (tmp_path / f"{number}.cpp").write_text(twice, encoding="utf-8")
     files = map(str, sorted(tmp_path.glob("*.cpp")))
-    done = subprocess.run(["g++", *STRICT, *files], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    completed = subprocess.run(["g++", *STRICT, *files], capture_output=True, text=True)
+    assert completed.returncode == 0, completed.stderr
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there a folder has no such owner")

@@ -75,10 +75,10 @@ def modules_of(path: Path) -> set[str]:
             skipped |= set(ast.walk(node))
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node not in skipped and node.module:
-            for each in node.names:
-                found.add(f"{node.module}.{each.name}")
+            for name in node.names:
+                found.add(f"{node.module}.{name.name}")
         elif isinstance(node, ast.Import) and node not in skipped:
-            found |= {each.name for each in node.names}
+            found |= {alias.name for alias in node.names}
     return {each for each in found if each.startswith("tiniscript.")}
 
 
@@ -133,10 +133,10 @@ def test_no_circle_of_files() -> None:
 
 def imported_by(statement: str) -> set[str]:
     code = f"import sys; {statement}; print(' '.join(sys.modules))"
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=PACKAGE.parent
     )
-    return set(done.stdout.split())
+    return set(completed.stdout.split())
 
 
 def test_the_road_needs_the_standard_library_alone() -> None:
@@ -189,7 +189,7 @@ def test_a_right_program_loads_nothing_for_wrong_ones_or_other_verbs(
         "from tiniscript.cli import main; "
         f"assert main([{verb!r}, '--robot', 'grabber', {str(program)!r}]) == 0"
     )
-    own = {each for each in modules if each.startswith("tiniscript")}
+    own = {module for module in modules if module.startswith("tiniscript")}
     assert not {each for each in own if OF_WRONG.match(each)}
     assert len(own) <= 68
     unwanted = {"cobs", "serial", "tomllib", "tomli", "rich", "dataclasses",
@@ -227,10 +227,10 @@ def test_the_end_of_a_process_looks_for_no_garbage(arguments: str, is_frozen: bo
         f"before = gc.get_threshold(); main({arguments}); "
         "print(gc.get_freeze_count() > 0, gc.get_threshold() != before)"
     )
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=PACKAGE.parent
     )
-    assert done.stdout.splitlines()[-1] == f"{is_frozen} {is_frozen}"
+    assert completed.stdout.splitlines()[-1] == f"{is_frozen} {is_frozen}"
 
 
 def test_the_link_has_no_port_and_no_clock() -> None:

@@ -57,14 +57,14 @@ def test_every_readme_leads_to_the_others(language: str, name: str) -> None:
 
 @each_row(
     "language, name, others",
-    [(each, name, of.sources) for of in documents(ROOT) for each, name in of.sources.items()],
+    [(value, name, of.sources) for of in documents(ROOT) for value, name in of.sources.items()],
 )
 def test_a_document_leads_to_itself_in_all_languages_or_in_none(
     language: str, name: str, others: dict[str, str]
 ) -> None:
     text = (ROOT / name).read_text(encoding="utf-8")
     targets = re.findall(r"\(.*?\)", " ".join(links(language, others["en"], others)))
-    absent = [each for each in targets if each not in text]
+    absent = [target for target in targets if target not in text]
     assert absent in ([], targets), f"{name} lacks {absent}"
 
 
@@ -79,14 +79,16 @@ def test_console(
     monkeypatch.chdir(tmp_path)
     with redirect_stderr(sys.stdout):  # a terminal shows both in the order of their writing
         main(command.words)
-    said = capsys.readouterr().out
-    printed = "\n".join(row.rstrip() for row in said.splitlines() if row.strip())
+    output = capsys.readouterr().out
+    printed = "\n".join(row.rstrip() for row in output.splitlines() if row.strip())
     shown = "\n".join(row.rstrip() for row in command.shown.splitlines() if row.strip())
     if shown:
         assert printed == shown, f"{command.document.name}:{command.line}"
 
 
-EXAMPLES = [each for path in DOCUMENTS if path.name != "CONTRIBUTING.md" for each in examples(path)]
+EXAMPLES = [
+    example for path in DOCUMENTS if path.name != "CONTRIBUTING.md" for example in examples(path)
+]
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda each: f"{each.path.name}:{each.line}")
@@ -219,9 +221,9 @@ def test_modules_that_are_named_exist() -> None:
     named = {(path.name, module) for path in paths for module in modules_in(path)}
     assert ("CONTRIBUTING.md", "tools.generate") in named
     for name, module in sorted(named):
-        found = find_spec(module)
-        assert found is not None, f"{name}: {module}"
-        if found.submodule_search_locations is not None:
+        module_spec = find_spec(module)
+        assert module_spec is not None, f"{name}: {module}"
+        if module_spec.submodule_search_locations is not None:
             assert find_spec(module + ".__main__") is not None, f"{name}: {module}"
 
 

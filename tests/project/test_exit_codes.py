@@ -58,8 +58,8 @@ def ran(clone: Path, words: list[str], fails: str, ci: str) -> tuple[int, list[s
     (clone / "steps").write_text("")
     (clone / "fails").write_text(f"{fails}\n")
     variables = {**os.environ, "HERE": str(clone), "CI": ci, "LC_ALL": "C"}
-    done = subprocess.run(["sh", *words], cwd=clone, env=variables, capture_output=True)
-    return done.returncode, (clone / "steps").read_text().splitlines()
+    completed = subprocess.run(["sh", *words], cwd=clone, env=variables, capture_output=True)
+    return completed.returncode, (clone / "steps").read_text().splitlines()
 
 
 @needs_sh
@@ -88,10 +88,10 @@ def test_without_ci_a_page_that_cannot_be_made_is_no_failure(tmp_path: Path) -> 
     (clone / "fails").write_text("-m tools.builds.studio --check\n-m tools.builds.studio\n")
     for ci, code in (("", 0), ("true", 1)):
         variables = {**os.environ, "HERE": str(clone), "CI": ci}
-        done = subprocess.run(
+        completed = subprocess.run(
             ["sh", "tools/test.sh"], cwd=clone, env=variables, capture_output=True
         )
-        assert bool(done.returncode) == bool(code), done.stderr
+        assert bool(completed.returncode) == bool(code), completed.stderr
 
 
 @needs_sh

@@ -27,7 +27,7 @@ from tiniscript.link import ports
 from tiniscript.link.ports import Found
 from tools.site.documents import sources
 
-GUIDES = {each: ROOT / name for each, name in sources(ROOT, "docs/en/monday.md").items()}
+GUIDES = {value: ROOT / name for value, name in sources(ROOT, "docs/en/monday.md").items()}
 # The robot's port by cable, then by Bluetooth, and what Windows says of them.
 PORTS = {
     "COM3": "Arduino Uno (COM3)",
@@ -132,7 +132,7 @@ def test_what_a_guide_types_prints_what_it_shows(
 def _sentences(language: str) -> list[str]:
     """Return all that `tsc` says of robots and ports, with `{}` for each gap."""
     said = list(command_texts(language).values())
-    said += [each for key, each in command_texts(language, "statuses").items() if "/said" in key]
+    said += [value for key, value in command_texts(language, "statuses").items() if "/said" in key]
     return [re.sub(r"\{\w+\}", "{}", each) for each in said]
 
 
@@ -153,7 +153,7 @@ def test_all_guides_type_the_same(language: str, guide: Path) -> None:
         assert step.words[:1] == other.words[:1]
         assert bool(step.name) == bool(other.name)
     headings = [
-        len(re.findall(r"^## ", each.read_text(encoding="utf-8"), re.M))
-        for each in (GUIDES["en"], guide)
+        len(re.findall(r"^## ", path.read_text(encoding="utf-8"), re.M))
+        for path in (GUIDES["en"], guide)
     ]
     assert headings[0] == headings[1]

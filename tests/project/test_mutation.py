@@ -28,8 +28,8 @@ def test_every_source_is_of_one_module() -> None:
     sources = [*ROOT.glob("compiler/tiniscript/**/*.py"), *ROOT.glob("tools/studio/src/**/*.js")]
     for suffix in ("cpp", "S"):
         sources += ROOT.glob(f"vm_arduino/src/*/**/*.{suffix}")
-    found = [path for each in MODULES for pattern in each.files for path in ROOT.glob(pattern)]
-    assert sorted(found) == sorted(path for path in sources if "esp32/arduino" not in str(path))
+    paths = [path for module in MODULES for pattern in module.files for path in ROOT.glob(pattern)]
+    assert sorted(paths) == sorted(path for path in sources if "esp32/arduino" not in str(path))
 
 
 def test_tests_that_name_a_file_are_first_and_long_ones_last() -> None:
@@ -50,25 +50,27 @@ def tried(known: Known) -> Try:
 
 
 def test_known_mutants_are_of_code_and_tests_that_are_there() -> None:
-    for each in KNOWN:
-        file, _, name = tried(each).test.partition("::")
+    for known in KNOWN:
+        file, _, name = tried(known).test.partition("::")
         texts = [path.read_text(encoding="utf-8") for path in (ROOT / file).parent.glob("*.py")]
-        assert (ROOT / file).exists(), each.test
-        assert any(f"def {name}(" in text for text in texts), each.test  # it may be imported
+        assert (ROOT / file).exists(), known.test
+        assert any(f"def {name}(" in text for text in texts), known.test  # it may be imported
 
 
 def test_known_mutants_are_noticed(tmp_path: Path) -> None:
     copy = Copy(tmp_path)
-    tries = [tried(each) for each in KNOWN]
+    tries = [tried(known) for known in KNOWN]
     answers = exchanged.answers(tries, tmp_path)
     skipped = []
-    for each, one, answer in zip(KNOWN, tries, answers, strict=True):
+    for known, one, answer in zip(KNOWN, tries, answers, strict=True):
         if answer == exchanged.SKIPS:
-            skipped.append(each.test)
+            skipped.append(known.test)
             continue
-        assert answer != exchanged.PASSES, f"no test notices {each.missing}"
+        assert answer != exchanged.PASSES, f"no test notices {known.missing}"
         if answer != exchanged.FAILS:
-            mutant = Mutant(each.file, 0, each.was, each.becomes, one.text)
-            noticed = copy.notices(mutant, [each.test])
-            assert noticed.startswith(f"FAILED {each.test}"), f"{each.missing}: {answer}, {noticed}"
+            mutant = Mutant(known.file, 0, known.was, known.becomes, one.text)
+            noticed = copy.notices(mutant, [known.test])
+            assert noticed.startswith(f"FAILED {known.test}"), (
+                f"{known.missing}: {answer}, {noticed}"
+            )
     need(f"what these need is not on this computer: {', '.join(skipped)}" if skipped else "")

@@ -79,8 +79,8 @@ def test_it_does_what_it_stands_for() -> None:
     ],
 )
 def test_what_is_wrong_with_it_is_said(program: str, code: codes.Code) -> None:
-    found = compile_text(program, KIT).diagnostics
-    assert [each.code for each in found] == [code]
+    diagnostics = compile_text(program, KIT).diagnostics
+    assert [diagnostic.code for diagnostic in diagnostics] == [code]
 
 
 @each_row(
@@ -214,12 +214,12 @@ def test_it_is_on_the_poster(
     monkeypatch.setattr(languages, "FOLDER", with_texts(tmp_path / "said"))
     languages.forget()
     monkeypatch.setitem(WORDS, "CHIME", HORN._replace(text="CHIME"))
-    lines = [each for each in poster.page(language) if isinstance(each, Line)]
+    lines = [line for line in poster.page(language) if isinstance(line, Line)]
     languages.forget()
-    texts = [each.text for each in lines]
+    texts = [line.text for line in lines]
     assert texts[texts.index(HORN.text) + 1] == says
     assert texts[texts.index("CHIME") + 1] == "= BEEP(0.5, 440)"
-    assert max(each.y for each in lines[:-1]) <= paper.HEIGHT - 26
+    assert max(line.y for line in lines[:-1]) <= paper.HEIGHT - 26
 
 
 def test_a_page_that_is_full_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -71,14 +71,14 @@ def kept(repo: Path) -> set[str]:
 
 
 def built(repo: Path, what: str, target: Path) -> Path:
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-c", BUILD.format(what), str(target)],
         cwd=repo, capture_output=True, text=True, check=False,
         env={**os.environ, "SOURCE_DATE_EPOCH": EPOCH},
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert "deprecated" not in (done.stdout + done.stderr).lower()
-    return target / done.stdout.split()[-1]
+    assert completed.returncode == 0, completed.stderr[-3000:]
+    assert "deprecated" not in (completed.stdout + completed.stderr).lower()
+    return target / completed.stdout.split()[-1]
 
 
 @pytest.fixture(scope="module")
@@ -113,9 +113,9 @@ def unpacked(repo: Path, kept: set[str], tmp_path_factory: pytest.TempPathFactor
     """A source package, unpacked."""
     folder = tmp_path_factory.mktemp("sdist")
     shutil.unpack_archive(built(repo, "build_sdist", folder), folder / "unpacked")
-    found: Path
-    (found,) = (folder / "unpacked").iterdir()
-    return found
+    path: Path
+    (path,) = (folder / "unpacked").iterdir()
+    return path
 
 
 def python(*words: str, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
@@ -179,9 +179,9 @@ def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
     variables, why = prepared()
     need(why)
     words = ("-m", "tiniscript", "firmware", "--build", "--yes", "--robot", "liner")
-    done = python(*words, folder=tmp_path, PYTHONPATH=str(wheel), **variables)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("liner on nano: ready, ")
+    completed = python(*words, folder=tmp_path, PYTHONPATH=str(wheel), **variables)
+    assert completed.returncode == 0, completed.stderr
+    assert completed.stdout.startswith("liner on nano: ready, ")
 
 
 PAGE_MISSING = "tools.builds.studio"
@@ -204,9 +204,9 @@ def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, pa
     folder = tmp_path / "sources"
     shutil.copytree(unpacked, folder)
     if page == "built":
-        made = folder / "compiler" / BUILT
-        made.parent.mkdir()
-        made.touch()
+        path = folder / "compiler" / BUILT
+        path.parent.mkdir()
+        path.touch()
     stand_in = folder / ".venv" / "bin" / "python"
     stand_in.parent.mkdir(parents=True)
     stand_in.write_text(BUILDS_PAGE)
@@ -219,17 +219,17 @@ def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, pa
     stdin, stderr = (
         (theirs, theirs) if page == "asked for" else (subprocess.DEVNULL, subprocess.PIPE)
     )
-    done = subprocess.run(
+    completed = subprocess.run(
         command, cwd=folder, stdin=stdin, stdout=subprocess.PIPE, stderr=stderr, text=True
     )
     os.close(theirs)
     reader.join(HANGS_S)
     os.close(ours)
-    told = done.stderr or b"".join(said).decode()
-    assert done.returncode == 0, told
+    told = completed.stderr or b"".join(said).decode()
+    assert completed.returncode == 0, told
     assert "made without" in told and FIRMWARE_MISSING in told and CASES_MISSING in told
     assert (PAGE_MISSING in told) == (page == "none")
-    with zipfile.ZipFile(tmp_path / done.stdout.split()[-1]) as packed:
+    with zipfile.ZipFile(tmp_path / completed.stdout.split()[-1]) as packed:
         assert (BUILT in packed.namelist()) == (page != "none")
         packed.extractall(tmp_path / "made")
     version = python("-m", "tiniscript", "--version", "--lang", "en", folder=tmp_path,
@@ -257,9 +257,9 @@ def test_an_installation_without_cases_names_the_command_that_makes_them(
     done = subprocess.run(shlex.split(command), cwd=sources, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert not (sources / "compiler" / CASES).exists()
-    found = tsc(PYTHONPATH=os.pathsep.join((str(package.parent), str(sources))))
-    assert found.returncode == 0, found.stderr
-    assert json.loads(found.stdout)["agree"] == 1
+    completed = tsc(PYTHONPATH=os.pathsep.join((str(package.parent), str(sources))))
+    assert completed.returncode == 0, completed.stderr
+    assert json.loads(completed.stdout)["agree"] == 1
 
 
 # -- the source package
@@ -286,9 +286,9 @@ def test_a_source_package_is_the_same_from_another_place(
 def test_a_registry_takes_both_packages(wheel: Path, unpacked: Path) -> None:
     files = [*wheel.parent.glob("*.whl"), *unpacked.parent.parent.glob("*.tar.gz")]
     assert len(files) == 2
-    done = python("-m", "twine", "check", "--strict", *map(str, files), folder=wheel)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert done.stdout.count("PASSED") == 2
+    completed = python("-m", "twine", "check", "--strict", *map(str, files), folder=wheel)
+    assert completed.returncode == 0, completed.stdout + completed.stderr
+    assert completed.stdout.count("PASSED") == 2
 
 
 @pytest.mark.sampled(of="source packages")
@@ -298,5 +298,5 @@ def test_the_tests_of_a_source_package_run(unpacked: Path) -> None:
     assert every.returncode == 0, every.stderr[-3000:]
     some = ("tests/bytecode/test_image.py", "tests/robots/test_robots.py")
     alone = {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
-    done = python(*pytest_here, "-m", "not root", *some, folder=unpacked, **alone)
-    assert done.returncode == 0, done.stdout[-3000:]
+    completed = python(*pytest_here, "-m", "not root", *some, folder=unpacked, **alone)
+    assert completed.returncode == 0, completed.stdout[-3000:]

@@ -34,7 +34,7 @@ def test_nothing_is_cut_off(drawing: ElementTree.Element) -> None:
         assert float(text.get("y", "")) <= front.HEIGHT - 16
     for shape in (*drawing.iter(f"{SVG}polygon"), *drawing.iter(f"{SVG}polyline")):
         for point in shape.get("points", "").split():
-            x, y = (float(each) for each in point.split(","))
+            x, y = (float(part) for part in point.split(","))
             assert right < x < front.WIDTH
             assert 0 < y < front.HEIGHT
 
@@ -60,10 +60,12 @@ def test_every_world_and_its_way_are_inside_of_the_picture() -> None:
     shown = "".join(drawing.itertext())
     for name, example, *_ in DRIVES:
         assert f"{name}: examples/{example}" in shown
-    lines = [each for each in drawing.iter(f"{SVG}polyline") if each.get("stroke") == arena.WAY]
+    lines = [
+        element for element in drawing.iter(f"{SVG}polyline") if element.get("stroke") == arena.WAY
+    ]
     assert len(lines) == len(DRIVES)
     for line in lines:
-        way = [tuple(map(float, each.split(","))) for each in line.get("points", "").split()]
+        way = [tuple(map(float, word.split(","))) for word in line.get("points", "").split()]
         assert len(set(way)) > 5
         assert all(0 < x < width and 0 < y < height for x, y in way)
 
@@ -72,11 +74,13 @@ def test_every_world_and_its_way_are_inside_of_the_picture() -> None:
 def test_a_picture_of_a_guide_has_all_of_its_parts_inside(name: str) -> None:
     drawing = ElementTree.fromstring(guide_pictures("a test")[name]())
     _, _, width, height = map(int, drawing.get("viewBox", "").split())
-    for each in drawing.iter():
-        x, y = float(each.get("x", 0)), float(each.get("y", 0))
-        assert 0 <= x <= width - float(each.get("width", 0))
-        assert 0 <= y <= height - float(each.get("height", 0))
-    ways = [each for each in drawing.iter(f"{SVG}polyline") if each.get("stroke") == arena.WAY]
+    for element in drawing.iter():
+        x, y = float(element.get("x", 0)), float(element.get("y", 0))
+        assert 0 <= x <= width - float(element.get("width", 0))
+        assert 0 <= y <= height - float(element.get("height", 0))
+    ways = [
+        element for element in drawing.iter(f"{SVG}polyline") if element.get("stroke") == arena.WAY
+    ]
     drives = {"lesson.svg": 3, "hand.svg": 1} | {
         key: len(row[2]) for key, row in DRIVES_OF_GUIDES.items()
     }

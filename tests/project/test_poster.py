@@ -19,7 +19,7 @@ in_both = each_row("language", told_in("documents", "poster/title"))
 
 
 def lines_of(language: str) -> list[Line]:
-    return [each for each in poster.page(language) if isinstance(each, Line)]
+    return [line for line in poster.page(language) if isinstance(line, Line)]
 
 
 @in_both
@@ -52,7 +52,7 @@ def test_what_it_shows_can_be_typed() -> None:
 def test_the_drawing_is_whole(language: str) -> None:
     path = ROOT / "docs" / "poster" / f"poster.{language}.svg"
     tree = ElementTree.fromstring(path.read_text("utf-8"))
-    texts = [each.text for each in tree.iter("{http://www.w3.org/2000/svg}text")]
+    texts = [element.text for element in tree.iter("{http://www.w3.org/2000/svg}text")]
     assert texts == [line.text for line in lines_of(language)]
 
 

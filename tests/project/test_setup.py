@@ -67,10 +67,10 @@ def ci(folder: Path) -> tuple[list[str], dict[str, str]]:
         "https_proxy": "http://p:1", "SECRET": "x", "HOME": str(home),
     }  # fmt: skip
     variables.pop("XDG_CONFIG_HOME", None)
-    done = subprocess.run(["sh", ".ci/run"], cwd=folder, env=variables, capture_output=True,
+    completed = subprocess.run(["sh", ".ci/run"], cwd=folder, env=variables, capture_output=True,
                           text=True)  # fmt: skip
-    assert done.returncode == 7, done.stderr
-    rows = done.stdout.splitlines()
+    assert completed.returncode == 7, completed.stderr
+    rows = completed.stdout.splitlines()
     return rows, dict(row.partition("=")[::2] for row in rows)
 
 
@@ -138,11 +138,11 @@ def folder(tmp_path: Path) -> Path:
 
 def installed(clone: Path) -> bool:
     """Return whether the script has installed anything."""
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, str(clone / "tools" / "environment.py"), "[test]"],
         capture_output=True, text=True, check=True, env=ENGLISH,
     )  # fmt: skip
-    return INSTALLING in done.stderr
+    return INSTALLING in completed.stderr
 
 
 def test_what_is_installed_is_not_installed_again(folder: Path) -> None:
@@ -210,26 +210,26 @@ def script(
     folder: Path, programs: dict[str, str], **variables: str
 ) -> subprocess.CompletedProcess[str]:
     """Run a script that makes the environment, where there are these programs alone."""
-    tools, found = folder / "tools", folder / "bin"
+    tools, path = folder / "tools", folder / "bin"
     tools.mkdir()
-    found.mkdir()
+    path.mkdir()
     shutil.copy(ROOT / "tools" / "venv.sh", tools)
     sh, dirname, chmod = (shutil.which(name) for name in ("sh", "dirname", "chmod"))
     always = {"id": "echo 1000", "dirname": f'exec {dirname} "$@"', "chmod": f'exec {chmod} "$@"'}
     for name, text in {**always, **programs}.items():
-        (found / name).parent.mkdir(parents=True, exist_ok=True)
-        (found / name).write_text(f"#!{sh}\n{text}\n")
-        (found / name).chmod(0o755)
+        (path / name).parent.mkdir(parents=True, exist_ok=True)
+        (path / name).write_text(f"#!{sh}\n{text}\n")
+        (path / name).chmod(0o755)
     (tools / "script.sh").write_text('set -eu\n. "$(dirname "$0")/venv.sh"\nmake_venv "[test]"\n')
     return subprocess.run([str(sh), tools / "script.sh"], capture_output=True, encoding="utf-8",
-                          env={"PATH": str(found), **variables})  # fmt: skip
+                          env={"PATH": str(path), **variables})  # fmt: skip
 
 
 def test_the_shell_leaves_the_work_to_python(tmp_path: Path) -> None:
     """`make_venv` gives the extras on, with the interpreter of `.venv` where it has pip."""
     python = {"../.venv/bin/python": 'case "$*" in *environment*) echo "$*";; esac'}
-    done = script(tmp_path, python)
-    assert done.stdout == f"{tmp_path / 'tools' / 'environment.py'} [test]\n", done.stderr
+    completed = script(tmp_path, python)
+    assert completed.stdout == f"{tmp_path / 'tools' / 'environment.py'} [test]\n", completed.stderr
 
 
 @pytest.mark.parametrize(("has_apt", "code"), [(True, 0), (False, 2)])
@@ -237,9 +237,9 @@ def test_a_debian_without_any_python_gets_one(has_apt: bool, code: int, tmp_path
     python = tmp_path / "bin" / "python3"
     brings = f'printf "#!/bin/sh\\n" >{python}; chmod +x {python}'
     apt = f'case "$*" in *"install -y"*python3-venv*) {brings};; esac'
-    done = script(tmp_path, {"apt-get": apt, "sudo": '"$@"'} if has_apt else {}, LC_ALL="C")
-    assert done.returncode == code, done.stderr
-    assert ("needs Python 3.10 or newer" in done.stderr) != has_apt
+    completed = script(tmp_path, {"apt-get": apt, "sudo": '"$@"'} if has_apt else {}, LC_ALL="C")
+    assert completed.returncode == code, completed.stderr
+    assert ("needs Python 3.10 or newer" in completed.stderr) != has_apt
     assert python.exists() == has_apt
 
 
@@ -256,11 +256,11 @@ def test_who_cannot_install_venv_is_not_told_to_do_it_again(
     sudo: dict[str, str], locale: str, english: bool, tmp_path: Path
 ) -> None:
     fakes = {"python3": "case $* in *ensurepip*) exit 1;; esac", "apt-get": "exit 100", **sudo}
-    done = script(tmp_path, fakes, LANG=locale)
-    assert done.returncode == 2
-    assert ("Who administers" in done.stderr) == english
-    assert ("Quien administra" in done.stderr) != english
-    assert "sudo" not in done.stderr
+    completed = script(tmp_path, fakes, LANG=locale)
+    assert completed.returncode == 2
+    assert ("Who administers" in completed.stderr) == english
+    assert ("Quien administra" in completed.stderr) != english
+    assert "sudo" not in completed.stderr
 
 
 # -- tools/try.py, for every system
@@ -304,17 +304,17 @@ def test_a_computer_without_internet_is_told_of_proxies_and_the_stick(folder: Pa
     python = folder / ".venv" / "bin" / "python"
     said = "  Traceback (most recent call last)\n  ERROR: no setuptools\nERROR: no network\n"
     python.write_text(f"#!/bin/sh\ncase $* in *' install '*) printf '{said}' >&2; exit 1;; esac\n")
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, str(folder / "tools" / "environment.py"), "[virtual]"],
         capture_output=True, encoding="utf-8",
         env={**ENGLISH, "LC_ALL": "pt_BR.UTF-8", "PYTHONUTF8": "1"},
     )  # fmt: skip
-    assert done.returncode == 2
+    assert completed.returncode == 2
     sentence = "pip não conseguiu instalar; há internet?"
-    assert done.stderr.splitlines()[1].startswith(sentence), done.stderr
-    assert "HTTPS_PROXY" in done.stderr and "USB" in done.stderr
-    assert "Traceback" not in done.stderr
-    assert done.stderr.endswith("\nERROR: no setuptools\nERROR: no network\n")
+    assert completed.stderr.splitlines()[1].startswith(sentence), completed.stderr
+    assert "HTTPS_PROXY" in completed.stderr and "USB" in completed.stderr
+    assert "Traceback" not in completed.stderr
+    assert completed.stderr.endswith("\nERROR: no setuptools\nERROR: no network\n")
     assert (folder / ".venv" / "pip.log").read_text() == said
 
 
@@ -328,16 +328,16 @@ def test_the_first_command_drives_the_virtual_robot(
     monkeypatch.setattr(environment, "make", lambda extras: Path(sys.executable))
     before = (ROOT / "way.png").exists()
     assert loaded().main() == 0
-    said = capfd.readouterr()
+    capture_result = capfd.readouterr()
     assert (ROOT / "way.png").is_file()
     if not before:
         (ROOT / "way.png").unlink()
     first = "SI|LOOP(FOREVER);\n  F(FOREVER, 80) UNTIL(DISTANCE < 10);\n"
-    assert said.out.startswith(first)  # without its notes, in English
-    assert "way.png" in said.err
-    assert "Ahora el tuyo" in said.err
-    assert "Aviso" not in said.err
-    assert "estudio" not in said.out + said.err  # nobody is there to answer
+    assert capture_result.out.startswith(first)  # without its notes, in English
+    assert "way.png" in capture_result.err
+    assert "Ahora el tuyo" in capture_result.err
+    assert "Aviso" not in capture_result.err
+    assert "estudio" not in capture_result.out + capture_result.err  # nobody is there to answer
 
 
 class Calls:
@@ -411,10 +411,10 @@ def test_the_question_names_what_the_studio_downloads(monkeypatch: pytest.Monkey
     assert page_build.megabytes() == building.NPM_MB == 40  # as the READMEs say
     monkeypatch.setattr(serving, "is_built", lambda: True)
     assert page_build.megabytes() == 0
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-c", loaded().MEGABYTES], capture_output=True, text=True
     )
-    assert done.stdout.strip().isdigit(), done.stderr
+    assert completed.stdout.strip().isdigit(), completed.stderr
 
 
 def test_every_sentence_of_the_first_command_has_all_languages() -> None:

@@ -44,10 +44,10 @@ def test_it_tells_how_long_interrupts_are_off() -> None:
     """In the program, from the entry of an interrupt on, and where it has let others in."""
     with Uno(built("masked", Program=500, Interrupt=300, Later=200), watches_masked=True) as uno:
         uno.run_ms(20)
-        found = uno.masked()
-    program = [each.cycles for each in found if each.vector == 0]
-    entries = [each for each in found if each.is_entry]
-    later = [each.cycles for each in found if each.vector and not each.is_entry]
+        spans = uno.masked()
+    program = [span.cycles for span in spans if span.vector == 0]
+    entries = [span for span in spans if span.is_entry]
+    later = [span.cycles for span in spans if span.vector and not span.is_entry]
     assert len(program) == len(entries) == len(later) == 1
     assert program[0] == pytest.approx(500, abs=4)
     assert entries[0].vector == 16  # the overflow of timer 0

@@ -123,12 +123,12 @@ def methods_in_python(file: str, name: str) -> Iterator[str]:
     tree = ast.parse((PYTHON / file).read_text(encoding="utf-8"))
     if name:
         (tree,) = (  # type: ignore[assignment]
-            each for each in tree.body if isinstance(each, ast.ClassDef) and each.name == name
+            stmt for stmt in tree.body if isinstance(stmt, ast.ClassDef) and stmt.name == name
         )
-    for each in tree.body:
-        if isinstance(each, ast.FunctionDef) and not each.name.startswith("__"):
-            if name or not each.decorator_list:
-                yield each.name.removeprefix("_")
+    for stmt in tree.body:
+        if isinstance(stmt, ast.FunctionDef) and not stmt.name.startswith("__"):
+            if name or not stmt.decorator_list:
+                yield stmt.name.removeprefix("_")
 
 
 @each_row("twins", [TASKS, RECEIVERS])

@@ -45,11 +45,11 @@ def wheel_of(found: Distribution, folder: Path) -> None:
     tag = re.findall(r"(?m)^Tag: (\S+)$", found.read_text("WHEEL") or "")[-1]
     rows = []
     with zipfile.ZipFile(folder / f"{name}-{found.version}-{tag}.whl", "w") as wheel:
-        for each in found.files or ():
-            inside = each.as_posix()
+        for file in found.files or ():
+            inside = file.as_posix()
             if ".." in inside or inside.endswith((".pyc", "RECORD", "INSTALLER", "REQUESTED")):
                 continue
-            data = Path(str(each.locate())).read_bytes()
+            data = Path(str(file.locate())).read_bytes()
             wheel.writestr(inside, data)
             digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
             rows.append(f"{inside},sha256={digest},{len(data)}\n")
@@ -70,7 +70,9 @@ def installed(root: str, extras: set[str]) -> dict[str, Distribution]:
         for text in here.requires or ():
             need = Requirement(text)
             environments = [{"extra": each} for each in wanted] or [{"extra": ""}]
-            if need.marker and not any(need.marker.evaluate(each) for each in environments):
+            if need.marker and not any(
+                need.marker.evaluate(environment) for environment in environments
+            ):
                 continue
             if need.name not in found:
                 found[need.name] = distribution(need.name)
@@ -101,12 +103,12 @@ def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
     command = ["sh", str(stick / "start.sh"), str(home)]
     variables = {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin", "LC_ALL": "es_PE.UTF-8",
                  "HOME": str(tmp_path)}  # fmt: skip
-    done = subprocess.run(
+    completed = subprocess.run(
         [*(CUT_OFF if is_cut_off else []), *command], env=variables, capture_output=True, text=True
     )
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "Listo." in done.stdout
-    assert "no funciona" not in done.stdout
+    assert completed.returncode == 0, completed.stdout + completed.stderr
+    assert "Listo." in completed.stdout
+    assert "no funciona" not in completed.stdout
     assert (home / "pages" / "index.es.html").is_file()
     assert (home / "pages" / "index.pt.html").is_file()
     tsc = home / "tsc" / "bin" / "tsc"
@@ -125,12 +127,12 @@ def test_a_stick_without_a_wheel_says_so(stick: Path, tmp_path: Path) -> None:
     empty = tmp_path / "empty"
     (empty / "wheels").mkdir(parents=True)
     shutil.copy(stick / "install.py", empty)
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, str(empty / "install.py"), str(tmp_path / "home")],
         capture_output=True, text=True, env={"LC_ALL": "C", "PATH": "/usr/bin:/bin"},
     )  # fmt: skip
-    assert done.returncode == 2
-    assert "no packages for this computer" in done.stderr
+    assert completed.returncode == 2
+    assert "no packages for this computer" in completed.stderr
 
 
 def test_every_link_of_the_pages_leads_somewhere(stick: Path) -> None:
@@ -163,7 +165,7 @@ def test_each_system_has_its_script_with_its_line_ends(stick: Path) -> None:
         assert subprocess.run(["sh", "-n", stick / name]).returncode == 0
     readme = (stick / "README.txt").read_text(encoding="utf-8-sig")
     lacks = ("BeOS: no ports", "falta: BeOS: sin puertos", "falta: BeOS: sem portas")
-    assert all(each in readme for each in lacks)
+    assert all(lack in readme for lack in lacks)
     assert all(page in readme for page in ("index.html", "index.es.html", "index.pt.html"))
 
 
@@ -237,19 +239,19 @@ def test_a_phone_shows_each_page_of_a_teacher_whole(stick: Path) -> None:
     with studio.driver(of_studio=False) as driver, studio.browser(driver) as browser:
         phone = browser.new_page(viewport={"width": 390, "height": 844})
         found = {}
-        for each in pages:
-            phone.goto(each.as_uri(), wait_until="domcontentloaded")
-            found[each.name] = phone.evaluate(f"[{wide}, {cut}]")
-            is_drawn = each.parent == stick / "pages" / "wiring"
+        for page in pages:
+            phone.goto(page.as_uri(), wait_until="domcontentloaded")
+            found[page.name] = phone.evaluate(f"[{wide}, {cut}]")
+            is_drawn = page.parent == stick / "pages" / "wiring"
             assert not is_drawn or phone.evaluate(slides) == "block"
-    assert {name: each for name, each in found.items() if each != [False, 0]} == {}
+    assert {name: value for name, value in found.items() if value != [False, 0]} == {}
     assert len(found) > 20
 
 
 def test_a_folder_with_something_in_it_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("mine")
     assert usb_stick.main([str(tmp_path)]) == 2
-    assert [each.name for each in tmp_path.iterdir()] == ["mine.txt"]
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
 
 def wheel(folder: Path, name: str, needs: Sequence[str] = (), tag: str = "py3-none-any") -> Path:
@@ -257,10 +259,10 @@ def wheel(folder: Path, name: str, needs: Sequence[str] = (), tag: str = "py3-no
     head = f"Metadata-Version: 2.1\nName: {name}\nVersion: 1\n"
     head += "".join(f"Requires-Dist: {each}\n" for each in needs)
     path = folder / f"{name}-1-{tag}.whl"
-    with zipfile.ZipFile(path, "w") as made:
-        made.writestr(f"{name}-1.dist-info/METADATA", head)
-        made.writestr(f"{name}-1.dist-info/WHEEL", f"Wheel-Version: 1.0\nTag: {tag}\n")
-        made.writestr(f"{name}-1.dist-info/RECORD", "")
+    with zipfile.ZipFile(path, "w") as zip_file:
+        zip_file.writestr(f"{name}-1.dist-info/METADATA", head)
+        zip_file.writestr(f"{name}-1.dist-info/WHEEL", f"Wheel-Version: 1.0\nTag: {tag}\n")
+        zip_file.writestr(f"{name}-1.dist-info/RECORD", "")
     return path
 
 
@@ -271,7 +273,7 @@ def fetched(folder: Path, target: Path, system: str, python: str, wanted: str | 
     for tag in SYSTEMS[system].tags:
         words += ["--platform", tag]
     stick_wheels._pip([*words, str(wanted)], SYSTEMS[system].markers(python))
-    return {each.name for each in target.iterdir()}
+    return {path.name for path in target.iterdir()}
 
 
 @pytest.mark.sampled(of="sticks that pip reads")
@@ -293,8 +295,8 @@ def test_markers_are_those_of_the_target(tmp_path: Path) -> None:
 def test_linux_gets_the_wheel_with_the_parts_in_c(tmp_path: Path) -> None:
     """wasmtime has one for manylinux1 and one of Python alone, which does not run."""
     wheel(tmp_path, "robot")
-    made = wheel(tmp_path, "robot", tag="py3-none-manylinux1_x86_64")
-    assert fetched(tmp_path, tmp_path / "target", "linux", "3.12", "robot") == {made.name}
+    path = wheel(tmp_path, "robot", tag="py3-none-manylinux1_x86_64")
+    assert fetched(tmp_path, tmp_path / "target", "linux", "3.12", "robot") == {path.name}
 
 
 def test_a_wheel_without_its_parts_in_c_is_for_every_system(tmp_path: Path) -> None:
@@ -307,9 +309,9 @@ def test_a_wheel_without_its_parts_in_c_is_for_every_system(tmp_path: Path) -> N
             wheel.writestr(zipfile.ZipInfo(name, (2020, 1, 2, 3, 4, 6)), text)
     with zipfile.ZipFile(old) as wheel:
         when = wheel.infolist()[0].date_time
-    made = stick_wheels.without_parts_in_c(old, tmp_path)
-    assert made.name == "thing-1-py3-none-any.whl"
-    with zipfile.ZipFile(made) as wheel:
+    path = stick_wheels.without_parts_in_c(old, tmp_path)
+    assert path.name == "thing-1-py3-none-any.whl"
+    with zipfile.ZipFile(path) as wheel:
         assert {row.date_time for row in wheel.infolist()} == {when}, "another time, other bytes"
         assert not [each for each in wheel.namelist() if each.endswith(".so")]
         said = wheel.read("thing-1.dist-info/WHEEL").decode()

@@ -153,14 +153,14 @@ def test_signs_without_a_code_become_plain_ones() -> None:
 
 def test_a_wiring_list_goes_through_a_pipe_of_windows() -> None:
     environment = {"PYTHONPATH": str(ROOT / "compiler"), "PYTHONIOENCODING": "cp850"}
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-m", "tiniscript", "firmware", "--wiring", "--lang", "es"],
         capture_output=True, env=environment,
     )  # fmt: skip
-    assert done.returncode == 0
-    said = done.stdout.decode("cp850")
-    assert "kohm" in said
-    assert "\\u" not in said
+    assert completed.returncode == 0
+    output = completed.stdout.decode("cp850")
+    assert "kohm" in output
+    assert "\\u" not in output
 
 
 # -- the system
@@ -213,12 +213,12 @@ def test_nothing_but_unix_knows_unix(tmp_path: Path) -> None:
     for needed in ("wasmtime", "PIL", "bleak", "zeroconf"):
         pytest.importorskip(needed)
     (tmp_path / "prog.ts").write_text(PROGRAM)
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-c", WITHOUT_UNIX], cwd=tmp_path, capture_output=True, text=True,
         env={"PYTHONPATH": str(ROOT / "compiler"), "HOME": str(tmp_path),
              "PYTHONIOENCODING": "cp1252", "TINISCRIPT_DEBUG": "1"},
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
+    assert completed.returncode == 0, completed.stderr
     assert (tmp_path / "wiring.html").stat().st_size > 1000
 
 
@@ -238,12 +238,12 @@ sys.exit(main(["upload", "-e", "SI|F(1, 80)", "--virtual", "--hurry", "10", "--l
 
 def test_a_clock_that_goes_in_steps_of_16_ms_is_enough(tmp_path: Path) -> None:
     """That of Windows, until Python 3.13; a sleep ends at such a step, too."""
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-c", COARSE.format(step_s=1 / 64)], cwd=tmp_path, capture_output=True,
         text=True, env={"PYTHONPATH": str(ROOT / "compiler"), "HOME": str(tmp_path)},
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    assert "drove 36 cm in 1.0 s" in done.stdout, done.stdout
+    assert completed.returncode == 0, completed.stderr
+    assert "drove 36 cm in 1.0 s" in completed.stdout, completed.stdout
 
 
 class Console(io.StringIO):
@@ -351,12 +351,12 @@ def test_a_reader_that_has_left_is_no_mistake(
 ) -> None:
     """`tsc help | more`, and then q: the C library of Windows calls that an invalid argument."""
     script = LEFT.format(platform=platform, number=number, about=about, value=value)
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True,
         env={"PYTHONPATH": str(ROOT / "compiler"), "LC_ALL": "C.UTF-8"},
     )  # fmt: skip
-    assert done.returncode == code
-    assert bool(done.stderr) is (code != CLOSED), done.stderr
+    assert completed.returncode == code
+    assert bool(completed.stderr) is (code != CLOSED), completed.stderr
 
 
 # -- files
@@ -398,7 +398,7 @@ def test_a_file_that_is_open_elsewhere_is_replaced_a_moment_later(
     assert now_s[0] == pytest.approx(min(opened_s, files.OPEN_S), abs=0.03)
     assert tries[0] == 2 + round(now_s[0] / 0.02)
     assert path.read_bytes() == (b"old" if opened_s > 1 else b"new")
-    assert [each.name for each in tmp_path.iterdir()] == ["keys.json"]
+    assert [path.name for path in tmp_path.iterdir()] == ["keys.json"]
 
 
 def test_programs_on_a_command_line_stand_in_double_quotes() -> None:

@@ -43,7 +43,7 @@ def commands() -> list[list[str]]:
     found = []
     for _, step in steps():
         for line in step.get("run", "").replace("\\", "/").splitlines():
-            found += [shlex.split(each) for each in line.split("&&")]
+            found += [shlex.split(part) for part in line.split("&&")]
     return found
 
 

@@ -2,10 +2,10 @@
 
 They are in `en.txt`, `es.txt` and `pt.txt`, by the language of their words; those with words of
 TiniScript alone are in `en.txt`. Below a program stands a row for each message,
-`> 1 TS012 F(1.5, 80)`: its line, its code and what to try, in Spanish. Behind `>=` that is what
+`> 1 TS012 F(1.5, 80)`: its line, its code and what to try, in Spanish. After `>=` that is what
 `tsc check --fix` makes of the line, or of the part of it that is named: `>= 1 TS036 SI|  for  SI-`.
 `=3 F(1, 80)` is another line that it changes; where it changes how many lines there are, all that
-it makes stands there, each line behind a `=`. None has spaces at its end. A program of which
+it makes stands there, each line after a `=`. None has spaces at its end. A program of which
 nothing is said has a `>` alone below it; so has a new one until `--accept` writes what is said.
 
 Where its writer said it, `>? forward for two seconds` is what a program was to do, `>! F(2, 80)`
@@ -101,9 +101,9 @@ def check(text: str) -> list[Diagnostic]:
 def found_in(entry: Entry) -> Entry:
     """Return what is said of a program now, and what becomes of it."""
     program = entry.program
-    found = check(program)
+    diagnostics = check(program)
     source = Source(program)
-    messages = [message(each, source, "es") for each in found]
+    messages = [message(diagnostic, source, "es") for diagnostic in diagnostics]
     mended = fixed(program, check).text
     said = tuple(f"{each.line} {each.code} {each.fix}".rstrip() for each in messages)
     kept = "\n".join(line.rstrip() for line in mended.split("\n"))  # as the file keeps it

@@ -122,7 +122,7 @@ def _branches(found: Sequence[frozenset[Branch]]) -> list[frozenset[Branch]]:
     for file, start, end in frozenset().union(*found):
         ways.setdefault((file, start), set()).add(end)
     is_branch = {at for at, ends in ways.items() if len(ends) > 1}
-    return [frozenset(each for each in arcs if each[:2] in is_branch) for arcs in found]
+    return [frozenset(arc for arc in arcs if arc[:2] in is_branch) for arcs in found]
 
 
 def chosen(found: Sequence[frozenset[Branch]], before: Iterable[int] = ()) -> list[int]:
@@ -150,8 +150,10 @@ def main() -> None:
     known = set(covered()) if LIST.exists() else set()
     found_in(programs[0])  # what is loaded and made once is nobody's branch
     found = reached(programs)
-    taken = chosen(found, [k for k, each in enumerate(programs) if each in known])
-    first = head(len(taken), len(frozenset().union(*found)), [each.program for each in programs])
+    taken = chosen(found, [k for k, entry in enumerate(programs) if entry in known])
+    first = head(
+        len(taken), len(frozenset().union(*found)), [program.program for program in programs]
+    )
     rows = (_row(programs[k].program) for k in taken)
     LIST.write_text("\n".join((first, *rows)) + "\n", encoding="utf-8")
     covered.cache_clear()

@@ -17,15 +17,15 @@ MOST_S = 4.0  # on a slow machine; where each word reads the whole row, it is fa
     "program",
     ["END .", "FIN .", "deja de", "para de", "const int", "F(2, 80) y BEEP", "F(2, 80) + BEEP"],
 )
-def test_nothing_is_read_behind_the_end(program: str) -> None:
-    assert any(each.is_mistake for each in check(program))
+def test_nothing_is_read_after_the_end(program: str) -> None:
+    assert any(diagnostic.is_mistake for diagnostic in check(program))
 
 
 def test_all_cut_programs_end() -> None:
     cut = set()
-    for each in entries()[::12]:
-        last = each.program.splitlines()[-1]
-        ends = [found.end() for found in WORDS.finditer(last)]
+    for entry in entries()[::12]:
+        last = entry.program.splitlines()[-1]
+        ends = [match.end() for match in WORDS.finditer(last)]
         cut |= {last[:end] for end in ends[:3] + ends[-3:]}
     assert len(cut) > 100
     for program in cut:
@@ -49,5 +49,5 @@ def test_all_cut_programs_end() -> None:
 )
 def test_a_long_row_is_read_once(program: str) -> None:
     begin = time.process_time()
-    assert any(each.is_mistake for each in check(program))
+    assert any(diagnostic.is_mistake for diagnostic in check(program))
     assert time.process_time() - begin < MOST_S

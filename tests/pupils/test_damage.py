@@ -62,15 +62,15 @@ def damaged(seed: int) -> str:
 @pytest.mark.parametrize("seed", range(IN_CI))
 def test_a_damaged_program_is_repaired_or_left(seed: int) -> None:
     text = damaged(seed)
-    found = check(text)
-    for diagnostic in found[:20]:
+    diagnostics = check(text)
+    for diagnostic in diagnostics[:20]:
         edits = edits_of(diagnostic)
         assert edits is None or applied(text, edits) != text
     done = fixed(text, check)
-    assert mistakes(done.left) <= mistakes(found)
+    assert mistakes(done.left) <= mistakes(diagnostics)
     assert done.left == check(done.text)
     assert fixed(done.text, check).text == done.text
-    for diagnostic in found[:20]:  # each alone
+    for diagnostic in diagnostics[:20]:  # each alone
         edits = edits_of(diagnostic)
         alone = fixed(text, partial(_only, text, diagnostic))
         if alone.text != text and diagnostic.code not in OTHER_NUMBERS:

@@ -23,7 +23,7 @@ def put_in(edits: list[Edit]) -> list[Span]:
     """Return where the texts of changes are in the changed program."""
     ordered = sorted(edits)
     grown = [len(edit.text) - (edit.span.end - edit.span.start) for edit in ordered]
-    starts = [each.span.start + shift for each, shift in
+    starts = [edit.span.start + shift for edit, shift in
               zip(ordered, accumulate(grown, initial=0), strict=False)]  # fmt: skip
     return [Span(at, at + len(edit.text)) for at, edit in zip(starts, ordered, strict=True)]
 
@@ -43,15 +43,17 @@ def wrong_in(diagnostic: Diagnostic, text: str, edits: list[Edit], told: set[str
     """Return the codes of mistakes in what a message shows of the changed program."""
     changed = applied(text, edits)
     own = sorted(edits_of(diagnostic) or edits)
-    seen = [span for edit, span in zip(sorted(edits), put_in(edits), strict=True) if edit in own]
+    spans = [span for edit, span in zip(sorted(edits), put_in(edits), strict=True) if edit in own]
     said = next((diagnostic.values[gap] for gap in SAID if diagnostic.values.get(gap)), "")
-    at = changed.find(said, max(0, seen[0].start - len(said))) if said else -1
-    if 0 <= at < seen[-1].end:
-        seen.append(Span(at, at + len(said)))
+    at = changed.find(said, max(0, spans[0].start - len(said))) if said else -1
+    if 0 <= at < spans[-1].end:
+        spans.append(Span(at, at + len(said)))
     return [
-        each.code.number for each in check(changed)
-        if each.is_mistake and any(start <= each.span.start < end for start, end in seen)
-        and each.code.number not in told and not is_told(changed.upper(), each.span.start, told)
+        diagnostic.code.number for diagnostic in check(changed)
+        if diagnostic.is_mistake
+        and any(start <= diagnostic.span.start < end for start, end in spans)
+        and diagnostic.code.number not in told
+        and not is_told(changed.upper(), diagnostic.span.start, told)
     ]  # fmt: skip
 
 
@@ -62,22 +64,22 @@ def is_told(changed: str, place: int, told: set[str]) -> bool:
 
 def offered_wrongly(text: str) -> list[str]:
     """Return the codes of a program's messages that offer what is wrong."""
-    found = [each for each in check(text) if each.is_mistake]
+    diagnostics = [diagnostic for diagnostic in check(text) if diagnostic.is_mistake]
     together: list[Edit] = []
-    for each in found:
-        its = edits_of(each) or []
+    for diagnostic in diagnostics:
+        its = edits_of(diagnostic) or []
         together += its if not overlap(its, together) else []
     bad = []
-    for each in found:
-        others = [other for other in found if other is not each]
+    for diagnostic in diagnostics:
+        others = [other for other in diagnostics if other is not diagnostic]
         told = {text[slice(*other.span)].upper() for other in others} - {""}
         told |= {other.code.number for other in others}
-        told |= OF_BLOCKS if others or not edits_of(each) else set()
-        tried = ways(each, text)
-        if set(edits_of(each) or ()) <= set(together) and edits_of(each):
+        told |= OF_BLOCKS if others or not edits_of(diagnostic) else set()
+        tried = ways(diagnostic, text)
+        if set(edits_of(diagnostic) or ()) <= set(together) and edits_of(diagnostic):
             tried.append(together)
-        if tried and all(wrong_in(each, text, edits, told) for edits in tried):
-            bad.append(each.code.number)
+        if tried and all(wrong_in(diagnostic, text, edits, told) for edits in tried):
+            bad.append(diagnostic.code.number)
     return bad
 
 
@@ -85,7 +87,7 @@ def test_what_the_corpus_of_wrong_programs_is_offered_compiles(
     programs: tuple[Entry, ...],
 ) -> None:
     texts = [entry.program for entry in programs]
-    offers = sum(bool(ways(each, text)) for text in texts[-60:] for each in check(text))
+    offers = sum(bool(ways(diagnostic, text)) for text in texts[-60:] for diagnostic in check(text))
     assert offers > 50
     bad = {text: codes for text in texts if (codes := offered_wrongly(text))}
     assert not bad, f"{len(bad)} of {len(texts)}, the first: {next(iter(bad.items()))}"
@@ -93,11 +95,11 @@ def test_what_the_corpus_of_wrong_programs_is_offered_compiles(
 
 @each_row("text", ["SI|WAIT UNTIL BUTTON", "SI|W UNTIL BUTTON", "BREIK", "EXIT", "F(FOREVR, 60)"])
 def test_what_would_be_wrong_is_not_offered(text: str) -> None:
-    for each in check(text):
-        assert edits_of(each) is None
-        assert not each.values.get("fix")
+    for diagnostic in check(text):
+        assert edits_of(diagnostic) is None
+        assert not diagnostic.values.get("fix")
 
 
 def test_a_word_that_is_near_is_still_named() -> None:
-    (found,) = check("BREIK")
-    assert found.values["meant"] == "BREAK" and not found.values["near"]
+    (diagnostic,) = check("BREIK")
+    assert diagnostic.values["meant"] == "BREAK" and not diagnostic.values["near"]

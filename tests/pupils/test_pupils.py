@@ -43,8 +43,8 @@ SHIFTED = re.compile(
 CONVERTED = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)|delay|ton[eo]")
 
 
-def mistakes(found: list[Diagnostic]) -> int:
-    return sum(each.is_mistake for each in found)
+def mistakes(diagnostics: list[Diagnostic]) -> int:
+    return sum(diagnostic.is_mistake for diagnostic in diagnostics)
 
 
 def numbers(text: str) -> list[str]:
@@ -64,12 +64,12 @@ def loses_a_number(text: str, edits: list[Edit]) -> bool:
 
 def test_there_are_enough(programs: tuple[Entry, ...]) -> None:
     assert len(entries()) >= 2000 and len(programs) >= 200
-    assert len({each.program for each in entries()}) == len(entries())
+    assert len({entry.program for entry in entries()}) == len(entries())
 
 
 def test_the_programs_of_a_commit_are_chosen_of_this_corpus_and_code() -> None:
     first, *rows = LIST.read_text(encoding="utf-8").splitlines()
-    now = head(len(rows), 0, [each.program for each in entries()])
+    now = head(len(rows), 0, [entry.program for entry in entries()])
     assert not stale(first, now), f"{stale(first, now)}: python -m tests.pupils.cover"
 
 
@@ -99,7 +99,7 @@ def test_a_new_program_is_tested_until_they_are_chosen_again(
 
 def test_few_reach_what_all_reach() -> None:
     steps = ([1], [1, 2], [2], [3, 1], [1, 3])
-    sets = [frozenset(("", k, k) for k in each) for each in steps]
+    sets = [frozenset(("", k, k) for k in step) for step in steps]
     assert chosen(sets) == [1, 3]
     assert chosen(sets, before=[4]) == [1, 4], "what was taken before stays"
 
@@ -107,12 +107,12 @@ def test_few_reach_what_all_reach() -> None:
 def test_the_corpus_is_as_it_was(
     request: pytest.FixtureRequest, programs: tuple[Entry, ...]
 ) -> None:
-    found = [found_in(each) for each in programs]
+    found = [found_in(program) for program in programs]
     if request.config.getoption("--accept"):
         write(found)
         pairs = zip(programs, found, strict=True)
         new = [now.program for was, now in pairs if now.said and not was.said]
-        add(new, [each.program for each in programs])
+        add(new, [entry.program for entry in programs])
         return
     changed = [(old, new) for old, new in zip(programs, found, strict=True) if old != new]
     assert not changed, f"{len(changed)} of {len(found)}, the first: {changed[0]}"
@@ -123,20 +123,20 @@ def test_each_repair_helps_and_keeps_the_numbers(programs: tuple[Entry, ...]) ->
 
 
 def helps_and_keeps_the_numbers(entry: Entry) -> None:
-    found, source = check(entry.program), Source(entry.program)
-    for diagnostic in found:
+    diagnostics, source = check(entry.program), Source(entry.program)
+    for diagnostic in diagnostics:
         edits, repair = edits_of(diagnostic), diagnostic.repair
         if not edits or not diagnostic.is_mistake:
             continue
         after = check(applied(entry.program, edits))
-        if mistakes(after) > mistakes(found):  # it has uncovered several: no button makes it
-            assert not offer(entry.program, found, found.index(diagnostic), check)
-        assert mistakes(after) <= mistakes(found) or not (repair and repair.is_sure)
-        if mistakes(after) == mistakes(found):  # it has uncovered another one
+        if mistakes(after) > mistakes(diagnostics):  # it has uncovered several: no button makes it
+            assert not offer(entry.program, diagnostics, diagnostics.index(diagnostic), check)
+        assert mistakes(after) <= mistakes(diagnostics) or not (repair and repair.is_sure)
+        if mistakes(after) == mistakes(diagnostics):  # it has uncovered another one
             assert diagnostic not in after
         fix = diagnostic.values.get("fix", "")
         is_counted = fix.startswith(("LOOP(", "W(")) and diagnostic.code is codes.OTHER_LANGUAGE
-        shifted = [diagnostic.span, *(each.span for each in edits)]
+        shifted = [diagnostic.span, *(edit.span for edit in edits)]
         is_counted = is_counted or any(SHIFTED.search(source[span]) for span in shifted)
         is_counted = is_counted or CONVERTED.search(entry.program) is not None
         is_always = fix in ("TRUE", "WHILE(TRUE)")  # `WHILE(1)`
@@ -164,14 +164,14 @@ def test_what_a_message_says_to_write_is_offered(programs: tuple[Entry, ...]) ->
 
 
 def offers_what_it_says(entry: Entry) -> None:
-    found, text = check(entry.program), entry.program
-    for which, diagnostic in enumerate(found):
-        edits = offer(text, found, which, check)
+    diagnostics, text = check(entry.program), entry.program
+    for which, diagnostic in enumerate(diagnostics):
+        edits = offer(text, diagnostics, which, check)
         names_one = any(diagnostic.values.get(gap) for gap in WRITTEN.get(diagnostic.code, ()))
         assert edits or not names_one, diagnostic
         if edits and not diagnostic.is_mistake:
             after = check(applied(text, edits))
-            assert mistakes(after) <= mistakes(found) and diagnostic not in after
+            assert mistakes(after) <= mistakes(diagnostics) and diagnostic not in after
             assert diagnostic.repair is None
 
 

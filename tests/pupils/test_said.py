@@ -27,9 +27,9 @@ from tiniscript.syntax.lexer import Scan, scan
 def test_a_note_keeps_all_and_changes_nothing(program: str) -> None:
     text = program
     assert check(text)
-    while found := check(text):
-        assert found[0].code is codes.WORDS_BEHIND
-        edits = edits_of(found[0])
+    while diagnostics := check(text):
+        assert diagnostics[0].code is codes.WORDS_AFTER
+        edits = edits_of(diagnostics[0])
         assert edits
         text = applied(text, edits)
     lines = [line.partition("//") for line in text.split("\n")]
@@ -55,18 +55,18 @@ def test_a_note_keeps_all_and_changes_nothing(program: str) -> None:
     ],
 )
 def test_each_order_of_a_sentence_is_written(program: str, orders: str, example: str) -> None:
-    (found,) = check(program)
-    assert found.code is codes.SEVERAL_ORDERS
-    assert (found.values["fix"], found.values["example"]) == (orders, example)
-    assert not check(applied(program, edits_of(found) or []))
+    (diagnostic,) = check(program)
+    assert diagnostic.code is codes.SEVERAL_ORDERS
+    assert (diagnostic.values["fix"], diagnostic.values["example"]) == (orders, example)
+    assert not check(applied(program, edits_of(diagnostic) or []))
     assert fixed(program, check).text == program or not example, "an example is a guess"
     for language in ("es", "en"):
-        assert example in message(found, Source(program), language).message
+        assert example in message(diagnostic, Source(program), language).message
 
 
 def test_the_set_up_of_a_port_is_no_start() -> None:
-    (found,) = check("Serial.begin(9600);\nF(1, 50)")
-    assert (found.code, found.values["found"]) == (codes.UNKNOWN_WORD, "Serial.begin")
+    (diagnostic,) = check("Serial.begin(9600);\nF(1, 50)")
+    assert (diagnostic.code, diagnostic.values["found"]) == (codes.UNKNOWN_WORD, "Serial.begin")
 
 
 def test_the_body_of_a_def_is_read_once_for_all_its_calls(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -77,8 +77,8 @@ def test_the_body_of_a_def_is_read_once_for_all_its_calls(monkeypatch: pytest.Mo
         return scan(text)
 
     monkeypatch.setattr(unknown_words, "scan", scanned)
-    told = check("DEF V;F(X CM, 60);END_DEF\n" + "V(20)\n" * 50)
-    assert [each.values["head"] for each in told[1:]] == ["DEF V(X)"] * 50
+    diagnostics = check("DEF V;F(X CM, 60);END_DEF\n" + "V(20)\n" * 50)
+    assert [diagnostic.values["head"] for diagnostic in diagnostics[1:]] == ["DEF V(X)"] * 50
     assert set(read) == {";F(X CM, 60);"}
     assert len(read) <= 5  # of the program, and of what is offered: not of each call
 
@@ -92,10 +92,10 @@ def test_a_copied_call_is_never_taken_for_another_program(program: str, language
     calls = re.findall(r"[FBLR]\([^()]*\)", message(first, Source(text), language).fix)
     assert calls
     for call in calls:
-        assert any(each.is_mistake for each in check(f"SI|{call}")), call
+        assert any(diagnostic.is_mistake for diagnostic in check(f"SI|{call}")), call
 
 
 @pytest.mark.parametrize("program", ["F(1, 80) forever", "W(1) siempre"])
 def test_what_goes_on_without_end_is_a_program(program: str) -> None:
-    [found] = check(f"SI|{program}")
-    assert not any(each.is_mistake for each in check(f"SI|{found.values['endless']}"))
+    [diagnostic] = check(f"SI|{program}")
+    assert not any(each.is_mistake for each in check(f"SI|{diagnostic.values['endless']}"))

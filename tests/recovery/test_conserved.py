@@ -20,7 +20,7 @@ from tiniscript.recovery.conserved import difference
 KIT = robots.load(robots.DEFAULT).kit
 # A number that stands alone, and has no unit.
 NUMBER = re.compile(r"(?<![\w.,:'´])(?<!\d )\d+(?:\.\d+)?(?![\w.,:'´%°]| ?[a-z]| \d)")
-# Which unit a number has by what stands before it, and what is behind it.
+# Which unit a number has by what stands before it, and what is after it.
 PLACES = (
     (re.compile(r"\b[FBLR]\(-?$"), ""),
     (re.compile(r"\b[FBLR]\([^(),]*,\s*-?$|\bM\([^()]*$"), "%"),
@@ -44,14 +44,14 @@ def units() -> list[tuple[str, str, float]]:
 def numbers(text: str) -> list[tuple[float, str]]:
     """Return the numbers of a program with their signs, and the unit of each by its place."""
     found = []
-    for each in re.finditer(r"(?<![\w.])\d+(?:\.\d+)?", text):
-        before, behind = text[: each.start()], text[each.end() :]
+    for match in re.finditer(r"(?<![\w.])\d+(?:\.\d+)?", text):
+        before, after = text[: match.start()], text[match.end() :]
         own = next((unit for pattern, unit in PLACES if pattern.search(before)), None)
         if own == "":
-            way = re.match(r"(?i) ?(CM|DEG)\b", behind)
+            way = re.match(r"(?i) ?(CM|DEG)\b", after)
             own = {"CM": "cm", "DEG": "°"}[way[1].upper()] if way else "s"
         is_minus = re.search(r"(?:[(,=<>+*/]|^)\s*-$", before) is not None
-        found.append((-float(each[0]) if is_minus else float(each[0]), own or ""))
+        found.append((-float(match[0]) if is_minus else float(match[0]), own or ""))
     return found
 
 
@@ -76,14 +76,14 @@ WRITTEN = [
 def variants(text: str) -> list[tuple[str, str, float, str]]:
     """Return a program with another sign or a unit at each of its numbers, and that number."""
     found = []
-    for each in NUMBER.finditer(text):
-        value = float(each[0])
-        start, end = each.span()
+    for match in NUMBER.finditer(text):
+        value = float(match[0])
+        start, end = match.span()
         if text[:start].rstrip()[-1:] not in ("-", "+"):
-            found.append((f"{text[:start]}-{text[start:]}", f"-{each[0]}", -value, ""))
+            found.append((f"{text[:start]}-{text[start:]}", f"-{match[0]}", -value, ""))
         for written, unit, scale in units():
             new = f"{text[:end]} {written}{text[end:]}"
-            found.append((new, f"{each[0]} {written}", value * scale, unit))
+            found.append((new, f"{match[0]} {written}", value * scale, unit))
     return found
 
 
@@ -100,11 +100,15 @@ def test_no_repair_loses_a_sign_or_a_unit_in_the_example_of_a_row(text: str) -> 
 def test_what_is_only_shown_keeps_a_unit_or_says_that_it_loses_it(text: str) -> None:
     """A minus is not asked for: where it goes, a move goes the other way and says so."""
     for wrong, written, value, unit in variants(text):
-        shown = [each for each in check(wrong) if each.repair and not each.repair.is_sure]
+        shown = [
+            diagnostic
+            for diagnostic in check(wrong)
+            if diagnostic.repair and not diagnostic.repair.is_sure
+        ]
         is_part = re.search(rf"\d\. {re.escape(written)}", wrong)  # of one number: `2. 80`
-        for found in shown if unit and not is_part else ():
-            made = applied(wrong, edits_of(found) or [])
-            lost = found.values.get("lost", "")
+        for diagnostic in shown if unit and not is_part else ():
+            made = applied(wrong, edits_of(diagnostic) or [])
+            lost = diagnostic.values.get("lost", "")
             assert written in lost or is_kept(written, value, unit, made), (wrong, made)
 
 
@@ -194,14 +198,14 @@ def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(wrong: str, mad
 def test_what_is_only_shown_says_what_it_loses_and_what_else_is_meant(
     wrong: str, tried: str
 ) -> None:
-    (found,) = check(wrong)
-    assert message(found, Source(wrong), "en").fix == tried
-    assert fixed(wrong, check).text == wrong or found.values.get("carried")
+    (diagnostic,) = check(wrong)
+    assert message(diagnostic, Source(wrong), "en").fix == tried
+    assert fixed(wrong, check).text == wrong or diagnostic.values.get("carried")
 
 
 def test_no_repair_takes_a_sign_for_a_command_out() -> None:
     """A stop sign is S, wherever it stands; a sign that nothing is said with may go."""
-    rows = (table(each, "lexicon.txt").split("\n") for each in languages())
+    rows = (table(language, "lexicon.txt").split("\n") for language in languages())
     told = [row.partition("|") for its in rows for row in its if re.match("[FBLRS] ", row)]
     signs = [(it[0].strip(), s) for it in told for s in it[2].split() if not s.isascii()]
     signs = [(word, sign) for word, sign in signs if len(sign) == 1 and not sign.isalpha()]
@@ -220,5 +224,5 @@ def test_what_one_line_would_lose_costs_the_others_nothing() -> None:
 
 def test_a_unit_is_told_where_it_stands() -> None:
     wrong = "F(25 CM, 60) UNTIL(DISTANCE < 10 CM)"
-    (found,) = check(wrong)
-    assert (found.values["found"], wrong[slice(*found.span)]) == ("10 CM", "10 CM")
+    (diagnostic,) = check(wrong)
+    assert (diagnostic.values["found"], wrong[slice(*diagnostic.span)]) == ("10 CM", "10 CM")

@@ -1,4 +1,4 @@
-"""The findings of wrong programs, and what comes behind them."""
+"""The findings of wrong programs, and what comes after them."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from tiniscript.recovery.told import moved_back
 
 
 def test_si_in_place_of_brackets_is_taken_with_its_end() -> None:
-    found = setup("SI(F(2, 80)); S")
+    diagnostic = setup("SI(F(2, 80)); S")
     edits = (Edit(Span(0, 3), "SI|"), Edit(Span(11, 12), ""))
-    assert found is not None and found.repair == Repair(edits, True)
+    assert diagnostic is not None and diagnostic.repair == Repair(edits, True)
 
 
 @pytest.mark.parametrize("text", ["SI| F(2, 80)", "SI DISTANCE < 10", "si hay una pared para", ""])
@@ -27,48 +27,51 @@ def test_how_no_program_begins(text: str) -> None:
     assert setup(text) is None
 
 
-def test_what_comes_behind_is_told_where_it_stands() -> None:
+def test_what_comes_after_is_told_where_it_stands() -> None:
     text = "SIF(2, 80); R(1, 60) S; FAST"
-    found = check(text)
-    assert [(each.code.number, text[slice(*each.span)]) for each in found] == [
+    diagnostics = check(text)
+    assert [(one.code.number, text[slice(*one.span)]) for one in diagnostics] == [
         ("TS036", "SI"), ("TS013", ""), ("TS101", "FAST"),
     ]  # fmt: skip
     assert fixed(text, check).text == "SI|F(2, 80); R(1, 60); S; FAST"
 
 
 def test_a_line_with_a_checksum_is_left_alone() -> None:
-    assert "TS058" in [each.code.number for each in check("SI:F(2, 80)~B77E7BD9")]
+    assert "TS058" in [diagnostic.code.number for diagnostic in check("SI:F(2, 80)~B77E7BD9")]
 
 
 @pytest.mark.parametrize(
     ("span", "before"),
     [((0, 3), (0, 3)), ((1, 2), (0, 3)), ((3, 5), (3, 5)), ((6, 6), (7, 7)), ((2, 8), (0, 9))],
 )
-def test_a_place_behind_edits_was_elsewhere(span: tuple[int, int], before: object) -> None:
-    found = Diagnostic(codes.ODD_CHARACTER, Span(*span), {"also": "LIGHT_R < 300"})
+def test_a_place_after_edits_was_elsewhere(span: tuple[int, int], before: object) -> None:
+    diagnostic = Diagnostic(codes.ODD_CHARACTER, Span(*span), {"also": "LIGHT_R < 300"})
     edits = [Edit(Span(5, 6), ""), Edit(Span(0, 3), "SI|")]
-    moved = moved_back(found, edits, Source("SI|F(2, 80)"))
-    assert (moved.span, moved.values) == (before, found.values)
+    moved = moved_back(diagnostic, edits, Source("SI|F(2, 80)"))
+    assert (moved.span, moved.values) == (before, diagnostic.values)
 
 
 def test_a_question_that_nobody_reads_is_shown_as_it_is_written() -> None:
-    shown = {each.code.number: each.values for each in check("IF(esta listo) F(2, 80) ENDIF")}
+    shown = {
+        diagnostic.code.number: diagnostic.values
+        for diagnostic in check("IF(esta listo) F(2, 80) ENDIF")
+    }
     assert shown["TS014"]["fix"] == "IF(esta listo);F(2, 80);ENDIF"
 
 
-def told(text: str) -> list[tuple[str, str]]:
-    return [(each.code.number, text[slice(*each.span)]) for each in check(text)]
+def codes_and_places(text: str) -> list[tuple[str, str]]:
+    return [(diagnostic.code.number, text[slice(*diagnostic.span)]) for diagnostic in check(text)]
 
 
-def test_a_finding_does_not_reach_into_the_words_behind_it() -> None:
+def test_a_finding_does_not_reach_into_the_words_after_it() -> None:
     text = "F(2, 80 %) de potencia"
-    assert told(text) == [("TS049", "80 %"), ("TS085", "de potencia")]
+    assert codes_and_places(text) == [("TS049", "80 %"), ("TS085", "de potencia")]
     assert fixed(text, check).text == "F(2, 80) de potencia"
 
 
 def test_each_line_is_told_with_its_repair() -> None:
     text = "F(2 s, 80%)\r\nLOOP(3 veces)\r\n  R(1, 60)\r\nFIN\r\n"
-    assert [code for code, _ in told(text)] == ["TS049", "TS049", "TS023"]
+    assert [code for code, _ in codes_and_places(text)] == ["TS049", "TS049", "TS023"]
     assert fixed(text, check).text == "F(2, 80)\r\nLOOP(3)\r\n  R(1, 60)\r\nEND_LOOP\r\n"
 
 
@@ -98,7 +101,7 @@ def test_no_repair_loses_a_sign_or_a_point(word: str) -> None:
         wrong = form.format(word, between.join(values))
         made = fixed(wrong, check).text
         numbers = [float(each) for each in re.findall(r"-?[0-9]*\.?[0-9]+", made)]
-        if made != wrong and numbers != [float(each) for each in values]:
+        if made != wrong and numbers != [float(value) for value in values]:
             changed.append((wrong, made))
     assert all(re.match(r"[RM]\.[0-9]+\.", wrong) for wrong, _ in changed)  # `F.2.80` is F(2, 80)
 
@@ -115,29 +118,29 @@ def test_no_repair_loses_a_sign_or_a_point(word: str) -> None:
     ],
 )  # fmt: skip
 def test_a_block_is_told_with_its_end(wrong: str, slips: list[tuple[str, str, str]]) -> None:
-    told = [(each.code.number, each.values) for each in check(wrong)]
-    assert [(code, said["whole"], said.get("ends", "")) for code, said in told] == slips
+    codes_and_places = [(diagnostic.code.number, diagnostic.values) for diagnostic in check(wrong)]
+    assert [(code, said["whole"], said.get("ends", "")) for code, said in codes_and_places] == slips
 
 
 def test_a_block_that_never_ends_is_told_with_its_last_line() -> None:
-    (found,) = check("F(1, 80)\nLOOP(2)\n  R(1, 50)\nS")
-    assert found.code is codes.NEVER_ENDS
+    (diagnostic,) = check("F(1, 80)\nLOOP(2)\n  R(1, 50)\nS")
+    assert diagnostic.code is codes.NEVER_ENDS
 
 
 def test_one_name_is_told_with_all_its_lines() -> None:
-    (found,) = check("año = 3\nF(año, 50)\nF(2, año)")
-    assert (found.values["line"], found.values["lines"]) == ("2", "2, 3")
+    (diagnostic,) = check("año = 3\nF(año, 50)\nF(2, año)")
+    assert (diagnostic.values["line"], diagnostic.values["lines"]) == ("2", "2, 3")
     assert fixed("año = 3\nF(año, 50)", check).text == "ANIO = 3\nF(ANIO, 50)"
 
 
 def test_a_long_text_is_not_read_as_a_whole() -> None:
     wrong = "W(2 s)\n"
-    assert all(each.repair is not None for each in check(wrong))
-    assert all(each.repair is None for each in check(wrong * 3000)[:3])
+    assert all(diagnostic.repair is not None for diagnostic in check(wrong))
+    assert all(diagnostic.repair is None for diagnostic in check(wrong * 3000)[:3])
 
 
 def test_many_blanks_take_no_time() -> None:
-    """They stand where a value may begin, and behind one; a minute for each would be seen."""
+    """They stand where a value may begin, and after one; a minute for each would be seen."""
     for blank in (" ", "( ", "5 ", "(5) "):
         assert check(f"SI|F({blank * 20_000}((5)+1), 60) hola amigo\n")
         assert check(f"SI|F(5{blank * 20_000}hola amigo\n")
@@ -147,7 +150,7 @@ def test_many_blanks_take_no_time() -> None:
 def test_lines_may_end_in_every_way_beside_each_other(ends: tuple[str, ...]) -> None:
     rows = ("F(2 80)", "R(1 60)", "LOOP(2)", "S")
     text = "".join(row + end for row, end in zip(rows, (*ends, ""), strict=True))
-    places = [text[: each.span.start].count(")") for each in check(text)]
-    assert [each.code.number for each in check(text)] == ["TS017", "TS017", "TS024"]
+    places = [text[: diagnostic.span.start].count(")") for diagnostic in check(text)]
+    assert [diagnostic.code.number for diagnostic in check(text)] == ["TS017", "TS017", "TS024"]
     assert places[:2] == [0, 1]
     assert "F(2, 80)" in fixed(text, check).text and "R(1, 60)" in fixed(text, check).text

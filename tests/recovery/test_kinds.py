@@ -22,19 +22,19 @@ TRAVELS = (("F", "CM"), ("B", "CM"), ("L", "DEG"), ("R", "DEG"))
 PAIRS = ("F", "B", "L", "R", "M", "BEEP", "RANDOM", "ROUND", "MIN", "MAX")
 
 
-def told(text: str) -> list[tuple[str, str]]:
+def codes_and_fixes(text: str) -> list[tuple[str, str]]:
     """Return the code of each message, and what it says to try."""
-    said = (message(each, Source(text), "en") for each in check(text))
+    said = (message(diagnostic, Source(text), "en") for diagnostic in check(text))
     return [(each.code, each.fix) for each in said]
 
 
 def messages(text: str) -> list[str]:
-    return [message(each, Source(text), "en").message for each in check(text)]
+    return [message(diagnostic, Source(text), "en").message for diagnostic in check(text)]
 
 
-def tried(text: str, found: Diagnostic) -> str:
+def tried(text: str, diagnostic: Diagnostic) -> str:
     """Return a program with what a diagnostic offers."""
-    return applied(text, edits_of(found) or [])
+    return applied(text, edits_of(diagnostic) or [])
 
 
 # -- ends that are crossed ------------------------------------------------------------------------
@@ -49,26 +49,29 @@ def test_crossed_ends_are_swapped_and_no_body_leaves_its_block(
     lines = ["SI|S", outer[0], inner[0], "F(1, 60)", "{}", *rest.split(";"), "{}", "BEEP(1, 440)"]
     text = between.join(lines)
     wrong, right = text.format(outer[1], inner[1]), text.format(inner[1], outer[1])
-    assert not any(each.is_mistake for each in check(right))
-    (found,) = check(wrong)
-    assert found.code.number == "TS026" and found.values["swapped"] == inner[1]
-    assert tried(wrong, found) == right and fixed(wrong, check).text == wrong
+    assert not any(diagnostic.is_mistake for diagnostic in check(right))
+    (diagnostic,) = check(wrong)
+    assert diagnostic.code.number == "TS026" and diagnostic.values["swapped"] == inner[1]
+    assert tried(wrong, diagnostic) == right and fixed(wrong, check).text == wrong
 
 
 def test_they_are_told_beside_another_mistake_and_in_words() -> None:
     text = "SI|LOOP(3);WHILE(DISTANCE > 10);F(1 60);END_LOOP;R(1, 60);END_WHILE"
-    assert [code for code, _ in told(text)] == ["TS017", "TS026"]
+    assert [code for code, _ in codes_and_fixes(text)] == ["TS017", "TS026"]
     text = "SI|REPETIR 3\nMIENTRAS(DISTANCE > 10)\nF(1, 60)\nFIN REPETIR\nR(1, 60)\nFIN MIENTRAS"
-    assert [(each.code.number, each.values.get("ends")) for each in check(text)[:2]] == [
+    assert [(first.code.number, first.values.get("ends")) for first in check(text)[:2]] == [
         ("TS102", "END_LOOP"), ("TS102", "END_WHILE"),
     ]  # fmt: skip
-    assert told(text)[2][1] == "Write END_WHILE here, and END_LOOP where END_WHILE stands now"
+    assert (
+        codes_and_fixes(text)[2][1]
+        == "Write END_WHILE here, and END_LOOP where END_WHILE stands now"
+    )
 
 
 def test_an_end_that_has_no_other_or_an_arm_between_is_not_swapped() -> None:
     for text in ("LOOP(2);IF(DISTANCE < 9);S;END_LOOP;ELSE;W(1);ENDIF",
                  "LOOP(2);IF(DISTANCE < 9);S;END_LOOP;LOOP(2);ENDIF;S;END_LOOP"):  # fmt: skip
-        assert not any(each.values.get("swapped") for each in check(text)), text
+        assert not any(diagnostic.values.get("swapped") for diagnostic in check(text)), text
 
 
 # -- a question with two branches -----------------------------------------------------------------
@@ -84,7 +87,7 @@ def test_the_second_branch_of_a_question_is_its_else(word: str, sign: str, aroun
     assert tried(wrong, check(wrong)[0]).replace("; ", ";") == right
 
 
-def test_what_stands_behind_its_brackets_is_in_no_branch() -> None:
+def test_what_stands_after_its_brackets_is_in_no_branch() -> None:
     text = "SI|W(1);SI(DISTANCE < 10; S);F(1, 60)"
     assert fixed(text, check).text == "SI|W(1);IF(DISTANCE < 10);S;ENDIF;F(1, 60)"
 
@@ -97,15 +100,15 @@ def test_what_stands_behind_its_brackets_is_in_no_branch() -> None:
 def test_a_def_with_one_value_that_is_set_is_called(between: str, value: str) -> None:
     lines = ["SI|DEF PASSO(N)", "F(N CM, 60)", "END_DEF", "V = 3", f"PASSO = {value}", "S"]
     wrong = between.join(lines)
-    assert told(wrong)[0] == ("TS110", f"PASSO({value})")
+    assert codes_and_fixes(wrong)[0] == ("TS110", f"PASSO({value})")
     assert tried(wrong, check(wrong)[0]) == wrong.replace(f"PASSO = {value}", f"PASSO({value})")
 
 
 def test_a_def_without_a_value_or_a_name_that_is_asked_gets_another_name() -> None:
     for text in ("DEF A;S;END_DEF;A = 3;A", "DEF A(N);W(N);END_DEF;A = 3;A(2);SHOW(A)"):
-        assert told(text)[0] == ("TS110", "A_2")
+        assert codes_and_fixes(text)[0] == ("TS110", "A_2")
     two = "DEF LADO(N, P);F(N, P);END_DEF;LADO = 2, 60"
-    assert told(two) == [("TS015", "LADO(2, 60)")] and fixed(two, check).text == two
+    assert codes_and_fixes(two) == [("TS015", "LADO(2, 60)")] and fixed(two, check).text == two
 
 
 # -- a letter that multiplies ---------------------------------------------------------------------
@@ -124,12 +127,12 @@ def test_a_letter_between_two_values_multiplies(text: str, sign: str) -> None:
 @pytest.mark.parametrize("text", ["V = 3\nV = 2 x V", "A = 1;B1 = A x A;SHOW(B1)", "V = V x 2"])
 @pytest.mark.parametrize("beside", ["", ";F(2 80", ";BLA(2)", "\nSHOW(ROUND(TIME, 1)"])
 def test_nothing_that_multiplies_becomes_a_note(text: str, beside: str) -> None:
-    assert not any("//" in fix for _, fix in told(f"SI|{text}{beside}"))
+    assert not any("//" in fix for _, fix in codes_and_fixes(f"SI|{text}{beside}"))
 
 
 def test_a_variable_x_is_only_shown_as_a_sign() -> None:
     text = "SI|X = 4;Y = 2 x X;SHOW(Y)"
-    assert told(text) == [("TS010", "Y = 2 * X")] and fixed(text, check).text == text
+    assert codes_and_fixes(text) == [("TS010", "Y = 2 * X")] and fixed(text, check).text == text
     assert not check("SI|X = 4;SHOW(2 * X)")
 
 
@@ -144,7 +147,7 @@ def test_a_unit_stays_with_its_number_and_the_other_reading_is_beside_it(
 ) -> None:
     wrong = around.format(f"{word}({power}, {way} {unit})")
     own, other = f"{word}({way} {unit}, {power})", f"{word}({power} {unit}, {way})"
-    assert told(wrong) == [("TS076", f"{own} or {other}")]
+    assert codes_and_fixes(wrong) == [("TS076", f"{own} or {other}")]
     assert fixed(wrong, check).text == wrong
 
 
@@ -156,13 +159,13 @@ def test_what_hardly_moves_a_robot_is_no_power_where_another_number_is_one(
 ) -> None:
     wrong = around.format(f"{word}({little}, {power} {unit})")
     first, other = f"{word}({little} {unit}, {power})", f"{word}({power} {unit}, {little})"
-    assert told(wrong) == [("TS076", f"{first} or {other}")]
+    assert codes_and_fixes(wrong) == [("TS076", f"{first} or {other}")]
     assert fixed(wrong, check).text == wrong
 
 
 def test_each_of_several_moves_has_both_readings() -> None:
     text = "SI|F(60, 20 CM); R(60, 90 DEG);L(50, 45 DEG)"
-    assert [fix for _, fix in told(text)] == [
+    assert [fix for _, fix in codes_and_fixes(text)] == [
         "F(20 CM, 60) or F(60 CM, 20)", "R(90 DEG, 60) or R(60 DEG, 90)",
         "L(45 DEG, 50) or L(50 DEG, 45)",
     ]  # fmt: skip
@@ -177,28 +180,28 @@ def test_the_unit_of_a_value_of_a_def_goes_into_its_body(
 ) -> None:
     lines = [f"SI|DEF LADO(LARGO {unit})", f"{word}(LARGO, 60)", "W(1)", "LADO(30)", "END_DEF"]
     whole = between.join(lines)
-    (found,) = check(whole)
-    assert f"{word}(LARGO {way}, 60)" in tried(whole, found) and "lost" not in {
-        name for name, value in found.values.items() if value
+    (diagnostic,) = check(whole)
+    assert f"{word}(LARGO {way}, 60)" in tried(whole, diagnostic) and "lost" not in {
+        name for name, value in diagnostic.values.items() if value
     }
-    body = [each.removeprefix("SI|") for each in lines[:3]]
+    body = [line.removeprefix("SI|") for line in lines[:3]]
     late = between.join(["SI|LADO(30)", *body, lines[4]])
     assert f"{word}(LARGO {way}, 60)" in tried(late, check(late)[0])
 
 
 def test_a_moved_program_says_which_unit_it_loses() -> None:
     text = "SI|ESPERA_X(3)\nDEF ESPERA_X(N graus)\nW(N)\nEND_DEF"
-    (found,) = check(text)
-    assert found.values["lost"] == "graus" and fixed(text, check).text == text
+    (diagnostic,) = check(text)
+    assert diagnostic.values["lost"] == "graus" and fixed(text, check).text == text
 
 
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
 def test_a_slip_of_a_unit_is_one(word: str, unit: str) -> None:
     """Two neighbours exchanged, a letter wrong, missing or too much."""
     slips = {unit[1] + unit[0] + unit[2:], "X" + unit[1:], unit[:1] + unit[2:], unit + unit[-1]}
-    for slip in {each for each in slips if len(each) > 1} - {"XEG"}:
+    for slip in {slip for slip in slips if len(slip) > 1} - {"XEG"}:
         for text in (f"SI|{word}(20 {slip}, 60)", f"SI|W(1);BLA(2)\nV = 5;{word}(V {slip}, 60);S"):
-            said = [fix for _, fix in told(text)]
+            said = [fix for _, fix in codes_and_fixes(text)]
             assert not any("Take" in fix for fix in said), text
             assert any(f"{unit}, 60)" in fix for fix in said), (text, said)
 
@@ -212,15 +215,15 @@ def test_a_semicolon_between_two_values_is_named(word: str, beside: str) -> None
     call = f"{word}(40; 60)" if word in PAIRS[:6] else f"SHOW({word}(1; 2))"
     comma = call.replace(";", ",")
     text = f"SI|{beside}{call}"
-    said = [(code, fix) for code, fix in told(text) if comma in fix]
-    assert said and said[0][0] in ("TS017", "TS019"), told(text)
-    assert not {"TS042", "TS088"} & {code for code, _ in told(text)}
+    said = [(code, fix) for code, fix in codes_and_fixes(text) if comma in fix]
+    assert said and said[0][0] in ("TS017", "TS019"), codes_and_fixes(text)
+    assert not {"TS042", "TS088"} & {code for code, _ in codes_and_fixes(text)}
 
 
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
 def test_a_right_unit_before_it_is_not_told_of(word: str, unit: str) -> None:
     for number in ("20", "N_2", "2 * 3"):
-        codes = {code for code, _ in told(f"SI|W(1);{word}({number} {unit}; 60)")}
+        codes = {code for code, _ in codes_and_fixes(f"SI|W(1);{word}({number} {unit}; 60)")}
         assert "TS019" in codes and "TS088" not in codes
 
 
@@ -238,25 +241,25 @@ def test_a_misspelt_end_is_that_end(
     between: str, head: str, end: str, slip: str, beside: str
 ) -> None:
     lines = [f"SI|{head}", "L(1, 60)", slip, "GIRO" if "DEF" in head else "S", beside]
-    found = check(between.join(filter(None, lines)))
-    assert [each.code.number for each in found] == ["TS101"] * (1 + bool(beside))
-    assert found[0].values["near"] == end
+    diagnostics = check(between.join(filter(None, lines)))
+    assert [diagnostic.code.number for diagnostic in diagnostics] == ["TS101"] * (1 + bool(beside))
+    assert diagnostics[0].values["near"] == end
 
 
 @pytest.mark.parametrize("head", ["DEF PASO", "DEF PASO(N)", "LOOP(4)"])
 @pytest.mark.parametrize("dots", ["...", "\u2026", ". . ."])
-def test_an_end_behind_dots_is_not_missing(head: str, dots: str) -> None:
+def test_an_end_after_dots_is_not_missing(head: str, dots: str) -> None:
     end = "END_LOOP" if head == "LOOP(4)" else "END_DEF"
     call = {"DEF PASO": "PASO", "DEF PASO(N)": "PASO(3)"}.get(head, "S")
     text = f"SI|{head} {dots} {end}\nF(1, 60)\nLOOP(2)\n{call}\nEND_LOOP"
-    ((code, fix),) = told(text)
+    ((code, fix),) = codes_and_fixes(text)
     assert code == "TS082" and ("DEF" in head) == (f"{head}; F(1, 60); {end}" in fix)
 
 
 @pytest.mark.parametrize("between", BETWEEN)
 def test_a_wrong_head_of_a_def_makes_no_name_of_its_body_unknown(between: str) -> None:
     lines = ["SI|DEF LADO(30)", "F(LARGO CM, 60)", "W(LARGO)", "END_DEF", "LADO(30)", "W(ZZZ)"]
-    assert [code for code, _ in told(between.join(lines))] == ["TS091", "TS103"]
+    assert [code for code, _ in codes_and_fixes(between.join(lines))] == ["TS091", "TS103"]
 
 
 # -- what a message says --------------------------------------------------------------------------
@@ -270,7 +273,7 @@ def test_a_wrong_head_of_a_def_makes_no_name_of_its_body_unknown(between: str) -
 @pytest.mark.parametrize("between", BETWEEN)
 def test_named_values_of_a_def_stand_in_its_order(call: str, right: str, between: str) -> None:
     lines = ["SI|DEF LADO(LAR, POT)", "F(LAR CM, POT)", "END_DEF", "V = 4", call]
-    assert told(between.join(lines)) == [("TS052", right)]
+    assert codes_and_fixes(between.join(lines)) == [("TS052", right)]
     assert not check("DEF A(Q);IF(Q);S;ENDIF;END_DEF;X = 3;A(X = 3)")
 
 
@@ -284,25 +287,27 @@ def test_an_end_that_ends_a_block_is_no_word_too_many(text: str, end: str) -> No
 @pytest.mark.parametrize("sign", ["**", "^", " ** ", " ^"])
 def test_a_power_is_named_with_all_of_its_sign(sign: str) -> None:
     text = f"SI|V = 3;W(V{sign}2)"
-    (found,) = check(text)
-    assert found.values["right"] == "* V" and found.values["found"].startswith(sign.strip())
-    assert text[slice(*found.span)] == found.values["found"]
+    (diagnostic,) = check(text)
+    assert diagnostic.values["right"] == "* V" and diagnostic.values["found"].startswith(
+        sign.strip()
+    )
+    assert text[slice(*diagnostic.span)] == diagnostic.values["found"]
 
 
 def test_two_offers_say_how_their_brackets_differ() -> None:
-    (said,) = told("SI|D = MAX(LIGHT_L, 4 + LIGHT_R")
+    (said,) = codes_and_fixes("SI|D = MAX(LIGHT_L, 4 + LIGHT_R")
     first, second = "(in the brackets: LIGHT_L, 4 + LIGHT_R)", "(in the brackets: LIGHT_L, 4)"
     assert said[1].index(first) < said[1].index(second)
 
 
 @pytest.mark.parametrize("word", ["PARA", "for", "para"])
 def test_a_message_names_the_word_that_was_written(word: str) -> None:
-    (found, *_) = check(f"SI|{word} N DE 1 A 3\nF(N, 60)\nFIN")
-    assert (found.code.number, found.values["found"]) == ("TS102", word)
+    (diagnostic, *_) = check(f"SI|{word} N DE 1 A 3\nF(N, 60)\nFIN")
+    assert (diagnostic.code.number, diagnostic.values["found"]) == ("TS102", word)
 
 
 @pytest.mark.parametrize(("asked", "behind"), [*product(["DISTANCE<25", "LIGHT_L > 300"], "FB")])
-def test_the_question_behind_until_is_shown(asked: str, behind: str) -> None:
+def test_the_question_after_until_is_shown(asked: str, behind: str) -> None:
     text = f"SI|F(5, 60) UNTIL {asked}. {behind}(1, 50)"
     assert fixed(text, check).text == f"SI|F(5, 60) UNTIL({asked}); {behind}(1, 50)"
 
@@ -312,8 +317,10 @@ def test_the_question_behind_until_is_shown(asked: str, behind: str) -> None:
 def test_an_example_takes_the_number_of_the_program(number: str, beside: str) -> None:
     other = beside.format(number)
     for text in (f"SI|F(FOREVER, 50);{other}", f"SI|{other}\nB(FOREVER, 50)"):
-        assert told(text)[0][1].endswith(f"UNTIL(DISTANCE < {number})")
-    assert told("SI|F(FOREVER, 50)")[0][1].startswith("F(FOREVER, 50) UNTIL(DISTANCE < 10)")
+        assert codes_and_fixes(text)[0][1].endswith(f"UNTIL(DISTANCE < {number})")
+    assert codes_and_fixes("SI|F(FOREVER, 50)")[0][1].startswith(
+        "F(FOREVER, 50) UNTIL(DISTANCE < 10)"
+    )
 
 
 # -- what is named, and what is told once -----------------------------------------------------
@@ -333,13 +340,13 @@ def test_what_counts_is_named_without_what_it_counts(
     head: str, named: str, around: str, between: str
 ) -> None:
     text = around.format(between.join((head, "L(1, 60)", "END_LOOP")))
-    found = next(each for each in check(text) if each.code.number == "TS102")
-    assert (found.values["found"], text[slice(*found.span)]) == (named, named)
+    diagnostic = next(diagnostic for diagnostic in check(text) if diagnostic.code.number == "TS102")
+    assert (diagnostic.values["found"], text[slice(*diagnostic.span)]) == (named, named)
 
 
 @pytest.mark.parametrize("use", ["F(1, {})", "LOOP({});S;END_LOOP", "BEEP(1, {});BEEP(2, {})"])
 @pytest.mark.parametrize("name", ["notes", "N"])
 def test_a_name_that_holds_a_list_is_not_asked_for_its_number(name: str, use: str) -> None:
     text = f"SI|{name} = [440, 494]\n{use.replace('{}', name)}"
-    assert [code for code, _ in told(text)] == ["TS067"]
-    assert "TS103" in [code for code, _ in told(text + ";W(OTHER)")]
+    assert [code for code, _ in codes_and_fixes(text)] == ["TS067"]
+    assert "TS103" in [code for code, _ in codes_and_fixes(text + ";W(OTHER)")]

@@ -32,11 +32,11 @@ def words(meaning: str) -> list[str]:
     """Return the words of all lexicons with a meaning."""
     rows = (row for language in languages() for row in table(language, "lexicon.txt").split("\n"))
     told = (row.partition("|") for row in rows if not row.startswith("#"))
-    return [each for what, _, said in told if what.strip() == meaning for each in said.split()]
+    return [word for what, _, said in told if what.strip() == meaning for word in said.split()]
 
 
-def shown(found: Diagnostic, text: str) -> str:
-    told = message(found, Source(text, ""), "en")
+def shown(diagnostic: Diagnostic, text: str) -> str:
+    told = message(diagnostic, Source(text, ""), "en")
     return " ".join(map(str, told))
 
 
@@ -45,20 +45,20 @@ def shown(found: Diagnostic, text: str) -> str:
 def test_a_question_is_shown_with_the_number_that_was_written(header: str, condition: str) -> None:
     for head, end in (("si", "fin"), ("SE", "FIM"), ("while", "end"), ("MIENTRAS", "FIN MIENTRAS")):
         text = header.format(h=head, c=condition.format(OWN), e=end)
-        for found in check(text):
-            said = shown(found, text)
+        for diagnostic in check(text):
+            said = shown(diagnostic, text)
             others = {*COMPARED.findall(said)} - {OWN, "1"}
             assert not others or "as in" in said or "with the number that you want" in said, said
 
 
-def test_a_word_behind_a_number_lacks_no_comma() -> None:
+def test_a_word_after_a_number_lacks_no_comma() -> None:
     for unit, word in product(words("unit turns 1000"), ("R", "L", "F", "W")):
         text = f"{word}(3 {unit}, 60)" if word != "W" else f"W(3 {unit})"
-        (found,) = check(text)
-        assert found.code.number != "TS017", text
+        (diagnostic,) = check(text)
+        assert diagnostic.code.number != "TS017", text
         assert fixed(text, check).text == text
         is_turn = word in "LR"
-        assert (found.values.get("fix") == f"{word}(1080 DEG, 60)") is is_turn, text
+        assert (diagnostic.values.get("fix") == f"{word}(1080 DEG, 60)") is is_turn, text
 
 
 @pytest.mark.parametrize(
@@ -72,8 +72,8 @@ def test_a_word_behind_a_number_lacks_no_comma() -> None:
     ],
 )
 def test_a_part_of_a_turn_is_degrees(wrong: str, right: str) -> None:
-    (found,) = check(wrong)
-    assert found.values["fix"] == right
+    (diagnostic,) = check(wrong)
+    assert diagnostic.values["fix"] == right
     assert fixed(wrong, check).text == wrong
 
 
@@ -86,9 +86,9 @@ RENAMED = [
 def renamed(text: str) -> tuple[str, tuple[Edit, ...]]:
     """Return the name that is told in place of a word, and the changes for it."""
     return next(
-        (each.values["right"], each.repair.edits)
-        for each in check(text)
-        if each.code.number == "TS105" and each.repair
+        (diagnostic.values["right"], diagnostic.repair.edits)
+        for diagnostic in check(text)
+        if diagnostic.code.number == "TS105" and diagnostic.repair
     )
 
 
@@ -107,16 +107,16 @@ def test_a_variable_is_renamed_in_its_uses(word: str) -> None:
     text = f"{word} = 2\nF({word}, 60)\nW(1 + {word})\nX = {word} + 1\nS\nF(X, 60)"
     made = applied(text, renamed(text)[1])
     assert made.split("\n")[4] == "S"
-    assert not [each for each in check(made) if each.is_mistake]
+    assert not [diagnostic for diagnostic in check(made) if diagnostic.is_mistake]
 
 
 @each_row("word", sorted({*words("unsensed")}))
 def test_no_sensor_is_asked_for_one_that_no_kit_has(word: str) -> None:
     for text in (f"IF({word} > {OWN});S;ENDIF", f"WHEN({word} = 1)\nS\nEND_WHEN"):
-        (found,) = check(text)
-        assert found.values.get("unsensed", "").upper() == word, text
-        assert "DISTANCE" in found.values["sensors"]
-        assert found.repair is None and not found.values.get("fix")
+        (diagnostic,) = check(text)
+        assert diagnostic.values.get("unsensed", "").upper() == word, text
+        assert "DISTANCE" in diagnostic.values["sensors"]
+        assert diagnostic.repair is None and not diagnostic.values.get("fix")
 
 
 @pytest.mark.parametrize(
@@ -146,8 +146,8 @@ def test_what_is_told_keeps_all_that_was_written(wrong: str, told: str) -> None:
     ],
 )
 def test_words_beside_a_comparison_are_asked_beside_it(wrong: str, question: str) -> None:
-    (found,) = check(wrong)
-    assert (found.code.number, found.values["question"]) == ("TS135", question)
+    (diagnostic,) = check(wrong)
+    assert (diagnostic.code.number, diagnostic.values["question"]) == ("TS135", question)
 
 
 def test_lines_that_nobody_reads_are_instructions_of_their_blocks() -> None:
@@ -159,7 +159,7 @@ def test_lines_that_nobody_reads_are_instructions_of_their_blocks() -> None:
 
 def test_ends_of_several_blocks_come_one_after_the_other() -> None:
     text = "LOOP(siempre)\n  IF DISTANCE < 15 cm\n    R(1, 60)\n  ELSE\n    F(1, 80)\nEND"
-    assert "END_LOOPIF" not in {each.values.get("found") for each in check(text)}
+    assert "END_LOOPIF" not in {diagnostic.values.get("found") for diagnostic in check(text)}
 
 
 def test_an_end_alone_is_that_of_its_block() -> None:
@@ -272,5 +272,7 @@ def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
     ],
 )
 def test_no_number_or_word_is_told_that_was_not_meant(wrong: str, told: dict[str, str]) -> None:
-    found = check(wrong)
-    assert any({name: it.values.get(name) for name in told} == told for it in found), found
+    diagnostics = check(wrong)
+    assert any({name: it.values.get(name) for name in told} == told for it in diagnostics), (
+        diagnostics
+    )

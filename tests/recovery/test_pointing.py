@@ -27,16 +27,16 @@ def test_the_text_under_the_caret_is_what_the_message_names(part: int) -> None:
     seen = 0
     for entry in entries()[part::4]:
         source = Source(entry.program)
-        for each in check(entry.program):
-            named = alike(each.values.get("found", ""))
-            told = message(each, source, "en")
+        for diagnostic in check(entry.program):
+            named = alike(diagnostic.values.get("found", ""))
+            told = message(diagnostic, source, "en")
             line = source.line_text(told.line)
-            if not named or each.code in OTHERS or not names_found(each):
+            if not named or diagnostic.code in OTHERS or not names_found(diagnostic):
                 continue
             if named in alike(line):
                 seen += 1
                 end = told.end_column - 1 if told.end_line == told.line else len(line)
-                assert alike(line[told.column - 1 : end]) == named, (entry.program, each)
+                assert alike(line[told.column - 1 : end]) == named, (entry.program, diagnostic)
     assert seen > 200
 
 
@@ -53,8 +53,8 @@ def test_the_text_under_the_caret_is_what_the_message_names(part: int) -> None:
     ],
 )
 def test_a_message_names_the_sign_alone(program: str, found: str) -> None:
-    each = check(program)[0]
-    assert each.values["found"].lower() == program[slice(*each.span)] == found
+    diagnostic = check(program)[0]
+    assert diagnostic.values["found"].lower() == program[slice(*diagnostic.span)] == found
 
 
 @each_row(
@@ -68,7 +68,11 @@ def test_a_message_names_the_sign_alone(program: str, found: str) -> None:
     ],
 )
 def test_a_line_in_quotation_marks_is_told_once(program: str, fix: str) -> None:
-    (each,) = check(program)
-    assert each.code is codes.QUOTE and each.repair is not None and each.repair.is_sure
-    assert message(each, Source(program), "en").fix == fix
-    assert program[slice(*each.span)].startswith(tuple("“«„‘"))
+    (diagnostic,) = check(program)
+    assert (
+        diagnostic.code is codes.QUOTE
+        and diagnostic.repair is not None
+        and diagnostic.repair.is_sure
+    )
+    assert message(diagnostic, Source(program), "en").fix == fix
+    assert program[slice(*diagnostic.span)].startswith(tuple("“«„‘"))

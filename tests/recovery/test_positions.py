@@ -40,18 +40,22 @@ def examples() -> list[str]:
 
 @lru_cache(None)
 def mistakes(kit: Kit, text: str) -> tuple[Code, ...]:
-    return tuple(each.code for each in analyzed(text, kit).diagnostics if each.is_mistake)
+    return tuple(
+        diagnostic.code for diagnostic in analyzed(text, kit).diagnostics if diagnostic.is_mistake
+    )
 
 
 def meant(text: str) -> Candidate | None:
     """Return what is meant, on the first robot for which it is a right program."""
-    found = [Recovery(text, kit, partial(mistakes, kit)).best() for kit in KITS]
-    return next((each for each in found if each and each.is_whole), found[-1])
+    candidates = [Recovery(text, kit, partial(mistakes, kit)).best() for kit in KITS]
+    return next(
+        (candidate for candidate in candidates if candidate and candidate.is_whole), candidates[-1]
+    )
 
 
-def told(text: str) -> tuple[str, ...]:
+def words_of(text: str) -> tuple[str, ...]:
     """Return the words of a program; between two instructions is one separator."""
-    parts = (texts(lexemes(each)) for each in re.split("[;\n]", text))
+    parts = (texts(lexemes(part)) for part in re.split("[;\n]", text))
     return tuple(chain(*((*part, ";") for part in parts if part)))
 
 
@@ -59,7 +63,7 @@ def ends(text: str) -> int:
     return sum(each in ENDED for each in texts(lexemes(text)))
 
 
-@each_row("wrong", [pytest.param(each, id=each) for each in examples()])
+@each_row("wrong", [pytest.param(example, id=example) for example in examples()])
 def test_a_row_means_the_same_wherever_its_instruction_stands(wrong: str) -> None:
     alone = meant(wrong)
     if alone is None:
@@ -67,10 +71,17 @@ def test_a_row_means_the_same_wherever_its_instruction_stands(wrong: str) -> Non
     is_open = ends(alone.text) > ends(wrong)  # what follows may be in the block that it begins
     is_free = not AT_THE_TOP.search(alone.text.upper())
     for place in (*ON_A_LINE, *(IN_A_BLOCK if is_free else ())):
-        found = meant(place.format(wrong))
+        candidate = meant(place.format(wrong))
         same = place.format(alone.text)
         if is_open and not place.endswith("{}"):
-            assert found is None or not found.is_applied or told(found.text) == told(same), place
+            assert (
+                candidate is None
+                or not candidate.is_applied
+                or words_of(candidate.text) == words_of(same)
+            ), place
         else:
-            assert found, place
-            assert (told(found.text), found.is_applied) == (told(same), alone.is_applied), place
+            assert candidate, place
+            assert (words_of(candidate.text), candidate.is_applied) == (
+                words_of(same),
+                alone.is_applied,
+            ), place

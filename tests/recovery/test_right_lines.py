@@ -33,7 +33,7 @@ _START = re.compile(r"(?i)\b(?:S[IB]\s*\||PING)")
 
 @cache
 def right() -> list[str]:
-    own = [*programs(), *(each.program for each in entries() if not each.said), *ODD]
+    own = [*programs(), *(entry.program for entry in entries() if not entry.said), *ODD]
     return sorted(each for each in own if _starts_at_once(each) and not _mistakes(each))
 
 
@@ -41,11 +41,14 @@ def right() -> list[str]:
 def wrong() -> list[str]:
     """Return lines that are wrong for themselves: of pupils, none of them meant for a block."""
     found = ["F(2;80)"]
-    for each in entries():
-        line = each.program
+    for entry in entries():
+        line = entry.program
         if re.search(r"[\n|{}]|//|~", line) or "(" not in line or not _mistakes(line):
             continue
-        said = [line, *(value for each in check(line) for value in each.values.values())]
+        said = [
+            line,
+            *(value for diagnostic in check(line) for value in diagnostic.values.values()),
+        ]
         if not {*re.findall(r"\w+", " ".join(said).upper())} & _OF_BLOCKS:
             found.append(line)
     return sorted(found)
@@ -57,7 +60,7 @@ _OF_BLOCKS = {word for word, row in WORDS.items() if row.role.is_of_blocks} | {"
 @pytest.mark.sampled("seed", keep=IN_CI // 3)
 @pytest.mark.parametrize("seed", range(IN_CI))
 def test_a_wrong_line_is_told_of_alone(seed: int) -> None:
-    """Behind, before and between right ones, which are no longer looked at for warnings."""
+    """After, before and between right ones, which are no longer looked at for warnings."""
     chance = random.Random(seed)
     program, line = chance.choice(right()), chance.choice(wrong())
     rows = program.split("\n")
@@ -83,23 +86,23 @@ def test_what_is_right_in_an_odd_way_is_right_beside_a_wrong_line(odd: str) -> N
 
 
 @each_row("block", ["LOOP(3)⏎{}⏎END_LOOP", "DEF A1⏎{}⏎END_DEF⏎A1", "IF(DISTANCE < 9)⏎{}⏎ENDIF"])
-def test_a_word_behind_an_instruction_begins_no_block(block: str) -> None:
+def test_a_word_after_an_instruction_begins_no_block(block: str) -> None:
     """Where what follows is not deeper than the wrong line, the block around both is not over."""
     for line in ("F(1, 80) LOP", "F(1, 80) loop", "S repite"):
         head, tail = block.replace("⏎", "\n").split("{}")
         is_told_alone([f"{head}  F(1, 80)"], line, tail.strip().split("\n"))
 
 
-def is_told_alone(before: list[str], line: str, behind: list[str]) -> None:
-    rows = "\n".join([*before, line, *behind]).split("\n")
+def is_told_alone(before: list[str], line: str, after: list[str]) -> None:
+    rows = "\n".join([*before, line, *after]).split("\n")
     wrong_row = "\n".join(before).count("\n") + 1
     source = Source("\n".join(rows))
-    told = [each for each in check(source.text) if each.is_mistake]
-    assert told, source.text
-    for each in told:
-        row = source.position(each.span.start)[0] - 1
+    diagnostics = [diagnostic for diagnostic in check(source.text) if diagnostic.is_mistake]
+    assert diagnostics, source.text
+    for diagnostic in diagnostics:
+        row = source.position(diagnostic.span.start)[0] - 1
         is_end = row == len(rows) or not rows[row].strip()  # of a text that breaks off
-        assert row == wrong_row or is_end, f"{source.text}\n{each}"
+        assert row == wrong_row or is_end, f"{source.text}\n{diagnostic}"
 
 
 def _is_closed(text: str) -> bool:
@@ -108,7 +111,7 @@ def _is_closed(text: str) -> bool:
 
 
 def _mistakes(text: str) -> bool:
-    return any(each.is_mistake for each in check(text))
+    return any(diagnostic.is_mistake for diagnostic in check(text))
 
 
 def _starts_at_once(text: str) -> bool:

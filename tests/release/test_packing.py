@@ -36,8 +36,8 @@ def test_the_same_files_give_the_same_bytes(tmp_path: Path) -> None:
 
 
 def test_what_may_be_started_may_be_started_when_unpacked(tmp_path: Path) -> None:
-    made = pack(folder(tmp_path / "one", ["b.sh", "a.txt"], EPOCH), tmp_path / "x.zip", EPOCH)
-    with zipfile.ZipFile(made) as packed:
+    path = pack(folder(tmp_path / "one", ["b.sh", "a.txt"], EPOCH), tmp_path / "x.zip", EPOCH)
+    with zipfile.ZipFile(path) as packed:
         rights = {row.filename: row.external_attr >> 16 & 0o777 for row in packed.infolist()}
     assert rights == {"x/b.sh": 0o755, "x/a.txt": 0o644}
 
@@ -45,7 +45,7 @@ def test_what_may_be_started_may_be_started_when_unpacked(tmp_path: Path) -> Non
 def test_the_library_is_the_same_twice(tmp_path: Path) -> None:
     sums = set()
     for place in ("one", "other place"):
-        made = tmp_path / place / "TiniScript"
-        assert library.main([str(made), "--url", "https://example.org/t"]) == 0
-        sums.add(sha256(pack(made, tmp_path / place / "TiniScript-1.zip", EPOCH)))
+        path = tmp_path / place / "TiniScript"
+        assert library.main([str(path), "--url", "https://example.org/t"]) == 0
+        sums.add(sha256(pack(path, tmp_path / place / "TiniScript-1.zip", EPOCH)))
     assert len(sums) == 1

@@ -37,7 +37,9 @@ def test_a_board_with_an_avr_is_written_and_has_sketches(board: str) -> None:
 
 
 def test_every_board_is_told_to_people() -> None:
-    (option,) = (each for each in OPTIONS if (each.flags, each.verbs) == ("--chip", "firmware"))
+    (option,) = (
+        option for option in OPTIONS if (option.flags, option.verbs) == ("--chip", "firmware")
+    )
     for language in languages():
         assert set(bootloaders.BOARDS) <= set(re.findall(r"[\w-]+", option.help(language))), (
             "the catalogue help names the values of --chip"

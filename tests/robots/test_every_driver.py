@@ -37,7 +37,7 @@ def written(robot: Robot) -> tuple[str, str]:
 
 
 def names(drivers: list[Driver]) -> list[str]:
-    return [f"{each.used_by} {each.name}" for each in drivers]
+    return [f"{driver.used_by} {driver.name}" for driver in drivers]
 
 
 @pytest.mark.parametrize("driver", DEVICES, ids=names(DEVICES))

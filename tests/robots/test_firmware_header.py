@@ -61,7 +61,7 @@ def test_pwm_is_where_the_core_has_it(board: str) -> None:
         if name != "NOT_ON_TIMER"
     }
     assert dict(AVRS[board].compares) == found
-    assert {pin: each.timer for pin, each in found.items()} == dict(CHIPS[board].pwm)
+    assert {pin: compare.timer for pin, compare in found.items()} == dict(CHIPS[board].pwm)
 
 
 @pytest.mark.parametrize("board", sorted(AVRS))

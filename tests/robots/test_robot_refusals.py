@@ -173,9 +173,9 @@ def test_timers_of_an_uno(motors: str, pin: int, timer: int | None, first: str) 
         return
     refused = refusal(text)
     assert codes(refused) == ["timer_twice"]
-    said = describe(refused, "en")[0]
-    assert said.startswith(f"board.actuators.FAN.pin is pin {pin}: its PWM needs timer {timer}")
-    assert f"which {first} uses." in said
+    sentence = describe(refused, "en")[0]
+    assert sentence.startswith(f"board.actuators.FAN.pin is pin {pin}: its PWM needs timer {timer}")
+    assert f"which {first} uses." in sentence
 
 
 @pytest.mark.parametrize(("name", "old", "pin", "code"), [
@@ -209,8 +209,8 @@ def test_pins_of_esp32s(name: str, old: str, pin: int, code: str) -> None:
     refused = refusal(text)
     assert codes(refused) == [code]
     if name == "tinibot32" and code in ("pin_at_boot", "pin_of_reset"):
-        said = describe(refused, "en")[0]
-        assert said.endswith(" 2, 4, 13, 16, 17, 18, 19, 21, 22, 23, 25, 26, 27, 32, 33.")
+        sentence = describe(refused, "en")[0]
+        assert sentence.endswith(" 2, 4, 13, 16, 17, 18, 19, 21, 22, 23, 25, 26, 27, 32, 33.")
 
 
 def test_pwm_of_an_esp32_c3() -> None:
@@ -304,7 +304,7 @@ def test_another_name_in_the_kit_names_the_tables_that_need_it_too() -> None:
     said = describe(refusal(edited("tinibot", 'name = "DISTANCE"', 'name = "DISTANCIA"')), "en")
     assert [each.partition(":")[0] for each in said] == [
         "board.sensors.DISTANCE", "body.sensors.DISTANCE",
-        *(f"labels.{each}.DISTANCE" for each in robots.load("tinibot").labels),
+        *(f"labels.{label}.DISTANCE" for label in robots.load("tinibot").labels),
     ]  # fmt: skip
     assert all(each.endswith("Did you mean DISTANCIA?") for each in said)
 
@@ -392,12 +392,12 @@ def test_nothing_but_a_refusal_comes_of_a_broken_profile(seed: int) -> None:
     for _ in range(50):
         name = chance.choice(sorted(TEXTS))
         try:
-            found = read(mutated(TEXTS[name], chance), name)
+            robot = read(mutated(TEXTS[name], chance), name)
         except ProfileRefused as refused:
             assert refused.reasons
             for language in LANGUAGES:
                 for sentence in describe(refused, language):
                     assert sentence.isprintable()
         else:
-            assert isinstance(found, Robot)
-            assert 1 <= found.kit.fingerprint <= 0xFFFF
+            assert isinstance(robot, Robot)
+            assert 1 <= robot.kit.fingerprint <= 0xFFFF

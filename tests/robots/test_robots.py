@@ -52,7 +52,7 @@ def test_a_shipped_robot_is_what_its_toml_says(name: str) -> None:
 
 def test_the_default_is_the_robot_of_the_paper() -> None:
     robot = robots.load(robots.DEFAULT)
-    seen = [(each.name, each.unit, each.low, each.high) for each in robot.kit.sensors]
+    seen = [(sensor.name, sensor.unit, sensor.low, sensor.high) for sensor in robot.kit.sensors]
     assert seen == [
         ("LIGHT_R", "", 0, 1_023_000),
         ("LIGHT_L", "", 0, 1_023_000),
@@ -70,8 +70,8 @@ def test_a_shipped_robot_needs_no_toml() -> None:
     )
     environment = {**os.environ, "PYTHONPATH": str(FOLDER.parents[1])}
     command = [sys.executable, "-c", program]
-    found = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    assert found.stdout.strip() == ""
+    completed = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert completed.stdout.strip() == ""
 
 
 # ---- the fingerprint
@@ -117,7 +117,7 @@ def test_the_fingerprint_sees_names_kinds_and_order() -> None:
         'driver = "analog"', 'driver = "digital"', 1
     )
     texts = [swapped.replace("LIGHT_X", "LIGHT_L"), renamed, other_kind]
-    found = {read(each, "x").kit.fingerprint for each in texts}
+    found = {read(text, "x").kit.fingerprint for text in texts}
     assert len(found) == 3
     assert FINGERPRINTS["tinibot"] not in found
 
@@ -200,8 +200,8 @@ def test_a_file_may_have_any_name_a_bom_and_crlf(
     text = TEXTS["tinibot"].replace("\n", "\r\n")
     (tmp_path / "mine").write_bytes(b"\xef\xbb\xbf" + text.encode())
     monkeypatch.chdir(tmp_path)
-    found = robots.load("mine")
-    assert found == robots.load("tinibot")._replace(name="mine")
+    robot = robots.load("mine")
+    assert robot == robots.load("tinibot")._replace(name="mine")
 
 
 # ---- tables of the boards
@@ -216,7 +216,7 @@ def test_every_driver_is_for_something_and_needs_what_chips_know() -> None:
     assert all(drivers_for(used_by) for used_by in uses)
     for driver in DRIVERS.values():
         assert all(pin.need in NEEDS for pin in driver.pins)
-        assert all(each.low <= each.default <= each.high for each in driver.settings)
+        assert all(setting.low <= setting.default <= setting.high for setting in driver.settings)
 
 
 @pytest.mark.parametrize("chip", CHIPS.values(), ids=list(CHIPS))

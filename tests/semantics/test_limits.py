@@ -63,9 +63,11 @@ def test_what_just_fits_and_what_does_not(
     made: Callable[[int], str], limit: int, code: Code
 ) -> None:
     fitting = compile_text(made(limit), KIT)
-    assert fitting.is_right and fitting.image, [each.code.number for each in fitting.diagnostics]
+    assert fitting.is_right and fitting.image, [
+        diagnostic.code.number for diagnostic in fitting.diagnostics
+    ]
     found = check_text(made(limit + 1), KIT)
-    assert {each.code for each in found.diagnostics if each.is_mistake} == {code}
+    assert {diagnostic.code for diagnostic in found.diagnostics if diagnostic.is_mistake} == {code}
     assert found.diagnostics[0].values.get("limit", str(limit)) == str(limit)
 
 

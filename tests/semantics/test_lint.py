@@ -234,10 +234,10 @@ def test_a_row_reports_its_codes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_kit_without_numbers_has_a_usual_speed() -> None:
     """Centimetres were meant there, too; as it has no CM, the message offers none."""
     kit = KIT._replace(speed=0, turn=0)
-    (found,) = check_text("F(20, 60)", kit).diagnostics
-    assert found.code.number == "TS811"
-    assert "centimetres" in found.values
-    assert "way" not in found.values
+    (diagnostic,) = check_text("F(20, 60)", kit).diagnostics
+    assert diagnostic.code.number == "TS811"
+    assert "centimetres" in diagnostic.values
+    assert "way" not in diagnostic.values
     assert check_text("F(20, 30);F(19, 60)", kit).diagnostics == []
 
 

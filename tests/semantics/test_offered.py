@@ -16,7 +16,7 @@ from tiniscript.diagnostics.rendering import message
 
 WARNED = re.compile(r"[0-9]+ TS8")
 PROGRAMS = [text for text, _ in ADVISED]
-PROGRAMS += [each.program for each in entries() if any(map(WARNED.match, each.said))]
+PROGRAMS += [entry.program for entry in entries() if any(map(WARNED.match, entry.said))]
 PROGRAMS += [
     program.format(move=move, q=question, d=question.replace("DISTANCE", "D"))
     for program in (
@@ -64,13 +64,13 @@ def repaired(text: str, warning: Diagnostic) -> str:
 
 def new_in(text: str) -> list[tuple[str, str]]:
     """Return the repairs of a program's warnings that make a new warning or mistake, with those."""
-    found = check(text)
-    before = Counter(each.code for each in found)
+    diagnostics = check(text)
+    before = Counter(diagnostic.code for diagnostic in diagnostics)
     wrong = []
-    for each in found:
-        after = "" if each.is_mistake else repaired(text, each)
+    for diagnostic in diagnostics:
+        after = "" if diagnostic.is_mistake else repaired(text, diagnostic)
         new = Counter(other.code for other in check(after)) - before if after else Counter()
-        new -= Counter(COMES_TO_LIGHT.get(each.code, ()))
+        new -= Counter(COMES_TO_LIGHT.get(diagnostic.code, ()))
         wrong += [(after, code.number) for code in new]
     return wrong
 
@@ -99,7 +99,7 @@ def test_no_repair_of_a_warning_makes_a_new_one() -> None:
     ],
 )  # fmt: skip
 def test_what_is_offered(text: str, fix: str) -> None:
-    offered = [message(each, Source(text), "en").fix for each in check(text)]
+    offered = [message(diagnostic, Source(text), "en").fix for diagnostic in check(text)]
     assert fix in offered[-1]
 
 

@@ -10,7 +10,7 @@ import pytest
 from tests.machines.text_reader import NO_DEFS, TextReader
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
-from tests.vm.test_programs_of_0_2_0 import programs
+from tests.vm.test_programs_of_releases import programs
 from tiniscript import robots
 from tiniscript.base import kit as kits
 from tiniscript.base.fixed_point import ONE
@@ -39,8 +39,8 @@ def kit_of(count: int) -> Kit:
     return Kit(sensors, (Device("LAMP", YES_NO, "", 0, 1),))
 
 
-def told(compiled: Compiled) -> list[str]:
-    return [each.code.number for each in compiled.diagnostics]
+def codes_of(compiled: Compiled) -> list[str]:
+    return [diagnostic.code.number for diagnostic in compiled.diagnostics]
 
 
 # -- what programs of before see of it ----------------------------------------------------------
@@ -50,7 +50,7 @@ def test_the_contract_has_eight_in_this_order() -> None:
     keys = ["KEY_UP", "KEY_DOWN", "KEY_LEFT", "KEY_RIGHT", "KEY_A", "KEY_B"]
     assert [*keys, "PAD_X", "PAD_Y"] == NAMES
     assert [device.is_yes_no for device in REMOTE] == [True] * 6 + [False] * 2
-    assert {(each.low, each.high) for each in REMOTE[6:]} == {(-100 * ONE, 100 * ONE)}
+    assert {(device.low, device.high) for device in REMOTE[6:]} == {(-100 * ONE, 100 * ONE)}
 
 
 def test_a_program_that_asks_none_of_them_has_the_image_that_it_had(
@@ -79,7 +79,7 @@ def test_a_program_that_asks_none_of_them_has_the_image_that_it_had(
 
 
 @pytest.mark.parametrize("name", robots.names())
-def test_they_come_behind_the_sensors_of_each_robot(name: str) -> None:
+def test_they_come_after_the_sensors_of_each_robot(name: str) -> None:
     kit = robots.load(name).kit
     made = compile_text("; ".join(f"SHOW({each})" for each in NAMES), kit)
     assert made.is_right and made.verdict is not None
@@ -87,7 +87,7 @@ def test_they_come_behind_the_sensors_of_each_robot(name: str) -> None:
     uses = dict.fromkeys(made.verdict.uses)
     assert [*uses] == [("sensor", first + k) for k in range(8)]
     rows = [row.partition(" ; ")[2] for row in disassemble(made.code, kit=kit).splitlines()]
-    assert [*dict.fromkeys(each for each in rows if each)] == NAMES
+    assert [*dict.fromkeys(row for row in rows if row)] == NAMES
 
 
 @pytest.mark.parametrize("count", [0, 1, 7, 8])
@@ -96,7 +96,7 @@ def test_a_kit_with_room_has_them_on_both_machines(count: int) -> None:
 
     kit = kit_of(count)
     made = compile_text("LAMP(KEY_B);SHOW(PAD_Y)", kit)
-    assert made.is_right, told(made)
+    assert made.is_right, codes_of(made)
     senses = {count + 5: [1], count + 7: [-3 * ONE]}
     want = [
         "0 READ KEY_B TRUE", "0 SET LAMP TRUE", "0 READ PAD_Y -3", "0 SHOW -3", "0 DONE",
@@ -104,7 +104,7 @@ def test_a_kit_with_room_has_them_on_both_machines(count: int) -> None:
     code = unpack(made.image).code
     for machine in (machine_of, WasmImage(made.image, kit).machine):
         *events, _ = run_code(code, kit, Senses(kit, senses), machine_of=machine)
-        assert [str(each) for each in events] == want
+        assert [str(event) for event in events] == want
 
 
 @pytest.mark.parametrize("count", [9, 16, 32])
@@ -112,7 +112,7 @@ def test_a_kit_without_room_has_none_of_them(count: int) -> None:
     kit = kit_of(count)
     assert kit.readings == kit.sensors and kit.hashes == kit_of(count).hashes
     for name in NAMES:
-        assert told(compile_text(f"SHOW({name})", kit)) == [codes.UNKNOWN_NAME.number]
+        assert codes_of(compile_text(f"SHOW({name})", kit)) == [codes.UNKNOWN_NAME.number]
         made = compile_text(f"{name} = 1;SHOW({name})", kit)
         assert made.is_right and not made.diagnostics
 
@@ -144,7 +144,7 @@ def test_a_word_of_the_profile_stays_what_it_is_there(is_actuator: bool) -> None
     assert made.is_right and made.verdict is not None
     assert made.verdict.uses == (("actuator" if is_actuator else "sensor", 0),)
     wanted = codes.ACTUATOR_SET if is_actuator else codes.SENSOR_SET
-    assert told(compile_text("KEY_A = TRUE", kit)) == [wanted.number]
+    assert codes_of(compile_text("KEY_A = TRUE", kit)) == [wanted.number]
     other = compile_text("SHOW(KEY_B)", kit)
     assert other.verdict is not None
     assert other.verdict.uses == (("sensor", 5 if is_actuator else 6),)
@@ -167,7 +167,7 @@ GIVES_WAY = {
     "set where nothing comes": "IF(FALSE);{n} = 3;ENDIF;SHOW({n})",
     "set in a task": "TASK;{n} = TRUE;LED_IS = {n};SHOW(LED_IS);END_TASK",
     "over two lines": "SI|{n} = (1 +\n 2)\nSHOW({n})",
-    "behind a note that names it": "// {n} is mine\n{n} = 3;SHOW({n})",
+    "after a note that names it": "// {n} is mine\n{n} = 3;SHOW({n})",
     "a DEF": "DEF {n};S;END_DEF;{n}",
     "a DEF with a value": "DEF {n}(A);SHOW(A);END_DEF;{n}(2)",
     "a value of a DEF": "DEF DO_IT({n});{n} = {n} + 1;SHOW({n});END_DEF;DO_IT(3)",
@@ -198,11 +198,11 @@ def test_what_compiled_before_compiles_still(role: str, name: str) -> None:
     """With a warning where the name first stands, and with the code of any other name."""
     text = written(GIVES_WAY[role], name)
     made = compile_text(text, TINIBOT)
-    assert made.is_right, told(made)
-    warned = [each for each in made.diagnostics if each.code is codes.GIVES_WAY]
+    assert made.is_right, codes_of(made)
+    warned = [diagnostic for diagnostic in made.diagnostics if diagnostic.code is codes.GIVES_WAY]
     place = re.search(rf"{name}", re.sub("//.*", lambda it: " " * len(it[0]), text))
     assert place is not None
-    assert [each.span for each in warned] == [place.span()]
+    assert [diagnostic.span for diagnostic in warned] == [place.span()]
     assert warned[0].values["since"] == KIT_WORDS_SINCE[name] == "0.3"
     assert made.image == compile_text(text.replace(name, MINE), TINIBOT).image
     assert compile_text(text.lower(), TINIBOT).image == made.image
@@ -213,7 +213,7 @@ def test_what_compiled_before_compiles_still(role: str, name: str) -> None:
 def test_what_was_no_name_before_is_the_remote_control(role: str, name: str) -> None:
     text, wanted = STAYS[role]
     made = compile_text(written(text, name), TINIBOT)
-    assert told(made) == [each.number for each in wanted]
+    assert codes_of(made) == [code.number for code in wanted]
 
 
 @pytest.mark.parametrize("name", ["DISTANCE", "LIGHT_L"])
@@ -221,12 +221,12 @@ def test_a_word_of_0_2_0_never_gives_way(name: str) -> None:
     mistakes = {"a variable": codes.SENSOR_SET, "a DEF": codes.NAME_TAKEN,
                 "a value of a DEF": codes.PARAMETER_TAKEN}  # fmt: skip
     for role, code in mistakes.items():
-        assert code.number in told(compile_text(GIVES_WAY[role].format(n=name), TINIBOT))
+        assert code.number in codes_of(compile_text(GIVES_WAY[role].format(n=name), TINIBOT))
 
 
 def test_a_name_is_the_programs_own_in_the_whole_of_it() -> None:
     made = compile_text("DEF DO_IT(KEY_A);SHOW(KEY_A);END_DEF;DO_IT(1);IF(KEY_A);S;ENDIF", TINIBOT)
-    assert told(made) == [codes.UNKNOWN_NAME.number]
+    assert codes_of(made) == [codes.UNKNOWN_NAME.number]
     made = compile_text("KEY_A = 1;IF(KEY_B);SHOW(KEY_A);ENDIF", TINIBOT)
     assert made.is_right and made.verdict is not None and made.verdict.uses == (("sensor", 8),)
 
@@ -238,7 +238,7 @@ def test_a_robot_reads_them_as_tsc_does(flags: tuple[str, ...]) -> None:
     texts = [*GIVES_WAY.values(), *(text for text, _ in STAYS.values()), "SHOW({n})", "{n}",
              "W(1) UNTIL({q})", "{n} = 0;SHOW({n} + 1);{n} = 3"]  # fmt: skip
     read = 0
-    for text in (written(each, name) for each in texts for name in NAMES):
+    for text in (written(text, name) for text in texts for name in NAMES):
         if flags and ("DEF" in text or "TASK" in text):
             continue
         made = compile_text(text, TINIBOT)
@@ -322,5 +322,5 @@ def test_the_example_runs_and_is_that_of_the_documents() -> None:
 def test_a_stick_at_rest_may_be_asked_for() -> None:
     """It reads exactly 0 then, and hardly ever another number that is asked for."""
     assert not compile_text("IF(PAD_X = 0);SHOW(1);ENDIF", TINIBOT).diagnostics
-    assert told(compile_text("IF(PAD_X = 50);SHOW(1);ENDIF", TINIBOT)) == [codes.EXACT.number]
+    assert codes_of(compile_text("IF(PAD_X = 50);SHOW(1);ENDIF", TINIBOT)) == [codes.EXACT.number]
     assert REMOTE[-1].kind == NUMBER

@@ -12,7 +12,7 @@ KIT = robots.load("tinibot").kit
 
 def offered(text: str) -> list[object]:
     """Return for each mistake what may stand there instead."""
-    return [each.values.get("fix") for each in check_text(text, KIT).diagnostics]
+    return [diagnostic.values.get("fix") for diagnostic in check_text(text, KIT).diagnostics]
 
 
 @pytest.mark.parametrize(("length", "fix"), [(78, "X = 6"), (80, "X = 6"), (81, None), (82, None)])
@@ -28,7 +28,11 @@ def test_where_in_a_program_a_question_stands_does_not_matter() -> None:
 
 
 def test_a_name_of_two_sensors_is_told_which_until_there_are_enough_mistakes() -> None:
-    found = check_text(";".join(["SHOW(LIGHT)"] * (ENOUGH + 3)), KIT).diagnostics
-    assert len(found) == ENOUGH + 3
-    assert found[0].values["first"] == "LIGHT_R" and found[0].values["second"] == "LIGHT_L"
-    assert ["first" in each.values for each in found] == [True] * ENOUGH + [False] * 3
+    diagnostics = check_text(";".join(["SHOW(LIGHT)"] * (ENOUGH + 3)), KIT).diagnostics
+    assert len(diagnostics) == ENOUGH + 3
+    assert (
+        diagnostics[0].values["first"] == "LIGHT_R" and diagnostics[0].values["second"] == "LIGHT_L"
+    )
+    assert ["first" in diagnostic.values for diagnostic in diagnostics] == [True] * ENOUGH + [
+        False
+    ] * 3

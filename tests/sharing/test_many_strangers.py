@@ -129,7 +129,7 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
         out, err = command.communicate(timeout=HANGS_S)
         assert command.returncode == 3
         assert b"was stopped from a computer" in out + err
-        # Nobody holds it: a caller is let in behind those who came before, 256 a second at most.
+        # Nobody holds it: a caller is let in after those who came before, 256 a second at most.
         # Half a greeting is text to it, and whoever types holds the robot.
         with visitors(places[0][2], kind, min(count, TESTED)):
             done = process("stop", "--port", port)

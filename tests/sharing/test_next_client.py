@@ -79,7 +79,7 @@ class SteppedLine:
 
     def step(self) -> None:
         self.robot_itself.talk(self.session, STEP_MS)
-        self._on_events([(self.robot_itself.now_ms, each) for each in self.session.events()])
+        self._on_events([(self.robot_itself.now_ms, event) for event in self.session.events()])
 
 
 class Client:
@@ -154,15 +154,15 @@ def desk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
         finally:
             for client in found.clients:
                 client.socket.close()
-            for each in found.server._names:
-                registry.remove(each)
+            for name in found.server._names:
+                registry.remove(name)
             found.server._close_all()
 
 
 def upload(text: str, is_detached: bool = False) -> Json:
     image = image_of(text)
     given = image._asdict() | {"isa": bytes(image.isa)}
-    made = {k: each.hex() if isinstance(each, bytes) else each for k, each in given.items()}
+    made = {k: value.hex() if isinstance(value, bytes) else value for k, value in given.items()}
     return {**made, "runs": True, "saves": False, "is_detached": is_detached, "kit": 0}
 
 

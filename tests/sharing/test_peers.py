@@ -123,9 +123,9 @@ def test_another_user_moves_nothing(how: str) -> None:
         number = found.port.rpartition(":")[2]
         words = [sys.executable, "-I", "-c", STRANGER, number, how, LINE.hex()]
         for _ in range(3):
-            done = subprocess.run(words, capture_output=True, text=True, timeout=HANGS_S)
-            assert done.returncode == 0, done.stderr
-            assert done.stdout.strip() == ("0" if how == "stays" else "")
+            completed = subprocess.run(words, capture_output=True, text=True, timeout=HANGS_S)
+            assert completed.returncode == 0, completed.stderr
+            assert completed.stdout.strip() == ("0" if how == "stays" else "")
         time.sleep(1)
         with visitor(found.port) as own:
             own.settimeout(HANGS_S)
@@ -163,7 +163,7 @@ def test_whoever_listens_at_a_port_has_its_user(monkeypatch: pytest.MonkeyPatch)
 def test_a_robot_at_whose_port_another_user_listens_is_none(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """As behind a crash: its file is still there."""
+    """As after a crash: its file is still there."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         number = server.getsockname()[1]
         address = f"socket://127.0.0.1:{number}"
@@ -236,7 +236,7 @@ def test_the_token_is_in_one_private_file() -> None:
         for path in files.cache_folder().rglob("*"):
             if path.is_file():
                 content = path.read_bytes()
-                having += [path] if any(each in content for each in secrets) else []
+                having += [path] if any(secret in content for secret in secrets) else []
                 seen.append(str(path).encode())
         assert process("stop", "--port", port).code == 0
         seen += command.communicate(timeout=HANGS_S)
@@ -325,14 +325,14 @@ def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
     )
     registry.write(now)
     real = registry._read
-    asked = []
+    paths = []
 
     def read(path: Path) -> Registration | None:
-        asked.append(path)
-        return before if len(asked) == 1 else real(path)
+        paths.append(path)
+        return before if len(paths) == 1 else real(path)
 
     with monkeypatch.context() as patch:
         patch.setattr(registry, "_read", read)
         registry.remove(before)
-    assert len(asked) == 2
+    assert len(paths) == 2
     assert registry.found("/dev/x") == now

@@ -89,10 +89,10 @@ def server(line: FakeLine) -> Iterator[Server]:
 @pytest.fixture
 def command(server: Server) -> Iterator[SharedConnection]:
     """Another command, which shares the port."""
-    found = joined(PORT, "upload")
-    assert found is not None
-    with closing(found):
-        yield found
+    shared_connection = joined(PORT, "upload")
+    assert shared_connection is not None
+    with closing(shared_connection):
+        yield shared_connection
 
 
 def heard(command: SharedConnection, name: str) -> None:
@@ -108,7 +108,9 @@ def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
     line.address = "socket://127.0.0.1:7007"
     with closing(Server(cast(PortConnection, line), PORT, 9600, "link")) as server:
         own = server.registration
-        assert [each for each in registry.all_found() if each.token == own.token] == [own]
+        assert [
+            registration for registration in registry.all_found() if registration.token == own.token
+        ] == [own]
         other = registry.found(line.address)
         assert other is not None and other.token == own.token
 
@@ -188,8 +190,10 @@ def test_each_client_presses_keys_of_its_own_and_lets_go_when_it_leaves(
     line: FakeLine, command: SharedConnection
 ) -> None:
     def pressed() -> list[tuple[object, object]]:
-        messages = [cast(ClientRequest[Any], each).message for each in line.asked]
-        return [(each["speaker"], each["keys"]) for each in messages]
+        messages = [
+            cast(ClientRequest[Any], pending_request).message for pending_request in line.asked
+        ]
+        return [(message["speaker"], message["keys"]) for message in messages]
 
     command.do(lambda requests: requests.press(1))
     until(lambda: len(line.asked) == 1, "the first word arrives")

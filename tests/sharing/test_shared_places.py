@@ -36,8 +36,10 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
         assert client.wait(client.do(lambda session: session.hello())).status == OK
         request = client.do(lambda session: session.upload(image, saves=False))
         assert client.wait(request).status == OK
-        places = [each for each in until_done(client) if isinstance(each, PlaceEvent)]
-        assert len(places) == 2 and {each.program for each in places} == {image.checksum}
+        places = [
+            place_event for place_event in until_done(client) if isinstance(place_event, PlaceEvent)
+        ]
+        assert len(places) == 2 and {place.program for place in places} == {image.checksum}
         assert places[0].at < places[1].at < len(image.code)
         for connection in (other, shared.line):
             assert "PLACE" not in {each.name for each in until_done(connection)}

@@ -318,8 +318,10 @@ def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
         server.process.communicate()
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     with socket.create_server((protocol.HOST, 0)) as holding:
-        found = Registration(pty_robot.port, holding.getsockname()[1], "a", "b", "link", 9600, 1)
-        registry.write(found)
+        registration = Registration(
+            pty_robot.port, holding.getsockname()[1], "a", "b", "link", 9600, 1
+        )
+        registry.write(registration)
         stop = Command("stop", "--port", pty_robot.port)
         peer, _ = holding.accept()
         with peer:
@@ -352,12 +354,12 @@ def test_of_three_who_want_a_place_one_gets_it(
     wanted = pty_robot.port if place == "port" else request.getfixturevalue("address")
     commands = [Command("monitor", "--hold", "--port", wanted) for _ in range(3)]
     pty_robot.until(
-        lambda: sum(each.process.poll() is not None for each in commands) == 2, "one stays"
+        lambda: sum(command.process.poll() is not None for command in commands) == 2, "one stays"
     )
-    [holder] = [each for each in commands if each.process.poll() is None]
-    losers = [each.ended() for each in commands if each is not holder]
-    assert [done.code for done in losers] == [3, 3]
-    assert all("shared already" in done.err for done in losers)
+    [holder] = [command for command in commands if command.process.poll() is None]
+    losers = [command.ended() for command in commands if command is not holder]
+    assert [loser.code for loser in losers] == [3, 3]
+    assert all("shared already" in loser.err for loser in losers)
     assert process("stop", "--port", wanted).code == 0
     holder.signal(signal.SIGINT)
     done = holder.ended()

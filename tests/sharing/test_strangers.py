@@ -87,9 +87,9 @@ def say_all(port: str, seed: int, count: int) -> None:
 
 
 def registration_of(port: str) -> Registration:
-    found = registry.found(port)
-    assert found is not None
-    return found
+    registration = registry.found(port)
+    assert registration is not None
+    return registration
 
 
 def test_no_bytes_of_a_stranger_end_a_run_or_its_server(pty_robot: PtyRobot, link: Command) -> None:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return once(
         shared(tmp_path_factory) / "site",
-        lambda made: site.build(ROOT, made, has_studio=not studio_build.stale()),
+        lambda path: site.build(ROOT, path, has_studio=not studio_build.stale()),
     )
 
 
@@ -83,15 +83,15 @@ def visitor(browser: Browser, address: str) -> Iterator[Page]:
 
 def test_every_document_is_on_the_site_and_in_a_part_of_it(built: Path) -> None:
     found = documents(ROOT, built_texts())
-    there = {source for each in found for source in each.sources.values()}
+    there = {source for document in found for source in document.sources.values()}
     paths = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"),
              *ROOT.glob("compiler/tiniscript/lessons/*/*.md")]  # fmt: skip
     kept = {path.relative_to(ROOT).as_posix() for path in paths}
     assert kept | {name for name in built_texts() if name.endswith(".md")} == there
-    assert {each.part for each in found} == set(PARTS)
-    for each in found:
-        for language in each.sources:
-            assert (built / language / f"{each.name}.html").is_file()
+    assert {document.part for document in found} == set(PARTS)
+    for document in found:
+        for language in document.sources:
+            assert (built / language / f"{document.name}.html").is_file()
 
 
 @pytest.fixture
@@ -107,7 +107,9 @@ def clone(tmp_path: Path) -> Path:
 def test_a_link_that_leads_nowhere_ends_the_build(
     clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    few = [each for each in documents(ROOT) if each.name in ("link", "store")]  # in English alone
+    few = [
+        document for document in documents(ROOT) if document.name in ("link", "store")
+    ]  # in English alone
     monkeypatch.setattr(site, "documents", lambda root, built: few)
     store = clone / "docs" / "develop" / "store.md"
     text = "# A title\n"
@@ -179,11 +181,11 @@ def test_nothing_is_wider_than_a_phone(visitor: Page, address: str, part: int) -
     visitor.set_viewport_size({"width": 390, "height": 844})
     visitor.goto(address)
     wide = [address] if _is_too_wide(visitor) else []
-    for each in documents(ROOT, built_texts())[part::4]:
-        for language in each.sources:
-            visitor.goto(f"{address}{language}/{each.name}.html", wait_until="domcontentloaded")
+    for document in documents(ROOT, built_texts())[part::4]:
+        for language in document.sources:
+            visitor.goto(f"{address}{language}/{document.name}.html", wait_until="domcontentloaded")
             if _is_too_wide(visitor):
-                wide.append(f"{language}/{each.name}")
+                wide.append(f"{language}/{document.name}")
     assert wide == []
 
 

@@ -162,7 +162,7 @@ def same(want: Signal, got: Signal, end: float, near: float, apart: float = 0) -
             wrong.append(f"{value} from {at} to {until}, but {inner[:4]}")
     for at, until, value in theirs:
         around = [v for a, u, v in ours if a < until + near and u > at - near]
-        if at > end - near:  # what comes behind the end
+        if at > end - near:  # what comes after the end
             continue
         if until - at > 2 * near and not any(agree(value, v) for v in around):
             wrong.append(f"{value} from {at:.1f} to {until:.1f} is not in the trace")
@@ -297,8 +297,8 @@ def check(example: Example, robot: Robot, language: str = "en") -> None:
     assert found.program is not None and found.is_right
     board = SketchBoard(robot, sketch_of(found.source, found.program, robot, language))
     pins = {
-        each.name: wiring.pins
-        for each, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True)
+        device.name: wiring.pins
+        for device, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True)
     }
     for name in ("LIGHT_R", "LIGHT_L", "TEMPERATURE", "LINE"):
         board.count(pins[name]["pin"], [example.counts[name]])

@@ -215,7 +215,10 @@ def test_a_button_starts_and_stops() -> None:
     robot = with_wide_kit()
     text = "SB|LED(TRUE);GRIPPER(90);F(5, 50);SHOW(1)"
     board = SketchBoard(robot, sketch(text, robot))
-    button, pins = robot.board.start_button, [each.pins["pin"] for each in robot.board.actuators]
+    button, pins = (
+        robot.board.start_button,
+        [actuator.pins["pin"] for actuator in robot.board.actuators],
+    )
     for ms, is_high in ((100, False), (200, True), (500, False), (600, True)):
         board.level(ms, button, is_high)
     done = board.ran(900)

@@ -167,7 +167,7 @@ const PARTS = {
         chance.of([() => ask.click(), () => quit.click(), () => hand.click(), () => {}])();
         await passes(chance.below(1500));
       }
-      if (!isGood && chance() < 0.7) chance.of([ask, quit, hand]).click(); // whose answer may come behind the end
+      if (!isGood && chance() < 0.7) chance.of([ask, quit, hand]).click(); // whose answer may come after the end
       ends = end;
       for (let k = chance.below(isGood ? 1 : 4); k > 0; k -= 1) chance.of([ask, quit, hand]).click();
       while (!isGood && join.hidden) await passes(50 + chance.below(50));

@@ -103,7 +103,7 @@ def test_nothing_of_a_broken_text_is_lost(first: int) -> None:
 
 
 def test_what_pupils_write_becomes_blocks_and_text() -> None:
-    for text in sorted({each.program for each in corpus.entries()}):
+    for text in sorted({entry.program for entry in corpus.entries()}):
         form = read(text, TINIBOT)
         again = print_blocks(read(print_blocks(form).text, TINIBOT)).text
         assert print_blocks(read(again, TINIBOT)).text == again, text
@@ -185,11 +185,11 @@ def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch)
     text = ";".join(of_word(word) for word in WORDS if WORDS[word].role.name not in left_out)
     text += ";F(1, 2) UNTIL(TRUE)"
     text += ";X = 1;HOP;LED(TRUE);DISTANCE;LOOP(FOREVER);END_LOOP\n// note\nF("
-    found = in_order(read(text, TINIBOT).body)
-    assert {block.kind for block in found} == {
+    blocks = in_order(read(text, TINIBOT).body)
+    assert {block.kind for block in blocks} == {
         kind.name for kind in KINDS.values() if not kind.gives
     }
-    for block in found:
+    for block in blocks:
         if block.kind != "if":
             kind = KINDS[block.kind]
             assert (len(block.values), len(block.bodies)) == (len(kind.values), kind.bodies), block
@@ -322,11 +322,11 @@ def test_the_beginning_of_a_program_is_of_its_first_blocks(program: Program) -> 
             assert found == form
             continue
         assert first.pop() == LEFT_OUT and found.loose == ()
-        assert [(each.kind, each.word) for each in first] == [
-            (each.kind, each.word) for each in whole[: len(first)]
+        assert [(block.kind, block.word) for block in first] == [
+            (block.kind, block.word) for block in whole[: len(first)]
         ]
-        assert [len(each.bodies) for each in first] == [
-            len(each.bodies) for each in whole[: len(first)]
+        assert [len(block.bodies) for block in first] == [
+            len(block.bodies) for block in whole[: len(first)]
         ]
 
 

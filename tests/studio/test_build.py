@@ -210,7 +210,7 @@ def test_firmware_is_beside_the_page_and_in_no_count(
     monkeypatch.setattr(ready, "files", lambda: [brought])
     studio.bring_firmware(tmp_path / "page")
     given = serving.with_firmware({})
-    assert {each.name for each in (tmp_path / "page").iterdir()} == set(given)
+    assert {path.name for path in (tmp_path / "page").iterdir()} == set(given)
     for name, file in given.items():
         assert (tmp_path / "page" / name).read_bytes() == file.data
     [row] = json.loads(given[serving.FIRMWARE].data)

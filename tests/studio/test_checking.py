@@ -34,8 +34,10 @@ def test_messages_are_those_of_the_command_and_repairs_help(first: int, part: in
     for k, entry in enumerate(corpus.entries()[part::6]):
         language = LANGUAGES[(first + k) % len(LANGUAGES)]
         found = checking.check(entry.program.encode(), "tinibot", language)
-        told = [each.message for each in found.findings if each.message.code not in LACKING]
-        assert told == said(entry.program, language)
+        messages = [
+            finding.message for finding in found.findings if finding.message.code not in LACKING
+        ]
+        assert messages == said(entry.program, language)
         for repair in buttons(entry.program):
             if repair:
                 offered += 1
@@ -99,7 +101,7 @@ def test_a_button_does_what_the_message_names(program: str, wanted: str) -> None
     assert (changed_by(program, repair) if repair else "") == wanted
     if wanted:
         assert finding.message not in check(wanted)
-        assert not [each for each in check(wanted) if each.severity == "mistake"]
+        assert not [message for message in check(wanted) if message.severity == "mistake"]
     kit = robots.load("tinibot").kit
     left = fixed(program, lambda text: compile_text(text, kit).diagnostics)
     assert wanted.startswith("B(") or left.text == program  # -2 seconds forward are 2 back
@@ -126,8 +128,8 @@ def test_some_mistakes_are_not_repaired() -> None:
 
 def test_a_file_is_read_as_the_command_reads_it_or_gets_a_sentence() -> None:
     for data in (b"\xff\xfe", b"F(2\0, 80)", b"x" * 1_000_001):
-        found = checking.opened(data, "tinibot", "es")
-        assert isinstance(found, Message) and found.message, data[:9]
+        message = checking.opened(data, "tinibot", "es")
+        assert isinstance(message, Message) and message.message, data[:9]
     assert checking.opened("\ufeffSI|F(2, 80)\r\n".encode(), "liner", "en") == "SI|F(2, 80)\r\n"
 
 
@@ -198,8 +200,8 @@ def test_the_page_knows_every_robot_and_its_words() -> None:
     assert found["worlds"][0]["name"] == "obstacles"
 
 
-def mistakes(found: list[Message]) -> int:
-    return sum(each.severity == "mistake" for each in found)
+def mistakes(messages: list[Message]) -> int:
+    return sum(message.severity == "mistake" for message in messages)
 
 
 def changed_by(text: str, changes: tuple[checking.Change, ...]) -> str:
@@ -233,7 +235,7 @@ def test_a_variable_is_a_yes_no_however_its_value_gets_there(
     program: str, yes_no: list[str]
 ) -> None:
     variables = checking.check(program.encode(), "tinibot", "en").variables
-    assert {each.name for each in variables if each.is_yes_no} == set(yes_no)
+    assert {variable.name for variable in variables if variable.is_yes_no} == set(yes_no)
 
 
 @pytest.mark.parametrize("wrong", ["", "F(1, 800)"])
@@ -249,9 +251,11 @@ def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
 
     monkeypatch.setattr(checking, "compile_source", counted)
     text = ";\n".join(f"IF(DISTANCE < {k});R(90, 60);END_IF" for k in range(1, 101)) + f";\n{wrong}"
-    found = checking.check(text.encode(), "tinibot", "en").findings
-    assert len(texts) == 1 and sum(each.may_repair for each in found) == (1 if wrong else OFFERS)
-    which = next(k for k, each in enumerate(found) if each.may_repair)
+    findings = checking.check(text.encode(), "tinibot", "en").findings
+    assert len(texts) == 1 and sum(finding.may_repair for finding in findings) == (
+        1 if wrong else OFFERS
+    )
+    which = next(k for k, finding in enumerate(findings) if finding.may_repair)
     assert checking.repair(text.encode(), "tinibot", which)
     assert len(texts) == 2, "the text that is known is not compiled again"
     checking.check(b"S", "tinibot", "en")
@@ -261,8 +265,8 @@ def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
 
 def buttons(program: str) -> list[tuple[checking.Change, ...]]:
     """Return what the button of each finding does, as the page asks for it."""
-    found = checking.check(program.encode(), "tinibot", "en").findings
+    findings = checking.check(program.encode(), "tinibot", "en").findings
     return [
-        checking.repair(program.encode(), "tinibot", k) if each.may_repair else ()
-        for k, each in enumerate(found)
+        checking.repair(program.encode(), "tinibot", k) if finding.may_repair else ()
+        for k, finding in enumerate(findings)
     ]

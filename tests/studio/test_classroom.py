@@ -541,8 +541,8 @@ def test_the_teacher_chooses_between_an_impostor_and_who_comes_later() -> None:
     room.teaches("class_bring", name="Ana", **WORK)
     eve, ana = room.joins("Ana", "192.0.2.66"), room.joins("\u0410na")  # with a letter of Russian
     pupils = room.teaches("class")["pupils"]
-    assert [each["name"] for each in pupils] == ["Ana", "\u0410na (2)"]
-    assert room.teaches("class")["kept"][0]["alike"] == [each["number"] for each in pupils]
+    assert [pupil["name"] for pupil in pupils] == ["Ana", "\u0410na (2)"]
+    assert room.teaches("class")["kept"][0]["alike"] == [pupil["number"] for pupil in pupils]
     room.teaches("class_give_back", key=key_of(room), pupil=pupils[0]["number"])
     room.teaches("class_give_back", key=key_of(room), pupil=pupils[1]["number"])  # has looked
     assert "given" not in room.here(eve)
@@ -741,7 +741,7 @@ def test_a_full_disk_that_has_room_again_is_written_to_at_once(
     assert "F(1, 50)" in kept_at.read_text()
 
 
-def test_a_clock_that_is_behind_or_jumps_loses_no_work(kept_at: Path, keeper: Keeper) -> None:
+def test_a_clock_that_is_after_or_jumps_loses_no_work(kept_at: Path, keeper: Keeper) -> None:
     """A board without a battery begins in the past, and hears the time later."""
     room = Room()
     token = room.joins("Ana")

@@ -202,9 +202,9 @@ def test_another_user_reads_the_browser_s_command_line_and_gets_nothing(
         # The token is not on any command line, so it takes what another page was given.
         token = enter(own, printed.rpartition("=")[2])[1]["token"]
         stranger = [sys.executable, "-I", "-c", STRANGER, own, token, code, pid, str(command.pid)]
-        done = subprocess.run(stranger, capture_output=True, text=True, timeout=HANGS_S)
-        assert done.returncode == 0, done.stderr
-        entering, asking, is_shown = json.loads(done.stdout)
+        completed = subprocess.run(stranger, capture_output=True, text=True, timeout=HANGS_S)
+        assert completed.returncode == 0, completed.stderr
+        entering, asking, is_shown = json.loads(completed.stdout)
         assert entering == [200, '{"failure": "host_used"}']
         assert asking[0] == 403 and not is_shown
 

@@ -53,11 +53,11 @@ def flashed(board: str, firmware: bytes, **how: Any) -> dict[str, Any]:
     need("" if (MODULES / "esptool-js").is_dir() else "esptool-js is not fetched")
     case = {"board": board, "firmware": base64.b64encode(firmware).decode(), **how}
     words = [*node, str(HERE / "flash_esp32_in_node.mjs"), str(SOURCES / "src"), str(ROM)]
-    done = subprocess.run(
+    completed = subprocess.run(
         words, input=json.dumps(case), capture_output=True, text=True, timeout=120, check=False
     )
-    assert done.returncode == 0, done.stderr
-    found: dict[str, Any] = json.loads(done.stdout.strip().splitlines()[-1])
+    assert completed.returncode == 0, completed.stderr
+    found: dict[str, Any] = json.loads(completed.stdout.strip().splitlines()[-1])
     assert found["sums"]
     assert not found["is_open"]  # the next one can have the port
     return found

@@ -36,9 +36,9 @@ def flashed(port: str, board: str, file: Path, *cancelled: str) -> str:
     except CannotMake as why:
         need(str(why))
     words = [*node, str(SCRIPT), str(SOURCES / "src"), port, board, str(file), *cancelled]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
-    assert done.returncode == 0, done.stderr
-    return done.stdout.strip()
+    completed = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
+    assert completed.returncode == 0, completed.stderr
+    return completed.stdout.strip()
 
 
 def hex_file(folder: Path, data: bytes) -> Path:
@@ -66,11 +66,11 @@ def test_what_goes_on_is_written_and_what_does_not_ends_soon() -> None:
     except CannotMake as why:
         need(str(why))
     words = [*node, str(SLOW_SCRIPT), str(SOURCES / "src"), "120"]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
-    assert done.returncode == 0, done.stderr
-    rows = [json.loads(line) for line in done.stdout.splitlines()]
+    completed = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
+    assert completed.returncode == 0, completed.stderr
+    rows = [json.loads(line) for line in completed.stdout.splitlines()]
     assert len(rows) == 120
-    ends = {each["ended"] for each in rows if each["slow_ms"] < SYNC_MS}
+    ends = {row["ended"] for row in rows if row["slow_ms"] < SYNC_MS}
     assert ends == {"done", "flash_broken_off", "flash_nobody"}
     for row in rows:
         assert (row["ended"] == "done") == (row["last"] == 1 and row["isSame"]), row

@@ -121,7 +121,7 @@ def test_who_has_no_turn_drives_nothing(lesson: Class, two: list[PtyRobot]) -> N
     word = {"do": "keys", "id": 1, "seen": 0, "keys": 0, "x": 0, "y": -80}
     assert [each["over"] for each in carla.asks("beat", word)["news"]] == ["left"]
     pupils = lesson.room.teach({"do": "class"})["pupils"]
-    number = next(each["number"] for each in pupils if each["name"] == "Ana")
+    number = next(pupil["number"] for pupil in pupils if pupil["name"] == "Ana")
     lesson.room.teach({"do": "class_next", "pupil": number})
     until(lambda: power_of(two[0]) == 0, "it is stopped")
     moves = len(two[0].did)

@@ -79,8 +79,8 @@ def hosting() -> Iterator[Hosting]:
 
 @pytest.fixture
 def robot() -> Iterator[PtyRobot]:
-    with PtyRobot(KIT) as made:
-        yield made
+    with PtyRobot(KIT) as pty_robot:
+        yield pty_robot
 
 
 @pytest.fixture
@@ -382,7 +382,7 @@ def test_what_is_no_request_is_refused(hosting: Hosting) -> None:
     ],
 )
 def test_a_wrong_request_harms_nothing(page: Page, asked: dict[str, Any]) -> None:
-    """Nor the one behind it in the same beat."""
+    """Nor the one after it in the same beat."""
     wrong = page.count + 1
     page.count += 2
     page.beat({"id": wrong, **asked}, {"id": page.count, "do": "identify"})

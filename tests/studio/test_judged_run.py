@@ -27,19 +27,21 @@ def judged(number: int, program: str) -> tuple[dict[str, object], page_lessons.J
     robot = catalogue.load(catalogue.folder_of(str(number))).robot
     image = check(program.encode(), robot, "en").image
     run = answer["run"]
-    seen = page_lessons.JudgedRun("tinibot", number, run["seed"], run["until_ms"], image, Marks(()))
+    judged_run = page_lessons.JudgedRun(
+        "tinibot", number, run["seed"], run["until_ms"], image, Marks(())
+    )
     for _ in range(10_000):
-        if not seen.robot.is_running:
+        if not judged_run.robot.is_running:
             break
-        seen.go(33)
-    return answer, seen
+        judged_run.go(33)
+    return answer, judged_run
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("number", NUMBERS)
 def test_the_steps_are_written_for_the_page(number: int, language: str) -> None:
     steps = page_lessons.steps(number, language)
-    assert len(steps) >= 4 and all(each["blocks"] for each in steps)
+    assert len(steps) >= 4 and all(step["blocks"] for step in steps)
     assert steps[-1]["hint"]
     assert not OF_A_TERMINAL.search(json.dumps(steps, ensure_ascii=False))
     printed = catalogue.page(catalogue.folder_of(str(number)), catalogue.PUPIL, language)
@@ -77,14 +79,14 @@ def test_the_run_that_was_judged_is_the_one_that_is_seen(
     number: int, program: str, seconds: float | None, touches: bool
 ) -> None:
     """Also where chance moves sensors, motors and walls: it ends where the judge saw it."""
-    answer, seen = judged(number, program)
-    state = seen.state()
+    answer, judged_run = judged(number, program)
+    state = judged_run.state()
     assert (state["touches"] is not None) is touches
     assert not state["is_running"]
     took_s = (state["now_ms"] - state["began_ms"]) / 1000
     if touches:
-        said = re.search(r"after (\d+\.\d) s", " ".join(answer["said"]))  # type: ignore[arg-type]
-        assert said and abs(took_s - float(said[1])) < 0.1
+        match = re.search(r"after (\d+\.\d) s", " ".join(answer["said"]))  # type: ignore[arg-type]
+        assert match and abs(took_s - float(match[1])) < 0.1
     if seconds is not None:
         assert round(took_s, 1) == seconds
 
@@ -92,17 +94,17 @@ def test_the_run_that_was_judged_is_the_one_that_is_seen(
 def test_a_run_whose_keys_the_judge_presses_is_seen_with_them() -> None:
     """Nobody else presses any."""
     drives = "LOOP(FOREVER); IF(KEY_UP); M(60, 60); ELSE; M(0, 0); END_IF; W(0.02); END_LOOP"
-    answer, seen = judged(18, drives)
+    answer, judged_run = judged(18, drives)
     assert "KEY_RIGHT was held" in answer["said"][0]  # type: ignore[index]
-    state = seen.state()
+    state = judged_run.state()
     assert state["pose"][0] > 170, "it went forward"
     assert (state["now_ms"] - state["began_ms"]) == 5100
     image = check(drives.encode(), "tinibot", "en").image
-    seen = page_lessons.JudgedRun("tinibot", 18, 1, 900, image, Marks(()))
+    judged_run = page_lessons.JudgedRun("tinibot", 18, 1, 900, image, Marks(()))
     for _ in range(9):
-        seen.press(1, 0, 100)
-        seen.go(100)
-    assert seen.state()["pose"][:2] == [160, 160]
+        judged_run.press(1, 0, 100)
+        judged_run.go(100)
+    assert judged_run.state()["pose"][:2] == [160, 160]
 
 
 def test_the_goals_of_a_task_are_where_its_judge_looks() -> None:
@@ -121,9 +123,9 @@ def test_the_goals_of_a_task_are_where_its_judge_looks() -> None:
 
 def test_a_judged_run_can_be_stopped_before_its_end() -> None:
     image = check(b"SI|F(2.5, 80)", "tinibot", "en").image
-    seen = page_lessons.JudgedRun("tinibot", 1, 1, 2500, image, Marks(()))
-    seen.go(1000)
-    seen.stop()
-    before = seen.state()["pose"]
-    seen.go(1000)
-    assert seen.state()["pose"] == before and not seen.state()["is_running"]
+    judged_run = page_lessons.JudgedRun("tinibot", 1, 1, 2500, image, Marks(()))
+    judged_run.go(1000)
+    judged_run.stop()
+    before = judged_run.state()["pose"]
+    judged_run.go(1000)
+    assert judged_run.state()["pose"] == before and not judged_run.state()["is_running"]

@@ -232,7 +232,7 @@ PAGE_SCRIPT = Path(__file__).with_name("lost_requests_in_node.mjs")
 
 
 def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
-    """Nothing comes behind its end. Where a few in a row are lost, all is done, and once; and the
+    """Nothing comes after its end. Where a few in a row are lost, all is done, and once; and the
     page's next connection is as the first one of a fresh page.
     """
     try:
@@ -240,13 +240,13 @@ def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
     except CannotMake as why:
         need(str(why))
     words = [*node, str(PAGE_SCRIPT), str(SOURCES / "src"), "400"]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
-    assert done.returncode == 0, done.stderr
-    rows = [json.loads(line) for line in done.stdout.splitlines()]
+    completed = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
+    assert completed.returncode == 0, completed.stderr
+    rows = [json.loads(line) for line in completed.stdout.splitlines()]
     assert len(rows) == 400
-    wild = [each["first"]["isThere"] for each in rows if each["isWild"]]
+    wild = [row["first"]["isThere"] for row in rows if row["isWild"]]
     assert sum(wild) < 0.8 * len(wild)  # so some are lost
-    assert sum(len(each["held"]) for each in rows) > len(rows) / 2
+    assert sum(len(row["held"]) for row in rows) > len(rows) / 2
     for row in rows:
         for part in (row["first"], row["second"]):
             assert set(part["ends"]) == {1} and part["over"] == part["met"] == 1, row
@@ -299,8 +299,8 @@ class Asker:
 
 @pytest.fixture
 def robot() -> Iterator[PtyRobot]:
-    with PtyRobot(robots.load("tinibot").kit) as made:
-        yield made
+    with PtyRobot(robots.load("tinibot").kit) as pty_robot:
+        yield pty_robot
 
 
 @pytest.fixture(params=["page", "pupil"])

@@ -30,25 +30,25 @@ UP, A = 1, 16
 NOTHING = [0, 0, 0]
 
 
-def played(made: Path, *story: Any) -> dict[str, Any]:
-    return in_node(SCRIPT, made, json.dumps(story))
+def played(path: Path, *story: Any) -> dict[str, Any]:
+    return in_node(SCRIPT, path, json.dumps(story))
 
 
-def in_node(script: Path, made: Path, word: str) -> dict[str, Any]:
+def in_node(script: Path, path: Path, word: str) -> dict[str, Any]:
     try:
         node = found_tools().node
     except CannotMake as why:
         need(str(why))
-    words = [*node, str(script), str(SOURCES / "src"), str(made), word]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
-    assert done.returncode == 0, done.stderr
-    found: dict[str, Any] = json.loads(done.stdout)
+    words = [*node, str(script), str(SOURCES / "src"), str(path), word]
+    completed = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
+    assert completed.returncode == 0, completed.stderr
+    found: dict[str, Any] = json.loads(completed.stdout)
     return found
 
 
-def told(made: Path, *story: Any) -> list[Any]:
+def told(path: Path, *story: Any) -> list[Any]:
     """Return what the robot is told, without its side."""
-    return [[ms, *held] for ms, _, *held in played(made, *story)["told"]]
+    return [[ms, *held] for ms, _, *held in played(path, *story)["told"]]
 
 
 def test_it_is_said_at_each_change_and_again_while_it_is_held(made: Path) -> None:

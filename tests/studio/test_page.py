@@ -35,7 +35,7 @@ HOLD = """() => {
 
 def checks(page: Page, requests: list[dict[str, str]]) -> list[dict[str, Any]]:
     """Return what the page's compiler says of programs."""
-    return asked(page, [{"do": "check", **each} for each in requests])
+    return asked(page, [{"do": "check", **request} for request in requests])
 
 
 @pytest.mark.sampled("part")
@@ -44,7 +44,9 @@ def test_every_program_gets_the_image_of_the_command(page: Page, part: int) -> N
     """Those of the paper, of all documents and cases, and the examples."""
     found = programs()[part::6]
     assert len(found) > 50
-    requests = [{"text": each.text, "robot": each.robot, "language": "en"} for each in found]
+    requests = [
+        {"text": program.text, "robot": program.robot, "language": "en"} for program in found
+    ]
     answers = checks(page, requests)
     for program, answer in zip(found, answers, strict=True):
         compiled = image_of(program)
@@ -61,12 +63,12 @@ def test_every_wrong_program_gets_the_words_of_the_command(
 ) -> None:
     """In one language and the next in the other. This finds what was not packed, too."""
     requests = [
-        {"text": each.program, "robot": "tinibot", "language": ("en", "es")[(first + k) % 2]}
-        for k, each in enumerate(corpus.entries()[part::24])
+        {"text": entry.program, "robot": "tinibot", "language": ("en", "es")[(first + k) % 2]}
+        for k, entry in enumerate(corpus.entries()[part::24])
     ]
     for request, answer in zip(requests, checks(page, requests), strict=True):
         text = request["text"]
-        wanted = [each._asdict() for each in said(text, request["language"])]
+        wanted = [message._asdict() for message in said(text, request["language"])]
         got = [{key: value for key, value in each.items() if key != "may_repair"}
                for each in answer["findings"] if each["code"] not in LACKING]  # fmt: skip
         assert got == wanted, text

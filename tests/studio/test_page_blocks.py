@@ -87,8 +87,8 @@ def becomes_other(page: Page, text: str) -> None:
 
 def block(page: Page, words: str) -> Locator:
     """Return the innermost block with these words on it."""
-    found = page.locator(f"{PROGRAM} .blocklyBlock")
-    return found.filter(has_text=words).last
+    locator = page.locator(f"{PROGRAM} .blocklyBlock")
+    return locator.filter(has_text=words).last
 
 
 def box_of(block: Locator) -> Any:
@@ -134,7 +134,7 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None
     pane, words = (page.locator(one).bounding_box() for one in ("#blocks", ".blocklyToolbox"))
     assert pane is not None and words is not None
     assert first["x"] > words["x"] + words["width"] and first["y"] > pane["y"]
-    forms = [read(each.text, robots.load(each.robot).kit) for each in programs()[part::10]]
+    forms = [read(program.text, robots.load(program.robot).kit) for program in programs()[part::10]]
     for seed in range(part, 300, 10):
         theirs, kit = KITS[seed % len(KITS)]
         forms.append(read(oracle_programs.program(random.Random(seed), theirs), kit))
@@ -219,8 +219,8 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
     page.mouse.move(600, 300)
     page.mouse.wheel(0, 500)
     page.evaluate(SETTLED)
-    seen = page.locator(f"{PROGRAM} .blocklyNumberField").nth(30)
-    place = seen.bounding_box()
+    locator = page.locator(f"{PROGRAM} .blocklyNumberField").nth(30)
+    place = locator.bounding_box()
     assert place is not None and 150 < place["y"] < 400
     page.mouse.click(place["x"] + 8, place["y"] + 8)
     page.keyboard.type("77")
@@ -345,7 +345,7 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     icons = page.locator("#blocks .blocklyWarningIcon, #blocks .blockly-icon-warning")
     assert icons.count() == 1
     assert "forward" in str(page.locator(f"{PROGRAM} .wrong").text_content())
-    said = check("F(-2, 80)")[0]
+    message = check("F(-2, 80)")[0]
     bubble = page.locator("#blocks .blocklyBubble")
     bubble.wait_for()
     icons.first.click()  # puts it away
@@ -357,7 +357,7 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     icons.first.click()
     bubble.wait_for()
     whole = "".join((bubble.text_content() or "").split())
-    assert "".join(said.message.split()) in whole and "".join(said.fix.split()) in whole
+    assert "".join(message.message.split()) in whole and "".join(message.fix.split()) in whole
     page.locator("#messages .place").click()
     focused = page.evaluate("document.activeElement.closest('.blocklyDraggable')?.textContent")
     assert "back" in focused or "forward" in focused.replace("\xa0", " ")
@@ -407,8 +407,8 @@ def test_the_block_of_each_task_that_runs_is_marked(page: Page) -> None:
 def flyout(page: Page, group: str) -> str:
     page.locator(".blocklyToolboxCategory", has_text=group).click()
     page.locator(".blocklyFlyout:visible .blocklyDraggable").first.wait_for()
-    behind = page.locator(".blocklyFlyout:visible .blocklyFlyoutBackground")
-    assert behind.evaluate("e => getComputedStyle(e).fillOpacity") == "1"
+    after = page.locator(".blocklyFlyout:visible .blocklyFlyoutBackground")
+    assert after.evaluate("e => getComputedStyle(e).fillOpacity") == "1"
     return (page.locator(".blocklyFlyout:visible").text_content() or "").replace("\xa0", " ")
 
 
@@ -579,7 +579,7 @@ def test_a_lesson_offers_its_words_while_it_is_open(pages: Pages) -> None:
         page.locator("#lesson:enabled").wait_for()
         found = offered(page)
         found |= {"call"} if "def" in found else set()  # of a word that somebody has made
-        answers = [kinds_in(read(each.program, kit)) for each in catalogue.answers(folder)[0]]
+        answers = [kinds_in(read(answer.program, kit)) for answer in catalogue.answers(folder)[0]]
         assert any(kinds <= found for kinds in answers), (number, answers, found)
         if number == 1:
             assert found == few
@@ -611,7 +611,9 @@ def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> No
             becomes_other(page, "SI|S;\n")
             said = "DISTANCE > 20" if words == "while" else "DISTANCE < 20"
             assert (said in text_of(page)) == asks, (robot, words, text_of(page))
-            assert not [each for each in check(text_of(page), robot) if each.severity == "mistake"]
+            assert not [
+                message for message in check(text_of(page), robot) if message.severity == "mistake"
+            ]
     page.select_option("#robot", "tinibot")
     page.select_option("#world", "obstacles")
     start(page, "SI|S;\n", "usual")
@@ -739,7 +741,7 @@ def test_a_word_has_at_most_the_values_of_the_language(page: Page) -> None:
     start(page, text.format(""), "usual")
     names = [*"CDEGH"][:PARAMETERS]
     counts = [*range(1, PARAMETERS + 1), PARAMETERS]
-    for href, count in [*(("more.svg", each) for each in counts), ("less.svg", PARAMETERS - 1)]:
+    for href, count in [*(("more.svg", count) for count in counts), ("less.svg", PARAMETERS - 1)]:
         page.locator(f"#blocks .blocklyBlockCanvas image[*|href$='{href}']").first.click()
         page.locator("#blocks[data-state=shown]").wait_for()
         becomes(page, text.format(f"({', '.join(names[:count])})"))

@@ -57,7 +57,7 @@ def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> 
         page.click("#pause")
     in_phase(page, "ended")
     assert value(page, "X") == "3"
-    wanted = [f"{each.ms} {each.text}" for each in run(COUNT).events]
+    wanted = [f"{event.ms} {event.text}" for event in run(COUNT).events]
     assert (page.locator("#trace").text_content() or "").split("\n") == wanted
 
 
@@ -98,7 +98,7 @@ def test_a_breakpoint_moves_with_its_text_and_goes_with_it(page: Page) -> None:
 def test_one_line_has_several_breakpoints(page: Page) -> None:
     write(page, "SI|SHOW(1);SHOW(2);SHOW(3)")
     for _ in range(2):
-        page.keyboard.press("F9")  # behind the last part begins no other: it is that
+        page.keyboard.press("F9")  # after the last part begins no other: it is that
         for _ in range(9):
             page.keyboard.press("ArrowLeft")
     assert page.locator(".cm-breakpoint").count() == 2
@@ -188,7 +188,7 @@ def test_a_breakpoint_is_taken_away_from_a_program_whose_text_has_changed(page: 
 
 
 def test_a_breakpoint_in_every_line_is_no_hurdle(page: Page) -> None:
-    """In a program as long as a robot takes, and behind its end; and it stops at the first ones."""
+    """In a program as long as a robot takes, and after its end; and it stops at the first ones."""
     write(page, "\n".join(f"W({k + 1})" for k in range(150)) + "\n// a note" * 50)
     pressed = page.locator(".cm-content").evaluate(
         "(content) => { const key = (key, keyCode) => content.dispatchEvent(new KeyboardEvent("

@@ -111,8 +111,8 @@ def test_a_world_is_changed_and_saved(page: Page) -> None:
     page.keyboard.press("ArrowRight")
     page.click("#world_save")
     page.locator("#doing").filter(has_text="Saved: world.toml").wait_for()
-    found = read(saved(page).decode(), "world")
-    assert max(x for x, _ in found.boxes[-1]) == 125
+    world = read(saved(page).decode(), "world")
+    assert max(x for x, _ in world.boxes[-1]) == 125
     page.click("#world_done")
 
 

@@ -91,8 +91,8 @@ class Held:
 
     def let_go(self) -> None:
         self._has_end = True
-        for each in self.routes:
-            each.continue_()
+        for route in self.routes:
+            route.continue_()
 
 
 def with_serial(pages: Pages, server: serving.Server, has_clock: bool = False) -> Page:
@@ -114,9 +114,9 @@ def test_what_is_fetched_goes_on_while_something_comes_and_ends_when_nothing_doe
     except CannotMake as why:
         need(str(why))
     words = [*node, str(SCRIPT), str(SOURCES / "src")]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
-    assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout) == [
+    completed = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+    assert completed.returncode == 0, completed.stderr
+    assert json.loads(completed.stdout) == [
         "slow 1", "quick 0", "TimeoutError 1", "AbortError 0",
         "TimeoutError 1", "AbortError", "there",
     ]  # fmt: skip
@@ -318,7 +318,7 @@ def test_a_stop_that_nobody_hears_says_so_at_once_and_is_tried_on(pages: Pages) 
         page.keyboard.press("Escape")
         hears(page, lambda: held.routes, "it is asked")
         page.clock.fast_forward(3100)
-        told = page.locator("#stops")
-        told.filter(has_text="STOP has not reached tsc studio.").wait_for(state="attached")
+        locator = page.locator("#stops")
+        locator.filter(has_text="STOP has not reached tsc studio.").wait_for(state="attached")
         page.context.unroute_all()
         hears(page, lambda: page.locator("#stops").is_hidden(), "it is heard: there is no robot")

@@ -70,7 +70,7 @@ def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
 
 
 def rest(page: Page) -> list[str]:
-    """Return what is said behind the first sentence, which may be nothing."""
+    """Return what is said after the first sentence, which may be nothing."""
     return page.locator("#lesson_findings li").all_inner_texts()[1:]
 
 
@@ -267,14 +267,14 @@ def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(pages: Page
     page.locator("#lesson_next:enabled").wait_for()
     right, _ = catalogue.answers(FOLDERS[1])
     kept = (json.dumps(["01_first_line", 5, "<b>", "x" * 500, None]), '"x"', "no JSON", "[]")
-    done = page.locator("#lesson option", has_text="✓")
+    locator = page.locator("#lesson option", has_text="✓")
     for k, each in enumerate(kept):
         page.evaluate("kept => localStorage.setItem('tiniscript.lessons', kept)", each)
         speak(page, "es")
         page.locator("#lesson option", has_text="línea").first.wait_for(state="attached")
         speak(page, "en")
         page.locator("#lesson option", has_text="first line").wait_for(state="attached")
-        assert done.count() == int(k == 0)
+        assert locator.count() == int(k == 0)
     choose(page, 2)
     page.select_option("#speed", "20")
     assert check(page, right[0].program)[0] == "passed"
@@ -287,7 +287,7 @@ def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(pages: Page
         page.click("#side_lessons")
         number = count % len(FOLDERS) + 1
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
-        assert done.count() == count
+        assert locator.count() == count
 
 
 def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Pages) -> None:

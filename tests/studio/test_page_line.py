@@ -121,7 +121,7 @@ def key(robot: int, which: int = OWNER, byte: int = 1) -> RobotKey:
 def test_keys_of_a_file_replace_those_of_the_same_robot() -> None:
     kept = PageKeys(keys.written([key(1, byte=1), key(2, byte=2)]))
     assert kept.add(keys.written([key(1, byte=9), key(3, byte=3)])) == 2
-    assert sorted((each.id, each.key[0]) for each in keys.read(kept.file().encode())) == [
+    assert sorted((key.id, key.key[0]) for key in keys.read(kept.file().encode())) == [
         (1, 9), (2, 2), (3, 3),
     ]  # fmt: skip
 
@@ -186,7 +186,7 @@ def test_a_page_that_hangs_holds_nothing(page: Page) -> None:
     assert round(page.robot.driving.left) == 0
 
 
-def test_keys_behind_a_stop_start_nothing_and_are_read_by_the_next_program(page: Page) -> None:
+def test_keys_after_a_stop_start_nothing_and_are_read_by_the_next_program(page: Page) -> None:
     page.upload(STICK)
     held(page, y=60)
     page.ask("stop")

@@ -51,8 +51,8 @@ def pages(hosted_pages: Pages) -> Pages:
 
 @pytest.fixture(scope="module")
 def first_robot() -> Iterator[PtyRobot]:
-    with PtyRobot(KIT) as made:
-        yield made
+    with PtyRobot(KIT) as pty_robot:
+        yield pty_robot
 
 
 @pytest.fixture
@@ -292,7 +292,7 @@ def test_the_token_is_not_in_the_address(page: Page, server: serving.Server) -> 
 def test_run_with_a_mistake_stops_what_runs(page: Page, robot: PtyRobot) -> None:
     drives(page, robot)
     write(page, "F(2, 80")
-    with page.expect_request(lambda asked: '"do":"stop"' in (asked.post_data or "")):
+    with page.expect_request(lambda request: '"do":"stop"' in (request.post_data or "")):
         page.click("#link_upload")
     robot.until(lambda: not robot.moves, "it stands")
     said(page, "The robot was stopped. Fix the program first.")
@@ -344,9 +344,9 @@ def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
     said(page, "The robot has it")
     page.locator("#record_compare:enabled").wait_for(state="attached")
     page.click("#link_teacher summary")
-    told = page.locator("#record_said")
+    locator = page.locator("#record_said")
     page.click("#record_compare")
-    told.filter(has_text="Both did the same. Comparisons: 1.").wait_for()  # it still runs
+    locator.filter(has_text="Both did the same. Comparisons: 1.").wait_for()  # it still runs
     page.click("#stop")
     said(page, "stopped")
     page.fill("#link_line", "SHOW(7)")
@@ -379,16 +379,16 @@ def test_a_program_of_the_button_is_recorded_from_its_first_event(
 
 def agrees(page: Page, run: Callable[[], None]) -> None:
     """Record runs until one agrees with the virtual robot: a busy computer hears of some late."""
-    told = page.locator("#record_said")
+    locator = page.locator("#record_said")
     for _ in range(RUNS):
         run()
         if not page.locator("#record_compare").is_visible():
             page.click("#link_teacher summary")
         page.click("#record_compare")
-        told.filter(has_text=re.compile("Comparisons|another time")).wait_for()
-        if "another time" not in told.inner_text():
+        locator.filter(has_text=re.compile("Comparisons|another time")).wait_for()
+        if "another time" not in locator.inner_text():
             break
-    assert told.inner_text() == "Both did the same. Comparisons: 3."
+    assert locator.inner_text() == "Both did the same. Comparisons: 3."
 
 
 def events(page: Page) -> list[str]:
@@ -406,21 +406,21 @@ def test_a_run_is_recorded_and_compared_with_the_virtual_robot(page: Page, tmp_p
         said(page, "Done.")
 
     agrees(page, run)
-    told = page.locator("#record_said")
+    locator = page.locator("#record_said")
     with page.expect_download() as saved:
         page.click("#record_save")
     lines = saved.value.path().read_text().splitlines()
-    assert [json.loads(each).get("event") for each in lines[2:]] == ["SHOW 5", "DONE"]
+    assert [json.loads(line).get("event") for line in lines[2:]] == ["SHOW 5", "DONE"]
     other = tmp_path / "other.jsonl"
     other.write_text("\n".join(lines).replace("SHOW 5", "SHOW 6"))
     page.set_input_files("#record_file", other)
-    told.filter(has_text="Line 3: the robot says 6 after 0.").wait_for()
+    locator.filter(has_text="Line 3: the robot says 6 after 0.").wait_for()
     other.write_text("\n".join(lines)[:-9])
     page.set_input_files("#record_file", other)
-    told.filter(has_text="(line 4)").wait_for()
+    locator.filter(has_text="(line 4)").wait_for()
     write(page, "SHOW(5)")
     page.click("#record_compare")
-    told.filter(has_text="of another program").wait_for()
+    locator.filter(has_text="of another program").wait_for()
 
 
 # -- the line and the block that the robot runs now

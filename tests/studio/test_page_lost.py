@@ -42,16 +42,16 @@ HIDE = """(state) => {
 
 @pytest.fixture(scope="module")
 def opened(browser: Browser, server: serving.Server) -> Iterator[tuple[Pages, Page]]:
-    found = Pages(browser, server.address, entrance=server.entrance)
-    yield found, found.open()
-    found.close()
+    pages = Pages(browser, server.address, entrance=server.entrance)
+    yield pages, pages.open()
+    pages.close()
 
 
 @pytest.fixture
 def robot() -> Iterator[PtyRobot]:
-    with PtyRobot(KIT) as made:
-        known_ports.remember(made.port, "TINI")
-        yield made
+    with PtyRobot(KIT) as pty_robot:
+        known_ports.remember(pty_robot.port, "TINI")
+        yield pty_robot
 
 
 @pytest.fixture

@@ -54,7 +54,7 @@ def test_a_link_brings_the_program_and_runs_nothing(pages: Pages, page: Page) ->
     page.keyboard.press("Escape")
     page.select_option("#robot", "tinibot")
     write(page, "SI|F(9, 90)")
-    page.goto(link)  # in an open tab: only the part behind # changes
+    page.goto(link)  # in an open tab: only the part after # changes
     noted(page, "This program came with a link")
     checked(page)
     assert content(page).rstrip() == TEXT.rstrip()
@@ -124,22 +124,22 @@ def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
 
 
 def test_a_link_says_from_where_it_opens() -> None:
-    addresses = [each for row in REACHES.values() for each in row.split()]
+    addresses = [word for row in REACHES.values() for word in row.split()]
     code = f"import {{ reachOf }} from './src/programs/reach.js';\n{json.dumps(addresses)}"
-    done = subprocess.run(
+    completed = subprocess.run(
         [*found_tools().node, "--input-type=module", "-e",
          f"{code}.forEach((each) => console.log(reachOf(each)));"],
         cwd=MODULES.parent, capture_output=True, text=True, check=True,
     )  # fmt: skip
     wanted = [name for name, row in REACHES.items() for _ in row.split()]
-    assert dict(zip(addresses, done.stdout.split(), strict=True)) == dict(
+    assert dict(zip(addresses, completed.stdout.split(), strict=True)) == dict(
         zip(addresses, wanted, strict=True)
     )
 
 
 def packed(content: bytes) -> str:
-    made = zlib.compressobj(9, zlib.DEFLATED, -15)
-    whole = made.compress(content) + made.flush()
+    compress = zlib.compressobj(9, zlib.DEFLATED, -15)
+    whole = compress.compress(content) + compress.flush()
     return base64.urlsafe_b64encode(whole).decode().rstrip("=")
 
 
@@ -208,10 +208,12 @@ def test_what_cannot_be_shared_says_why(page: Page) -> None:
 @pytest.mark.parametrize("part", range(4))
 def test_every_line_is_that_of_the_command(page: Page, part: int) -> None:
     found = programs()[part::4]
-    requests = [{"text": each.text, "robot": each.robot, "language": "es"} for each in found]
+    requests = [
+        {"text": program.text, "robot": program.robot, "language": "es"} for program in found
+    ]
     refused = 0
     for program, answer in zip(
-        found, asked(page, [{"do": "line", **each} for each in requests]), strict=True
+        found, asked(page, [{"do": "line", **request} for request in requests]), strict=True
     ):
         wanted = line(program.text.encode(), program.robot, "es")
         if isinstance(wanted, str):
@@ -243,7 +245,7 @@ PIXELS = """() => {
 
 
 def pictured(page: Page) -> str:
-    done = subprocess.run(
+    completed = subprocess.run(
         [*found_tools().node, "--input-type=module", "-e", READ],
         cwd=MODULES.parent,
         input=str(page.evaluate(PIXELS)),
@@ -251,7 +253,7 @@ def pictured(page: Page) -> str:
         text=True,
         check=True,
     )
-    return str(done.stdout)
+    return str(completed.stdout)
 
 
 def test_the_pictures_hold_what_is_shared(page: Page) -> None:

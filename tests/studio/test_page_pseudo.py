@@ -87,7 +87,7 @@ def test_longer_texts_fit_into_every_screen(pages: Pages) -> None:
         wrong[screen, size] = page.evaluate(CUT)
         if size == SIZES[0]:
             wrong[screen, size] += page.evaluate(PLAIN)
-    assert {where: each for where, each in wrong.items() if each} == {}
+    assert {where: value for where, value in wrong.items() if value} == {}
 
 
 def would_be_noticed(page: Page, button: str) -> None:
@@ -124,5 +124,5 @@ def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
                 page.evaluate(SETTLED)
                 cut[window, width] = page.evaluate(CUT)
                 page.click(f"{window} [data-text=close]")
-        assert {where: each for where, each in cut.items() if each} == {}
+        assert {where: value for where, value in cut.items() if value} == {}
         pages.close()

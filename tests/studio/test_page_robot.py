@@ -72,7 +72,7 @@ def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, 
         *({"do": "go", "duration_ms": 400} for _ in range(20)),
         {"do": "stop"},
     ]
-    answers = asked(page, [{**each, "image": image.hex()} for each in requests])
+    answers = asked(page, [{**request, "image": image.hex()} for request in requests])
     simulation = Simulation(robot, worlds.load(world), image)
     for request, answer in zip(requests, answers, strict=True):
         if request["do"] == "go":

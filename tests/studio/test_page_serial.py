@@ -22,8 +22,8 @@ pytestmark = pytest.mark.root
 
 @pytest.fixture(scope="module")
 def robot() -> Iterator[PtyRobot]:
-    with PtyRobot(robots.load("tinibot").kit) as made:
-        yield made
+    with PtyRobot(robots.load("tinibot").kit) as pty_robot:
+        yield pty_robot
 
 
 @pytest.fixture(scope="module")

@@ -102,11 +102,11 @@ def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> N
     page.route("**/tiniscript.zip", lambda route: route.abort())
     page.goto(pages.address, wait_until="domcontentloaded")
     hears(page, lambda: held, "the texts are asked for")
-    seen = page.locator("header :is(button, select):visible")
-    assert seen.all_inner_texts() == ["STOP"]
+    locator = page.locator("header :is(button, select):visible")
+    assert locator.all_inner_texts() == ["STOP"]
     held[0].continue_()
     page.locator(START).wait_for(state="attached")
-    assert seen.count() > 3
+    assert locator.count() > 3
     page.click("[data-begin=dance]")
     page.locator("#doing", has_text="The compiler did not come. Run tries it again").wait_for()
     page.click("#side_lessons")

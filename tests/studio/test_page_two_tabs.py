@@ -36,7 +36,7 @@ PASTE = """(count) => {
 
 
 def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
-    """They come behind this tab's own worlds before, and push none of them out."""
+    """They come after this tab's own worlds before, and push none of them out."""
 
     def opens(tab: Page, width_cm: int) -> None:
         name = f"w{width_cm}.toml"

@@ -91,16 +91,16 @@ def hosted(port: int = 0) -> Iterator[serving.Server]:
 @pytest.fixture
 def context(browser: Browser) -> Iterator[BrowserContext]:
     need(studio.missing())
-    made = browser.new_context()
-    made.set_default_timeout(90_000)
-    yield made
-    made.close()
+    browser_context = browser.new_context()
+    browser_context.set_default_timeout(90_000)
+    yield browser_context
+    browser_context.close()
 
 
 @pytest.fixture
 def loot() -> Iterator[Stranger]:
-    with page_server.serves(Stranger(0, {})) as made:
-        yield made
+    with page_server.serves(Stranger(0, {})) as stranger:
+        yield stranger
 
 
 def version() -> str:
@@ -153,7 +153,7 @@ def test_the_own_worker_stays(context: BrowserContext) -> None:
         loads: list[str] = []
         for _ in range(2):
             page = context.new_page()
-            page.on("load", lambda each: loads.append(each.url))
+            page.on("load", lambda page: loads.append(page.url))
             enter(page, server.entrance())
             is_own(page, server)
             page.close()
@@ -167,8 +167,8 @@ def test_a_worker_that_does_not_go_gets_no_code(context: BrowserContext, loot: S
         page.add_init_script("ServiceWorkerRegistration.prototype.unregister = async () => false;")
         entrance = server.entrance()
         page.goto(entrance)
-        said = page.locator("#note").filter(has_text="Delete this address’s data in the browser")
-        said.wait_for()
+        locator = page.locator("#note").filter(has_text="Delete this address’s data in the browser")
+        locator.wait_for()
         assert page.evaluate(TOKEN) is None and server.is_unused(entrance)
     assert loot.taken == []
 

@@ -95,11 +95,11 @@ def test_a_mouse_adds_moves_and_deletes(floor: Page) -> None:
     drag(floor, [(140, 60), (170, 80)])
     assert chosen(floor) == "Box 7"
     drag(floor, [(155, 70), (155, 110), (145, 120)])
-    found = saved(floor)
-    corners = sorted((round(x), round(y)) for x, y in found.boxes[-1])
+    world = saved(floor)
+    corners = sorted((round(x), round(y)) for x, y in world.boxes[-1])
     assert all(abs(a - b) <= 1 for (a, _), b in zip(corners, (130, 130, 160, 160), strict=True))
-    assert found.boxes[:-1] == shipped.boxes
-    assert set(found.labels.values()) == {found.name}  # that of its file
+    assert world.boxes[:-1] == shipped.boxes
+    assert set(world.labels.values()) == {world.name}  # that of its file
     floor.click("#world_delete")
     assert saved(floor).boxes == shipped.boxes
     floor.click("#world_undo")
@@ -171,11 +171,11 @@ def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
     drag(floor, [(150, 60), (150, 90), (120, 140), (60, 140)])
     floor.click("#world_add_lamps")
     floor.mouse.click(*on_screen(floor, (200, 180)))
-    found = saved(floor)
-    assert [(round(x), round(y)) for x, y in found.walls[0]] == [(60, 30), (100, 60)]
-    line = [(round(x), round(y)) for x, y in found.lines[0].points]
+    world = saved(floor)
+    assert [(round(x), round(y)) for x, y in world.walls[0]] == [(60, 30), (100, 60)]
+    line = [(round(x), round(y)) for x, y in world.lines[0].points]
     assert (line[0], line[-1]) == ((150, 60), (60, 140)) and 3 <= len(line) <= 9
-    assert [round(each) for each in found.lamps[0].place] == [200, 180]
+    assert [round(each) for each in world.lamps[0].place] == [200, 180]
     there = {(80, 45): "Wall 1", (100, 140): "Line 1", (200, 180): "Lamp 1", (56, 82.5): "Robot",
              (110, 100): "Box 1", (10, 190): "Floor"}  # fmt: skip
     for place, name in there.items():
@@ -224,8 +224,8 @@ def test_keys_alone_are_enough(floor: Page) -> None:
     floor.locator("#world_width_cm").fill("100")
     press("Enter")
     floor.uncheck("#world_has_border")
-    found = saved(floor)  # the robot is still on the floor
-    assert (found.width_cm, found.start.x_cm, found.has_border) == (100, 100, False)
+    world = saved(floor)  # the robot is still on the floor
+    assert (world.width_cm, world.start.x_cm, world.has_border) == (100, 100, False)
 
 
 def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
@@ -276,9 +276,9 @@ def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     assert chosen(page) == "Línea 1"
     draw(page, [(56, 82.5), (56, 97.5), (60, 110)])
     assert chosen(page) == "Robot"
-    found = saved(page)
-    assert abs(found.start.x_cm - 60) <= 1 and abs(found.start.y_cm - 110) <= 1
-    assert len(found.lines) == 1 and abs(found.lines[0].points[-1].x - 160) < 1
+    world = saved(page)
+    assert abs(world.start.x_cm - 60) <= 1 and abs(world.start.y_cm - 110) <= 1
+    assert len(world.lines) == 1 and abs(world.lines[0].points[-1].x - 160) < 1
     page.tap("#world_done")
     assert page.locator("#world option:checked").inner_text() == "mi mundo"
     kept = page.evaluate(KEPT)
@@ -290,7 +290,7 @@ def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     turn(page, "robot")
     page.tap("#world_draw")
     again = saved(page)
-    assert abs(again.start.y_cm - 100) <= 1 and again.lines == found.lines
+    assert abs(again.start.y_cm - 100) <= 1 and again.lines == world.lines
 
 
 def test_the_floor_is_seen_where_the_curves_were(page: Page) -> None:
@@ -361,9 +361,9 @@ def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
     put(floor, OWN)
     said(floor, "Opened: own.toml")
     wanted = read(OWN.decode(), "own")
-    found = saved(floor)
-    assert (found.start, found.width_cm, found.labels) == (wanted.start, 90, wanted.labels)
-    near = [(round(x, 2), round(y, 2)) for x, y in found.boxes[0]]
+    world = saved(floor)
+    assert (world.start, world.width_cm, world.labels) == (wanted.start, 90, wanted.labels)
+    near = [(round(x, 2), round(y, 2)) for x, y in world.boxes[0]]
     assert near == [(round(x, 2), round(y, 2)) for x, y in wanted.boxes[0]]
     assert floor.locator("img").count() == 0
     for data, why in (

@@ -158,7 +158,7 @@ def test_a_run_that_was_left_moves_nothing(page: Page) -> None:
     in_phase(page, "running")
     page.locator("#values dd").first.filter(has_text="s").wait_for()
     page.click("#world_draw")
-    saved(page)  # behind the answer to stop
+    saved(page)  # after the answer to stop
     assert page.locator("#values dd").first.inner_text() == "–"
     page.click("#world_done")
     page.click("#run")

@@ -23,8 +23,8 @@ def file(*events: tuple[int, str], text: str = LOOKS, version: int = 1) -> bytes
 
 
 def parting(*events: tuple[int, str], text: str = LOOKS) -> Parting:
-    found = read(file(*events, text=text))
-    return replay(found, text.encode(), "tinibot", worlds.load("obstacles"))
+    recording = read(file(*events, text=text))
+    return replay(recording, text.encode(), "tinibot", worlds.load("obstacles"))
 
 
 def test_readings_of_the_recording_are_those_of_the_virtual_sensors() -> None:
@@ -111,9 +111,11 @@ def test_the_virtual_robot_runs_no_longer_than_what_is_compared(
 
 
 def test_a_recording_of_another_program_is_not_compared() -> None:
-    found = read(file(*LINES))
-    assert replay(found, b"SHOW(1)", "tinibot", worlds.load("obstacles")).what == "other_program"
-    assert replay(found, b"SHOW(", "tinibot", worlds.load("obstacles")).what == "other_program"
+    recording = read(file(*LINES))
+    assert (
+        replay(recording, b"SHOW(1)", "tinibot", worlds.load("obstacles")).what == "other_program"
+    )
+    assert replay(recording, b"SHOW(", "tinibot", worlds.load("obstacles")).what == "other_program"
 
 
 @pytest.mark.parametrize(

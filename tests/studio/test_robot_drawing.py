@@ -29,11 +29,11 @@ def pictures(*wanted: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> list
     assert tools is not None
     known = {each["name"]: each for each in description()["robots"]}
     asked = [{"robot": known[name], "state": state, "seen": seen} for name, state, seen in wanted]
-    done = subprocess.run(
+    completed = subprocess.run(
         [*tools.node, str(SCRIPT), str(SOURCES / "src")],
         input=json.dumps(asked), capture_output=True, text=True, check=True,
     )  # fmt: skip
-    found: list[Drawn] = json.loads(done.stdout)
+    found: list[Drawn] = json.loads(completed.stdout)
     return found
 
 
@@ -57,12 +57,12 @@ def test_wheels_turn_as_far_as_they_have_rolled() -> None:
     def treads(drawn: Drawn, is_left: bool) -> list[float]:
         """Where the treads of a wheel are, from the back to the front."""
         rows = [each for each in of(drawn, "stroke", TREAD) if (each[1] > 0) == is_left]
-        return sorted(each[0] for each in rows)
+        return sorted(row[0] for row in rows)
 
     for is_left in (True, False):
         before = treads(still, is_left)
         assert len(before) == 4
-        assert [each - 0.5 for each in treads(ahead, is_left)][1:] == pytest.approx(before)
+        assert [tread - 0.5 for tread in treads(ahead, is_left)][1:] == pytest.approx(before)
         assert treads(around, is_left) == pytest.approx(before)
         assert treads(back, is_left) != before
     assert treads(turned, True) == treads(ahead, True)
@@ -100,12 +100,12 @@ def test_a_cone_is_as_long_as_what_is_read() -> None:
     state = after("W(1)", "tinibot", 300)
     [drawn] = pictures(("tinibot", state, STILL))
     [cone] = of(drawn, "fill", "#e0452f33")
-    assert cone[4] == state["readings"][2]["value"] > 0  # behind the tip and the middle
+    assert cone[4] == state["readings"][2]["value"] > 0  # after the tip and the middle
     far, near = json.loads(json.dumps(state)), json.loads(json.dumps(state))
     far["readings"][0]["value"], near["readings"][0]["value"] = 0, 1023
     dim, bright = (
-        [color for _, _, color in each if color.startswith("#e08a1e")]
-        for each in pictures(("tinibot", far, STILL), ("tinibot", near, STILL))
+        [color for _, _, color in picture if color.startswith("#e08a1e")]
+        for picture in pictures(("tinibot", far, STILL), ("tinibot", near, STILL))
     )
     assert dim[0] < bright[0] and dim[1] == bright[1]  # the other one has not changed
 

@@ -1,6 +1,6 @@
 """The second time of whatever a studio does is as the first one, however the first one has ended.
 
-Who comes late, comes back or comes again finds what a fresh one finds: behind a STOP for all nobody
+Who comes late, comes back or comes again finds what a fresh one finds: after a STOP for all nobody
 starts, each silence of a page stops its robot, and a connection carries any number of requests.
 """
 
@@ -111,7 +111,7 @@ def hosting(monkeypatch: pytest.MonkeyPatch) -> Hosting:
     return Hosting()
 
 
-# -- a STOP for all, and whoever comes behind it
+# -- a STOP for all, and whoever comes after it
 
 
 class ComingPage:
@@ -169,7 +169,7 @@ class ComingPage:
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_nobody_starts_behind_a_stop_for_all_whenever_it_has_come(
+def test_nobody_starts_after_a_stop_for_all_whenever_it_has_come(
     hosting: Hosting, seed: int
 ) -> None:
     """Neither a page that was there, nor one that connects, the first time or again; and what
@@ -323,7 +323,7 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
 ) -> None:  # fmt: skip
     """Whatever was asked there before, and however much."""
     chance = Random(seed)
-    made = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
+    httpconnection = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
     longest = begun = 0
     for _ in range(40):
         is_odd = chance.random() < 0.04
@@ -332,11 +332,11 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
         fresh = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
         wanted = ask(fresh, what, padding)
         fresh.close()
-        assert ask(made, what, padding) == wanted, (what, padding)
+        assert ask(httpconnection, what, padding) == wanted, (what, padding)
         begun += 1
         longest = max(longest, begun)
         if wanted[2]:
-            made.close()
+            httpconnection.close()
             begun = 0
-    made.close()
+    httpconnection.close()
     assert longest > 4

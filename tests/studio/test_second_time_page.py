@@ -61,8 +61,8 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     content = {"languages": [(code, about(code).name) for code in languages()], "lock": {},
                "description": description(), "blocks": block_kinds.data(),
                "texts": page_texts(SOURCE)}  # fmt: skip
-    for name, each in content.items():
-        (folder / f"{name}.json").write_text(json.dumps(each), encoding="utf-8")
+    for name, value in content.items():
+        (folder / f"{name}.json").write_text(json.dumps(value), encoding="utf-8")
     return folder
 
 
@@ -73,9 +73,9 @@ def test_it_is_as_on_a_page_that_was_just_loaded(made: Path, part: str) -> None:
     except CannotMake as why:
         need(str(why))
     words = [*node, str(SCRIPT), str(SOURCES / "src"), str(made), part, str(SEEDS)]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
-    assert done.returncode == 0, done.stderr
-    rows: list[dict[str, Any]] = [json.loads(line) for line in done.stdout.splitlines()]
+    completed = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
+    assert completed.returncode == 0, completed.stderr
+    rows: list[dict[str, Any]] = [json.loads(line) for line in completed.stdout.splitlines()]
     assert len(rows) == SEEDS
     assert ENDS[part] <= {end for row in rows for end in row["ends"]}
     for row in rows:

@@ -63,7 +63,7 @@ def test_the_page_comes_with_its_policy(own: str) -> None:
     with socket.create_connection((serving.HOST, int(own.rpartition(":")[2])), HANGS_S) as browser:
         browser.sendall(f"HEAD /main.js HTTP/1.0\r\nHost: {own}\r\n\r\n".encode())
         said = b"".join(iter(lambda: browser.recv(4096), b""))
-    assert b" 200 " in said and said.endswith(b"\r\n\r\n")  # nothing behind the head
+    assert b" 200 " in said and said.endswith(b"\r\n\r\n")  # nothing after the head
 
 
 @pytest.mark.parametrize(

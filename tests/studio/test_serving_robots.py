@@ -198,5 +198,5 @@ def test_the_page_that_has_asked_last_is_kept(
         kept.append(pages[k].sock)
     assert kept[0] is kept[2] is kept[4]
     assert pages[1].sock.recv(1) == b""
-    for each in pages:
-        each.close()
+    for page in pages:
+        page.close()

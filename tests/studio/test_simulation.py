@@ -23,7 +23,7 @@ def lines(simulation: Simulation) -> list[str]:
     return trace(events)
 
 
-def begun(
+def started_run(
     text: str, at: Iterable[int] = (), is_held: bool = False, robot: str = "tinibot"
 ) -> Simulation:
     """Return a simulation of a program with breakpoints in front of those parts of its text."""
@@ -56,7 +56,7 @@ def test_a_run_is_that_of_the_virtual_robot(name: str, robot: str, world: str) -
 
 def test_it_is_told_which_part_of_the_text_runs() -> None:
     text = "F(1, 80);\nR(0.5, 60);\nS"
-    simulation = begun(text)
+    simulation = started_run(text)
     simulation.go(300)
     assert simulation.state()["at"] in range(3) and not simulation.state()["is_held"]
     simulation.step(5000)
@@ -83,14 +83,14 @@ END_TASK
 
 def test_it_is_told_where_each_task_is() -> None:
     """The parts that wait; a task that has ended is nowhere."""
-    simulation = begun(TASKS, robot="tinibot32")
+    simulation = started_run(TASKS, robot="tinibot32")
     places = check(TASKS.encode(), "tinibot32", "en").places
 
     def lit() -> set[int]:
         """The lines of the text that are marked."""
         found = set()
         for at in simulation.state()["places"]:
-            found.add(next(each for each in reversed(places) if each.offset <= at).line)
+            found.add(next(place for place in reversed(places) if place.offset <= at).line)
         return found
 
     simulation.go(100)
@@ -101,14 +101,14 @@ def test_it_is_told_where_each_task_is() -> None:
     assert lit() == {1, 2}
     simulation.stop()
     assert simulation.state()["places"] == []
-    plain = begun("W(1)")
+    plain = started_run("W(1)")
     plain.go(500)
     assert plain.state()["places"] == [plain.state()["at"]]
 
 
 @pytest.mark.parametrize("parts", [range(8), (2,), (4, 5)])
 def test_tasks_that_are_held_do_the_same_as_others(parts: Iterable[int]) -> None:
-    free, simulation = (begun(TASKS, at, robot="tinibot32") for at in ((), parts))
+    free, simulation = (started_run(TASKS, at, robot="tinibot32") for at in ((), parts))
     free.go(600)
     held: set[int | None] = set()
     while simulation.robot.now_ms < free.robot.now_ms:
@@ -147,7 +147,7 @@ def test_a_fault_is_named() -> None:
     found = check(b"W(1); X = 0; SHOW(1 / X)", "tinibot", "en")
     place = max(place for place in found.places if place.offset <= state["fault_at"])
     assert (place.line, place.column) == (1, 14)
-    state = begun("X = 0; SHOW(1 / X)").state()  # at once
+    state = started_run("X = 0; SHOW(1 / X)").state()  # at once
     assert state["fault"] == "DIVIDE_BY_ZERO" and state["fault_at"] is not None
 
 
@@ -156,7 +156,7 @@ STICK = "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP"
 
 def test_a_remote_control_is_read_until_nobody_says_anything() -> None:
     """For half a second of the robot's time, however long that takes."""
-    simulation = begun(STICK)
+    simulation = started_run(STICK)
     for _ in range(5):
         simulation.press(0, 0, 60)
         simulation.go(400)
@@ -172,7 +172,7 @@ def test_a_remote_control_is_read_until_nobody_says_anything() -> None:
 
 
 def test_what_is_held_while_it_is_held_or_stopped_counts_when_it_goes_on() -> None:
-    simulation = begun(STICK, at=(1,))
+    simulation = started_run(STICK, at=(1,))
     simulation.go(100)
     assert simulation.held_at is not None
     for _ in range(3):

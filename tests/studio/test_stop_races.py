@@ -76,7 +76,7 @@ class Meeting:
         return next((each for each in self.news if each.get("id") == number), {})
 
     def races(self) -> None:
-        """Some uploads are before the STOP, in the middle of it, and behind it."""
+        """Some uploads are before the STOP, in the middle of it, and after it."""
         late_ms = self.chance.choice((30, 400, 1900, 4000))
         numbers = []
         for _ in range(self.chance.randrange(1, 4)):

@@ -29,7 +29,7 @@ def is_near(one: Any, other: Any) -> bool:
 
 def shipped() -> list[World]:
     lessons = [catalogue.load(folder) for folder in catalogue.folders()]
-    return [*map(worlds.load, worlds.names()), *(varied(each, 3) for each in lessons)]
+    return [*map(worlds.load, worlds.names()), *(varied(lesson, 3) for lesson in lessons)]
 
 
 def test_the_text_of_a_form_is_the_same_world() -> None:

@@ -42,7 +42,7 @@ def _build(board: str, folder: Path) -> Built:
     shutil.copytree(SKETCH, copy, ignore=shutil.ignore_patterns(".pio", "own.h"))
     build = folder / "build"
     build.mkdir()
-    done = subprocess.run(
+    completed = subprocess.run(
         ["arduino-builder", "-compile", "-warnings", "all",
          "-hardware", BUILDER, "-hardware", boards.ARDUINO.parents[1],
          "-tools", "/usr/bin", "-fqbn", f"arduino:avr:{BOARDS[board]}", "-build-path", build,
@@ -53,5 +53,5 @@ def _build(board: str, folder: Path) -> Built:
         text=True,
         check=False,
     )  # fmt: skip
-    assert done.returncode == 0, done.stdout[-4000:]
-    return Built(build / "vm_arduino.ino.hex", done.stdout)
+    assert completed.returncode == 0, completed.stdout[-4000:]
+    return Built(build / "vm_arduino.ino.hex", completed.stdout)

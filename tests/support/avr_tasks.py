@@ -1,6 +1,6 @@
 """Programs with tasks that show what the assembly of an Uno could get wrong and little else shows.
 
-In most of them what tasks do lies behind the first 256 bytes of code, and ticks come late. Times
+In most of them what tasks do lies after the first 256 bytes of code, and ticks come late. Times
 are milliseconds.
 """
 
@@ -64,7 +64,7 @@ LOOP(9);B(0.03, 30) UNTIL(DISTANCE < 15 OR LIGHT_L > 500);SHOW(TIME);END_LOOP"""
         "TASK;M(20, 20);W(0.05);SHOW(0.004);END_TASK;W(1)",
         ((0, 0, 0, SOON),),
     ),
-    "a move is taken behind its end": Runs(
+    "a move is taken after its end": Runs(
         f"""{FAR}F(0.09, 30);SHOW(TIME);F(FOREVER, 20)
 TASK;W(0.1);B(0.1, 50);SHOW(TIME);END_TASK""",
         ((0, 36, 0, SOON),),

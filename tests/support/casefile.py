@@ -53,8 +53,8 @@ class Case(NamedTuple):
 
 def documents() -> list[Path]:
     """Return every file that holds cases. They are found, never listed."""
-    found = [*ROOT.glob("tests/cases/**/*.md"), *ROOT.glob("docs/**/*.md")]
-    return sorted([*found, ROOT / "bytecode_spec.md", *ROOT.glob("README*.md")])
+    paths = [*ROOT.glob("tests/cases/**/*.md"), *ROOT.glob("docs/**/*.md")]
+    return sorted([*paths, ROOT / "bytecode_spec.md", *ROOT.glob("README*.md")])
 
 
 def read(path: Path) -> list[Case]:
@@ -132,7 +132,7 @@ def _said(case: Case, fence: str, text: str, end: int) -> Iterator[Case]:
 
 class Example(NamedTuple):
     """A fence `python`: code that runs in a namespace of its own, and the fence `output` right
-    behind it. `has_robot`: it is `python robot`, and connects to the robot on /dev/ttyUSB0."""
+    after it. `has_robot`: it is `python robot`, and connects to the robot on /dev/ttyUSB0."""
 
     path: Path
     line: int
@@ -145,11 +145,11 @@ def examples(path: Path) -> list[Example]:
     """Return the Python of one document."""
     found: list[Example] = []
     fence, start, lines = "", 0, list[str]()
-    is_right_behind = False  # an example, with nothing but empty lines between
+    is_right_after = False  # an example, with nothing but empty lines between
     for number, row in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         if not row.startswith("```"):
             lines.append(row)
-            is_right_behind = is_right_behind and (bool(fence) or not row.strip())
+            is_right_after = is_right_after and (bool(fence) or not row.strip())
         elif not fence:
             fence, start, lines = row[3:].strip() or "text", number, []
         else:
@@ -158,9 +158,9 @@ def examples(path: Path) -> list[Example]:
             if is_python:
                 found.append(Example(path, start, text, "", fence == "python robot"))
             elif fence == "output":
-                assert is_right_behind, f"{path.name}:{start}: the output of no example"
+                assert is_right_after, f"{path.name}:{start}: the output of no example"
                 found[-1] = found[-1]._replace(output=text)
-            is_right_behind, fence = is_python, ""
+            is_right_after, fence = is_python, ""
     return found
 
 

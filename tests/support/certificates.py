@@ -35,7 +35,7 @@ class Authority:
     def rules(self, name: str, is_chain: bool = False) -> str:
         """Return what makes Mosquitto speak TLS as a computer of a name, and of 127.0.0.1.
 
-        `is_chain`: it shows the authority's certificate behind its own.
+        `is_chain`: it shows the authority's certificate after its own.
         """
         key, file = self._folder / f"{name}.key", self.signed(name)
         _run(*_COMMON, "-CA", self.file, "-CAkey", self._key, "-keyout", key, "-out", file,

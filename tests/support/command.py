@@ -55,9 +55,9 @@ class Tsc:
         self.capsys = capsys
 
     def __call__(self, *arguments: str | Path) -> Done:
-        code = main([str(each) for each in arguments])
-        said = self.capsys.readouterr()
-        return Done(code, said.out, said.err)
+        code = main([str(argument) for argument in arguments])
+        capture_result = self.capsys.readouterr()
+        return Done(code, capture_result.out, capture_result.err)
 
 
 def inside(*arguments: str | Path, data: bytes = b"") -> Done:
@@ -65,17 +65,17 @@ def inside(*arguments: str | Path, data: bytes = b"") -> Done:
     streams = [io.TextIOWrapper(io.BytesIO(each), encoding="utf-8") for each in (data, b"", b"")]
     stdin, out, err = streams
     with mock.patch.object(sys, "stdin", stdin), redirect_stdout(out), redirect_stderr(err):
-        code = main([str(each) for each in arguments])
+        code = main([str(argument) for argument in arguments])
         out.flush()
         err.flush()
-    return Done(code, *(each.buffer.getvalue().decode() for each in (out, err)))
+    return Done(code, *(text_iowrapper.buffer.getvalue().decode() for text_iowrapper in (out, err)))
 
 
 def process(*arguments: str | Path, data: bytes = b"") -> Done:
     """Run `tsc` as a process of its own."""
     words = [*TSC, *map(str, arguments)]
-    done = subprocess.run(words, input=data, capture_output=True, timeout=HANGS_S)
-    return Done(done.returncode, done.stdout.decode(), done.stderr.decode())
+    completed = subprocess.run(words, input=data, capture_output=True, timeout=HANGS_S)
+    return Done(completed.returncode, completed.stdout.decode(), completed.stderr.decode())
 
 
 class Command:
@@ -110,7 +110,7 @@ class Command:
     @classmethod
     def is_any_there(cls) -> bool:
         """Whether one goes on, which has no time but that of the wall."""
-        return any(each.process.poll() is None for each in cls.begun)
+        return any(command.process.poll() is None for command in cls.begun)
 
     def signal(self, number: int) -> None:
         self.process.send_signal(number)

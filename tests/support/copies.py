@@ -31,7 +31,7 @@ def _kept(source: Path, ignored: tuple[str, ...]) -> TemporaryDirectory[str]:
     folder = TemporaryDirectory()
     copy = Path(folder.name) / source.name
     shutil.copytree(source, copy, ignore=shutil.ignore_patterns(*ignored))
-    for each in copy.rglob("*"):
-        if each.is_file():
-            each.chmod(0o444 | each.stat().st_mode & 0o111)
+    for path in copy.rglob("*"):
+        if path.is_file():
+            path.chmod(0o444 | path.stat().st_mode & 0o111)
     return folder

@@ -217,7 +217,7 @@ FAR = f"A = 0;N = 0;IF(N > 0);{'SHOW(8);' * 140}ENDIF;"  # more than 256 bytes
 def some_task_programs(first: int, count: int, before: str = "") -> Iterator[tuple[bytes, Senses]]:
     """Yield images of random programs with tasks, and what their sensors read.
 
-    All that a program does lies behind the code of the text `before`.
+    All that a program does lies after the code of the text `before`.
     """
     for seed in range(first, first + count):
         text, readings = task_program(random.Random(seed))
@@ -291,7 +291,7 @@ WAYS = [op.opcode for op in ESCAPED.values()]
 def way_code(rng: random.Random) -> bytes:
     """Return a move by any way and power, mostly right; with an UNTIL or without."""
     values = (any_number(rng), rng.choice((any_number(rng), rng.randrange(-5, 105) * 1000)))
-    pushes = [simple("PUSH32") + each.to_bytes(4, "little", signed=True) for each in values]
+    pushes = [simple("PUSH32") + value.to_bytes(4, "little", signed=True) for value in values]
     code = b"".join(pushes) + rng.choice(WAYS)
     if (code[-1] & 8) and rng.random() < 0.9:
         code += simple(rng.choice(("PUSH_TRUE", "PUSH_FALSE"))) + simple("UNTIL")

@@ -51,12 +51,12 @@ def answers(tries: Sequence[Try], folder: Path) -> list[str]:
     without a mistake.
     """
     environment = {"PYTHONPATH": str(folder / "compiler"), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-m", "tests.support.exchanged"], cwd=folder, text=True,
         capture_output=True, input=json.dumps(tries), env={**os.environ, **environment},
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    found: list[str] = json.loads(done.stdout)
+    assert completed.returncode == 0, completed.stderr
+    found: list[str] = json.loads(completed.stdout)
     return found
 
 
@@ -95,7 +95,7 @@ def _tried(each: Try, items: Sequence[pytest.Item]) -> str:
 
 
 def _in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> str:
-    """Run tests behind `begin`; an endless loop fails."""
+    """Run tests after `begin`; an endless loop fails."""
     child = os.fork()
     if child == 0:
         code = TROUBLE
@@ -104,9 +104,9 @@ def _in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> str:
             resource.setrlimit(resource.RLIMIT_CPU, (LIMIT_S, LIMIT_S))
             begin()
             rows = [runtestprotocol(item, log=False, nextitem=None) for item in items]
-            reports = [each for row in rows for each in row]
-            code = int(any(each.failed for each in reports if each.when == "call"))
-            if not code and any(each.skipped for each in reports):
+            reports = [test_report for row in rows for test_report in row]
+            code = int(any(report.failed for report in reports if report.when == "call"))
+            if not code and any(report.skipped for report in reports):
                 code = SKIPPED
         finally:
             os._exit(code)
@@ -137,7 +137,7 @@ def _exchange(each: Try) -> Callable[[], None]:
 
 def _pairs(was: CodeType, becomes: CodeType) -> Iterator[Pair]:
     """Yield the functions that differ in the code of a module or a class, outermost ones."""
-    old, new = ([each for each in code.co_consts if isinstance(each, CodeType)]
+    old, new = ([const for const in code.co_consts if isinstance(const, CodeType)]
                 for code in (was, becomes))  # fmt: skip
     if _own(was) != _own(becomes) or len(old) != len(new):
         raise Elsewhere("what differs is in no function")
@@ -150,7 +150,7 @@ def _pairs(was: CodeType, becomes: CodeType) -> Iterator[Pair]:
 
 
 def _own(code: CodeType) -> tuple[object, ...]:
-    others = [each for each in code.co_consts if not isinstance(each, CodeType)]
+    others = [const for const in code.co_consts if not isinstance(const, CodeType)]
     return code.co_code, code.co_names, repr(others)
 
 

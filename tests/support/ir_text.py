@@ -27,7 +27,7 @@ def expression_text(expression: Expression) -> str:
 def program_text(program: Program) -> str:
     """Return the whole program as lines of text, blocks indented."""
     lines = [program.start]
-    for procedure in (each for each in program.procedures if each.is_called):
+    for procedure in (procedure for procedure in program.procedures if procedure.is_called):
         lines += [f"DEF {procedure.name}", *_body_lines(procedure.body, "  ")]
     for task in program.tasks:
         look = "TASK"

@@ -9,8 +9,8 @@ from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
 
 def _devices(theirs: tuple[oracle.Device, ...]) -> tuple[Device, ...]:
     return tuple(
-        Device(each.name, YES_NO if each.is_yes_no else NUMBER, "", each.low, each.high)
-        for each in theirs
+        Device(device.name, YES_NO if device.is_yes_no else NUMBER, "", device.low, device.high)
+        for device in theirs
     )
 
 
@@ -19,4 +19,4 @@ def _kit(theirs: oracle.Kit) -> Kit:
     return Kit(*devices, theirs.speed, theirs.turn)
 
 
-KITS = [(each, _kit(each)) for each in (oracle.PAPER_KIT, programs.WIDE_KIT)]
+KITS = [(kit, _kit(kit)) for kit in (oracle.PAPER_KIT, programs.WIDE_KIT)]

@@ -104,7 +104,7 @@ def names_of(path: Path) -> dict[str, list[str]]:
 
 def accept(case: LinkCase, rows: list[str]) -> None:
     """Write what was found where the case says something else; git shows what changed."""
-    now = next(each for each in _read(case.path) if each[2:] == case[2:])
+    now = next(link_case for link_case in _read(case.path) if link_case[2:] == case[2:])
     old = case.path.read_text(encoding="utf-8").splitlines()
     is_over = re.compile(r"```" if case.kind == "link" else rf"(?!{OF_PACKETS.pattern})").match
     end = next(k for k in range(now.line, len(old)) if is_over(old[k]))
@@ -117,10 +117,10 @@ def shortened(rows: list[str], named: Mapping[str, list[str]]) -> list[str]:
     found = []
     while rows:
         time = rows[0][:7]
-        for name, each in named.items():
-            if rows[: len(each)] == [time + row for row in each]:
+        for name, value in named.items():
+            if rows[: len(value)] == [time + row for row in value]:
                 found.append(time + name)
-                rows = rows[len(each) :]
+                rows = rows[len(value) :]
                 break
         else:
             found.append(rows[0])
@@ -288,8 +288,10 @@ class SessionSide:
         self.session.receive(data, now_ms)
 
     def said(self) -> list[str]:
-        rows = [_said("tells " + each.name, of_event(each)) for each in self.session.events()]
-        for request in [each for each in self.pending if each.outcome]:
+        rows = [_said("tells " + event.name, of_event(event)) for event in self.session.events()]
+        for request in [
+            pending_request for pending_request in self.pending if pending_request.outcome
+        ]:
             assert request.outcome
             name = {-1: "LOST", -2: "CANCELLED"}.get(request.outcome.status)
             name = name or name_of(request.outcome.status)

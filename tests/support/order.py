@@ -1,6 +1,6 @@
 """Which tests begin first where several processes share them, so that none ends long after others.
 
-pytest-xdist gives each process an equal part of the list, one behind the other, and who has nothing
+pytest-xdist gives each process an equal part of the list, one after the other, and who has nothing
 left takes the last tests of others. So each part begins with files that take long, and ends with
 quick tests. Pages are in half of the parts: each process that has one starts a browser.
 """

@@ -98,14 +98,14 @@ class Owned:
             session.receive(sent, self.robot.now_ms)
             there, back = there + data, back + sent
         assert request.outcome.status == 0
-        return [each for each in there.split(b"\0") if each], [
-            each for each in back.split(b"\0") if each
+        return [part for part in there.split(b"\0") if part], [
+            part for part in back.split(b"\0") if part
         ]
 
     def answer(self, frame: Frame | bytes) -> Frame | None:
         """Return what the robot answers a frame, or bytes of one."""
         data = frame + b"\0" if isinstance(frame, bytes) else encoded(frame)
-        found = [each for each in self.robot.wait(20, b"\0" + data).split(b"\0") if each]
+        found = [part for part in self.robot.wait(20, b"\0" + data).split(b"\0") if part]
         return decoded(found[0]) if found else None
 
     def asked(self, session: Session, name: str, payload: bytes) -> bytes:

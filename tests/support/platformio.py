@@ -28,9 +28,9 @@ def prepared() -> tuple[dict[str, str], str]:
     """Return the variables that `pio` needs, none where it is online, and why it cannot run."""
     if importlib.util.find_spec("platformio") is None:
         return {}, "PlatformIO is not installed"
-    done = subprocess.run(OFFLINE, cwd=ROOT, capture_output=True, text=True, check=False)
-    exports = (shlex.split(row)[1].partition("=")[::2] for row in done.stdout.splitlines())
-    return dict(exports), done.stderr if done.returncode else ""
+    completed = subprocess.run(OFFLINE, cwd=ROOT, capture_output=True, text=True, check=False)
+    exports = (shlex.split(row)[1].partition("=")[::2] for row in completed.stdout.splitlines())
+    return dict(exports), completed.stderr if completed.returncode else ""
 
 
 def copied(folder: Path) -> Path:
@@ -41,7 +41,7 @@ def copied(folder: Path) -> Path:
 
 def pio(project: Path, *words: str) -> Done:
     """Run `pio`: what it said, as its output."""
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-m", "platformio", *words],
         cwd=project,
         env={**os.environ, **prepared()[0]},
@@ -50,7 +50,7 @@ def pio(project: Path, *words: str) -> Done:
         text=True,
         check=False,
     )
-    return Done(done.returncode, done.stdout, "")
+    return Done(completed.returncode, completed.stdout, "")
 
 
 def shared(factory: pytest.TempPathFactory) -> Path:
@@ -74,9 +74,9 @@ def changed(folder: Path, name: str, old: str, new: str, environment: str = "uno
 def firmware(board: str, own: Path, shared: Path) -> Path:
     """Return the sketch for a board, an ELF file, built once for all workers of a session."""
 
-    def make(made: Path) -> None:
+    def make(path: Path) -> None:
         project = copied(own)
         pio(project, "run", "-e", board).gives(0)
-        shutil.copy(project / ".pio" / "build" / board / "firmware.elf", made)
+        shutil.copy(project / ".pio" / "build" / board / "firmware.elf", path)
 
     return once(shared / f"{board}.elf", make)

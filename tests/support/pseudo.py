@@ -13,7 +13,7 @@ _WORD = "lóñg"
 def pseudo(content: Any) -> Any:
     """Return a text, or all texts of a file of the page, in the language that nobody speaks."""
     if isinstance(content, dict):
-        return {key: pseudo(each) if key else each for key, each in content.items()}
+        return {key: pseudo(value) if key else value for key, value in content.items()}
     if isinstance(content, list):
         return [pseudo(each) for each in content]
     parts = _KEPT.split(content)

@@ -161,7 +161,7 @@ def deep_code(rng: random.Random) -> bytes:
         body = jump("CALL", False, ways + 2)
         for depth in range(rng.choice((10, 11, 12, 13))):
             body = simple("LOOP8") + b"\x01" + body + jump("NEXT", False, 4 + 4 * depth)
-            # the call lies further behind the procedure with each loop around it
+            # the call lies further after the procedure with each loop around it
             at = body.index(BY_NAME["CALL"].code)
             body = body[: at + 1] + bytes([ways + at + 2]) + body[at + 2 :]
         code += body
@@ -228,7 +228,7 @@ def branches(rng: random.Random) -> bytes:
         op = rng.choice([op for op in UNO_OPS if op.control_role == "if"])
         near = rng.choice((0, 1, 2, 9, 200))
         code += simple("PUSH16") + near.to_bytes(2, "little") + simple("SET_VAR") + b"\x01"
-        *variable, compared, _ = [None, None, *(each.kind for each in op.operands)][-3:]
+        *variable, compared, _ = [None, None, *(operand.kind for operand in op.operands)][-3:]
         if compared is None:
             code += simple(rng.choice(("PUSH_TRUE", "PUSH_FALSE"))) + bytes([op.code])
         else:

@@ -47,7 +47,7 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
             go_through(one, sets, lambda row: str(row.id or repr(row.values)))
 
         signature = inspect.signature(test)
-        left = [each for name, each in signature.parameters.items() if name not in wanted]
+        left = [parameter for name, parameter in signature.parameters.items() if name not in wanted]
         assert len(left) == len(signature.parameters) - len(wanted), f"it takes no {names}"
         whole.__signature__ = signature.replace(parameters=left)  # type: ignore[attr-defined]
         return whole

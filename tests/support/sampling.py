@@ -90,10 +90,10 @@ def seed(config: pytest.Config) -> str:
 def _commit() -> str:
     words = ["git", "-C", str(ROOT), "rev-parse", "--short=10", "HEAD"]
     try:
-        done = subprocess.run(words, capture_output=True, text=True)
+        completed = subprocess.run(words, capture_output=True, text=True)
     except OSError:
         return "none"
-    return done.stdout.strip() or "none"
+    return completed.stdout.strip() or "none"
 
 
 def _others(item: pytest.Item, names: tuple[str, ...]) -> str:

@@ -101,10 +101,10 @@ def hosted() -> Iterator[serving.Server]:
 def room_address() -> str:
     """Return an address of this computer that is not its own alone, or, without a network, one that
     a browser takes for its own."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as connection:
         try:
-            asked.connect(("198.51.100.1", 9))
-            return str(asked.getsockname()[0])
+            connection.connect(("198.51.100.1", 9))
+            return str(connection.getsockname()[0])
         except OSError:
             return "127.0.0.2"
 
@@ -180,7 +180,7 @@ class Pages:
     def open(self, view: str = "text", **options: Any) -> Page:
         """Open a page of a new visitor, and wait until its program is compiled.
 
-        `view` is `start`, which a new visitor sees, `blocks` behind it, or `text`, which most tests
+        `view` is `start`, which a new visitor sees, `blocks` after it, or `text`, which most tests
         write; the others are those of `visit`.
         """
         return self.visit(self.entrance(), view, **options)
@@ -246,7 +246,10 @@ class Pages:
 
     def watch(self, page: Page) -> None:
         page.on("pageerror", lambda error: self.wrong.append(str(error)))
-        page.on("console", lambda said: self._said(said.type, said.text))
+        page.on(
+            "console",
+            lambda console_message: self._said(console_message.type, console_message.text),
+        )
 
     def close(self) -> None:
         """Close the pages; what visitors have left in their browsers is forgotten."""
@@ -352,11 +355,11 @@ def drives(page: Page, robot: PtyRobot) -> None:
     has seen it drive. Then the page asks again.
     """
     write(page, FOREVER)
-    said = page.locator("#link_said")
+    locator = page.locator("#link_said")
     for _ in range(UPLOADS):
         page.click("#link_upload")
-        said.filter(has_text=re.compile("The robot has it|Stopped: ")).wait_for()
-        robot.until(lambda: robot.moves or "Stopped: " in said.inner_text(), "it drives")
+        locator.filter(has_text=re.compile("The robot has it|Stopped: ")).wait_for()
+        robot.until(lambda: robot.moves or "Stopped: " in locator.inner_text(), "it drives")
         if robot.moves:
             return
     raise AssertionError(f"stopped {UPLOADS} times")
@@ -456,6 +459,6 @@ def dances_like_the_command(page: Page) -> list[str]:
     page.select_option("#speed", "20")
     page.click("#run")
     in_phase(page, "ended")
-    wanted = [f"{each.ms} {each.text}" for each in run(DANCE).events]
+    wanted = [f"{event.ms} {event.text}" for event in run(DANCE).events]
     assert (page.locator("#trace").text_content() or "").split("\n") == wanted
     return wanted

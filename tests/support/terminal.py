@@ -69,9 +69,9 @@ class Terminal:
         """Wait until something is to be seen."""
         end_s = monotonic() + HANGS_S
         while True:
-            found = re.search(pattern, "\n".join(self.lines()))
-            if found:
-                return found
+            match = re.search(pattern, "\n".join(self.lines()))
+            if match:
+                return match
             assert self.take(), f"it ends without {pattern}: {self.lines()}"
             assert monotonic() < end_s, f"it draws on without {pattern}: {self.lines()}"
 

@@ -13,7 +13,9 @@ LANGUAGES = languages()
 def said(language: str, name: str = "command") -> dict[str, str]:
     """Return all texts of a catalogue by key; of one with a plural, its last form."""
     found = texts(name, language)
-    return {key: each if isinstance(each, str) else each["other"] for key, each in found.items()}
+    return {
+        key: value if isinstance(value, str) else value["other"] for key, value in found.items()
+    }
 
 
 def in_all(key: str) -> list[str]:

@@ -49,7 +49,9 @@ class Thief:
             number = chance.choice((frame.number, 7, 8, 9, 19))
             payload = chance.choice((frame.payload, rising))
             return how, wire_of(frame._replace(payload=payload, seq=count, number=number))
-        acting = [each for each in MESSAGES if 6 <= each.number < 32 and each.number != 17]
+        acting = [
+            message for message in MESSAGES if 6 <= message.number < 32 and message.number != 17
+        ]
         message = chance.choice(acting)
         low = sum(field.low for field in message.request)
         high = min(sum(field.high for field in message.request), SEALED_PAYLOAD_BYTES)

@@ -14,14 +14,14 @@ def parsers() -> dict[str, options.Options]:
 
 def words_of(command: str) -> list[str]:
     """Return what is typed for a command; one that a value chooses has that still to come."""
-    flags = {flag for each in of_verb(command) if each.kind for flag in each.flags.split()}
+    flags = {flag for option in of_verb(command) if option.kind for flag in option.flags.split()}
     return [word for word in typed(command).split() if word not in flags]
 
 
 def values_of(parser: options.Options) -> dict[str, str]:
     """Return the options of a command that take a value: how each is called, by its name there."""
     return {
-        each.dest: (each.option_strings or [""])[0]
-        for each in parser._actions
-        if each.nargs in (None, "?")
+        action.dest: (action.option_strings or [""])[0]
+        for action in parser._actions
+        if action.nargs in (None, "?")
     }

@@ -36,7 +36,7 @@ def trace(events: Sequence[Event]) -> list[str]:
     """Return what a robot did in its last run as `tsc run` prints it."""
     starts = [k for k, event in enumerate(events) if event.what == "START"]
     began_ms = events[starts[-1]].time_ms
-    return [f"{each.time_ms - began_ms} {each.text}" for each in events[starts[-1] + 1 :]]
+    return [f"{event.time_ms - began_ms} {event.text}" for event in events[starts[-1] + 1 :]]
 
 
 class Talk(Computer):

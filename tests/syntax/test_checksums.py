@@ -23,7 +23,10 @@ def found(text: str) -> Compiled:
 
 def said(text: str) -> list[tuple[str, str]]:
     """Return the code of each diagnostic, and what it points at."""
-    return [(each.code.number, text[slice(*each.span)]) for each in found(text).diagnostics]
+    return [
+        (diagnostic.code.number, text[slice(*diagnostic.span)])
+        for diagnostic in found(text).diagnostics
+    ]
 
 
 def test_the_checksum_is_the_crc_32_of_the_bytes_of_the_line() -> None:

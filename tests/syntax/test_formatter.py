@@ -207,7 +207,9 @@ def check_compiled(text: str, of: kit.Kit) -> None:
 def codes_of(compiled: Compiled) -> list[codes.Code]:
     """Return the codes; what is said of a note alone may go, because notes are joined."""
     of_notes = (codes.IN_A_NOTE, codes.EMPTY_BLOCK)  # a note alone keeps a block from being empty
-    return [each.code for each in compiled.diagnostics if each.code not in of_notes]
+    return [
+        diagnostic.code for diagnostic in compiled.diagnostics if diagnostic.code not in of_notes
+    ]
 
 
 def laid_out_anew(rng: random.Random, text: str) -> str:

@@ -65,7 +65,7 @@ def test_the_dashes_of_phones_are_a_minus(dash: str) -> None:
 
 def test_comments_are_no_tokens_and_end_with_their_line() -> None:
     scanned = scan("S // stop; now\r\nS//")
-    assert [(each.text, each.start) for each in scanned.comments] == [
+    assert [(comment.text, comment.start) for comment in scanned.comments] == [
         ("// stop; now", 2),
         ("//", 17),
     ]
@@ -129,7 +129,7 @@ def test_tokens_and_comments_of_any_text_follow_one_another() -> None:
     for text in texts():
         scanned = scan(text)
         at = 0
-        for token in sorted((*scanned.tokens, *scanned.comments), key=lambda each: each.start):
+        for token in sorted((*scanned.tokens, *scanned.comments), key=lambda token: token.start):
             assert at <= token.start <= token.end <= len(text), text
             at = token.end
         assert at == len(text)

@@ -40,7 +40,7 @@ def rows(body: tuple[ast.Instruction, ...], text: str, depth: int = 0) -> Iterat
 
     for node in body:
         if isinstance(node, ast.Command):
-            values = "".join(" " + value(each) for each in node.arguments or ())
+            values = "".join(" " + value(argument) for argument in node.arguments or ())
             brackets = " ()" if node.arguments == () else ""
             until = f" UNTIL {value(node.until)}" if node.until else ""
             yield row(f"{node.word}{brackets}{values}{until}", node.span)
@@ -77,8 +77,8 @@ def outline(text: str) -> str:
 def reported(text: str) -> list[str]:
     """Return each diagnostic as its code and what it points at."""
     return [
-        f"{each.code.number} {text[each.span.start : each.span.end]}"
-        for each in parse(Source(text)).diagnostics
+        f"{diagnostic.code.number} {text[diagnostic.span.start : diagnostic.span.end]}"
+        for diagnostic in parse(Source(text)).diagnostics
     ]
 
 
@@ -140,7 +140,7 @@ def test_spans_of_a_command_an_assignment_and_a_definition() -> None:
     assert (assign.name_span, assign.value.span, assign.span) == ((0, 1), (4, 7), (0, 7))
     assert isinstance(command, ast.Command) and command.arguments and command.until
     assert (command.word_span, command.span) == ((8, 9), (8, 28))
-    assert [each.span for each in command.arguments] == [(10, 11), (13, 15)]
+    assert [argument.span for argument in command.arguments] == [(10, 11), (13, 15)]
     assert command.until.span == (23, 27)
     assert isinstance(definition, ast.Def)
     assert (definition.name_span, definition.span) == ((33, 34), (29, 42))
@@ -193,7 +193,7 @@ def test_each_part_of_an_expression_says_where_it_stands() -> None:
     text = "X = -1 + MAX(A, -Q)"
     (assign,) = parse(Source(text)).program.body
     assert isinstance(assign, ast.Assign) and assign.value is not None
-    assert [(each.op, text[each.start : each.end]) for each in assign.value.expression] == [
+    assert [(part.op, text[part.start : part.end]) for part in assign.value.expression] == [
         ("NUMBER", "-1"),
         ("NAME", "A"),
         ("NAME", "Q"),
@@ -265,8 +265,8 @@ def test_a_def_may_be_called_by_a_word_of_another_language() -> None:
 
 
 def test_reading_ends_where_more_diagnostics_help_nobody() -> None:
-    found = parse(Source("*;" * 5000))
-    assert len(found.diagnostics) == ENOUGH + 1
+    parsed = parse(Source("*;" * 5000))
+    assert len(parsed.diagnostics) == ENOUGH + 1
 
 
 # -- any text -------------------------------------------------------------------------------------
@@ -326,8 +326,8 @@ def test_diagnostics_of_any_text_point_into_it() -> None:
     found = [(text, parse(Source(text)).diagnostics) for text in broken_programs()]
     assert sum(bool(diagnostics) for _, diagnostics in found) > len(found) // 2
     for text, diagnostics in found:
-        for each in diagnostics:
-            assert 0 <= each.span.start <= each.span.end <= len(text), text
+        for diagnostic in diagnostics:
+            assert 0 <= diagnostic.span.start <= diagnostic.span.end <= len(text), text
 
 
 def test_no_parser_made_of_this_one_has_a_rule_that_its_table_would_not_find() -> None:

@@ -1,4 +1,4 @@
-"""Whatever real apps and modules send before and behind a right line: it runs, or an answer says
+"""Whatever real apps and modules send before and after a right line: it runs, or an answer says
 why not. Nothing passes in silence.
 
 `python -m tests.text.test_bytes_around 20000` tries more.
@@ -38,7 +38,7 @@ class SmallRobot(HostFirmware):
 
 
 def drawn(rng: random.Random) -> list[bytes]:
-    """Return what comes before and behind."""
+    """Return what comes before and after."""
     return [b"".join(rng.choices(PIECES, k=rng.choice((0, 1, 1, 2, 4)))) for _ in "12"]
 
 
@@ -46,21 +46,21 @@ def check(seed: int) -> str:
     rng = random.Random(seed)
     robot = rng.choice((HostFirmware, SmallRobot))(KIT)
     robot.wait(rng.choice((200, 4000)))
-    before, behind = drawn(rng)
+    before, after = drawn(rng)
     line, end = LINE.encode(), rng.choice(ENDS)
     is_spread = rng.random() < 0.7
     sent = b""
-    for data in (before, line + end, behind):
+    for data in (before, line + end, after):
         if data:
             sent += robot.latched_while(len(data), data, is_spread)[0]
         sent += robot.wait(rng.choice((0, 0, 300, 1200)))
     sent += robot.wait(5000)
     if any(did.endswith(BEEPS) for did in robot.did):
         return "it runs"
-    if b"// " not in sent and DAMAGED_FRAME.search(before + line + end + behind):
+    if b"// " not in sent and DAMAGED_FRAME.search(before + line + end + after):
         return "no line"
     is_answered = b"// " in sent or (bytes(4) in before and sent)  # a stop, by a frame
-    assert is_answered, f"seed {seed}: {before!r} {end!r} {behind!r} {sent!r}"
+    assert is_answered, f"seed {seed}: {before!r} {end!r} {after!r} {sent!r}"
     return "an answer"
 
 

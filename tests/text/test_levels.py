@@ -31,13 +31,13 @@ def lacking(text: str, level: Level = UNO) -> list[Diagnostic]:
     return misfits(found.source, found.program, TINIBOT, level)
 
 
-def told(text: str, level: Level = UNO) -> list[tuple[str, str, dict[str, str]]]:
+def problems_of(text: str, level: Level = UNO) -> list[tuple[str, str, dict[str, str]]]:
     """Return the code of each diagnostic, what it points at, and its values without the level."""
     said = []
-    for each in lacking(text, level):
-        values = dict(each.values)
+    for diagnostic in lacking(text, level):
+        values = dict(diagnostic.values)
         assert values.pop("level") == level.name
-        said.append((each.code.number, text[slice(*each.span)], values))
+        said.append((diagnostic.code.number, text[slice(*diagnostic.span)], values))
     return said
 
 
@@ -66,8 +66,8 @@ def test_levels_lack_words_of_the_language_alone() -> None:
 def test_a_word_that_a_level_lacks_is_told_at_each_place() -> None:
     small = Level("small", "uno", 2, frozenset(("RANDOM", "DEF", "END_DEF")))
     text = "DEF A; END_DEF; X = random(1, 6); SHOW(X + RANDOM(1, 2)); A // RANDOM"
-    assert told(text, LEVELS["mega"]) == []
-    assert told(text, small) == [
+    assert problems_of(text, LEVELS["mega"]) == []
+    assert problems_of(text, small) == [
         ("TS308", "DEF", {"word": "DEF"}),
         ("TS308", "END_DEF", {"word": "END_DEF"}),
         ("TS308", "random", {"word": "RANDOM"}),
@@ -79,9 +79,9 @@ def test_an_uno_lacks_tasks_and_ways() -> None:
     """So that somebody sends them compiled."""
     text = "TASK; S; ENDTASK; when(TRUE); F(FOREVER, 60); R(9 DEG, 60); F(9cm, 60); END_WHEN"
     words = ("TASK", "ENDTASK", "when", "DEG", "cm", "END_WHEN")
-    assert told(text) == [("TS308", word, {"word": word.upper()}) for word in words]
+    assert problems_of(text) == [("TS308", word, {"word": word.upper()}) for word in words]
     for level in ("mega", "esp32"):
-        assert told(text, LEVELS[level]) == []
+        assert problems_of(text, LEVELS[level]) == []
 
 
 VALUES = "DEF A(X); SHOW(X); END_DEF; DEF C; A({}); END_DEF; {}"
@@ -91,27 +91,32 @@ VALUES = "DEF A(X); SHOW(X); END_DEF; DEF C; A({}); END_DEF; {}"
 def test_which_values_of_defs_a_reader_takes(level: str) -> None:
     both = "TASK; C; END_TASK; C; A({})"
     said = {"name": "A"}
-    assert told(VALUES.format(1, "C; A(2); TASK; S; END_TASK"), LEVELS[level]) == []
-    assert told(VALUES.format(1, "C; A(2)"), UNO) == [
+    assert problems_of(VALUES.format(1, "C; A(2); TASK; S; END_TASK"), LEVELS[level]) == []
+    assert problems_of(VALUES.format(1, "C; A(2)"), UNO) == [
         ("TS308", word, {"word": word}) for word in ("DEF", "END_DEF") * 2
     ]
     several, yes_no = {**said, "count": "2"}, {**said, "yes_no": "X"}
-    assert told(VALUES.format(1, both.format(2)), LEVELS[level]) == [("TS318", "DEF", several)]
-    assert told(VALUES.format("TRUE", "C"), LEVELS[level]) == [("TS318", "DEF", yes_no)]
-    assert told(VALUES.format("X1 > 2", both.format("TRUE")).replace("DEF", "X1 = 1; DEF", 1),
-                LEVELS[level]) == [("TS318", "DEF", yes_no), ("TS318", "DEF", several)]  # fmt: skip
+    assert problems_of(VALUES.format(1, both.format(2)), LEVELS[level]) == [
+        ("TS318", "DEF", several)
+    ]
+    assert problems_of(VALUES.format("TRUE", "C"), LEVELS[level]) == [("TS318", "DEF", yes_no)]
+    text = VALUES.format("X1 > 2", both.format("TRUE")).replace("DEF", "X1 = 1; DEF", 1)
+    assert problems_of(text, LEVELS[level]) == [
+        ("TS318", "DEF", yes_no),
+        ("TS318", "DEF", several),
+    ]
 
 
 def test_code_may_have_255_bytes() -> None:
     fits = "S;" * CODE_BYTES
-    assert told(fits) == []
+    assert problems_of(fits) == []
     over = {"code": str(CODE_BYTES + 2), "limit": str(CODE_BYTES), "over": "2"}
-    assert told(fits + "SHOW(1)") == [("TS309", "SHOW(1)", over)]
+    assert problems_of(fits + "SHOW(1)") == [("TS309", "SHOW(1)", over)]
 
 
 def test_the_first_instruction_that_does_not_fit_is_the_place() -> None:
     text = "LOOP(2);" + "S;" * 250 + "SHOW(1);SHOW(2);END_LOOP"
-    assert told(text) == [
+    assert problems_of(text) == [
         ("TS309", "SHOW(2)", {"code": "259", "limit": "255", "over": "4"})
     ]  # fmt: skip
 
@@ -119,7 +124,7 @@ def test_the_first_instruction_that_does_not_fit_is_the_place() -> None:
 def test_short_jumps_alone_count() -> None:
     """A jump that is far in `tsc` is not in a robot: what is over is what must go."""
     text = "IF(TRUE);" + "S;" * 300 + "ENDIF"
-    assert told(text)[0][2] == {"code": "303", "limit": "255", "over": "48"}
+    assert problems_of(text)[0][2] == {"code": "303", "limit": "255", "over": "48"}
 
 
 def most(text: str, level: Level = UNO) -> int:
@@ -136,7 +141,7 @@ def most(text: str, level: Level = UNO) -> int:
         ("S", 1),  # a letter of a word lies where the code comes
         ("STOP", 4),
         ("S;STOP", 5),
-        # a value's own byte, and one byte of code behind it
+        # a value's own byte, and one byte of code after it
         ("W(5)", 2),
         ("F(5, 5)", 3),  # code, the second value, code
         ("W(((5)))", 4),
@@ -153,7 +158,7 @@ def most(text: str, level: Level = UNO) -> int:
         ("SHOW(TRUE AND TRUE)", 3 + 3 + 4),
         ("TASK;END_TASK", 3 + 9 + 8),
         ("WHEN(TRUE);END_WHEN", 5 + 9 + 8),
-        ("F(1 DEG,5)", 1 + 1 + 3),  # a word lies behind the code
+        ("F(1 DEG,5)", 1 + 1 + 3),  # a word lies after the code
         ("F(1°,5)", 4),
     ],
 )
@@ -179,7 +184,7 @@ def test_the_reader_and_the_compiler_count_the_same_code(first: int) -> None:
         reader.program()
         assert found.program is not None
         assert reader.length == plain_code(found.program).length, found.source.text
-        own = (name for each in found.program.procedures for name in each.values)
+        own = (name for procedure in found.program.procedures for name in procedure.values)
         names = [*reader.variables, *(name + 8 * "?" for name in reader.defs)]
         names += (found.program.variables[k] for k in own)
         assert reader.used == sum(1 + len(name) for name in names), found.source.text
@@ -199,29 +204,29 @@ def test_names_take_room_too() -> None:
     before = 6 * (2 + 51)
     needed = before + 2 * 50 + 1
     values = {"code": str(needed), "limit": str(UNO.room), "over": str(needed - UNO.room)}
-    assert told(long) == [("TS310", "G" + "X" * 49, values)]  # where it is full
-    assert told(long, LEVELS["mega"]) == []
-    assert told(long[: -len("X=0;") - (needed - UNO.room) // 2 - 1] + "=0;") == []
+    assert problems_of(long) == [("TS310", "G" + "X" * 49, values)]  # where it is full
+    assert problems_of(long, LEVELS["mega"]) == []
+    assert problems_of(long[: -len("X=0;") - (needed - UNO.room) // 2 - 1] + "=0;") == []
 
 
 def test_a_word_has_at_most_255_letters() -> None:
     fits, over = "X" * 255 + "=0", "X" * 256 + "=0"
     for level in (LEVELS["mega"], LEVELS["esp32"]):
-        assert told(fits, level) == []
-        assert told(over, level) == [("TS308", "X" * 256, {"word": "X" * 256})]
+        assert problems_of(fits, level) == []
+        assert problems_of(over, level) == [("TS308", "X" * 256, {"word": "X" * 256})]
 
 
 def test_at_most_254_brackets_are_open_at_once() -> None:
     fits = f"X=0;SHOW({'(' * 253}X{')' * 253})"
-    assert told(fits) == []
+    assert problems_of(fits) == []
     over = f"X=0;SHOW({'(' * 254}X{')' * 254})"
-    assert told(over) == [("TS311", "(", {"limit": "254"})]
+    assert problems_of(over) == [("TS311", "(", {"limit": "254"})]
 
 
 @pytest.mark.parametrize("text", ["", "PING|CHECK_CONNECTION", "SB|", "SI|F(2, 80)"])
 def test_short_programs_fit_each_level(text: str) -> None:
     for level in LEVELS.values():
-        assert told(text, level) == []
+        assert problems_of(text, level) == []
 
 
 def test_a_word_that_no_level_reads_is_kept_from_names_alone(

@@ -61,9 +61,9 @@ def check_line(text: str, kit: Kit) -> None:
     # A line has no notes, nor a block with nothing but a note inside.
     told, then = (
         sorted(
-            each.code.number
-            for each in one.diagnostics
-            if each.code not in (codes.IN_A_NOTE, codes.EMPTY_BLOCK)
+            diagnostic.code.number
+            for diagnostic in one.diagnostics
+            if diagnostic.code not in (codes.IN_A_NOTE, codes.EMPTY_BLOCK)
         )
         for one in (found, again)
     )

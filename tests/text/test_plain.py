@@ -78,7 +78,7 @@ def names(text: str, kit: Kit = TINIBOT) -> str:
         ("F(1, 50) UNTIL(TIME > 1)", "PUSH_NUM_1 PUSH_NUM_50 WATCH_F TIME PUSH_NUM_1 GT UNTIL"),
         ("W(FOREVER) UNTIL(TRUE)", "WATCH_FOREVER_WAIT PUSH_TRUE UNTIL"),
         ("L(FOREVER, 9) UNTIL(TRUE)", "PUSH_NUM_9 WATCH_FOREVER_L PUSH_TRUE UNTIL"),
-        # readings: in front of the instruction, and those of UNTIL behind WATCH
+        # readings: in front of the instruction, and those of UNTIL after WATCH
         (
             "F(DISTANCE, LIGHT_L) UNTIL(DISTANCE < 5)",
             "READ_2 READ_1 PUSH_SENSOR_2 PUSH_SENSOR_1 WATCH_F"
@@ -125,7 +125,7 @@ NUMBERS = [
     ("32768", "04 00 00 f4 01"), ("-32768", "02 00 80"), ("-32769", "04 18 fc 0b fe"),
     ("300.5", "04 d4 95 04 00"), ("2147483.647", "04 ff ff ff 7f"),
     ("-2147483.6484", "04 00 00 00 80"),
-    # what is behind the third decimal is rounded
+    # what is after the third decimal is rounded
     ("1.0005", "03 e9 03"), ("0.0995", "0c 01"), ("0.9995", "b1"), ("0.0004999", "b0"),
     ("-0.0005", "03 ff ff"), ("000000000000000005.000000000", "b5"),
 ]  # fmt: skip
@@ -154,16 +154,16 @@ def test_variables_have_their_numbers_in_the_order_of_the_text() -> None:
 def test_the_length_is_that_with_short_jumps() -> None:
     """A robot refuses code with a far jump; `tsc` says how much too long it is with short ones."""
     text = "IF(TRUE); " + "S; " * 300 + "ENDIF"
-    made = plain_of(text)
-    assert BY_NAME["IF_FAR"].code == made.code[1] and len(made.code) == 304
-    assert made.length == 303
-    assert [each.offset for each in made.places[:3]] == [0, 3, 4]
+    code = plain_of(text)
+    assert BY_NAME["IF_FAR"].code == code.code[1] and len(code.code) == 304
+    assert code.length == 303
+    assert [place.offset for place in code.places[:3]] == [0, 3, 4]
 
 
 def test_code_that_fits_a_level_has_no_far_jump() -> None:
-    made = plain_of("IF(TRUE); " + "S; " * (CODE_BYTES - 3) + "ENDIF")
-    assert len(made.code) == made.length == CODE_BYTES
-    assert "FAR" not in disassemble(made.code)
+    code = plain_of("IF(TRUE); " + "S; " * (CODE_BYTES - 3) + "ENDIF")
+    assert len(code.code) == code.length == CODE_BYTES
+    assert "FAR" not in disassemble(code.code)
 
 
 def test_the_page_names_every_instruction_of_plain_code_and_no_other() -> None:
@@ -183,14 +183,14 @@ def test_the_page_names_every_instruction_of_plain_code_and_no_other() -> None:
 def check_same(found: Compiled, kit: Kit, senses: Senses) -> None:
     """The plain code of a program passes the verifier and does what its other code does."""
     assert found.program is not None
-    made = plain_code(found.program)
-    verify(made.code, len(kit.readings), len(kit.actuators))
-    short = "_FAR" not in disassemble(made.code)
-    assert (made.length == len(made.code)) == short
+    code = plain_code(found.program)
+    verify(code.code, len(kit.readings), len(kit.actuators))
+    short = "_FAR" not in disassemble(code.code)
+    assert (code.length == len(code.code)) == short
     if short:
-        used = {row[25:].split()[0] for row in disassemble(made.code).splitlines()}
+        used = {row[25:].split()[0] for row in disassemble(code.code).splitlines()}
         assert not [name for name in used if FUSED.match(name)], used
-    trace = run_python(image_for(made.code, kit, found.program.start), kit, senses)
+    trace = run_python(image_for(code.code, kit, found.program.start), kit, senses)
     assert same(run_python(found.image, kit, senses), trace), found.source.text
 
 

@@ -28,8 +28,8 @@ BLOCK_BYTES = 3 + 3 * 4  # with a bit for each of 32 sensors
 def one(text: str | bytes) -> Answer:
     """Return what a robot answers to one line."""
     data = text if isinstance(text, bytes) else text.encode()
-    (found,) = read_lines(KIT, data + b"\n")
-    return found
+    (answer,) = read_lines(KIT, data + b"\n")
+    return answer
 
 
 def code_of(text: str) -> list[str]:
@@ -47,15 +47,15 @@ def checked(line: bytes) -> bytes:
 
 @pytest.mark.parametrize("end", [b"\n", b"\r", b"\r\n"])
 def test_line_ends(end: bytes) -> None:
-    found = read_lines(KIT, end.join([b"F(2, 80)", b"SB|S", b""]))
-    assert [answer.start for answer in found] == ["SI", "SB"]
+    answers = read_lines(KIT, end.join([b"F(2, 80)", b"SB|S", b""]))
+    assert [answer.start for answer in answers] == ["SI", "SB"]
 
 
 def test_a_program_goes_on_until_its_blocks_are_closed() -> None:
-    found = read_lines(KIT, b"LOOP(2)\nF(1,\n80)\nEND_LOOP\nS\n")
-    assert found[:3] == [MORE] * 3
-    assert found[3] == one("LOOP(2);F(1,80);END_LOOP")
-    assert found[4] == one("S")
+    answers = read_lines(KIT, b"LOOP(2)\nF(1,\n80)\nEND_LOOP\nS\n")
+    assert answers[:3] == [MORE] * 3
+    assert answers[3] == one("LOOP(2);F(1,80);END_LOOP")
+    assert answers[4] == one("S")
 
 
 @pytest.mark.parametrize("cut", range(1, len("F(FOREVER,80)UNTIL(NOT(1<DISTANCE))")))
@@ -63,16 +63,16 @@ def test_a_line_may_end_in_brackets_alone(cut: int) -> None:
     whole = "F(FOREVER,80)UNTIL(NOT(1<DISTANCE))"
     if whole[cut - 1].isalnum() and whole[cut].isalnum():
         return
-    found = read_lines(KIT, f"{whole[:cut]} // )\n{whole[cut:]}\n".encode())
+    answers = read_lines(KIT, f"{whole[:cut]} // )\n{whole[cut:]}\n".encode())
     if whole[:cut].count("(") > whole[:cut].count(")"):
-        assert found == [MORE, one(whole)]
+        assert answers == [MORE, one(whole)]
     else:
-        assert found[0].problem
+        assert answers[0].problem
 
 
 def test_a_problem_ends_a_program() -> None:
-    found = read_lines(KIT, b"LOOP(2)\nF(1, 800)\nS\n")
-    assert found[1].problem == "RANGE" and found[2] == one("S")
+    answers = read_lines(KIT, b"LOOP(2)\nF(1, 800)\nS\n")
+    assert answers[1].problem == "RANGE" and answers[2] == one("S")
 
 
 def test_an_empty_line_begins_anew_on_this_computer() -> None:
@@ -138,8 +138,8 @@ def test_spaces(space: str) -> None:
 @pytest.mark.parametrize("line", ["F(2,{}80)", "F(2,80){}", "F(2,80) // {}", "F{}(2,80)"])
 def test_no_control_byte_is_overlooked(line: str, control: str) -> None:
     """A flipped bit makes one of a point or a digit: `F(0.5,80)` must not drive for 5 s."""
-    found = one(line.format(control))
-    assert found.problem == "CHARACTER" and found.column == line.index("{") + 1
+    answer = one(line.format(control))
+    assert answer.problem == "CHARACTER" and answer.column == line.index("{") + 1
 
 
 @pytest.mark.parametrize("dash", "\u2010\u2013\u2014\u2015\u2212")
@@ -224,10 +224,10 @@ RIGHT = (
 
 @pytest.mark.parametrize("behind", ["", "  ", "// note", " // note"])
 @pytest.mark.parametrize("line", RIGHT)
-def test_what_is_missing_at_the_end_is_missing_behind_the_last_character(
+def test_what_is_missing_at_the_end_is_missing_after_the_last_character(
     line: str, behind: str
 ) -> None:
-    """Of a right line that is cut behind any of its tokens nothing but its rest is missing.
+    """Of a right line that is cut after any of its tokens nothing but its rest is missing.
 
     It belongs before a comment.
     """
@@ -384,7 +384,7 @@ def test_what_lies_in_the_buffer() -> None:
 
 
 def test_a_forever_waits_for_the_tasks_that_let_it_last() -> None:
-    """They may come behind it, as long as the program goes on."""
+    """They may come after it, as long as the program goes on."""
     move = "SI|F(FOREVER, 60)"
     assert one(f"{move}; TASK; END_TASK").is_program
     assert one(f"TASK; END_TASK; {move[3:]}").is_program
@@ -470,8 +470,8 @@ def test_tasks_may_have_different_defs_with_values() -> None:
 
 
 def test_a_call_goes_on_in_the_next_line() -> None:
-    found = read_lines(KIT, b"DEF A(X,\nP)\nF(X,P)\nEND_DEF;A(1\n+1,\n50)\n")
-    assert found[-1] == one("DEF A(X,P);F(X,P);END_DEF;A(1+1,50)")
+    answers = read_lines(KIT, b"DEF A(X,\nP)\nF(X,P)\nEND_DEF;A(1\n+1,\n50)\n")
+    assert answers[-1] == one("DEF A(X,P);F(X,P);END_DEF;A(1+1,50)")
 
 
 # -- backspace ----------------------------------------------------------------------------------
@@ -496,5 +496,5 @@ def test_backspace_takes_back_what_is_not_done(key: str, typed: str, meant: str 
         assert answer == one(meant) and answer.is_program
 
 
-def test_columns_behind_a_backspace_are_those_that_are_seen() -> None:
+def test_columns_after_a_backspace_are_those_that_are_seen() -> None:
     assert one("FO\b(2, 80); GO").column == one("F(2, 80); GO").column == 11

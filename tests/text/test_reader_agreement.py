@@ -99,8 +99,8 @@ def lacks_values(data: bytes, kit: Kit) -> bool:
     """Whether `--text-level` says of a right text that its DEFs have values no robot reads."""
     found = compile_text(decode(data), kit)
     assert found.program is not None
-    said = misfits(found.source, found.program, kit, LEVELS["mega"])
-    return any(each.code is LEVEL_VALUES for each in said)
+    diagnostics = misfits(found.source, found.program, kit, LEVELS["mega"])
+    return any(diagnostic.code is LEVEL_VALUES for diagnostic in diagnostics)
 
 
 def check_code(data: bytes, kit: Kit, answer: Answer, room: int) -> None:
@@ -120,7 +120,7 @@ def check_code(data: bytes, kit: Kit, answer: Answer, room: int) -> None:
 def takes_more(data: bytes, kit: Kit) -> bool:
     """Whether the reader takes a text that the compiler does not.
 
-    It only passes over the bytes of a comment, and a backspace behind a letter takes that back.
+    It only passes over the bytes of a comment, and a backspace after a letter takes that back.
     """
     text = data.decode("utf-8", "replace")
     return ("\ufffd" in text and "//" in text) or (
@@ -164,7 +164,7 @@ def texts_of(seed: int, broken: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
     text = programs.program(rng, oracle_kit, ways=seed % 3 == 2)
     senses = Senses(programs.senses(rng, oracle_kit), MAX_MS, MAX_STEPS, seed + 1)
     slips = [programs.broken(rng, text).encode("utf-8", "surrogatepass") for _ in range(broken)]
-    return kit, text.encode(), senses, [damaged(rng, each) for each in slips]
+    return kit, text.encode(), senses, [damaged(rng, slip) for slip in slips]
 
 
 def tasks_of(seed: int, broken: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
@@ -176,7 +176,7 @@ def tasks_of(seed: int, broken: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
         text = re.sub(" DEG", rng.choice((" deg", "°", "º", " \n°")), text)
     slips = [programs.broken(rng, text).encode("utf-8", "surrogatepass") for _ in range(broken)]
     senses = Senses(readings, MAX_MS, MAX_STEPS, seed + 1)
-    return KITS[0][1], text.encode(), senses, [damaged(rng, each) for each in slips]
+    return KITS[0][1], text.encode(), senses, [damaged(rng, slip) for slip in slips]
 
 
 def damaged(rng: random.Random, data: bytes) -> bytes:
@@ -222,8 +222,8 @@ CASES = [case for case in all_cases() if "tiniscript" in case.parts]
 @each_row("case", CASES)
 def test_case(case: Case) -> None:
     parts = case.parts
-    found = re.search(r"^robot *= *(\w+)", parts.get("senses", ""), re.MULTILINE)
-    kit = robots.load(found[1] if found else "tinibot").kit
+    match = re.search(r"^robot *= *(\w+)", parts.get("senses", ""), re.MULTILINE)
+    kit = robots.load(match[1] if match else "tinibot").kit
     data = parts["tiniscript"].encode()
     if is_right(data, kit):
         check_program(data, kit, Senses({}, MAX_MS, MAX_STEPS, 1))
@@ -237,8 +237,8 @@ def test_random_programs(first: int) -> None:
     for seed in range(first, first + 50):
         kit, data, senses, slips = texts_of(seed, BROKEN)
         check_program(data, kit, senses)
-        for each in slips:
-            check_bytes(each, kit)
+        for slip in slips:
+            check_bytes(slip, kit)
 
 
 @pytest.mark.sampled("first")
@@ -247,8 +247,8 @@ def test_random_programs_with_tasks(first: int) -> None:
     for seed in range(first, first + 50):
         kit, data, senses, slips = tasks_of(seed, BROKEN)
         check_program(data, kit, senses)
-        for each in slips:
-            check_bytes(each, kit)
+        for slip in slips:
+            check_bytes(slip, kit)
 
 
 @pytest.mark.parametrize("speed, turn", [(0, 7), (7, 0), (0, 0)])
@@ -294,8 +294,8 @@ def test_little_room_is_full_and_nothing_else(room: int) -> None:
         kit, data, _, slips = texts_of(seed, 1)
         for each in (data, *slips):
             check_bytes(each, kit, room)
-            want, got = reader_of(kit).read(each), reader_of(kit, room).read(each)
-            assert got.problem == "FULL" or got == want
+            want, answer = reader_of(kit).read(each), reader_of(kit, room).read(each)
+            assert answer.problem == "FULL" or answer == want
 
 
 FOUND: Counter[str] = Counter()  # in a campaign, of texts that are no whole programs
@@ -312,7 +312,7 @@ def check_seed(seed: int) -> None:
     else:
         check_program(data, kit, senses)
     soups = [soup(10 * seed + k) for k in range(10)]
-    for each_kit, each in [(kit, each) for each in slips] + soups:
+    for each_kit, each in [(kit, slip) for slip in slips] + soups:
         answer = check_bytes(each, each_kit)
         FOUND["full" if answer is None else "program" if answer.is_program else "refused"] += 1
 

@@ -35,10 +35,10 @@ def texts() -> list[bytes]:
 def test_the_chip_says_the_same(name: str, room: int) -> None:
     all_texts = texts()
     reader = TextReader(KIT, room)
-    expected = [reader.read(each) for each in all_texts]
+    expected = [reader.read(text) for text in all_texts]
     reader.close()
-    got = emulated(name).read(all_texts, KIT, room)
-    for text, mine, other in zip(all_texts, expected, got, strict=True):
+    answers = emulated(name).read(all_texts, KIT, room)
+    for text, mine, other in zip(all_texts, expected, answers, strict=True):
         assert other == mine, text
-    assert sum(each.is_program for each in got) > 1000
-    assert sum(bool(each.problem) for each in got) > 1000
+    assert sum(answer.is_program for answer in answers) > 1000
+    assert sum(bool(answer.problem) for answer in answers) > 1000

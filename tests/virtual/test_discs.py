@@ -42,7 +42,7 @@ ALONE = "F(20 CM, 60); R(90 DEG, 60); F(45 CM, 50) UNTIL(TIME > 2)"
 BESIDE = f"{ALONE}\nTASK\nW(0.3); B(4.5 CM, 100)\nEND_TASK"
 
 
-def begun(
+def started_robot(
     text: str, seed: int = 1, profile: Robot = TWO, slip: float = 0.005, is_detached: bool = False
 ) -> tuple[VirtualRobot, Talk]:
     """A robot with uneven motors in the middle of a floor, whose program has just begun."""
@@ -74,7 +74,7 @@ def is_still(robot: VirtualRobot) -> bool:
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_it_goes_as_far_as_was_said_and_straight(profile: Robot, seed: int) -> None:
-    robot, talk = begun("F(100 CM, 60)", seed, profile)
+    robot, talk = started_robot("F(100 CM, 60)", seed, profile)
     talk.wait(9000)
     ahead, aside, _ = gone(robot)
     assert abs(ahead - 100) <= 1.5 and abs(aside) <= 3.2
@@ -86,7 +86,7 @@ def test_it_goes_as_far_as_was_said_and_straight(profile: Robot, seed: int) -> N
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
 @pytest.mark.parametrize(("text", "turn"), [("L(360 DEG, 60)", 360), ("R(90 DEG, 80)", -90)])
 def test_it_turns_as_far_as_was_said(profile: Robot, text: str, turn: int) -> None:
-    robot, talk = begun(text, 2, profile)
+    robot, talk = started_robot(text, 2, profile)
     talk.wait(6000)
     assert abs(gone(robot)[2] - turn) <= 6
 
@@ -94,15 +94,15 @@ def test_it_turns_as_far_as_was_said(profile: Robot, text: str, turn: int) -> No
 def test_it_learns_how_its_wheels_roll(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of wheels that stand sooner than most, later moves are over sooner: fewer are corrected."""
     monkeypatch.setattr(wheels, "LAG_MS", 30)
-    robot, talk = begun("LOOP(6); F(30 CM, 70); SHOW(TIME); END_LOOP", slip=0.0)
+    robot, talk = started_robot("LOOP(6); F(30 CM, 70); SHOW(TIME); END_LOOP", slip=0.0)
     talk.wait(9000)
     lines = [line.partition("SHOW ")[2] for line in trace(robot.take_events())]
-    at_s = [float(each) for each in lines if each]
+    at_s = [float(line) for line in lines if line]
     assert at_s[5] - at_s[2] < at_s[2] - 0.25
 
 
 def test_back_and_short_ways_and_no_way() -> None:
-    robot, talk = begun("B(30 CM, 100); F(2 CM, 40); F(0 CM, 0)")
+    robot, talk = started_robot("B(30 CM, 100); F(2 CM, 40); F(0 CM, 0)")
     talk.wait(6000)
     assert abs(gone(robot)[0] + 28) < 1.5 and robot.fault == ""
     assert [line.split(" ", 1)[1] for line in trace(robot.take_events())] == [
@@ -112,7 +112,7 @@ def test_back_and_short_ways_and_no_way() -> None:
 
 
 def test_a_kit_without_speed_measures_too_and_power_0_is_a_fault() -> None:
-    robot, talk = begun("P = 0; F(20 CM, P)")
+    robot, talk = started_robot("P = 0; F(20 CM, P)")
     talk.wait(500)
     assert robot.fault == "NO_POWER"
 
@@ -123,7 +123,7 @@ def test_a_kit_without_speed_measures_too_and_power_0_is_a_fault() -> None:
 ])  # fmt: skip
 def test_what_ends_a_move_early_ends_it_at_once(text: str) -> None:
     """Without a correction: what it rolls on stays."""
-    robot, talk = begun(text)
+    robot, talk = started_robot(text)
     talk.wait(540)
     assert "MOTORS 0 0" in " ".join(trace(robot.take_events()))
     talk.wait(500)
@@ -135,7 +135,7 @@ def test_what_ends_a_move_early_ends_it_at_once(text: str) -> None:
 @pytest.mark.parametrize("how", ["button", "client"])
 def test_a_stop_in_any_phase_is_one(after_ms: int, how: str) -> None:
     """While it drives, slows down, rolls, or goes back: no motor is driven again."""
-    robot, talk = begun("F(60 CM, 60); R(90 DEG, 60)")
+    robot, talk = started_robot("F(60 CM, 60); R(90 DEG, 60)")
     talk.wait(after_ms)
     if how == "button":
         robot.press()
@@ -151,15 +151,15 @@ def test_a_stop_in_any_phase_is_one(after_ms: int, how: str) -> None:
 
 
 def test_a_lost_link_ends_it() -> None:
-    robot, talk = begun("F(200 CM, 20)")
+    robot, talk = started_robot("F(200 CM, 20)")
     talk.wait(300)
     robot.step(robot.now_ms + 1200)
     assert robot.fault == "LINK_LOST" and is_still(robot)
 
 
 def test_a_task_that_takes_the_motors_gives_them_back_and_the_way_goes_on() -> None:
-    """The turn comes with the motors, and the rest of the way is behind it."""
-    robot, talk = begun(
+    """The turn comes with the motors, and the rest of the way is after it."""
+    robot, talk = started_robot(
         "X = 0; F(60 CM, 60)\nWHEN(X = 0 AND TIME > 0.6)\nX = 1; R(90 DEG, 60)\nEND_WHEN"
     )
     talk.wait(6000)
@@ -192,7 +192,7 @@ def test_a_way_that_is_interrupted_is_as_long_and_as_straight(
 ) -> None:
     """What the wheels roll on when a WHEN takes the motors is a part of the way."""
     for seed in (2, 3, 5):
-        robot, talk = begun(interrupted(way, times, body), seed, profile)
+        robot, talk = started_robot(interrupted(way, times, body), seed, profile)
         talk.wait(13_000)
         said = [line.split(" ", 1)[1] for line in trace(robot.take_events())]
         assert said[-1] == "SHOW 1"
@@ -215,7 +215,7 @@ def test_what_an_interruption_drives_is_not_a_part_of_the_way(
 ) -> None:
     """Not exactly: how far a wheel that is driven meanwhile would have rolled is a guess."""
     for seed in (1, 2, 3):
-        robot, talk = begun(interrupted("F(100 CM, 60)", 3, body), seed)
+        robot, talk = started_robot(interrupted("F(100 CM, 60)", 3, body), seed)
         talk.wait(13_000)
         ahead, _, _ = gone(robot)
         assert abs(ahead - 100 - 3 * more_cm) <= 1.5 + 3 * off_cm
@@ -226,7 +226,7 @@ def test_two_ways_that_stand_still_are_both_gone_to_their_end() -> None:
     text = """X = 0; F(60 CM, 60); SHOW(3)
 WHEN(X = 1 AND TIME > 1); X = 2; M(0, 0); W(0.4); SHOW(1); END_WHEN
 WHEN(X = 0 AND TIME > 0.6); X = 1; F(40 CM, 60); SHOW(2); END_WHEN"""
-    robot, talk = begun(text, 2)
+    robot, talk = started_robot(text, 2)
     talk.wait(9000)
     ahead, _, _ = gone(robot)
     said = [line.partition("SHOW ")[2] for line in trace(robot.take_events())]
@@ -234,11 +234,11 @@ WHEN(X = 0 AND TIME > 0.6); X = 1; F(40 CM, 60); SHOW(2); END_WHEN"""
     assert abs(ahead - 100) <= 2
 
 
-def test_a_way_behind_one_that_was_ended_is_whole() -> None:
+def test_a_way_after_one_that_was_ended_is_whole() -> None:
     """What S has ended is not gone on with, though the same task goes the next way."""
     text = """F(60 CM, 60); F(30 CM, 60); SHOW(1)
 TASK; W(0.5); S; W(60); END_TASK"""
-    robot, talk = begun(text, 2)
+    robot, talk = started_robot(text, 2)
     talk.wait(500)
     before, _, _ = gone(robot)
     talk.wait(5000)
@@ -254,7 +254,7 @@ TASK; W(0.5); S; W(60); END_TASK"""
 def test_a_way_ends_though_a_disc_flickers_at_rest(profile: Robot, hertz: float, text: str) -> None:
     """A second after the motors were turned off at most: then no wheel turns."""
     for numbers in ((0,), (0, 1)):
-        robot, talk = begun(text, 2, profile)
+        robot, talk = started_robot(text, 2, profile)
         for number in numbers:
             Flicker(robot, number, hertz)
         driven_ms = 0
@@ -269,7 +269,7 @@ def test_a_way_ends_though_a_disc_flickers_at_rest(profile: Robot, hertz: float,
 @pytest.mark.parametrize("number", [0, 1])
 def test_edges_of_a_disc_that_flickers_are_no_part_of_a_way(number: int) -> None:
     """While a WHEN lets the robot stand, no more count than wheels may roll."""
-    robot, talk = begun(interrupted("F(100 CM, 60)", 2, "M(0, 0); W(3)"), 2)
+    robot, talk = started_robot(interrupted("F(100 CM, 60)", 2, "M(0, 0); W(3)"), 2)
     Flicker(robot, number, 40)
     talk.wait(16_000)
     assert trace(robot.take_events())[-1].endswith("SHOW 1")
@@ -282,16 +282,16 @@ def test_edges_of_a_disc_that_flickers_are_no_part_of_a_way(number: int) -> None
 def test_a_disc_that_tells_nothing_is_the_fault_stuck(
     number: int, text: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    robot, talk = begun(text)
+    robot, talk = started_robot(text)
     monkeypatch.setattr(wheel(robot, number), "is_seen", False)
     talk.wait(480)
     assert robot.is_running
     talk.wait(100)
     assert robot.fault == ("STUCK_LEFT", "STUCK_RIGHT")[number] and not robot.is_running
     status = talk.until(talk.session.status()).values
-    said = fault_sentence(status.fault, status.fault_at, 0, None, "en")
+    sentence = fault_sentence(status.fault, status.fault_at, 0, None, "en")
     side = ("left", "right")[number]
-    assert said.startswith(f"fault {robot.fault}: the {side} wheel does not turn: free it")
+    assert sentence.startswith(f"fault {robot.fault}: the {side} wheel does not turn: free it")
     at = status.fault_at
     code = unpack(compile_text(text, TWO.kit).image).code
     found = BY_CODE[code[at]]
@@ -304,7 +304,7 @@ def test_a_disc_that_tells_nothing_is_the_fault_stuck(
 def test_wheels_that_both_stand_are_stuck_whoever_stood_first(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    robot, talk = begun(WAY)
+    robot, talk = started_robot(WAY)
     talk.wait(600)
     for number, later_ms in ((1, 120), (0, 0)):
         monkeypatch.setattr(wheel(robot, number), "is_seen", False)
@@ -319,7 +319,7 @@ def test_a_disc_whose_channels_are_exchanged_ends_the_move(
     text: str, number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It counts back while the wheel goes ahead: the robot drove in circles until somebody came."""
-    robot, talk = begun(text, profile=TWO_CHANNELS)
+    robot, talk = started_robot(text, profile=TWO_CHANNELS)
     one = wheel(robot, number)
     step = one.step
 
@@ -339,7 +339,7 @@ def test_a_disc_whose_channels_are_exchanged_ends_the_move(
 @pytest.mark.parametrize(("profile", "sees"), [(TWO, False), (TWO_CHANNELS, True)])
 def test_a_hand_that_turns_a_wheel_back(profile: Robot, sees: bool) -> None:
     """With two channels the wheel goes that again. With one it seems to have gone ahead."""
-    robot, talk = begun(WAY, profile=profile)
+    robot, talk = started_robot(WAY, profile=profile)
     one = wheel(robot, 0)
     begun_cm = one.turned_cm
     talk.wait(800)
@@ -360,7 +360,7 @@ def noise(talk: Talk) -> tuple[int, ...]:
 @pytest.mark.parametrize("number", [0, 1])
 def test_a_disc_that_flickers_at_rest_is_told_in_status(profile: Robot, number: int) -> None:
     """Whether a program runs or not, and once wheels do not roll any more."""
-    robot, talk = begun("W(1)", profile=profile)
+    robot, talk = started_robot("W(1)", profile=profile)
     talk.wait(2000)
     assert noise(talk) == (0, 0)
     Flicker(robot, number, 40)
@@ -383,7 +383,7 @@ def test_a_disc_that_flickers_at_rest_is_told_in_status(profile: Robot, number: 
 ])  # fmt: skip
 def test_edges_of_wheels_that_turn_and_roll_are_no_noise(text: str) -> None:
     for seed in (1, 2, 3):
-        robot, talk = begun(text, seed)
+        robot, talk = started_robot(text, seed)
         talk.wait(8000)
         assert noise(talk) == (0, 0) and wheel(robot, 0).counted > 20
 
@@ -409,7 +409,7 @@ def test_whatever_has_ended_a_way_the_next_program_goes_straight(
 ) -> None:
     """A wheel that stood left the other one's lead in the controller: the robot drove a curve."""
     for seed in (1, 2):
-        robot, talk = begun(text.replace("60)", "80)", 1), seed)
+        robot, talk = started_robot(text.replace("60)", "80)", 1), seed)
         talk.wait(50)
         with monkeypatch.context() as held:
             hold(wheel(robot, number), held)
@@ -435,7 +435,7 @@ def test_a_wheel_that_is_held_for_a_moment_bends_no_later_way(
 ) -> None:
     """Too short for a fault. The next way of the same program is straight."""
     for seed in (1, 2):
-        robot, talk = begun("F(60 CM, 80); W(2); F(100 CM, 80)", seed)
+        robot, talk = started_robot("F(60 CM, 80); W(2); F(100 CM, 80)", seed)
         talk.wait(300)
         with monkeypatch.context() as held:
             hold(wheel(robot, number), held)
@@ -455,7 +455,7 @@ def test_a_wheel_that_stands_while_its_two_channels_flicker_is_stuck(
     number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """They show an edge ahead and one back for ever: the wheel gets no further."""
-    robot, talk = begun(WAY, profile=TWO_CHANNELS)
+    robot, talk = started_robot(WAY, profile=TWO_CHANNELS)
     Flicker(robot, number, 20)
     talk.wait(700)
     hold(wheel(robot, number), monkeypatch)
@@ -464,7 +464,7 @@ def test_a_wheel_that_stands_while_its_two_channels_flicker_is_stuck(
 
 
 def test_counts_that_wrap_around() -> None:
-    robot, talk = begun("W(0.1); F(30 CM, 60)")
+    robot, talk = started_robot("W(0.1); F(30 CM, 60)")
     for number in (0, 1):
         wheel(robot, number).counted = (1 << 16) - 7
     talk.wait(4000)
@@ -473,7 +473,7 @@ def test_counts_that_wrap_around() -> None:
 
 def test_the_same_seed_gives_the_same_run_however_often_it_is_looked_at() -> None:
     def went(look: Callable[[VirtualRobot], object], step_ms: int) -> object:
-        robot, talk = begun(WAY, seed=5)
+        robot, talk = started_robot(WAY, seed=5)
         for _ in range(4000 // step_ms):
             talk.wait(step_ms)
             look(robot)
@@ -484,9 +484,9 @@ def test_the_same_seed_gives_the_same_run_however_often_it_is_looked_at() -> Non
 
 def test_an_uno_with_discs_reads_no_text_but_a_typed_stop() -> None:
     """And it stops for one at once, while it goes a way."""
-    robot, talk = begun("F(60 CM, 60); SHOW(1)", is_detached=True)
-    found = talk.until(talk.session.hello()).values
-    assert TEXT_LEVELS[found.features & TEXT_LEVEL][0] == "NONE"
+    robot, talk = started_robot("F(60 CM, 60); SHOW(1)", is_detached=True)
+    hello_reply = talk.until(talk.session.hello()).values
+    assert TEXT_LEVELS[hello_reply.features & TEXT_LEVEL][0] == "NONE"
     talk.wait(300)
     for line in (b"SI|R(1, 80)\r\n", b"HELP\r\n", b"PING|check_connection\r\n", b"\xff\n"):
         assert b"//" not in robot.step(robot.now_ms + 200, line)
@@ -497,15 +497,15 @@ def test_an_uno_with_discs_reads_no_text_but_a_typed_stop() -> None:
 
 def test_a_mega_with_discs_reads_text() -> None:
     talk = Talk(VirtualRobot(robots.load("tinibot2", "mega"), floor()))
-    found = talk.until(talk.session.hello()).values
-    assert TEXT_LEVELS[found.features & TEXT_LEVEL][0] == "MEGA"
+    hello_reply = talk.until(talk.session.hello()).values
+    assert TEXT_LEVELS[hello_reply.features & TEXT_LEVEL][0] == "MEGA"
 
 
 # -- without discs --------------------------------------------------------------------------------
 
 
 def traced(text: str, name: str) -> list[str]:
-    return [f"{each.ms} {each.text}" for each in run(text, robot=name).events]
+    return [f"{event.ms} {event.text}" for event in run(text, robot=name).events]
 
 
 @pytest.mark.parametrize("name", ["grabber", "tinibot32"])

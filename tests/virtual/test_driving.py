@@ -141,8 +141,8 @@ def test_nothing_is_driven_through(robot: Robot, powers: tuple[int, int]) -> Non
             contact = found.hull.contact(pose, found.obstacles)
             assert contact and contact.gap_cm > -0.01
             assert not any(
-                crosses(Segment(Point(*before[:2]), Point(*pose[:2])), each)
-                for each in found.obstacles
+                crosses(Segment(Point(*before[:2]), Point(*pose[:2])), obstacle)
+                for obstacle in found.obstacles
             )
             before = pose
 
@@ -216,10 +216,8 @@ def test_a_lamp_is_brighter_near_and_ahead_and_not_through_a_wall() -> None:
     # turned round, it is behind: no brighter than without a lamp, and no darker
     assert read(world, LEFT, Pose(112, 150, 180)) == 0
     dim = "[light]\nambient_percent = 20\n"
-    behind = floor(lamp.replace("[light]\nambient_percent = 0\n", dim))
-    assert (
-        read(behind, LEFT, Pose(112, 150, 180)) == read(floor(dim), LEFT, Pose(112, 150, 180)) > 0
-    )
+    after = floor(lamp.replace("[light]\nambient_percent = 0\n", dim))
+    assert read(after, LEFT, Pose(112, 150, 180)) == read(floor(dim), LEFT, Pose(112, 150, 180)) > 0
     assert read(floor(lamp + wall), LEFT, Pose(100, 100, 0)) == 0
     bright = floor(lamp.replace("ambient_percent = 0", "ambient_percent = 100"))
     assert read(bright, LEFT, Pose(100, 100, 0)) == 1023
@@ -247,16 +245,16 @@ def test_a_sensor_without_a_place_says_something_sensible_or_what_it_is_told() -
     pose = Pose(100, 100, 0)
     assert read(floor(), 3, pose, LINER) == 5  # BATTERY, 0 to 10 V
     assert read(floor(), 1, pose, GRABBER) == 20  # TEMPERATURE
-    told = Sensing(LINER, floor(), told={3: [7000, 6500], 0: [1]})
-    assert [told.read(3, pose) for _ in range(3)] == [7000, 6500, 6500]
-    assert told.read(0, pose) == 1
-    assert told.look(3, pose) == 6500
+    sensing = Sensing(LINER, floor(), told={3: [7000, 6500], 0: [1]})
+    assert [sensing.read(3, pose) for _ in range(3)] == [7000, 6500, 6500]
+    assert sensing.read(0, pose) == 1
+    assert sensing.look(3, pose) == 6500
 
 
 def test_noise_is_about_as_large_as_it_is_said_to_be() -> None:
     sensing = Sensing(TINIBOT, floor(), 0.05, Random(1))
     pose = Pose(100, 100, 0)
     readings = [sensing.read(DISTANCE, pose) / ONE / 87 for _ in range(400)]
-    spread = math.sqrt(sum((each - 1) ** 2 for each in readings) / len(readings))
+    spread = math.sqrt(sum((reading - 1) ** 2 for reading in readings) / len(readings))
     assert 0.04 < spread < 0.06
     assert sensing.look(DISTANCE, pose) == 87_000

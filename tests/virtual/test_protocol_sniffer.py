@@ -98,7 +98,7 @@ def test_all_frames_of_a_computer_are_for_a_robot() -> None:
     session.hello()
     firsts = [session.poll(0), bytes(8), bytes(2)]
     assert firsts[0][0] == 0
-    numbers = [each.number for each in BY_NAME.values() if each.number < 32]
+    numbers = [message.number for message in BY_NAME.values() if message.number < 32]
     for _ in range(20_000):
         payload = chance.randbytes(chance.randrange(PAYLOAD_BYTES))
         if chance.random() < 0.5:
@@ -155,7 +155,7 @@ def until_let_go(simulator: Simulator, client: socket.socket) -> None:
 
 
 def _has_moved(simulator: Simulator) -> bool:
-    return any(each.what == "MOTORS" for each in simulator.robot.take_events())
+    return any(event.what == "MOTORS" for event in simulator.robot.take_events())
 
 
 def test_what_a_page_would_send_moves_a_robot_only_without_its_header(simulator: Simulator) -> None:
@@ -200,17 +200,17 @@ def test_a_line_that_comes_letter_by_letter_is_answered(simulator: Simulator) ->
 
 def crowd(simulator: Simulator, count: int, says: bytes = b"") -> list[socket.socket]:
     """Return connections that are there, or on their way."""
-    found = []
+    connections = []
     for _ in range(count):
         client = socket.socket()
         client.setblocking(False)
         client.connect_ex(("127.0.0.1", simulator.transports.port))
-        found.append(client)
+        connections.append(client)
         if says:
             simulator.turn(0)
             with contextlib.suppress(OSError):
                 client.send(says)
-    return found
+    return connections
 
 
 @pytest.mark.parametrize("says", [b"", b"\0", b"POS"])
@@ -229,8 +229,8 @@ def test_many_who_say_nothing_keep_nobody_out(simulator: Simulator, says: bytes)
 
     until(simulator, is_answered)
     assert CALLERS / 2 < most <= CALLERS
-    for each in (client, *idle):
-        each.close()
+    for connection in (client, *idle):
+        connection.close()
 
 
 def test_whoever_says_nothing_has_to_leave(
@@ -286,5 +286,5 @@ def test_too_many_open_files_of_this_process_are_no_end(
         assert len(simulator.transports._callers) < 5
         simulator.transports._server = server
         until(simulator, lambda: simulator.transports.is_connected)
-    for each in idle:
-        each.close()
+    for connection in idle:
+        connection.close()

@@ -75,7 +75,7 @@ def test_where_it_is_to_rest_it_stands() -> None:
     assert counted(rests, "F(100 CM, 80)")[0] == 2  # its program has ended there
 
 
-@pytest.mark.parametrize("name", [each for each in worlds.names() if worlds.load(each).flags])
+@pytest.mark.parametrize("name", [name for name in worlds.names() if worlds.load(name).flags])
 def test_each_task_has_three_stars(name: str) -> None:
     """One that always sees where it is drives a way at two thirds of its power."""
     world = worlds.load(name)

@@ -1,4 +1,4 @@
-"""What a virtual robot does behind anything is what one does that was switched on where it stands.
+"""What a virtual robot does after anything is what one does that was switched on where it stands.
 
 A random program ends, or is ended in a random way at any moment; then comes another one. A second
 robot begins in a world whose start is the place where the first one stands by then: both do the
@@ -99,7 +99,7 @@ def check(seed: int) -> str:
     robot.step(robot.now_ms + 20, b"\0S\n")
     robot.step(robot.now_ms + 1500)  # until it stands
     pose = robot.pose
-    is_done = "DONE" in [each.what for each in robot.take_events()][-2:]
+    is_done = "DONE" in [event.what for event in robot.take_events()][-2:]
     text = program(rng, name)
     other = robot_in(floor(WALL)._replace(start=pose), name, baud=0)
     other.step(1500)

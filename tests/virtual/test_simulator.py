@@ -19,9 +19,9 @@ TURNS = 3000  # far more than anything here takes
 
 
 def visit(simulator: Simulator) -> socket.socket:
-    found = socket.create_connection(("127.0.0.1", simulator.transports.port))
-    found.setblocking(False)
-    return found
+    connection = socket.create_connection(("127.0.0.1", simulator.transports.port))
+    connection.setblocking(False)
+    return connection
 
 
 def until(simulator: Simulator, is_so: Callable[[], bool]) -> None:

@@ -64,8 +64,8 @@ def test_it_does_what_tsc_run_says(name: str) -> None:
         if event.what == "READ":
             readings.setdefault(event.values[0], []).append(event.values[1])
     code = unpack(compile_text(PROGRAMS[name], KIT).image).code
-    expected = [str(each) for each in run(code, KIT, Senses(KIT, readings))
-                if not isinstance(each, Ending)]  # fmt: skip
+    expected = [str(event) for event in run(code, KIT, Senses(KIT, readings))
+                if not isinstance(event, Ending)]  # fmt: skip
     assert said == expected
 
 
@@ -76,7 +76,7 @@ def test_a_run_repeats_with_its_seed(name: str) -> None:
         talk = Talk(robot)
         talk.upload(PROGRAMS[name], is_detached=True)
         robot.step(robot.now_ms + 20_000)
-        return trace(robot.take_events()), [tuple(each) for each in robot.driving.corners]
+        return trace(robot.take_events()), [tuple(corner) for corner in robot.driving.corners]
 
     assert went(1, 0.03) == went(1, 0.03)
     assert went(1, 0.03)[1] != went(2, 0.03)[1]
@@ -99,7 +99,7 @@ def test_the_papers_program_drives_around_the_obstacles_and_touches_none() -> No
     robot = robot_in(worlds.load("obstacles"))
     Talk(robot).upload(OBSTACLE, is_detached=True)
     robot.step(robot.now_ms + 40_000)
-    turns = [each for each in robot.take_events() if each.text == "MOTORS 60 -60"]
+    turns = [event for event in robot.take_events() if event.text == "MOTORS 60 -60"]
     assert robot.driving.bumps == 0
     assert len(turns) >= 7
     assert robot.driving.driven_cm > 900
@@ -117,9 +117,9 @@ def test_the_line_example_stays_on_its_line() -> None:
         off += not any(robot.sensing.look(number, robot.pose) for number in (0, 1))
     assert off < 30
     assert robot.driving.driven_cm > 400
-    assert max(each.x_cm for each in places) > 150  # all around
-    assert min(each.x_cm for each in places) < 45
-    assert max(each.y_cm for each in places) > 95
+    assert max(place.x_cm for place in places) > 150  # all around
+    assert min(pose.x_cm for pose in places) < 45
+    assert max(place.y_cm for place in places) > 95
 
 
 def test_the_light_example_finds_a_lamp() -> None:
@@ -166,7 +166,7 @@ def test_a_program_that_another_one_ends_ends_before_it() -> None:
     robot.take_events()
     talk.session.start(True)
     robot.step(robot.now_ms + 500, talk.session.poll(robot.now_ms))  # all in one step
-    assert [each.what for each in robot.take_events()] == ["STOP", "START", "MOTORS"]
+    assert [event.what for event in robot.take_events()] == ["STOP", "START", "MOTORS"]
 
 
 def test_of_what_nobody_takes_the_newest_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -175,7 +175,7 @@ def test_of_what_nobody_takes_the_newest_is_kept(monkeypatch: pytest.MonkeyPatch
     Talk(robot).upload("SI|X = 0;LOOP(40);X = X + 1;SHOW(X);END_LOOP", is_detached=True)
     robot.step(robot.now_ms + 2000)
     events = robot.take_events()
-    assert len(events) == 10 and [each.text for each in events[-2:]] == ["SHOW 40", "DONE"]
+    assert len(events) == 10 and [event.text for event in events[-2:]] == ["SHOW 40", "DONE"]
 
 
 def test_each_task_that_has_not_ended_has_a_place() -> None:
@@ -304,10 +304,10 @@ def test_a_running_robot_goes_on_by_itself() -> None:
 ])  # fmt: skip
 def test_it_says_the_sizes_of_its_chip(name: str, sizes: tuple[int, int], level: str) -> None:
     talk = Talk(robot_in(name=name))
-    found = talk.until(talk.session.hello()).values
-    assert (found.largest, found.window) == sizes
-    assert list(LEVELS)[(found.features & 3) - 1] == level
-    assert found.room >= talk.robot.profile.board.program_bytes
+    hello_reply = talk.until(talk.session.hello()).values
+    assert (hello_reply.largest, hello_reply.window) == sizes
+    assert list(LEVELS)[(hello_reply.features & 3) - 1] == level
+    assert hello_reply.room >= talk.robot.profile.board.program_bytes
 
 
 @pytest.mark.parametrize("is_all", [False, True])

@@ -28,9 +28,9 @@ RIGHT = "[floor]\nwidth_cm = 200\nheight_cm = 100\n[start]\nx_cm = 50\ny_cm = 50
 
 def refused(text: str) -> list[str]:
     """Return what is said of a world, in English; it is said in Spanish, too."""
-    with pytest.raises(WorldRefused) as found:
+    with pytest.raises(WorldRefused) as exception_info:
         read(text, "some")
-    lines = {language: describe(found.value, language) for language in ("en", "es")}
+    lines = {language: describe(exception_info.value, language) for language in ("en", "es")}
     assert len(lines["es"]) == len(lines["en"]) > 0
     assert not set(lines["es"]) & set(lines["en"])
     return lines["en"]
@@ -88,7 +88,7 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
     world = read(fence, "mine")
     assert dict(world.labels) == {"en": "my classroom", "es": "mi aula"}
     parts = (world.walls, world.boxes, world.lines, world.lamps)
-    assert [len(each) for each in parts] == [1, 1, 1, 1]
+    assert [len(part) for part in parts] == [1, 1, 1, 1]
     for shipped in worlds.names():
         assert f"| `{shipped}` |" in text
     for command in re.findall(r"`tsc (upload examples/[^`]*)`", text):
@@ -153,9 +153,9 @@ def test_all_that_is_wrong_is_said_at_once() -> None:
 
 
 def test_a_robot_that_does_not_fit_is_refused() -> None:
-    with pytest.raises(WorldRefused) as found:
+    with pytest.raises(WorldRefused) as exception_info:
         robot_in(floor(start="x_cm = 5\ny_cm = 50"))
-    [said] = describe(found.value, "en")
+    [said] = describe(exception_info.value, "en")
     assert said.startswith("The robot does not fit where it starts, at x_cm = 5, y_cm = 50. Move")
 
 
@@ -186,5 +186,5 @@ def test_a_picture_has_the_longer_side_that_it_may_have() -> None:
         floor = { width_cm = 130, height_cm = 70, border = true }
         start = { x_cm = 20, y_cm = 20, heading = 0 }"""
     room, hull = read(text, "room"), Hull(robots.load("tinibot").body)
-    made = Image.open(BytesIO(png(room, hull, [room.start], room.start, "a room")))
-    assert made.size == (LARGEST, 716)
+    image_file = Image.open(BytesIO(png(room, hull, [room.start], room.start, "a room")))
+    assert image_file.size == (LARGEST, 716)

@@ -75,9 +75,11 @@ def test_what_is_said(case: Case, request: pytest.FixtureRequest) -> None:
     for part, is_mistake in (("mistake", True), ("warning", False)):
         if part in case.parts:
             said = [
-                as_text(message(each, found.source, case.language), found.source, case.language)
-                for each in found.diagnostics
-                if each.is_mistake == is_mistake
+                as_text(
+                    message(diagnostic, found.source, case.language), found.source, case.language
+                )
+                for diagnostic in found.diagnostics
+                if diagnostic.is_mistake == is_mistake
             ]
             expect(case, part, "\n\n".join(said) + "\n", request)
 

@@ -305,7 +305,7 @@ def test_long_images() -> None:
             image = sealed(bytes(head) + bytes(header_length - HEADER_BYTES + length))
             images = [image, image[:-1], image + b"x"]
             said = host().refusals(images)
-            assert said == [cpp_checks.python_refusal(each) for each in images]
+            assert said == [cpp_checks.python_refusal(image) for image in images]
             names = ["", "TRUNCATED", "TRAILING"] if length == CODE_BYTES else ["BAD_HEADER"] * 3
             assert said == [REFUSALS[name][0] if name else 0 for name in names], length
 

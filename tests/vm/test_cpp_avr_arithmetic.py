@@ -76,7 +76,7 @@ def chip(seed: int, blocks: int, detailed: int = NO_BLOCK) -> list[str]:
 
 
 def checksum(block: Sequence[Operation]) -> int:
-    return zlib.crc32(b"".join(pack("<Bi", *each.result()) for each in block))
+    return zlib.crc32(b"".join(pack("<Bi", *operation.result()) for operation in block))
 
 
 def compare(seed: int, blocks: int = BLOCKS) -> None:
@@ -88,21 +88,23 @@ def compare(seed: int, blocks: int = BLOCKS) -> None:
         block = every[number * BLOCK : (number + 1) * BLOCK]
         if checksum(block) == theirs:
             continue
-        for each, line in zip(block, chip(seed, blocks, number)[number:], strict=True):
+        for operation, line in zip(block, chip(seed, blocks, number)[number:], strict=True):
             fault, result = map(int, line.split())
-            assert each.result() == (fault, result), f"{each.name} {each.a} {each.b}"
+            assert operation.result() == (fault, result), (
+                f"{operation.name} {operation.a} {operation.b}"
+            )
         raise AssertionError(f"the checksum of block {number} alone is wrong")
 
 
 def test_there_are_operations_of_every_kind() -> None:
     every = operations(1, BLOCKS)
-    pairs = {(each.a, each.b) for each in every}
+    pairs = {(operation.a, operation.b) for operation in every}
     assert len(pairs) > 0.95 * len(every)
-    assert {each.a for each in every} >= set(EDGES)
+    assert {operation.a for operation in every} >= set(EDGES)
     for name in OPERATIONS:
-        sizes = {abs(each.a).bit_length() for each in every if each.name == name}
+        sizes = {abs(operation.a).bit_length() for operation in every if operation.name == name}
         assert sizes >= set(range(32)), name
-    faults = {(each.name, each.result()[0]) for each in every}
+    faults = {(operation.name, operation.result()[0]) for operation in every}
     assert {("MUL", 1), ("DIV", 1), ("DIV", 2), ("MOD", 2), ("NEG", 1)} <= faults
 
 

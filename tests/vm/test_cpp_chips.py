@@ -273,7 +273,7 @@ def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
 
 
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE)
-def test_late_tasks_behind_byte_256(chip: str) -> None:
+def test_late_tasks_after_byte_256(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(0, 40, cpp_checks.FAR)):
         late_ms = (0, 7, 36)[number % 3]
         pace = Pace(every_ms=late_ms + 1)

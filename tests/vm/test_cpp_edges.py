@@ -104,7 +104,7 @@ def test_a_procedure_needs_what_it_calls_needs() -> None:
 def test_everything_has_a_place_of_its_own() -> None:
     """Every variable, reading, counter, value and call has a place of its own."""
     kit = kit_of(DEVICES)
-    readings = {each.name: [1000 * k + 500] for k, each in enumerate(kit.sensors)}
+    readings = {device.name: [1000 * k + 500] for k, device in enumerate(kit.sensors)}
     senses = Senses(readings, max_ms=1000, max_steps=5000)
     code = b""
     for k in range(VARIABLES):
@@ -136,16 +136,16 @@ def test_everything_has_a_place_of_its_own() -> None:
 def test_an_instruction_of_one_byte_means_what_is_in_its_code() -> None:
     """Instructions of one byte mean the variable, sensor or actuator that is in their code."""
     devices = kit_of(SHORTS).sensors
-    kit = Kit(devices, tuple(each._replace(name=f"A{each.name}") for each in devices))
+    kit = Kit(devices, tuple(device._replace(name=f"A{device.name}") for device in devices))
     code = b""
-    for family, before, behind in (
+    for family, before, after in (
         ("SET_VAR", "PUSH_NUM_{}", ""), ("PUSH_VAR", "", "SHOW"), ("READ", "", ""),
         ("PUSH_SENSOR", "", "SHOW"), ("PUSH_READ", "", "SHOW"), ("SET", "PUSH_NUM_{}", ""),
     ):  # fmt: skip
         for n in range(SHORTS):
-            words = (before.format(n + 1), f"{family}_{n}", behind)
+            words = (before.format(n + 1), f"{family}_{n}", after)
             code += b"".join(simple(word) for word in words if word)
-    readings = {each.name: (1000 * k + 1, 1000 * k + 2) for k, each in enumerate(devices)}
+    readings = {device.name: (1000 * k + 1, 1000 * k + 2) for k, device in enumerate(devices)}
     compare_verdicts(host(), [code], SHORTS, SHORTS)
     ending = compare_runs(host(), code, kit, Senses(readings, max_ms=100, max_steps=200))
     assert ending == "DONE", ending
@@ -227,7 +227,7 @@ def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
         yield jump("ELSE", far, 1), len(skip) + 1
     yield jump("ELSE", True, 0x7FFF), 0x7FFF + 3
     yield jump("AGAIN", True, 4), 0xFFFF
-    # an instruction that is cut takes what lies behind the code for the rest of it
+    # an instruction that is cut takes what lies after the code for the rest of it
     yield simple("PUSH16"), 3
     yield simple("PUSH32") + b"\x01\x02", 5
     for code in range(256):

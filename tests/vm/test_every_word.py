@@ -1,6 +1,6 @@
 """Every word of the language and of a kit, at every limit: for all it is a program, or for none.
 
-Each stands in the deepest block of each kind and one deeper, in tasks, in a DEF and behind an
+Each stands in the deepest block of each kind and one deeper, in tasks, in a DEF and after an
 UNTIL, and its arguments at and beyond their edges. The oracle says what is right and what a robot
 does; the compiler, the machines, the formatter, the blocks, the robot's reader of text and the
 sketch have to agree. The words come from the table: what one of these lacks fails by itself.
@@ -85,7 +85,7 @@ def nested(head: str, end: str, times: int) -> str:
 
 
 def in_defs(calls: int) -> str:
-    """Return a word behind so many calls."""
+    """Return a word after so many calls."""
     defs = ["DEF D1;{};END_DEF", *(f"DEF D{k};D{k - 1};END_DEF" for k in range(2, calls + 1))]
     return ";".join([*defs, f"D{calls}"])
 
@@ -115,7 +115,7 @@ def frames() -> Iterator[str]:
             yield f"TASK;{busy};END_TASK;{its}"
     for each in ("{}", *loops):
         yield f"DEF A;{each};END_DEF;A"
-    yield from (f"DEF A;{{}};END_DEF;{each.format('A')}" for each in loops)
+    yield from (f"DEF A;{{}};END_DEF;{loop.format('A')}" for loop in loops)
     yield from map(in_defs, (CALLS, CALLS + 1))
     yield from ("W(FOREVER) UNTIL(TRUE);{}", "F(2, 80) UNTIL(TIME > 0.1)\n{}")
 
@@ -151,9 +151,9 @@ def calls_of(word: Word) -> list[str]:
     for what in [f"20 {UNIT_OF[word.text]}"] if word.role.is_move else []:
         uses.append(f"{word.text}({what}, 80)")
     if word.role.lasts:
-        forever = ", ".join(["FOREVER", *(each.sample for each in word.arguments[1:])])
+        forever = ", ".join(["FOREVER", *(argument.sample for argument in word.arguments[1:])])
         uses.append(f"{word.text}({forever})")
-    return [*uses, *(f"{each} {UNTIL}" for each in uses)]
+    return [*uses, *(f"{use} {UNTIL}" for use in uses)]
 
 
 def header(word: str) -> str:
@@ -167,8 +167,14 @@ def begin_of(end: str) -> str:
 
 
 USES = [(name, use) for name, word in WORDS.items() for use in uses_of(word)]
-USES += [(each.name, use) for each in KIT.sensors for use in (each.name, f"SHOW({each.name})")]
-USES += [(each.name, use) for each in KIT.actuators for use in (each.word.example, each.name)]
+USES += [
+    (sensor.name, use) for sensor in KIT.sensors for use in (sensor.name, f"SHOW({sensor.name})")
+]
+USES += [
+    (actuator.name, use)
+    for actuator in KIT.actuators
+    for use in (actuator.word.example, actuator.name)
+]
 PARTS = 12  # of which a commit tries one in each frame, another in the next
 
 
@@ -220,12 +226,12 @@ def around(word: Word) -> str:
     return f"{{}};BREAK;{end}" if name in ("LOOP", "WHILE") else f"{{}};{end}" if end else "{}"
 
 
-CALLED = [each for each in (*WORDS.values(), *(it.word for it in KIT.actuators)) if each.arguments]
+CALLED = [word for word in (*WORDS.values(), *(it.word for it in KIT.actuators)) if word.arguments]
 
 
 @pytest.mark.parametrize("word", CALLED, ids=lambda word: word.text)
 def test_every_argument_at_its_edges(word: Word) -> None:
-    samples = [each.sample for each in word.arguments]
+    samples = [argument.sample for argument in word.arguments]
     answers = set()
     for place, argument in enumerate(word.arguments):
         for edge in edges(argument):

@@ -59,8 +59,8 @@ MACHINES: dict[str, tuple[Run, str]] = {
 each_machine = pytest.mark.parametrize(
     "machine",
     [
-        pytest.param(each, id=name, marks=pytest.mark.skipif(bool(why), reason=why or "here"))
-        for name, (each, why) in MACHINES.items()
+        pytest.param(value, id=name, marks=pytest.mark.skipif(bool(why), reason=why or "here"))
+        for name, (value, why) in MACHINES.items()
     ],
 )
 

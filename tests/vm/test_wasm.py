@@ -66,8 +66,8 @@ def test_another_machine_is_another_module(
     built = cache(wasm.built)  # the same each time, as the test before this one says
     monkeypatch.setattr(wasm, "built", built)
     assert wasm.main(["--check"]) == 1
-    said = capsys.readouterr().err
-    assert said.count("stale. Run: python -m tools.builds.wasm") == len(modules)
+    output = capsys.readouterr().err
+    assert output.count("stale. Run: python -m tools.builds.wasm") == len(modules)
     assert wasm.main([]) == 0
     assert wasm.main(["--check"]) == 0
     for module in modules:
@@ -90,11 +90,11 @@ def test_the_module_imports_the_robot_alone() -> None:
 
     machine = {"motors", "off", "read", "beep", "show", "set"}
     imported = {wasm.MACHINE: machine, wasm.ROBOT: {"look"}, wasm.ROBOT_ESP32: {"look"}}
-    for each, names in imported.items():
-        data = (ROOT / each.path).read_bytes()
+    for value, names in imported.items():
+        data = (ROOT / value.path).read_bytes()
         module = Module(Engine(), data)
-        assert {found.module for found in module.imports} == {"robot"}
-        assert {found.name for found in module.imports} == names
+        assert {import_type.module for import_type in module.imports} == {"robot"}
+        assert {import_type.name for import_type in module.imports} == names
         assert not [word for word in (b".cpp", b"zig", b"clang", b"producers") if word in data]
 
 
@@ -199,7 +199,7 @@ def test_refused_images() -> None:
         with pytest.raises(ImageRefused) as theirs:
             WasmImage(data, KIT)
         assert theirs.value.name == ours.value.name
-    changed_kit = KIT._replace(sensors=tuple(each._replace(unit="x") for each in KIT.sensors))
+    changed_kit = KIT._replace(sensors=tuple(sensor._replace(unit="x") for sensor in KIT.sensors))
     with pytest.raises(ImageRefused, match="OTHER_KIT"):
         WasmImage(good, changed_kit)
 

@@ -30,11 +30,11 @@ profile, world = robots.load("tinibot"), load("obstacles")
 def limited(code: str) -> str:
     """Return what Python code prints that has LIMIT_BYTES for its addresses."""
     limit = f"import resource\nresource.setrlimit(resource.RLIMIT_AS, ({LIMIT_BYTES},) * 2)\n"
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-c", limit + code], capture_output=True, text=True, check=False
     )
-    assert done.returncode == 0, done.stderr[-2000:]
-    return done.stdout
+    assert completed.returncode == 0, completed.stderr[-2000:]
+    return completed.stdout
 
 
 @pytest.mark.sampled("each", keep=2)

@@ -56,7 +56,7 @@ def wired(driver: Driver, chip: Chip, taken: set[int], is_whole: bool = True) ->
         every = sorted(chip.digital | chip.analog, key=lambda pin: (-pin % 7, pin))
         pins[key] = next(pin for pin in every if chip.can(pin, need) and pin not in taken)
         taken.add(pins[key])
-    return Wiring(driver.name, pins, {each.key: each.default for each in driver.settings})
+    return Wiring(driver.name, pins, {setting.key: setting.default for setting in driver.settings})
 
 
 def robot_with(motors: str, devices: list[Driver], chip_name: str = "mega", is_whole: bool = True,
@@ -261,7 +261,7 @@ def test_no_pin_gets_more_than_it_takes(name: str) -> None:
 
 
 def texts_of(svg: str) -> list[str]:
-    return [each.text or "" for each in Tree.fromstring(svg).iter(f"{SVG}text")]
+    return [element.text or "" for element in Tree.fromstring(svg).iter(f"{SVG}text")]
 
 
 @each_robot
@@ -355,8 +355,8 @@ def test_a_long_label_is_made_to_fit(label: str) -> None:
     sizes = [float(size) for size in re.findall(r'font-size="([\d.]+)"', svg)]
     assert min(sizes) >= 8
     longest = max(
-        len(each.text or "") for each in Tree.fromstring(svg).iter(f"{SVG}text")
-        if (each.text or "").startswith(label[:3])
+        len(element.text or "") for element in Tree.fromstring(svg).iter(f"{SVG}text")
+        if (element.text or "").startswith(label[:3])
     ) if label[0] in "W漢" else 0  # fmt: skip
     assert longest <= 30
 
@@ -429,9 +429,9 @@ def test_the_finished_robot_has_each_sensor_where_the_body_says(robot: Robot) ->
             assert name in shown
             x, y = places_of(plan, place)
             assert f'<circle cx="{x:g}" cy="{y:g}" r="9"' in svg
-        for each in tree.iter(f"{SVG}circle"):
-            assert 0 < float(each.attrib["cx"]) < width
-            assert 0 < float(each.attrib["cy"]) < height
+        for element in tree.iter(f"{SVG}circle"):
+            assert 0 < float(element.attrib["cx"]) < width
+            assert 0 < float(element.attrib["cy"]) < height
         assert f"{robot.body.length_cm:g} × {robot.body.width_cm:g} cm" in shown
 
 
@@ -443,11 +443,13 @@ def test_a_small_plate_is_drawn_with_small_wheels(
     body = tinibot.body._replace(length_cm=size_cm, width_cm=size_cm, wheel_base_cm=size_cm)
     svg = finished_of(plan_of(tinibot._replace(body=body), "en"))
     wheels = [
-        each for each in Tree.fromstring(svg).iter(f"{SVG}rect") if each.get("fill") == "#333333"
+        element
+        for element in Tree.fromstring(svg).iter(f"{SVG}rect")
+        if element.get("fill") == "#333333"
     ]
     drawn = [float(wheels[0].attrib[side]) / (520 / size_cm) for side in ("height", "width")]
     assert len(wheels) == 2 and drawn == pytest.approx(wheel_cm)
-    left, right = (float(each.attrib["x"]) for each in wheels)
+    left, right = (float(wheel.attrib["x"]) for wheel in wheels)
     assert right - left == pytest.approx(520)  # on the axle, which is as wide as the plate
 
 
@@ -474,14 +476,14 @@ def test_a_gripper_is_drawn_around_its_button_and_another_servo_has_an_arm() -> 
 
 def test_two_servos_share_the_front_edge() -> None:
     plan = plan_of(robots.load("grabber"), "en")
-    servo = next(each for each in plan.parts if each.is_device and each.shape.icon == "servo")
+    servo = next(part for part in plan.parts if part.is_device and part.shape.icon == "servo")
     bare = plan._replace(body=plan.body._replace(places={}), parts=(*plan.parts, servo))
     middle, half = _Finished(bare).x, _Finished(bare).breadth / 2
-    boxes = [each.attrib for each in Tree.fromstring(finished_of(bare)).iter(f"{SVG}rect")]
+    boxes = [element.attrib for element in Tree.fromstring(finished_of(bare)).iter(f"{SVG}rect")]
     found = [
-        float(each["x"]) + 26 - middle
-        for each in boxes
-        if (each["width"], each["height"]) == ("52", "30")
+        float(box["x"]) + 26 - middle
+        for box in boxes
+        if (box["width"], box["height"]) == ("52", "30")
     ]
     assert found == pytest.approx([-half / 2, half / 2], abs=0.1)
 
@@ -489,15 +491,15 @@ def test_two_servos_share_the_front_edge() -> None:
 def test_the_longest_names_stay_in_the_finished_drawing() -> None:
     plan = plan_of(robots.load("grabber"), "en")
     long = "W" * 24
-    parts = tuple(each._replace(title=long, label=long) for each in plan.parts)
+    parts = tuple(part._replace(title=long, label=long) for part in plan.parts)
     svg = finished_of(plan._replace(parts=parts))
     tree = Tree.fromstring(svg)
     right = float(tree.attrib["viewBox"].split()[2])
-    for each in tree.iter(f"{SVG}text"):
-        x, anchor = float(each.attrib["x"]), each.attrib["text-anchor"]
-        wide = _width(each.text or "", float(each.get("font-size", 14)))
+    for element in tree.iter(f"{SVG}text"):
+        x, anchor = float(element.attrib["x"]), element.attrib["text-anchor"]
+        wide = _width(element.text or "", float(element.get("font-size", 14)))
         begin = x - wide * {"start": 0, "middle": 0.5, "end": 1}[anchor]
-        assert begin >= 0 and begin + wide <= right, each.text
+        assert begin >= 0 and begin + wide <= right, element.text
 
 
 def places_of(plan: Plan, place: Place) -> tuple[float, float]:
@@ -525,9 +527,9 @@ def test_a_page_has_both_drawings_and_fits_a_phone() -> None:
 def test_parts_have_quantities() -> None:
     for language in LANGUAGES:
         plan = plan_of(robots.load("tinibot"), language)
-        needs = next(each for each in page_of(plan) if each.kind == "list").rows
+        needs = next(block for block in page_of(plan) if block.kind == "list").rows
         assert all(re.search(r"\d+ × ", row[0]) for row in needs)
-        wires = next(int(found[1]) for row in needs if (found := re.search(
+        wires = next(int(match[1]) for row in needs if (match := re.search(
             r"(\d+) (?:jumper wires|cables de puente|fios jumper)", row[0])))  # fmt: skip
         joins = sum(len(block.rows) - 1 for block in page_of(plan) if block.kind == "ticks")
         assert joins < wires < 2 * joins

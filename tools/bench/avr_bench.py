@@ -53,13 +53,13 @@ def built(name: str, sources: Path = SOURCES, *more: str) -> bytes:
     code += [sources / "src" / each for each in MORE.get(name, ())]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "program.elf"
-        done = subprocess.run(
+        completed = subprocess.run(
             ["avr-g++", *FLAGS, *more, *WARNINGS, *map(str, code), "-o", str(program)],
             capture_output=True,
             text=True,
         )
-        if done.returncode != 0:
-            raise RuntimeError(f"avr-g++ refuses {name}.cpp:\n{done.stderr[:4000]}")
+        if completed.returncode != 0:
+            raise RuntimeError(f"avr-g++ refuses {name}.cpp:\n{completed.stderr[:4000]}")
         return program.read_bytes()
 
 
@@ -70,13 +70,15 @@ def run(program: bytes, request: bytes, chip: str = CHIP, limit_s: int = 120) ->
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "program.elf"
         path.write_bytes(program[:at] + request + program[at + len(request) :])
-        done = subprocess.run(
+        completed = subprocess.run(
             ["simavr", "-m", chip, "-f", "16000000", str(path)],
             capture_output=True,
             timeout=limit_s,
         )
-    said = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", done.stdout + done.stderr)
+    said = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", completed.stdout + completed.stderr)
     lines = [line.decode() for line in said]
     if not lines or lines.pop() != "END":
-        raise RuntimeError(f"the chip did not end: {(done.stdout + done.stderr)[-2000:]!r}")
+        raise RuntimeError(
+            f"the chip did not end: {(completed.stdout + completed.stderr)[-2000:]!r}"
+        )
     return lines

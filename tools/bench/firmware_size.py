@@ -47,7 +47,7 @@ def environments() -> list[str]:
 def measured(name: str, project: Path = PROJECT) -> Sketch:
     """Build one environment and return its sizes. Raises RuntimeError with the log."""
     command = [sys.executable, "-m", "tools.builds.platformio_offline", "--project", str(project)]
-    done = subprocess.run(
+    completed = subprocess.run(
         [*command, "pio", "run", "-e", name],
         cwd=ROOT,
         stdout=subprocess.PIPE,
@@ -55,10 +55,10 @@ def measured(name: str, project: Path = PROJECT) -> Sketch:
         text=True,
         check=False,
     )
-    rows = re.findall(r"(Flash|RAM): .*used (\d+) bytes from (\d+)", done.stdout)
+    rows = re.findall(r"(Flash|RAM): .*used (\d+) bytes from (\d+)", completed.stdout)
     used = {name: (int(bytes), int(holds)) for name, bytes, holds in rows}
-    if done.returncode != 0 or len(used) != 2:
-        raise RuntimeError(done.stdout[-4000:])
+    if completed.returncode != 0 or len(used) != 2:
+        raise RuntimeError(completed.stdout[-4000:])
     board, _, robot = name.partition("_")
     elf = project / ".pio" / "build" / name / "firmware.elf"
     return Sketch(robot or DEFAULT, board, *used["Flash"], used["RAM"][0], elf)
@@ -70,18 +70,18 @@ def main() -> int:
     except RuntimeError as why:
         print(why, file=sys.stderr)
         return 2
-    print("| robot | board | flash | of | RAM | free behind the stack |")
+    print("| robot | board | flash | of | RAM | free after the stack |")
     print("|---|---|---:|---:|---:|---:|")
     is_enough = True
     for sketch in sketches:
         is_enough &= sketch.flash <= sketch.holds
         free = "-"
         if not uno.missing():
-            found = firmware_stack.measured(
+            stack = firmware_stack.measured(
                 sketch.firmware, robots.load(sketch.robot), sketch.board
             )
-            is_enough &= found.least_free >= firmware_stack.LEAST_FREE
-            free = f"{found.least_free:,}"
+            is_enough &= stack.least_free >= firmware_stack.LEAST_FREE
+            free = f"{stack.least_free:,}"
         sizes = f"{sketch.flash:,} | {sketch.holds:,} | {sketch.ram:,}"
         print(f"| {sketch.robot} | {sketch.board} | {sizes} | {free} |")
     print(

@@ -25,7 +25,7 @@ from tiniscript.robots.text_levels import NO_TEXT, level_of
 from tools.uno import CYCLES_PER_MS, HERTZ, Stack, Uno
 
 LEAST_FREE = 150  # bytes
-FREE_FROM = "_end"  # the symbol behind all variables
+FREE_FROM = "_end"  # the symbol after all variables
 RAM = 0x800000  # where avr-nm begins to count it
 BOARDS = {"uno": "uno", "nano": "uno", "mega": "mega"}  # the simulated one for each
 CALLS = 8  # at once
@@ -183,8 +183,8 @@ def longest(kit: Kit, room: int) -> Image:
     more = 0
     while len((larger := image_of(deep(kit, more + 1), kit)).code) <= room:
         more += 1
-        found = larger
-    return found
+        image = larger
+    return image
 
 
 def all_devices(kit: Kit) -> list[str]:

@@ -84,7 +84,7 @@ def uploaded(
             request = session.upload(image, runs=False)
         data = session.poll(now_ms)
         if request is not None:
-            frames += len([each for each in data.split(b"\0") if each])
+            frames += len([part for part in data.split(b"\0") if part])
             sent_bytes += len(data)
         there.send(data, now_ms)
         now_ms += 1

@@ -123,14 +123,14 @@ def main() -> int:
             print(why, file=sys.stderr)
             return 2
     head = " | ".join(f"{baud} baud" for baud in BAUDS)
-    print(f"| on a simulated Uno, behind HELLO | {head} | must |\n|---|---:|---:|---:|")
+    print(f"| on a simulated Uno, after HELLO | {head} | must |\n|---|---:|---:|---:|")
     row(f"first start bit of `{SHORT}` to the motor pins, ms",
         [f"{each.start_ms:.2f}" for each in found.values()],
         " and ".join(f"{each:g}" for each in MUST_MS.values()))  # fmt: skip
     row("last byte of the same as LIVE to the motor pins, us",
         [f"{each.live_us:.0f}" for each in found.values()], str(LIVE_US))  # fmt: skip
-    print_stops({f"uno, {baud} baud": each.stop for baud, each in found.items()} | others)
-    are_kept = [is_kept(baud, each) for baud, each in found.items()]
+    print_stops({f"uno, {baud} baud": value.stop for baud, value in found.items()} | others)
+    are_kept = [is_kept(baud, value) for baud, value in found.items()]
     return int(not all(are_kept) or any(other.us > STOP_US for other in others.values()))
 
 

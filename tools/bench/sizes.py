@@ -236,7 +236,7 @@ def _built(part: Part, use: str, chip: str) -> Size:
     if chip != AVR:
         return Size(*chips.size(EMULATED[chip], program, *part.folders))
     folders = sorted(("vm", *part.folders))
-    code = [path for each in folders for path in sorted((SOURCE / each).glob("*.[cS]*"))]
+    code = [path for folder in folders for path in sorted((SOURCE / folder).glob("*.[cS]*"))]
     with tempfile.TemporaryDirectory() as folder:
         source, made = Path(folder) / "probe.cpp", Path(folder) / "probe"
         source.write_text(program, encoding="utf-8")
@@ -260,8 +260,8 @@ def main() -> int:
         if missing(chip):
             print(missing(chip), file=sys.stderr)
             continue
-        found = [size(part, chip) for part in SHOWN]
-        print(f"| {chip} |", " | ".join(f"{each.flash:,} | {each.ram}" for each in found), "|")
+        sizes = [size(part, chip) for part in SHOWN]
+        print(f"| {chip} |", " | ".join(f"{each.flash:,} | {each.ram}" for each in sizes), "|")
     return 0
 
 

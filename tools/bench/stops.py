@@ -128,14 +128,14 @@ class Busy:
         chip.send(text + STOP, begin)
         chip.run_to(last + round(BITS * BITS * bit))
         new = chip.events[since:]
-        zeros = [each.cycle for each in new if each.what == "received" and each["byte"] == 0]
+        zeros = [event.cycle for event in new if event.what == "received" and event["byte"] == 0]
         off = [
-            each.cycle
-            for each in new
-            if each.what == "pin"
-            and each.cycle > begin
-            and each["is"] == "low"
-            and each["pin"] in self._motors
+            event.cycle
+            for event in new
+            if event.what == "pin"
+            and event.cycle > begin
+            and event["is"] == "low"
+            and event["pin"] in self._motors
         ]
         self._wired.run(2 * QUIET_MS)
         self.cycles.append(max(off) - zeros[STOP_RUN - 1])
@@ -144,11 +144,11 @@ class Busy:
     def together(self) -> int:
         """Return the cycles of a stop before which all comes that may: once, at its longest."""
         received = RECEIVED[self.chip.board]
-        found = [each for each in self.chip.masked() if each.vector != received]
-        entries = {each.vector: each.cycles for each in found if _is_before(each, received)}
+        spans = [each for each in self.chip.masked() if each.vector != received]
+        entries = {span.vector: span.cycles for span in spans if _is_before(span, received)}
         before = max(
-            each.cycles + sum(entries[vector] for vector in entries if vector != each.vector)
-            for each in found
+            span.cycles + sum(entries[vector] for vector in entries if vector != span.vector)
+            for span in spans
         )
         return min(self.cycles) + INSTRUCTION + before
 

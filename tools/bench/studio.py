@@ -310,8 +310,8 @@ def _rated(address: str) -> dict[str, float]:
                 "PATH": os.pathsep.join((node, os.environ["PATH"]))}  # fmt: skip
     found: list[dict[str, Any]] = []
     for _ in range(RATINGS):
-        done = subprocess.run(call, env=settings, capture_output=True, text=True, check=True)
-        found.append(json.loads(done.stdout)["categories"])
+        completed = subprocess.run(call, env=settings, capture_output=True, text=True, check=True)
+        found.append(json.loads(completed.stdout)["categories"])
     return {name: 100 * median(each[name]["score"] for each in found) for name in RATED}
 
 

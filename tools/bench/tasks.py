@@ -62,7 +62,7 @@ def main() -> int:
     rounds = [turns_cycles(tasks) for tasks in range(5)]
     for tasks, (before, after) in enumerate(pairwise(rounds), 1):
         print(f"{tasks:25} {(after - before) / TURNS:30,.0f}")
-    print("tasks that count   latest look behind the earliest one")
+    print("tasks that count   latest look after the earliest one")
     for others in range(4):
         spread_ms = jitter_ms(firmware, others)
         print(f"{others:16} {spread_ms * 1000:37.0f} us")
@@ -108,8 +108,8 @@ def jitter_ms(firmware: Path, others: int) -> float:
         for number in range(LOOKS):
             board.run_ms(LOOK_MS * number / LOOKS + 0.3)
             board.analog(SENSOR_PIN, 900)
-            seen = board.run_until("left", "pwm", 3 * LOOK_MS)
-            at_ms.append(seen.cycle / CYCLES_PER_MS)
+            pin_change = board.run_until("left", "pwm", 3 * LOOK_MS)
+            at_ms.append(pin_change.cycle / CYCLES_PER_MS)
             board.analog(SENSOR_PIN, 100)
             board.run_ms(120)
         first = at_ms[0]

@@ -101,7 +101,7 @@ def crowd(count: int, runs: int, folder: str) -> tuple[float, float]:
                 [sys.executable, "-m", "tiniscript", *verb, *ports], env=environ,
                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             )  # fmt: skip
-            room.until(lambda: all(each.moves is moves for each in room.pupils), "all do it")
+            room.until(lambda: all(pupil.moves is moves for pupil in room.pupils), "all do it")
             took_s = time.perf_counter() - begin_s
             if command.wait():
                 raise RuntimeError(f"tsc {verb[0]} failed")

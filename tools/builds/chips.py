@@ -154,6 +154,8 @@ def compile_one(chip: Chip, path: Path, made: str, flags: Sequence[str]) -> None
 
 
 def _command(words: Sequence[str]) -> str:
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, f"{words[0]} refuses the C++ machine:\n{done.stderr[:4000]}"
-    return done.stdout
+    completed = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert completed.returncode == 0, (
+        f"{words[0]} refuses the C++ machine:\n{completed.stderr[:4000]}"
+    )
+    return completed.stdout

@@ -58,9 +58,9 @@ def build(robot: Robot, target: Path) -> Path:
     """Build the firmware of a robot on its board into a folder; return the file."""
     sources = building.sources()
     assert sources is not None, "no vm_arduino beside this folder"
-    made = target / name_of(title_of(robot), robot.board.chip, sources.digest(robot))
-    made.write_bytes(building.build(sources, robot, lambda seen: None))
-    return made
+    path = target / name_of(title_of(robot), robot.board.chip, sources.digest(robot))
+    path.write_bytes(building.build(sources, robot, lambda seen: None))
+    return path
 
 
 def build_all(target: Path, licence: Path) -> list[Path]:
@@ -78,13 +78,13 @@ def build_all(target: Path, licence: Path) -> list[Path]:
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         new = Path(scratch) / "ready"
         new.mkdir()
-        made = [build(robot, new) for robot in shipped()]
+        paths = [build(robot, new) for robot in shipped()]
         (new / NOTICE).write_text(NOTICE_TEXT, encoding="utf-8")
         shutil.copy(licence, new / LICENCE_NAME)
         if target.exists():
             target.rename(Path(scratch) / "old")
         new.rename(target)
-    return [target / path.name for path in made]
+    return [target / path.name for path in paths]
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -92,11 +92,11 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--licence", type=Path, default=LICENCE, help="a copy of the GNU LGPL 2.1")
     options = parser.parse_args(arguments)
     try:
-        made = build_all(FOLDER, options.licence)
+        paths = build_all(FOLDER, options.licence)
     except (building.CannotBuild, CannotMake) as why:
         print(f"build_firmware: {getattr(why, 'log', '') or why}", file=sys.stderr)
         return 2
-    for path in made:
+    for path in paths:
         print(path.relative_to(ROOT))
     return 0
 

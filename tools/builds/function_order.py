@@ -3,7 +3,7 @@
     python -m tools.builds.function_order     writes the order into `boards/avr/order.ld`
 
 On an AVR a call that leads at most 4 KB far takes two bytes less. An order that is old does no
-harm but to the size: a function that is not in it lies behind the others. So run this again when
+harm but to the size: a function that is not in it lies after the others. So run this again when
 the sketch of an Uno comes near to its limit.
 """
 
@@ -24,7 +24,7 @@ from tools.bench import firmware_size
 SCRIPT = firmware_size.PROJECT / "src" / "boards" / "avr" / "order.ld"
 BEGIN, END = "/* begin of the order */\n", "    /* end of the order */"
 BOARD = "uno"
-NEAR = range(-4096, 4096)  # bytes, from behind a short call
+NEAR = range(-4096, 4096)  # bytes, from just after a short call
 TRIES = 200_000
 # What the compiler appends to a name may be another number after the next change.
 _APPENDED = re.compile(r"\.(lto_priv|constprop|part|isra)\.\d+")
@@ -142,8 +142,8 @@ def main() -> int:
         del os.environ["PLATFORMIO_BUILD_FLAGS"]
         among, sections = pieces(linked.read_text(encoding="utf-8"))
     command = ["avr-objdump", "-d", str(sketch.firmware)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    all_calls = calls(done.stdout, sections)
+    completed = subprocess.run(command, capture_output=True, text=True, check=True)
+    all_calls = calls(completed.stdout, sections)
     order = best(among, all_calls, TRIES, random.Random(1))
     print(f"{sketch.flash:,} bytes before; calls that lead far: "
           f"{far(list(range(len(among))), among, all_calls)} before, "

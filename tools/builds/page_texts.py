@@ -28,13 +28,13 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
     """
     own = about(language)
     said = texts("command", language)
-    found = texts("studio", language) | {key: said[each] for key, each in OF_COMMAND.items()}
+    found = texts("studio", language) | {key: said[value] for key, value in OF_COMMAND.items()}
     return {
         "": own.form_of,
         **{
-            key: each if isinstance(each, str)
-            else [each.get(form, each["other"]) for form in own.forms]
-            for key, each in found.items()
+            key: value if isinstance(value, str)
+            else [value.get(form, value["other"]) for form in own.forms]
+            for key, value in found.items()
         },
     }  # fmt: skip
 

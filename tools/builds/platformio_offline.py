@@ -96,12 +96,12 @@ def settings_for(project: Path, offline: bool) -> dict[str, str]:
         return {}
     look_for_packages()
     refuse_others(project)
-    made = stand_ins()
+    path = stand_ins()
     libraries = HOME / "libraries"
     add_doctest(libraries / "native" / "doctest", project)
-    say(f"the offline stand-ins in {made.relative_to(ROOT)} are used")
+    say(f"the offline stand-ins in {path.relative_to(ROOT)} are used")
     return {
-        "PLATFORMIO_CORE_DIR": str(made),
+        "PLATFORMIO_CORE_DIR": str(path),
         "PLATFORMIO_LIBDEPS_DIR": str(libraries),
         "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no",
         "PLATFORMIO_DISABLE_UPGRADE_CHECK": "true",
@@ -204,10 +204,10 @@ def scons_wanted() -> tuple[str, str]:
     from platformio.dependencies import get_core_dependencies
 
     wanted = get_core_dependencies()["tool-scons"]
-    found = re.fullmatch(r"~(4\.(\d)(\d\d)(\d\d)\.\d+)", wanted)
-    if not found:
+    match = re.fullmatch(r"~(4\.(\d)(\d\d)(\d\d)\.\d+)", wanted)
+    if not match:
         raise CannotMake(f"PlatformIO wants tool-scons {wanted}: which SCons that is, I cannot say")
-    return found[1], ".".join(str(int(part)) for part in found.groups()[1:])
+    return match[1], ".".join(str(int(part)) for part in match.groups()[1:])
 
 
 def add_doctest(folder: Path, project: Path) -> None:
@@ -217,7 +217,7 @@ def add_doctest(folder: Path, project: Path) -> None:
 
     text = DOCTEST.read_text(encoding="utf-8")
     parts = [re.search(rf"DOCTEST_VERSION_{part}\s+(\d+)", text) for part in PARTS]
-    version = ".".join(found[1] for found in parts if found)
+    version = ".".join(match[1] for match in parts if match)
     runner = (project / "test" / "test_custom_runner.py").read_text(encoding="utf-8")
     named = re.search(r"doctest/doctest@[^\"']+", runner)
     if named is None:
@@ -291,23 +291,23 @@ def stand_ins() -> Path:
 def add_boards(folder: Path) -> None:
     """Write what PlatformIO knows of each board."""
     folder.mkdir()
-    for each, (name, chip, variant, macro, flash, ram) in BOARDS.items():
+    for value, (name, chip, variant, macro, flash, ram) in BOARDS.items():
         build = {"mcu": chip, "f_cpu": "16000000L", "core": "arduino", "variant": variant,
                  "extra_flags": f"-DARDUINO_AVR_{macro}"}  # fmt: skip
         about = {"name": name, "vendor": "Arduino", "url": "https://docs.arduino.cc/hardware",
                  "frameworks": ["arduino"], "build": build,
                  "upload": {"maximum_size": flash, "maximum_ram_size": ram}}  # fmt: skip
-        (folder / f"{each}.json").write_text(json.dumps(about), encoding="utf-8")
+        (folder / f"{value}.json").write_text(json.dumps(about), encoding="utf-8")
 
 
 def install_scons(version: str, folder: Path) -> None:
     pip = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    done = subprocess.run(
+    completed = subprocess.run(
         [*pip, "--no-deps", "--target", str(folder), f"SCons=={version}"],
         stdout=sys.stderr,
         check=False,
     )
-    if done.returncode != 0:
+    if completed.returncode != 0:
         raise CannotMake(f"pip could not install SCons {version}, the one that PlatformIO wants")
 
 

@@ -70,10 +70,10 @@ KEPT = "words"  # the text of the picture that has them
 SEEN = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
 CLASS = sources(ROOT, "docs/en/class.md")
 GUIDES = {
-    each: "".join((ROOT / guide).read_text("utf-8") for guide in (name, CLASS.get(each)) if guide)
-    for each, name in sources(ROOT, "docs/en/studio.md").items()
+    value: "".join((ROOT / guide).read_text("utf-8") for guide in (name, CLASS.get(value)) if guide)
+    for value, name in sources(ROOT, "docs/en/studio.md").items()
 }
-LANGUAGES = tuple(each for each, text in GUIDES.items() if f"/studio.{each}.png)" in text)
+LANGUAGES = tuple(value for value, text in GUIDES.items() if f"/studio.{value}.png)" in text)
 
 
 def picture(language: str, scene: str = "") -> Path:

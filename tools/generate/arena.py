@@ -42,7 +42,7 @@ def driven(program: str, robot: str, world: World, lasts_ms: int) -> Way:
         simulation.go(SAMPLE_MS)
         poses.append(simulation.robot.pose)
     points = [(pose.x_cm, pose.y_cm) for pose in poses]
-    begin, end = ([(each.x, each.y) for each in hull.outline(poses[k])] for k in (0, -1))
+    begin, end = ([(point.x, point.y) for point in hull.outline(poses[k])] for k in (0, -1))
     simulation.close()
     return Way(bends(points), begin, end)
 

@@ -54,8 +54,8 @@ def _command(command: str, language: str, table: Table) -> Iterator[str]:
     yield of_verb(command, "says", language)
     own = [option for option in shown_of(command) if option.verbs != "*"]
     is_apart = any(option.name == "virtual" for option in own)
-    yield _options([each for each in own if not (is_apart and each.virtual)], language, table)
-    virtual = [each for each in own if is_apart and each.virtual]
+    yield _options([option for option in own if not (is_apart and option.virtual)], language, table)
+    virtual = [option for option in own if is_apart and option.virtual]
     if virtual:
         yield said("virtual", language)
         yield _options(virtual, language, table)

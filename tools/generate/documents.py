@@ -104,7 +104,7 @@ def language_document(document: str, language: str) -> str:
 def list_of_documents(command: str) -> str:
     """Return `docs/README.md`: title and first sentence of each, in all languages side by side."""
     found = [document for document in documents(ROOT) if document.sources.get(SOURCE) != LIST]
-    shown = [each for each in languages() if any(each in one.sources for one in found)]
+    shown = [language for language in languages() if any(language in one.sources for one in found)]
 
     def said(key: str) -> list[str]:
         return [text("documents", key, language) for language in shown]
@@ -116,9 +116,9 @@ def list_of_documents(command: str) -> str:
     ]
     for part in ("teach", "write", "wiring", "trust", "build"):
         rows = [
-            [_linked(each.sources.get(language, "")) for language in shown]
-            for each in found
-            if each.part == part
+            [_linked(document.sources.get(language, "")) for language in shown]
+            for document in found
+            if document.part == part
         ]
         parts.append(table(said(f"part/{part}"), rows))
     return "\n".join(parts)

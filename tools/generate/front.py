@@ -112,10 +112,10 @@ def _terminal(language: str) -> list[str]:
 
 def _said(verb: str, program: str, language: str) -> list[str]:
     """Return a command as it is typed, and what it prints."""
-    said = StringIO()
-    with redirect_stdout(said), redirect_stderr(said):
+    string_io = StringIO()
+    with redirect_stdout(string_io), redirect_stderr(string_io):
         tsc([verb, "-e", program, "--lang", language])
-    return [f'$ tsc {verb} -e "{program}"', *said.getvalue().splitlines()]
+    return [f'$ tsc {verb} -e "{program}"', *string_io.getvalue().splitlines()]
 
 
 @cache

@@ -108,7 +108,7 @@ def _length_range(fields: tuple[Field, ...]) -> str:
 
 def _requests() -> list[messages.Message]:
     requests = [message for message in MESSAGES if message.number < messages.FIRST_EVENT]
-    numbers = sorted([*(each.number for each in requests), *messages.RETIRED])
+    numbers = sorted([*(request.number for request in requests), *messages.RETIRED])
     assert numbers == list(range(1, len(numbers) + 1))
     return requests
 
@@ -213,7 +213,7 @@ def payloads(command: str) -> str:
         "from typing import Literal, NamedTuple\n"
     ]
     for name, shared in types.items():
-        of = ", ".join(each.name for each in shared)
+        of = ", ".join(message.name for message in shared)
         parts.append(_type(name, f"What is in the reply to {of}.", shared[0].reply))
     for event in events:
         tag = f'    name: Literal["{event.name}"] = "{event.name}"\n'

@@ -257,9 +257,9 @@ def times() -> Iterator[Run]:
         ("UNTIL begins 20 ms late", f"W(0.001); {until}", (0, (21, 1)), FAR),
         ("UNTIL begins 21 ms late", f"W(0.001); {until}", (0, (22, 1)), FAR),
         ("UNTIL is checked late", until, (0, (30, 61, 1)), FAR),
-        ("UNTIL behind 2^32 ms", "F(FOREVER, 80) UNTIL(DISTANCE < 10); W(0.1)",
+        ("UNTIL past 2^32 ms", "F(FOREVER, 80) UNTIL(DISTANCE < 10); W(0.1)",
          (0, (ROUND_MS, ROUND_MS - 20, 90, 1)), beyond),
-        ("UNTIL behind 2^32 ms, and now wraps", "W(FOREVER) UNTIL(DISTANCE < 10); W(0.1)",
+        ("UNTIL past 2^32 ms, and now wraps", "W(FOREVER) UNTIL(DISTANCE < 10); W(0.1)",
          (2**31 + 5, (ROUND_MS, ROUND_MS, 1, 1, 27, 1)), beyond),
         ("TIME is over for good", "W(FOREVER) UNTIL(DISTANCE < 10); SHOW(TIME)",
          (0, (ROUND_MS, ROUND_MS, 1)), beyond),
@@ -315,8 +315,8 @@ def devices() -> Iterator[Run]:
             code += assembled(name)
         code += assembled(f"PUSH_READ{sensor}") + assembled("SHOW")
     readings = {
-        each.name: [0, 1, 1, 0] if each.is_yes_no else [1000 * k + many for many in range(4)]
-        for k, each in enumerate(kit.sensors)
+        device.name: [0, 1, 1, 0] if device.is_yes_no else [1000 * k + many for many in range(4)]
+        for k, device in enumerate(kit.sensors)
     }
     yield Run("devices: 32 of each", kit, image_for(code, kit), Senses(readings))
 
@@ -345,7 +345,7 @@ def images() -> Iterator[Run]:
         "an older major version": changed(good, 2, 1),
         "a later major version": changed(good, 2, 3),
         "a later minor version": changed(good, 3, ISA_MINOR + 1),
-        "another version, and nothing behind it": b"TS\x01\x00",
+        "another version, and nothing after it": b"TS\x01\x00",
         "another version, and no checksum": b"TS\x03" + good[3:10] + bytes(4) + good[14:],
         "a header of 14 bytes": changed(good, 5, 14),
         "a header of 0 bytes": changed(good, 5, 0),

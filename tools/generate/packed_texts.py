@@ -24,7 +24,7 @@ Pair = tuple[int, int]
 
 
 class Packed(NamedTuple):
-    """Texts, one behind the other; the codes of 4 bits, and those of which the pairs are made."""
+    """Texts, one after the other; the codes of 4 bits, and those of which the pairs are made."""
 
     common: tuple[int, ...]
     pairs: list[Pair]
@@ -39,12 +39,12 @@ def packed(texts: Sequence[str]) -> Packed:
     """Return the texts in as few bytes as are found."""
     rows = [[*text.encode("ascii"), END] for text in texts]
     common = _most_common(rows)
-    found = []
+    candidates = []
     for _ in range(ROUNDS):
         pairs, shorter = _paired(rows, common)
-        found.append(Packed(common, pairs, _halved(shorter, common)))
+        candidates.append(Packed(common, pairs, _halved(shorter, common)))
         common = _most_common(shorter)
-    return min(found, key=lambda each: each.size)
+    return min(candidates, key=lambda each: each.size)
 
 
 def unpacked(data: Packed) -> list[str]:

@@ -52,18 +52,18 @@ def svg(page: Page, title: str, note: str) -> str:
         f"<title>{escape(title)}</title>",
         f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#ffffff"/>',
     ]
-    for each in page:
-        colour = "#{:02x}{:02x}{:02x}".format(*each.colour)
-        if isinstance(each, Box):
+    for box in page:
+        colour = "#{:02x}{:02x}{:02x}".format(*box.colour)
+        if isinstance(box, Box):
             rows.append(
-                f'<rect x="{each.x:g}" y="{each.y:g}" width="{each.width:g}"'
-                f' height="{each.height:g}" fill="{colour}"/>'
+                f'<rect x="{box.x:g}" y="{box.y:g}" width="{box.width:g}"'
+                f' height="{box.height:g}" fill="{colour}"/>'
             )
         else:
-            font = FONTS[each.font][1].replace("'", '"')
+            font = FONTS[box.font][1].replace("'", '"')
             rows.append(
-                f'<text x="{each.x:g}" y="{each.y:g}" font-size="{each.size:g}" {font}'
-                f' fill="{colour}" xml:space="preserve">{escape(each.text)}</text>'
+                f'<text x="{box.x:g}" y="{box.y:g}" font-size="{box.size:g}" {font}'
+                f' fill="{colour}" xml:space="preserve">{escape(box.text)}</text>'
             )
     return "\n".join([*rows, "</svg>"]) + "\n"
 
@@ -101,14 +101,14 @@ def pdf(page: Page, title: str, note: str) -> str:
     )
 
 
-def _pdf_row(each: Box | Line, names: list[str]) -> str:
-    colour = " ".join(f"{part / 255:.3g}" for part in each.colour)
-    if isinstance(each, Box):
-        y = HEIGHT - each.y - each.height
-        return f"{colour} rg {each.x:g} {y:g} {each.width:g} {each.height:g} re f"
-    font = names.index(each.font)
-    place = f"{each.x:g} {HEIGHT - each.y:g}"
-    return f"BT {colour} rg /F{font} {each.size:g} Tf {place} Td {_pdf_text(each.text)} Tj ET"
+def _pdf_row(box: Box | Line, names: list[str]) -> str:
+    colour = " ".join(f"{part / 255:.3g}" for part in box.colour)
+    if isinstance(box, Box):
+        y = HEIGHT - box.y - box.height
+        return f"{colour} rg {box.x:g} {y:g} {box.width:g} {box.height:g} re f"
+    font = names.index(box.font)
+    place = f"{box.x:g} {HEIGHT - box.y:g}"
+    return f"BT {colour} rg /F{font} {box.size:g} Tf {place} Td {_pdf_text(box.text)} Tj ET"
 
 
 def _pdf_text(text: str) -> str:

@@ -26,7 +26,7 @@ def texts_header(command: str) -> str:
     first, last = LINK_FAULTS[0][0], LINK_FAULTS[-1][0]
     own = sum(number < first for number, *_ in FAULTS)
     before = len(PROBLEMS) + len(REMARKS) - 1
-    behind = before + len(FAULTS) + len(LINK_FAULTS)
+    after = before + len(FAULTS) + len(LINK_FAULTS)
     return file_of(
         command,
         "texts.h",
@@ -41,7 +41,7 @@ def texts_header(command: str) -> str:
             "}",
             "constexpr uint8_t name_of_fault(uint8_t fault) {",
             "  return static_cast<uint8_t>(",
-            f"      fault > {last} ? {behind} : fault < {first} ? fault + {before}",
+            f"      fault > {last} ? {after} : fault < {first} ? fault + {before}",
             f"                             : fault - {first} + {before + own + 1});",
             "}",
             "",
@@ -75,7 +75,7 @@ def rows(language: str, is_small: bool = False) -> list[str]:
     unsaid = _unsaid() if is_small else set()
     return [
         *("" if row in unsaid else said(*row, language) for row in rows),
-        *("" if ("fault", each) in unsaid else each for each in names),
+        *("" if ("fault", name) in unsaid else name for name in names),
     ]
 
 

@@ -53,7 +53,7 @@ def role_of(word: Word) -> str:
 
 
 def opcode_of(word: Word) -> int:
-    """Return the code of the instruction that a reader makes of a word behind its arguments."""
+    """Return the code of the instruction that a reader makes of a word after its arguments."""
     name = OPCODES.get(word.text, f"MOVE_{word.text}")
     if name not in BY_NAME:
         raise LookupError(
@@ -90,13 +90,13 @@ def ranges() -> list[tuple[int, int]]:
 def _kinds(word: Word) -> int:
     """Return the kinds of a word's arguments: four bits each, the first one lowest."""
     role, kinds = role_of(word), 0
-    for k, each in enumerate(word.arguments):
+    for k, argument in enumerate(word.arguments):
         if role in ("question", "show"):
             kind = YES_NO if role == "question" else ANY
-        elif (each.low, each.high) == (LOWEST, HIGHEST):
+        elif (argument.low, argument.high) == (LOWEST, HIGHEST):
             kind = NUMBER
         else:
-            kind = FIRST_RANGE + ranges().index((each.low, each.high))
+            kind = FIRST_RANGE + ranges().index((argument.low, argument.high))
         kinds |= kind << 4 * k
     return kinds
 

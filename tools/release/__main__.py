@@ -88,9 +88,9 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
                 clones[0].python("-m", "twine", "check", "--strict", str(file))
         except CannotMake as why:
             return _fail(str(why))
-        files = [file for each in made[0].values() for file in each]
+        files = [file for paths in made[0].values() for file in paths]
         again = clones[1].parts
-        failed = [each.name for each in files if sha256(each) != sha256(again / each.name)]
+        failed = [path.name for path in files if sha256(path) != sha256(again / path.name)]
         shutil.copytree(clones[0].parts, folder, dirs_exist_ok=True)
     sums = "".join(f"{sha256(folder / file.name)}  {file.name}\n" for file in files)
     (folder / SUMS).write_text(sums, encoding="utf-8", newline="\n")
@@ -137,9 +137,9 @@ def _clones(scratch: Path, url: str, whole_stick: bool) -> list[Clone]:
         root, parts = scratch / place, scratch / f"parts{number}"
         parts.mkdir()
         words = ["git", "clone", "--quiet", "--no-hardlinks", str(ROOT), str(root)]
-        done = subprocess.run(words, capture_output=True, text=True, umask=0o022)
-        if done.returncode:
-            said = done.stderr.strip().splitlines() or ["git says nothing"]
+        completed = subprocess.run(words, capture_output=True, text=True, umask=0o022)
+        if completed.returncode:
+            said = completed.stderr.strip().splitlines() or ["git says nothing"]
             raise CannotMake(f"This folder is no clone that git can copy: {said[-1]}")
         about = root / "pyproject.toml"
         text = about.read_text("utf-8")
@@ -162,9 +162,11 @@ def _git(root: Path, steps: Sequence[Sequence[str]]) -> None:
     git = ["git", "-C", str(root), "-c", "user.name=release", "-c", "user.email=release@localhost",
            "-c", "commit.gpgsign=false", "-c", "tag.gpgsign=false"]  # fmt: skip
     for step in steps:
-        done = subprocess.run([*git, *step], capture_output=True, text=True)
-        if done.returncode:
-            said = (done.stderr or done.stdout).strip().splitlines() or ["git says nothing"]
+        completed = subprocess.run([*git, *step], capture_output=True, text=True)
+        if completed.returncode:
+            said = (completed.stderr or completed.stdout).strip().splitlines() or [
+                "git says nothing"
+            ]
             raise CannotMake(f"git {step[0]} does not work: {said[-1]}")
 
 

@@ -72,7 +72,7 @@ def complaints(root: Path) -> Iterator[str]:
         if found != PEOPLE:
             yield f"{name} names {found or 'nobody'}, not {PEOPLE}."
     if _first(root / "SECURITY.md", "(?m)^Contact: (.+)$") in ("", NO_CONTACT):
-        yield "SECURITY.md does not say how to reach somebody: write an address behind Contact."
+        yield "SECURITY.md does not say how to reach somebody: write an address after Contact."
     if not address(root):
         yield (
             "pyproject.toml does not say where it is published. Add there:  [project.urls]  and "
@@ -106,10 +106,10 @@ def _about_changes(root: Path, ours: str) -> Iterator[str]:
 
 
 def _first(path: Path, pattern: str) -> str:
-    found = re.search(pattern, path.read_text(encoding="utf-8")) if path.is_file() else None
-    return found.group(1) if found else ""
+    match = re.search(pattern, path.read_text(encoding="utf-8")) if path.is_file() else None
+    return match.group(1) if match else ""
 
 
 def _git(root: Path, *words: str) -> str:
-    done = subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True)
-    return done.stdout.strip("\n") if done.returncode == 0 else ""
+    completed = subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True)
+    return completed.stdout.strip("\n") if completed.returncode == 0 else ""

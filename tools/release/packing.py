@@ -21,7 +21,7 @@ def pack(folder: Path, target: Path, epoch: int) -> Path:
     moment = time.gmtime(max(epoch, OLDEST))[:6]
     inside = target.name.removesuffix(".zip")
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
-        for path in sorted(each for each in folder.rglob("*") if each.is_file()):
+        for path in sorted(path for path in folder.rglob("*") if path.is_file()):
             name = f"{inside}/{path.relative_to(folder).as_posix()}"
             row = zipfile.ZipInfo(name, moment)
             row.compress_type = zipfile.ZIP_DEFLATED

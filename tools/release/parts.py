@@ -57,13 +57,13 @@ class Clone(NamedTuple):
         `good` are the exit codes with which it has made what it should.
         """
         command = [sys.executable, *words]
-        done = subprocess.run(command, cwd=self.root, env=self.environment(), umask=0o022,
+        completed = subprocess.run(command, cwd=self.root, env=self.environment(), umask=0o022,
                               capture_output=True, text=True, errors="replace")  # fmt: skip
-        if done.returncode not in good:
-            said = (done.stdout + done.stderr).strip().splitlines() or ["nothing"]
+        if completed.returncode not in good:
+            said = (completed.stdout + completed.stderr).strip().splitlines() or ["nothing"]
             name = " ".join(words[:2]).partition("\n")[0]
             raise CannotMake(f"python {name} said:\n" + "\n".join(said[-12:]))
-        return done.stdout
+        return completed.stdout
 
     def named(self, part: str) -> Path:
         """Return the file of a part that is a folder."""
@@ -105,27 +105,27 @@ def page(clone: Clone) -> list[Path]:
     stamp = clone.root / PAGE / "build.json"
     kept = stamp.read_bytes()
     stamp.unlink()  # says of which files it was built, not a file of the page
-    made = pack(clone.root / PAGE, clone.named("studio"), clone.epoch)
+    path = pack(clone.root / PAGE, clone.named("studio"), clone.epoch)
     stamp.write_bytes(kept)
-    return [made]
+    return [path]
 
 
 def library(clone: Clone) -> list[Path]:
     folder = clone.parts / "TiniScript"
     clone.python("-m", "tools.builds.library", str(folder))
-    made = clone.parts / f"TiniScript-{clone.version}.zip"  # as Arduino's "Add .ZIP Library" takes
-    pack(folder, made, clone.epoch)
+    path = clone.parts / f"TiniScript-{clone.version}.zip"  # as Arduino's "Add .ZIP Library" takes
+    pack(folder, path, clone.epoch)
     shutil.rmtree(folder)
-    return [made]
+    return [path]
 
 
 def site(clone: Clone) -> list[Path]:
     folder = clone.parts / "site"
     no_studio = () if (clone.root / PAGE).is_dir() else ("--no-studio",)
     clone.python("-m", "tools.builds.site", str(folder), *no_studio)
-    made = pack(folder, clone.named("site"), clone.epoch)
+    path = pack(folder, clone.named("site"), clone.epoch)
     shutil.rmtree(folder)
-    return [made]
+    return [path]
 
 
 def stick(clone: Clone) -> list[Path]:
@@ -137,9 +137,9 @@ def stick(clone: Clone) -> list[Path]:
     # 1: something could not be had, which the stick's README.txt then names
     good = (0, 1) if clone.whole_stick else (0,)
     clone.python("-m", "tools.builds.usb_stick", str(folder), *words, good=good)
-    made = pack(folder, clone.named("stick"), clone.epoch)
+    path = pack(folder, clone.named("stick"), clone.epoch)
     shutil.rmtree(folder)
-    return [made]
+    return [path]
 
 
 class Part(NamedTuple):

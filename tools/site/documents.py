@@ -123,13 +123,13 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
         Document("documents", "build", {SOURCE: LIST}),
     ]
     there = [
-        each
-        for each in found
-        if each.sources[SOURCE] in built or (root / each.sources[SOURCE]).is_file()
+        document
+        for document in found
+        if document.sources[SOURCE] in built or (root / document.sources[SOURCE]).is_file()
     ]
-    return [each._replace(sources=_with(built, each.sources)) for each in there]
+    return [document._replace(sources=_with(built, document.sources)) for document in there]
 
 
 def _with(built: Collection[str], kept: dict[str, str]) -> dict[str, str]:
     names = {language: name_in(language, kept[SOURCE]) for language in languages()}
-    return {each: name for each, name in names.items() if each in kept or name in built}
+    return {value: name for value, name in names.items() if value in kept or name in built}

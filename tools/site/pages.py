@@ -63,13 +63,13 @@ class Shelf:
             shutil.copyfile(self.root / name, target)
 
 
-def shelf(root: Path, found: list[Document], built: dict[str, str] | None = None) -> Shelf:
+def shelf(root: Path, documents: list[Document], built: dict[str, str] | None = None) -> Shelf:
     """Return the shelf of a clone's documents."""
     places: dict[str, Place] = {}
     twins: dict[str, dict[str, Place]] = {}
-    for each in found:
-        own = {language: Place(language, each.name) for language in each.sources}
-        for language, source in each.sources.items():
+    for document in documents:
+        own = {language: Place(language, document.name) for language in document.sources}
+        for language, source in document.sources.items():
             places[source], twins[source] = own[language], own
     return Shelf(root, places, twins, built or {})
 

@@ -15,9 +15,9 @@ SAID = re.compile(r'(>\s*|(?:aria-label|title)=")([^<>"]*?)(\s*<|")')
 def translate(folder: Path, language: str) -> None:
     """Say in a language what the theme says on the pages in a folder."""
 
-    def own(said: re.Match[str]) -> str:
-        told = found("documents", f"theme/{html.unescape(said[2])}", language)
-        return f"{said[1]}{html.escape(told)}{said[3]}" if told else said[0]
+    def own(match: re.Match[str]) -> str:
+        told = found("documents", f"theme/{html.unescape(match[2])}", language)
+        return f"{match[1]}{html.escape(told)}{match[3]}" if told else match[0]
 
     for path in folder.rglob("*.html"):
         text = path.read_text(encoding="utf-8")

@@ -54,7 +54,7 @@ def imports_of(source: bytes, name: str, is_package: bool, everywhere: bool) -> 
         if node in skipped:
             continue
         if isinstance(node, ast.Import):
-            imports |= {each.name for each in node.names}
+            imports |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             base = node.module or ""
             if node.level:
@@ -62,7 +62,7 @@ def imports_of(source: bytes, name: str, is_package: bool, everywhere: bool) -> 
                 parts = parts[: len(parts) - node.level + 1]
                 base = ".".join([*parts, *([base] if base else [])])
             imports.add(base)
-            imports |= {f"{base}.{each.name}" for each in node.names}
+            imports |= {f"{base}.{alias.name}" for alias in node.names}
     return imports
 
 

@@ -144,7 +144,7 @@ class Uno:
 
     @contextmanager
     def aside(self) -> Iterator[None]:
-        """Try something: behind it the chip is where it was, and nothing of it has happened.
+        """Try something: after it the chip is where it was, and nothing of it has happened.
 
         The chip has paused before. It has no `eeprom` file, which would keep what was written.
         """
@@ -269,8 +269,8 @@ class Uno:
         mark = len(self.events)
         self._tell("masked")
         self.wait_for(lambda event: event.what == "masked" and "places" in event.rest, since=mark)
-        told = [event for event in self.events[mark:] if event.what == "masked"]
-        return [Masked.of(event) for event in told if "vector" in event.rest]
+        events = [event for event in self.events[mark:] if event.what == "masked"]
+        return [Masked.of(event) for event in events if "vector" in event.rest]
 
     # -- inside -------------------------------------------------------------------------------
 

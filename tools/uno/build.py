@@ -47,12 +47,12 @@ def built() -> Path:
         folder.mkdir(mode=0o700, exist_ok=True)
         own = program.with_suffix(f".{os.getpid()}")
         code = [str(path) for path in inputs if path.suffix == ".c"]
-        done = subprocess.run(
+        completed = subprocess.run(
             ["gcc", *FLAGS, *WARNINGS, *code, *LIBRARIES, "-o", str(own)],
             capture_output=True,
             text=True,
         )
-        if done.returncode != 0:
-            raise RuntimeError(f"gcc refuses the simulated Uno:\n{done.stderr[:4000]}")
+        if completed.returncode != 0:
+            raise RuntimeError(f"gcc refuses the simulated Uno:\n{completed.stderr[:4000]}")
         own.replace(program)
     return program

@@ -65,7 +65,7 @@ class Byte:
 
 @dataclass(frozen=True)
 class Stack:
-    """Bytes of RAM behind what is there all the time, and how much of it the stack has taken.
+    """Bytes of RAM after what is there all the time, and how much of it the stack has taken.
 
     `untouched` are as power-on has left them. `program` and `interrupt` are the deepest that each
     of the two went by itself.

@@ -279,7 +279,7 @@ static void band_gap_settled(Cycle when, void* what) {
   band_gap->src = kBandGapMilliVolts;
 }
 
-// The band gap is a weak source: behind a change of the channel it has to load the converter first,
+// The band gap is a weak source: after a change of the channel it has to load the converter first,
 // which still holds next to nothing.
 static void mux_written(struct avr_irq_t* irq, uint32_t value, void* param) {
   (void)irq;

@@ -18,7 +18,7 @@ void robot_motors(int8_t left, int8_t right);
 void robot_off();
 
 // How many readings programs have of a kit with so many sensors: where there is room, those of a
-// remote control come behind them. A set of readings has 16 bits on an Uno.
+// remote control come after them. A set of readings has 16 bits on an Uno.
 constexpr uint8_t kRemoteRoom = kHasRemote ? 8 : 0;
 constexpr uint8_t readings_of(uint8_t sensors) {
   return sensors > kRemoteRoom ? sensors : static_cast<uint8_t>(sensors + kRemoteRoom);

@@ -32,9 +32,9 @@ struct Endings : doctest::IReporter {
   const char* name = "";
 
   explicit Endings(const doctest::ContextOptions&) {}
-  void test_case_start(const doctest::TestCaseData& found) override { name = found.m_name; }
-  void test_case_end(const doctest::CurrentTestCaseStats& found) override {
-    std::cout << (found.testCaseSuccess ? "PASSED: " : "FAILED: ") << name << std::endl;
+  void test_case_start(const doctest::TestCaseData& test_case_data) override { name = test_case_data.m_name; }
+  void test_case_end(const doctest::CurrentTestCaseStats& current_test_case_stats) override {
+    std::cout << (current_test_case_stats.testCaseSuccess ? "PASSED: " : "FAILED: ") << name << std::endl;
   }
   void report_query(const doctest::QueryData&) override {}
   void test_run_start() override {}

@@ -199,16 +199,16 @@ def _whole(text: str) -> list[Problem]:
 
 
 def _key(line: str) -> str:
-    found = _HEAD.match(line)
-    return found[1].strip("\"'") if found else ""
+    match = _HEAD.match(line)
+    return match[1].strip("\"'") if match else ""
 
 
 def load(path: Path) -> Catalogue:
     """Read the English texts of a file. What is wrong in it is a problem."""
-    found = Catalogue()
-    text, found.problems = decoded(path)
+    catalogue = Catalogue()
+    text, catalogue.problems = decoded(path)
     read, _, problems = rows(text)
-    found.problems += problems
+    catalogue.problems += problems
     keys, firsts = set[str](), dict[tuple[str, str], Entry]()
     for row in read:
         notes = [row.table] * (bool(row.table) and not row.key.startswith(row.table))
@@ -223,13 +223,13 @@ def load(path: Path) -> Catalogue:
                     entry.is_same, entry.like = True, first.key
                     first.notes = list(dict.fromkeys([*first.notes, *notes]))
         if row.key in keys:
-            found.problems.append((row.line, f"{row.key}: it is there twice"))
+            catalogue.problems.append((row.line, f"{row.key}: it is there twice"))
         elif row.value is not None and (why := _problem(entries)):
-            found.problems.append((row.line, f"{row.key}: {why}"))
+            catalogue.problems.append((row.line, f"{row.key}: {why}"))
         keys.add(row.key)
         for entry in entries:
-            found.entries.setdefault(entry.at, entry)
-    return found
+            catalogue.entries.setdefault(entry.at, entry)
+    return catalogue
 
 
 def _text(form: dict[str, object]) -> tuple[str, str]:
@@ -244,7 +244,7 @@ def _text(form: dict[str, object]) -> tuple[str, str]:
 
 def _problem(entries: list[Entry]) -> str:
     """Return what is wrong with the texts of a key, or nothing."""
-    texts = [each.english for each in entries]
+    texts = [entry.english for entry in entries]
     if not all(texts) or not texts:
         return "it has no text"
     if len(set(texts)) < len(texts):

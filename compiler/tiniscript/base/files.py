@@ -73,16 +73,16 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
     the power goes, or the stick is pulled, the old content is there or the new; that takes time.
     """
     _refuse_foreign_links(path)
-    found = _found(path)
-    if found is not None and not stat.S_ISREG(found.st_mode):
+    stat_result = _found(path)
+    if stat_result is not None and not stat.S_ISREG(stat_result.st_mode):
         with path.open("wb") as device:
             device.write(data)
         return
     target = path.resolve()
-    if found is not None:
+    if stat_result is not None:
         if not os.access(target, os.W_OK):
             raise PermissionError(13, os.strerror(13))
-        mode = stat.S_IMODE(found.st_mode) & 0o777 if mode is None else mode
+        mode = stat.S_IMODE(stat_result.st_mode) & 0o777 if mode is None else mode
     new = target.with_name(f".{target.name[:NAME_CHARACTERS]}.{os.urandom(8).hex()}{NEW}")
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL
     flags |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)

@@ -90,8 +90,8 @@ class Kit(NamedTuple):
         taken = self.given.union(self.names) & KIT_WORDS_SINCE.keys()
         if not taken:
             return (*self.sensors, *REMOTE)
-        return (*self.sensors, *(each._replace(name="") if each.name in taken else each
-                                 for each in REMOTE))  # fmt: skip
+        return (*self.sensors, *(device._replace(name="") if device.name in taken else device
+                                 for device in REMOTE))  # fmt: skip
 
     def asks_remote(self, uses: Sequence[tuple[str, int]]) -> bool:
         """Whether code that uses these devices reads a remote control; a use is as below."""

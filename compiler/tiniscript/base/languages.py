@@ -58,7 +58,7 @@ class ByLanguage(dict[str, T]):
 
 def _named(name: T, language: str) -> T:
     if isinstance(name, dict):
-        return {key: _named(each, language) for key, each in name.items()}  # type: ignore[return-value]
+        return {key: _named(value, language) for key, value in name.items()}  # type: ignore[return-value]
     return found("names", name, language) or name  # type: ignore[arg-type, return-value]
 
 
@@ -148,14 +148,14 @@ def counted(name: str, key: str, count: int, language: str) -> str:
 def catalogue(name: str, language: str) -> Texts:
     """Return the texts of a catalogue by key; of an unknown language they are English."""
     language = language if language in languages() else SOURCE
-    own, made = files(name, language)[1], FOLDER / language / (name + KEPT)
-    if not own.is_file() and (is_clone() or not made.is_file()):
+    own, path = files(name, language)[1], FOLDER / language / (name + KEPT)
+    if not own.is_file() and (is_clone() or not path.is_file()):
         if language != SOURCE:  # nothing is translated, or a page has not fetched it
             return catalogue(name, SOURCE)
         if not is_clone():
             return {}
     beside = (own.with_name(each) for each in (SEEN, ITSELF))
-    found: Texts = _kept(made, [*files(name, language), *beside], lambda: texts(name, language))
+    found: Texts = _kept(path, [*files(name, language), *beside], lambda: texts(name, language))
     return found
 
 
@@ -180,23 +180,23 @@ def entries(name: str, language: str) -> Catalogue:
     return joined(english, name, own, seen, read_language(path.with_name(ITSELF)))
 
 
-def _kept(made: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:
+def _kept(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:
     """Return what is kept in a file if no source is newer, else make it, and keep it."""
-    if _is_fresh(made, sources):
+    if _is_fresh(path, sources):
         with suppress(ValueError, EOFError, TypeError, OSError):  # half a file
-            return marshal.loads(made.read_bytes())
+            return marshal.loads(path.read_bytes())
     from tiniscript.base.files import replace
 
     found = make()
     with suppress(OSError, ValueError):  # a folder that nobody may write to, a full disk
-        replace(made, marshal.dumps(found, KEPT_FORM))
+        replace(path, marshal.dumps(found, KEPT_FORM))
     return found
 
 
 def forget() -> None:
     """Read all languages again when they are next asked for: their folder is another one now."""
-    for each in (languages, catalogue, _about):
-        each.cache_clear()
+    for lru_cache_wrapper in (languages, catalogue, _about):
+        lru_cache_wrapper.cache_clear()
 
 
 def kept_files() -> dict[str, bytes]:
@@ -206,7 +206,7 @@ def kept_files() -> dict[str, bytes]:
     for language in languages():
         made |= {f"{language}/{name}": texts(name, language) for name in names}
         made[f"{language}/{ITSELF.removesuffix('.toml')}"] = _said(language)
-    return {name + KEPT: marshal.dumps(each, KEPT_FORM) for name, each in made.items()}
+    return {name + KEPT: marshal.dumps(value, KEPT_FORM) for name, value in made.items()}
 
 
 def is_clone() -> bool:
@@ -219,9 +219,9 @@ def files(name: str, language: str) -> tuple[Path, Path]:
     return FOLDER / SOURCE / f"{name}.toml", FOLDER / language / f"{name}.toml"
 
 
-def _is_fresh(made: Path, sources: Iterable[Path]) -> bool:
+def _is_fresh(path: Path, sources: Iterable[Path]) -> bool:
     """Return whether a file is there, and no source is newer: a package has none at all."""
-    return made.is_file() and _time(made) >= max(map(_time, sources))
+    return path.is_file() and _time(path) >= max(map(_time, sources))
 
 
 def _time(path: Path) -> int:

@@ -53,33 +53,33 @@ class Language:
 
 def read_language(path: Path) -> Language:
     """Read what a language says of itself; what it does not say is as in English."""
-    found = Language(path.parent.name, path.parent.name)
-    text, found.problems = decoded(path)
+    language = Language(path.parent.name, path.parent.name)
+    text, language.problems = decoded(path)
     read, _, problems = rows(text)
-    found.problems += problems
+    language.problems += problems
     known: dict[str, Any] = {"name": str, "english_name": str, "read_by": str, "is_complete": bool,
                              "forms": list, "which_form": str}  # fmt: skip
     said: dict[str, Any] = {}
     for row in read:
         if row.key not in known:
-            found.problems.append((row.line, f"{row.key}: a language does not say that"))
+            language.problems.append((row.line, f"{row.key}: a language does not say that"))
         elif row.key in said:
-            found.problems.append((row.line, f"{row.key}: it is there twice"))
+            language.problems.append((row.line, f"{row.key}: it is there twice"))
         elif isinstance(row.value, known[row.key]):
             said[row.key] = row.value
         elif row.value is not None:
-            found.problems.append((row.line, f"{row.key}: it is no {_KINDS[known[row.key]]}"))
-    found.name = said.get("name", found.name)
-    found.english_name = said.get("english_name", found.english_name)
-    found.read_by, found.is_complete = said.get("read_by", ""), said.get("is_complete", False)
+            language.problems.append((row.line, f"{row.key}: it is no {_KINDS[known[row.key]]}"))
+    language.name = said.get("name", language.name)
+    language.english_name = said.get("english_name", language.english_name)
+    language.read_by, language.is_complete = said.get("read_by", ""), said.get("is_complete", False)
     names, rule = tuple(said.get("forms", _FORMS)), said.get("which_form", _RULE)
     form_of, why = _form_of(rule, names)
     if why:
-        line = next((each.line for each in read if each.key in ("which_form", "forms")), 1)
-        found.problems.append((line, why))
+        line = next((row.line for row in read if row.key in ("which_form", "forms")), 1)
+        language.problems.append((line, why))
         names, rule, (form_of, _) = _FORMS, _RULE, _form_of(_RULE, _FORMS)
-    found.forms, found.rule, found.form_of = names, rule, form_of
-    return found
+    language.forms, language.rule, language.form_of = names, rule, form_of
+    return language
 
 
 _KINDS = {str: "text", bool: "true or false", list: "list"}
@@ -148,7 +148,7 @@ def read_own(path: Path) -> Own:
         elif None in texts or not texts:
             own.problems.append((row.line, f"{row.key}: it has no text"))
             texts = []
-        own.texts[row.key] = [each for each in texts if each is not None]
+        own.texts[row.key] = [text for text in texts if text is not None]
         own.lines[row.key] = row.line
     return own
 
@@ -171,27 +171,29 @@ def joined(
     english: Catalogue, name: str, own: Own, seen: dict[str, list[str]], language: Language
 ) -> Catalogue:
     """Return English texts with those of a language, and what is wrong with these."""
-    found = Catalogue({at: untold(each) for at, each in english.entries.items()}, own.problems[:])
-    groups = found.groups()
+    catalogue = Catalogue(
+        {at: untold(entry) for at, entry in english.entries.items()}, own.problems[:]
+    )
+    groups = catalogue.groups()
     for key, texts in own.texts.items():
         line, group = own.lines[key], groups.get(key, [])
-        unknown = [each.hash if each.english == key else UNKNOWN for each in group]
+        unknown = [entry.hash if entry.english == key else UNKNOWN for entry in group]
         hashes = seen.get(f"{name} {key}", unknown)
         hashes = [*hashes, *[UNKNOWN] * len(texts)][: len(texts)]
         if not group:
-            found.problems.append((line, f"{key}: there is no such English text"))
+            catalogue.problems.append((line, f"{key}: there is no such English text"))
         elif why := pair(group, texts, hashes):
-            found.problems.append((line, f"{key}: {why}"))
+            catalogue.problems.append((line, f"{key}: {why}"))
         for entry in group:
             entry.line = line
             for why in misfits(entry, language):
-                found.problems.append((line, f"{key}: {why}"))
+                catalogue.problems.append((line, f"{key}: {why}"))
                 entry.said, entry.seen = {}, ""
-    for entry in found.entries.values():
+    for entry in catalogue.entries.values():
         if entry.like and not entry.said:
-            first = found.entries[entry.like, entry.english]
+            first = catalogue.entries[entry.like, entry.english]
             entry.said = first.said if first.is_translated else {}
-    return found
+    return catalogue
 
 
 def untold(entry: Entry) -> Entry:
@@ -201,11 +203,11 @@ def untold(entry: Entry) -> Entry:
 
 def pair(group: list[Entry], texts: list[Forms], hashes: list[str]) -> str:
     """Give each English text of a key its translation; return why one has no text, or nothing."""
-    own = {place: each.hash for place, each in enumerate(group)}
+    own = {place: entry.hash for place, entry in enumerate(group)}
     given = {place for place, forms in enumerate(texts) if forms}
     has_moved = False
     for place in sorted(given):
-        if places := [at for at, each in own.items() if each == hashes[place]]:
+        if places := [at for at, value in own.items() if value == hashes[place]]:
             at = place if place in places else places[0]
             has_moved |= at != place
             group[at].said, group[at].seen = texts[place], hashes[place]
@@ -241,11 +243,11 @@ def misfits(entry: Entry, language: Language) -> list[str]:
     return list(dict.fromkeys(found))
 
 
-def texts_of(found: Catalogue) -> dict[str, str | Forms]:
+def texts_of(catalogue: Catalogue) -> dict[str, str | Forms]:
     """Return what is said by key, and of several texts with one key the second under `key/2`: a
     text, or its forms. What has no translation that fits is English."""
     texts: dict[str, str | Forms] = {}
-    for key, group in found.groups().items():
+    for key, group in catalogue.groups().items():
         for number, entry in enumerate(group, 1):
             forms = entry.said if entry.is_translated else entry.forms
             texts[f"{key}/{number}" if number > 1 else key] = forms.get("", forms)

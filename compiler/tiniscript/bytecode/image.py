@@ -66,7 +66,7 @@ REFUSALS = {
 _VERSION_BYTES = 4  # by which an image of any version is known
 _LAYOUT = "<" + "".join(field.layout for field in FIELDS)
 _CHECKSUM_AT = sum(field.size for field in FIELDS[:-2])
-_BEHIND_CHECKSUM = _CHECKSUM_AT + 4
+_AFTER_CHECKSUM = _CHECKSUM_AT + 4
 
 
 class Image(NamedTuple):
@@ -113,13 +113,13 @@ def isa_of(needs: int) -> tuple[int, int]:
 
 def sealed(image: bytes) -> bytes:
     """Return an image with the checksum that fits the rest of it."""
-    head, rest = image[:_CHECKSUM_AT], image[_BEHIND_CHECKSUM:]
+    head, rest = image[:_CHECKSUM_AT], image[_AFTER_CHECKSUM:]
     return head + struct_pack("<I", zlib.crc32(head + rest)) + rest
 
 
 def checksum(image: bytes) -> int:
     """Return the checksum in the header of a whole image."""
-    return int.from_bytes(image[_CHECKSUM_AT:_BEHIND_CHECKSUM], "little")
+    return int.from_bytes(image[_CHECKSUM_AT:_AFTER_CHECKSUM], "little")
 
 
 def unpack(data: bytes, has: int = EVERYTHING) -> Image:

@@ -260,7 +260,7 @@ OPS = (
     _op(0x7B, "CALL",            "to:back8",            "--",              "call",  "Call the procedure whose first instruction is at `to`."),
     _op(0x7C, "CALL_FAR",        "to:back16",           "--",              "call",  "The same, further."),
     # tasks
-    *(each._replace(needs=NEEDS_TASKS) for each in (
+    *(op._replace(needs=NEEDS_TASKS) for op in (
         _op(0x55, "LOOK",        "",                    "yes --",          "look",  "Go on if `yes`; else look again after 20 ms."),
         _op(0x76, "END_TASK",    "",                    "--",              "end_task", "The task is finished."),
         _op(0x77, "END_WHEN",    "",                    "--",              "end_when", "Look again after 20 ms."),
@@ -370,7 +370,7 @@ def instruction_text(op: Op, operands: tuple[int, ...], next_offset: int) -> str
 _LETTERS = {(1, False): "B", (1, True): "b", (2, False): "H", (2, True): "h", (4, True): "i"}
 _LAYOUTS = {
     op.code: Struct(
-        "<" + "".join(_LETTERS[each.kind.size, each.kind.signed] for each in op.operands)
+        "<" + "".join(_LETTERS[operand.kind.size, operand.kind.signed] for operand in op.operands)
     )
     for op in OPS
 }

@@ -319,8 +319,8 @@ class _Verifier:
         routine.counters = max(routine.counters, counters)
         routine.calls = max(routine.calls, calls)
         running = [routine] if routine.kind == _DEF else self.tasks
-        most_counters = sum(each.counters for each in running)
-        most_calls = sum(each.calls for each in running)
+        most_counters = sum(routine.counters for routine in running)
+        most_calls = sum(routine.calls for routine in running)
         if most_counters > COUNTERS or most_calls > CALLS:
             self.refuse("TOO_DEEP")
         self.most_counters = max(self.most_counters, most_counters)
@@ -381,7 +381,7 @@ class _Verifier:
         return routine
 
     def call(self) -> None:
-        called = next((each for each in self.closed if each.start == self.target), None)
+        called = next((routine for routine in self.closed if routine.start == self.target), None)
         if called is None:
             self.refuse("BAD_CALL")
         self.opens(self.counters + called.counters, called.calls + 1)

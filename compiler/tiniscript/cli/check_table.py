@@ -45,8 +45,8 @@ class Row(NamedTuple):
 def check(options: Namespace, robot: Robot, language: str) -> int:
     """Check all programs that are named; return the exit code."""
     rows = []
-    for found in programs(options.programs):
-        rows.append(_row(found, options, robot, language))
+    for program in programs(options.programs):
+        rows.append(_row(program, options, robot, language))
         if not options.json:
             print(_line(rows[-1], language), flush=True)
     if options.json:
@@ -76,9 +76,11 @@ def _row(found: Found, options: Namespace, robot: Robot, language: str) -> Row:
     else:
         compiled = compiling.compile_input(given, robot, is_strict=False)
     compiled = compiling.for_level(compiled, robot, options.text_level)
-    said = [message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics]
-    said.sort(key=lambda each: each.severity != "mistake")
-    return Row(found.name, said, repaired, "")
+    messages = [
+        message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics
+    ]
+    messages.sort(key=lambda each: each.severity != "mistake")
+    return Row(found.name, messages, repaired, "")
 
 
 def _repaired(

@@ -16,7 +16,7 @@ class CommandError(Exception):
         super().__init__(key)
         self.exit_code = exit_code
         self.key = key
-        self.values = {name: _said(each) for name, each in values.items()}
+        self.values = {name: _said(value) for name, value in values.items()}
 
     def sentence(self, language: str) -> str:
         said = text(self.key, language).format(**self.values)

@@ -88,7 +88,7 @@ def groups(language: str) -> list[tuple[str, list[Row]]]:
     """Return the headings of all verbs with the commands below each, and what these do."""
     found: dict[str, list[Row]] = {}
     for verb, group in VERBS.items():
-        own = [] if verb == SET else [verb]  # which does nothing without a word behind it
+        own = [] if verb == SET else [verb]  # which does nothing without a word after it
         rows = [_row(command, language) for command in (*own, *steps_of(verb))]
         found.setdefault(said(f"group/{group}", language), []).extend(rows)
     return list(found.items())
@@ -181,8 +181,8 @@ def _paragraphs(text: str, width: int) -> str:
 def _wrapped(text: str, width: int) -> list[str]:
     """Return the lines of a text. What stands between backticks is not broken, if it fits."""
 
-    def kept(found: re.Match[str]) -> str:
-        return found[1].replace(" ", "\0") if len(found[1]) <= width else found[1]
+    def kept(match: re.Match[str]) -> str:
+        return match[1].replace(" ", "\0") if len(match[1]) <= width else match[1]
 
     whole = re.sub("`([^`]*)`", kept, text)
     lines = wrap(whole, width, break_long_words=False, break_on_hyphens=False)

@@ -140,13 +140,15 @@ class _Marker:
         lesson = self.lesson._replace(robot=name_in(given.data) or self.lesson.robot)
         marking = Marking(compiled.source.text, maker(robot), robot, lesson, self.seeds)
         try:
-            found = marking.whole()
+            outcome = marking.whole()
         except WorldRefused as refused:
             values = {"file": inputs.shown(self.lesson.name), "seed": str(marking.seed)}
             raise inputs.refused(refused, self.language, "lesson_world", (), **values) from None
         except NoWebAssembly as why:
             raise not_installed("virtual_needs_wasmtime", why) from None
-        return Mark(given.name, found.verdict, found.seed, self._said(found.findings), found.run)
+        return Mark(
+            given.name, outcome.verdict, outcome.seed, self._said(outcome.findings), outcome.run
+        )
 
     def _said(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
         return tuple((finding.kind, sentence(finding, self.language)) for finding in findings)

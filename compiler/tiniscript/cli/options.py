@@ -71,7 +71,7 @@ class Options(ArgumentParser):
         options, more = self.parse_known_args(arguments, begun)
         for option in self.table:
             self._refuse_other(option, getattr(options, option.name))
-        if more:  # told of behind a wrong value: `tsc set nme TINI`
+        if more:  # told of after a wrong value: `tsc set nme TINI`
             self.error(f"unrecognized arguments: {' '.join(more)}")
         if sys.platform == "win32" and getattr(options, "programs", None):
             from tiniscript.cli.windows_names import matching
@@ -83,7 +83,7 @@ class Options(ArgumentParser):
         return options
 
     def fits(self, words: list[str]) -> bool:
-        """Whether these words may stand behind the command, as far as the table of options says."""
+        """Whether these words may stand after the command, as far as the table of options says."""
         try:
             self.parse_args(words)
         except CommandError:
@@ -113,8 +113,8 @@ class Options(ArgumentParser):
         self._refuse_of_step(unknown.partition("=")[0])
         near = self._near(unknown)
         for key, pattern in _MESSAGES.items():
-            if found := re.fullmatch(pattern, message):
-                message = said(f"wrong/{key}", self.language).format(*found.groups())
+            if match := re.fullmatch(pattern, message):
+                message = said(f"wrong/{key}", self.language).format(*match.groups())
         raise CommandError(2, "bad_option", detail=message, verb=self.verb, near=near)
 
     def _refuse_of_step(self, unknown: str) -> None:

@@ -52,7 +52,7 @@ def check(options: Namespace, language: str) -> None:
     outputs = list(_written(options))
     if not outputs:
         return
-    found = [_identity(each) for each in outputs]
+    found = [_identity(output) for output in outputs]
     for number, (output, identity) in enumerate(zip(outputs, found, strict=True)):
         for other, its_own in zip(outputs[:number], found, strict=False):
             if identity is not None and identity == its_own:
@@ -151,14 +151,14 @@ def _identity(named: Named, may_be_device: bool = False) -> tuple[object, ...] |
     file system may ignore them.
     """
     try:
-        found = os.fstat(0) if named.dest == "stdin" else os.stat(named.path)  # noqa: PTH116
-        is_device = stat.S_ISCHR(found.st_mode)
-        return None if is_device and not may_be_device else (found.st_dev, found.st_ino)
+        stat_result = os.fstat(0) if named.dest == "stdin" else os.stat(named.path)  # noqa: PTH116
+        is_device = stat.S_ISCHR(stat_result.st_mode)
+        return None if is_device and not may_be_device else (stat_result.st_dev, stat_result.st_ino)
     except (FileNotFoundError, NotADirectoryError):
         folder, name = os.path.split(os.path.realpath(named.path))
         with suppress(OSError):
-            found = os.stat(folder)  # noqa: PTH116 - a name that no file can have gets no Path
-            return found.st_dev, found.st_ino, _folded(name)
+            stat_result = os.stat(folder)  # noqa: PTH116 - a name that no file can have gets no Path
+            return stat_result.st_dev, stat_result.st_ino, _folded(name)
     except (OSError, ValueError):  # opening it reports the reason
         pass
     return None
@@ -190,12 +190,12 @@ def _refuse_unwritable(path: str, how: str, language: str) -> None:
             raise unwritable(how, path, text("no_windows_name", language))
     try:
         try:
-            found = os.stat(path)  # noqa: PTH116 - a name that no file can have gets no Path
-            if stat.S_ISDIR(found.st_mode):
+            stat_result = os.stat(path)  # noqa: PTH116 - a name that no file can have gets no Path
+            if stat.S_ISDIR(stat_result.st_mode):
                 number = errno.EISDIR
             elif not os.access(path, os.W_OK):
                 number = errno.EACCES
-            is_replaced = stat.S_ISREG(found.st_mode) and not how.endswith("--csv")
+            is_replaced = stat.S_ISREG(stat_result.st_mode) and not how.endswith("--csv")
         except FileNotFoundError:
             is_replaced = True
         folder = os.path.dirname(os.path.realpath(path))  # noqa: PTH120
@@ -235,7 +235,7 @@ def _is_ours(head: bytes) -> bool:
     is_image = head.startswith(MAGIC) and len(head) > len(MAGIC) and head[len(MAGIC)] < 0x20
     begins = head.startswith((HEADER, ROWS, CLASS_ROWS, *_OLDER_ROWS, RECORDING)) or _PAGE in head
     return is_image or begins or _is_report(head) or _is_table(head) or any(
-        each.match(head) is not None for each in (_PICTURE, _MAP)
+        pattern.match(head) is not None for pattern in (_PICTURE, _MAP)
     ) or _LINE.fullmatch(head) is not None  # fmt: skip
 
 

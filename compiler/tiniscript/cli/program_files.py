@@ -67,14 +67,18 @@ def in_folder(top: str, ends: tuple[str, ...] = PROGRAM_ENDS) -> Iterator[str]:
                 if not entry.is_dir(follow_symlinks=False):
                     yield entry.path
         below = (entry for entry in inside if entry.is_dir(follow_symlinks=False))
-        waiting += [each.path for each in reversed(list(below)) if not each.name.startswith(".")]
+        waiting += [
+            dir_entry.path
+            for dir_entry in reversed(list(below))
+            if not dir_entry.name.startswith(".")
+        ]
 
 
 def read(name: str) -> Found:
     """Return what is in a file, or why it cannot be read. A pipe or a device is not opened."""
     try:
-        found = Path(name).stat()
-        if not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)):
+        stat_result = Path(name).stat()
+        if not (stat.S_ISREG(stat_result.st_mode) or stat.S_ISDIR(stat_result.st_mode)):
             return Found(name, b"", CommandError(2, "file_no_file", file=inputs.shown(name)))
     except (OSError, ValueError):
         pass  # reading it says why

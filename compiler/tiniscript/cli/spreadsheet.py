@@ -22,8 +22,8 @@ TABLES = ("check", "lesson")
 # whoever opens the file chooses what ends its cells. Ours end with a comma or a semicolon.
 _SIGN = "(?=[=+\\-@＝＋－＠])"
 _FIRST = re.compile(rf"(^)(\s*){_SIGN}")
-_BEHIND_END = re.compile(rf"(^|[;|\"])(\s*){_SIGN}")
-_BEHIND_ANY = re.compile(rf"(^|[,;|\"])(\s*){_SIGN}")
+_AFTER_END = re.compile(rf"(^|[;|\"])(\s*){_SIGN}")
+_AFTER_ANY = re.compile(rf"(^|[,;|\"])(\s*){_SIGN}")
 
 
 def as_csv(table: str, language: str, rows: Iterable[Sequence[object]]) -> bytes:
@@ -45,15 +45,15 @@ def beginnings() -> tuple[bytes, ...]:
 
 
 def no_formula(text: str) -> str:
-    """Return what somebody wrote so that a spreadsheet takes it for text, in cells behind commas.
+    """Return what somebody wrote so that a spreadsheet takes it for text, in cells after commas.
 
     It may take ; for their end, which no quotation marks keep in a cell then.
     """
-    return _BEHIND_END.sub(r"\1\2'", text)
+    return _AFTER_END.sub(r"\1\2'", text)
 
 
 def _name(value: object) -> str:
-    return _BEHIND_ANY.sub(r"\1\2'", printable(str(value), LONGEST))
+    return _AFTER_ANY.sub(r"\1\2'", printable(str(value), LONGEST))
 
 
 def _cell(value: object) -> object:

@@ -167,7 +167,7 @@ _COMMAND = re.compile(r"(?<=[^ ] {2})[^ \n]+(?: [^ \n]+)*")
 
 
 def wrapped(said: str, columns: int) -> str:
-    """Return a sentence in rows; what stands behind two blanks is a command."""
+    """Return a sentence in rows; what stands after two blanks is a command."""
     from textwrap import fill
 
     def whole(command: re.Match[str]) -> str:

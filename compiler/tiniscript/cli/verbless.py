@@ -26,7 +26,7 @@ from tiniscript.cli.texts.verbs import of_verb as said_of
 
 
 def refuse(name: str, words: list[str], language: str) -> NoReturn:
-    """Raise CommandError where a word stands in place of a verb, with `words` behind it."""
+    """Raise CommandError where a word stands in place of a verb, with `words` after it."""
     if name in WAS:
         raise CommandError(2, "was_verb", was=name, now=_now(WAS[name], words, language))
     refuse_program(name)
@@ -34,7 +34,7 @@ def refuse(name: str, words: list[str], language: str) -> NoReturn:
 
 
 def _now(command: str, words: list[str], language: str) -> str:
-    """Return what is typed for a command that was a verb: with the words behind it, if they fit."""
+    """Return what is typed for a command that was a verb: with the words after it, if they fit."""
     head = STEPS[command].head if command in STEPS else command
     for begun in (head, typed(command)):
         verb, *more = [*begun.split(), *words]
@@ -114,10 +114,10 @@ def _weights(verb: str) -> dict[str, int]:
     options = [option for option in of_verb(verb) if option.verbs not in ("*", "tsc")]
 
     def said(what: str) -> set[str]:
-        return {stem for each in languages() for stem in _stems(said_of(verb, what, each))}
+        return {stem for language in languages() for stem in _stems(said_of(verb, what, language))}
 
-    helps = (each.help(language) for each in options for language in languages())
-    flags = (each.flags for each in options)
+    helps = (option.help(language) for option in options for language in languages())
+    flags = (option.flags for option in options)
     weights = dict.fromkeys(_stems(" ".join((*flags, *helps))) | said("ends"), 1)
     weights |= dict.fromkeys(said("says"), 2)
     weights |= dict.fromkeys(said("summary"), 4)

@@ -18,7 +18,7 @@ FORBIDDEN = set('<>"|?*') | {chr(code) for code in range(32)}
 def has_no_file(path: str) -> bool:
     """Return whether Windows would make no file of this name, or one of another name."""
     rest = ntpath.splitdrive(path)[1].replace("/", "\\")
-    parts = [each for each in rest.split("\\") if each not in ("", ".", "..")]
+    parts = [part for part in rest.split("\\") if part not in ("", ".", "..")]
     return any(_is_impossible(part) for part in parts)
 
 

@@ -48,7 +48,7 @@ def lower(program: ir.Program, plain: bool = False) -> Lowered:
     `plain` code is made from a program as it is written, not from an optimised one.
     """
     lowering = _Lowering(plain, len(program.procedures))
-    called = (k for k, each in enumerate(program.procedures) if each.is_called)
+    called = (k for k, procedure in enumerate(program.procedures) if procedure.is_called)
     waiting: list[tuple[ir.Procedure | ir.Task, int | None]] = [
         *((program.procedures[k], k) for k in called),
         *((task, None) for task in program.tasks),

@@ -69,14 +69,14 @@ class Emitter:
 
     def widen(self, which: set[int]) -> None:
         """Give the jumps at the indexes `which` their far forms."""
-        made: list[Item] = []
+        items: list[Item] = []
         moved = []
         for k, item in enumerate(self.items):
-            moved.append(len(made))
-            made += _far(item) if k in which else (item,)
-        moved.append(len(made))
+            moved.append(len(items))
+            items += _far(item) if k in which else (item,)
+        moved.append(len(items))
         self.labels = [moved[index] for index in self.labels]
-        self.items = made
+        self.items = items
 
 
 def _shortest(name: str, *operands: int) -> tuple[Op, tuple[int, ...]]:

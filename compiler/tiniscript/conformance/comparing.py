@@ -19,7 +19,7 @@ MOST_SILENT = 20  # nor for a machine whose first so many runs gave no answer
 
 class Verdict(NamedTuple):
     """`what` is AGREES, DIFFERS, LACKS, hang, crash, flood or more. `line` counts from 1; `want`
-    and `got` are that line of the two answers, None behind their ends."""
+    and `got` are that line of the two answers, None after their ends."""
 
     name: str
     what: str
@@ -56,8 +56,8 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
         try:
             got = ask(case.request(), sum(len(row) + 2 for row in case.answer))
         except Problem as problem:
-            found = compared(case.name, case.answer, problem.rows)
-            yield found._replace(what=problem.what, detail=problem.detail)
+            verdict = compared(case.name, case.answer, problem.rows)
+            yield verdict._replace(what=problem.what, detail=problem.detail)
             endless += problem.what in ("hang", "flood")
             silent += not answers
             if endless == MOST_ENDLESS or silent == MOST_SILENT:

@@ -34,7 +34,7 @@ SHOW_7 = bytes.fromhex("b739")
 WAIT_20 = bytes.fromhex("bb50")  # no motor turns
 STATES = ("IDLE", "RUNNING", "STOPPED", "FAULTED")
 NO_MESSAGE = 31  # a number that no message has
-EVENT_S = 3.0  # for an event behind what has caused it
+EVENT_S = 3.0  # for an event after what has caused it
 BUSY_TRIES, BUSY_S = 50, 0.1
 HEADER = 10  # bytes of an image before its checksum
 SILENCE_S = 5.0  # at most, until an attached program ends without a frame: it does after 1 s
@@ -90,8 +90,12 @@ def all_checks(kit: LinkKit) -> list[Check]:
             for program in kit.programs
         ),
         *(
-            Check(f"refused: {each.name}", (f"{each.rule} {each.at}",), _refused(each.code))
-            for each in kit.refused
+            Check(
+                f"refused: {link_refused.name}",
+                (f"{link_refused.rule} {link_refused.at}",),
+                _refused(link_refused.code),
+            )
+            for link_refused in kit.refused
         ),
         *IMAGE_CHECKS,
         *STOP_CHECKS,
@@ -271,7 +275,7 @@ LINK_CHECKS = (
           lambda robot: (said(robot.ask_frame(BY_NAME["COMMIT"].number, b"abc")),)),
     Check("link: a request of another epoch", ("STALE",), _stale),
     Check("link: a damaged frame", ("no answer", "damaged: 1 more"), _damaged),
-    Check("link: a request behind noise", ("OK",), _noise),
+    Check("link: a request after noise", ("OK",), _noise),
     Check("link: a request that comes twice", ("OK", "the same answer", "1 SHOW"), _twice),
 )  # fmt: skip
 

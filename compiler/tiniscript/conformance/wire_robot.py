@@ -134,10 +134,10 @@ class WireRobot:
     def heard(self, seconds: float) -> list[Frame]:
         """Return the replies of so long a time."""
         until_s = monotonic() + seconds
-        found: list[Frame] = []
+        frames: list[Frame] = []
         while monotonic() < until_s:
-            found += self._replies()
-        return found
+            frames += self._replies()
+        return frames
 
     def _replies(self) -> list[Frame]:
         """Take what has arrived: keep events and the epoch, and return the replies."""

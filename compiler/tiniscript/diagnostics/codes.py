@@ -113,21 +113,21 @@ PLACEHOLDER = _mistake("TS060")
 SIGN_BETWEEN = _mistake("TS061")
 REPEATED = _mistake("TS062")
 LOOP_COUNTS = _mistake("TS063")
-ASKED_BEHIND = _mistake("TS064")
+ASKED_AFTER = _mistake("TS064")
 NEEDLESS_FRAME = _mistake("TS065")
 CASES = _mistake("TS066")
 LISTS = _mistake("TS067")
 NO_INPUT = _mistake("TS068")
 CHOICE_IN_VALUE = _mistake("TS069")
 WORDS_SHOWN = _mistake("TS070")
-QUESTION_BEHIND = _mistake("TS071")
+QUESTION_AFTER = _mistake("TS071")
 PASTED = _mistake("TS072")
 PROSE = _mistake("TS073")
 SEVERAL_ORDERS = _mistake("TS074")
 OTHER_CALL = _mistake("TS076")
 GROUPED = _mistake("TS080")
 DOTS = _mistake("TS082")
-WORDS_BEHIND = _mistake("TS085")
+WORDS_AFTER = _mistake("TS085")
 TASK_NOT_TOP = _mistake("TS086")
 TASK_HAS_NAME = _mistake("TS087")
 UNIT_PLACE = _mistake("TS088")
@@ -229,7 +229,7 @@ CUT_VALUE = _warning("TS841")
 GIVES_WAY = _warning("TS842")
 
 
-def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
+def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """Return diagnostics by place, and of several mistakes in one place the first that was found.
 
     What begins where another mistake begins is most often its consequence.
@@ -237,10 +237,11 @@ def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
     kept = []
     mistaken = set()
     seen = set()
-    meant = {each.span.start for each in found if each.code is UNKNOWN_WORD or (
-        each.code is UNKNOWN_NAME and each.values.get("near")
+    meant = {
+        diagnostic.span.start for diagnostic in diagnostics if diagnostic.code is UNKNOWN_WORD or (
+        diagnostic.code is UNKNOWN_NAME and diagnostic.values.get("near")
     )}  # fmt: skip
-    for diagnostic in found:
+    for diagnostic in diagnostics:
         key = (diagnostic.code, diagnostic.span)
         start = diagnostic.span.start
         if diagnostic.code is BAD_NAME and start in meant:
@@ -251,4 +252,4 @@ def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
         kept.append(diagnostic)
         if diagnostic.is_mistake:
             mistaken.add(start)
-    return sorted(kept, key=lambda each: (each.span, each.code.number))
+    return sorted(kept, key=lambda diagnostic: (diagnostic.span, diagnostic.code.number))

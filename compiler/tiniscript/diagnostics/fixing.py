@@ -19,16 +19,16 @@ _WRITTEN = ("fix", "right", "near")  # the first of them that a diagnostic has
 _GAPS: dict[Code, tuple[str, ...]] = {
     **dict.fromkeys((codes.UNKNOWN_WORD, codes.UNKNOWN_NAME, codes.WANTS_CONDITION,
                      codes.MIXED_COMPARE, codes.NAMED_ARGUMENT, codes.NAME_WITH_SPACE,
-                     codes.WORDS_BEHIND, codes.SEVERAL_ORDERS, codes.REPEATED), _WRITTEN),
+                     codes.WORDS_AFTER, codes.SEVERAL_ORDERS, codes.REPEATED), _WRITTEN),
     **dict.fromkeys((codes.MISSING_OPEN, codes.UNIT_PAIR, codes.OTHER_LANGUAGE,
-                     codes.QUESTION_BEHIND, codes.NOT_CALLABLE, codes.SWAPPED, codes.ZERO_BEFORE,
+                     codes.QUESTION_AFTER, codes.NOT_CALLABLE, codes.SWAPPED, codes.ZERO_BEFORE,
                      codes.LATE_CHECK, codes.FROZEN_UNTIL, codes.FROZEN_WHILE, codes.TURNED_ROUND,
                      codes.EXACT, codes.UNUSED_READING,
                      codes.NAME_TAKEN), ("fix",)),
     codes.EMPTY_BRACKETS: ("word",), codes.OUT_OF_RANGE: ("fix", "most"),
     codes.LONG_TIME: ("fix", "way"),
 }  # fmt: skip
-_ELSEWHERE = (codes.QUESTION_BEHIND, codes.NOT_CALLABLE)  # without a place they show a way
+_ELSEWHERE = (codes.QUESTION_AFTER, codes.NOT_CALLABLE)  # without a place they show a way
 
 
 def edits_of(diagnostic: Diagnostic) -> list[Edit] | None:
@@ -65,22 +65,22 @@ def fixed(text: str, check: Check) -> Fixed:
     A long program takes long, and has many mistakes: it is not checked so often.
     """
     left = min(CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)) - 1
-    found = check(text)
+    diagnostics = check(text)
     count = 0
-    steps = _steps(found)
+    steps = _steps(diagnostics)
     while left > 0 and (repairs := next(steps, None)):
         edits = [edit for repair in repairs for edit in repair]
         changed = applied(text, edits)
         after = check(changed)
         left -= 1
-        if is_better(after, found, edits):
-            text, found, count, steps = changed, after, count + len(repairs), _steps(after)
-    return Fixed(text, count, found)
+        if is_better(after, diagnostics, edits):
+            text, diagnostics, count, steps = changed, after, count + len(repairs), _steps(after)
+    return Fixed(text, count, diagnostics)
 
 
-def _steps(found: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
+def _steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
     """Give the sure repairs that do not touch, and then each one alone."""
-    sure = [it.repair.edits for it in found[:MANY] if it.repair and it.repair.is_sure]
+    sure = [it.repair.edits for it in diagnostics[:MANY] if it.repair and it.repair.is_sure]
     together: list[tuple[Edit, ...]] = []
     for edits in sure:
         if not any(overlap(edits, other) for other in together):
@@ -90,39 +90,43 @@ def _steps(found: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
     yield from ([edits] for edits in sure)
 
 
-def offer(text: str, found: Sequence[Diagnostic], which: int, check: Check) -> list[Edit]:
+def offer(text: str, diagnostics: Sequence[Diagnostic], which: int, check: Check) -> list[Edit]:
     """Return the changes of one of a text's diagnostics that a reader may choose to make, or none.
 
     With them the program has fewer mistakes, or for a warning no more of them and the warning is
     gone. They may be a guess, and change what the program does: somebody looks at them.
     """
-    source, diagnostic = Source(text), found[which]
+    source, diagnostic = Source(text), diagnostics[which]
     edits = edits_of(diagnostic) or []
     lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
     if not edits or any("~" in line for line in lines):  # else it is copied again
         return []
     after = check(applied(text, edits))
     if diagnostic.is_mistake:
-        return edits if is_better(after, found, edits) else []
-    return edits if _lacks(after, diagnostic.code, found) else []
+        return edits if is_better(after, diagnostics, edits) else []
+    return edits if _lacks(after, diagnostic.code, diagnostics) else []
 
 
-def _lacks(after: Sequence[Diagnostic], code: Code, found: Sequence[Diagnostic]) -> bool:
+def _lacks(after: Sequence[Diagnostic], code: Code, diagnostics: Sequence[Diagnostic]) -> bool:
     """Whether there is one warning fewer of this kind, and no mistake more."""
-    before, left = (sum(each.code is code for each in every) for every in (found, after))
-    return left < before and _mistakes(after) <= _mistakes(found)
+    before, left = (
+        sum(diagnostic.code is code for diagnostic in every) for every in (diagnostics, after)
+    )
+    return left < before and _mistakes(after) <= _mistakes(diagnostics)
 
 
-def without_wrong(found: Sequence[Diagnostic], text: str, check: Check) -> list[Diagnostic]:
+def without_wrong(diagnostics: Sequence[Diagnostic], text: str, check: Check) -> list[Diagnostic]:
     """Return diagnostics without what they offer where that is itself wrong.
 
     It may be right only together with what others offer, as the header of a block and its end, and
     another mistake in it may be told as well. In a long text what is told last is not looked at.
     """
     left = min(CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
-    told = list(found)
+    told = list(diagnostics)
     for _ in _WRITTEN:
-        offers = [edits_of(each) or [] if each.is_mistake else [] for each in told]
+        offers = [
+            edits_of(diagnostic) or [] if diagnostic.is_mistake else [] for diagnostic in told
+        ]
         joined: list[Edit] = []
         for edits in offers:
             joined += edits if not overlap(edits, joined) else []
@@ -150,19 +154,19 @@ def without_wrong(found: Sequence[Diagnostic], text: str, check: Check) -> list[
 
 
 def _told_as_well(
-    told: Sequence[Diagnostic], offers: Sequence[list[Edit]], k: int, text: str
+    diagnostics: Sequence[Diagnostic], offers: Sequence[list[Edit]], k: int, text: str
 ) -> set[str]:
     """Return codes and words of mistakes that may be in what the diagnostic `k` offers."""
     others = set() if offers[k] else {codes.NEVER_ENDS.number}  # a header is shown without its end
-    if told[k].code is codes.RESERVED:  # `S = S + 1`, by whatever name
+    if diagnostics[k].code is codes.RESERVED:  # `S = S + 1`, by whatever name
         others.add(codes.USED_BEFORE_SET.number)
-    for it, edits in zip(told, offers, strict=True):
-        if it is not told[k]:
+    for it, edits in zip(diagnostics, offers, strict=True):
+        if it is not diagnostics[k]:
             others |= {text[slice(*it.span)].upper()} - {""}
             if overlap(edits, offers[k]):
                 # their ends are in one place
                 others |= {it.code.number, codes.WRONG_END.number, codes.NOT_OPEN.number}
-            elif it.is_mistake and not edits and it.span.start < told[k].span.start:
+            elif it.is_mistake and not edits and it.span.start < diagnostics[k].span.start:
                 others.add(codes.NOT_OPEN.number)  # its header may be what nobody can read
     return others
 
@@ -186,7 +190,7 @@ class _InPlace:
     def __init__(self, text: str, edits: Sequence[Edit], check: Check) -> None:
         self.edits = sorted(edits)
         self.text = applied(text, edits)
-        self.mistakes = [each for each in check(self.text) if each.is_mistake]
+        self.mistakes = [diagnostic for diagnostic in check(self.text) if diagnostic.is_mistake]
 
     def is_right(
         self, diagnostic: Diagnostic, its: Sequence[Edit], others: Set[str] = frozenset()
@@ -227,24 +231,26 @@ def _without_offer(diagnostic: Diagnostic) -> Diagnostic:
 
 
 def is_better(
-    after: Sequence[Diagnostic], found: Sequence[Diagnostic], edits: Sequence[Edit]
+    after: Sequence[Diagnostic], diagnostics: Sequence[Diagnostic], edits: Sequence[Edit]
 ) -> bool:
     """Whether a repair leaves fewer mistakes.
 
     Or as many, where it has uncovered one elsewhere: how a block ends is not looked at before its
     header is right, and of several signs that are missing on a line the first one is reported.
     """
-    if _mistakes(after) != _mistakes(found):
-        return _mistakes(after) < _mistakes(found)
+    if _mistakes(after) != _mistakes(diagnostics):
+        return _mistakes(after) < _mistakes(diagnostics)
     shift = 0
     for span, new in sorted(edits):
         start = span.start + shift
         end = start + len(new)
         shift += len(new) - (span.end - span.start)
-        if any(each.is_mistake and start <= each.span.start < end for each in after):
+        if any(
+            diagnostic.is_mistake and start <= diagnostic.span.start < end for diagnostic in after
+        ):
             return False
     return True
 
 
-def _mistakes(found: Sequence[Diagnostic]) -> int:
-    return sum(each.is_mistake for each in found)
+def _mistakes(diagnostics: Sequence[Diagnostic]) -> int:
+    return sum(diagnostic.is_mistake for diagnostic in diagnostics)

@@ -99,38 +99,38 @@ class Diagnosis(NamedTuple):
 
 def diagnosed(doors: Doors, question: Question) -> Diagnosis:
     doors.tell("computer")
-    found = looked(doors.system)
-    port = question.port or question.last or _only(found, question.virtual)
+    computer = looked(doors.system)
+    port = question.port or question.last or _only(computer, question.virtual)
     if port is None:
-        return Diagnosis(None, _without_port(found, question.virtual), found, False)
+        return Diagnosis(None, _without_port(computer, question.virtual), computer, False)
     question = question._replace(expected=question.expected._replace(port=port))
     client = None
     try:
         client = doors.join(port)
         if client is not None:
-            return Diagnosis(port, _shared(client, doors, question), found, True)
+            return Diagnosis(port, _shared(client, doors, question), computer, True)
     except OtherVersion as other:
         values = {"verb": other.registration.verb, "theirs": other.version}
-        return Diagnosis(port, (sure("other_tsc", **values),), found, False)
+        return Diagnosis(port, (sure("other_tsc", **values),), computer, False)
     finally:
         if client is not None:
             client.close()
-    held = _held(doors.system, found, port)
+    held = _held(doors.system, computer, port)
     if held is not None:
-        return Diagnosis(port, (held,), found, False)
+        return Diagnosis(port, (held,), computer, False)
     is_radio = doors.is_radio(port) or port.startswith(PSEUDO)
-    if not is_radio and _is_listed(doors.system, found, port) and not doors.may_open(port):
-        return Diagnosis(port, (sure("not_opened"),), found, False)
-    return _opened(doors, question, found, port, is_radio)
+    if not is_radio and _is_listed(doors.system, computer, port) and not doors.may_open(port):
+        return Diagnosis(port, (sure("not_opened"),), computer, False)
+    return _opened(doors, question, computer, port, is_radio)
 
 
 def _opened(
-    doors: Doors, question: Question, found: Computer, port: str, is_radio: bool
+    doors: Doors, question: Question, computer: Computer, port: str, is_radio: bool
 ) -> Diagnosis:
     try:
         wire = doors.open_wire(port, question.baud)
     except PortError as failure:
-        return Diagnosis(port, (_unopened(failure, found, port, doors.system),), found, False)
+        return Diagnosis(port, (_unopened(failure, computer, port, doors.system),), computer, False)
     is_radio = is_radio and not port.startswith(PSEUDO)
     asked = Line(question.baud, is_radio, question.nonce)
     expected, heard = question.expected, list[Heard]()
@@ -151,38 +151,38 @@ def _opened(
     if (question.watch_ms or has_key) and not any(finding.is_wrong for finding in findings):
         with doors.share(port) as shared:
             findings = list(_shared(shared, doors, question))
-    return Diagnosis(port, tuple(findings), found, True)
+    return Diagnosis(port, tuple(findings), computer, True)
 
 
-def _only(found: Computer, virtual: tuple[str, ...]) -> str | None:
+def _only(computer: Computer, virtual: tuple[str, ...]) -> str | None:
     """Return the only port that may be a robot's: of USB or Bluetooth, else of a virtual one."""
     names = [
-        port.port for port in found.ports
+        port.port for port in computer.ports
         if "usb" in port.port.lower() or "acm" in port.port.lower()
-        or looks_wireless(port.port, port.description) or found.platform == "win32"
+        or looks_wireless(port.port, port.description) or computer.platform == "win32"
     ]  # fmt: skip
     names = names or [*virtual]
     return names[0] if len(names) == 1 else None
 
 
-def _without_port(found: Computer, virtual: tuple[str, ...]) -> tuple[Finding, ...]:
+def _without_port(computer: Computer, virtual: tuple[str, ...]) -> tuple[Finding, ...]:
     """Return why there is no port to look at; ports that may be no robot's are named beside."""
-    listed = ", ".join([*(port.port for port in found.ports), *virtual])
-    if len(found.ports) > 1:
+    listed = ", ".join([*(port.port for port in computer.ports), *virtual])
+    if len(computer.ports) > 1:
         return (sure("which_port", ports=listed),)
-    absent = _absent(found)
+    absent = _absent(computer)
     if listed and absent.cause in ("no_port", "charging_cable"):
         return (absent._replace(values={**absent.values, "ports": listed}),)
     return (absent,)
 
 
-def _absent(found: Computer) -> Finding:
+def _absent(computer: Computer) -> Finding:
     """Return why an adapter, or any at all, has no port."""
-    for each in without_driver(found.adapters or ()):
-        if each.driver == "usbfs" or "brltty" in found.programs:
-            return Finding("brltty", "brltty" in found.programs, {"chip": each.chip})
-        return sure("driver_missing", chip=each.chip, driver=each.wants or each.chip)
-    if found.adapters is not None and not found.adapters:
+    for adapter in without_driver(computer.adapters or ()):
+        if adapter.driver == "usbfs" or "brltty" in computer.programs:
+            return Finding("brltty", "brltty" in computer.programs, {"chip": adapter.chip})
+        return sure("driver_missing", chip=adapter.chip, driver=adapter.wants or adapter.chip)
+    if computer.adapters is not None and not computer.adapters:
         return probably("charging_cable")
     return sure("no_port")
 
@@ -213,34 +213,34 @@ def _held(system: System, found: Computer, port: str) -> Finding | None:
     return sure("busy", by=", ".join(who.users)) if who.users else None
 
 
-def _is_listed(system: System, found: Computer, port: str) -> bool:
+def _is_listed(system: System, computer: Computer, port: str) -> bool:
     return is_address(port) or system.owner(port) is not None or any(
-        each.port.lower() == port.lower() for each in found.ports
+        each.port.lower() == port.lower() for each in computer.ports
     )  # fmt: skip
 
 
 def unopened(system: System, port: str, failure: PortError) -> Finding:
     """Return why a port that somebody has tried to open did not open."""
-    found = looked(system)
-    return _held(system, found, port) or _unopened(failure, found, port, system)
+    computer = looked(system)
+    return _held(system, computer, port) or _unopened(failure, computer, port, system)
 
 
-def _unopened(failure: PortError, found: Computer, port: str, system: System) -> Finding:
+def _unopened(failure: PortError, computer: Computer, port: str, system: System) -> Finding:
     """Return why a port did not open."""
     if failure.reason == errors.MISSING:
-        return _missing(found, port, system)
+        return _missing(computer, port, system)
     if failure.reason == errors.FORBIDDEN:
         return sure("no_permission", group="")
     if failure.reason == errors.BUSY:
         if looks_wireless(port) and failure.why == IN_USE:
             return probably("other_host")
-        if "ModemManager" in found.programs:
+        if "ModemManager" in computer.programs:
             return probably("modem_manager")
         return sure("busy", by="")
     if failure.reason in (errors.UNREACHABLE, errors.SLOW):
         if failure.why == REFUSED and not is_address(port):
             return probably("other_host")
-        if not is_address(port) and found.has_module is False and found.bluetooth != OFF:
+        if not is_address(port) and computer.has_module is False and computer.bluetooth != OFF:
             return probably("not_paired")
         return probably("slow_port" if failure.reason == errors.SLOW else "out_of_reach")
     if failure.reason == errors.NO_PORT:
@@ -248,17 +248,17 @@ def _unopened(failure: PortError, found: Computer, port: str, system: System) ->
     return sure("port_broken", why=failure.why)
 
 
-def _missing(found: Computer, port: str, system: System) -> Finding:
+def _missing(computer: Computer, port: str, system: System) -> Finding:
     """Return why the port that was named does not exist."""
     if looks_wireless(port):
-        if found.bluetooth == NONE:
+        if computer.bluetooth == NONE:
             return sure("no_bluetooth")
-        if found.bluetooth == OFF:
+        if computer.bluetooth == OFF:
             return sure("bluetooth_off")
-        if found.has_module is False:
+        if computer.has_module is False:
             return sure("not_paired")
-        if found.platform == "linux" and "rfcomm" in port:
-            return Finding("no_rfcomm", bool(found.has_module), {"number": port[-1:]})
-    if without_driver(found.adapters or ()) or not found.ports:
-        return _absent(found)
-    return sure("port_missing", ports=", ".join(each.port for each in found.ports))
+        if computer.platform == "linux" and "rfcomm" in port:
+            return Finding("no_rfcomm", bool(computer.has_module), {"number": port[-1:]})
+    if without_driver(computer.adapters or ()) or not computer.ports:
+        return _absent(computer)
+    return sure("port_missing", ports=", ".join(port.port for port in computer.ports))

@@ -265,7 +265,7 @@ def _restarts(restarts: list[Restart]) -> list[Finding]:
     count = str(len(restarts))
     driving = [restart for restart in restarts if restart.was_running]
     if driving:
-        is_told = any(each.cause == _BROWN_OUT for each in driving)
+        is_told = any(restart.cause == _BROWN_OUT for restart in driving)
         return [Finding("motors_restart", is_told, {"count": count, "reset": driving[-1].cause})]
     if restarts[-1].cause == _WATCHDOG:
         return [sure("hung")]

@@ -23,7 +23,7 @@ class Cause(NamedTuple):
 
 
 def _all(verdict: str, part: str, causes: str, then: str = "") -> Iterable[tuple[str, Cause]]:
-    return ((each, Cause(verdict, part, then)) for each in causes.split())
+    return ((word, Cause(verdict, part, then)) for word in causes.split())
 
 
 CAUSES = dict((

@@ -96,7 +96,7 @@ def _robot(wire: Wire, line: Line, expected: Expected) -> WireRobot:
 
 def _is_echo(heard: bytes, spoken: bytes) -> bool:
     """Whether at least one whole frame that was sent came back."""
-    frames = [each for each in spoken.split(b"\0") if each]
+    frames = [part for part in spoken.split(b"\0") if part]
     return any(frame in heard for frame in frames)
 
 
@@ -140,9 +140,9 @@ def _by_cable(
         robot = _robot(wire, line, expected)
         reply = robot.hello(1)
         if reply is not None:
-            found = sure("wrong_baud", baud=str(baud), expected=str(line.baud))
+            finding = sure("wrong_baud", baud=str(baud), expected=str(line.baud))
             rest = examined(robot, reply, expected, tell=tell)
-            return [found, *(each for each in rest if each.cause != "fine")]
+            return [finding, *(finding for finding in rest if finding.cause != "fine")]
         if readable(more):
             return [sure("other_sketch", said=readable(more))]
         garbage = max(garbage, len(more))

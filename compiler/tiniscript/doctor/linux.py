@@ -33,7 +33,7 @@ def _adapters(system: System) -> list[Adapter]:
             continue
         parts = [each for each in system.names(USB) if each.startswith(f"{name}:")]
         drivers = [system.target(f"{USB}/{part}/driver") for part in parts]
-        driver = next((each.rpartition("/")[2] for each in drivers if each), "")
+        driver = next((driver.rpartition("/")[2] for driver in drivers if driver), "")
         has_port = any(
             inside.startswith("tty") for part in parts for inside in system.names(f"{USB}/{part}")
         )
@@ -91,7 +91,7 @@ def _users(system: System, port: str) -> list[str]:
     programs = _programs(system)
     for number, name in programs.items():
         folder = f"/proc/{number}/fd"
-        if any(system.target(f"{folder}/{each}") == port for each in system.names(folder)):
+        if any(system.target(f"{folder}/{name}") == port for name in system.names(folder)):
             found.append(name)
     for folder in LOCKS:
         number = (system.text(f"{folder}/LCK..{port.rpartition('/')[2]}") or "").strip()

@@ -43,9 +43,9 @@ def shown_port(name: str) -> str:
         return name.partition("://")[0] + "://" + HIDDEN
     if re.fullmatch(r"/dev/(?:tty(?:USB|ACM|S|AMA)|rfcomm|pts/)\d{1,3}|COM\d{1,3}", name, re.I):
         return name
-    found = re.match(r"/dev/(?:tty|cu)\.(?:usbserial|usbmodem|wchusbserial|SLAB_USBtoUART)", name)
-    if found:
-        return found[0] + HIDDEN
+    match = re.match(r"/dev/(?:tty|cu)\.(?:usbserial|usbmodem|wchusbserial|SLAB_USBtoUART)", name)
+    if match:
+        return match[0] + HIDDEN
     return "Bluetooth " + HIDDEN if is_module(name) else HIDDEN
 
 
@@ -54,9 +54,9 @@ def values_of(finding: Finding) -> dict[str, str]:
     values = {}
     for key, value in finding.values.items():
         if key == "ports":
-            values[key] = ", ".join(shown_port(each) for each in value.split(", "))
+            values[key] = ", ".join(shown_port(part) for part in value.split(", "))
         elif key == "by":
-            names = [each if each in PROGRAMS else HIDDEN for each in value.split(", ") if each]
+            names = [part if part in PROGRAMS else HIDDEN for part in value.split(", ") if part]
             values[key] = ", ".join(names)
         else:
             values[key] = HIDDEN if key in PRIVATE and value else value

@@ -62,10 +62,10 @@ class System:
 
     def owner(self, path: str) -> Owner | None:
         try:
-            found = self._path(path).stat()
+            stat_result = self._path(path).stat()
         except (OSError, ValueError):
             return None
-        return Owner(found.st_gid, os.access(self._path(path), os.R_OK | os.W_OK))
+        return Owner(stat_result.st_gid, os.access(self._path(path), os.R_OK | os.W_OK))
 
     def groups(self) -> set[int]:
         """Return the groups of this session: of those the user joined since, it has none."""
@@ -87,9 +87,9 @@ class System:
     def output(self, *words: str) -> str | None:
         """Return what a program prints, or None where there is no such program."""
         try:
-            done = subprocess.run(
+            completed = subprocess.run(
                 words, stdin=subprocess.DEVNULL, capture_output=True, timeout=OUTPUT_S, check=False
             )
         except (OSError, ValueError, subprocess.TimeoutExpired):
             return None
-        return done.stdout.decode("utf-8", "replace") if done.returncode == 0 else None
+        return completed.stdout.decode("utf-8", "replace") if completed.returncode == 0 else None

@@ -45,7 +45,7 @@ def _chips(said: str) -> list[str]:
 
 
 def _names(said: str) -> list[str]:
-    """Return the names of paired devices: the row behind their number."""
+    """Return the names of paired devices: the row after their number."""
     names = []
     rows = said.splitlines()
     for number, row in enumerate(rows[:-1]):

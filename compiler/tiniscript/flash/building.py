@@ -96,8 +96,8 @@ def sources() -> Sources | None:
     """Return the sources, or None where this package has none."""
     for place in PLACES:
         if (place / SETTINGS).is_file():
-            found = [place / SETTINGS, place / PARTITIONS, *sorted((place / "src").rglob("*"))]
-            names = {path.relative_to(place).as_posix(): path for path in found if path.is_file()}
+            paths = [place / SETTINGS, place / PARTITIONS, *sorted((place / "src").rglob("*"))]
+            names = {path.relative_to(place).as_posix(): path for path in paths if path.is_file()}
             names.pop(HEADER, None)
             return Sources({name: path.read_bytes() for name, path in names.items()})
     return None

@@ -102,7 +102,7 @@ def keep(title: str, board: str, digest: str, data: bytes) -> Ready:
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / name_of(title, board, digest)
     replace(path, data)
-    kept = sorted(folder.glob("*.hex"), key=lambda each: each.stat().st_mtime_ns)
+    kept = sorted(folder.glob("*.hex"), key=lambda path: path.stat().st_mtime_ns)
     for old in kept[:-KEPT]:
         if old != path:
             old.unlink(missing_ok=True)

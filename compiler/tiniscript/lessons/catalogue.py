@@ -98,7 +98,7 @@ def page(folder: Path, who: str, language: str) -> str:
 def whole_page(folder: Path, who: str, language: str) -> str:
     """Return a page of a lesson with its numbers and its marks. Raises LessonRefused."""
     paths = [folder / f"{who}.{each}.md" for each in (language, SOURCE)]
-    path = next((each for each in paths if each.is_file()), None)
+    path = next((path for path in paths if path.is_file()), None)
     if path is None:
         raise LessonRefused(("no_page", {"file": shown(paths[0].name)}))
     return filled(_text(path), shown(path.name), load(folder))

@@ -55,14 +55,14 @@ class On(NamedTuple):
 
 def between(track: tuple[Sample, ...]) -> list[On]:
     """Return points of the way, at most a centimetre from each other."""
-    found = [On(float(track[0].ms), *track[0].pose[:2], 0.0, track[0].pose.heading)]
+    ons = [On(float(track[0].ms), *track[0].pose[:2], 0.0, track[0].pose.heading)]
     for sample in track[1:]:
-        ms, x, y, way_cm, _ = found[-1]
+        ms, x, y, way_cm, _ = ons[-1]
         step_cm = math.dist((x, y), sample.pose[:2])
         steps = max(1, math.ceil(step_cm))
         for k in range(1, steps + 1):
             part = k / steps
-            found.append(
+            ons.append(
                 On(
                     ms + (sample.ms - ms) * part,
                     x + (sample.pose.x_cm - x) * part,
@@ -71,7 +71,7 @@ def between(track: tuple[Sample, ...]) -> list[On]:
                     sample.pose.heading,
                 )
             )
-    return found
+    return ons
 
 
 def in_seconds(ms: float) -> str:

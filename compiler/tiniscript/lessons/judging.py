@@ -49,39 +49,43 @@ def judged(run: Run, lesson: Lesson) -> list[Finding]:
     stood_ms = run.end_ms - run.track[-1].ms
     if run.ending == BUSY and (stood_ms < STOOD_MS or _is_still(run)):
         return busy
-    found: list[Finding] = []
+    findings: list[Finding] = []
     if run.ending == LIMIT and kinds & AT_END and "ends" not in kinds and not _rests(run):
-        found.append(Finding("", "long", {"seconds": in_seconds(run.end_ms)}))
+        findings.append(Finding("", "long", {"seconds": in_seconds(run.end_ms)}))
     task = Task(run, is_mirrored(lesson, run.seed))
     for criterion in lesson.criteria:
         judge = JUDGES.get(criterion.kind)
         finding = judge(criterion, task) if judge is not None else None
         if finding is not None:
-            found.append(finding)
-    if run.ending == BUSY and not found:  # it stands where it should, and may drive on from there
+            findings.append(finding)
+    if (
+        run.ending == BUSY and not findings
+    ):  # it stands where it should, and may drive on from there
         return busy
-    return _causes(found)
+    return _causes(findings)
 
 
-def _causes(found: list[Finding]) -> list[Finding]:
+def _causes(findings: list[Finding]) -> list[Finding]:
     """Leave out what follows from another finding: one misunderstanding gives one sentence."""
-    kinds = {finding.kind for finding in found}
-    keys = {finding.key for finding in found}
-    has_touched = any(each.kind == "never_touches" for each in found)
-    found.sort(key=lambda each: has_touched and each.key == "long")  # it may push against a wall
+    kinds = {finding.kind for finding in findings}
+    keys = {finding.key for finding in findings}
+    has_touched = any(finding.kind == "never_touches" for finding in findings)
+    findings.sort(
+        key=lambda finding: has_touched and finding.key == "long"
+    )  # it may push against a wall
     has_missed = any(
-        each.kind == "reaches" and each.key not in ("reaches/late", "reaches/around")
-        for each in found
+        finding.kind == "reaches" and finding.key not in ("reaches/late", "reaches/around")
+        for finding in findings
     )  # then its way back is not what is to be changed first
     is_lost = bool(kinds & {"never_touches", ""})  # then it is not where it should be
     return [
-        each
-        for each in found
-        if not (is_lost and each.kind in WHERE)
-        and not (each.key == "ends_in/gone" and has_missed)
-        and not (each.kind == "pauses" and "ends_in/gone" in keys)  # it may have waited there
-        and not ("/place" in each.key and (is_lost or kinds & BEFORE[each.kind]))
-        and not (each.kind == "order" and each.key.rpartition("/")[2] in kinds)
+        finding
+        for finding in findings
+        if not (is_lost and finding.kind in WHERE)
+        and not (finding.key == "ends_in/gone" and has_missed)
+        and not (finding.kind == "pauses" and "ends_in/gone" in keys)  # it may have waited there
+        and not ("/place" in finding.key and (is_lost or kinds & BEFORE[finding.kind]))
+        and not (finding.kind == "order" and finding.key.rpartition("/")[2] in kinds)
     ]
 
 
@@ -126,7 +130,7 @@ def _follows(criterion: Criterion, task: Task) -> Finding | None:
     run, within_cm = task.run, criterion.numbers["within_cm"]
     eyes = [place for place in run.robot.profile.body.places.values() if place.sees == "line"]
     ahead_cm = sum(eye.x_cm for eye in eyes) / len(eyes) if eyes else 0.0
-    segments = [each for line in run.world.lines for each in joined(list(line.points))]
+    segments = [segment for line in run.world.lines for segment in joined(list(line.points))]
     left = {
         (segment.a.x + (segment.b.x - segment.a.x) * k / n,
          segment.a.y + (segment.b.y - segment.a.y) * k / n)
@@ -140,7 +144,7 @@ def _follows(criterion: Criterion, task: Task) -> Finding | None:
         along = math.radians(pose.heading)
         x = pose.x_cm + ahead_cm * math.cos(along)
         y = pose.y_cm + ahead_cm * math.sin(along)
-        if min((distance_to(each, x, y) for each in segments), default=math.inf) > within_cm:
+        if min((distance_to(segment, x, y) for segment in segments), default=math.inf) > within_cm:
             off_ms = ms
             break
         left = {point for point in left if math.dist(point, (x, y)) > within_cm}
@@ -238,7 +242,7 @@ def _order(criterion: Criterion, task: Task) -> Finding | None:
     happened = iter(task.run.happened)
     before = ""
     for k, word in enumerate(criterion.words):
-        if word not in happened:  # which goes on behind the one that it has found
+        if word not in happened:  # which goes on after the one that it has found
             times = criterion.words[:k].count(before) if word in criterion.words[:k] else 1
             return Finding("order", f"order/{before}/{word}", {"times": str(times)})
         before = word
@@ -365,12 +369,12 @@ def _beeps(criterion: Criterion, task: Task) -> Finding | None:
 def _blinks(criterion: Criterion, task: Task) -> Finding | None:
     run, (what,), times = task.run, criterion.words, int(criterion.numbers["times"])
     names = [device.name for device in run.robot.profile.kit.actuators]
-    found = [each for each in run.switched if names[each.actuator] == what]
-    moving = sum(each.is_moving for each in found)
+    switches = [each for each in run.switched if names[each.actuator] == what]
+    moving = sum(switch.is_moving for switch in switches)
     values = {"what": what, "times": str(times), "found": str(moving)}
     if moving >= times:
         return None
-    return Finding("blinks", "blinks/few" if found else "blinks/none", values)
+    return Finding("blinks", "blinks/few" if switches else "blinks/none", values)
 
 
 JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {

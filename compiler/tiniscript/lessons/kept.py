@@ -15,7 +15,7 @@ from tiniscript.syntax.lexer import NUMBER, WORD, Token
 MOVES = frozenset("FBLRM")
 AHEAD = frozenset("FBM")  # what is more than a turn
 FIXED = frozenset({"TRUE", "FALSE", "NOT", "AND", "OR"})  # of a question
-STATEMENTS = frozenset({"W", "S", "BEEP", "SHOW"})  # an UNTIL behind them is not that of a move
+STATEMENTS = frozenset({"W", "S", "BEEP", "SHOW"})  # an UNTIL after them is not that of a move
 
 
 class Question(NamedTuple):
@@ -71,7 +71,7 @@ def _has_power(tokens: Sequence[Token], at: int) -> bool:
 
 
 def _values(tokens: Sequence[Token], at: int) -> list[list[Token]]:
-    """Return the values between the brackets behind a word."""
+    """Return the values between the brackets after a word."""
     values: list[list[Token]] = [[]]
     depth = 0
     for token in tokens[at + 1 :]:
@@ -86,11 +86,11 @@ def _values(tokens: Sequence[Token], at: int) -> list[list[Token]]:
 
 
 def end_of_values(tokens: Sequence[Token], at: int) -> int:
-    """Return where in the text the bracket behind a word closes, or where the word ends."""
+    """Return where in the text the bracket after a word closes, or where the word ends."""
     values = [token for value in _values(tokens, at) for token in value]
-    behind = [token for token in tokens[at + 1 :] if token.text == ")"]
+    after = [token for token in tokens[at + 1 :] if token.text == ")"]
     last = values[-1].end if values else tokens[at].end
-    return next((token.end for token in behind if token.start >= last), last)
+    return next((token.end for token in after if token.start >= last), last)
 
 
 def ahead(tokens: Sequence[Token]) -> int:
@@ -124,7 +124,7 @@ def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question 
     `tokens` are those of a program without what nothing calls.
     """
     moves = set(moving(tokens, AHEAD if is_turned else MOVES))
-    found: list[Question] = []
+    questions: list[Question] = []
     blocks: list[_Block] = []
     movers = set[str]()  # words of DEF with a move
     before = head = -1  # the words of the statements that an UNTIL may belong to, or to a wait
@@ -136,30 +136,30 @@ def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question 
                 if block.word == "DEF":
                     movers |= set(block.inside)
         if word in BLOCK_ENDS:
-            is_repeated = any(each.word in ("LOOP", "WHILE", "DEF") for each in blocks)
+            is_repeated = any(block.word in ("LOOP", "WHILE", "DEF") for block in blocks)
             inside = [tokens[k + 1].text] if word == "DEF" else _words(tokens, k)
             blocks.append(_Block(token.start, word, inside, is_repeated))
         elif word == "ELSE" and blocks:
             blocks[-1].is_else = True
         elif word in BLOCK_ENDS.values() and blocks:
             asked = blocks.pop().question()
-            found += [asked] if asked else []
+            questions += [asked] if asked else []
         elif word == "UNTIL" and head >= 0:
             is_m = tokens[head].text == "W" and before in moves and tokens[before].text == "M"
             is_wait = tokens[head].text == "W" and "FOREVER" in _words(tokens, head) and not is_m
             if head in moves or is_wait or is_m:
-                found.append(Question(token.start, word, "TRUE", is_wait, _words(tokens, k)))
+                questions.append(Question(token.start, word, "TRUE", is_wait, _words(tokens, k)))
         elif word in MOVES or word in STATEMENTS:
             before, head = head, k
     if not moves:
         return None
     if ending == DONE:
-        found = [each for each in found if not each.is_ever or each.word == "IF"]
-        found = [_from_start(each) for each in found]
+        questions = [each for each in questions if not each.is_ever or each.word == "IF"]
+        questions = [_from_start(each) for each in questions]
     # A WHILE with moves that the robot was in when its time was over has let it in.
-    found.sort(key=lambda each: (ending != DONE and not each.is_ever and each.word == "WHILE",
+    questions.sort(key=lambda each: (ending != DONE and not each.is_ever and each.word == "WHILE",
                                  each.start))  # fmt: skip
-    return found[0] if found else None
+    return questions[0] if questions else None
 
 
 def _from_start(asked: Question) -> Question:

@@ -43,7 +43,7 @@ def blocks(text: str) -> list[Block]:
         line = lines[k]
         if line.startswith("```"):
             end = next((n for n in range(k + 1, len(lines)) if lines[n] == "```"), len(lines))
-            found.append(Block("program", tuple((each,) for each in lines[k + 1 : end])))
+            found.append(Block("program", tuple((line,) for line in lines[k + 1 : end])))
             k = end + 1
             continue
         start = k

@@ -60,9 +60,9 @@ class Marking:
         self._trial: Trial | None = None  # none before a world
         self._needs = [
             (word, lesson._replace(criteria=lesson.criteria[:k]))
-            for k, each in enumerate(lesson.criteria)
-            if each.kind == "needs"
-            for word in each.words
+            for k, criterion in enumerate(lesson.criteria)
+            if criterion.kind == "needs"
+            for word in criterion.words
         ]
         self._done: Run | None = None  # the last run of the task, once it is done
         self._without = ""  # the word that the program is tried without now
@@ -95,7 +95,7 @@ class Marking:
         findings = explained(found, self._text, self._lesson, run.ending)
         if findings:
             said = {finding.key for finding in findings}
-            of_text = [each for each in self._of_text if each.key not in said]
+            of_text = [finding for finding in self._of_text if finding.key not in said]
             return Outcome(FAILED, self.seed, (*findings, *of_text), run)
         if len(self._seeds) > 1:
             del self._seeds[0]

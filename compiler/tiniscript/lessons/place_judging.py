@@ -85,7 +85,7 @@ def _gap(criterion: Criterion, task: Task, number: int, at: On) -> float:
     x = at.x_cm + sensor.x_cm * math.cos(along) - sensor.y_cm * math.sin(along)
     y = at.y_cm + sensor.x_cm * math.sin(along) + sensor.y_cm * math.cos(along)
     shape = shape_of(criterion.places[number], task.run.world, task.mirrored)
-    return min(distance(each, x, y) for each in shape)
+    return min(distance(segment, x, y) for segment in shape)
 
 
 def _reached(criterion: Criterion, task: Task, order: Sequence[int]) -> tuple[int, Finding | None]:

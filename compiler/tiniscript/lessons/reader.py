@@ -48,7 +48,9 @@ MOST_CM = 2000
 ROWS = 100  # criteria, variations, answers, presses
 GAP = re.compile(r"\{(\w+)\}")
 PART = re.compile(r"(start)|(walls|boxes|lines|lamps)\[([1-9][0-9]{0,2})\]")
-NO_LABELS = ByLanguage({each: said_in("lessons", "place", each) for each in languages()})
+NO_LABELS = ByLanguage(
+    {language: said_in("lessons", "place", language) for language in languages()}
+)
 OF_SENTENCES = ("word", "question", "what", "times")  # values of which a sentence is made besides
 
 
@@ -75,7 +77,7 @@ def read(text: str, world: World, name: str) -> Lesson:
         )
         if not lesson.criteria and not root.reasons:
             root.complain("no_criteria", "criteria")
-        if any(each.kind == "obeys" for each in lesson.criteria) and not lesson.presses:
+        if any(criterion.kind == "obeys" for criterion in lesson.criteria) and not lesson.presses:
             root.complain("missing", "presses", example="[[presses]]")
     return lesson
 
@@ -114,7 +116,7 @@ def _said(says: Table) -> dict[str, str]:
     texts = (text_of("lessons", f"said/{each}", SOURCE) for each in (key, key.partition("/")[0]))
     gaps = GAP.findall(next(filter(None, texts), ""))
     names = dict.fromkeys([*gaps, "place", *languages(), *OF_SENTENCES])
-    values = {each: says.text(each) or "" for each in names if says.has(each)}
+    values = {name: says.text(name) or "" for name in names if says.has(name)}
     places = {language: values[language] for language in languages() if language in values}
     finding = Finding("", key, values, ByLanguage({SOURCE: values.get("place", ""), **places}))
     says.finish()
@@ -132,7 +134,7 @@ def _said(says: Table) -> dict[str, str]:
 def _labels(table: Table) -> dict[str, str]:
     """Return a text in each language that it is there in; one must be."""
     labels: ByLanguage[str] = ByLanguage()
-    for language in [each for each in languages() if table.has(each)] or [SOURCE]:
+    for language in [language for language in languages() if table.has(language)] or [SOURCE]:
         labels[language] = table.label(language, LABEL_CHARACTERS, f'{language} = "…"') or ""
     return labels
 
@@ -152,15 +154,15 @@ def _variation(table: Table, world: World) -> Variation:
 def _presses(tables: list[Table]) -> tuple[Press, ...]:
     """Return what is held, one after the other: each begins when the one before has ended."""
     keys = [device.name for device in REMOTE if device.is_yes_no]
-    found: list[Press] = []
+    presses: list[Press] = []
     for table in tables:
-        begins = round(found[-1].end_seconds * ONE) if found else 0
+        begins = round(presses[-1].end_seconds * ONE) if presses else 0
         soon = f"at_seconds = {begins / ONE:g}"
         at = table.number("at_seconds", begins, MOST_SECONDS * ONE, soon)
         lasts = table.number("seconds", ONE // 10, MOST_SECONDS * ONE, "seconds = 1")
-        found.append(Press(at / ONE, lasts / ONE, table.choice("key", keys)))
+        presses.append(Press(at / ONE, lasts / ONE, table.choice("key", keys)))
         table.finish()
-    return tuple(found)
+    return tuple(presses)
 
 
 def _span(table: Table, key: str, most: int) -> tuple[float, float]:
@@ -200,7 +202,7 @@ def _criterion(table: Table, world: World, known: Mapping[str, tuple[str, ...]])
         return Criterion("", {}, (), (), NO_LABELS)
     has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.has("at"))
     asked = [number for number in kind.numbers if has_places or number is not WITHIN]
-    numbers = {each.key: _number(table, each) for each in asked}
+    numbers = {number.key: _number(table, number) for number in asked}
     numbers |= {flag: float(table.yes_no(flag, False)) for flag in kind.flags}
     for low, high in (("low_cm", "high_cm"), ("at_least_cm", "at_most_cm")):
         if low in numbers and numbers[low] > numbers.get(high, numbers[low]):
@@ -260,20 +262,20 @@ def _places(table: Table, world: World, least: int) -> tuple[Place, ...]:
         return ()
     is_point = isinstance(value, list) and len(value) == 2 and not isinstance(value[0], list | str)
     several = value if isinstance(value, list) and not is_point else [value]
-    found = []
+    places = []
     for each in several:
         if isinstance(each, str):
-            found.append(_part(table, "at", each, world))
+            places.append(_part(table, "at", each, world))
         elif isinstance(each, list) and len(each) == 2:
             pairs = Table({"at": [each]}, table.path, table.reasons)
             points = pairs.pairs("at", -MOST_CM * ONE, MOST_CM * ONE, "")
             for x_cm, y_cm in points or ():
-                found.append(Place("", 0, x_cm / ONE, y_cm / ONE))
+                places.append(Place("", 0, x_cm / ONE, y_cm / ONE))
         else:
             table.complain("place_form", "at")
-    if len(found) < least and not table.reasons:
+    if len(places) < least and not table.reasons:
         table.complain("place_form", "at")
-    return tuple(found)
+    return tuple(places)
 
 
 def _part(table: Table, key: str, text: str, world: World) -> Place:

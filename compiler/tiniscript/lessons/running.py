@@ -154,7 +154,9 @@ class Trial:
             return
         assert self._witness.began_ms is not None
         seconds = (robot.now_ms - self._witness.began_ms) / 1000
-        keys = (each.key for each in self._presses if each.at_seconds <= seconds < each.end_seconds)
+        keys = (
+            press.key for press in self._presses if press.at_seconds <= seconds < press.end_seconds
+        )
         key = next(keys, "")
         self._computer.session.press(*(held([key.removeprefix("KEY_")]) if key else NOTHING))
         self._computer.wait(until_ms - robot.now_ms)
@@ -251,8 +253,8 @@ class _Witness:
         """Return what the robot is nearest to."""
         world, hull = self.robot.world, self.robot.driving.hull
         kinds = {
-            "wall": [each for wall in world.walls for each in joined(list(wall))],
-            "box": [each for box in world.boxes for each in joined([*box, box[0]])],
+            "wall": [segment for wall in world.walls for segment in joined(list(wall))],
+            "box": [segment for box in world.boxes for segment in joined([*box, box[0]])],
             "border": world._replace(walls=(), boxes=()).obstacles(),
         }
         gaps = []

@@ -31,31 +31,37 @@ def judged_text(text: str, lesson: Lesson) -> list[Finding]:
     """Return what is missing in a program's text, whatever it does."""
     question = {"question": _question(lesson.robot)}
     tokens = scan(text).tokens
-    found = (JUDGES[each.kind](each, tokens) for each in lesson.criteria if each.kind in JUDGES)
-    return [each._replace(values={**each.values, **question}) for each in found if each]
+    findings = (
+        JUDGES[criterion.kind](criterion, tokens)
+        for criterion in lesson.criteria
+        if criterion.kind in JUDGES
+    )
+    return [
+        finding._replace(values={**finding.values, **question}) for finding in findings if finding
+    ]
 
 
-def explained(found: Sequence[Finding], text: str, lesson: Lesson, ending: str) -> list[Finding]:
+def explained(findings: Sequence[Finding], text: str, lesson: Lesson, ending: str) -> list[Finding]:
     """Return what is missing in a run that ended so, with the reason that the text has for it.
 
     Where the robot did nothing, and the text has what it should do, then it was never reached.
     """
     tokens = scan(text).tokens
     words = [token.text for token in tokens if token.kind in (WORD, NUMBER)]
-    is_endless = any(each.key in ("ends", "long") for each in found)
+    is_endless = any(finding.key in ("ends", "long") for finding in findings)
     uncalled: list[Finding] = []
     explained = []
-    for each in found:
-        word = MISSING.get(each.key, "")
+    for finding in findings:
+        word = MISSING.get(finding.key, "")
         name = _name_of_uncalled(word, tokens, words) if word else ""
         if name:
             uncalled = [Finding("uses", "uses/uncalled", {"name": _call_of(name, tokens)})]
         elif word == "move":
-            explained.append(_asked(each, tokens, words, lesson, ending))
+            explained.append(_asked(finding, tokens, words, lesson, ending))
         elif word not in words:
-            explained.append(each)
+            explained.append(finding)
         elif not is_endless:
-            explained.append(each._replace(key="unreached", values={"word": word}))
+            explained.append(finding._replace(key="unreached", values={"word": word}))
     return uncalled + explained
 
 
@@ -63,7 +69,7 @@ def _name_of_uncalled(word: str, tokens: Sequence[Token], words: Sequence[str]) 
     """Return a word of DEF that nothing calls, and that has what is missing."""
     for name in _uncalled(words):
         inside = [token for own, token in _owned(tokens) if own == name]
-        if kept.moving(inside) if word == "move" else word in [each.text for each in inside]:
+        if kept.moving(inside) if word == "move" else word in [token.text for token in inside]:
             return name
     return ""
 
@@ -101,16 +107,16 @@ def _asked(
         if "M" in does and "UNTIL" not in does:
             return finding
         finding = finding._replace(key="still")
-    asked = kept.question(called, is_turned, ending)
-    if asked is None:
+    question = kept.question(called, is_turned, ending)
+    if question is None:
         return finding
     kit = robots.load(lesson.robot).kit
     sensors = [device.name for device in kit.readings]
-    named = [word for word in [*asked.inside, *words] if word in sensors]
-    key = f"{'turned' if is_turned else 'still'}/{'ever' if asked.is_ever else 'question'}"
+    named = [word for word in [*question.inside, *words] if word in sensors]
+    key = f"{'turned' if is_turned else 'still'}/{'ever' if question.is_ever else 'question'}"
     what = (*named, sensors[0])[0]
     return finding._replace(
-        key=key, values={"word": asked.word, "what": what, "truth": asked.truth}
+        key=key, values={"word": question.word, "what": what, "truth": question.truth}
     )
 
 

@@ -37,7 +37,9 @@ def pressed(lesson: Lesson, seed: int) -> tuple[Press, ...]:
     """Return what is held in the world of a seed."""
     if not is_mirrored(lesson, seed):
         return lesson.presses
-    return tuple(each._replace(key=OTHER_SIDE.get(each.key, each.key)) for each in lesson.presses)
+    return tuple(
+        press._replace(key=OTHER_SIDE.get(press.key, press.key)) for press in lesson.presses
+    )
 
 
 def is_mirrored(lesson: Lesson, seed: int) -> bool:

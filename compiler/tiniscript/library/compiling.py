@@ -76,12 +76,12 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
     parsed = parse(source)
     kit = _kit_in(text, kit)
     checked = check(source, parsed.program, kit)
-    found = [*parsed.diagnostics, *checked.diagnostics]
-    if not any(diagnostic.is_mistake for diagnostic in found):
-        found += lint(checked.program, kit, source, parsed.scan)
+    diagnostics = [*parsed.diagnostics, *checked.diagnostics]
+    if not any(diagnostic.is_mistake for diagnostic in diagnostics):
+        diagnostics += lint(checked.program, kit, source, parsed.scan)
         if kit.given:
-            found += given_way(parsed.scan.tokens, kit, source)
-    return Compiled(source, codes.in_order(found), checked.program)
+            diagnostics += given_way(parsed.scan.tokens, kit, source)
+    return Compiled(source, codes.in_order(diagnostics), checked.program)
 
 
 def _kit_in(text: str, kit: Kit) -> Kit:

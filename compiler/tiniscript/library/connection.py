@@ -185,13 +185,17 @@ class RobotConnection:
             follower = self._follower or anything
             left_s = LOOK_S if end_s is None else min(LOOK_S, end_s - monotonic())
             found = self._client.event(max(left_s, 0.0))
-            told = None
+            robot_event = None
             if found is not None and self._is_about(follower, found[1]):
-                told = self._reader.told(*found)
-                if told is not None and follower.end(found[1]) is not None and self._follower:
-                    self._ending = ending_of(told)
-            if told is not None:
-                yield told
+                robot_event = self._reader.told(*found)
+                if (
+                    robot_event is not None
+                    and follower.end(found[1]) is not None
+                    and self._follower
+                ):
+                    self._ending = ending_of(robot_event)
+            if robot_event is not None:
+                yield robot_event
             # an event that arrived before the timeout is still reported
             last_s = monotonic() if found is None else found[0] / 1000
             if end_s is not None and last_s >= end_s:

@@ -20,8 +20,8 @@ def shipped_of_kit(fingerprint: int) -> str | None:
 
 def name_of(fingerprint: int) -> str | None:
     """Return the name of the robot that has this kit, or None where this computer knows none."""
-    found = of_kit(fingerprint)
-    return None if found is None else found.name
+    robot = of_kit(fingerprint)
+    return None if robot is None else robot.name
 
 
 def of_kit(fingerprint: int) -> Robot | None:
@@ -37,8 +37,8 @@ def may_run(image: Image, profile: Robot, kit: int) -> bool:
     """
     if not image.devices or kit == profile.kit.fingerprint:
         return True
-    found = of_kit(kit)
-    return found is None or fits(image, found)
+    robot = of_kit(kit)
+    return robot is None or fits(image, robot)
 
 
 def fitting(image: Image, first: Robot) -> Robot | None:

@@ -85,8 +85,8 @@ def connection_to(
 
 def _is_suspended(address: str) -> bool:
     """Whether the command that shares a port is suspended: it does not answer."""
-    found = registry.found(address)
-    return found is not None and holders.is_suspended(found.pid)
+    registration = registry.found(address)
+    return registration is not None and holders.is_suspended(registration.pid)
 
 
 def _past_holder(
@@ -97,12 +97,12 @@ def _past_holder(
     A holder that cannot be passed is woken. One that goes on may be writing firmware: it is left
     alone. Raises RobotError in the end.
     """
-    found = registry.found(address)
+    registration = registry.found(address)
     path = str(registry.lock_of(address)) if is_address(address) else address
-    holder = holders.holder(path, None if found is None else found.pid)
+    holder = holders.holder(path, None if registration is None else registration.pid)
     if holder is not None and holder.is_suspended:
         if sys.platform == "linux" and not is_address(address):
-            speed = baud if found is None else found.baud
+            speed = baud if registration is None else registration.baud
             with suppress(RobotError):
                 return _opened_line(
                     address, speed, kit, limit_s, None, language, port, "stop", True

@@ -39,7 +39,7 @@ def naming_robots(
     if not any(diagnostic.code in (*_UNKNOWN, OTHER_ROBOT) for diagnostic in diagnostics):
         return diagnostics
     found = named_among(_others(), diagnostics, text, robot.name, robot.kit)
-    return found if is_chosen else [_told(each, text) for each in found]
+    return found if is_chosen else [_told(diagnostic, text) for diagnostic in found]
 
 
 def _told(diagnostic: Diagnostic, text: str) -> Diagnostic:
@@ -54,7 +54,7 @@ def _told(diagnostic: Diagnostic, text: str) -> Diagnostic:
 
 
 def named_among(
-    others: Mapping[str, Kit], found: Sequence[Diagnostic], text: str, name: str, kit: Kit
+    others: Mapping[str, Kit], diagnostics: Sequence[Diagnostic], text: str, name: str, kit: Kit
 ) -> list[Diagnostic]:
     """Return diagnostics that name the robots that have an unknown word; at most three of them.
 
@@ -70,7 +70,7 @@ def named_among(
     named: list[Diagnostic] = []
     told: list[set[str]] = []  # robots that words have led to
     codes = {*_UNKNOWN, NO_BUTTON} if used - own - {BUTTON} else {*_UNKNOWN}
-    for diagnostic in found:
+    for diagnostic in diagnostics:
         word = diagnostic.values.get("found", "").upper()
         word = BUTTON if diagnostic.code is NO_BUTTON else word
         word = word if word in of_kits else concept_of(word) or word
@@ -92,7 +92,9 @@ def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
     """Whether a program has words of another robot: they have been through `naming_robots`."""
     if any(diagnostic.code is OTHER_ROBOT for diagnostic in diagnostics):
         return True
-    words = {each.values.get("found") for each in diagnostics if each.code in _UNKNOWN}
+    words = {
+        diagnostic.values.get("found") for diagnostic in diagnostics if diagnostic.code in _UNKNOWN
+    }
     # of profiles with paths that are too long for a message
     return bool(words) and any(words & set(robot.kit.names) for _, robot in given.profiles())
 

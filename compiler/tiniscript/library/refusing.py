@@ -32,7 +32,7 @@ def lacks_remote(code: bytes, kit: Kit, robot: DeviceInfo) -> bool:
 
 
 def reads_remote(code: bytes, kit: Kit) -> bool:
-    """Return whether code reads sensors behind the kit's own: those of a remote control."""
+    """Return whether code reads sensors after the kit's own: those of a remote control."""
     return any(sensor >= len(kit.sensors) for sensor in _sensors(code))
 
 

@@ -170,13 +170,13 @@ def fault_of(name: str, offset: int, places: Map | None) -> Fault:
 
 
 def _trace(events: Iterator[Event | Ending], kit: Kit, places: Map | None) -> Trace:
-    found: list[TraceEvent] = []
+    trace_events: list[TraceEvent] = []
     for event in events:
         if not isinstance(event, Ending):
-            found.append(_event(event, kit))
+            trace_events.append(_event(event, kit))
             continue
         fault = fault_of(event.fault, event.offset, places) if event.what == "FAULT" else None
-        return Trace(tuple(found), event.what, fault, found[-1].ms, event.steps)  # type: ignore[arg-type]
+        return Trace(tuple(trace_events), event.what, fault, trace_events[-1].ms, event.steps)  # type: ignore[arg-type]
     raise AssertionError("a run without an ending")
 
 

@@ -46,25 +46,25 @@ class Map(NamedTuple):
 
     def at(self, offset: int) -> MapLocation | None:
         """Return where the instruction at `offset` comes from."""
-        found = None
+        map_location = None
         for place in self.places:
             if place.offset > offset:
                 break
-            found = place
-        return found
+            map_location = place
+        return map_location
 
     def task_of(self, place: MapLocation) -> tuple[str, int] | None:
         """Return the word and the line of the TASK or WHEN around a place; "" and 0 outside.
 
         Returns None where there are no tasks, and in a DEF, which any of them may have called.
         """
-        blocks = [(self._word(each), each) for each in self.places]
+        blocks = [(self._word(location), location) for location in self.places]
         if not any(word in TASKS for word, _ in blocks):
             return None
-        for word, each in blocks:
-            is_around = each[1:3] <= place[1:3] and place[3:] <= each[3:]
+        for word, map_location in blocks:
+            is_around = map_location[1:3] <= place[1:3] and place[3:] <= map_location[3:]
             if is_around and word in (*TASKS, "DEF"):
-                return None if word == "DEF" else (word, each.line)
+                return None if word == "DEF" else (word, map_location.line)
         return "", 0
 
     def _word(self, place: MapLocation) -> str:
@@ -77,7 +77,7 @@ class Map(NamedTuple):
 
 def made(source: Source, places: Iterable[SourceLocation], variables: tuple[str, ...] = ()) -> Map:
     """Return the map of a program that has just been compiled."""
-    found = tuple(
+    map_locations = tuple(
         MapLocation(
             place.offset, *source.position(place.span.start), *source.position(place.span.end)
         )
@@ -85,7 +85,7 @@ def made(source: Source, places: Iterable[SourceLocation], variables: tuple[str,
     )
     last = source.position(len(source.text))[0]
     lines = tuple(source.line_text(number) for number in range(1, last + 1))
-    return Map(source.name, lines, found, variables)
+    return Map(source.name, lines, map_locations, variables)
 
 
 def as_json(places: Map) -> str:

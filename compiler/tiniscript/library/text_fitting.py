@@ -25,29 +25,31 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
     tokens = list(spelled_out(parsed.scan.tokens))
     # A reader that lacks words has no room either for those that give way to a program.
     lacks = level.lacks and level.lacks | kit.given
-    found = [
+    diagnostics = [
         Diagnostic(codes.LEVEL_WORD, token.span, {"level": level.name, "word": token.text})
         for token in tokens
         if token.kind is WORD and (token.text in lacks or len(token.text) > LONGEST_WORD)
     ]
     if "DEF" not in level.lacks and any(procedure.values for procedure in program.procedures):
-        found += _values(program, kit, level)
+        diagnostics += _values(program, kit, level)
     plain = plain_code(program)
     limit = min(CODE_BYTES, level.room)
     if plain.length > limit:
-        place = _first_behind(plain, limit)
-        found.append(_too_many(codes.LEVEL_CODE, place, level, plain.length, limit))
-        return found
+        place = _first_after(plain, limit)
+        diagnostics.append(_too_many(codes.LEVEL_CODE, place, level, plain.length, limit))
+        return diagnostics
     reader = Reader(tokens, kit, level.sensor_bytes)
     reader.program()
     if reader.one_too_many is not None:
         values = {"level": level.name, "limit": str(MOST_BRACKETS)}
-        found.append(Diagnostic(codes.LEVEL_BRACKETS, reader.one_too_many, values))
+        diagnostics.append(Diagnostic(codes.LEVEL_BRACKETS, reader.one_too_many, values))
     for need in reader.needs:
         if need.bytes > level.room:
-            found.append(_too_many(codes.LEVEL_ROOM, need.span, level, reader.most, level.room))
+            diagnostics.append(
+                _too_many(codes.LEVEL_ROOM, need.span, level, reader.most, level.room)
+            )
             break
-    return found
+    return diagnostics
 
 
 def _values(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
@@ -63,7 +65,7 @@ def _values(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     return values
 
 
-def _first_behind(plain: PlainCode, limit: int) -> Span:
+def _first_after(plain: PlainCode, limit: int) -> Span:
     """Return the text of the first instruction whose code does not lie within the limit."""
     ends = [*(place.offset for place in plain.places[1:]), plain.length]
     return next(place.span for place, end in zip(plain.places, ends, strict=True) if end > limit)

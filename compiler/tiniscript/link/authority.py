@@ -70,8 +70,15 @@ class KeyRing:
         key = RobotKey(robot, which, os.urandom(KEY_BYTES), name, is_pending=True)
 
         def with_it(before: list[RobotKey]) -> list[RobotKey]:
-            pending = [each for each in before if each.is_pending and each.place == key.place]
-            return [*(each for each in before if each not in pending[:-MOST_PENDING]), key]
+            pending = [
+                robot_key
+                for robot_key in before
+                if robot_key.is_pending and robot_key.place == key.place
+            ]
+            return [
+                *(robot_key for robot_key in before if robot_key not in pending[:-MOST_PENDING]),
+                key,
+            ]
 
         return key if self._change(with_it) else None
 
@@ -93,18 +100,19 @@ class KeyRing:
         def with_it(before: list[RobotKey]) -> list[RobotKey]:
             if settled in before:
                 return before
-            return [*(each for each in before if each.place != key.place), settled]
+            return [*(robot_key for robot_key in before if robot_key.place != key.place), settled]
 
         self._change(with_it)
 
     def refuse(self, key: RobotKey) -> None:
         """The robot has another key than this one: it is stale, until it is right after all."""
-        self._change(lambda before: [each._replace(is_stale=True) if each[:3] == key[:3] else each
-                                     for each in before])  # fmt: skip
+        self._change(lambda before: [
+            kept._replace(is_stale=True) if kept[:3] == key[:3] else kept for kept in before
+        ])  # fmt: skip
 
     def drop(self, key: RobotKey) -> None:
         """The robot has not taken, or no longer has, this key."""
-        self._change(lambda before: [each for each in before if each.key != key.key])
+        self._change(lambda before: [robot_key for robot_key in before if robot_key.key != key.key])
 
 
 def whose(robot: DeviceInfo) -> str:
@@ -148,23 +156,23 @@ def show_keys(
     Then it is known of a pending key whether the robot has taken it. A stale key is shown only if
     it `is_needed`, since showing it takes time.
     """
-    found: Reply[AuthenticateReply] = Reply(NOT_OWNER)
+    reply: Reply[AuthenticateReply] = Reply(NOT_OWNER)
     keys = [] if ring is None else ring.of_robot(robot.id)
     for key in sorted(keys, key=_order):
         if which not in (None, key.which) or (key.is_stale and not is_needed):
             continue
-        found = yield from _show(key, robot, nonce, epoch)
-        if found.status == STALE:  # a stop or a fault came between: the tag was one of before
-            found = yield from _show(key, robot, nonce, epoch)
-        if ring is not None and found.status == OK:
+        reply = yield from _show(key, robot, nonce, epoch)
+        if reply.status == STALE:  # a stop or a fault came between: the tag was one of before
+            reply = yield from _show(key, robot, nonce, epoch)
+        if ring is not None and reply.status == OK:
             now = key._replace(is_pending=False, is_stale=False, seals=_seals(robot) or key.seals)
             if now != key:
                 ring.settle(now)
-        if ring is not None and found.status == WRONG_KEY:
+        if ring is not None and reply.status == WRONG_KEY:
             ring.refuse(key)  # kept all the same: the robot is not known to have said so
-        if found.status != WRONG_KEY:
+        if reply.status != WRONG_KEY:
             break
-    return found
+    return reply
 
 
 def _seals(robot: DeviceInfo) -> bool:

@@ -85,20 +85,20 @@ class Handshake:
         }
         reply = yield from requests.single(Request("HELLO", values), HelloReply)
         if reply.status == OK:
-            found = requests.described(reply.values)
-            if authority.is_other(self._keys, self._place, found):
+            device_info = requests.described(reply.values)
+            if authority.is_other(self._keys, self._place, device_info):
                 self.is_open = False
-                return Reply(OTHER_ROBOT, found.id)
-            must_seal = authority.has_to_seal(self._keys, found)
-            if must_seal and not found.values.features & SEALS:
+                return Reply(OTHER_ROBOT, device_info.id)
+            must_seal = authority.has_to_seal(self._keys, device_info)
+            if must_seal and not device_info.values.features & SEALS:
                 self.is_open = False
                 return Reply(UNPROVEN)
             self.is_open = True
             if self._boot != reply.values.nonce:
                 self._state.reset()
-            self.robot = found
+            self.robot = device_info
             self._state.state = reply.values.state
-            is_owned = bool(found.values.features & OWNED)
+            is_owned = bool(device_info.values.features & OWNED)
             if is_owned or must_seal:
                 shown = yield from self.show_keys(is_needed=must_seal and not is_owned)
                 if shown.status == STATUSES["STALE"]:  # the robot was reset meanwhile

@@ -70,8 +70,8 @@ def _who_have(path: str) -> Iterator[int]:
     for process in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):  # it has ended, or is another user's
             if int(process.name) != os.getpid() and any(
-                os.path.samestat(wanted, each.stat()) for each in (process / "fd").iterdir()
-                if each.exists()
+                os.path.samestat(wanted, path.stat()) for path in (process / "fd").iterdir()
+                if path.exists()
             ):  # fmt: skip
                 yield int(process.name)
 
@@ -100,9 +100,9 @@ def _said_by_ps(pid: int, column: str) -> str:
     import subprocess  # a stop on Linux does without
 
     with suppress(OSError, subprocess.SubprocessError):
-        done = subprocess.run(
+        completed = subprocess.run(
             ["ps", "-o", f"{column}=", "-p", str(pid)],
             capture_output=True, text=True, timeout=PS_S, check=False,
         )  # fmt: skip
-        return done.stdout.strip()
+        return completed.stdout.strip()
     return ""

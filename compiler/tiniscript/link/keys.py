@@ -96,8 +96,12 @@ class KeyFile(KeyRing):
 
     def _kept(self) -> list[RobotKey]:
         with suppress(BadKeys):
-            found = self.all()
-            return [key._replace(seals=False) for key in found] if self._is_for_virtual else found
+            robot_keys = self.all()
+            return (
+                [key._replace(seals=False) for key in robot_keys]
+                if self._is_for_virtual
+                else robot_keys
+            )
         return []
 
     @property

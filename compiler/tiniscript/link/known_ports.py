@@ -47,7 +47,9 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
             first = next(iter(before.names.items()), None)
             if first == (port, name) and (before.last == port or not is_used):
                 return
-            others = {each: name for each, name in before.names.items() if not _is_same(each, port)}
+            others = {
+                value: name for value, name in before.names.items() if not _is_same(value, port)
+            }
             names = {port: name, **others}
             last = port if is_used else before.last
             fields = {"last": last, "ports": list(names.items())[:KEPT]}

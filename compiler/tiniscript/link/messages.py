@@ -205,18 +205,18 @@ KINDS = {"u8": "B", "u16": "H", "u32": "I", "i8": "b", "i32": "i"}
 
 def _fields(text: str, before: int = 0) -> tuple[Field, ...]:
     """Return the fields that a text names, after so many bytes of the payload."""
-    found: list[Field] = []
+    fields: list[Field] = []
     for word in text.split():
         name, _, kind = word.partition(":")
         kind, _, range_of_rest = kind.partition("=")
         if kind == "rest":
             low, _, high = range_of_rest.partition("..")
-            room = payload_bytes(LARGE_FRAME) - before - sum(field.high for field in found)
-            found.append(Field(name, kind, int(low), int(high or room), fills=not high))
+            room = payload_bytes(LARGE_FRAME) - before - sum(field.high for field in fields)
+            fields.append(Field(name, kind, int(low), int(high or room), fills=not high))
         else:
             size = struct.calcsize(KINDS[kind])
-            found.append(Field(name, kind, size, size))
-    return tuple(found)
+            fields.append(Field(name, kind, size, size))
+    return tuple(fields)
 
 
 def _message(number: int, name: str, acts: bool, request: str, reply: str, meaning: str) -> Message:

@@ -42,7 +42,7 @@ def meet(path: Path, place: str, robot: int) -> None:
         return
 
     def with_it(before: Met) -> Met:
-        others = {each: other for each, other in before.places.items() if each != place}
+        others = {value: other for value, other in before.places.items() if value != place}
         return before._replace(places={**others, place: robot})
 
     with suppress(OSError, ValueError):

@@ -155,8 +155,8 @@ class RemoteControl:
         self._asked.clear()
 
     def _tell(self, reply: Reply[EmptyReply]) -> None:
-        for each in self._sent:
-            each.outcome = reply
+        for pending_request in self._sent:
+            pending_request.outcome = reply
         self._sent.clear()
 
 

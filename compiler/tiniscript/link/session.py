@@ -94,8 +94,9 @@ _STALE = STATUSES["STALE"]
 _WAITING = (STATUSES["BUSY"], STATUSES["HOLD_BUTTON"])  # asked again: the robot is not ready
 _BY_SEQUENCE, _BY_MESSAGE = 1, 2  # causes of a stopped robot: the stop sequence, STOP
 _PREPARING = ("STOP", "CLEAR", "AUTHENTICATE", "BEGIN", "DATA", "ABORT", "KEYS")
-_DOING = [each.name for each in MESSAGES
-          if FIRST_ACTING <= each.number < FIRST_EVENT and each.name not in _PREPARING]  # fmt: skip
+_DOING = [message.name for message in MESSAGES
+          if FIRST_ACTING <= message.number < FIRST_EVENT
+          and message.name not in _PREPARING]  # fmt: skip
 _HEARTBEATS = ("PING", "KEYS")
 _STARTING = ("PROGRAM", "COMMIT", "LIVE", "START")  # a run may begin with each
 _END_RUNS = ("upload", "live", "start", "undo")  # a robot ends what runs when it hears of them
@@ -227,7 +228,11 @@ class Session(Requester):
         A frame that may have started a run is under way until it is answered.
         """
         if request in self._waiting:
-            self._waiting = deque(each for each in self._waiting if each is not request)
+            self._waiting = deque(
+                pending_exchange
+                for pending_exchange in self._waiting
+                if pending_exchange is not request
+            )
         elif self._pending is None or self._pending.wanted is not request:
             return
         elif self._may_start():
@@ -318,14 +323,17 @@ class Session(Requester):
     def events(self) -> list[Event]:
         """Return the events since the last call. Values wait until the robot has said which program
         runs, if it is asked; nothing else waits behind them."""
-        asked = self._asks_program
+        pending_exchange = self._asks_program
         waiting = 0
-        if asked is not None and asked.outcome is None:
-            behind = takewhile(lambda each: isinstance(each, Unnamed), reversed(self._events))
-            waiting = sum(1 for _ in behind)
+        if pending_exchange is not None and pending_exchange.outcome is None:
+            after = takewhile(lambda each: isinstance(each, Unnamed), reversed(self._events))
+            waiting = sum(1 for _ in after)
         count = len(self._events) - waiting
         found, self._events = self._events[:count], self._events[count:]
-        return [self._state.named(each) if isinstance(each, Unnamed) else each for each in found]
+        return [
+            self._state.named(unnamed) if isinstance(unnamed, Unnamed) else unnamed
+            for unnamed in found
+        ]
 
     # -- what is sent -----------------------------------------------------------------------------
 

@@ -29,10 +29,10 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
     """
     before = text[max(0, span.start - _NEAR) : span.start]
     amount = text[slice(*span)]
-    if asked := _ASKED.search(before):
-        name = meant_by(asked[1].upper()) or asked[1].upper()
+    if match := _ASKED.search(before):
+        name = meant_by(match[1].upper()) or match[1].upper()
         sample = _CENTIMETRES if name == "DISTANCE" else _ANY
-        return {"amount": amount, "example": f"{name}{asked[0][len(asked[1]) :]}{sample}"}
+        return {"amount": amount, "example": f"{name}{match[0][len(match[1]) :]}{sample}"}
     call, after = _BEFORE.search(before), _AFTER.match(text[span.end : span.end + _NEAR])
     word = WORDS.get(call[1].upper()) if call else None
     if call is None or after is None or word is None:
@@ -41,11 +41,11 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
     values = f"{call[2]}{amount}{after[0][:-1]}".split(",")
     amount = values[place].strip()
     is_asked = any(sign in amount for sign in "<>=")  # a part of it is no number
-    if is_asked or not any(is_amount(*each.split()) for each in values):
+    if is_asked or not any(is_amount(*value.split()) for value in values):
         return {}
     for k, (value, its) in enumerate(zip(values, word.arguments, strict=False)):
-        words = [each for each in plain(value).split() if each not in own]
-        said = [said_of(each, "power")[0] for each in words if said_of(each, "power")]
+        words = [word for word in plain(value).split() if word not in own]
+        said = [said_of(word, "power")[0] for word in words if said_of(word, "power")]
         if said or is_amount(*words) or k == place:
             sample = said[0] if said and its.unit == "%" else _SAMPLES.get(its.name, its.sample)
             sample = _own_number(words, its.unit) or sample

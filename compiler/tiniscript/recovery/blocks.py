@@ -29,7 +29,7 @@ class Line(NamedTuple):
     @property
     def is_do(self) -> bool:
         """Whether it begins a block whose condition comes at its end."""
-        return any(step.code is codes.ASKED_BEHIND for step in self.reading.steps)
+        return any(step.code is codes.ASKED_AFTER for step in self.reading.steps)
 
 
 class Edit(NamedTuple):

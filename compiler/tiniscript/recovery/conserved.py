@@ -109,69 +109,75 @@ def difference(text: str, repaired: str, kit: Kit) -> Difference:
     return Difference([*dict.fromkeys(lost)], more)
 
 
-def conserving(found: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
+def conserving(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
     """Return diagnostics of which no repair is sure that loses something, or does more.
 
     It is shown together with what is `lost`, and so is what was not sure before and loses a unit.
     """
-    return [_with_units(each, text, kit) for each in _without_losses(found, text, kit)]
+    return [_with_units(loss, text, kit) for loss in _without_losses(diagnostics, text, kit)]
 
 
-def _without_losses(found: Sequence[Diagnostic], text: str, kit: Kit) -> Sequence[Diagnostic]:
+def _without_losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> Sequence[Diagnostic]:
     """Return diagnostics of which sure repairs lose nothing: one alone, or all of them together."""
-    sure = [each for each in found if each.repair and each.repair.is_sure]
+    sure = [
+        diagnostic for diagnostic in diagnostics if diagnostic.repair and diagnostic.repair.is_sure
+    ]
     joint: list[Edit] = []
-    for each in sure:
-        if each.repair and not overlap(each.repair.edits, joint):
-            joint += each.repair.edits
+    for diagnostic in sure:
+        if diagnostic.repair and not overlap(diagnostic.repair.edits, joint):
+            joint += diagnostic.repair.edits
     if not joint or not any(difference(text, applied(text, joint), kit)):
-        return found
-    lost = {id(each): difference(text, applied(text, each.repair.edits), kit)
-            for each in sure if each.repair}  # fmt: skip
+        return diagnostics
+    lost = {id(diagnostic): difference(text, applied(text, diagnostic.repair.edits), kit)
+            for diagnostic in sure if diagnostic.repair}  # fmt: skip
     is_joint = not any(any(each) for each in lost.values())  # none alone: then all together do it
     return [
-        _shown(each, lost[id(each)].lost)
-        if id(each) in lost and (is_joint or any(lost[id(each)]))
-        else each
-        for each in found
+        _shown(diagnostic, lost[id(diagnostic)].lost)
+        if id(diagnostic) in lost and (is_joint or any(lost[id(diagnostic)]))
+        else diagnostic
+        for diagnostic in diagnostics
     ]
 
 
-def _with_units(found: Diagnostic, text: str, kit: Kit) -> Diagnostic:
+def _with_units(diagnostic: Diagnostic, text: str, kit: Kit) -> Diagnostic:
     """Return a diagnostic whose shown repair says which units of numbers are in it no more.
 
     A minus is none of these: a move goes the other way then.
     """
-    repair = found.repair
-    if repair is None or repair.is_sure or not repair.edits or found.values.get("lost"):
-        return found
+    repair = diagnostic.repair
+    if repair is None or repair.is_sure or not repair.edits or diagnostic.values.get("lost"):
+        return diagnostic
     made = "".join(edit.text for edit in repair.edits)
     units = [
         lost
         for lost in difference(text, applied(text, repair.edits), kit).lost
         if (unit := _WITH_UNIT.fullmatch(lost)) and unit[1].upper() not in made.upper()
     ]
-    return _shown(found, units) if units else found
+    return _shown(diagnostic, units) if units else diagnostic
 
 
-def with_sample(found: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
+def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
     """Return diagnostics that say so where they ask for what is near, which has no number."""
-    guesses = [each for each in found if _ASKS_NEAR.search(each.values.get("fix", ""))]
+    guesses = [
+        diagnostic
+        for diagnostic in diagnostics
+        if _ASKS_NEAR.search(diagnostic.values.get("fix", ""))
+    ]
     if not guesses or any(it.value == float(NEAR_CM) for it in _Said(text, text, kit).amounts):
-        return [*found]
+        return [*diagnostics]
     sample = {"sample": f"{NEAR_CM} cm"}
     return [
-        each._replace(values={**each.values, **sample})
-        if each in guesses and not each.values.get("example")
-        else each
-        for each in found
+        diagnostic._replace(values={**diagnostic.values, **sample})
+        if diagnostic in guesses and not diagnostic.values.get("example")
+        else diagnostic
+        for diagnostic in diagnostics
     ]
 
 
-def _shown(found: Diagnostic, lost: Sequence[str]) -> Diagnostic:
-    edits = found.repair.edits if found.repair else ()
-    values = {**found.values, "lost": ", ".join(lost)} if lost else found.values
-    return found._replace(values=values, repair=Repair(edits, False))
+def _shown(diagnostic: Diagnostic, lost: Sequence[str]) -> Diagnostic:
+    edits = diagnostic.repair.edits if diagnostic.repair else ()
+    values = {**diagnostic.values, "lost": ", ".join(lost)} if lost else diagnostic.values
+    return diagnostic._replace(values=values, repair=Repair(edits, False))
 
 
 class _Said:
@@ -185,7 +191,7 @@ class _Said:
         self.body = self._without_frame("\n".join(body for body, _ in parts))
         lines = [lexemes(self._apart(line)) for line in self.body.split("\n")]
         self.names = Names(lines, kit)
-        self.tokens = [each for line in lines for each in (*self._joined(line), _END)]
+        self.tokens = [lexeme for line in lines for lexeme in (*self._joined(line), _END)]
         # what has no unit counts something of its own: 50 % of light is no 50
         self.units = {reading.name: reading.unit or reading.name for reading in kit.readings} | {
             "TIME": "s"
@@ -195,7 +201,7 @@ class _Said:
         self.meant: Counter[str] = Counter()  # that it may say
         self.written: dict[str, str] = {}
         self.amounts: list[Amount] = []
-        self.loose: list[tuple[str, str]] = []  # units behind no number, and how they are written
+        self.loose: list[tuple[str, str]] = []  # units after no number, and how they are written
         self.foreign: Counter[str] = Counter()  # of those, in words of another language
         self.strange = 0  # words of other languages, or of none
         self._read()
@@ -317,7 +323,7 @@ class _Said:
         return self.tokens[k + 1] if k + 1 < len(self.tokens) else _END
 
     def _is_label(self, k: int) -> bool:
-        """Whether a word behind an end says which one ends."""
+        """Whether a word after an end says which one ends."""
         back = k - 2 if k > 1 and self.tokens[k - 1].text in ("-", "_", ".") else k - 1
         before = self.tokens[back] if k else _END
         is_end = before.text in ENDED or bool(said_of(before.text, "end"))
@@ -346,11 +352,11 @@ class _Said:
                 break
             value, k = value + more, at
         unit = slot if self.is_right else ""
-        if said := self._unit_behind(k):
+        if said := self._unit_after(k):
             unit, scale = said
             value, k = value * scale / 1000, k + 1
             written += f"{after.space or ''}{after.source or after.text}"
-        line = sum(each is _END for each in self.tokens[:k])
+        line = sum(lexeme is _END for lexeme in self.tokens[:k])
         self.amounts.append(Amount(-value if is_minus else value, unit, written, line))
         return k + 1
 
@@ -363,8 +369,8 @@ class _Said:
         is_even = self.is_right or bool(sign.space) == bool(self.tokens[k].space)
         return not (is_value and is_even)
 
-    def _unit_behind(self, k: int) -> tuple[str, float] | None:
-        """Return the unit behind a number, and how many thousandths of it one is."""
+    def _unit_after(self, k: int) -> tuple[str, float] | None:
+        """Return the unit after a number, and how many thousandths of it one is."""
         token, next_one = self._after(k), self._after(k + 1).text
         if token.text == "%" and next_one in (")", ",", ";"):  # no remainder of a division
             return "%", 1000
@@ -422,9 +428,9 @@ class _Said:
         if word.text not in WORDS or not WORDS[word.text].is_call:
             return [""]
         units = [argument.unit for argument in WORDS[word.text].arguments]
-        behind = texts(self.tokens[k : closed(self.tokens, k) or k])
+        after = texts(self.tokens[k : closed(self.tokens, k) or k])
         way = UNIT_OF.get(word.text, "")
-        if way in behind:
+        if way in after:
             units[0] = WAYS[way].unit
         return units
 
@@ -439,17 +445,21 @@ class _Said:
     # -- branches --------------------------------------------------------------------------------
 
     def calls(self, name: str) -> int:
-        """Return how often a DEF is called: behind DEF, or behind an end, its name is no call."""
+        """Return how often a DEF is called: after DEF, or after an end, its name is no call."""
         found = 0
-        for k, (before, each) in enumerate(pairwise([_END, *self.tokens])):
-            found += each.text == name and not ("DEF" in self._may_be(before) or self._is_label(k))
+        for k, (before, lexeme) in enumerate(pairwise([_END, *self.tokens])):
+            found += lexeme.text == name and not (
+                "DEF" in self._may_be(before) or self._is_label(k)
+            )
         return found
 
     def negations(self) -> list[str]:
         """Return the words that turn a question round, as they are written."""
         negations = []
         for k, token in enumerate(self.tokens):
-            is_asked = any(self._may_be(each) & ASKING for each in self.tokens[max(0, k - 4) : k])
+            is_asked = any(
+                self._may_be(lexeme) & ASKING for lexeme in self.tokens[max(0, k - 4) : k]
+            )
             is_no = token.text in ("NOT", "!") or bool(said_of(token.text, *_NEGATES))
             is_asked |= bool(said_of(token.text, "unless"))
             if is_no and is_asked and not self.names.is_name(token.text):
@@ -459,9 +469,9 @@ class _Said:
     def sums(self) -> Counter[str]:
         """Count the signs between two values, of which one at least is no plain number."""
         sums: Counter[str] = Counter()
-        behind = (*self.tokens[3:], _END)
+        after = (*self.tokens[3:], _END)
         for one, sign, other, inner in zip(
-            self.tokens, self.tokens[1:], self.tokens[2:], behind, strict=False
+            self.tokens, self.tokens[1:], self.tokens[2:], after, strict=False
         ):
             is_value = one.text == ")" or self._is_read(one)
             is_other = self._is_read(inner if other.text == "(" else other)
@@ -476,7 +486,9 @@ class _Said:
 
     def empty(self) -> int:
         """Return how many branches have nothing in them."""
-        left = [each for each in self.tokens if each is not _END and each.text not in (";", "{")]
+        left = [
+            lexeme for lexeme in self.tokens if lexeme is not _END and lexeme.text not in (";", "{")
+        ]
         found = 0
         for k, token in enumerate(left):
             word = self._word(token)
@@ -496,7 +508,7 @@ class _Said:
             if end and "IF" in self._may_be(token):
                 inside = pairwise(self.tokens[k + 2 : end - 1])
                 begun = [b for a, b in inside if a.text in (",", ";")]
-                found += sum(bool(self._may_be(each) & _DRIVES) for each in begun) > 1
+                found += sum(bool(self._may_be(lexeme) & _DRIVES) for lexeme in begun) > 1
         return found
 
 
@@ -510,15 +522,15 @@ def _amounts(before: _Said, after: _Said) -> Iterator[str]:
         if written and gone and not _all_in(parts, left):
             read = parts
             left.remove(written)
-            for each in gone:
-                lost.remove(each)
+            for amount in gone:
+                lost.remove(amount)
     for is_near in (True, False):  # first what stays in its line: another line's 50 is no 50 %
-        for each in [*lost]:
-            fitting = [it for it in left if _is_same(each, it)]
-            if fitting := [it for it in fitting if it.line == each.line or not is_near]:
-                left.remove(max(fitting, key=lambda it: it.unit == each.unit))
-                lost.remove(each)
-    yield from (each.written for each in lost)
+        for amount in [*lost]:
+            fitting = [it for it in left if _is_same(amount, it)]
+            if fitting := [it for it in fitting if it.line == amount.line or not is_near]:
+                left.remove(max(fitting, key=lambda it: it.unit == amount.unit))
+                lost.remove(amount)
+    yield from (amount.written for amount in lost)
     units = {unit for it in after.amounts for unit in it.unit.split("/")}
     units |= {after.units.get(token.text, "") for token in after.tokens}
     kept = Counter(after.loose)
@@ -530,7 +542,7 @@ def _all_in(parts: Sequence[float], amounts: Sequence[Amount]) -> list[Amount]:
     left = list(amounts)
     found = []
     for part in parts:
-        own = next((each for each in left if abs(each.value) == part), None)
+        own = next((amount for amount in left if abs(amount.value) == part), None)
         if own is None:
             return []
         left.remove(own)
@@ -556,7 +568,7 @@ def _runs(text: str) -> Iterator[tuple[float, list[float]]]:
             gaps = [text[a.end() : b.start()] for a, b in pairwise(run)]
             if not all(_BETWEEN.fullmatch(gap) for gap in gaps):
                 break
-            digits = [each[0].translate(_LETTERS) for each in run]
+            digits = [match[0].translate(_LETTERS) for match in run]
             written = text[run[0].start() : run[-1].end()]
             parts = [float(each) for each in re.findall(r"\d+(?:\.\d+)?|\.\d+", written)]
             yield from ((value, parts) for value in _values(digits, ":" in written))

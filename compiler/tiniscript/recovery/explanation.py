@@ -27,11 +27,11 @@ from tiniscript.recovery.writing import in_one_line, laid_out, tokens_of, withou
 _DEDUPED = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)
 # Codes of what belongs to the beginning of its block, where something is wrong with that, too.
 _OF_BLOCK = (codes.NEVER_ENDS, codes.END_ALONE, codes.END_SPLIT, codes.BRACES,
-             codes.ASKED_BEHIND, codes.OTHER_LANGUAGE)  # fmt: skip
+             codes.ASKED_AFTER, codes.OTHER_LANGUAGE)  # fmt: skip
 _SHOW_WHOLE = frozenset((
     codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.MISSING_OPEN, codes.MISSING_CLOSE,
     codes.END_SPLIT, codes.END_ALONE, codes.FOREVER_NOT_HERE, codes.SPANISH_IF,
-    codes.BRACES, codes.OTHER_ASSIGNMENT, codes.ASKED_BEHIND, codes.GROUPED, codes.OTHER_LANGUAGE,
+    codes.BRACES, codes.OTHER_ASSIGNMENT, codes.ASKED_AFTER, codes.GROUPED, codes.OTHER_LANGUAGE,
 ))  # fmt: skip
 _OF_ARM = (codes.BRACES, codes.OTHER_LANGUAGE, codes.HEADER_SEPARATOR)
 _WORD, _WORD_BEFORE = re.compile(r"\w+"), re.compile(r"\w+\Z")
@@ -235,7 +235,7 @@ class _Explainer:
         steps: dict[int, list[Step]] = {}
         for step in self.changes[k].steps:
             one, other = (instructions(each) for each in step[1:])
-            if len(one) != len(other) or step.code is codes.ASKED_BEHIND:
+            if len(one) != len(other) or step.code is codes.ASKED_AFTER:
                 return []
             pairs = enumerate(zip(one, other, strict=True))
             n = next((n for n, (a, b) in pairs if texts(a) != texts(b)), len(one) - 1)

@@ -135,7 +135,7 @@ def _in_brackets(one: str, other: str) -> tuple[str, str]:
 
 
 def _diagnostic(told: Explanation, meant: Candidate, found: Sequence[Diagnostic]) -> Diagnostic:
-    is_said = told.code is not codes.ASKED_BEHIND or "BREAK" in meant.text.upper()  # how often
+    is_said = told.code is not codes.ASKED_AFTER or "BREAK" in meant.text.upper()  # how often
     is_sure = meant.is_applied or (meant.is_whole and told.is_sure)
     repair = Repair(tuple(told.edits), is_said and is_sure)
     if not meant.has_sure_blocks and "FOREVER" not in told.fix:

@@ -102,7 +102,7 @@ def _words(row: str, start: int, names: Names, tasks: Set[str]) -> Iterator[Diag
             span = Span(end - len(part[0].rstrip()[begin - start - part.start() :].lstrip()), end)
             repair = Repair((Edit(Span(begin, end), ""),), False)
             values = {"words": words, "needless": words}
-            yield Diagnostic(codes.WORDS_BEHIND, span, values, span, repair)
+            yield Diagnostic(codes.WORDS_AFTER, span, values, span, repair)
 
 
 def _says_nothing(token: Lexeme, names: Names) -> bool:

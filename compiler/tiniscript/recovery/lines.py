@@ -56,7 +56,7 @@ _EDGES = {word for word in WORDS if WORDS[word].role.is_of_blocks} | {";", "UNTI
 
 
 class Step(NamedTuple):
-    """A rewrite that was made: what it was for, and the line before and behind it."""
+    """A rewrite that was made: what it was for, and the line before and after it."""
 
     code: Code
     before: Sequence[Lexeme]
@@ -114,7 +114,7 @@ def _alike(token: Lexeme) -> tuple[str, str]:
 
 @lru_cache(REMEMBERED)
 def _right(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] | Failure:
-    found: list[Item] = []
+    items: list[Item] = []
     start = 0
     around = [";", *(text for _, text in tokens), BRACES[1], ";"]
     for k, (before, text, after) in enumerate(zip(around, around[1:], around[2:], strict=False)):
@@ -125,11 +125,11 @@ def _right(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] 
         part = outline(tokens[start:k], names.read_as)
         if isinstance(part, Failure):
             return Failure(part.start + start, part.at + start)
-        found += [item._replace(start=item.start + start, end=item.end + start) for item in part]
+        items += [item._replace(start=item.start + start, end=item.end + start) for item in part]
         if k < len(tokens):
-            found.append(Item("end" if is_end else text, ANY_END if is_end else text, k, k + 1))
+            items.append(Item("end" if is_end else text, ANY_END if is_end else text, k, k + 1))
         start = k + 1
-    return found
+    return items
 
 
 def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list[Reading]:
@@ -145,8 +145,8 @@ def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Read
     setup = meanings.setup_of(tokens)
     readings = _Search(names).read(list(tokens[len(setup) :]), is_quick)
     whole = [reading._replace(tokens=[*setup, *reading.tokens]) for reading in readings]
-    told = ((each, right(each.tokens, names)) for each in whole)
-    return [each._replace(items=its) for each, its in told if not isinstance(its, Failure)]
+    told = ((reading, right(reading.tokens, names)) for reading in whole)
+    return [reading._replace(items=its) for reading, its in told if not isinstance(its, Failure)]
 
 
 _Successors = Callable[[Reading, Failure], Iterator[Reading]]
@@ -163,20 +163,22 @@ class _Search:
         if not is_quick and not readings and has_words and len(tokens) < LONGEST_WITH_SLIPS:
             found = self.search(first, SLIP_STATES, self.with_slips)
             found = [
-                each for each in found if each.items and each.cost < found[0].cost + SLIP_MARGIN
+                reading
+                for reading in found
+                if reading.items and reading.cost < found[0].cost + SLIP_MARGIN
             ]
-            is_alone = len({each.said for each in found}) == 1
-            readings = [each._replace(is_sure=each.is_sure and is_alone) for each in found]
+            is_alone = len({reading.said for reading in found}) == 1
+            readings = [reading._replace(is_sure=reading.is_sure and is_alone) for reading in found]
         return readings
 
     def search(self, first: Reading, states: int, successors: _Successors) -> list[Reading]:
         order = count()
         heap = [(first.cost, next(order), first)]
         seen: set[tuple[str, ...]] = set()
-        found: list[Reading] = []
+        readings: list[Reading] = []
         while heap and len(seen) < states:
             cost, _, reading = heapq.heappop(heap)
-            if found and (cost > found[0].cost + FARTHEST or len(found) >= RIVALS):
+            if readings and (cost > readings[0].cost + FARTHEST or len(readings) >= RIVALS):
                 break
             text = reading.text
             if text in seen:
@@ -185,12 +187,12 @@ class _Search:
             items = right(reading.tokens, self.names)
             if not isinstance(items, Failure):
                 if not self.says_twice(reading, items, first):
-                    found.append(reading._replace(items=items))
+                    readings.append(reading._replace(items=items))
                 continue
             for after in successors(reading, items):
                 if len(after.tokens) < LONGEST:
                     heapq.heappush(heap, (after.cost, next(order), after))
-        return found
+        return readings
 
     @staticmethod
     def says_twice(reading: Reading, items: Sequence[Item], first: Reading) -> bool:
@@ -274,7 +276,7 @@ class _Search:
                 break
 
     def with_slips(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
-        """One sign wrong, missing, too much or behind its neighbour, where the line fails."""
+        """One sign wrong, missing, too much or after its neighbour, where the line fails."""
         tokens, (start, at) = reading.tokens, failure
         for k in reversed(range(max(0, start - 1), min(len(tokens) + 1, at + 2))):
             head, rest = tokens[:k], tokens[k + 1 :]
@@ -326,7 +328,7 @@ def _touches(failure: Failure, start: int, end: int) -> bool:
 
 
 def _is_long(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
-    """Whether the number behind a translated word is rarely meant for seconds: `move(50, 50)`."""
+    """Whether the number after a translated word is rarely meant for seconds: `move(50, 50)`."""
     numbers = [token for token in tokens[k + 1 : k + 3] if token.kind is NUMBER]
     least = LONG_S if concept in (*MOVES, "BEEP") else MILLISECONDS_FROM
     is_timed = concept in (*MOVES, "BEEP", "W")

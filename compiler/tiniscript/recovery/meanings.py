@@ -228,7 +228,7 @@ class _OfLine(NamedTuple):
     defs: set[str]
     in_brackets: set[str]
     rows: set[tuple[str, ...]]
-    parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets behind its own
+    parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets after its own
     pairs: set[tuple[str, str]]  # the name of a DEF, or one and that of a value
     begun: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
     called: set[str]  # words that are an instruction alone
@@ -335,28 +335,30 @@ class Names:
         self.measuring = tuple(sorted(sensor.name for sensor in kit.sensors))
         self.asked = {reading.name: reading for reading in readings if not reading.is_yes_no}
         self.actuators = {actuator.name: actuator for actuator in kit.actuators}
-        told = [_names_of(tuple(line)) for line in lines]
-        self.in_brackets = {name for each in told for name in each.in_brackets}
-        self.rows = {row for each in told for row in each.rows}
-        self.parameters = {k: its for each in told for k, its in each.parameters.items()}
-        for name, value in {pair for each in told for pair in each.pairs}:
+        of_lines = [_names_of(tuple(line)) for line in lines]
+        self.in_brackets = {name for line in of_lines for name in line.in_brackets}
+        self.rows = {row for line in of_lines for row in line.rows}
+        self.parameters = {k: its for line in of_lines for k, its in line.parameters.items()}
+        for name, value in {pair for line in of_lines for pair in line.pairs}:
             if value in self.in_brackets:  # `DEF LADO X`, and `F(X, 50)` below
                 self.parameters[name] = (value,)
                 self.rows.discard((name, value))
-        self.begun = {word: block for each in told for word, block in each.begun.items()}
-        if sum(each.left for each in told) < 0:
-            self.begun |= {word: "LOOP" for each in told for word in each.counted}
-        self.variables = {name for each in told for name in each.variables}
+        self.begun = {word: block for line in of_lines for word, block in line.begun.items()}
+        if sum(line.left for line in of_lines) < 0:
+            self.begun |= {word: "LOOP" for line in of_lines for word in line.counted}
+        self.variables = {name for line in of_lines for name in line.variables}
         self.variables.update(chain.from_iterable(self.parameters.values()))
-        self.defs = {name for each in told for name in each.defs} - {row[0] for row in self.rows}
-        self.called = frozenset(self.defs & {word for each in told for word in each.called})
+        self.defs = {name for line in of_lines for name in line.defs} - {
+            row[0] for row in self.rows
+        }
+        self.called = frozenset(self.defs & {word for line in of_lines for word in line.called})
         counts = {name: len(self.parameters.get(name, ())) for name in self.defs}
         alone = {name for name, count in counts.items() if not count}
         calls = {*counts.items(), *((name, 1) for name in self.actuators)}
         values, instructions = self.sensors | self.variables, self.sensors | alone
         self.known = Known(frozenset(values), instructions, frozenset(calls))
         # What nobody knows, and is compared, is no reason not to read what is around it.
-        compared = {name for each in told for name in each.compared if name not in WORDS}
+        compared = {name for line in of_lines for name in line.compared if name not in WORDS}
         meant = {name: self.meant(name, NEAR) for name in compared - values}
         self.strange = {name for name, its in meant.items() if not its or its in CALLED}
         self.read_as = self.known._replace(values=frozenset(values | self.strange))
@@ -389,7 +391,9 @@ class Names:
         if said_of(end, "end") and block in (*WORDS, *self.defs):
             return (Meaning(SOME_END, KNOWN),)
         found = meanings(word)
-        return tuple(each for each in found if each.concept in WORDS or self.has(each.concept))
+        return tuple(
+            meaning for meaning in found if meaning.concept in WORDS or self.has(meaning.concept)
+        )
 
     def meant(self, word: str, most: int = MISSPELT) -> str:
         """Return the word of the language that a word means, "" for none or a less likely one."""
@@ -437,7 +441,7 @@ class Names:
         classes += ["@cross"] if text == "X" and not is_own else []
         if "unit" not in said and text not in WORDS and not is_own:
             classes += [f"@like_{way}" for way in WAYS if is_slip(text, way)]
-        meant = [each.concept for each in self.meanings(text) if each.cost < NEAR]
+        meant = [meaning.concept for meaning in self.meanings(text) if meaning.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""
         classes += [ALIASES[word]] if word in ALIASES else []
         is_name = self.is_name(text)

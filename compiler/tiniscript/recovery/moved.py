@@ -76,10 +76,10 @@ def _ordered(text: str, is_at_start: bool) -> Moved | None:
 def _pieces(text: str) -> Iterator[_Piece]:
     for line, row in enumerate(text.split("\n"), 1):
         body, note = without_note(row)
-        parts = [each for each in body.split(";") if each.strip()] or [""]
+        parts = [part for part in body.split(";") if part.strip()] or [""]
         for k, part in enumerate(parts):
-            found = _FIRST.match(part.upper())
-            word, name = found.groups() if found else ("", "")
+            match = _FIRST.match(part.upper())
+            word, name = match.groups() if match else ("", "")
             shown = part + note if note and k + 1 == len(parts) else part.rstrip()
             yield _Piece(shown, line, ALIASES.get(word, word), name)
 
@@ -87,9 +87,9 @@ def _pieces(text: str) -> Iterator[_Piece]:
 def _joined(pieces: list[_Piece]) -> str:
     """Return a program in which pieces of one line stay in it, where they are neighbours."""
     text = pieces[0].text.lstrip()
-    for before, each in pairwise(pieces):
-        is_near = before.line == each.line and "//" not in before.text
-        text += (";" if is_near else "\n") + each.text
+    for before, piece in pairwise(pieces):
+        is_near = before.line == piece.line and "//" not in before.text
+        text += (";" if is_near else "\n") + piece.text
     return text
 
 

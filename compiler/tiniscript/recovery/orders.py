@@ -74,10 +74,10 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     groups = groupby(words, key=lambda it: it.text in (*joins,) or bool(said_of(it.text, "then")))
     for is_between, group in groups:
         part = list(group)
-        if is_between or (not found and all(said_of(each.text, "filler") for each in part)):
+        if is_between or (not found and all(said_of(lexeme.text, "filler") for lexeme in part)):
             continue  # `Hola robot, …`
         own = _orders(part, names)
-        if not own or any(each.is_repeated for each in own[bool(not found) :]):
+        if not own or any(order.is_repeated for order in own[bool(not found) :]):
             return []  # nobody knows how much of it is done so often
         found += own
     return found
@@ -91,9 +91,9 @@ def _joined(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
 
 
 def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
-    """Return orders and the condition behind them; a move that it stops is watched meanwhile."""
+    """Return orders and the condition after them; a move that it stops is watched meanwhile."""
     asked = block(words, names, is_open=False)
-    if not asked and [each.word for each in first[-1:]] in (["S"], ["STOP"]):
+    if not asked and [order.word for order in first[-1:]] in (["S"], ["STOP"]):
         return _stopped_when(first[:-1], words, names)
     if not first or not asked:
         return []
@@ -114,7 +114,7 @@ def _stopped_when(first: list[Order], words: Sequence[Lexeme], names: Names) -> 
     if not first or not condition or first[-1].word not in MOVES or "UNTIL" in first[-1].text:
         return []
     move = first[-1]
-    made_of = tuple(each for each in move.samples if not each.endswith(" s"))
+    made_of = tuple(sample for sample in move.samples if not sample.endswith(" s"))
     text = move.text if made_of == move.samples else f"{move.word}(FOREVER, {POWER.sample})"
     stopped = move._replace(text=f"{text} UNTIL({condition})", samples=made_of + sample)
     return [*first[:-1], stopped]
@@ -144,17 +144,17 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
     if to_wall := _until(words, names):
         return to_wall
     first = names.meant(words[0].text)
-    rest = [each.text for each in words[1:]]
+    rest = [lexeme.text for lexeme in words[1:]]
     if first in ("S", "STOP") and rest:
         if all(said_of(each, "the", "engine", "filler") for each in rest):
             return Order("S", "S", ())
-        if any(each.kind is NUMBER for each in words):
+        if any(lexeme.kind is NUMBER for lexeme in words):
             pause = filled([made("W"), *words[1:]], names, has_until=False)
             return Order("S", f"{first};{laid_out(pause.tokens)}", ()) if pause else None
     call = filled(words, names, has_until=False, is_order=True)
-    is_free = call is None and any(said_of(each.text, "turn") for each in words)
+    is_free = call is None and any(said_of(lexeme.text, "turn") for lexeme in words)
     if is_free:
-        unturned = [each for each in words if not said_of(each.text, "turn")]
+        unturned = [lexeme for lexeme in words if not said_of(lexeme.text, "turn")]
         call = filled([made("R"), *unturned], names, has_until=False, is_order=True)
     if call is None:
         return None
@@ -167,7 +167,7 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
 
 def _until(words: Sequence[Lexeme], names: Names) -> Order | None:
     """Return the move that words say up to a condition."""
-    k = next((k for k, each in enumerate(words) if names.meant(each.text) == "UNTIL"), 0)
+    k = next((k for k, lexeme in enumerate(words) if names.meant(lexeme.text) == "UNTIL"), 0)
     call: Filled | None = filled(words[:k], names, has_until=True, is_order=True) if k else None
     if call is None or call.times or "DISTANCE" not in names.sensors:
         return None
@@ -213,8 +213,8 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
         header = _head(word, tokens[1:k], names)
         body = orders(tokens[k:arm], names) if header else []
         if header and not body and _begins(tokens[k], names):
-            return ""  # another order than the words behind it say
-        if not body or any(each.is_side_free for each in (*body, *other)):
+            return ""  # another order than the words after it say
+        if not body or any(order.is_side_free for order in (*body, *other)):
             continue
         if word != "LOOP" and tokens[k].source and names.meant(texts[k]) in _SIDES:
             return ""  # where the wall is, or where to go
@@ -232,7 +232,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
 def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:
     """Return the header that words say: how often, or what is asked."""
     if word == "LOOP":
-        number = next((each.text for each in words if each.kind is NUMBER), "")
+        number = next((lexeme.text for lexeme in words if lexeme.kind is NUMBER), "")
         return f"LOOP({number})" if number and said_of(words[-1].text, "times") else ""
     asked = _asked(words, names)[0]
     return f"{word}({asked})" if asked else ""
@@ -241,8 +241,8 @@ def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:
 def condition_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
     """Return the comparison that words ask, in words of the language; nothing for none."""
     words = words[1:-1] if closed(words, 0) == len(words) else words
-    found = lines.read([made("IF"), made("("), *words, made(")")], names, is_quick=True)
-    tokens = found[0].tokens if found else []
-    end = next((k for k, each in enumerate(tokens) if each.text == ";"), len(tokens)) - 1
-    asked = tokens[2:end]
-    return asked if any(each.text in COMPARISONS for each in asked) else []
+    readings = lines.read([made("IF"), made("("), *words, made(")")], names, is_quick=True)
+    tokens = readings[0].tokens if readings else []
+    end = next((k for k, lexeme in enumerate(tokens) if lexeme.text == ";"), len(tokens)) - 1
+    lexemes = tokens[2:end]
+    return lexemes if any(lexeme.text in COMPARISONS for lexeme in lexemes) else []

@@ -12,7 +12,7 @@ from tiniscript.recovery.meanings import plain
 
 # what they found is a calculated number
 _COUNTED = (codes.ARGUMENT_COUNT, codes.CALL_VALUES, codes.OUT_OF_RANGE)
-_WAYS = (codes.QUESTION_BEHIND, codes.NOT_CALLABLE)  # without a place they ask for no change
+_WAYS = (codes.QUESTION_AFTER, codes.NOT_CALLABLE)  # without a place they ask for no change
 
 
 def pointed(diagnostic: Diagnostic, source: Source) -> Diagnostic:
@@ -44,8 +44,8 @@ def _nearest(named: str, span: Span, source: Source) -> Span | None:
     part = _each_plain(text[begin : line_end.start()])
     words = r"\s*".join(map(re.escape, _each_plain(named).split()))
     head, tail = (r"(?<!\w)" * named[0].isalnum(), r"(?!\w)" * named[-1].isalnum())
-    found = [*re.finditer(f"{head}{words}{tail}", part)] or [*re.finditer(words, part)]
-    places = (Span(begin + match.start(), begin + match.end()) for match in found)
+    matches = [*re.finditer(f"{head}{words}{tail}", part)] or [*re.finditer(words, part)]
+    places = (Span(begin + match.start(), begin + match.end()) for match in matches)
     return min(places, key=lambda it: _distance(it, span), default=None)
 
 

@@ -80,7 +80,7 @@ def cells(table: str) -> Iterator[list[str]]:
     """Give the cells of each row, which indented lines go on with; of one with choices, of each."""
     for row in _CONTINUED.sub(" ", table.strip("\n")).split("\n"):
         if row.strip() and not row.startswith("# "):
-            parts = [each.split("¦") for each in re.split("[⟨⟩]", row)]
+            parts = [part.split("¦") for part in re.split("[⟨⟩]", row)]
             assert len({*map(len, parts)} - {1}) < 2, row
             for k in range(max(map(len, parts))):
                 one = "".join(part[k % len(part)] for part in parts)
@@ -148,7 +148,7 @@ class Pattern(NamedTuple):
 
 def compiled(pattern: str, pieces: Mapping[str, str]) -> Pattern:
     """Return a row's pattern, in which `pieces` stand for its `<parts>`."""
-    atoms = [_atom(each) for each in _whole(pattern, pieces).split()]
+    atoms = [_atom(word) for word in _whole(pattern, pieces).split()]
     needed = tuple(labels for _, labels in atoms if labels and not labels & {*ANY, "s|"})
     return Pattern(re.compile("".join(text for text, _ in atoms)), needed)
 
@@ -252,7 +252,7 @@ class Encoded:
         return (self.index[start], self.index[end]) if start >= 0 else (0, 0)
 
     def rewritten(self, row: Row, match: re.Match[str]) -> list[Lexeme] | None:
-        """Return the line behind a row, or None where it does not hold here."""
+        """Return the line after a row, or None where it does not hold here."""
         new: list[Lexeme] = []
         for part in row.becomes:
             made_of = self._made(part, match)
@@ -283,7 +283,7 @@ class Encoded:
         if part[0] == "$" and len(part) == 2:
             return captured(part[1])
         if part[0] == "&" and len(part) == 2:
-            return [self.translated(each) for each in captured(part[1])]
+            return [self.translated(lexeme) for lexeme in captured(part[1])]
         if part[0] != "@":
             return [made(part.strip("'"))]
         function, *named = part[1:].split(":")
@@ -313,8 +313,8 @@ _Made = list[Lexeme] | None
 
 def negated(condition: Sequence[Lexeme]) -> list[Lexeme]:
     """Return the condition that is TRUE where `condition` is not."""
-    signs = [k for k, each in enumerate(condition) if each.text in COMPARISONS]
-    if len(signs) == 1 and not any(each.text in ("AND", "OR", "NOT") for each in condition):
+    signs = [k for k, lexeme in enumerate(condition) if lexeme.text in COMPARISONS]
+    if len(signs) == 1 and not any(lexeme.text in ("AND", "OR", "NOT") for lexeme in condition):
         k = signs[0]
         return [*condition[:k], made(OPPOSITES[condition[k].text]), *condition[k + 1 :]]
     return [made("NOT"), made("("), *condition, made(")")]
@@ -340,7 +340,7 @@ def _decimal(place: _Place) -> _Made:
     return [whole._replace(text=text, source=text)]
 
 
-def _zero_behind(place: _Place) -> _Made:
+def _zero_after(place: _Place) -> _Made:
     """`8 0` is 80."""
     (number,), (zero,) = place.captured
     is_one = zero.space == " " and "." not in number.text
@@ -370,7 +370,7 @@ def _same(place: _Place) -> _Made:
 
 
 def _label(place: _Place) -> _Made:
-    """A name behind the end of its DEF says which one ends, where something else calls it."""
+    """A name after the end of its DEF says which one ends, where something else calls it."""
     return [] if place.captured[0][0].text in place.line.names.called else None
 
 
@@ -399,7 +399,7 @@ def _own(place: _Place) -> _Made:
 
 _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "not": lambda it: negated(it.captured[0]), "endof": _end_of, "dec": _decimal, "xn": _times,
-    "cat": _zero_behind, "mmss": _minutes, "same": _same, "label": _label,
+    "cat": _zero_after, "mmss": _minutes, "same": _same, "label": _label,
     "ms": _seconds, "own": _own,
     "most": partial(_limit, True), "least": partial(_limit, False),
 }  # fmt: skip

@@ -6,7 +6,7 @@ r"""The rows: each slip that the recovery reads, with an example that is a test.
 
 A pattern is tokens with spaces between: a word of the language or one that means it (`LOOP`), a
 part of a sentence of the lexicon (`then`), a sign, or a class. `A|B` are alternatives, `'|'` is a
-sign that would be one of the signs here, `?`, `*` and `+` stand behind what may be missing or come
+sign that would be one of the signs here, `?`, `*` and `+` stand after what may be missing or come
 more often. `^` is where an instruction begins: a line, or what follows `SI|`, a `;` or a brace; `$`
 is where one ends. A row of a whole line says `^^` and `$$`. `c=` captures, and `<part>` is a piece
 of PARTS. The cheapest reading is told; 1 is usual.
@@ -61,7 +61,7 @@ PARTS = {
 MISPLACED = {codes.CALL_BEFORE_DEF, codes.CALLS_ITSELF, codes.DEF_NOT_TOP, codes.WRONG_END}
 
 # Slips of one sign, tried where no row reads a line: of one that is missing, of one that is taken
-# for another, of one too many, and of one behind its neighbour.
+# for another, of one too many, and of one after its neighbour.
 MISSING = {"(": codes.MISSING_OPEN, ")": codes.MISSING_CLOSE, ",": codes.MISSING_COMMA}
 MISSING_COST, CONFUSED_COST, EXTRA_COST, SWAPPED_COST = 1.6, 1.1, 1.5, 1.7
 CONFUSED = {

@@ -109,7 +109,7 @@ class Recovery:
         self.drop_setups()
         self.read_signs()
         self.join_until()
-        self.names = Names([lexemes(each.body) for each in self.lines], kit)
+        self.names = Names([lexemes(text.body) for text in self.lines], kit)
         self._reading = self._read_lines()
 
     def sure(self) -> Candidate | None:
@@ -132,7 +132,7 @@ class Recovery:
         for line in self.lines:
             self.read_line(line)
             yield line.reading.items is not None and line.reading.is_sure
-        rows_of = ([lexemes(each.body), each.reading.tokens] for each in self.lines)
+        rows_of = ([lexemes(text.body), text.reading.tokens] for text in self.lines)
         told, names = Names([*chain(*rows_of)], self.kit), self.names
         if new := (told.variables | told.defs) - names.variables - names.defs:
             self.names = told
@@ -146,7 +146,7 @@ class Recovery:
         But none that loses a DEF, or opens a bracket that was closed: `F(2;80) R(1;50)` has no list
         of `80)`.
         """
-        names = Names([lexemes(each.body) for each in self.lines], self.kit)
+        names = Names([lexemes(text.body) for text in self.lines], self.kit)
         for line in self.lines:
             body = line.body.translate(PLAIN_SIGNS)
             if body == line.body and is_right(lexemes(body), names):
@@ -167,18 +167,18 @@ class Recovery:
         """Whether rewrites of signs alone make the line right that a place is in."""
         at = self.program.count("\n", 0, start)
         near = (line for line in self.lines if line.steps and line.first <= at <= line.last)
-        return any(is_right(lexemes(each.body), self.names) for each in near)
+        return any(is_right(lexemes(text.body), self.names) for text in near)
 
     def drop_setups(self) -> None:
         """Drop a `SI|` below the first line."""
-        for line in [each for each in self.lines if each.body.strip()][1:]:
+        for line in [text for text in self.lines if text.body.strip()][1:]:
             body = _SETUP.sub("", line.body)
             if body != line.body:
                 line.steps.append(Step(codes.SETUP_TWICE, lexemes(line.body), lexemes(body)))
                 line.body = body
 
     def join_until(self) -> None:
-        """Put an UNTIL on a line of its own behind the instruction before it."""
+        """Put an UNTIL on a line of its own after the instruction before it."""
         kept: list[_Text] = []
         until = re.compile(rf"^\s*{words_of('until')}\b", re.MULTILINE)
         text = plain(self.program)
@@ -186,7 +186,7 @@ class Recovery:
             return  # there is none, or it is taken for a block
         is_do = False
         for line in self.lines:
-            above = next((each for each in reversed(kept) if each.body.strip()), None)
+            above = next((text for text in reversed(kept) if text.body.strip()), None)
             body = above.body.rstrip().rstrip(";") if above and not above.note.strip() else ""
             if above and body.endswith(")") and not is_do and until.match(plain(line.body)):
                 above.body, above.note = f"{body} {line.body.strip()}", line.note
@@ -203,13 +203,13 @@ class Recovery:
         if not isinstance(items, Failure):
             line.reading = Reading(0, tokens, (), True, False, items)
             return
-        found = lines.read(tokens, names, is_quick=self.unread > UNREAD)
-        if not found:
+        readings = lines.read(tokens, names, is_quick=self.unread > UNREAD)
+        if not readings:
             self.unread += 1
             line.reading = self.parts(tokens, names)
             return
-        first = found[0]
-        line.rivals = [each for each in found[1:] if each.said != first.said]
+        first = readings[0]
+        line.rivals = [reading for reading in readings[1:] if reading.said != first.said]
         is_close = any(
             rival.is_sure and rival.cost < first.cost + MARGIN and _kept(rival) >= _kept(first)
             for rival in line.rivals
@@ -220,16 +220,16 @@ class Recovery:
     def parts(self, tokens: list[Lexeme], names: Names) -> Reading:
         """Read each instruction of a line alone, where one cannot be read, if it is sure."""
         steps: list[Step] = []
-        ends = [k for k, each in enumerate([*tokens, made(";")]) if each.text == ";"]
+        ends = [k for k, lexeme in enumerate([*tokens, made(";")]) if lexeme.text == ";"]
         ends = [k for k in ends if k == len(tokens) or not _left_open(tokens[:k])]
         for start, end in [*pairwise((-1, *ends))][::-1]:
             head, part, tail = tokens[: start + 1], tokens[start + 1 : end], tokens[end:]
-            found = lines.read(part, names, is_quick=True)[:1]
-            for each in found if found and found[0].is_sure else ():
-                tokens = [*head, *each.tokens, *tail]
+            readings = lines.read(part, names, is_quick=True)[:1]
+            for reading in readings if readings and readings[0].is_sure else ():
+                tokens = [*head, *reading.tokens, *tail]
                 steps += [
                     Step(code, [*head, *before, *tail], [*head, *after, *tail])
-                    for code, before, after in each.steps
+                    for code, before, after in reading.steps
                 ]
         return Reading(0, tokens, tuple(steps), True, False) if steps else _UNREAD
 
@@ -242,9 +242,9 @@ class Recovery:
                 break
             if best is not None and has_blocks and all(it.items is not None for it in readings):
                 continue
-            found = self.candidate(readings, has_blocks)
-            if found and (best is None or _rank(found) > _rank(best)):
-                best = found
+            candidate = self.candidate(readings, has_blocks)
+            if candidate and (best is None or _rank(candidate) > _rank(best)):
+                best = candidate
         return best
 
     @cached_property
@@ -283,9 +283,9 @@ class Recovery:
     def rivals(self) -> list[tuple[float, int, Reading]]:
         """Return readings that are not the cheapest ones: how much more they cost, and the line."""
         found = [
-            (rival.cost - each.reading.cost, k, rival)
-            for k, each in enumerate(self.lines)
-            for rival in each.rivals
+            (rival.cost - text.reading.cost, k, rival)
+            for k, text in enumerate(self.lines)
+            for rival in text.rivals
         ]
         return sorted(found, key=lambda it: it[0])
 
@@ -295,13 +295,15 @@ class Recovery:
         yield cheapest, True
         for _, k, rival in self.rivals()[:ALTERNATIVES]:
             yield [*cheapest[:k], rival, *cheapest[k + 1 :]], True
-        sure = [each if each.is_sure else _UNREAD for each in cheapest]
-        unread = (one for one, each in zip(self.lines, sure, strict=True) if each.items is None)
+        sure = [reading if reading.is_sure else _UNREAD for reading in cheapest]
+        unread = (
+            one for one, reading in zip(self.lines, sure, strict=True) if reading.items is None
+        )
         if not any(map(self.may_be_of_block, unread)):  # they are instructions in their blocks
             yield sure, True
         yield sure, False
-        has_blocks = [any(it.kind != "do" for it in each.items or ()) for each in sure]
-        alone = [_UNREAD if has else each for each, has in zip(sure, has_blocks, strict=True)]
+        has_blocks = [any(it.kind != "do" for it in reading.items or ()) for reading in sure]
+        alone = [_UNREAD if has else reading for reading, has in zip(sure, has_blocks, strict=True)]
         if alone != sure:
             yield alone, False
 
@@ -315,11 +317,11 @@ class Recovery:
     def matched(self, readings: Sequence[Reading]) -> Matching | None:
         """Return what all blocks of the lines need, or None where they fit in no way."""
         read = [
-            Line(line.indent, _WHEN.match(line.source.upper()) is not None, each)
-            for line, each in zip(self.lines, readings, strict=False)
+            Line(line.indent, _WHEN.match(line.source.upper()) is not None, reading)
+            for line, reading in zip(self.lines, readings, strict=False)
         ]
-        found = Matching(read)
-        return found if found.run() else None
+        matching = Matching(read)
+        return matching if matching.run() else None
 
     def changes(self, readings: Sequence[Reading], blocks: Matching) -> list[Change]:
         changes = []
@@ -335,7 +337,7 @@ class Recovery:
 
 
 def _is_key(old: Sequence[Lexeme], new: Sequence[Lexeme]) -> bool:
-    """Whether a digit may be meant for the bracket that is missing behind it: `DISTANCE < 209`."""
+    """Whether a digit may be meant for the bracket that is missing after it: `DISTANCE < 209`."""
     written = texts(old)
     return written.count("(") > written.count(")") and any(
         sign.text == ")" and sign.source is None and re.fullmatch(f".+{rows.CLOSE_KEY}", one.text)
@@ -355,8 +357,8 @@ def _ends(text: str) -> int:
     return sum(lexeme.text in ENDED for lexeme in lexemes(text))
 
 
-def _rank(found: Candidate) -> tuple[bool, bool]:
-    return found.is_whole, found.is_applied
+def _rank(candidate: Candidate) -> tuple[bool, bool]:
+    return candidate.is_whole, candidate.is_applied
 
 
 def _kept(reading: Reading) -> int:
@@ -366,14 +368,14 @@ def _kept(reading: Reading) -> int:
 
 def _line(line: _Text, reading: Reading, edits: Sequence[Edit], tails: Sequence[str]) -> str:
     tokens = list(reading.tokens)
-    for edit in sorted(edits, key=lambda each: -each.at):
+    for edit in sorted(edits, key=lambda edit: -edit.at):
         tokens[edit.at : edit.at + edit.old] = edit.new
     tokens = _without_empty(tokens) if edits else tokens
     if not reading.steps and not edits and not tails and line.body.isascii():
         return line.body
     for word in tails:
         tokens += [made(";"), made(word)]
-    if reading.is_new_line or tails or any(len(each.new) > 1 for each in edits):
+    if reading.is_new_line or tails or any(len(edit.new) > 1 for edit in edits):
         text = line.source[: line.indent] + laid_out(_without_empty(tokens))
         return text if tails or len(reading.items or ()) > 1 else text.rstrip("; ")
     return line.source[: line.indent] + as_written(tokens).strip()

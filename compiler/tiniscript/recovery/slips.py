@@ -37,7 +37,7 @@ _NAMED_BY: dict[tuple[str, ...], tuple[Code, ...]] = {
     ("fix",): (
         codes.DECIMAL_COMMA, codes.SEMICOLON_INSIDE, codes.ARGUMENT_COUNT, codes.UNTIL_ALONE,
         codes.FOREVER_NOT_HERE, codes.CHAINED, codes.EXTRA_CLOSE, codes.SPANISH_IF,
-        codes.LOOP_COUNTS, codes.ASKED_BEHIND, codes.CHOICE_IN_VALUE, codes.SET_TOGETHER,
+        codes.LOOP_COUNTS, codes.ASKED_AFTER, codes.CHOICE_IN_VALUE, codes.SET_TOGETHER,
     ),
     ("found",): (
         codes.SETUP_TWICE, codes.LINE_NUMBER, codes.NEEDLESS_FRAME, codes.PASTED,
@@ -45,7 +45,7 @@ _NAMED_BY: dict[tuple[str, ...], tuple[Code, ...]] = {
     ("word",): (codes.EMPTY_BRACKETS,),
     ("found", "fix"): (
         codes.ODD_CHARACTER, codes.NOT_AN_INSTRUCTION, codes.EXTRA_WORD, codes.OTHER_ASSIGNMENT,
-        codes.SIGN_BETWEEN, codes.REPEATED, codes.QUESTION_BEHIND,
+        codes.SIGN_BETWEEN, codes.REPEATED, codes.QUESTION_AFTER,
     ),
     ("found", "right"): (
         codes.OTHER_NOTE, codes.END_ALONE, codes.WRONG_END, codes.NAME_WITH_SPACE,
@@ -115,10 +115,11 @@ def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
     told, fix = without_setup(change.before), without_setup(change.after)
     head, tail = alike([*map(texts, told)], [*map(texts, fix)])
     was, now = (
-        [each for part in parts[head : len(parts) - tail] for each in part] for parts in (told, fix)
+        [lexeme for part in parts[head : len(parts) - tail] for lexeme in part]
+        for parts in (told, fix)
     )
     start, found, right = first_difference(old, new)
-    has_end = bool(head) and any(each.text in ENDED for each in now)
+    has_end = bool(head) and any(lexeme.text in ENDED for lexeme in now)
     parts = fix[0 if has_end else head : len(fix) - tail]
     until = len(fix[head]) if len(told) < len(fix) else None
     slip = Slip(code, old, new, start, found, right, was, now, change.after, parts, until)
@@ -159,10 +160,10 @@ def _code_of_steps(change: Change) -> tuple[Code, Step]:
     _, _, steps, before, after = change
     words, new = {*texts(before)}, {*texts(after)}
     own = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
-    own.sort(key=lambda it: (it.code is not codes.ASKED_BEHIND, it.code is codes.OTHER_SIGN))
-    if own and own[0].code in (codes.ASKED_BEHIND, codes.UNTIL_NOT_HERE):
+    own.sort(key=lambda it: (it.code is not codes.ASKED_AFTER, it.code is codes.OTHER_SIGN))
+    if own and own[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
         return own[0].code, own[0]
-    lost = (each.text for each in before if each.kind is WORD and each.text not in new)
+    lost = (lexeme.text for lexeme in before if lexeme.kind is WORD and lexeme.text not in new)
     foreign = next((each for each in lost if meant_by(each) in new - words), "")
     translated = next((it for it in steps if it.code is codes.OTHER_LANGUAGE), None)
     if translated and (foreign or not own):
@@ -180,14 +181,16 @@ def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
     """Return the code of what no rewrite made: a brace, an end, a letter with an accent."""
     if {*texts(before)} & {*BRACES}:
         return codes.BRACES
-    source = "".join(each.source or "" for each in before)
+    source = "".join(lexeme.source or "" for lexeme in before)
     if not source.isascii():
-        has_word = any(each.kind is WORD and not (each.source or "").isascii() for each in before)
+        has_word = any(
+            lexeme.kind is WORD and not (lexeme.source or "").isascii() for lexeme in before
+        )
         return codes.BAD_NAME if has_word else codes.OTHER_SIGN
     _, found, right = first_difference(before, after)
     if len(found) == len(right) == 1 and {*texts(found), *texts(right)} <= {*ENDED}:
         return codes.WRONG_END
-    ends = [each.text for each in before if said_of(each.text, "end")]
+    ends = [lexeme.text for lexeme in before if said_of(lexeme.text, "end")]
     if ends and ends[-1] not in texts(after):
         is_end = bool({*texts(after)} & {*BLOCK_ENDS.values()})
         return codes.END_ALONE if is_end else codes.EXTRA_WORD
@@ -211,21 +214,21 @@ def _foreign(slip: Slip) -> Slip:
     cut = next((k for k, it in enumerate(found) if it.text in ("=", "(")), len(found))
     is_set = cut < len(found) and found[cut].text == "="
     found = found[: cut - is_set] or found
-    if any(each.kind is NUMBER for each in found):  # PARA of `PARA I DE 1 A 4`
+    if any(lexeme.kind is NUMBER for lexeme in found):  # PARA of `PARA I DE 1 A 4`
         found = [*takewhile(_is_counting, found)] or found
-    if right and found and all(said_of(each.text, "filler") for each in found):
-        named = [each for each in old if meant_by(each.text) == right[0].text]
+    if right and found and all(said_of(lexeme.text, "filler") for lexeme in found):
+        named = [lexeme for lexeme in old if meant_by(lexeme.text) == right[0].text]
         found = named[:1] or found  # `oi robô, anda`
     return slip._replace(found=found, right=right)
 
 
 def _is_counting(token: Lexeme) -> bool:
-    """Whether a word says that something is done several times: FOR, and EACH behind it."""
+    """Whether a word says that something is done several times: FOR, and EACH after it."""
     return meant_by(token.text) == "LOOP" or bool(said_of(token.text, "count", "each"))
 
 
 def _torn(slip: Slip) -> Slip:
-    """A number in two pieces: the sign that goes, and the piece behind it."""
+    """A number in two pieces: the sign that goes, and the piece after it."""
     end = slip.start + len(slip.found)
     return slip if slip.right else slip._replace(found=slip.old[end - 1 : end + 1])
 
@@ -241,13 +244,13 @@ def _measured(slip: Slip) -> Slip:
 
 
 def _header(slip: Slip) -> Slip:
-    headers = [each for each in (*slip.old, *slip.new) if each.text in BLOCK_ENDS]
+    headers = [lexeme for lexeme in (*slip.old, *slip.new) if lexeme.text in BLOCK_ENDS]
     return slip._replace(found=headers[:1] or slip.found)
 
 
 def _sign_alone(slip: Slip) -> Slip:
     """The sign of `DISTÂNCIA := 5`, without its name."""
-    signs = [each for each in slip.found if each.kind is not WORD]
+    signs = [lexeme for lexeme in slip.found if lexeme.kind is not WORD]
     return slip._replace(found=signs or slip.found)
 
 
@@ -263,7 +266,7 @@ def _whole_sign(slip: Slip) -> Slip:
 
 _EXACTLY: dict[Code, Callable[[Slip], Slip]] = {
     codes.OTHER_LANGUAGE: _foreign, codes.BAD_NUMBER: _torn, codes.UNIT: _measured,
-    codes.QUESTION_BEHIND: _header, codes.OTHER_ASSIGNMENT: _sign_alone,
+    codes.QUESTION_AFTER: _header, codes.OTHER_ASSIGNMENT: _sign_alone,
     codes.OTHER_SIGN: _whole_sign,
 }  # fmt: skip
 
@@ -274,7 +277,7 @@ _EXACTLY: dict[Code, Callable[[Slip], Slip]] = {
 def found_in(slip: Slip) -> str:
     """Return what is wrong, as it was written: all of the instruction where a sign is missing."""
     code, found = slip.code, slip.found
-    if _lacks_behind(slip):
+    if _lacks_after(slip):
         return written(slip.old[slip.start : slip.start + 1])
     is_sign = code is codes.OTHER_ASSIGNMENT  # `X 5`: else it is missing
     is_all = code is codes.REPEATED or (code is codes.OTHER_SIGN and not slip.right)
@@ -288,7 +291,7 @@ def found_in(slip: Slip) -> str:
     return was
 
 
-def _lacks_behind(slip: Slip) -> bool:
+def _lacks_after(slip: Slip) -> bool:
     """Whether something is missing between two words, which are named."""
     is_between = slip.code in (codes.MISSING_VALUE, codes.MISSING_SIGN)
     return is_between and not slip.found and slip.start > 0
@@ -308,13 +311,13 @@ def _word_in(text: str) -> str:
     """Return the one word that a text is about: LOOP of `I = 0;LOOP(5)`, F of `va F`."""
     heads = (part for part in text.split(";") if re.split(r"\W", part)[0] in OF_BLOCKS)
     text = re.split("[()]", next(heads, text), maxsplit=1)[0]
-    text = next((each for each in text.split() if each in WORDS), text)
+    text = next((word for word in text.split() if word in WORDS), text)
     return text if text in WORDS else meant_by(text) or text  # of `bot.forward`
 
 
 def before_it(slip: Slip) -> str:
     """Return what is right of the instruction before the slip."""
-    if _lacks_behind(slip):
+    if _lacks_after(slip):
         return written(slip.old[slip.start - 1 : slip.start])
     kept = written(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
     if slip.code is codes.HEADER_SEPARATOR and (not kept or lexemes(kept)[0].text not in OF_BLOCKS):
@@ -352,22 +355,22 @@ def _known(tokens: Sequence[Lexeme]) -> str:
 
 def _called(slip: Slip) -> str:
     """The word before the empty brackets."""
-    behind = texts(slip.old[slip.start :])
-    if "(" not in behind[slip.start == 0 :]:
+    after = texts(slip.old[slip.start :])
+    if "(" not in after[slip.start == 0 :]:
         return _first_word(slip)
-    return slip.old[slip.start + behind.index("(") - 1].text
+    return slip.old[slip.start + after.index("(") - 1].text
 
 
 def _grouping(slip: Slip) -> str:
     """The header whose brackets have instructions in them, nothing for brackets of no header."""
     if slip.start and slip.old[slip.start - 1].text == ";":
         return ""
-    return next((each.text for each in slip.new if each.text in ("LOOP", "WHILE", "IF")), "")
+    return next((lexeme.text for lexeme in slip.new if lexeme.text in ("LOOP", "WHILE", "IF")), "")
 
 
 def _accented(slip: Slip) -> str:
     """The word of the language that has an accent, nothing for a name."""
-    return next((each.text for each in slip.old[slip.start :][:1] if each.text in WORDS), "")
+    return next((lexeme.text for lexeme in slip.old[slip.start :][:1] if lexeme.text in WORDS), "")
 
 
 def _opened(slip: Slip) -> str:
@@ -402,9 +405,9 @@ def _letter(slip: Slip) -> str:
 
 def _takes(slip: Slip) -> str:
     """Return the usage, where what is offered has more numbers than were written."""
-    given, needed = (sum(each.kind is NUMBER for each in it) for it in (slip.was, slip.now))
-    said = WORDS.get(right_of(slip))  # `avanza 2 s 3 veces`: F
-    usage = said.usage if said and said.arguments else _usage(slip)
+    given, needed = (sum(lexeme.kind is NUMBER for lexeme in it) for it in (slip.was, slip.now))
+    word = WORDS.get(right_of(slip))  # `avanza 2 s 3 veces`: F
+    usage = word.usage if word and word.arguments else _usage(slip)
     return usage if needed > given else ""
 
 
@@ -429,7 +432,7 @@ def first_difference(
     before: Sequence[Lexeme], after: Sequence[Lexeme]
 ) -> tuple[int, Sequence[Lexeme], Sequence[Lexeme]]:
     """Return where two lines differ first, and what stands there in each of them."""
-    old = [each.text if (each.source or "").isascii() else each.source for each in before]
+    old = [lexeme.text if (lexeme.source or "").isascii() else lexeme.source for lexeme in before]
     matched = SequenceMatcher(None, old, texts(after), autojunk=False)
     for kind, start, end, begin, stop in matched.get_opcodes():
         if kind != "equal":

@@ -86,7 +86,7 @@ class _Reader:
         self.times: str | None = None
         self.is_turn = False
         self.is_back = False  # `R -1 50`: the other way
-        self.way = ""  # the unit behind the first value of a move: `20 CM`
+        self.way = ""  # the unit after the first value of a move: `20 CM`
         self.is_sure = True
         self.cost = 1.0
 
@@ -147,7 +147,7 @@ class _Reader:
         return None
 
     def _sum(self, number: float, k: int) -> tuple[float, int]:
-        """Return a number with the smaller ones behind it: `cuatrocientos cuarenta y cinco`."""
+        """Return a number with the smaller ones after it: `cuatrocientos cuarenta y cinco`."""
         while number % 10 == 0:
             place = k + bool(said_of(self.text(k), "and"))
             said = said_of(self.text(place), "number")
@@ -215,7 +215,7 @@ class _Reader:
         return k + 1
 
     def _is_glued(self, k: int) -> bool:
-        """Whether a sign belongs to what is behind it, not to what is before it: `R -1 50`."""
+        """Whether a sign belongs to what is after it, not to what is before it: `R -1 50`."""
         return bool(self.words[k].space) and self.words[k + 1].space == ""
 
     def _word(self, k: int) -> int | None:
@@ -345,7 +345,7 @@ class _Reader:
         return [_Value(number_text(float(f"{a.text}.{b.text}")), b.unit) for a, b in pairs]
 
     def _in_seconds(self, values: list[_Value] | None) -> list[_Value] | None:
-        """Take a plain number behind a command that counts milliseconds for these."""
+        """Take a plain number after a command that counts milliseconds for these."""
         plain = [it for it in values or () if it.unit is None and not it.text.isidentifier()]
         if plain and values and said_of(self.words[0].text, "milliseconds"):
             self.is_sure = False
@@ -371,7 +371,7 @@ class _Reader:
                 unit, self.is_sure = WAYS[way].unit, False
                 value = _Value(number_text(value.number * LAP), unit)
             if way and unit == WAYS[way].unit:
-                if slots[0] is not None or any(each.unit is None for each in values[:k]):
+                if slots[0] is not None or any(value.unit is None for value in values[:k]):
                     return None
                 slots[0], order[k], self.way = value, 0, way
             elif unit is not None:
@@ -401,7 +401,7 @@ class _Reader:
                     return None  # of another language: rarely seconds, as in `move(50, 50)`
                 self.is_sure = False
         if None in slots:
-            if any(each.unit == "%" and each.number < LONG_S for each in values):
+            if any(value.unit == "%" and value.number < LONG_S for value in values):
                 return None  # `F(2 VEL)`: the name of a power, and a time
             is_move = self.command in MOVES and rest == [0]
             if self.command == "SHOW" or (is_move and values[0].number >= LONG_S):

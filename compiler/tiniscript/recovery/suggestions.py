@@ -44,7 +44,7 @@ from tiniscript.syntax.operators import COMPARISONS
 LONGEST = 24  # words behind an instruction that are read
 MOST = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
-_ASIDE = (codes.REPEATED, codes.WORDS_BEHIND)
+_ASIDE = (codes.REPEATED, codes.WORDS_AFTER)
 _MOST_BEFORE = 8  # instructions that an example repeats
 _FARTHEST = 40  # lines and instructions that are looked at for what is done again
 _BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")

@@ -1,4 +1,4 @@
-"""What words behind an instruction say, beside what the instruction says itself.
+"""What words after an instruction say, beside what the instruction says itself.
 
 Knows which words begin an order, and which numbers and words only repeat. Knows no row.
 """
@@ -55,8 +55,8 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     """Return how many tokens begin a line as a whole instruction."""
     first, sign = tokens[0].text, tokens[1].text if len(tokens) > 1 else ";"
     if first in names.defs or (sign == "=" and first not in WORDS):
-        found = lines.right(tokens, names)
-        size = found.at if isinstance(found, Failure) else 0
+        failure = lines.right(tokens, names)
+        size = failure.at if isinstance(failure, Failure) else 0
         is_right = lines.is_right(tokens[:size], names)
         return size if is_right and tokens[size].space else 0
     known = WORDS.get(first)
@@ -74,7 +74,7 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
 
 
 class Trailing:
-    """An instruction of `size` tokens and the words behind it; or words without one, where it is 0.
+    """An instruction of `size` tokens and the words after it; or words without one, where it is 0.
 
     `before` are the other instructions of its line, None for one of a block. `own` is the word of
     the language that it begins with, "" for none. `said` is the call where words say it.
@@ -110,7 +110,7 @@ class Trailing:
         self.time = _TIME.match(self.call)
         self.power = _POWER.search(self.call)
         kinds = [said_of(it.text, kind) for it in self.row for kind in ("value", "unit", "number")]
-        self.has_percent = any("%" in each or each == ("100",) for each in kinds)  # `por ciento`
+        self.has_percent = any("%" in kind or kind == ("100",) for kind in kinds)  # `por ciento`
         self.numbers = {token.text for token in self.tokens if token.kind is NUMBER}
 
     def is_aside(self) -> bool:
@@ -119,14 +119,14 @@ class Trailing:
             return not lines.is_right(self.row, self.names)
         if self._is_factor():
             return False
-        has_dots = self.is_later and all(each.text in DOTS for each in self.row)
-        kinds = {each.kind for each in self.row}
+        has_dots = self.is_later and all(lexeme.text in DOTS for lexeme in self.row)
+        kinds = {lexeme.kind for lexeme in self.row}
         has_sign = has_dots or NUMBER in kinds or self.words == "()"
         return WORD in kinds or (has_sign and lines.is_right(self.tokens, self.names))
 
     def _is_factor(self) -> bool:
         """Whether the words go on with a value of the instruction: `V = 2 x SIDE`."""
-        signs, values = [each.text for each in self.row[:2]], (self.tokens[-1], *self.row[1:2])
+        signs, values = [lexeme.text for lexeme in self.row[:2]], (self.tokens[-1], *self.row[1:2])
         is_set = [token.text for token in self.tokens[1:2]] == ["="]
         return (
             is_set
@@ -171,8 +171,8 @@ class Trailing:
 
     def _is_opening(self) -> bool:
         """Whether words are the first line of a text, and others follow."""
-        before, behind = self.text[: self.place.start], self.text[self.place.end :]
-        return not before.strip() and bool(behind.strip()) and not behind.split("\n")[0].strip()
+        before, after = self.text[: self.place.start], self.text[self.place.end :]
+        return not before.strip() and bool(after.strip()) and not after.split("\n")[0].strip()
 
     def _label_of(self, k: int) -> str:
         token = self.row[k]
@@ -238,7 +238,7 @@ class Trailing:
     def _is_told(self, k: int) -> bool:
         """Whether a token says nothing that the instruction does not."""
         token, text = self.row[k], self.row[k].text
-        is_first = not any(each.kind in (WORD, NUMBER) for each in self.row[:k])
+        is_first = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row[:k])
         if token.kind is WORD and self.number(k) is None:
             return not self._is_order(k) and not (is_first and self._is_alone(k))
         if self.number(k) is not None:
@@ -257,7 +257,7 @@ class Trailing:
     def _is_alone(self, k: int) -> bool:
         """Whether a single word is rather a misspelt one, or the name of a DEF."""
         token = self.row[k]
-        words = [each for each in self.row if each.kind is WORD]
+        words = [lexeme for lexeme in self.row if lexeme.kind is WORD]
         if self.names.is_name(token.text):
             return len(words) == 1 or token.text in self.names.defs
         if len(words) == 1 and token.text in WORDS and not said_of(token.text, "note"):
@@ -272,7 +272,7 @@ class Trailing:
     def _is_order(self, k: int) -> bool:
         """Whether the word at a place says what the instruction does not."""
         text, own = self.row[k].text, self.own
-        is_last = not any(each.kind in (WORD, NUMBER) for each in self.row[k + 1 :])
+        is_last = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row[k + 1 :])
         is_begun = k or len(text) == 1 or said_of(text, "count")
         is_small = said_of(text, "small") and not is_last and is_begun
         if is_small or (own == "BEEP" and said_of(text, "note")):

@@ -30,13 +30,13 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several,
     and `aside` is what looks ahead alone.
     """
-    is_compared = any(each.text == "=" for each in row)  # `DISTANCE = NEAR`
-    row = [each for each in row if each.text != "="]
-    texts = [each.text for each in row]
+    is_compared = any(lexeme.text == "=" for lexeme in row)  # `DISTANCE = NEAR`
+    row = [lexeme for lexeme in row if lexeme.text != "="]
+    texts = [lexeme.text for lexeme in row]
     if both := _compared(row, names):
         return both
     is_condition = any(text in ("AND", "OR") for text in texts)  # of the language itself
-    has_number = any(each.kind is NUMBER for each in row)  # `COLOR = 3` is no `> 3`
+    has_number = any(lexeme.kind is NUMBER for lexeme in row)  # `COLOR = 3` is no `> 3`
     if is_condition or (is_compared and (has_number or not _said(texts, names) & _ASKED)):
         return None
     if joint := _joint(texts, names):
@@ -86,15 +86,15 @@ def _joint(texts: Sequence[str], names: Names) -> str:
 
 def _compared(row: Sequence[Lexeme], names: Names) -> dict[str, str]:
     """Return what is asked where words are joined with a comparison: `DISTANCE < 10 o hay luz`."""
-    places = [k for k, each in enumerate(row) if _joint_of(each.text, names)]
+    places = [k for k, lexeme in enumerate(row) if _joint_of(lexeme.text, names)]
     pieces = [row[a + 1 : b] for a, b in pairwise((-1, *places, len(row)))]
-    compared = [any(each.text in COMPARISONS for each in piece) for piece in pieces]
+    compared = [any(lexeme.text in COMPARISONS for lexeme in piece) for piece in pieces]
     if not any(compared) or all(compared):
         return {}
     joint = _joint_of(row[places[0]].text, names)
     told = []
     for piece, is_compared in zip(pieces, compared, strict=True):
-        said = " ".join(names.meant(each.text) or each.text for each in piece)
+        said = " ".join(names.meant(lexeme.text) or lexeme.text for lexeme in piece)
         found = {"asked": said} if is_compared else worded([_NOTHING, *piece], names) or {}
         told.append(found.get("asked") or found.get("question", ""))
     if not all(told):
@@ -110,7 +110,7 @@ def _joint_of(text: str, names: Names) -> str:
 
 def _measured(row: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
     """Return the words without units, and their number in centimetres or of light, "" for none."""
-    texts = [each.text for each in row]
+    texts = [lexeme.text for lexeme in row]
     is_near = bool(_said(texts, names) & {"ahead", "none"})
     for k, text in enumerate(texts):
         unit = said_of(texts[k + 1], "unit") if k + 1 < len(texts) else ()

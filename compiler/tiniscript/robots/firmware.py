@@ -24,7 +24,7 @@ BOARDS = (*AVRS, *ESP32S)
 def header(wired: Sequence[Robot], made_by: str) -> str:
     """Return the header of a robot. `wired` is one robot, repeated for each board that it fits.
 
-    What is the same on all of these boards is there once, behind the rest.
+    What is the same on all of these boards is there once, after the rest.
     """
     parts: dict[tuple[str, ...], list[Robot]] = {}
     for robot in wired:
@@ -205,10 +205,10 @@ def _bytes(data: bytes) -> list[str]:
     return [f"0x{each:02x}," for each in data]
 
 
-def _with_remote(before: Sequence[str], remote: Sequence[str], behind: Sequence[str]) -> list[str]:
+def _with_remote(before: Sequence[str], remote: Sequence[str], after: Sequence[str]) -> list[str]:
     """Return the rows of an array, some of them only where there is a remote control."""
     condition = ["#ifdef tiniscript_has_remote", *_in_rows(remote), "#endif"] if remote else []
-    return [*_in_rows(before), *condition, *_in_rows(behind)]
+    return [*_in_rows(before), *condition, *_in_rows(after)]
 
 
 def _in_rows(values: Sequence[str]) -> list[str]:

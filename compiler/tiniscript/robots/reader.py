@@ -61,7 +61,7 @@ def _read_devices(table: Table, key: str, taken: set[str]) -> tuple[Device, ...]
     tables = table.tables(key)
     if len(tables) > DEVICES:
         table.complain("too_many", key, found=str(len(tables)), most=str(DEVICES))
-    return tuple(_read_device(each, key == "actuators", taken) for each in tables)
+    return tuple(_read_device(table, key == "actuators", taken) for table in tables)
 
 
 def _read_device(table: Table, is_actuator: bool, taken: set[str]) -> Device:
@@ -155,7 +155,7 @@ def _read_labels(table: Table, kit: Kit, name: str) -> Mapping[str, Mapping[str,
     A missing one is taken from another language, or is the name itself.
     """
     devices = (*kit.sensors, *kit.actuators)
-    known = [each for each in languages() if table.has(each)]
+    known = [language for language in languages() if table.has(language)]
     written = {each: _read_language(table, each, devices) for each in known}
     table.finish()
     labels: ByLanguage[dict[str, str]] = ByLanguage()

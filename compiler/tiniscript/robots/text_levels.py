@@ -15,7 +15,7 @@ LONGEST_WORD = 255  # letters of a word that a reader takes
 def _block_words(*blocks: str) -> frozenset[str]:
     """Return the words of blocks, and those that end them."""
     ends = {BLOCK_ENDS[block] for block in blocks}
-    return frozenset((*blocks, *ends, *(each for each, end in ALIASES.items() if end in ends)))
+    return frozenset((*blocks, *ends, *(value for value, end in ALIASES.items() if end in ends)))
 
 
 OF_TASKS_AND_WAYS = _block_words(*TASKS) | WAYS.keys()

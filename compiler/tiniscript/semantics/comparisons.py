@@ -1,4 +1,4 @@
-"""Knows comparisons of a sensor, and which conditions can come true behind UNTIL of a move.
+"""Knows comparisons of a sensor, and which conditions can come true after UNTIL of a move.
 
 Going forward a distance gets smaller, going back it gets bigger.
 """
@@ -22,7 +22,7 @@ _COMES = {"F": _LESS, "B": _MORE}  # what comes true, by the way that the robot 
 
 
 class Comparison(NamedTuple):
-    """A sensor, the name of the comparator that stands behind it, and a number."""
+    """A sensor, the name of the comparator that stands after it, and a number."""
 
     device: Device
     op: str

@@ -38,15 +38,15 @@ def duration(program: ir.Program, kit: Kit) -> Duration:
     """
     made = _Durations(program, kit)
     bodies = (program.body, *(task.body for task in program.tasks))
-    each = [made.of(body) for body in bodies]
-    least = max(one.least for one in each)
+    durations = [made.of(body) for body in bodies]
+    least = max(one.least for one in durations)
     if any(task.look is not None for task in program.tasks):
         return Duration(least, None, True)
     if sum(made.drives(body) for body in bodies) > 1:
         return Duration(0, None)
-    bounds = [one.most for one in each if one.most is not None]
-    most = max(bounds) if len(bounds) == len(each) else None
-    return Duration(least, most, any(one.never_ends for one in each))
+    bounds = [one.most for one in durations if one.most is not None]
+    most = max(bounds) if len(bounds) == len(durations) else None
+    return Duration(least, most, any(one.never_ends for one in durations))
 
 
 class _Durations:

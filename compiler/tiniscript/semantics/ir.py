@@ -93,7 +93,7 @@ class Arm(NamedTuple):
 
 
 class If(NamedTuple):
-    """`has_else`: the text has an ELSE, perhaps with nothing behind it."""
+    """`has_else`: the text has an ELSE, perhaps with nothing after it."""
 
     arms: tuple[Arm, ...]
     otherwise: "tuple[Statement, ...]"
@@ -190,7 +190,7 @@ def walk(body: Body) -> Iterator[Statement]:
 def with_calls(
     body: Body, procedures: Sequence[Procedure], called: set[int] | None = None
 ) -> Iterator[Statement]:
-    """Yield every statement of `body`, and behind a call those of its DEF: of each DEF once."""
+    """Yield every statement of `body`, and after a call those of its DEF: of each DEF once."""
     called = set() if called is None else called
     for statement in walk(body):
         yield statement
@@ -207,7 +207,7 @@ def every(program: Program) -> Iterator[Statement]:
 
 def first_way(program: Program) -> Span | None:
     """Return where the first move is that goes by centimetres or degrees."""
-    moves = (each for each in every(program) if isinstance(each, Move) and each.unit)
+    moves = (move for move in every(program) if isinstance(move, Move) and move.unit)
     return min((move.span for move in moves), default=None)
 
 

@@ -43,8 +43,10 @@ def optimized(program: ir.Program) -> ir.Program:
         procedure._replace(body=_body(procedure.body)) for procedure in program.procedures
     ]
     done = ir.with_calls(sum((task.body for task in tasks), body), procedures)
-    called = {each.procedure for each in done if isinstance(each, ir.Call)}
-    used = tuple(each._replace(is_called=k in called) for k, each in enumerate(procedures))
+    called = {call.procedure for call in done if isinstance(call, ir.Call)}
+    used = tuple(
+        procedure._replace(is_called=k in called) for k, procedure in enumerate(procedures)
+    )
     return program._replace(procedures=used, tasks=tasks, body=body)
 
 

@@ -70,7 +70,7 @@ class Kinds:
 
 def names_one(call: ast.Command, names: Sequence[str]) -> bool:
     """Whether a call names a value of its DEF: `SIDE(size=20)`."""
-    asked = (each.expression for each in call.arguments or ())
+    asked = (argument.expression for argument in call.arguments or ())
     return any(it[0].op == "NAME" and it[0].value in names and it[-1].op == "EQ" for it in asked)
 
 

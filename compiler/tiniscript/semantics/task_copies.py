@@ -103,7 +103,7 @@ def _owning(program: ir.Program) -> list[bool]:
     """Return for each DEF whether it has values, or calls one that has."""
     found: list[bool] = []
     for procedure in program.procedures:
-        calls = [each.procedure for each in ir.walk(procedure.body) if isinstance(each, ir.Call)]
+        calls = [call.procedure for call in ir.walk(procedure.body) if isinstance(call, ir.Call)]
         found.append(bool(procedure.values) or any(found[k] for k in calls))
     return found
 

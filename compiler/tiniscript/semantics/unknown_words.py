@@ -36,7 +36,7 @@ def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
 
 def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     word, span = node.word, node.word_span
-    begins = (each for each in WORDS.values() if each.role.begins)
+    begins = (word for word in WORDS.values() if word.role.begins)
     commands = [begin.text for begin in begins if begin.text not in ("FOREVER", "SEND")]
     near = whole_name(scope, word, scope.def_names) if node.arguments is None else ""
     near = near or scope.near(word, chain(commands, scope.names, scope.def_names))
@@ -52,7 +52,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
 
 def report_placeholders(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
     """`F(tiempo, potencia)`: these names stand for numbers. Drops the diagnostics since `said`."""
-    texts = [scope.source[each.span].upper() for each in node.arguments or ()]
+    texts = [scope.source[argument.span].upper() for argument in node.arguments or ()]
     if len(texts) == len(word.arguments) and all(map(names, texts, word.arguments)):
         del scope.diagnostics[said:]
         scope.report(codes.PLACEHOLDER, node.span, usage=word.usage, example=word.example)
@@ -103,7 +103,7 @@ def report_not_callable(scope: Scope, node: ast.Command) -> None:
     """`SQUARE(3)`, where SQUARE has no values: its DEF may name one, or it is done 3 times."""
     if re.search(rf"(?i)\bDEF\s+{node.word}[ \t]*\([^)\n]*\w", scope.source.text):
         return  # what is wrong in the brackets of the DEF has been said
-    texts = [scope.source[each.span] for each in node.arguments or ()]
+    texts = [scope.source[argument.span] for argument in node.arguments or ()]
     said = {"named": node.word} if node.word in scope.def_names else {}
     fix, names = "", _wanted(scope, node.word)
     if said and texts and len(names) == len(texts):

@@ -44,7 +44,7 @@ _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
 _NAMED = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
-_NEAR = 500  # characters behind a value for a sensor in which its use is looked for
+_NEAR = 500  # characters after a value for a sensor in which its use is looked for
 
 
 class WrongCalls:
@@ -122,8 +122,8 @@ class WrongCalls:
         """`F(20 DEG, 60)`: forward goes centimetres."""
         right, place = UNIT_OF[node.word], Span(unit.start, unit.end)
         start = node.span.start
-        before, behind = Span(start, unit.start), Span(unit.end, node.span.end)
-        fix = f"{self.scope.source[before]}{right}{self.scope.source[behind]}"
+        before, after = Span(start, unit.start), Span(unit.end, node.span.end)
+        fix = f"{self.scope.source[before]}{right}{self.scope.source[after]}"
         said = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
         called = "R" if right == "CM" else "F"
         said["other"] = called + self.scope.source[node.span][len(node.word) :]
@@ -175,16 +175,16 @@ class WrongCalls:
         if value.isdecimal() and looks_ahead(self.scope.kit.readings[device.number]):
             until = f"UNTIL({node.name} < {value})"
             said |= {"until": until, "example": f"F(5, 60) {until}"}
-            behind = self.scope.source.text[node.span.end : node.span.end + _NEAR]
-            used = re.search(rf"(?i)\b([FBLR])\s*\(\s*{node.name}\s*,[^)\n]*\)", behind)
+            after = self.scope.source.text[node.span.end : node.span.end + _NEAR]
+            used = re.search(rf"(?i)\b([FBLR])\s*\(\s*{node.name}\s*,[^)\n]*\)", after)
             if used:  # `DISTANCE = 90;F(DISTANCE, 80)`
                 said |= {"word": used[1].upper(), "used": used[0]}
         self.scope.report(codes.SENSOR_SET, node.name_span, None, **said)
 
     def named_values(self, node: ast.Command, names: Sequence[str]) -> bool:
         """Report `SIDE(size=20)`, which names a value of the DEF; return whether it does."""
-        texts = [self.scope.source[each.span] for each in node.arguments or ()]
-        named = [_NAMED.fullmatch(each) for each in texts]
+        texts = [self.scope.source[argument.span] for argument in node.arguments or ()]
+        named = [_NAMED.fullmatch(text) for text in texts]
         given = {it[1].upper(): it[2] for it in named if it}
         rest = [text for text, it in zip(texts, named, strict=True) if it is None]
         free = [name for name in names if name not in given]
@@ -244,10 +244,10 @@ _ASKED = re.compile(r"\b(DISTANCE)[ \t]{0,9}(<=?)[ \t]{0,9}([0-9]+(?:\.[0-9]+)?)
 def asked_next(source: Source, span: Span) -> str:
     """Return the condition of an IF that follows what is at `span`.
 
-    Else what the program asks of the same sensor, behind it first; else an example.
+    Else what the program asks of the same sensor, after it first; else an example.
     """
-    if found := _NEXT_QUESTION.match(source.text, span.end):
-        return found[1].strip()
+    if match := _NEXT_QUESTION.match(source.text, span.end):
+        return match[1].strip()
     own = _ASKED.search(source.text, span.end) or _ASKED.search(source.text, 0, span.start)
     return " ".join(own.groups()) if own else "DISTANCE < 10"
 

@@ -59,7 +59,7 @@ class WrongValues:
         near = "".join(said_of(name, "number")) or scope.near(name, known)
         near = near or ("".join(said_of(name, "power")) if before.rstrip().endswith("=") else "")
         near = near or whole_name(scope, name, scope.set_somewhere)
-        if (asked := _COMPARED_WITH.search(before)) and scope.is_yes_no_sensor(asked[1].upper()):
+        if (match := _COMPARED_WITH.search(before)) and scope.is_yes_no_sensor(match[1].upper()):
             near = yes_no_of(name) or near
         base = name.rstrip(_DIGITS).rstrip("_")  # DISTANCE, of DISTANCE2
         stem = ("".join(said_of(base, "stem")) or base) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
@@ -101,10 +101,14 @@ class WrongValues:
 
     def _is_said(self, span: Span) -> bool:
         """Whether the example for a value of the same call has a number for this one, too."""
-        found = self.scope.diagnostics[-1:]
-        if not found or "amount" not in found[0].values or found[0].span.start > span.start:
+        diagnostics = self.scope.diagnostics[-1:]
+        if (
+            not diagnostics
+            or "amount" not in diagnostics[0].values
+            or diagnostics[0].span.start > span.start
+        ):
             return False
-        between = self.scope.source[Span(found[0].span.end, span.start)]
+        between = self.scope.source[Span(diagnostics[0].span.end, span.start)]
         return not set(between) & set("();\r\n") and "," in between
 
     def mixed(self, op: str, left: Operand, right: Operand, span: Span) -> None:
@@ -133,12 +137,12 @@ class WrongValues:
             values = {"example": f"{found.upper()} > 0"}
         if other is not None and other.end - other.start <= 80:
             asked = self.scope.source[Span(other.start, other.end)]
-            before, behind = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
+            before, after = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
             is_sensor = found.upper() in (reading.name for reading in self.scope.kit.readings)
             if other.start < operand.start and before and not is_sensor:
                 values = {"fix": f"{before[0]} {found}"}
-            elif behind and found.isidentifier():
-                values = {"fix": f"{found} {behind[1]}"}
+            elif after and found.isidentifier():
+                values = {"fix": f"{found} {after[1]}"}
         self.scope.report(codes.WANTS_CONDITION, span, None, by=by, found=found, **values)
 
     def condition(self, found: str) -> dict[str, str]:
@@ -150,7 +154,7 @@ class WrongValues:
         meant = {"0": "FALSE", "1": "TRUE"}.get(word)
         if meant or not word.isdecimal():
             return {"fix": meant} if meant else {}
-        names = {each.name for each in self.scope.kit.sensors if not each.is_yes_no}
+        names = {device.name for device in self.scope.kit.sensors if not device.is_yes_no}
         sensor = "DISTANCE" if "DISTANCE" in names else "X"
         return {"times": word, "example": f"{sensor} < {word}"}
 

@@ -19,10 +19,10 @@ NOWHERE: Place = (0, 0, 0, 0)
 
 class Block(NamedTuple):
     """`word` is the word or name that it has, or the text of a comment and of a grey block;
-    where a unit is behind the first value, that one too: `F CM`.
+    where a unit is after the first value, that one too: `F CM`.
 
     `if` has a value and a body for each arm, and one body more for ELSE; `def` has the names in its
-    brackets as values. `note` is the comment behind it; `is_apart`: an empty line stands before it.
+    brackets as values. `note` is the comment after it; `is_apart`: an empty line stands before it.
     """
 
     kind: str
@@ -59,7 +59,7 @@ def data_of(form: Form) -> dict[str, Any]:
     return {
         **form._asdict(),
         "body": _data_of_all(form.body),
-        "loose": [{"body": _data_of_all(each.body), "value": each.value} for each in form.loose],
+        "loose": [{"body": _data_of_all(stack.body), "value": stack.value} for stack in form.loose],
     }
 
 

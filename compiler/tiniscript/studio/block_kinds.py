@@ -18,7 +18,7 @@ class Kind(NamedTuple):
     """`colour` is a style of the page. A value is `number`, `truth` or `any`.
 
     `field` is what is written in it: `name`, `line`, `sensor` or `actuator`; `words` are the words
-    to choose from instead, and `units` of those the units behind the first value, instead of
+    to choose from instead, and `units` of those the units after the first value, instead of
     seconds. `is_top`: it stands inside no other block. `gives` is what a block gives that is a
     value, and `part` which part of an expression it is, where its words are none. `says` is what it
     says in all languages.

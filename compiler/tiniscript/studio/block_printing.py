@@ -52,10 +52,10 @@ class _Line(NamedTuple):
 
 def print_blocks(form: Form) -> Printed:
     """Return the text of a program's blocks, and where each of them is."""
-    found: list[_Instruction] = []
+    instructions: list[_Instruction] = []
     ranges: list[tuple[int, int]] = []
-    _add_all(form.body, found, ranges)
-    lines = _lines(form, found)
+    _add_all(form.body, instructions, ranges)
+    lines = _lines(form, instructions)
     loose = [Row("", line, k == 0) for k, line in enumerate(_loose_lines(form.loose))]
     texts = lines_of([line.row for line in lines] + loose)
     places: list[tuple[int, int, int]] = []  # of each instruction: line, column, end
@@ -74,22 +74,22 @@ def print_blocks(form: Form) -> Printed:
 
 
 def _add_all(
-    blocks: tuple[Block, ...], found: list[_Instruction], ranges: list[tuple[int, int]]
+    blocks: tuple[Block, ...], instructions: list[_Instruction], ranges: list[tuple[int, int]]
 ) -> None:
     """Add the lines of blocks, and for each block the first and the last of its own."""
     for block in blocks:
-        k, first = len(ranges), len(found)
+        k, first = len(ranges), len(instructions)
         ranges.append((first, first))
         values = [text_of(value) for value in block.values]
         if block.bodies:
-            _add_bodies(block, values, found, ranges)
+            _add_bodies(block, values, instructions, ranges)
         else:
-            found.append(_instruction(block, values))
-        ranges[k] = (first, len(found) - 1)
+            instructions.append(_instruction(block, values))
+        ranges[k] = (first, len(instructions) - 1)
 
 
 def _add_bodies(
-    block: Block, values: list[str], found: list[_Instruction], ranges: list[tuple[int, int]]
+    block: Block, values: list[str], instructions: list[_Instruction], ranges: list[tuple[int, int]]
 ) -> None:
     word = "LOOP" if block.kind == "forever" else block.kind.upper()
     heads = [(word, f"{word}({value})") for value in values[:1]]
@@ -105,10 +105,10 @@ def _add_bodies(
         heads.append(("ELSE", "ELSE"))
     note, is_apart = block.note, block.is_apart
     for (first, head), body in zip(heads, block.bodies, strict=True):
-        found.append(_Instruction(block.kind, first, head, note, is_apart))
-        _add_all(body, found, ranges)
+        instructions.append(_Instruction(block.kind, first, head, note, is_apart))
+        _add_all(body, instructions, ranges)
         note, is_apart = "", False
-    found.append(_Instruction(block.kind, BLOCK_ENDS[word], BLOCK_ENDS[word]))
+    instructions.append(_Instruction(block.kind, BLOCK_ENDS[word], BLOCK_ENDS[word]))
 
 
 def _instruction(block: Block, values: list[str]) -> _Instruction:
@@ -132,27 +132,28 @@ def _instruction(block: Block, values: list[str]) -> _Instruction:
 # -- lines ---------------------------------------------------------------------------------------
 
 
-def _lines(form: Form, found: list[_Instruction]) -> list[_Line]:
+def _lines(form: Form, instructions: list[_Instruction]) -> list[_Line]:
     """Return the lines of a program: comments that come first stand before its start."""
     lines: list[_Line] = []
     if form.start:
-        while len(lines) < len(found) and found[len(lines)].kind == "comment":
-            lines.append(_line([found[len(lines)]]))
-    rest = found[len(lines) :]
+        while len(lines) < len(instructions) and instructions[len(lines)].kind == "comment":
+            lines.append(_line([instructions[len(lines)]]))
+    rest = instructions[len(lines) :]
     setup = form.start + "|" * bool(form.start)
-    code = [k for k, each in enumerate(rest) if each.is_code]
+    code = [k for k, instruction in enumerate(rest) if instruction.is_code]
     if form.start == "PING":
         setup += "CHECK_CONNECTION"
     elif not form.note and _is_one_line(form, rest, code):
         one = rest[code[0] : code[-1] + 1]
-        return [*lines, *(_line([each]) for each in rest[: code[0]]), _line(one, setup),
-                *(_line([each]) for each in rest[code[-1] + 1 :])]  # fmt: skip
+        return [*lines, *(_line([instruction]) for instruction in rest[: code[0]]),
+                _line(one, setup),
+                *(_line([instruction]) for instruction in rest[code[-1] + 1 :])]  # fmt: skip
     elif not form.note and code[:1] == [0] and not rest[0].is_apart and form.start:
         lines.append(_line(rest[:1], setup, end=";"))
         setup, rest = "", rest[1:]
     if setup:
         lines.append(_Line(Row("", _with_note(setup, form.note), False), ()))
-    return lines + [_line([each], end=";" * each.is_code) for each in rest]
+    return lines + [_line([instruction], end=";" * instruction.is_code) for instruction in rest]
 
 
 def _is_one_line(form: Form, rest: list[_Instruction], code: list[int]) -> bool:
@@ -162,16 +163,18 @@ def _is_one_line(form: Form, rest: list[_Instruction], code: list[int]) -> bool:
     if not form.is_one_line and len(code) > 1:
         return False
     together = rest[code[0] : code[-1] + 1]
-    has_grey = any(each.kind == "grey" for each in rest)
-    return not has_grey and all(each.is_code and not each.note for each in together[:-1])
+    has_grey = any(instruction.kind == "grey" for instruction in rest)
+    return not has_grey and all(
+        instruction.is_code and not instruction.note for instruction in together[:-1]
+    )
 
 
 def _line(instructions: list[_Instruction], setup: str = "", end: str = "") -> _Line:
     text, columns = setup, []
-    for k, each in enumerate(instructions):
+    for k, instruction in enumerate(instructions):
         text += ";" * (k > 0)
-        columns.append((len(text), len(text) + len(each.text)))
-        text += each.text
+        columns.append((len(text), len(text) + len(instruction.text)))
+        text += instruction.text
     first, last = instructions[0], instructions[-1]
     word = last.word if len(instructions) == 1 else ""
     is_apart = first.is_apart and not setup

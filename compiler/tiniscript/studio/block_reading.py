@@ -111,14 +111,14 @@ class _Reader:
         return comments
 
     def _body(self, instructions: tuple[Instruction, ...]) -> list[Block]:
-        found: list[Block] = []
+        blocks: list[Block] = []
         for instruction in instructions:
-            found += self._comments()
-            found += self._blocks(instruction)
-        return [*found, *self._comments()]
+            blocks += self._comments()
+            blocks += self._blocks(instruction)
+        return [*blocks, *self._comments()]
 
     def _blocks(self, node: Instruction) -> list[Block]:
-        """Return the block of an instruction, and the comment behind its end."""
+        """Return the block of an instruction, and the comment after its end."""
         first = self._take()
         if isinstance(node, Command):
             block = self._command(node, first)
@@ -140,8 +140,8 @@ class _Reader:
         block = block._replace(
             note=_note(first), is_apart=first.after_blank, place=self._place(first, last)
         )
-        behind = _note(last) if last is not first else ""
-        return [block, Block("comment", behind, place=block.place)] if behind else [block]
+        after = _note(last) if last is not first else ""
+        return [block, Block("comment", after, place=block.place)] if after else [block]
 
     def _arms(
         self, node: If | Loop | While | Def | Task
@@ -159,11 +159,11 @@ class _Reader:
             elif isinstance(node, Loop) and node.times is not None:
                 heads = [node.times]
         bodies = []
-        behind = ""  # ELSEIF or ELSE
+        after = ""  # ELSEIF or ELSE
         for body in inner:
-            comment = [Block("comment", behind)] if behind else []
+            comment = [Block("comment", after)] if after else []
             bodies.append((*comment, *self._body(body)))
-            behind = _note(self._take())
+            after = _note(self._take())
         return tuple(bodies), tuple(self._value(head) for head in heads)
 
     def _command(self, node: Command, piece: Piece) -> Block:
@@ -214,7 +214,7 @@ class _Reader:
             return []
         texts = "\n".join(block.word[1:].strip() for block in body[first:]).split("\n\n")
         found = [_stack(text, self._kit) for text in texts if text.strip()]
-        stacks = [each for each in found if each is not None]
+        stacks = [stack for stack in found if stack is not None]
         if len(stacks) != len(found):
             return []
         del body[first:]

@@ -94,9 +94,9 @@ def found_tools() -> Tools | None:
     if system[0] and system[1]:
         places.append(([system[0]], [system[1]]))
     for node_call, npm_call in places:
-        done = subprocess.run([*node_call, "--version"], capture_output=True, text=True)
-        number = done.stdout.strip().lstrip("v")
-        if done.returncode == 0 and int(number.partition(".")[0]) >= OLDEST_NODE:
+        completed = subprocess.run([*node_call, "--version"], capture_output=True, text=True)
+        number = completed.stdout.strip().lstrip("v")
+        if completed.returncode == 0 and int(number.partition(".")[0]) >= OLDEST_NODE:
             return Tools(node_call, npm_call, number)
     return None
 

@@ -155,7 +155,7 @@ def _found(data: bytes, robot: str) -> Compiled:
 
 def _findings(found: Compiled, language: str) -> tuple[Finding, ...]:
     """Return the messages; the first of those that name changes may have a button."""
-    named = [k for k, each in enumerate(found.diagnostics) if edits_of(each)][:OFFERS]
+    named = [k for k, diagnostic in enumerate(found.diagnostics) if edits_of(diagnostic)][:OFFERS]
     return tuple(
         Finding(message(diagnostic, found.source, language), k in named)
         for k, diagnostic in enumerate(found.diagnostics)

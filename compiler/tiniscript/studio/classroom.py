@@ -235,7 +235,7 @@ class Classroom:
             back.heard_s, back.address = now_s, address
             return {"token": back.token, "name": back.name}
         if back is None:  # who comes back is not a second one
-            same = [each for each in self._of(address) if are_alike(each.written, plain)]
+            same = [pupil for pupil in self._of(address) if are_alike(pupil.written, plain)]
             self._give_place_away(now_s, PLACE_S, same)
         same = self._of(address)
         if len(same) >= self._places and not self._give_place_away(now_s, PLACE_S, same):
@@ -261,10 +261,10 @@ class Classroom:
 
     def _back(self, token: object, written: str, now_s: float) -> Pupil | Kept | None:
         """Return who comes back with the token of an earlier page, and the same name."""
-        for each in self._all():
-            is_here = isinstance(each, Pupil) and now_s - each.heard_s <= PLACE_S
-            if each.token and each.token == token and not is_here:
-                return each if are_alike(each.written, written) else None
+        for pupil in self._all():
+            is_here = isinstance(pupil, Pupil) and now_s - pupil.heard_s <= PLACE_S
+            if pupil.token and pupil.token == token and not is_here:
+                return pupil if are_alike(pupil.written, written) else None
         return None
 
     def _of(self, address: str) -> list[Pupil]:
@@ -286,7 +286,7 @@ class Classroom:
         silent = [pupil for pupil in pupils
                   if now_s - pupil.heard_s > silent_s and self._turn(pupil) is None]  # fmt: skip
         if silent:
-            self._forget(min(silent, key=lambda each: each.heard_s))
+            self._forget(min(silent, key=lambda pupil: pupil.heard_s))
         return bool(silent)
 
     def _forget(self, gone: Pupil) -> None:
@@ -423,13 +423,13 @@ class Classroom:
             robot.take_back()
 
     def _begin_turn(self, robot: ClassRobot, now_s: float) -> None:
-        here = [each for each in self._waiting() if now_s - each.heard_s <= HERE_S]
+        here = [pupil for pupil in self._waiting() if now_s - pupil.heard_s <= HERE_S]
         if here and self._hosting.is_free(robot.port):
             robot.begin(here[0], now_s)
 
     def _waiting(self) -> list[Pupil]:
         found = [(pupil.waits, pupil) for pupil in self._pupils.values() if pupil.waits is not None]
-        return [each for _, each in sorted(found, key=lambda found: found[0])]
+        return [pupil for _, pupil in sorted(found, key=lambda found: found[0])]
 
     def _turn(self, pupil: Pupil) -> ClassRobot | None:
         return next((robot for robot in self._robots if robot.pupil is pupil), None)
@@ -493,9 +493,9 @@ class Classroom:
 
     def _text(self, request: Json) -> Json:
         """Return the work of a pupil, or kept work, of which the page names the key."""
-        found = self._pupil(request) or self._kept.get(str(request.get("key")))
-        version = found.version if isinstance(found, Pupil) else 0
-        return {"version": version, **(found.work if found else NOTHING)._asdict()}
+        pupil = self._pupil(request) or self._kept.get(str(request.get("key")))
+        version = pupil.version if isinstance(pupil, Pupil) else 0
+        return {"version": version, **(pupil.work if pupil else NOTHING)._asdict()}
 
     # -- what is kept -----------------------------------------------------------------------------
 
@@ -597,10 +597,10 @@ class Classroom:
         """Give a robot to the class, or take it away."""
         port = same_for_all(given.port)
         same = [robot for robot in self._robots if same_for_all(robot.port) == port]
-        for each in same:
+        for class_robot in same:
             if not is_given:
-                each.take_back()
-                self._robots.remove(each)
+                class_robot.take_back()
+                self._robots.remove(class_robot)
         if is_given and not same:
             if len(self._robots) >= MOST_ROBOTS:
                 raise BadRequest
@@ -618,7 +618,7 @@ class Classroom:
         with self._lock:
             now_s = self._clock()
             here = [pupil for pupil in self._pupils.values() if now_s - pupil.heard_s <= QUEUE_S]
-            are_told = all(each.knows_end for each in here)
+            are_told = all(pupil.knows_end for pupil in here)
             return bool(self._over) and (are_told or now_s - self._over_s > OVER_S)
 
     def _state(self) -> Json:
@@ -646,18 +646,18 @@ class Classroom:
             ],
             "pupils": [
                 {
-                    "number": each.number,
-                    "name": each.name,
-                    "silent_s": round(now_s - each.heard_s),
-                    "place": waiting.index(each) + 1 if each in waiting else 0,
-                    "robot": turn.name or turn.port if (turn := self._turn(each)) else "",
+                    "number": pupil.number,
+                    "name": pupil.name,
+                    "silent_s": round(now_s - pupil.heard_s),
+                    "place": waiting.index(pupil) + 1 if pupil in waiting else 0,
+                    "robot": turn.name or turn.port if (turn := self._turn(pupil)) else "",
                     "left_s": self._left_s(turn) if turn else 0,
-                    "version": each.version,
-                    "is_right": each.is_right,
-                    "hand": each.hand or 0,
-                    "lessons": each.work.lessons,
+                    "version": pupil.version,
+                    "is_right": pupil.is_right,
+                    "hand": pupil.hand or 0,
+                    "lessons": pupil.work.lessons,
                 }
-                for each in self._pupils.values()
+                for pupil in self._pupils.values()
             ],
             "robots": [
                 {

@@ -126,9 +126,14 @@ class HostedRobot:
     def _wait_for_port(self) -> None:
         """Wait for those before, as long as their stops may take."""
         end_s = monotonic() + PARTS_S
-        for each in self._before:
-            while each.is_parting and not each.holds and monotonic() < end_s and not self.was_left:
-                each.join(LOOK_S)
+        for hosted_robot in self._before:
+            while (
+                hosted_robot.is_parting
+                and not hosted_robot.holds
+                and monotonic() < end_s
+                and not self.was_left
+            ):
+                hosted_robot.join(LOOK_S)
         self._before = ()
 
     def _ping_while_attended(self, client: Client, link: RobotLink) -> None:

@@ -87,12 +87,12 @@ class Hosting:
         """Stop what pages have started, and close all ports; return those where no robot has
         confirmed that."""
         with self._lock:
-            found = [*self._by_page.values(), *self._parting]
-        for each in found:
-            each.leave(lets_go=True)
-        for each in found:
-            each.join(PARTS_S)
-        return [each.port for each in found if each.is_unconfirmed]
+            hosted_robots = [*self._by_page.values(), *self._parting]
+        for hosted_robot in hosted_robots:
+            hosted_robot.leave(lets_go=True)
+        for hosted_robot in hosted_robots:
+            hosted_robot.join(PARTS_S)
+        return [robot.port for robot in hosted_robots if robot.is_unconfirmed]
 
     def _connect(self, page: str, request: Json) -> Json:
         port, robot, language = port_of(request), robot_of(request), request.get("language")
@@ -117,9 +117,9 @@ class Hosting:
             if own is not None:
                 self._parting.append(own)
             stops = own.attending.stops if own is not None and is_same else 0
-            made = HostedRobot(port, robot, str(language), tab, connection, stops, before)
-            made.attending.latch(self._latched_until_s, stops=False)
-            self._by_page[page] = made
+            hosted_robot = HostedRobot(port, robot, str(language), tab, connection, stops, before)
+            hosted_robot.attending.latch(self._latched_until_s, stops=False)
+            self._by_page[page] = hosted_robot
         return {}
 
     def _at(self, port: str) -> list[HostedRobot]:
@@ -127,32 +127,32 @@ class Hosting:
         with whoever comes."""
         same = same_for_all(port)
         all_of_them = [*self._by_page.values(), *self._parting]
-        held = [each for each in all_of_them
-                if (each.is_parting or not each.has_ended) and not each.holds]  # fmt: skip
-        return [each for each in held if same_for_all(each.port) == same]
+        held = [robot for robot in all_of_them
+                if (robot.is_parting or not robot.has_ended) and not robot.holds]  # fmt: skip
+        return [robot for robot in held if same_for_all(robot.port) == same]
 
     def _forget_ended(self) -> None:
         """Forget what has ended, once its page knows why or is not there any more."""
         all_of_them = dict.fromkeys([*self._by_page.values(), *self._parting])
-        self._parting = [each for each in all_of_them if each.is_parting]
-        self._by_page = {name: each for name, each in self._by_page.items()
-                         if not (each.has_ended and each.attending.has_left)}  # fmt: skip
+        self._parting = [hosted_robot for hosted_robot in all_of_them if hosted_robot.is_parting]
+        self._by_page = {name: robot for name, robot in self._by_page.items()
+                         if not (robot.has_ended and robot.attending.has_left)}  # fmt: skip
 
     def _stop_all(self) -> Json:
         """Stop all robots, and refuse for a while what is on its way to them."""
         with self._lock:
-            self._stopping = [each for each in self._by_page.values() if _drives(each)]
+            self._stopping = [robot for robot in self._by_page.values() if _drives(robot)]
             self._latched_until_s = monotonic() + LATCH_S
-        for each in self._stopping:
-            each.attending.latch()
+        for hosted_robot in self._stopping:
+            hosted_robot.attending.latch()
         return self._stops()
 
     def _stops(self) -> Json:
         """Return what is known of the last STOP for all."""
         with self._lock:
-            found = self._stopping
-        return {"robots": [{"name": each.name or each.port, "stop": each.attending.last_stop}
-                           for each in found]}  # fmt: skip
+            hosted_robots = self._stopping
+        return {"robots": [{"name": robot.name or robot.port, "stop": robot.attending.last_stop}
+                           for robot in hosted_robots]}  # fmt: skip
 
 
 def listed() -> list[Json]:
@@ -207,6 +207,6 @@ def _requests(request: Json) -> list[Json]:
     requests: Any = request.get("asked", [])
     if not isinstance(requests, list) or len(requests) > MOST_ASKED:
         raise BadRequest
-    if not all(isinstance(each, dict) for each in requests):
+    if not all(isinstance(request, dict) for request in requests):
         raise BadRequest
     return requests

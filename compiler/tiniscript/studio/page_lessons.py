@@ -34,7 +34,7 @@ from tiniscript.virtual.score import Score
 from tiniscript.virtual.world import World
 
 MISTAKES = "mistakes"
-STEPS, TASK = 2, 3  # of a page's headings, behind what is needed
+STEPS, TASK = 2, 3  # of a page's headings, after what is needed
 CODE, WORD = re.compile("`([^`]+)`"), re.compile(r"\w+")  # in its sentences
 
 
@@ -79,7 +79,7 @@ def taught(number: int, language: str) -> list[str]:
     """Return the kinds of blocks that a lesson speaks of, and those that its task asks for."""
     lesson = _lesson(number)
     kit = profile_of(lesson.robot).kit
-    words = {word for each in lesson.criteria for word in each.words}
+    words = {word for criterion in lesson.criteria for word in criterion.words}
     found: set[str] = set()
     for step in steps(number, language):
         said = step["hint"]
@@ -112,19 +112,19 @@ def goals(number: int, seed: int) -> list[dict[str, Any]]:
     """Return where the task leads: a circle with a flag, or the area around a place."""
     lesson, drawn = _lesson(number), world(number, seed)
     found = []
-    for each in lesson.criteria:
-        if (each.kind not in GOALS and not each.area) or each.words:
+    for criterion in lesson.criteria:
+        if (criterion.kind not in GOALS and not criterion.area) or criterion.words:
             continue
-        for place in each.places:
+        for place in criterion.places:
             x_cm, y_cm = point_of(place, drawn, is_mirrored(lesson, seed))
-            is_flag = each.kind in GOALS and place.part != "start"
+            is_flag = criterion.kind in GOALS and place.part != "start"
             goal: dict[str, Any] = {"x_cm": x_cm, "y_cm": y_cm, "is_flag": is_flag}
-            if each.area:
-                (left, right), (low, high) = each.area
+            if criterion.area:
+                (left, right), (low, high) = criterion.area
                 corners = ((left, low), (right, low), (right, high), (left, high))
                 goal["around"] = [[x_cm + x, y_cm + y] for x, y in corners]
             else:
-                goal["radius_cm"] = each.numbers["within_cm"]
+                goal["radius_cm"] = criterion.numbers["within_cm"]
             found.append(goal)
     return found
 

@@ -96,7 +96,7 @@ def read(data: bytes) -> Recording:
         if ms > MOST_MS:
             raise BadRecording("too_long", number)
         if events and not events[-1].event.startswith("SHOW"):
-            raise BadRecording("unreadable", number)  # behind the end
+            raise BadRecording("unreadable", number)  # after the end
         events.append(Recorded(ms, str(event)))
     return Recording(int(str(program), 16), tuple(events), robot)
 
@@ -229,8 +229,8 @@ def _off_ms(ms: int) -> int:
 
 
 def _compared(recorded: tuple[Recorded, ...], virtual: list[Recorded], lines: list[int]) -> Parting:
-    said = tuple(filter(_is_said, recorded))
-    for count, ours in enumerate(said):
+    shown = tuple(filter(_is_said, recorded))
+    for count, ours in enumerate(shown):
         line = lines[count] if count < len(lines) else 0
         theirs = virtual[count] if count < len(virtual) else None
         if theirs is None:
@@ -239,7 +239,7 @@ def _compared(recorded: tuple[Recorded, ...], virtual: list[Recorded], lines: li
             return Parting("value", count, line, ours, theirs)
         if abs(ours.ms - theirs.ms) > _off_ms(max(ours.ms, theirs.ms)):
             return Parting("time", count, line, ours, theirs)
-    count = len(said)
+    count = len(shown)
     ends = recorded[-1] if recorded else Recorded(0, "STOPPED")
     if ends.event == "STOPPED" and len(virtual) > count:
         theirs = virtual[count]  # the robot has not said that, and had the time for it

@@ -2,7 +2,7 @@
 
 Knows which requests it answers. All of the page is read before: an update of the package does not
 change a page that is open. What a page asks of robots goes to `hosting`, if it shows the token of
-this run: a page gets it for the code that is in the address which `tsc studio` opens, behind a #,
+this run: a page gets it for the code that is in the address which `tsc studio` opens, after a #,
 which no browser sends (`entrances`). With `--class` the address is one of the room's network, the
 token is the teacher's, and pupils have tokens of their own (`classroom`). What the page may do in a
 browser is its Content-Security-Policy. Knows no robots.
@@ -259,10 +259,14 @@ class Server(ThreadingHTTPServer):
     def _idle(self) -> socket.socket:
         """Return the connection that has asked nothing for longest: of those without a token, if
         there are any, and of the address that has most of these."""
-        found = {each: client for each, client in self._connections.items() if not client.is_known}
+        found = {
+            connection: client
+            for connection, client in self._connections.items()
+            if not client.is_known
+        }
         found = found or self._connections
         [(most, _)] = Counter(client.address for client in found.values()).most_common(1)
-        return next(each for each, client in found.items() if client.address == most)
+        return next(connection for connection, client in found.items() if client.address == most)
 
     def shutdown_request(self, request: Any) -> None:
         with self._lock:
@@ -366,17 +370,17 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(HTTPStatus.FORBIDDEN, _FOREIGN)
             return
         name = urlsplit(self.path).path.removeprefix("/") or FIRST
-        found = self.server.page.get(name)
+        file = self.server.page.get(name)
         if self.headers.get("Service-Worker") == "script" and name != WORKER:
             self._send(HTTPStatus.OK, _GONE)
-        elif found is None:
+        elif file is None:
             self._send(HTTPStatus.NOT_FOUND, _MISSING)
-        elif found.tag in self.headers.get_all("If-None-Match", []):
-            self._send(HTTPStatus.NOT_MODIFIED, found._replace(data=b"", packed=b""))
-        elif found.packed and "gzip" in self.headers.get("Accept-Encoding", ""):
-            self._send(HTTPStatus.OK, found._replace(data=found.packed), "gzip")
+        elif file.tag in self.headers.get_all("If-None-Match", []):
+            self._send(HTTPStatus.NOT_MODIFIED, file._replace(data=b"", packed=b""))
+        elif file.packed and "gzip" in self.headers.get("Accept-Encoding", ""):
+            self._send(HTTPStatus.OK, file._replace(data=file.packed), "gzip")
         else:
-            self._send(HTTPStatus.OK, found)
+            self._send(HTTPStatus.OK, file)
 
     def do_HEAD(self) -> None:
         self.do_GET()  # sends all but the file

@@ -33,8 +33,8 @@ def _world(where: Any) -> World:
         return worlds.load(where)
     if "form" in where:
         return read_world(toml_of(where["form"]), "")
-    found: World = _lessons().world(where["lesson"], where["seed"])
-    return found
+    world: World = _lessons().world(where["lesson"], where["seed"])
+    return world
 
 
 def _power_on(fields: Answer, data: bytes) -> Answer:
@@ -102,15 +102,17 @@ def _replay(fields: Answer, data: bytes) -> Answer:
     """Compare a recording, `data`, with the same run of the program `text` on a virtual robot."""
     try:
         recording = recordings.read(data)
-        found = recordings.replay(
+        parting = recordings.replay(
             recording, fields["text"].encode(), fields["robot"], _world(fields["world"])
         )
     except recordings.BadRecording as bad:
         return {"what": bad.reason, "line": bad.line}
     except WorldRefused as refused:
         return {"what": "refused", "said": " ".join(describe(refused, fields["language"]))}
-    robot, virtual = (each and each._asdict() for each in (found.robot, found.virtual))
-    return {**found._asdict(), "robot": robot, "virtual": virtual}
+    robot, virtual = (
+        recorded and recorded._asdict() for recorded in (parting.robot, parting.virtual)
+    )
+    return {**parting._asdict(), "robot": robot, "virtual": virtual}
 
 
 _check_of_lesson: Any = None  # the one that goes on

@@ -70,10 +70,10 @@ def _line(fields: Answer, data: bytes) -> Answer:
     return _told(checking.line(data, fields["robot"], fields["language"]))
 
 
-def _told(found: str | Message) -> Answer:
-    if isinstance(found, Message):
-        return {"message": found.message, "fix": found.fix}
-    return {"text": found}
+def _told(message: str | Message) -> Answer:
+    if isinstance(message, Message):
+        return {"message": message.message, "fix": message.fix}
+    return {"text": message}
 
 
 def _blocks(fields: Answer, data: bytes) -> Answer:

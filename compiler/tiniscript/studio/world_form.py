@@ -55,8 +55,11 @@ def toml_of(form: Form) -> str:
     if set(labels.values()) == {form["name"]}:
         labels = {}  # the name of a file, which the next one may have differently
     elif SOURCE in labels:  # without what the catalogue of names says of it
-        said = ByLanguage({SOURCE: labels[SOURCE]})
-        labels = {**said, **{each: name for each, name in labels.items() if name != said[each]}}
+        by_language = ByLanguage({SOURCE: labels[SOURCE]})
+        labels = {
+            **by_language,
+            **{value: name for value, name in labels.items() if name != by_language[value]},
+        }
     tables = [
         _table("[floor]", floor),
         _table("[start]", form["start"]),

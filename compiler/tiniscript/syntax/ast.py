@@ -26,7 +26,7 @@ Expression = tuple[Part, ...]
 class Argument(NamedTuple):
     """`is_plain`: just one number, with or without a minus, and no brackets around it.
 
-    `unit` is the CM or DEG behind it, which `span` does not hold.
+    `unit` is the CM or DEG after it, which `span` does not hold.
     """
 
     expression: Expression
@@ -63,7 +63,7 @@ class Arm(NamedTuple):
 
 
 class If(NamedTuple):
-    """`has_else`: an ELSE stands in it, perhaps with nothing behind."""
+    """`has_else`: an ELSE stands in it, perhaps with nothing after."""
 
     arms: tuple[Arm, ...]
     otherwise: "tuple[Instruction, ...]"

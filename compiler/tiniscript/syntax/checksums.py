@@ -24,7 +24,7 @@ def checksum_of(line: str) -> int:
 
 
 def with_checksum(line: str) -> str:
-    """Return a line that has a checksum behind it, but no line end."""
+    """Return a line that has a checksum after it, but no line end."""
     return f"{line}~{checksum_of(line):08X}"
 
 

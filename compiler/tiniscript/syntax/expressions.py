@@ -50,7 +50,7 @@ class ExpressionParser:
             cursor.i += 1
             return Argument((Part("FOREVER", 0, *token.span),), token.span, False)
         argument = self.expression(in_brackets=True)
-        token = cursor.inner()  # the CM or DEG that may stand behind the whole of it
+        token = cursor.inner()  # the CM or DEG that may stand after the whole of it
         if token.kind is not WORD or token.text not in WAYS:
             return argument
         cursor.take_inner(WORD)
@@ -244,7 +244,7 @@ class ExpressionParser:
         self.reporter.fail(code, token.span, found=token.text)
 
     def no_unit(self, token: Token) -> None:
-        """CM or DEG anywhere but behind the whole of a value."""
+        """CM or DEG anywhere but after the whole of a value."""
         if token.kind is WORD and token.text in WAYS:
             self.wrong_unit(token.text, token.span)
             raise Failed
@@ -259,7 +259,7 @@ class ExpressionParser:
         )
 
     def no_semicolon(self, bracket: int) -> None:
-        """A `;` between two values, where brackets are closed behind the second one."""
+        """A `;` between two values, where brackets are closed after the second one."""
         cursor = self.cursor
         tokens, k = cursor.tokens, cursor.i
         if tokens[k].kind != ";":
@@ -273,8 +273,8 @@ class ExpressionParser:
         fix = f"{cursor.source[Span(call.start, tokens[k].start)].rstrip()}, "
         fix += cursor.source[Span(tokens[k + 1].start, call.end)]
         repair = Repair((Edit(tokens[k].span, ","),), False)
-        told = Diagnostic(codes.SEMICOLON_INSIDE, tokens[k].span, {"fix": fix}, call, repair)
-        self.reporter.diagnostics.append(told)
+        diagnostic = Diagnostic(codes.SEMICOLON_INSIDE, tokens[k].span, {"fix": fix}, call, repair)
+        self.reporter.diagnostics.append(diagnostic)
         raise Failed
 
     def no_close(self, bracket: int) -> NoReturn:

@@ -45,7 +45,7 @@ class Piece:
 
     def __init__(self, line: int, after_blank: bool) -> None:
         self.tokens: list[Token] = []
-        self.comments: list[str] = []  # those inside it and the one behind it
+        self.comments: list[str] = []  # those inside it and the one after it
         self.first_line = line
         self.last_line = line
         self.after_blank = after_blank  # an empty line stands right before it

@@ -132,10 +132,10 @@ class _Line(Parser):
         return arguments
 
     def argument_of(self, word: Token) -> Argument:
-        found = super().argument_of(word)
-        if found.is_plain and word.text != "LOOP":
+        argument = super().argument_of(word)
+        if argument.is_plain and word.text != "LOOP":
             raise Failed  # a number is no question
-        return found
+        return argument
 
     def own_name(self, word: Token, following: Token) -> None:
         is_called = following.kind == "("  # with how many values is looked at later

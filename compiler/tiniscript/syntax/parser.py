@@ -75,10 +75,10 @@ class Parser:
     # -- the program ------------------------------------------------------------------------
 
     def program(self) -> Program:
-        cursor, found = self.cursor, self.reporter.diagnostics
+        cursor, diagnostics = self.cursor, self.reporter.diagnostics
         tokens = cursor.tokens
         start = self.setup()
-        while (kind := tokens[cursor.i].kind) is not END and len(found) <= ENOUGH:
+        while (kind := tokens[cursor.i].kind) is not END and len(diagnostics) <= ENOUGH:
             if kind is NEWLINE or kind == ";":
                 cursor.i += 1
                 continue
@@ -293,7 +293,7 @@ class Parser:
     def close(self, word: Token) -> None:
         """End the block that a word ends, and those that are still open in it."""
         blocks, begun = self.blocks, ENDS[word.text]
-        if not any(each.word == begun for each in blocks.open):
+        if not any(block.word == begun for block in blocks.open):
             if self.crossed(word):
                 return
             around = {}
@@ -303,13 +303,13 @@ class Parser:
                 around = {"around": inner.word, "line": line, "ends": BLOCK_ENDS[inner.word]}
             self.reporter.report(codes.NOT_OPEN, word.span, found=word.text, right=begun, **around)
             return
-        inside = max(k for k, each in enumerate(blocks.open) if each.word == begun)
+        inside = max(k for k, block in enumerate(blocks.open) if block.word == begun)
         while (block := blocks.open[-1]).word != begun:
             line = str(self.cursor.source.position(block.header.start)[0])
             right = BLOCK_ENDS[block.word]
             values = {"found": word.text, "word": block.word, "line": line, "right": right}
             last = block.here[-1] if len(block.here) > 1 and block.word != "LOOP" else None
-            if last and not isinstance(last, Break):  # nothing comes behind one
+            if last and not isinstance(last, Break):  # nothing comes after one
                 values["several"] = self.cursor.source[last.span]
             self.early.append((len(self.reporter.diagnostics), inside))
             self.reporter.report(codes.WRONG_END, word.span, **values)
@@ -318,16 +318,18 @@ class Parser:
 
     def crossed(self, late: Token) -> bool:
         """Whether an end is that of a block that another end has closed: these two are swapped."""
-        found, depth = self.reporter.diagnostics, len(self.blocks.open)
-        ended = (it for it in self.early if ENDS[found[it[0]].values["right"]] == ENDS[late.text])
+        diagnostics, depth = self.reporter.diagnostics, len(self.blocks.open)
+        ended = (
+            it for it in self.early if ENDS[diagnostics[it[0]].values["right"]] == ENDS[late.text]
+        )
         place = next((it for it in ended if it[1] == depth), None)
         if place is None:
             return False
         self.early.remove(place)
-        k, early = place[0], found[place[0]]
+        k, early = place[0], diagnostics[place[0]]
         edits = (Edit(early.span, late.text), Edit(late.span, early.values["found"]))
         values = {**early.values, "swapped": late.text, "apart": late.text}
-        found[k] = early._replace(values=values, repair=codes.Repair(edits, False))
+        diagnostics[k] = early._replace(values=values, repair=codes.Repair(edits, False))
         return True
 
     def argument_of(self, word: Token) -> Argument:
@@ -343,7 +345,7 @@ class Parser:
         return arguments[0]
 
     def no_units(self, arguments: Sequence[Argument]) -> None:
-        """CM and DEG stand behind the way of a move alone."""
+        """CM and DEG stand after the way of a move alone."""
         for unit in (argument.unit for argument in arguments if argument.unit is not None):
             self.expressions.wrong_unit(unit.op, Span(unit.start, unit.end))
 

@@ -114,13 +114,13 @@ class Driving:
 
     def is_blocked(self) -> bool:
         """Whether the robot is inside an obstacle."""
-        found = self.hull.contact(self._pose, self.obstacles)
-        return found is not None and found.gap_cm < 0
+        contact = self.hull.contact(self._pose, self.obstacles)
+        return contact is not None and contact.gap_cm < 0
 
     def touched(self, pose: Pose) -> Point | None:
         """Return the place where a robot at `pose` touches an obstacle, or None."""
-        found = self._contact(pose)
-        return found.theirs if found is not None and found.gap_cm < TOUCH_CM else None
+        contact = self._contact(pose)
+        return contact.theirs if contact is not None and contact.gap_cm < TOUCH_CM else None
 
     def _contact(self, pose: Pose) -> Contact | None:
         """Return the nearest obstacle, or None where each is further away than NEAR_CM."""
@@ -131,8 +131,8 @@ class Driving:
                 obstacle for obstacle in self.obstacles if distance(obstacle, *pose[:2]) < least_cm
             ]
             self._near_from = pose
-        found = self.hull.contact(pose, self._near)
-        return None if found is None or found.gap_cm > NEAR_CM else found
+        contact = self.hull.contact(pose, self._near)
+        return None if contact is None or contact.gap_cm > NEAR_CM else contact
 
     def set_motors(self, now_ms: float, left: float, right: float) -> None:
         self.go_on(now_ms)

@@ -114,7 +114,7 @@ class Firmware:
         self._room = self.call("box_bytes")
         self._eeprom, size = self.call("memory_at"), self.call("memory_bytes")
         self.memory_bytes = size
-        self._waiting = bytearray()  # bytes behind those in the inbox
+        self._waiting = bytearray()  # bytes after those in the inbox
         self._notes, self._noted = self.call("notes") // 4, self.call("noted") // 4
         self._reading = self.call("reading") // 4
         self.is_watched = False  # its program may be held

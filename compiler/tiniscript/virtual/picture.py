@@ -60,7 +60,7 @@ class _Sheet:
         for line in world.lines:
             self._row(line.points, LINE, line.width_cm * self.scale)
         for box in world.boxes:
-            draw.polygon([self.at(each) for each in box], fill=BOX, outline=WALL, width=2 * FINE)
+            draw.polygon([self.at(point) for point in box], fill=BOX, outline=WALL, width=2 * FINE)
         for wall in world.walls:
             self._row(wall, WALL, 5 * FINE)
         if world.has_border:
@@ -72,7 +72,7 @@ class _Sheet:
         self._row([*corners, pose], WAY, 2.5 * FINE)
         self._disc(corners[0], 1.5, BEGIN)
         draw.polygon(
-            [self.at(each) for each in hull.outline(pose)], outline=ROBOT, width=round(2.5 * FINE)
+            [self.at(point) for point in hull.outline(pose)], outline=ROBOT, width=round(2.5 * FINE)
         )
         self._disc(hull.spine(pose).b, 1.2, ROBOT)
         self._foot(title)

@@ -157,9 +157,9 @@ class Transports:
         """
         self._accept()
         now_s = monotonic()
-        self._callers = [each for each in self._callers if not each.has_left(now_s)]
+        self._callers = [caller for caller in self._callers if not caller.has_left(now_s)]
         first = None
-        speaker = next((each for each in self._callers if each.is_next), None)
+        speaker = next((caller for caller in self._callers if caller.is_next), None)
         if speaker is not None and self._client is not None and now_s > self._heard_s + IDLE_S:
             self._part()
         if speaker is not None and self._client is None:

@@ -65,7 +65,7 @@ class World(NamedTuple):
 
     def obstacles(self) -> list[Segment]:
         """Return everything that a robot cannot drive through."""
-        obstacles = [each for wall in self.walls for each in joined(list(wall))]
+        obstacles = [segment for wall in self.walls for segment in joined(list(wall))]
         for box in self.boxes:
             obstacles += joined([*box, box[0]])
         if self.has_border:

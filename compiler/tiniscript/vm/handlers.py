@@ -1,6 +1,6 @@
 """The table of handlers, which turn instructions into functions; each family adds its own.
 
-A handler is called once for each instruction of a program, with the machine, the offset behind the
+A handler is called once for each instruction of a program, with the machine, the offset after the
 instruction and the operands; it returns the step that runs it, with these values bound. So the
 running program looks nothing up. Knows no instruction.
 """

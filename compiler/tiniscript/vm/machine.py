@@ -30,7 +30,7 @@ assert not _missing, f"no handler for {_missing}"
 def bound(m: Execution, code: bytes) -> list[Step]:
     """Return the step of the instruction at each offset, for this machine. Jumps are offsets.
 
-    Behind the code stands END.
+    After the code stands END.
     """
     steps = [HANDLERS["END"](m, 0)] * (len(code) + 1)
     at = 0
@@ -85,7 +85,7 @@ class Machine(Execution):
         at, pc = self.at, task.pc
         left = budget
         try:
-            for left in range(budget - 1, -1, -1):  # noqa: B007 - it is asked for behind the loop
+            for left in range(budget - 1, -1, -1):  # noqa: B007 - it is asked for after the loop
                 at = pc
                 pc = run[at]()
                 if pc < 0:

@@ -27,7 +27,7 @@ class Instance:
             table.setdefault(each.module, {})[each.name] = proxy
         given = to_js(table, dict_converter=js.Object.fromEntries)
         exports = js.WebAssembly.Instance.new(module, given).exports
-        names = [each.name for each in js.WebAssembly.Module.exports(module)]
+        names = [export.name for export in js.WebAssembly.Module.exports(module)]
         self.functions = {name: getattr(exports, name) for name in names}
         buffer = self.functions.pop("memory").buffer
         self._bytes = js.Uint8Array.new(buffer)

@@ -59,8 +59,8 @@ class TaskRecord:
         self.powers: Powers | None = None  # None: a wait, the motors stay as they are
         self.move_ms = 0  # how long it may last from its clock on, or FOREVER
         self.has_begun = True  # it drives, or waits, or is over
-        self.check = 0  # where that of its UNTIL begins, or where it goes on behind it
-        self.after = 0  # behind the move
+        self.check = 0  # where that of its UNTIL begins, or where it goes on after it
+        self.after = 0  # after the move
         self.is_moving = False  # its move drives or is blocked
         self.is_blocked = False
         self.drives = False
@@ -75,7 +75,7 @@ class TaskRecord:
         return self.is_moving or self.has_set or self.keeps
 
     def leave_move(self) -> None:
-        """Its move is over, and so is its M. It goes on behind the move."""
+        """Its move is over, and so is its M. It goes on after the move."""
         self.is_moving = self.is_blocked = self.drives = self.to_its_end = False
         self.forget_set()
         self.pc = self.after
@@ -272,7 +272,7 @@ class TaskMachine(Machine):
 
     def watch(self, move_ms: int, powers: Powers | None, after: int) -> int:
         self._keep_move(move_ms, powers, after)
-        self.me.after = -1  # behind its UNTIL
+        self.me.after = -1  # after its UNTIL
         return self._block() if self._must_wait_for_motors() else after
 
     def _keep_move(self, move_ms: int, powers: Powers | None, check: int) -> None:
@@ -379,7 +379,7 @@ class TaskMachine(Machine):
         self.me.keeps = self.me.is_when
 
     def _pass_on(self) -> None:
-        """Behind a turn: give the motors to the highest task that wants them, if it is another."""
+        """After a turn: give the motors to the highest task that wants them, if it is another."""
         highest = next((task for task in self.tasks if task.wants_motors), None)
         if highest is not self.holder:
             self.holder = highest

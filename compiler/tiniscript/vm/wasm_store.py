@@ -40,12 +40,12 @@ class Instance:
         self._store = Store(_engine())
         self._store.set_limits(memory_size=MOST_BYTES, instances=1, memories=1, tables=1)
         module = _module(path)
-        given = [Func(self._store, FuncType([], []), imports[each.name or ""])
-                 for each in module.imports]  # fmt: skip
+        given = [Func(self._store, FuncType([], []), imports[import_type.name or ""])
+                 for import_type in module.imports]  # fmt: skip
         exports = wasmtime.Instance(self._store, module, given).exports(self._store)
-        found = {each.name: exports[each.name] for each in module.exports}
-        self.functions = {name: _called(self._store, each)
-                          for name, each in found.items() if isinstance(each, Func)}  # fmt: skip
+        found = {export.name: exports[export.name] for export in module.exports}
+        self.functions = {name: _called(self._store, func)
+                          for name, func in found.items() if isinstance(func, Func)}  # fmt: skip
         memory = found["memory"]
         assert isinstance(memory, Memory)
         self._memory = memory

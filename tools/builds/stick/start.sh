@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs tsc from this stick, and opens a shell in which it works:  sh start.sh
-# With a folder behind it: installs it there, and opens none.
+# With a folder after it: installs it there, and opens none.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 for name in python3 python3.15 python3.14 python3.13 python3.12 python3.11 python3.10 python; do

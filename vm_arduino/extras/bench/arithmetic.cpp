@@ -87,7 +87,7 @@ void answer() {
   const uint16_t blocks = request.u16();
   const uint16_t block = request.u16();  // operations of each
   const uint16_t detailed =
-      request.u16();  // this one result by result, and none behind it
+      request.u16();  // this one result by result, and none after it
   op_count = request.u8();
   for (uint8_t k = 0; k < op_count; k++) ops[k] = request.u8();
   edge_count = request.u8();

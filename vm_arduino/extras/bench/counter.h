@@ -10,7 +10,7 @@
 
 namespace counter {
 
-constexpr uint32_t kLongest = 200 * 1024UL;  // cycles between two looks: behind 2^18 both wrap
+constexpr uint32_t kLongest = 200 * 1024UL;  // cycles between two looks: past 2^18 both wrap
 
 // Volatile, so that they are read and written in exactly this order.
 volatile uint8_t coarse;

@@ -1,6 +1,6 @@
 // Saves two programs in the EEPROM of a simulated ATmega328P, and says what is there.
 //
-// The request has two images, each behind its length. The first is saved. Of the save of the second
+// The request has two images, each after its length. The first is saved. Of the save of the second
 // one so many steps are done as the request says, then the robot starts anew; then it is saved.
 // Says after each start how many bytes are kept and their checksum, and at the end how many cycles
 // the longest call of `tick` took: after a start, and in a save.

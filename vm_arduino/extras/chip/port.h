@@ -10,7 +10,7 @@
 
 namespace tiniscript {
 
-// The byte of the request at this place; 0 behind its end.
+// The byte of the request at this place; 0 after its end.
 uint8_t request_byte(size_t place);
 
 // Returns `length` bytes of the request from this place, in RAM and followed by `zeros`, or nullptr

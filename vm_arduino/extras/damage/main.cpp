@@ -1,5 +1,5 @@
 // Frames that are damaged on their way, as many as one likes, and the receiver of a robot. None that
-// was changed may be accepted, and damage may cost the frame behind it, no other.
+// was changed may be accepted, and damage may cost the frame after it, no other.
 //
 // A line is a thousand frames, half of them damaged; its seed determines all of it. A request is
 // four bytes of length and a letter with what it asks, an answer four bytes of length and what was
@@ -228,7 +228,7 @@ void judge_line(uint64_t seed) {
 // -- typed stops ------------------------------------------------------------------------------------
 
 // How many typed stops a line of frames holds for the receiver, as the link takes them: where bytes
-// arrive, or behind a frame that is not whole.
+// arrive, or after a frame that is not whole.
 uint32_t count_typed_stops() {
   Receiver receiver = Receiver();
   uint32_t stops = 0;
@@ -326,7 +326,7 @@ Law of_unended(const std::string& line) {
   return near.find("//") == std::string::npos ? Law::kStop : Law::kNone;
 }
 
-// Whether the part of a frame behind its last control byte is one S or STOP, blanks and `;`.
+// Whether the part of a frame after its last control byte is one S or STOP, blanks and `;`.
 bool is_strict(const std::string& packet) {
   std::string line;
   for (const char byte : small(packet)) {
@@ -376,7 +376,7 @@ Law law_of(const std::vector<Typed>& all, size_t restart, bool is_running) {
   size_t line = last;
   while (line > text && !is_end(all[line - 1].byte)) line--;
   const std::string bytes = without_keys(between(std::max(line, restart), last));
-  const bool is_behind_zero = is_framed && line == text;
+  const bool is_after_zero = is_framed && line == text;
   // A line of text that has begun before a silence is the same one for some: a control byte in it, say.
   size_t before = line;
   while (line == quiet && before > 0 && all[before - 1].byte != 0 && !is_end(all[before - 1].byte)) before--;
@@ -389,7 +389,7 @@ Law law_of(const std::vector<Typed>& all, size_t restart, bool is_running) {
   if (byte == 3 && !is_new) return Law::kEither;
   if (is_end(byte)) {
     const Law law = of_line(bytes);
-    return law == Law::kStop && is_behind_zero && !is_strict(bytes) ? Law::kWaits : law;
+    return law == Law::kStop && is_after_zero && !is_strict(bytes) ? Law::kWaits : law;
   }
   if (byte != 0) {
     return is_running ? of_unended(without_keys(between(std::max(line, restart), last + 1))) : Law::kNone;
@@ -403,7 +403,7 @@ Law law_of(const std::vector<Typed>& all, size_t restart, bool is_running) {
   }
   const Law law = of_line(bytes);
   if (law != Law::kStop) return law;
-  if (is_behind_zero) return Law::kWaits;
+  if (is_after_zero) return Law::kWaits;
   return is_new ? law : Law::kEither;
 }
 
@@ -425,7 +425,7 @@ Item one_of(const Item (&some)[kCount], Draw* draw) {
   return some[draw->below(kCount)];
 }
 
-// So many typed stops behind bytes that are anything: each byte does what `law_of` says, by a
+// So many typed stops after bytes that are anything: each byte does what `law_of` says, by a
 // receiver and by what an ESP32 has beside it, and the last line stops.
 void judge_typed(uint64_t seed) {
   Draw draw(seed);
@@ -439,7 +439,7 @@ void judge_typed(uint64_t seed) {
   Law law = Law::kNone;
   const bool is_running = draw.below(2) == 0;
   status.state = is_running ? State::kRunning : State::kIdle;
-  // Notes what was wrong first, and behind which bytes.
+  // Notes what was wrong first, and after which bytes.
   const auto note = [&](const char* complaint) {
     if (!what.empty()) return;
     what = complaint;

@@ -150,9 +150,9 @@ void answer_wait(RequestReader* request, Writer* answer) {
 void answer_kept(RequestReader*, Writer* answer) {
   answer->text(noinit());
   answer->u32(static_cast<uint32_t>(chip.entries.size()));
-  for (const auto& each : chip.entries) {
-    answer->text(each.first);
-    answer->text(each.second);
+  for (const auto& entry : chip.entries) {
+    answer->text(entry.first);
+    answer->text(entry.second);
   }
   answer->u32(chip.nvs_writes);
 }

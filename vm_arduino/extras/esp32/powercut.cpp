@@ -72,12 +72,12 @@ void starts(const Entries& entries, Area area, const std::vector<Content>& allow
     forget();
     store.boot();
     run(&store);
-    const Content found = read(store, area);
+    const Content content = read(store, area);
     bool is_allowed = false;
-    for (const Content& each : allowed) is_allowed = is_allowed || found == each;
-    if (!is_allowed) wrong(found.empty() ? "nothing is there" : "there is a third thing");
-    if (k > 0 && found != first) wrong("another one at a later start");
-    first = found;
+    for (const Content& content : allowed) is_allowed = is_allowed || content == content;
+    if (!is_allowed) wrong(content.empty() ? "nothing is there" : "there is a third thing");
+    if (k > 0 && content != first) wrong("another one at a later start");
+    first = content;
   }
 }
 

@@ -159,11 +159,11 @@ bool set_frequency(uint8_t channel, uint32_t hertz, uint8_t bits) {
 }
 
 void set_duty(uint8_t channel, uint32_t duty) {
-  SimulatedChannel& each = chip.channels[channel];
-  expect(each.bits != 0, "a duty of a channel that is not set up");
+  SimulatedChannel& simulated_channel = chip.channels[channel];
+  expect(simulated_channel.bits != 0, "a duty of a channel that is not set up");
   if (chip.is_ledc_stuck) return;
-  const uint32_t most = (1U << each.bits) - 1;
-  each.duty = duty == most ? most + 1 : duty;  // as both versions of the core do
+  const uint32_t most = (1U << simulated_channel.bits) - 1;
+  simulated_channel.duty = duty == most ? most + 1 : duty;  // as both versions of the core do
 }
 
 uint32_t set_tone(uint8_t channel, uint32_t hertz) {
@@ -192,7 +192,7 @@ size_t entries_of(const std::string& value) {
 
 size_t used_entries() {
   size_t used = 1;  // the name of the namespace
-  for (const auto& each : chip.entries) used += entries_of(each.second);
+  for (const auto& entry : chip.entries) used += entries_of(entry.second);
   return used;
 }
 
@@ -251,10 +251,10 @@ void pass_us(uint64_t us) {
 }
 
 uint8_t output_of(uint8_t pin) {
-  const SimulatedPin& each = chip.pins[pin];
-  if (!each.is_output) return 0;
-  if (each.signal == SIG_GPIO_OUT_IDX) return each.level ? 255 : 0;
-  const SimulatedChannel& channel = channel_of(each.signal);
+  const SimulatedPin& simulated_pin = chip.pins[pin];
+  if (!simulated_pin.is_output) return 0;
+  if (simulated_pin.signal == SIG_GPIO_OUT_IDX) return simulated_pin.level ? 255 : 0;
+  const SimulatedChannel& channel = channel_of(simulated_pin.signal);
   if (channel.bits == 0) return 0;
   const uint64_t level = (uint64_t{channel.duty} * 255 + (1U << channel.bits) / 2) >> channel.bits;
   return static_cast<uint8_t>(level > 255 ? 255 : level);
@@ -265,11 +265,11 @@ void take_timer() { is_timer_taken = true; }
 void run_timer() { timer.callback(timer.argument); }
 
 void set_input(uint8_t pin, bool level) {
-  SimulatedPin& each = chip.pins[pin];
-  if (each.input == level) return;
-  each.input = level;
+  SimulatedPin& simulated_pin = chip.pins[pin];
+  if (simulated_pin.input == level) return;
+  simulated_pin.input = level;
   if (chip.on_input != nullptr) chip.on_input(pin, level);
-  if (each.handler != nullptr && each.has_interrupt) each.handler();
+  if (simulated_pin.handler != nullptr && simulated_pin.has_interrupt) simulated_pin.handler();
 }
 
 std::string noinit() { return std::string(__start_rtc_noinit, __stop_rtc_noinit); }
@@ -288,11 +288,11 @@ void pinMode(uint8_t pin, uint8_t mode) {
   expect(is_in(kPins, pin), "a pin that the chip does not have free");
   expect(mode != OUTPUT || is_in(kOutputs, pin), "an output on a pin that only reads");
   expect(mode != INPUT_PULLUP || is_in(kOutputs, pin), "a pull-up on a pin that has none");
-  SimulatedPin& each = chip.pins[pin];
-  each.is_output = mode == OUTPUT;
-  each.signal = SIG_GPIO_OUT_IDX;
-  if (mode == INPUT_PULLUP && !each.has_pull_up) each.input = true;
-  each.has_pull_up = mode == INPUT_PULLUP;
+  SimulatedPin& simulated_pin = chip.pins[pin];
+  simulated_pin.is_output = mode == OUTPUT;
+  simulated_pin.signal = SIG_GPIO_OUT_IDX;
+  if (mode == INPUT_PULLUP && !simulated_pin.has_pull_up) simulated_pin.input = true;
+  simulated_pin.has_pull_up = mode == INPUT_PULLUP;
 }
 
 void attachInterrupt(uint8_t pin, void (*handler)(void), int mode) {
@@ -362,15 +362,15 @@ void simulated_register(uint32_t at, uint32_t value) {
   const bool is_high = at == GPIO_OUT_W1TS_REG || at == GPIO_OUT_W1TS_REG + kNextPort;
   const uint32_t first = at == GPIO_OUT_W1TS_REG || at == GPIO_OUT_W1TC_REG ? 0 : 32;
   const uint32_t pin = first + static_cast<uint32_t>(__builtin_ctz(value));
-  SimulatedPin& each = output_at(pin);
-  const bool before = each.level;
-  each.level = is_high;
+  SimulatedPin& simulated_pin = output_at(pin);
+  const bool before = simulated_pin.level;
+  simulated_pin.level = is_high;
   on_write(static_cast<uint8_t>(pin), before, is_high);
 }
 
 int gpio_get_level(gpio_num_t gpio_num) {
-  const SimulatedPin& each = chip.pins[gpio_num];
-  return each.is_output ? each.level : each.input;
+  const SimulatedPin& simulated_pin = chip.pins[gpio_num];
+  return simulated_pin.is_output ? simulated_pin.level : simulated_pin.input;
 }
 
 esp_err_t gpio_intr_enable(gpio_num_t gpio_num) {

@@ -39,7 +39,7 @@ bool has_le;
 bool has_server;
 bool has_started;  // its service
 constexpr esp_gatt_if_t kInterface = 3;
-constexpr uint16_t kFirstHandle = 42;  // of the characteristics, each with a descriptor behind it
+constexpr uint16_t kFirstHandle = 42;  // of the characteristics, each with a descriptor after it
 struct LowEnergyClient {
   uint16_t mtu = 23;
   bool has_subscribed = false;

@@ -12,7 +12,7 @@
 #include <vector>
 
 // Bluetooth LE. A client has a number, which is another one's when it has gone; 0xffff: no robot was
-// found. Who is sent away has gone behind the call in which that was asked.
+// found. Who is sent away has gone after the call in which that was asked.
 constexpr uint16_t kNoClient = 0xffff;
 uint16_t low_energy_connect();
 void low_energy_disconnect(uint16_t client);

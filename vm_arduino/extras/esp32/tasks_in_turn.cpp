@@ -33,7 +33,7 @@ Task main_loop;
 Task* active = &main_loop;
 Task* before;
 
-// Behind a switch, in the task that goes on.
+// After a switch, in the task that goes on.
 void arrive() {
   __sanitizer_finish_switch_fiber(active->kept, &before->stack, &before->stack_bytes);
 }

@@ -1,4 +1,4 @@
-// What a fuzzer has made, byte by byte; 0 behind its end.
+// What a fuzzer has made, byte by byte; 0 after its end.
 
 #pragma once
 

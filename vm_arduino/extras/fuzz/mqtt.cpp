@@ -51,7 +51,7 @@ std::string message(Input* input) {
   return std::string(reinterpret_cast<const char*>(bytes), writer.length());
 }
 
-// The next packet of `data` from `at` on, which goes on behind it. False: it is not all there.
+// The next packet of `data` from `at` on, which goes on after it. False: it is not all there.
 bool next_packet(const std::string& data, size_t* at, Found* found) {
   *found = {MqttEvent::kNone, "", "", false};
   size_t place = *at;

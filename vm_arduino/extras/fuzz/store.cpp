@@ -39,9 +39,9 @@ void start(Store* store) {
 
 // A slot may count that holds no image at all: the store knows checksums alone.
 Content what_counts(const Store& store, Area area) {
-  const Content found = read(store, area);
-  if (area == Area::kProgram && !found.empty()) must(found == checked(found));
-  return found;
+  const Content content = read(store, area);
+  if (area == Area::kProgram && !content.empty()) must(content == checked(content));
+  return content;
 }
 
 void twice(Store* store) {
@@ -100,8 +100,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const bool is_whole = !memory.is_off && store.state() == StoreState::kSaved;
     if (is_whole) must(what_counts(store, area) == now);
     twice(&store);
-    const Content found = what_counts(store, area);
-    must(is_whole ? found == now : found == now || found == old);
+    const Content content = what_counts(store, area);
+    must(is_whole ? content == now : content == now || content == old);
   }
   return 0;
 }

@@ -73,7 +73,7 @@ void answer_all(Request request) {
     if (!is_accepted) continue;
     accepted++;
     robot = TracedRobot();
-    for (TracedRobot::Sensor& each : robot.sensors) each.name = asked.size();  // it has none
+    for (TracedRobot::Sensor& sensor : robot.sensors) sensor.name = asked.size();  // it has none
     said = Writer();  // nobody wants the trace
     Machine machine;
     int32_t readings[kDevices] = {};

@@ -74,7 +74,7 @@ class Writer {
   std::string data_;
 };
 
-// Returns lines, each behind the time of all.
+// Returns lines, each after the time of all.
 inline std::string timed(uint32_t ms, const std::string& lines) {
   std::string found;
   for (size_t at = 0, end; at < lines.size(); at = end) {

@@ -34,7 +34,7 @@ uint16_t length_of(const std::string& image) {
 
 uint32_t checksum_of(const std::string& image) {
   uint32_t found = 0;
-  for (uint8_t k = kBehindChecksum; !image.empty() && k-- > kChecksumAt;) {
+  for (uint8_t k = kAfterChecksum; !image.empty() && k-- > kChecksumAt;) {
     found = found << 8 | static_cast<uint8_t>(image[k]);
   }
   return found;

@@ -33,8 +33,8 @@ uint32_t random_below(uint32_t end) {
 
 Content checked(Content image) {
   const uint32_t head = crc32(0, image.data(), kChecksumAt);
-  const uint16_t rest = static_cast<uint16_t>(image.size() - kBehindChecksum);
-  put(&image, kChecksumAt, crc32(head, image.data() + kBehindChecksum, rest));
+  const uint16_t rest = static_cast<uint16_t>(image.size() - kAfterChecksum);
+  put(&image, kChecksumAt, crc32(head, image.data() + kAfterChecksum, rest));
   return image;
 }
 
@@ -61,24 +61,24 @@ bool begin(Store* store, Area area, Content* content) {
 }
 
 Content read(const Store& store, Area area) {
-  Content found;
-  if (store.used(area) == kNoSlot) return found;
+  Content content;
+  if (store.used(area) == kNoSlot) return content;
   size_t length = area == Area::kOwner ? kOwnerBytes : kRecordBytes;
   if (area == Area::kProgram) length = kHeaderBytes;
-  found.reserve(kHeaderBytes);
-  while (found.size() < length) {
+  content.reserve(kHeaderBytes);
+  while (content.size() < length) {
     uint8_t byte;
-    if (!store.fetch(area, static_cast<uint16_t>(found.size()), &byte)) {
+    if (!store.fetch(area, static_cast<uint16_t>(content.size()), &byte)) {
       printf("MISUSE what counts cannot be read\n");
       exit(3);
     }
-    found.push_back(byte);
-    if (area == Area::kProgram && found.size() == kHeaderBytes) {
-      length = found[kHeaderLengthAt] + found[kCodeLengthAt] + found[kCodeLengthAt + 1] * 256U;
-      if (length < kMemoryBytes) found.reserve(length);
+    content.push_back(byte);
+    if (area == Area::kProgram && content.size() == kHeaderBytes) {
+      length = content[kHeaderLengthAt] + content[kCodeLengthAt] + content[kCodeLengthAt + 1] * 256U;
+      if (length < kMemoryBytes) content.reserve(length);
     }
   }
-  return found;
+  return content;
 }
 
 }  // namespace tiniscript

@@ -101,9 +101,9 @@ Content look(const Store& store, const Expected& expected) {
     if (area == expected.area) continue;
     if (read(store, area) != expected.others[k]) wrong("another area has changed");
   }
-  const Content found = read(store, expected.area);
-  for (const Content& each : expected.allowed) {
-    if (found == each) return found;
+  const Content content = read(store, expected.area);
+  for (const Content& content : expected.allowed) {
+    if (content == content) return content;
   }
   wrong("there is a third thing");
 }
@@ -122,9 +122,9 @@ void starts(World world, const Expected& expected) {
   Content first;
   for (uint8_t k = 0; k < 3; k++) {
     start(&world.store);
-    const Content found = look(world.store, expected);
-    if (k == 0) first = found;
-    if (found != first) wrong("another one at a later start");
+    const Content content = look(world.store, expected);
+    if (k == 0) first = content;
+    if (content != first) wrong("another one at a later start");
   }
 }
 
@@ -165,10 +165,10 @@ Expected with(Expected expected, std::vector<Content> allowed) {
 void cut_next(World world, const Expected& expected, Task next, uint32_t stride) {
   memory = world.memory;
   start(&world.store);
-  const Content found = look(world.store, expected);
+  const Content content = look(world.store, expected);
   if (!begin(&world.store, next.area, &next.content)) wrong("the next save is refused");
   world.memory = memory;
-  const Expected now = with(expected, {found, next.content});
+  const Expected now = with(expected, {content, next.content});
   world = cut_each_write(world, stride, [&](const World& cut) { starts(cut, now); });
   if (world.store.state() == StoreState::kFailed) wrong("the next save fails");
   starts(world, with(expected, {next.content}));

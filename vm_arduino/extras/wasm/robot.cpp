@@ -279,7 +279,7 @@ tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_
   firmware_begin(boot_info);
 }
 
-// So many bytes are in the inbox now, behind those that have been heard.
+// So many bytes are in the inbox now, after those that have been heard.
 tini_exported("put") void module_put(uint32_t bytes) {
   heard = 0;
   to_hear = bytes;

@@ -109,9 +109,9 @@ const int32_t* watched_tasks() {
 #ifdef tiniscript_has_tasks
   if (!is_running() || !machine.has_tasks()) return found;
   const Task& task = machine.task();
-  for (const TaskRecord& each : task.records) {
-    const uint16_t at = &each == task.me ? task.pc : each.pc;
-    if (each.state != 0 && at != 0) found[++found[0]] = at - 1;
+  for (const TaskRecord& record : task.records) {
+    const uint16_t at = &record == task.me ? task.pc : record.pc;
+    if (record.state != 0 && at != 0) found[++found[0]] = at - 1;
   }
 #endif
   return found;

@@ -74,7 +74,7 @@ void __vector_left_disc() { on_edge(counters, kLeftDisc); }
 extern "C" void __vector_right_disc() __attribute__((signal, used, externally_visible));
 void __vector_right_disc() { on_edge(counters + 1, kRightDisc); }
 
-// Before that it turns itself off and lets the others in, as a stop waits for them: behind the
+// Before that it turns itself off and lets the others in, as a stop waits for them: after the
 // instruction that follows.
 tini_always_inline void interrupt(Disc disc, void (*function)()) {
   asm volatile("sei\n\tcbi %[mask], %[bit]\n\t%~jmp %x[function]" ::[mask] "I"(kExternal - 0x20),

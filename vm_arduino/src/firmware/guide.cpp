@@ -92,7 +92,7 @@ void put(Wheel* wheel, int32_t at) {
   wheel->edges = (at >> 6) + 1;
 }
 
-// Where it is while it turns: behind its last edge as far as the time since then tells.
+// Where it is while it turns: after its last edge as far as the time since then tells.
 int32_t position(const Wheel& wheel) {
   int32_t more = kEdge / 2;
   if (wheel.two_ms != 0 && wheel.power > 0) {

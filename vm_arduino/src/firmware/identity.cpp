@@ -47,8 +47,8 @@ void read_identity(const uint8_t* record) {
   uint8_t length = 0;
   while (length < kNameBytes && record[kNameAt + length] != 0) length++;
   change_name(record + kNameAt, length);
-  const Trim& found = *reinterpret_cast<const Trim*>(record + kTrimAt);
-  if (is_sound(found)) tuning.trim = found;  // otherwise it was written by other firmware
+  const Trim& trim = *reinterpret_cast<const Trim*>(record + kTrimAt);
+  if (is_sound(trim)) tuning.trim = trim;  // otherwise it was written by other firmware
 }
 
 void write_identity(uint8_t* record) {

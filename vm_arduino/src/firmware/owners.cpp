@@ -29,8 +29,8 @@ void read_owner() {
 
 Answer port_key(uint8_t which, uint8_t* key) {
   if (!nvm_is_readable()) return Answer::kUnreadable;
-  const Answer found = owner_kept();
-  if (found != Answer::kOk) return found;
+  const Answer answer = owner_kept();
+  if (answer != Answer::kOk) return answer;
   return fetch_key(which, key) ? Answer::kOk : not_now();
 }
 

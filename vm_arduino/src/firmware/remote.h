@@ -1,4 +1,4 @@
-// What a program reads of a remote control, behind the sensors of its kit.
+// What a program reads of a remote control, after the sensors of its kit.
 //
 // The newest word counts: of the session that drives or, where none does, of any that may. All is let
 // go 0.5 s after it, and at a start.

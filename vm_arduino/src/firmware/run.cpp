@@ -207,14 +207,14 @@ int32_t remote_reading(uint8_t number) {
 #ifdef tiniscript_reads_keys
   reads_keys = true;
 #endif
-  const RemoteKeys* const said = link.remote();
-  if (said == nullptr) return 0;
+  const RemoteKeys* const remote_keys = link.remote();
+  if (remote_keys == nullptr) return 0;
   if (number < kRemoteKeys) {
-    uint8_t keys = said->keys;
+    uint8_t keys = remote_keys->keys;
     for (; number != 0; number--) keys = static_cast<uint8_t>(keys >> 1);
     return keys & uint8_t{1};
   }
-  return said->pad[number - kRemoteKeys] * int32_t{1000};
+  return remote_keys->pad[number - kRemoteKeys] * int32_t{1000};
 }
 
 #ifdef tiniscript_has_discs

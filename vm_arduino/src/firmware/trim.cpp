@@ -47,12 +47,12 @@ tini_noinline bool is_sound(const Trim& trim) {
 
 Levels trimmed(const Trim& trim, int8_t left, int8_t right) {
   const uint8_t low = level_of(trim.least);
-  Levels found = {level(left, low, trim.balance),
+  Levels levels = {level(left, low, trim.balance),
                   level(right, low, static_cast<int8_t>(-trim.balance))};
-  if ((trim.wheels & kLeftReversed) != 0) found.left = static_cast<int16_t>(-found.left);
-  if ((trim.wheels & kRightReversed) != 0) found.right = static_cast<int16_t>(-found.right);
-  if ((trim.wheels & kExchanged) != 0) found = {found.right, found.left};
-  return found;
+  if ((trim.wheels & kLeftReversed) != 0) levels.left = static_cast<int16_t>(-levels.left);
+  if ((trim.wheels & kRightReversed) != 0) levels.right = static_cast<int16_t>(-levels.right);
+  if ((trim.wheels & kExchanged) != 0) levels = {levels.right, levels.left};
+  return levels;
 }
 
 }  // namespace tiniscript

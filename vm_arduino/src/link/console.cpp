@@ -19,7 +19,7 @@ constexpr Remark kWhole = Remark::kOk;  // in the place of what is told: a whole
 // echoes or answers each line is on the other side. The next one is told that.
 constexpr uint8_t kMostMistakes = 16;
 constexpr uint16_t kPauseMs = 5000;
-// Of silence behind bytes that no line end follows: it is told, or they are a line where none ends.
+// Of silence after bytes that no line end follows: it is told, or they are a line where none ends.
 constexpr uint16_t kTailMs = 2000;
 constexpr uint16_t kUnendedMs = 3000;
 constexpr uint16_t kBriefMs = 150;  // of silence before a line counts again
@@ -158,7 +158,7 @@ inline void Console::end_tail(bool is_heard) {
   tell(tail, is_heard);
 }
 
-// A line goes on behind a second of silence, or begins there.
+// A line goes on after a second of silence, or begins there.
 inline void Console::end_silence() {
   refused_ = Remark::kNone;
   begins_ = static_cast<uint8_t>(reader_.last_column() + 1);
@@ -171,7 +171,7 @@ void Console::tell(Remark remark, bool is_heard) {
 }
 
 // Takes a byte of a line. A start begins a program anew where an unfinished one would go on, and
-// behind a radio module's message, which has no line end of its own. Of its SETUP word only the length
+// after a radio module's message, which has no line end of its own. Of its SETUP word only the length
 // and a letter are looked at: the reader knows the others.
 inline void Console::take(uint8_t byte, bool is_heard) {
 #ifdef tiniscript_reads_keys
@@ -246,7 +246,7 @@ bool Console::begin(uint8_t byte) {
     return false;
   }
   reader_.begin(image_ + kHeaderBytes, room);
-  // It no longer knows the mistake of the line before, which a stop behind has kept from being said.
+  // It no longer knows the mistake of the line before, which a stop after it has kept from being said.
   if (remark_ == Remark::kMistake) remark_ = Remark::kNone;
   is_open_ = true;
   is_waiting_ = false;
@@ -288,7 +288,7 @@ inline Console::Act Console::end_line(bool is_heard) {
   const uint8_t before = length_;
   length_ = reader_.length();
   is_waiting_ = is_open_ = text == Text::kMore;
-  // With a comment behind it S is no typed stop, and stops all the same.
+  // With a comment after it S is no typed stop, and stops all the same.
   if (text == Text::kProgram && reader_.is_stop()) return has_mark_ ? Act::kNone : Act::kStop;
   if (is_ignored()) {
     is_open_ = is_waiting_ = false;
@@ -301,7 +301,7 @@ inline Console::Act Console::end_line(bool is_heard) {
   switch (text) {
     case Text::kMore:
       awaited_ = reader_.awaited();
-      if (reader_.is_stop_behind(before)) return Act::kEnd;
+      if (reader_.is_stop_after(before)) return Act::kEnd;
       break;
     case Text::kProgram:
       is_ignoring_ = false;
@@ -318,7 +318,7 @@ inline Console::Act Console::end_line(bool is_heard) {
     case Text::kProblem:
       is_ignoring_ = has_setup || was_waiting;
       if (!has_mark_ && first_ != '+' && !is_heard && mistakes_ <= kMostMistakes) {
-        // behind a SETUP word a module's word is a wrong one: it begins no program
+        // after a SETUP word a module's word is a wrong one: it begins no program
         const uint8_t word = has_setup ? kAsking : reader_.find_unknown(kSpoken);
         if (word < kChatter) break;
         is_talking_ = true;

@@ -99,7 +99,7 @@ class Console {
   uint16_t left_ms_[kTimes];
   uint8_t before_;     // the last but one of the letters and signs, in capitals
   uint8_t last_;
-  uint8_t begins_;     // the column where the line began, or went on behind a second of silence
+  uint8_t begins_;     // the column where the line began, or went on after a second of silence
   uint8_t length_;     // of the code before this line
   uint8_t first_;      // the first byte of the program
   uint8_t awaited_;    // the word that the last line has left open, or ')'
@@ -109,7 +109,7 @@ class Console {
   bool is_open_;       // the reader has begun a line or a program
   bool has_moved_;     // it lies where there is room for a whole program
   Remark refused_;     // there is none: the line is not read, and this is the reason
-  bool has_lost_;      // the program that the robot held: it is told behind the next answer
+  bool has_lost_;      // the program that the robot held: it is told after the next answer
   bool is_waiting_;    // for the end of a block that an earlier line has opened
   bool is_talking_;
   bool is_discarding_;

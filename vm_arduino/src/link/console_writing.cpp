@@ -52,7 +52,7 @@ tini_noinline uint8_t ended_line() {
   return static_cast<uint8_t>(size + kLineEndBytes);
 }
 
-// Puts a word in flash whose last letter is marked. Returns what is behind it.
+// Puts a word in flash whose last letter is marked. Returns what is after it.
 const uint8_t* put_word(const uint8_t* word) {
   uint8_t letter;
   do {
@@ -126,7 +126,7 @@ bool Console::put_words() {
     if (size > kWireBytes - kLineEndBytes - kLongestWord) break;
     word = put_word(word);
     put(' ');
-    // Behind a word of the kit there is no letter.
+    // After a word of the kit there is no letter.
     if (flash_byte(word) < 'A') word = behind_device(word);
   }
   help_ = word;

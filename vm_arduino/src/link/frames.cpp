@@ -8,7 +8,7 @@ namespace tiniscript {
 namespace {
 
 // The CRC-32 of any bytes followed by their own CRC-32.
-constexpr uint32_t kBehindItself = 0x2144df1c;
+constexpr uint32_t kAfterItself = 0x2144df1c;
 
 // The CRC-32 of a frame is seeded with 256 times the major version, so that a peer of another version
 // rejects the frame. HELLO is seeded with 0, so that both peers can find out that versions differ. (A
@@ -76,7 +76,7 @@ tini_noinline void FrameCheck::take(const uint8_t* bytes, uint8_t length) {
 }
 
 tini_noinline bool FrameCheck::is_whole() const {
-  return zero_ == taken_ && crc_ == kBehindItself && taken_ >= kPayloadAt + kCrcBytes;
+  return zero_ == taken_ && crc_ == kAfterItself && taken_ >= kPayloadAt + kCrcBytes;
 }
 
 tini_noinline uint8_t FrameCheck::decode(uint8_t* bytes) {

@@ -23,17 +23,17 @@ bool is_digit(uint8_t byte) { return static_cast<uint8_t>(byte - '0') < 10; }
 
 }  // namespace
 
-bool KeyLine::read(RemoteKeys* said) {
+bool KeyLine::read(RemoteKeys* remote_keys) {
   if (length_ > kMost) return false;
   bytes_[length_] = 0;
   at_ = bytes_;
-  *said = RemoteKeys();
+  *remote_keys = RemoteKeys();
   skip_blanks();
   if (takes(kPad)) {
-    if (!take_way(&said->pad[0]) || !take_way(&said->pad[1])) return false;
+    if (!take_way(&remote_keys->pad[0]) || !take_way(&remote_keys->pad[1])) return false;
   } else if (takes(kKey)) {
     for (uint8_t k = 0; k < kRemoteKeys && *at_ == '_'; k++) {
-      if (takes(kNames[k])) said->keys = static_cast<uint8_t>(1 << k);
+      if (takes(kNames[k])) remote_keys->keys = static_cast<uint8_t>(1 << k);
     }
   } else {
     return false;

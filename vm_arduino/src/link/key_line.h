@@ -22,7 +22,7 @@ class KeyLine {
   }
 
   // Whether the line is such a word; what it says.
-  bool read(RemoteKeys* said);
+  bool read(RemoteKeys* remote_keys);
 
  private:
   static constexpr uint8_t kMost = 16;  // PAD -100 -100, and some blanks

@@ -61,7 +61,7 @@ void Link::pass(uint16_t now_ms) {
   console_.pass(passed, left_ms_[kSilence]);
 }
 
-// What the silence behind a typed stop does: that of kHeldMs in what began as a frame, that of
+// What the silence after a typed stop does: that of kHeldMs in what began as a frame, that of
 // kSilenceMs where its line has not ended.
 inline void Link::end_silence(bool is_held, bool is_at_stop, uint16_t before_ms) {
   constexpr uint16_t kHeldLeftMs = kSilenceMs - kHeldMs;
@@ -352,13 +352,13 @@ Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
 
 #ifdef tiniscript_has_remote
 // The newest word of a remote control counts, until kHoldMs are over.
-Answer Link::hold(const RemoteKeys& said) {
-  if (said.keys >= 1 << kRemoteKeys) return Answer::kBadValue;
-  const int8_t* way = said.pad;
+Answer Link::hold(const RemoteKeys& remote_keys) {
+  if (remote_keys.keys >= 1 << kRemoteKeys) return Answer::kBadValue;
+  const int8_t* way = remote_keys.pad;
   do {
     if (static_cast<uint8_t>(*way + kMostPad) > 2 * kMostPad) return Answer::kBadValue;
-  } while (++way != said.pad + 2);
-  remote_ = said;
+  } while (++way != remote_keys.pad + 2);
+  remote_ = remote_keys;
   left_ms_[kHold] = kHoldMs;
   return Answer::kOk;
 }

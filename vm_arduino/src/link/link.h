@@ -202,7 +202,7 @@ class Link {
   uint8_t answer(Message message, const uint8_t* payload, uint8_t length);
   Answer set_trim(const uint8_t* payload, uint8_t length);
 #ifdef tiniscript_has_remote
-  Answer hold(const RemoteKeys& said);
+  Answer hold(const RemoteKeys& remote_keys);
 #else
   static Answer hold(const RemoteKeys&) { return Answer::kOk; }
 #endif

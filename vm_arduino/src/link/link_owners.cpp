@@ -71,8 +71,8 @@ tini_noinline Answer Link::claim(const uint8_t* payload, uint8_t length) {
   uint8_t key[kKeyBytes];
   uint8_t wanted[kKeyBytes] = {};
   copy_bytes(payload + kClaimKeyAt, wanted, key_bytes);
-  Answer found = port_key(which, key);
-  if (found != Answer::kOk) return found;
+  Answer answer = port_key(which, key);
+  if (answer != Answer::kOk) return answer;
   const bool is_teachers = which == static_cast<uint8_t>(Key::kTeacher) && is_key(key);
   const bool is_allowed = is_teachers ? may(is_teacher()) : !has(kOwned) || may(has(kYours));
   const bool is_given = is_key(wanted);
@@ -94,8 +94,8 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
   const uint8_t* const tag = payload + kAuthenticateTagAt;
   if (which > static_cast<uint8_t>(Key::kTeacher)) return number_of(Answer::kBadValue);
   uint8_t key[kKeyBytes];
-  const Answer found = port_key(which, key);
-  if (found != Answer::kOk) return number_of(found);
+  const Answer answer = port_key(which, key);
+  if (answer != Answer::kOk) return number_of(answer);
   if (!is_key(key)) return number_of(Answer::kWrongKey);
   uint8_t text[kChallengeText];
   copy_bytes(challenge_, text, kChallengeBytes);

@@ -160,7 +160,7 @@ uint8_t Link::begin_program(const uint8_t* payload) {
   copy_bytes(header, made_ + kFirstAt, kChecksumAt - kFirstAt);
   image_ = made_;
   mode_ = mode;
-  length_ = static_cast<uint16_t>(length - kBehindChecksum);
+  length_ = static_cast<uint16_t>(length - kAfterChecksum);
   next_ = 0;
   port_forget();
   return kIsFine;
@@ -171,7 +171,7 @@ uint8_t Link::add_data(const uint8_t* payload, uint8_t length) {
   if (image_ == nullptr) return refuse(Answer::kNotBegun, 0);
   if (get16(payload + kDataOffsetAt) != next_) return kIsFine;  // the reply says where to continue
   if (length > length_ - next_) return refuse(Answer::kBadLength, 0);
-  copy_bytes(payload + kDataBytesAt, image_ + kBehindChecksum + next_, length);
+  copy_bytes(payload + kDataBytesAt, image_ + kAfterChecksum + next_, length);
   next_ = static_cast<uint16_t>(next_ + length);
   return kIsFine;
 }
@@ -183,11 +183,11 @@ uint8_t Link::commit(const uint8_t* payload) {
   image_ = nullptr;
   copy_bytes(payload + kCommitChecksumAt, image + kChecksumAt, kChecksumBytes);
   checksum_ = get32(image + kChecksumAt);
-  const Admission found = admit(image, port_readings(), port_actuators());
-  if (found.refusal == static_cast<uint8_t>(Refusal::kOtherKit)) {
+  const Admission admission = admit(image, port_readings(), port_actuators());
+  if (admission.refusal == static_cast<uint8_t>(Refusal::kOtherKit)) {
     return refuse(Answer::kWrongKit, port_identity().kit);
   }
-  if (found.refusal != 0) return refuse(static_cast<Answer>(found.refusal), found.offset);
+  if (admission.refusal != 0) return refuse(static_cast<Answer>(admission.refusal), admission.offset);
   finish(mode_, false);
   port_seal(image);
   return kIsFine;

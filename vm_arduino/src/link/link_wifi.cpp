@@ -23,10 +23,10 @@ uint8_t Link::set_wifi(const uint8_t* payload, uint8_t length) {
   uint8_t text[kWifiTextBytes];
   copy_bytes(payload + kWifiTextAt, text, text_bytes);
   seal_.cover(receiver_->bytes() + kCounterAt, text, text_bytes);
-  const Answer found = port_set_wifi(static_cast<WifiStep>(step), text, text_bytes);
+  const Answer answer = port_set_wifi(static_cast<WifiStep>(step), text, text_bytes);
   for (uint8_t& byte : text) byte = 0;
-  if (found == Answer::kOk) said_.detail = step;  // what the reply is about
-  return static_cast<uint8_t>(found);
+  if (answer == Answer::kOk) said_.detail = step;  // what the reply is about
+  return static_cast<uint8_t>(answer);
 }
 
 void Link::tell_wifi() {

@@ -209,10 +209,10 @@ void Link::fetch() {
   }
   put16(whole);
   for (uint16_t at = said_.detail; at < whole && size_ < most; at++) {
-    const Answer found = port_image_byte(at, out_ + size_++);
-    if (found != Answer::kOk) {
+    const Answer answer = port_image_byte(at, out_ + size_++);
+    if (answer != Answer::kOk) {
       size_ = first;
-      put(byte_of(found));
+      put(byte_of(answer));
       put16(0);
       return;
     }

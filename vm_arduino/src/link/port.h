@@ -134,7 +134,7 @@ void port_seal(const uint8_t* image);
 // Starts the image taken last, or the program that the robot holds.
 void port_start(bool is_live);
 
-// Memory for the image of a program that is read as text, with `*room` bytes behind its header;
+// Memory for the image of a program that is read as text, with `*room` bytes after its header;
 // nullptr if there is none now. Without `has_room` that is enough for its begin only.
 uint8_t* port_text_memory(uint16_t* room, bool* has_room);
 

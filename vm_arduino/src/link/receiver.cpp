@@ -102,7 +102,7 @@ inline bool Receiver::watch(uint8_t byte) {
   return stop_at_mark(state_ == State::kText);
 }
 
-// A line has ended; `is_there`: all of it waits to be read. Behind a 0x00 only S and STOP stop at once.
+// A line has ended; `is_there`: all of it waits to be read. After a 0x00 only S and STOP stop at once.
 bool Receiver::end_line(bool is_there) {
   const TypedStop::Found found = typed_.found();
   const bool was_text = state_ < State::kBegin;
@@ -199,7 +199,7 @@ void Receiver::begin_line() {
   typed_.begin();
 }
 
-// Leaves a mark behind a typed stop, where all before it waits to be read. A stop that finds no place
+// Leaves a mark after a typed stop, where all before it waits to be read. A stop that finds no place
 // for it belongs to no block.
 bool Receiver::stop_at_mark(bool is_there) {
   if (is_there && text_.put(kLineStop)) {

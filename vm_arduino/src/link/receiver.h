@@ -2,7 +2,7 @@
 // line that is a typed stop.
 //
 // Everything is text until a 0x00. After it everything is frames, until a second passes without a
-// byte or the connection is lost; there CR or LF behind nothing but printable ASCII ends a line of
+// byte or the connection is lost; there CR or LF after nothing but printable ASCII ends a line of
 // text, because no whole frame looks so, and text goes on.
 // Knows where a packet begins and ends; `frames.h` checks whether a frame is whole. Holds frames
 // until they are released, kWindow of them; a frame that finds no place is dropped. Text is passed
@@ -28,7 +28,7 @@ namespace tiniscript {
 enum class Waiting : uint8_t { kNone, kFrame, kText };
 
 // What `take_text` returns beside the bytes of a line. A kLineCut is in the place of a line's end
-// that never came, or of bytes that found no room; a kLineStop is behind what was a typed stop.
+// that never came, or of bytes that found no room; a kLineStop is after what was a typed stop.
 constexpr uint8_t kLineEnd = '\n';
 constexpr uint8_t kLineCut = 0;
 constexpr uint8_t kLineStop = '\r';
@@ -169,7 +169,7 @@ class Receiver : private PacketPlaces<kWindow> {
   enum class State : uint8_t {
     kText,   // between two lines of text, or in one
     kLost,   // in a line of text whose bytes have found no room
-    kBegin,  // behind a 0x00
+    kBegin,  // after a 0x00
     kLine,   // in a frame, or in a line of text: all of it is printable
     kFrame,  // in a frame
     kHeld,   // in a frame with a typed stop in it
@@ -207,7 +207,7 @@ class Receiver : private PacketPlaces<kWindow> {
     return kHasLargeFrames && bytes_[filled()][0] > kLargeFirst ? kSmallPacket : kPacketBytes;
   }
 
-  // The waiting packets. A line behind a 0x00 waits in `bytes_` like a frame, as the last.
+  // The waiting packets. A line after a 0x00 waits in `bytes_` like a frame, as the last.
   volatile Waiting waiting_[kWindow];
   volatile bool has_begun_;
   volatile Cause due_stop_;

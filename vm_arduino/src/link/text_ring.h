@@ -13,7 +13,7 @@ class TextRing {
  public:
   bool is_empty() const { return first_ == behind_; }
 
-  // Whether whatever a byte makes of a line finds room: it, a mark behind it, and the last place.
+  // Whether whatever a byte makes of a line finds room: it, a mark after it, and the last place.
   bool has_room() const { return static_cast<uint8_t>(first_ - behind_ - 1) % kTextBytes > 2; }
 
   // Puts a byte. False: there is no room. The last place is for `put_last`.

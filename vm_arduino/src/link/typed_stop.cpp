@@ -57,7 +57,7 @@ tini_noinline void TypedStop::put(uint8_t byte) {
   add(small);
 }
 
-// Adds a letter or a digit of the line. Another S begins a word anew behind an S or a STOP.
+// Adds a letter or a digit of the line. Another S begins a word anew after an S or a STOP.
 inline void TypedStop::add(uint8_t small) {
   if (count_ >= kLongest) {
     if (count_ != 255) count_++;

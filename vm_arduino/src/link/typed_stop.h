@@ -1,6 +1,6 @@
 // Finds a typed stop in the bytes of a line, whatever its spelling.
 //
-// Only ASCII letters and digits count, in any case, and none behind `//`. Knows no packets and no time.
+// Only ASCII letters and digits count, in any case, and none after `//`. Knows no packets and no time.
 // `docs/develop/link.md` says which stop counts where.
 
 #pragma once

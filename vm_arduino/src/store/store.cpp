@@ -311,7 +311,7 @@ bool Store::is_sound() {
   const uint16_t behind = plus(check, kCheckBytes);
   uint32_t crc = checksum(0, place_, 0, check);
   crc = checksum(crc, place_, behind, length);
-  return checksum(crc, place_, check, behind) == kBehindItself;
+  return checksum(crc, place_, check, behind) == kAfterItself;
 }
 
 // The slot of an area with the latest generation below `end`.

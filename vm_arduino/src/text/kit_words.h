@@ -10,20 +10,20 @@
 
 namespace tiniscript {
 
-// Bits of what stands behind the letters of a device; the reader says with them what a name is.
+// Bits of what stands after the letters of a device; the reader says with them what a name is.
 constexpr uint8_t kIsYesNo = 1;
 constexpr uint8_t kIsSensor = 2;
 constexpr uint8_t kIsActuator = 4;
 constexpr uint8_t kGivesWay = 8;  // a sensor, to a name of the program if it has not been asked before
 constexpr uint8_t kRangeBytes = 8;
 
-// Bits behind the table.
+// Bits after the table.
 constexpr uint8_t kKitGoes = 1;
 constexpr uint8_t kKitTurns = 2;
 
 // The sensors, the actuators, and then what a remote control says, in flash: the letters of each, 0x80 in the last one; what it
-// is; behind an actuator that is a number its least and its largest value, thousandths of 32 bits,
-// little-endian. A 0 ends the table; behind it bits say whether the kit says how fast it goes and
+// is; after an actuator that is a number its least and its largest value, thousandths of 32 bits,
+// little-endian. A 0 ends the table; after it bits say whether the kit says how fast it goes and
 // turns.
 const uint8_t* robot_words();
 
@@ -31,7 +31,7 @@ const uint8_t* robot_words();
 // that texts.cpp does not have, English.
 uint16_t robot_language();
 
-// Returns what is behind a device, from what it is on.
+// Returns what is after a device, from what it is on.
 inline const uint8_t* behind_device(const uint8_t* device) {
   const bool has_range = flash_byte(device) == kIsActuator;
   return device + 1 + (has_range ? kRangeBytes : 0);

@@ -89,7 +89,7 @@ tini_noinline Text Reader::put(uint8_t byte) {
   return Text::kGoesOn;
 }
 
-// Takes what stands behind a `~`. Returns whether it did.
+// Takes what stands after a `~`. Returns whether it did.
 bool Reader::checks(uint8_t letter) {
   if (check_ == kNoCheck || check_ == kCommentAfterAll) return false;
   if (check_ == kAllDigits) {
@@ -261,7 +261,7 @@ void Reader::take(uint8_t letter) {
   }
 }
 
-// Puts a letter of a word behind the code.
+// Puts a letter of a word after the code.
 void Reader::add_letter(uint8_t letter) {
   if (letters_ == 255) report(Problem::kFull);
   if (has_room(letters_)) buffer_[length_ + letters_++] = letter;
@@ -284,7 +284,7 @@ void Reader::sign(uint8_t letter) {
   report(Problem::kCharacter);
 }
 
-// Adds a digit to the number, whose places behind the third one round it.
+// Adds a digit to the number, whose places after the third one round it.
 void Reader::digit(uint8_t value) {
   if (place_ != kWhole) {
     place_ = kPlaces;

@@ -46,10 +46,10 @@ class Reader {
   bool may_end() const { return brackets_ == 0 && stack_ == names_; }
 
   // Whether all that was added to so many bytes of code is S.
-  bool is_stop_behind(uint8_t before) const;
+  bool is_stop_after(uint8_t before) const;
 
   // Whether the program so far is S.
-  bool is_stop() const { return !has_setup_ && is_stop_behind(0); }
+  bool is_stop() const { return !has_setup_ && is_stop_after(0); }
 
   // After kProblem: the number of the first word in a table of words in flash, if that is what is
   // wrong. Else the number of words there, or 255.
@@ -168,12 +168,12 @@ class Reader {
 
   uint8_t* buffer_;
   uint8_t* stack_;  // the lowest byte of what waits
-  uint8_t* names_;  // behind what waits, before the names
+  uint8_t* names_;  // after what waits, before the names
   uint8_t* end_;
   uint8_t length_;  // of the code
   Problem problem_;
-  uint32_t value_;  // of the number's digits so far; behind the number its thousandths
-  uint8_t first_;   // where the code of this instruction begins, behind its readings
+  uint32_t value_;  // of the number's digits so far; after the number its thousandths
+  uint8_t first_;   // where the code of this instruction begins, after its readings
 
   // What the console asks for, near to the begin: that takes less code.
   uint8_t setup_;
@@ -182,7 +182,7 @@ class Reader {
 
   // characters
   uint8_t place_;
-  uint8_t letters_;  // of the word behind the code
+  uint8_t letters_;  // of the word after the code
   uint8_t column_;
   uint8_t token_column_;   // or that of the problem
   uint8_t before_column_;  // of the token before
@@ -194,7 +194,7 @@ class Reader {
   bool is_damaged_;
   bool is_after_cr_;
   uint32_t crc_;
-  int8_t places_;  // decimals that it may still have; -1 behind the one that rounds it
+  int8_t places_;  // decimals that it may still have; -1 after the one that rounds it
 
   // the parser
   uint8_t state_;

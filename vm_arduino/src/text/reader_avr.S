@@ -60,7 +60,7 @@ starts tiniscript_pop
 ; has_room: how many bytes more, in r25 and r24; returns 1 or 0 in r24
 starts tiniscript_has_room
     movw r26, argument
-    rcall room_behind
+    rcall room_after
     clr argument
     rol argument
     ret
@@ -70,7 +70,7 @@ starts tiniscript_has_room
 room:
     clr r26
     clr r27
-room_behind:
+room_after:
     ldd r30, Y + tini_code_length_at
     add r26, r30
     adc r27, r1

@@ -132,7 +132,7 @@ void Reader::close_routine(Block* block) {
   beside_calls_ = static_cast<uint8_t>((block->taken >> 8) + calls);
 }
 
-// The token behind DEF.
+// The token after DEF.
 Problem Reader::define(uint8_t token) {
   state_ = kAfterDefName;
   if (token != kNameToken) return Problem::kReserved;

@@ -1,4 +1,4 @@
-// The reader's memory: code that grows from the begin of its buffer, and what waits behind it.
+// The reader's memory: code that grows from the begin of its buffer, and what waits after it.
 
 #include <stddef.h>
 
@@ -22,7 +22,7 @@ static_assert(byte_of(Op::kPushMilli) == tini_push_milli, "");
 
 }  // namespace
 
-tini_noinline bool Reader::is_stop_behind(uint8_t before) const {
+tini_noinline bool Reader::is_stop_after(uint8_t before) const {
   return length_ == static_cast<uint8_t>(before + 1) && buffer_[before] == byte_of(Op::kStop);
 }
 
@@ -53,7 +53,7 @@ tini_noinline void Reader::move(uint8_t* buffer, uint16_t room) {
 
 #ifndef __AVR__
 
-// Whether a byte fits behind the code and `bytes` more.
+// Whether a byte fits after the code and `bytes` more.
 bool Reader::has_room(uint16_t bytes) {
   const uint8_t* const behind = buffer_ + length_ + bytes;
   if (behind < stack_) return true;

@@ -6,7 +6,7 @@
 
 namespace tiniscript {
 
-// The word behind the code has ended. It stays there until code is emitted.
+// The word after the code has ended. It stays there until code is emitted.
 void Reader::end_word() {
   uint8_t word = find(kWords, 0);
   if (word != kWordsEnd - kFirstWord) {
@@ -22,7 +22,7 @@ void Reader::end_word() {
   token(kNameToken);
 }
 
-// Returns the number of the word behind the code in a table in flash, or that of the table's end.
+// Returns the number of the word after the code in a table in flash, or that of the table's end.
 // Its last letter is marked; `unmark` takes that off again.
 tini_noinline uint8_t Reader::find(const uint8_t* table, uint8_t unmark) {
   uint8_t* const word = buffer_ + length_;
@@ -41,7 +41,7 @@ uint8_t Reader::open_word() {
 
 #ifndef __AVR__
 
-// Whether the word is the one at `entry`, which goes behind it.
+// Whether the word is the one at `entry`, which goes after it.
 bool Reader::matches(const uint8_t** entry, bool in_flash) {
   const uint8_t* word = buffer_ + length_;
   const uint8_t* at = *entry;

@@ -24,7 +24,7 @@ void Reader::token(uint8_t token) {
   if (problem_ != Problem::kNone) return;
   if (token == kNewline) {
     if (brackets_ != 0 || state_ == kBegin) return;
-    // what is missing belongs behind the last character
+    // what is missing belongs after the last character
     token_column_ = last_column_;
     if (token_column_ != 255) token_column_++;
     token = ';';

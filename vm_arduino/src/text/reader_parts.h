@@ -27,9 +27,9 @@ enum Place : uint8_t { kBetween, kWord, kComment, kWhole, kPoint, kPlaces };
 // What the parser wants next.
 enum Wanted : uint8_t {
   kBegin,
-  kBar,              // behind SI, SB or PING
-  kCheckConnection,  // behind PING|
-  kNothingMore,      // behind PING|CHECK_CONNECTION
+  kBar,              // after SI, SB or PING
+  kCheckConnection,  // after PING|
+  kNothingMore,      // after PING|CHECK_CONNECTION
   kInstruction,
   kAfterName,  // =, ( or the end of the instruction
   kArguments,  // the ( of a command
@@ -48,7 +48,7 @@ enum Wanted : uint8_t {
   kOperand,
   kAfterMinus,  // an operand, to whose number the minus belongs
   kOperator,
-  kAfterForever,  // or behind CM or DEG
+  kAfterForever,  // or after CM or DEG
 };
 
 // Whether an argument is just a number.
@@ -60,7 +60,7 @@ constexpr uint8_t kIsDef = 32;
 constexpr uint8_t kIsGone = 64;  // a value of another DEF
 
 // Among the operators that wait: open brackets, with the opcode of their function. The second
-// argument of a function has kSecond, and kBase is behind all.
+// argument of a function has kSecond, and kBase is after all.
 constexpr uint8_t kBracket = 0x80;
 constexpr uint8_t kSecond = 0x40;
 constexpr uint8_t kBase = 0xff;
@@ -75,7 +75,7 @@ constexpr uint8_t kForeverBlock = 8 | kLoopBlock;  // one that does not count
 struct __attribute__((packed)) Reader::Block {
   uint8_t type;
   uint8_t ends;       // the last of the operands that want its end; each holds the one before
-  uint8_t to;         // of an IF: behind the jump to its next arm, or 0; of a loop: its first code
+  uint8_t to;         // of an IF: after the jump to its next arm, or 0; of a loop: its first code
   SensorBits before;  // surely read before it
   SensorBits after;   // by all arms of an IF so far
   SensorBits taken;   // the readings of its conditions, and those before

@@ -173,14 +173,14 @@ Problem Reader::operators(uint8_t token) {
 
 #ifdef tiniscript_reads_defs
 
-// CM or DEG behind the first value of a move, where the kit says how fast it goes or turns.
+// CM or DEG after the first value of a move, where the kit says how fast it goes or turns.
 Problem Reader::end_way(bool is_turn) {
   if (what_ > kWordR || kinds_ < 16 || is_turn != (what_ >= kWordL) || !robot_has_way(is_turn)) {
     return Problem::kReserved;
   }
   is_way_ = true;
   const Problem problem = end_value();
-  push(kBase);  // as behind FOREVER: the bracket is open
+  push(kBase);  // as after FOREVER: the bracket is open
   state_ = kAfterForever;
   return problem == Problem::kNone ? problem : before(problem);
 }
@@ -213,15 +213,15 @@ void Reader::apply(uint8_t op) {
   uint8_t low = static_cast<uint8_t>(value_kinds_);
   const uint8_t kinds = low & all;
   const bool is_yes_no = op >= byte_of(Op::kEq);
-  Problem found = Problem::kNone;
+  Problem problem = Problem::kNone;
   if (!is_yes_no) {
-    if (kinds != 0) found = Problem::kWantsNumber;
+    if (kinds != 0) problem = Problem::kWantsNumber;
   } else if (op >= byte_of(Op::kNot)) {
-    if (kinds != all) found = Problem::kWantsYesNo;
+    if (kinds != all) problem = Problem::kWantsYesNo;
   } else if (kinds != 0 && (kinds != all || op > byte_of(Op::kNe))) {
-    found = Problem::kCompare;
+    problem = Problem::kCompare;
   }
-  if (found != Problem::kNone) report(before(found));
+  if (problem != Problem::kNone) report(before(problem));
   if (!is_unary) {
     value_kinds_ >>= 1;
     depth_--;

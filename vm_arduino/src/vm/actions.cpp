@@ -148,7 +148,7 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
     case Family::kWait8:
       return drive(time_ms);
     default:  // kEnd or kEndTask: the others are in the inner loop
-      stay();  // behind the last END lies nothing
+      stay();  // after the last END lies nothing
       if (has_tasks() && !end_task()) return false;
       robot_off();
       status_ = Status::kDone;

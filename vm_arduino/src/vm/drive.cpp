@@ -44,7 +44,7 @@ inline bool Drive::is_below() const { return task_.holder < task_.me; }
 
 void Drive::forget_way() { on_way = nullptr; }
 
-// Ends a move that drives, of whatever task. It goes on behind the move, and behind its UNTIL.
+// Ends a move that drives, of whatever task. It goes on after the move, and after its UNTIL.
 tini_noinline void Drive::leave_move(TaskRecord* task) {
   if (!task->is(kToItsEnd)) task->pc = task_.after;
   end_move_of(task);
@@ -170,7 +170,7 @@ bool Drive::is_on_the_way() {
     end_move();
     return false;
   }
-  at_ = static_cast<uint16_t>(task_.me->check - kGoBytes);  // an UNTIL sets its own behind
+  at_ = static_cast<uint16_t>(task_.me->check - kGoBytes);  // an UNTIL sets its own later
   return goes_on(static_cast<Fault>(going));
 }
 

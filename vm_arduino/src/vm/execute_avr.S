@@ -24,7 +24,7 @@
 #define stack_full r7   /* and where it is full */
 #define code_end r8     /* and r9 */
 #define code_end1 r9
-#define at r10          /* and r11: the byte behind the opcode that runs, where it is told */
+#define at r10          /* and r11: the byte after the opcode that runs, where it is told */
 #define at1 r11
 #define mode r12        /* what two instructions that share their end differ in */
 #define budget r13

@@ -162,7 +162,7 @@ jump_back:
     rjmp leave_behind_jump
     sub r26, r18
     sbc r27, r19
-land_behind:                ; also not before the code
+land_after:                ; also not before the code
     let_z_be_machine
     ldd r18, Z+tini_code_at
     ldd r19, Z+tini_code_at+1
@@ -200,7 +200,7 @@ op_return:
     breq bad_back
     movw r26, count0        ; of a loop where memory has changed
     rcall pop_frame
-    rjmp land_behind
+    rjmp land_after
 
 ; uint32_t Drive::late_ms(const TaskRecord* task) const: how far its clock is behind now. The
 ; compiler takes 54 bytes for it.

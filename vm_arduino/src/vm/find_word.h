@@ -1,5 +1,5 @@
-// Finds a word in a table of words in flash: one behind the other, 0x80 in the last letter of each, and
-// a 0 behind them.
+// Finds a word in a table of words in flash: one after the other, 0x80 in the last letter of each, and
+// a 0 after them.
 
 #pragma once
 

@@ -31,8 +31,8 @@ Refusal read(const uint8_t* data, Image* image) {
 }  // namespace
 
 tini_noinline uint32_t image_checksum(const uint8_t* image, uint16_t length) {
-  return crc32(crc32(0, image, kChecksumAt), image + kBehindChecksum,
-               static_cast<uint16_t>(length - kBehindChecksum));
+  return crc32(crc32(0, image, kChecksumAt), image + kAfterChecksum,
+               static_cast<uint16_t>(length - kAfterChecksum));
 }
 
 // Checks in the order of `Refusal`, but missing bytes that must be checked are reported first.

@@ -23,7 +23,7 @@ struct Image {
 // After the checksum come the parts that it covers besides the ten bytes before it: `needs`, fields
 // of later versions, and the code.
 constexpr uint8_t kChecksumBytes = 4;
-constexpr uint8_t kBehindChecksum = kChecksumAt + kChecksumBytes;
+constexpr uint8_t kAfterChecksum = kChecksumAt + kChecksumBytes;
 
 // The length of an image, from its header.
 inline uint16_t image_length(const uint8_t* image) {
@@ -32,7 +32,7 @@ inline uint16_t image_length(const uint8_t* image) {
 }
 
 // The checksum of any bytes followed by their own checksum.
-constexpr uint32_t kBehindItself = 0x2144df1c;
+constexpr uint32_t kAfterItself = 0x2144df1c;
 
 // The checksum of an image of `length` bytes, whatever its header says.
 uint32_t image_checksum(const uint8_t* image, uint16_t length);

@@ -50,7 +50,7 @@ tini_always_inline uint8_t pushed(uint8_t code) {
 
 // Runs one instruction. Returns whether the next one may run now.
 //
-// Operands are read one after the other: when a `case` returns, `next_` is behind the last one.
+// Operands are read one after the other: when a `case` returns, `next_` is after the last one.
 tini_always_inline bool InnerLoop::step() {
   if (kCountsInstructions) left_--;
   const uint8_t* const bytes = next_;

@@ -71,7 +71,7 @@ class InnerLoop {
   Machine& machine_;
   const uint8_t* at_;    // where the instruction begins
   const uint8_t* next_;  // its next operand, then the next instruction
-  int32_t* top_;         // behind the topmost value of the stack
+  int32_t* top_;         // after the topmost value of the stack
   uint8_t left_;         // of the budget
 };
 

@@ -28,7 +28,7 @@ constexpr uint8_t kEndBytes = 4;
 class Machine : public Scheduler {
  public:
   // Begins a program. `code` is verified for a kit with so many sensors (0 to kDevices), and
-  // behind its `length` bytes lie kEndBytes of Op::kEnd: whoever loads it puts them there. The
+  // after its `length` bytes lie kEndBytes of Op::kEnd: whoever loads it puts them there. The
   // last reading of each sensor is kept in `readings`, which are 0. `seed` is not 0.
   void start(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
              uint32_t seed, uint32_t now_ms);
@@ -52,7 +52,7 @@ class Machine : public Scheduler {
   uint16_t at() const { return at_; }
 
   // Where the SHOW is whose value `robot_show` gets, also if it gets it again: it is a byte, and a
-  // task goes on behind it.
+  // task goes on after it.
   uint16_t shown_at() const { return static_cast<uint16_t>(task_.pc - 1); }
 
   // When the machine has work again, while the program waits; of tasks it may be at once, or was.

@@ -49,7 +49,7 @@ struct TaskRecord {
   uint8_t framed;     // how many frames it has
   uint16_t pc;        // where its next turn begins
   uint16_t start;     // of a WHEN, its check; of others 0
-  uint16_t check;     // where that of its UNTIL begins, or where it goes on behind its move
+  uint16_t check;     // where that of its UNTIL begins, or where it goes on after its move
   uint32_t clock_ms;  // its own clock; its next turn is due then
   uint32_t rest_ms;   // how long its move may last from then on, or kForever; or the value of
                       // the SHOW, or the way of a move that is measured
@@ -116,7 +116,7 @@ struct TaskOf<true> {
   uint8_t others;      // bits, see above
   bool is_quiet;       // in this millisecond a round has gone by without a turn
   TaskRecord* me;      // whose turn it is; null: a round is over
-  uint16_t after;      // behind the move that drives, where its UNTIL looks again before
+  uint16_t after;      // after the move that drives, where its UNTIL looks again before
   TaskRecord* holder;  // who has the motors; where nobody wants them, the main task
   int32_t variables[kVariables];
   TaskRecord records[kTasks + 1];  // in the order of rank; the last one is the main task

@@ -10,7 +10,7 @@ namespace tiniscript {
 
 namespace {
 
-// Moves the first `count` of `all` frames behind the others.
+// Moves the first `count` of `all` frames after the others.
 void to_the_end(Frame* frames, uint8_t count, uint8_t all) {
   for (; count != 0; count--) {
     Frame* at = frames;
@@ -99,7 +99,7 @@ bool Scheduler::goes_back() {
   return has_waited;
 }
 
-// Behind a turn: gives the motors to the highest task that wants them, if it is another.
+// After a turn: gives the motors to the highest task that wants them, if it is another.
 void Scheduler::pass_on() {
   TaskRecord* highest = task_.records;
   while (highest != task_.main_task() && !highest->is(kWantsMotors)) highest++;

@@ -7,7 +7,7 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint16_t kFarAway = 0xffff;  // an offset behind any code
+constexpr uint16_t kFarAway = 0xffff;  // an offset past any code
 
 enum class Kind : uint8_t { kCode, kIf, kRepeat, kCount };
 
@@ -40,7 +40,7 @@ struct Def {
 
 struct Memory {
   uint16_t devices;              // the hash of those that are used so far
-  Join joins[kJoins + 1];        // the first one ends behind any code
+  Join joins[kJoins + 1];        // the first one ends past any code
   Block blocks[kNestWords + 2];  // the first one is the code itself, the last one is too deep
   Def defs[kDefs];               // that are closed
 };
@@ -78,7 +78,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       ControlRole::kNone;       // what ends the check of an UNTIL or of a WHEN that is open
   uint8_t depth = 0;            // values on the stack
   uint8_t joins = 0;            // that are open
-  Def* closed = memory->defs;   // behind the closed DEFs
+  Def* closed = memory->defs;   // after the closed DEFs
   uint8_t counters = 0;         // counted loops that are open in this routine
   Join* join = memory->joins;   // the one that ends first
   uint16_t start = 0;           // of the routine that is looked at
@@ -286,9 +286,9 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     if (role != ControlRole::kCall) {
       // open: a block that ends at the target; an IF shares the one around it that ends there too
       if (target > length) return {Rule::kBadTarget, at};
-      // where both are known: behind 0, less 1, nothing lies
+      // where both are known: after 0, less 1, nothing lies
       if (target > static_cast<uint16_t>(top->end - 1)) {
-        // the end of a loop lies behind what closes it
+        // the end of a loop lies after what closes it
         if (target != top->end || top->kind != Kind::kIf) return {Rule::kBadTarget, at};
         if (kind == Kind::kIf) continue;
       }

@@ -36,10 +36,10 @@ def run(options: Namespace, language: str) -> int:
         compiled = compiling.for_level(compiled, robot, options.text_level)
         is_right = compiled.is_right
     if options.json:
-        said = [
+        messages = [
             message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics
         ]
-        print(json.dumps(as_json(said), indent=2))
+        print(json.dumps(as_json(messages), indent=2))
     else:
         outputs.print_diagnostics(compiled, language)
         if compiled.is_right and not options.diff and (given.path is not None or not options.fix):

@@ -28,8 +28,8 @@ def run(options: Namespace, language: str) -> int:
 def _claim(connection: Connection, which: int) -> None:
     request = connection.line.do(lambda session: session.claim(which))
     # Said once the robot is asked: a press that has lasted 2 s before counts for nothing.
-    said = connection.text("claim_hold", seconds=CLAIM_LIMIT_MS // 1000)
-    print(said, file=sys.stderr, flush=True)
+    sentence = connection.text("claim_hold", seconds=CLAIM_LIMIT_MS // 1000)
+    print(sentence, file=sys.stderr, flush=True)
     reply = connection.wait(request)
     if reply.status == UNKEPT:
         raise CommandError(2, "unkept_key", file=shown(str(KeyFile().path)))

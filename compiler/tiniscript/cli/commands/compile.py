@@ -40,7 +40,7 @@ def run(options: Namespace, language: str) -> int:
         outputs.write(Path(options.map), data, "unwritable_at --map")
     source_map.remember(compiled.image, places)
     will_fault = any(diagnostic.code is WILL_FAULT for diagnostic in compiled.diagnostics)
-    said = text("compiled", language).format(
+    sentence = text("compiled", language).format(
         source=inputs.shown(given.name),
         target=inputs.shown(target or "-"),
         image=len(compiled.image),
@@ -49,7 +49,7 @@ def run(options: Namespace, language: str) -> int:
         stacks=STACK_VALUES,
         runs="" if will_fault else _runs(compiled.lowered, robot.kit, language),
     )
-    print(said, file=sys.stderr if target is None else sys.stdout)
+    print(sentence, file=sys.stderr if target is None else sys.stdout)
     return 0
 
 
@@ -68,13 +68,13 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
     assert compiled.program is not None
     line = (line_of(compiled.source) + "\n").encode()
     is_printed = not outputs.put(options.output, line)
-    said = text("compiled_text", language).format(
+    sentence = text("compiled_text", language).format(
         source=inputs.shown(given.name),
         target="-" if is_printed else inputs.shown(options.output),
         bytes=len(line),
         code=plain_code(compiled.program).length,
     )
-    print(said, file=sys.stderr if is_printed else sys.stdout)
+    print(sentence, file=sys.stderr if is_printed else sys.stdout)
     return 0
 
 
@@ -99,5 +99,5 @@ def _runs(program: Program | None, kit: Kit, language: str) -> str:
     else:
         key = "runs_exactly" if how.most == how.least else "runs_between"
     least, most = as_text(how.least), as_text(how.most or 0)
-    said = text(key, language).format(least=least, most=most)
-    return text("runs", language).format(how=said)
+    sentence = text(key, language).format(least=least, most=most)
+    return text("runs", language).format(how=sentence)

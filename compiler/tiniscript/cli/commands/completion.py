@@ -1,6 +1,6 @@
 """`tsc help --completion`: what a shell needs so that the Tab key completes commands of `tsc`.
 
-A shell's script asks `tsc` at each Tab what fits the typed words: they come behind `--`, the last
+A shell's script asks `tsc` at each Tab what fits the typed words: they come after `--`, the last
 one with a dot before it, as PowerShell 5 leaves out an empty one. The first line of the answer says
 whether a file would fit, too; each other one has a word, a tab, and what it does.
 """
@@ -101,21 +101,26 @@ def _fitting(before: list[str], last: str, language: str) -> tuple[str, list[tup
         return "", []
     command, _ = chosen(verb, before)
     options = [*of_verb(command), *choosers_of(command)]
-    flags = {flag: each for each in options if not each.is_argument for flag in each.flags.split()}
+    flags = {
+        flag: option
+        for option in options
+        if not option.is_argument
+        for flag in option.flags.split()
+    }
     name, equals, _ = last.partition("=")
     option = flags.get(name if equals else before[-1] if before else "")
     kind = option.kind if option is not None else None
     if kind is None and not last.startswith("-"):
-        arguments = [each.kind for each in options if each.is_argument]
+        arguments = [option.kind for option in options if option.is_argument]
         kind = VERB if verb == "tsc" else arguments[0] if arguments else None
     if kind is None:
-        return "", [(flag, _short(each.help(language))) for flag, each in flags.items()]
+        return "", [(flag, _short(option.help(language))) for flag, option in flags.items()]
     begin = f"{name}=" if equals else ""
     return kind.name, [(begin + word, says) for word, says in _words_of(kind, language)]
 
 
 def _verb(before: list[str]) -> tuple[str, list[str]]:
-    """Return the verb, or `tsc` where there is none, and the words behind it."""
+    """Return the verb, or `tsc` where there is none, and the words after it."""
     at = first_word("tsc", before)
     if at is None:
         return "tsc", before

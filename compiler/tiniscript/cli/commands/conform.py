@@ -125,20 +125,20 @@ def report(
 ) -> int:
     """Print what differs, and the sum; return the exit code."""
     found = list(found)
-    lacking = sum(each.what == LACKS for each in found)
-    found = [each for each in found if each.what != LACKS]
+    lacking = sum(verdict.what == LACKS for verdict in found)
+    found = [verdict for verdict in found if verdict.what != LACKS]
     count -= lacking
-    differing = [each for each in found if each.what != AGREES]
+    differing = [verdict for verdict in found if verdict.what != AGREES]
     good = len(found) - len(differing)
     if options.json:
-        rows = [each._asdict() for each in differing]
+        rows = [verdict._asdict() for verdict in differing]
         sums = {**facts, "cases": count, "agree": good, "differ": len(differing)}
         sums |= {"left_out": lacking} if lacking else {}
         sums["found"] = rows
         print(json.dumps(sums, indent=2, ensure_ascii=False))
         return int(bool(differing))
-    for each in differing[:MOST_SHOWN]:
-        print("\n".join(_rows(each, timeout_s, language)))
+    for verdict in differing[:MOST_SHOWN]:
+        print("\n".join(_rows(verdict, timeout_s, language)))
     if len(differing) > MOST_SHOWN:
         say("conform_others", language, n=len(differing) - MOST_SHOWN)
     if len(found) < count:
@@ -149,14 +149,14 @@ def report(
     return int(bool(differing))
 
 
-def _rows(each: Verdict, timeout_s: int, language: str) -> list[str]:
-    rows = [text("conform_case", language).format(name=each.name)]
-    if each.what != DIFFERS:
-        key = "conform_silent_check" if each.what == "silent" else f"conform_{each.what}"
-        said = text(key, language)
-        rows.append(said.format(detail=shown(each.detail), seconds=timeout_s))
-    if each.line:
+def _rows(verdict: Verdict, timeout_s: int, language: str) -> list[str]:
+    rows = [text("conform_case", language).format(name=verdict.name)]
+    if verdict.what != DIFFERS:
+        key = "conform_silent_check" if verdict.what == "silent" else f"conform_{verdict.what}"
+        sentence = text(key, language)
+        rows.append(sentence.format(detail=shown(verdict.detail), seconds=timeout_s))
+    if verdict.line:
         nothing = text("conform_nothing", language)
-        got, want = (nothing if row is None else shown(row) for row in (each.got, each.want))
-        rows.append(text("conform_line", language).format(line=each.line, got=got, want=want))
+        got, want = (nothing if row is None else shown(row) for row in (verdict.got, verdict.want))
+        rows.append(text("conform_line", language).format(line=verdict.line, got=got, want=want))
     return rows

@@ -81,8 +81,8 @@ def run(options: Namespace, language: str) -> int:
     if options.report is not None:
         data = "\n".join(_report(diagnosis, told, language)) + "\n"
         outputs.write(Path(options.report), data.encode(), "unwritable_at --report")
-        said = text("doctor_report", language).format(file=shown(options.report))
-        print(said, file=sys.stderr if options.json else sys.stdout)
+        sentence = text("doctor_report", language).format(file=shown(options.report))
+        print(sentence, file=sys.stderr if options.json else sys.stdout)
     is_fine = not any(finding.is_wrong for finding in diagnosis.findings)
     return 0 if is_fine else 3
 

@@ -78,7 +78,7 @@ def _chosen(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader,
     there = firmware_build.on_boards(options.robot, language, [board])
     if not there:
         fits = ", ".join(
-            each.board.chip for each in firmware_build.on_boards(options.robot, language)
+            board.board.chip for board in firmware_build.on_boards(options.robot, language)
         )
         raise CommandError(2, "flash_no_fit", robot=robot.name, board=board, known=fits)
     return there[0], bootloaders

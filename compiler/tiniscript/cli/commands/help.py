@@ -17,7 +17,7 @@ def run(options: Namespace, language: str) -> int:
     about = " ".join(options.about)
     if not about:
         show(overview, language)
-    elif any(about in said("all", each).split() for each in languages()):
+    elif any(about in said("all", language).split() for language in languages()):
         show(everything, language)
     elif command := next((each for each in COMMANDS if typed(each) == about), WAS.get(about)):
         show(partial(of, command), language)

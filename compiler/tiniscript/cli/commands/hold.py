@@ -72,6 +72,6 @@ class _Log:
             self.search = self.connection.search()
 
     def _say(self, name: str, key: str, **values: str) -> None:
-        said = text(key, self.language).format(**values)
+        sentence = text(key, self.language).format(**values)
         fields: dict[str, object] = {**values}
-        self.printer.say(0, name, "", said, is_bad=False, **fields)
+        self.printer.say(0, name, "", sentence, is_bad=False, **fields)

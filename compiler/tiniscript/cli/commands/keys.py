@@ -25,32 +25,32 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(2, "one_way")
     own = KeyFile()
     try:
-        found = own.all()
+        robot_keys = own.all()
     except BadKeys as why:
         raise _own(own, "own_keys_bad", why) from None
     if keys.is_shared(own.path):
         warning = CommandError(0, "keys_shared", file=shown(str(own.path)))
         print(warning.sentence(language), file=sys.stderr)
     if options.export is not None:
-        _export(found, options.export, language)
+        _export(robot_keys, options.export, language)
     elif options.bring is not None:
         _import(own, options.bring, language)
     elif options.forget is not None:
-        _forget(own, found, options.forget, language)
+        _forget(own, robot_keys, options.forget, language)
     elif options.accept is not None:
         _accept(own, options.accept, language)
     elif options.json:
-        print(json.dumps([_fields(key) for key in found], indent=2))
+        print(json.dumps([_fields(key) for key in robot_keys], indent=2))
     else:
-        _print(found, language)
+        _print(robot_keys, language)
     return 0
 
 
-def _export(found: list[RobotKey], name: str, language: str) -> None:
+def _export(robot_keys: list[RobotKey], name: str, language: str) -> None:
     path = Path(name)
     if path.exists():
         raise CommandError(2, "export_there", file=shown(name))
-    taken = [key._replace(is_stale=False) for key in found if not key.is_pending]
+    taken = [key._replace(is_stale=False) for key in robot_keys if not key.is_pending]
     outputs.write(path, keys.written(taken), "unwritable_more --export", keys.MODE)
     say("keys_exported", language, n=len(taken), file=shown(name))
 
@@ -69,9 +69,9 @@ def _import(own: KeyFile, name: str, language: str) -> None:
     say("keys_imported", language, n=changed, all=len(brought), file=shown(name))
 
 
-def _forget(own: KeyFile, found: list[RobotKey], robot: str, language: str) -> None:
-    gone = [key for key in found if robot.lower() == f"{key.id:08x}"]
-    gone = gone or [key for key in found if robot == key.name]
+def _forget(own: KeyFile, robot_keys: list[RobotKey], robot: str, language: str) -> None:
+    gone = [key for key in robot_keys if robot.lower() == f"{key.id:08x}"]
+    gone = gone or [key for key in robot_keys if robot == key.name]
     if len({key.id for key in gone}) != 1:
         raise CommandError(2, "no_such_key", robot=shown(robot))
     try:
@@ -95,10 +95,10 @@ def _own(own: KeyFile, key: str, why: BadKeys) -> CommandError:
     return CommandError(2, key, file=shown(str(own.path)), why=f": {why.why}" if why.why else "")
 
 
-def _print(found: list[RobotKey], language: str) -> None:
-    if not found:
+def _print(robot_keys: list[RobotKey], language: str) -> None:
+    if not robot_keys:
         say("no_keys", language)
-    for key in sorted(found, key=lambda key: (key.name, key.id, key.which)):
+    for key in sorted(robot_keys, key=lambda key: (key.name, key.id, key.which)):
         kind = text(f"kind_{KEYS[key.which][0].lower()}", language)
         row = text("key_row", language).format(id=f"{key.id:08x}", kind=kind, name=shown(key.name))
         marks = [name for name in ("pending", "stale") if getattr(key, f"is_{name}")]

@@ -65,7 +65,7 @@ def _list(language: str) -> int:
 
 
 def _page(folder: Path, is_teachers: bool, language: str) -> str:
-    """Return the Markdown of a page; that of a teacher has the answers behind it."""
+    """Return the Markdown of a page; that of a teacher has the answers after it."""
     page = catalogue.page(folder, catalogue.TEACHER if is_teachers else catalogue.PUPIL, language)
     if not is_teachers:
         return page

@@ -313,10 +313,10 @@ class Catch:
                     self._release(1)
             return True
         if event.name == "DONE":
-            told = self.held[1:]
-            if len(told) == len(self.shown):
-                for name, each in zip(self.shown, told, strict=True):
-                    self.known.values[name] = Value(each.value, bool(each.is_yes_no))
+            shown_events = self.held[1:]
+            if len(shown_events) == len(self.shown):
+                for name, shown_event in zip(self.shown, shown_events, strict=True):
+                    self.known.values[name] = Value(shown_event.value, bool(shown_event.is_yes_no))
             self.held = []
             return not self.says_done
         if event.name == "FAULT":  # the instructions that show the values cannot fault

@@ -77,7 +77,7 @@ def _wanted(options: Namespace) -> Wanted:
     wanted = Wanted(name, options.pin, baud)
     misfits = [set_up.misfit(wanted, dialect) for dialect in DIALECTS]
     if all(misfits):
-        _refuse(wanted, max(DIALECTS, key=lambda each: each.name_bytes), misfits[0])
+        _refuse(wanted, max(DIALECTS, key=lambda dialect: dialect.name_bytes), misfits[0])
     return wanted
 
 
@@ -154,7 +154,7 @@ class _SetUp:
         if BAUD in values:
             written = values[BAUD].split(",")[0]
             values[BAUD] = next(
-                (str(baud) for baud, each in dialect.bauds.items() if each == written), ""
+                (str(baud) for baud, value in dialect.bauds.items() if value == written), ""
             )
         return {what: shown(value) for what, value in values.items() if value}
 

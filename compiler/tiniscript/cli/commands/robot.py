@@ -231,7 +231,7 @@ def _announcement(name: str, number: int) -> Announcement:
 def _pushes_ms(option: str, found: str | None) -> list[int]:
     if found is None:
         return []
-    values = [decimal(each.strip()) for each in found.split(",")]
+    values = [decimal(part.strip()) for part in found.split(",")]
     known = [value for value in values if value is not None and value >= 0]
     if len(known) != len(values):
         raise CommandError(2, "bad_button", option=option, found=shown(found) or "''")

@@ -31,7 +31,7 @@ def run(options: Namespace, language: str) -> int:
             port = connection.port
             try:
                 connection.meet()
-                found = SelfTest(connection, expected, not options.yes).run()
+                findings = SelfTest(connection, expected, not options.yes).run()
             except CommandError:  # nothing was started: no robot has answered
                 raise
             except BaseException:  # Ctrl-C, too: the motors may turn
@@ -41,14 +41,14 @@ def run(options: Namespace, language: str) -> int:
     except CommandError as failure:
         if failure.exit_code != 3 or options.virtual:
             raise
-        found = _without_robot(options, port, expected, failure, language)
-    _print(found, name, port, options.json, language)
+        findings = _without_robot(options, port, expected, failure, language)
+    _print(findings, name, port, options.json, language)
     if options.report is not None:
-        data = ("\n".join(_report(found, name, port or "", language)) + "\n").encode()
+        data = ("\n".join(_report(findings, name, port or "", language)) + "\n").encode()
         outputs.write(Path(options.report), data, "unwritable_at --report")
         if not options.json:
             say("selftest_report", language, file=shown(options.report))
-    return 3 if any(each.verdict == WRONG for each in found) else 0
+    return 3 if any(finding.verdict == WRONG for finding in findings) else 0
 
 
 def _without_robot(
@@ -60,30 +60,32 @@ def _without_robot(
     It may open the port that was to be opened, and no other one.
     """
     may_open = port is not None
-    found = diagnosis_of(options, port, expected, language, may_open=may_open).findings
-    wrong = [finding for finding in found if finding.is_wrong]
+    findings = diagnosis_of(options, port, expected, language, may_open=may_open).findings
+    wrong = [finding for finding in findings if finding.is_wrong]
     if not wrong:  # it has come meanwhile
         return [sure("plain", said=failure.sentence(language))]
     return [finding._replace(of=finding.part or "answers") for finding in wrong]
 
 
-def _print(found: list[Finding], name: str, port: str | None, is_json: bool, language: str) -> None:
+def _print(
+    findings: list[Finding], name: str, port: str | None, is_json: bool, language: str
+) -> None:
     if is_json:
         fields = [
             {"what": finding.part, "verdict": finding.verdict, **as_data(finding, language)}
-            for finding in found
+            for finding in findings
         ]
         print(json.dumps({"robot": name, "port": port, "found": fields}, indent=2))
         return
     if name:
         say("selftest_head", language, robot=name, port=shown(port or ""))
-    print("\n".join(rows(found, language)))
-    counts = {each: sum(row.verdict == each for row in found) for each in (OK, WRONG, OPEN)}
+    print("\n".join(rows(findings, language)))
+    counts = {each: sum(row.verdict == each for row in findings) for each in (OK, WRONG, OPEN)}
     good, wrong, left = counts[OK], counts[WRONG], counts[OPEN]
-    say("selftest_end", language, good=good, all=len(found), wrong=wrong, open=left)
+    say("selftest_end", language, good=good, all=len(findings), wrong=wrong, open=left)
 
 
-def _report(found: list[Finding], name: str, port: str, language: str) -> list[str]:
+def _report(findings: list[Finding], name: str, port: str, language: str) -> list[str]:
     """Return the lines of a report: nothing in it tells whose robot or computer it is."""
     hidden = [(each, report.shown_port(port)) for each in (port, shown(port)) if port]
     if name and name not in robots.names():  # a shipped one's says what it is, not whose
@@ -97,7 +99,9 @@ def _report(found: list[Finding], name: str, port: str, language: str) -> list[s
     head = report.head(report.SELFTEST_MARK, text("selftest_about", language),
                        [("system", sys.platform)], port)  # fmt: skip
     private = [
-        each if CAUSES[each.cause].part else each._replace(values=report.values_of(each))
-        for each in found  # what is of no part is of the computer and its port
+        finding
+        if CAUSES[finding.cause].part
+        else finding._replace(values=report.values_of(finding))
+        for finding in findings  # what is of no part is of the computer and its port
     ]
     return [*head, "", *map(without_names, rows(private, language))]

@@ -118,10 +118,10 @@ def _server(port: int, host: str, hosting: Hosting, classroom: Classroom | None)
 
 def _address() -> str:
     """Return this computer's address in the network of the room. Asks nobody for it."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as connection:
         try:
-            asked.connect((ELSEWHERE, 9))  # chooses a way, and sends nothing
-            return str(asked.getsockname()[0])
+            connection.connect((ELSEWHERE, 9))  # chooses a way, and sends nothing
+            return str(connection.getsockname()[0])
         except OSError:
             raise CommandError(3, "studio_no_network") from None
 

@@ -161,13 +161,13 @@ def _receipt_line(
         how = "how_detached" if options.detach else "how_running"
     elif has_button(connection, ready, options):
         how = "how_key" if has_keys(connection) else "how_pushed"
-    said = connection.text(how, start=ready.image.start)
+    sentence = connection.text(how, start=ready.image.start)
     saved = saved_name(values.saved)
     if not options.verbose:
         if saved != "SAVING":  # else it is told once it is saved
             key = "saved" if saved == "STORED" else f"saved_{saved}"
-            said = f"{connection.text(key)}   {said}"
-        return connection.text("receipt", program=name, how=said)
+            sentence = f"{connection.text(key)}   {sentence}"
+        return connection.text("receipt", program=name, how=sentence)
     return connection.text(
         "receipt_whole",
         program=name,
@@ -175,5 +175,5 @@ def _receipt_line(
         code=len(ready.image.code),
         checksum=f"{values.program:08x}",
         saved=connection.text(f"saved_{saved}", slot=values.slot),
-        how=said,
+        how=sentence,
     )

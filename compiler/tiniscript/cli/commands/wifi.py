@@ -81,24 +81,24 @@ def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
     network = Network(name, password, is_access_point)
     connection.ask(lambda session: session.join(network))
     ask = partial(_told, connection)
-    _tell(connection, robot_broker.awaited(ask, lambda told: told.state in ENDS))
+    _tell(connection, robot_broker.awaited(ask, lambda wifi_reply: wifi_reply.state in ENDS))
 
 
 def _told(connection: Connection) -> WifiReply:
     return connection.ask_or(lambda session: session.wifi(), "wifi_none", "UNKNOWN_MESSAGE").values
 
 
-def _tell(connection: Connection, told: WifiReply) -> None:
+def _tell(connection: Connection, wifi_reply: WifiReply) -> None:
     mode, state = (
         row[number] if number < len(row) else "OFF"
-        for row, number in ((MODES, told.mode), (STATES, told.state))
+        for row, number in ((MODES, wifi_reply.mode), (STATES, wifi_reply.state))
     )
     key = "wifi_off" if mode == "OFF" else f"wifi_{mode}_{state}".lower()
     if mode != "OFF" and state == "OFF":
         key = "wifi_station_searching"
-    network = shown(told.network.decode("utf-8", "replace"))
+    network = shown(wifi_reply.network.decode("utf-8", "replace"))
     host = f"tini-{connection.device_info.id & 0xFFFF:04x}"
-    connection.say(key, network=network, address=address(told), host=host)
+    connection.say(key, network=network, address=address(wifi_reply), host=host)
 
 
 def _name_bytes(name: str) -> bytes:

@@ -28,11 +28,11 @@ class Place(NamedTuple):
 
 def place(options: Namespace, is_tls: bool = False) -> Place:
     """Return where the broker is. Raises CommandError."""
-    found = re.fullmatch(r"([A-Za-z0-9][A-Za-z0-9._-]{0,252})(?::([0-9]{1,5}))?", options.broker)
-    port = int(found[2] or (TLS_PORT if is_tls else PLAIN_PORT)) if found else 0
-    if found is None or not 0 < port < 1 << 16:
+    match = re.fullmatch(r"([A-Za-z0-9][A-Za-z0-9._-]{0,252})(?::([0-9]{1,5}))?", options.broker)
+    port = int(match[2] or (TLS_PORT if is_tls else PLAIN_PORT)) if match else 0
+    if match is None or not 0 < port < 1 << 16:
         raise CommandError(2, "broker_bad_host", found=shown(options.broker) or "''")
-    return Place(found[1].lower(), port)
+    return Place(match[1].lower(), port)
 
 
 def group(options: Namespace) -> str:

@@ -110,8 +110,8 @@ def as_seen(before: Trim, left: Turned, right: Turned) -> Trim | None:
         return None
     was_reversed = (before.is_left_reversed, before.is_right_reversed)
     reversed_now = {
-        seen.wheel: was != (not seen.is_forward)
-        for seen, was in zip((left, right), was_reversed, strict=True)
+        turned.wheel: was != (not turned.is_forward)
+        for turned, was in zip((left, right), was_reversed, strict=True)
     }
     return before._replace(
         is_exchanged=before.is_exchanged != (left.wheel == "right"),

@@ -146,9 +146,9 @@ class Description(NamedTuple):
 
     def _fault(self) -> str:
         status = self.status
-        said = fault_sentence(status.fault, status.fault_at, status.fault_program, None,
+        sentence = fault_sentence(status.fault, status.fault_at, status.fault_program, None,
                               self.language)  # fmt: skip
-        return self._text("info_fault", fault=said)
+        return self._text("info_fault", fault=sentence)
 
 
 def described(connection: Connection) -> Description:

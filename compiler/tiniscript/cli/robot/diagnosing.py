@@ -79,8 +79,8 @@ def examination_of(
     if reply is None:
         raise connection.failure(Reply(LOST))
     heard: list[Heard] = []
-    found = examined(robot, reply, expected._replace(hear=heard.append), tell=tell)
-    return found, heard[-1] if heard else None
+    findings = examined(robot, reply, expected._replace(hear=heard.append), tell=tell)
+    return findings, heard[-1] if heard else None
 
 
 def _has_key(robot: int) -> bool:

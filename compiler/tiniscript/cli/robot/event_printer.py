@@ -89,17 +89,17 @@ class EventPrinter:
             self._tell_fault(since_ms, event.fault, event.at, event.program)
         elif event.name == "STOPPED":
             cause = cause_name(event.cause)
-            said = text(f"stopped_{cause}", self.language)
-            self.say(since_ms, "STOPPED", cause, said, cause=cause)
+            sentence = text(f"stopped_{cause}", self.language)
+            self.say(since_ms, "STOPPED", cause, sentence, cause=cause)
         elif event.name == "RESTARTED":
             self.say(since_ms, "RESTARTED", "", text("robot_restarted", self.language))
         elif event.name == "MISSED":
-            said = text("missed", self.language).format(n=event.count)
-            self.say(since_ms, "MISSED", str(event.count), said, count=event.count)
+            sentence = text("missed", self.language).format(n=event.count)
+            self.say(since_ms, "MISSED", str(event.count), sentence, count=event.count)
         elif event.name == "TEXT":
             words = shown(event.text.decode("utf-8", "replace"))
-            said = text("robot_text", self.language).format(said=words)
-            self.say(since_ms, "TEXT", no_formula(words), said, text=words)
+            sentence = text("robot_text", self.language).format(said=words)
+            self.say(since_ms, "TEXT", no_formula(words), sentence, text=words)
 
     def name_of(self, event: ShownEvent) -> str:
         """Return the name of a value, by which it is told from the values of all other SHOWs."""
@@ -126,11 +126,11 @@ class EventPrinter:
 
     def _tell_fault(self, since_ms: int, number: int, at: int, program: int) -> None:
         fault = fault_name(number)
-        said = fault_sentence(number, at, program, self.places, self.language)
+        sentence = fault_sentence(number, at, program, self.places, self.language)
         places = self.places or source_map.recall(program)
         place = places.at(at) if places is not None else None
         more = {} if place is None else {"line": place.line}
-        self.say(since_ms, "FAULT", fault, said, is_bad=True, fault=fault, at=at,
+        self.say(since_ms, "FAULT", fault, sentence, is_bad=True, fault=fault, at=at,
                  program=f"{program:08x}", **more)  # fmt: skip
 
     def say(

@@ -134,7 +134,7 @@ class Fleet:
 
     def _tell(self, untold: list[Member], table: FleetTable | None) -> None:
         """Print the results that are new, and take those robots out of `untold`."""
-        for member in [each for each in untold if each.result is not None]:
+        for member in [member for member in untold if member.result is not None]:
             if member.bug is not None:
                 raise member.bug
             if table is None:
@@ -177,7 +177,9 @@ class Fleet:
         results = [member.result for member in self.members]
         if all(result is not None and result.is_absent for result in results):
             raise CommandError(3, "no_robots")
-        is_fine = all(each is not None and (each.is_done or each.is_absent) for each in results)
+        is_fine = all(
+            result is not None and (result.is_done or result.is_absent) for result in results
+        )
         return 0 if is_fine else 3
 
     # -- a thread for each ------------------------------------------------------------------------
@@ -215,8 +217,8 @@ class Fleet:
     def _failed(self, member: Member, failure: CommandError) -> Result:
         target = member.target
         is_absent = failure.key in NOBODY or (failure.key in NO_ROBOT and not target.is_known)
-        said = failure.plain(self.language)
-        return Result(False, said, {}, is_absent and not target.is_named)
+        sentence = failure.plain(self.language)
+        return Result(False, sentence, {}, is_absent and not target.is_named)
 
     # -- what is printed --------------------------------------------------------------------------
 
@@ -237,9 +239,9 @@ class Fleet:
 
     def _give_up(self, strangers: list[Member]) -> None:
         """Give up on ports on which no robot has ever answered."""
-        said = text("port_quiet", self.language)
+        sentence = text("port_quiet", self.language)
         for member in strangers:
-            member.result = Result(False, said, {}, is_absent=True)
+            member.result = Result(False, sentence, {}, is_absent=True)
 
     def in_order(self) -> list[Member]:
         """Return the robots by their ports, `COM9` before `COM10`."""

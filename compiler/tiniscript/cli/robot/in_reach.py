@@ -77,27 +77,27 @@ def _by_radio(known: list[str], language: str) -> InReach:
 def _by_name(known: list[str], language: str) -> InReach:
     there = ports.announced()
     rows = []
-    for each in there:
-        name = TCP + each.name if each.name.isprintable() else each.port
-        said = text("announced_port", language).format(port=each.port)
-        rows.append((name, {same_for_all(name), same_for_all(each.port)}, said))
+    for announced in there:
+        name = TCP + announced.name if announced.name.isprintable() else announced.port
+        sentence = text("announced_port", language).format(port=announced.port)
+        rows.append((name, {same_for_all(name), same_for_all(announced.port)}, sentence))
     ours = {port: same_for_all(port) for port in known if is_network_name(port)}
-    found = _rows(rows, ours)
-    found.others.extend(each.port for each in there if each.port not in found.about)
-    return found
+    reach = _rows(rows, ours)
+    reach.others.extend(announced.port for announced in there if announced.port not in reach.about)
+    return reach
 
 
 def _rows(rows: list[tuple[str, set[str], str]], ours: dict[str, str]) -> InReach:
     """Name each robot by the port that the user knows: `rows` have a port, all that mean it, and a
     description; `ours` maps known ports to what they mean."""
-    found = InReach({}, [], list(ours), [])
+    reach = InReach({}, [], list(ours), [])
     for port, means, said in rows:
-        known = [each for each, meant in ours.items() if meant in means]
-        found.about[known[0] if known else port] = said
-        found.others.extend(known[1:])
+        known = [value for value, meant in ours.items() if meant in means]
+        reach.about[known[0] if known else port] = said
+        reach.others.extend(known[1:])
         for each in known:
-            found.absent.remove(each)
-    return found
+            reach.absent.remove(each)
+    return reach
 
 
 AT_ONCE = 16  # servers that are checked at the same time

@@ -51,8 +51,8 @@ class Line(NamedTuple):
 
 def header(text: str) -> str:
     """Return the start of a line: SI, SB or PING; the default is SI."""
-    found = _HEADER.match(text)
-    return found[1].upper() if found else "SI"
+    match = _HEADER.match(text)
+    return match[1].upper() if match else "SI"
 
 
 def open_ends(text: str) -> str:
@@ -81,8 +81,8 @@ class Known:
 
     def line(self, text: str, room: int) -> Line:
         """Compile a line after the known DEFs and variables into at most `room` bytes of code."""
-        found = _HEADER.match(text)
-        body = " " * found.end() + text[found.end() :] if found else text
+        match = _HEADER.match(text)
+        body = " " * match.end() + text[match.end() :] if match else text
         parsed = parse(Source(body)).program.body
         own = {node.name: body[node.span.start : node.span.end] for node in parsed
                if isinstance(node, ast.Def)}  # fmt: skip
@@ -95,8 +95,8 @@ class Known:
         if all(isinstance(node, ast.Def) for node in parsed):
             return Line(_behind(plain, len(before)), (), own, does_nothing=True)
         if shown:
-            behind = "".join(f"\nSHOW({name})" for name in (as_text(MARK), *shown))
-            full = compile_text(f"{before}{body}{behind}", self.kit)
+            after = "".join(f"\nSHOW({name})" for name in (as_text(MARK), *shown))
+            full = compile_text(f"{before}{body}{after}", self.kit)
             if full.is_right and len(full.code) <= room:
                 line = _behind(full, len(before), len(before + body))
                 return Line(line, shown, own, whole=_map_of(full, len(before + body)))
@@ -113,7 +113,7 @@ class Known:
             used |= words
         values = "".join(f"{name} = {value_text(*value)}\n" for name, value in self.values.items()
                          if name in used)  # fmt: skip
-        defs = "".join(f"{each}\n" for name, each in self.defs.items()
+        defs = "".join(f"{value}\n" for name, value in self.defs.items()
                        if name in used and name not in own)  # fmt: skip
         return values, defs
 
@@ -132,7 +132,7 @@ def _assigned(compiled: Compiled, start: int) -> tuple[str, ...]:
 
 
 def _map_of(compiled: Compiled, end: int) -> Map:
-    """Return the map of the text up to `end`; what is behind comes from nowhere."""
+    """Return the map of the text up to `end`; what is after it comes from nowhere."""
     nowhere = Span(end, end)
     places = (
         place if place.span.end <= end else place._replace(span=nowhere)

@@ -48,7 +48,7 @@ def targets(options: Namespace) -> list[Target]:
     Ports in use come first, then ports of known robots. Opens none.
     """
     known = known_ports.known().names
-    wanted = [inputs.port(each) for each in options.ports]
+    wanted = [inputs.port(port) for port in options.ports]
     if options.all:
         wanted = [registration.port for registration in all_found()]
         wanted += [port for port in known if is_there(port) and not directory.is_gone(port)]
@@ -115,8 +115,8 @@ class Member:
         if self.result is not None:
             return self.result.said
         key, values = self.state
-        said = text(key, language).format(**values)
-        return f"{said}   {self.value}" if self.value else said
+        sentence = text(key, language).format(**values)
+        return f"{sentence}   {self.value}" if self.value else sentence
 
     @property
     def row(self) -> str:

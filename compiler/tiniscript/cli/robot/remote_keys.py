@@ -46,10 +46,10 @@ class HeldKeys:
             if _IS_BEGUN.match(text, at):
                 self._begun = text[at:]
                 return False
-            found = _FOUND.match(text, at)
-            assert found
-            at = found.end()
-            arrow, windows, letter = found.groups()
+            match = _FOUND.match(text, at)
+            assert match
+            at = match.end()
+            arrow, windows, letter = match.groups()
             if letter in _QUIT:
                 return True
             name = _ARROWS.get(arrow) or _WINDOWS_ARROWS.get(windows)

@@ -30,9 +30,9 @@ def replay(options: Namespace, language: str) -> int:
     robot = _robot(options, recording, given.data)
     world = world_of(options, language)
     with refusing(world.name, language):
-        found = recordings.replay(recording, given.data, robot, world)
-    print(sentence(found, language))
-    return int(found.what not in SAME)
+        parting = recordings.replay(recording, given.data, robot, world)
+    print(sentence(parting, language))
+    return int(parting.what not in SAME)
 
 
 def _robot(options: Namespace, recording: Recording, program: bytes) -> str:
@@ -59,14 +59,14 @@ def _read(name: str) -> Recording:
         ) from None
 
 
-def sentence(found: Parting, language: str) -> str:
+def sentence(parting: Parting, language: str) -> str:
     """Return what a person reads of a comparison."""
-    place = text("replay_line" if found.line else "replay_end", language)
-    return text(f"replay_{found.what}", language).format(
-        count=found.agreed,
-        place=place.format(line=found.line),
-        robot=_told(found.robot, language),
-        virtual=_told(found.virtual, language),
+    place = text("replay_line" if parting.line else "replay_end", language)
+    return text(f"replay_{parting.what}", language).format(
+        count=parting.agreed,
+        place=place.format(line=parting.line),
+        robot=_told(parting.robot, language),
+        virtual=_told(parting.virtual, language),
     )
 
 

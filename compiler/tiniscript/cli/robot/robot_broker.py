@@ -93,16 +93,16 @@ def use(connection: Connection, broker: BrokerSettings | None, options: Namespac
     if broker is None:
         connection.say("broker_off")
         return
-    told = awaited(partial(_told, connection), lambda told: _state(told) != "SEARCHING")
-    tell(connection, told, broker.name.decode(), _class_command(options))
+    wifi_reply = awaited(partial(_told, connection), lambda reply: _state(reply) != "SEARCHING")
+    tell(connection, wifi_reply, broker.name.decode(), _class_command(options))
 
 
 def awaited(ask: Callable[[], WifiReply], is_over: Callable[[WifiReply], bool]) -> WifiReply:
     """Return what the robot tells when something has come of it, or after READY_S."""
     end_s = time.monotonic() + READY_S
-    while not is_over(told := ask()) and time.monotonic() < end_s:
+    while not is_over(wifi_reply := ask()) and time.monotonic() < end_s:
         time.sleep(LOOK_S)
-    return told
+    return wifi_reply
 
 
 def tell_if_any(connection: Connection) -> None:
@@ -112,18 +112,18 @@ def tell_if_any(connection: Connection) -> None:
         tell(connection, reply.values)
 
 
-def tell(connection: Connection, told: WifiReply, name: str = "", command: str = "") -> None:
+def tell(connection: Connection, wifi_reply: WifiReply, name: str = "", command: str = "") -> None:
     """Say where the robot's broker is: under its name, where that is known.
 
     `command` reaches all robots of the class: a robot tells neither port nor certificate.
     """
-    state = _state(told)
-    key = f"broker_{state.lower()}" if told.network else "broker_none"
-    group = shown(told.network.decode("utf-8", "replace"))
-    said = connection.text(key, address=name or address(told), group=group)
+    state = _state(wifi_reply)
+    key = f"broker_{state.lower()}" if wifi_reply.network else "broker_none"
+    group = shown(wifi_reply.network.decode("utf-8", "replace"))
+    sentence = connection.text(key, address=name or address(wifi_reply), group=group)
     if command and state == "READY":
-        said += connection.text("broker_all", command=command)
-    print(said)
+        sentence += connection.text("broker_all", command=command)
+    print(sentence)
 
 
 def _class_command(options: Namespace) -> str:
@@ -139,9 +139,9 @@ def _class_command(options: Namespace) -> str:
     return shown(" ".join(["tsc", "class", *(quoted(str(word)) for word in words)]))
 
 
-def _state(told: WifiReply) -> str:
+def _state(wifi_reply: WifiReply) -> str:
     """Return SEARCHING for a robot that has not begun, or whose WiFi rests, too."""
-    state = STATES[told.state] if told.state < len(STATES) else "OFF"
+    state = STATES[wifi_reply.state] if wifi_reply.state < len(STATES) else "OFF"
     return "SEARCHING" if state in NOT_BEGUN else state
 
 
@@ -151,7 +151,7 @@ def _told(connection: Connection) -> WifiReply:
 
 def _refuse_itself(connection: Connection, broker: IPv4Address) -> None:
     """Refuse a broker at 127.0.0.1: no robot but one that is on this computer is at it."""
-    told = connection.ask(lambda session: session.wifi()).values
-    its = IPv4Address(told.address.to_bytes(4, "little"))
+    wifi_reply = connection.ask(lambda session: session.wifi()).values
+    its = IPv4Address(wifi_reply.address.to_bytes(4, "little"))
     if not its.is_loopback:
         raise CommandError(2, "broker_itself", host=str(broker), robot=connection.name)

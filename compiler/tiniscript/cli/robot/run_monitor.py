@@ -142,8 +142,8 @@ class Saving:
                 self.connection.event()
         reason = self._robots.reason
         if reason:
-            said = text(self.SAID.get(reason, reason), self.connection.language)
-            raise CommandError(3, "plain", said=said)
+            sentence = text(self.SAID.get(reason, reason), self.connection.language)
+            raise CommandError(3, "plain", said=sentence)
 
     def wait_unseen(self) -> None:
         """The same when tsc's output has no reader: only failures are printed."""
@@ -166,7 +166,7 @@ class Saving:
             slot = reply.values.slot
             is_verbose = getattr(self.connection.options, "verbose", False)
             key = "now_saved_slot" if is_verbose else "now_saved"
-            said = text(key, language).format(slot=slot)
-            self.printer.say(0, "SAVED", str(slot), said, slot=slot)
+            sentence = text(key, language).format(slot=slot)
+            self.printer.say(0, "SAVED", str(slot), sentence, slot=slot)
         elif self._robots.saved == SAVED_LOW_SUPPLY and not was_low and is_running:
             self.printer.say(0, "LOW_SUPPLY", "", text("low_supply", language), is_bad=True)

@@ -96,7 +96,7 @@ class SelfTest(Conversation):
             return {}
         hello, status, _, trips_ms = self.heard
         sizes = {size: str(getattr(hello, size)) for size in ("room", "largest", "window")}
-        found = [
+        findings = [
             sure("kit_is", robot=name),
             sure("firmware_is", isa=f"{hello.isa_major}.{hello.isa_minor}", **sizes),
             sure("supply_is", reset=row_name(RESETS, hello.reset)),
@@ -104,9 +104,9 @@ class SelfTest(Conversation):
         ]
         if trips_ms:
             times = {"least": min(trips_ms), "ms": median(trips_ms), "most": max(trips_ms)}
-            values = {each: f"{ms:.0f}" for each, ms in times.items()}
-            found.append(sure("line_is", n=str(len(trips_ms)), **values))
-        return {each.part: [each] for each in found}
+            values = {value: f"{ms:.0f}" for value, ms in times.items()}
+            findings.append(sure("line_is", n=str(len(trips_ms)), **values))
+        return {finding.part: [finding] for finding in findings}
 
     def _discs(self) -> None:
         """Let it stand, and longer than wheels roll: an edge is none of a wheel."""
@@ -167,7 +167,9 @@ class SelfTest(Conversation):
         left, right = (self._motor(side, is_lifted) for side in SIDES)
         if left is None or right is None or not self._learns(left, right):
             return
-        self.found = [self._trim_is() if each.cause == "trim_is" else each for each in before]
+        self.found = [
+            self._trim_is() if finding.cause == "trim_is" else finding for finding in before
+        ]
         for side in SIDES:
             self._motor(side, is_lifted)
 
@@ -176,18 +178,18 @@ class SelfTest(Conversation):
         try:
             if not is_lifted:
                 raise NoPerson
-            seen = self.turned(side)
+            turned = self.turned(side)
         except NoPerson:
             self._add("unasked", side)
             return None
         except CommandError as failure:
             self._ended(side, failure)
             return None
-        if not seen.wheel:
+        if not turned.wheel:
             self._add("still", side)
         else:
-            self._add("turns" if seen == Turned(side, True) else "other_turn", side)
-        return seen
+            self._add("turns" if turned == Turned(side, True) else "other_turn", side)
+        return turned
 
     def _learns(self, left: Turned, right: Turned) -> bool:
         """Have the robot keep how its motors are wired, if that is new and the person wants it."""

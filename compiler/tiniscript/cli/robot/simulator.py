@@ -127,7 +127,7 @@ class CommandSimulator(SimulatorThread):
         wanted = "STOP" if event == "STOPPED" else event
 
         def is_there() -> bool:
-            return any(each.text == wanted for each in self._told)
+            return any(event.text == wanted for event in self._told)
 
         with self._drawing:
             began_ms = self.robot.started_ms or 0
@@ -177,7 +177,7 @@ class CommandSimulator(SimulatorThread):
     def took_turn(self) -> None:
         with self._drawing:
             events = self.robot.take_events()
-            self._told.extend(each for each in events if each.what in TOLD)
+            self._told.extend(event for event in events if event.what in TOLD)
             self._undrawn.extend(events)
             while self._picture is not None and self._undrawn:
                 event = self._undrawn.popleft()

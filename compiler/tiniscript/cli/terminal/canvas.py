@@ -27,9 +27,9 @@ class Canvas:
         self._cells = bytearray(columns * rows)
 
     def copy(self) -> Canvas:
-        found = Canvas(self.columns, self.rows)
-        found._cells[:] = self._cells
-        return found
+        canvas = Canvas(self.columns, self.rows)
+        canvas._cells[:] = self._cells
+        return canvas
 
     def clear(self) -> None:
         self._cells = bytearray(len(self._cells))
@@ -56,7 +56,7 @@ def layered(layers: Sequence[tuple[Canvas, str]]) -> list[Text]:
 
     A character has the dots of all of them and the style of the topmost one that has any there.
     """
-    found = []
+    texts = []
     for number in range(layers[0][0].rows):
         rows = [canvas.row(number) for canvas, _ in layers]
         line = Text()
@@ -68,8 +68,8 @@ def layered(layers: Sequence[tuple[Canvas, str]]) -> list[Text]:
             style = next((layers[k][1] for k, each in enumerate(bits) if each), "")
             if style:
                 line.stylize(style, column, column + 1)
-        found.append(line)
-    return found
+        texts.append(line)
+    return texts
 
 
 def put(lines: Sequence[Text], dot: Dot, letter: str, style: str = "") -> None:

@@ -83,7 +83,7 @@ class Plot:
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
         """Return at most `height` lines of at most `width` columns: a title and the curves."""
-        width -= 2  # the ^C of the terminal stands behind the last line
+        width -= 2  # the ^C of the terminal stands after the last line
         begin_ms = now_ms - SECONDS * 1000
         for values in self.curves.values():
             while len(values) > 1 and values[1][0] < begin_ms:

@@ -139,9 +139,9 @@ class Quiet:
 
     def then(self, said: str) -> Quiet:
         """Return the same silence, of which something else is said."""
-        found = Quiet(said, self._is_seen)
-        found._since_s = self._since_s
-        return found
+        quiet = Quiet(said, self._is_seen)
+        quiet._since_s = self._since_s
+        return quiet
 
     def look(self) -> None:
         """The wait goes on."""

@@ -142,6 +142,6 @@ class Floor:
             self._way.clear()
             self._way.lines(map(self.dot, corners))
         self._last = list(corners)
-        found = self._way.copy()
-        found.lines(map(self.dot, [corners[-1], pose]))
-        return found
+        canvas = self._way.copy()
+        canvas.lines(map(self.dot, [corners[-1], pose]))
+        return canvas

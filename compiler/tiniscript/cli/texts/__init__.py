@@ -14,7 +14,7 @@ from tiniscript.base.source import printable
 
 CATALOGUE = "command"
 LONGEST = 2000  # characters of what is put into a sentence
-# What is counted, right behind its number: catalogues have how one of it is called, and several.
+# What is counted, right after its number: catalogues have how one of it is called, and several.
 # Other words have a sentence of their own for one.
 COUNTED = ("counted_bytes", "counted_checks")
 SEVERAL = 5  # as sentences have it

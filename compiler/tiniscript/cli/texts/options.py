@@ -326,7 +326,7 @@ def choosers_of(command: str) -> list[Option]:
 
 
 def chosen(verb: str, words: list[str]) -> tuple[str, list[str]]:
-    """Return the command that a verb and the words behind it mean, and what is left of these.
+    """Return the command that a verb and the words after it mean, and what is left of these.
 
     That is the verb itself where they choose none of its steps.
     """

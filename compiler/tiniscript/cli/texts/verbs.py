@@ -105,7 +105,7 @@ def said(key: str, language: str) -> str:
 
 
 def typed(command: str) -> str:
-    """Return what is typed behind `tsc` for a command: `doctor --ports`."""
+    """Return what is typed after `tsc` for a command: `doctor --ports`."""
     return STEPS[command].typed if command in STEPS else command
 
 

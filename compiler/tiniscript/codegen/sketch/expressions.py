@@ -99,10 +99,10 @@ class Expressions:
             first = self.keep()
             kept, left = f"{first} = {left.text}, ", _Operand(first, _PRIMARY)
         if op in FUNCTIONS:
-            made = _Operand(f"{self.use(FUNCTIONS[op])}({left.text}, {right.text})", _PRIMARY)
+            operand = _Operand(f"{self.use(FUNCTIONS[op])}({left.text}, {right.text})", _PRIMARY)
             if first:
-                made = _Operand(f"({kept}{made.text})", _PRIMARY)
-            return made._replace(is_random=is_random)
+                operand = _Operand(f"({kept}{operand.text})", _PRIMARY)
+            return operand._replace(is_random=is_random)
         sign, binds = SIGNS[op], _BINDS[op]
         if op in ARITHMETIC or op in COMPARED:
             if left.is_literal and (right.is_literal or (op in ARITHMETIC and not self.is_exact)):

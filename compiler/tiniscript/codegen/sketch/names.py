@@ -80,7 +80,7 @@ class Names:
 
     def __init__(self, language: str) -> None:
         self._prefix = text("sketch", "prefix", language)
-        self._taken = {called(name, each) for name in IDENTIFIERS for each in languages()}
+        self._taken = {called(name, language) for name in IDENTIFIERS for language in languages()}
 
     def of(self, name: str, before: str = "") -> str:
         """Return the name in C++ of a name in capitals; `before` is the verb of a function."""

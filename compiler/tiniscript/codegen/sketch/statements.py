@@ -162,7 +162,7 @@ class Statements:
         """Call a function; of its arguments with a RANDOM all but the last come before."""
         self.remarks(call.span.start)
         texts = [self.write.text(argument) for argument in arguments]
-        for k in [k for k, each in enumerate(arguments) if has_random(each)][:-1]:
+        for k in [k for k, terms in enumerate(arguments) if has_random(terms)][:-1]:
             first = self.write.keep()
             self.line(f"{first} = {texts[k]};")
             texts[k] = first

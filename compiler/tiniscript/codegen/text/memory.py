@@ -76,8 +76,8 @@ class Reader:
         self.brackets = 0
         self.is_way = False  # of the instruction whose brackets have been read
         self.one_too_many: Span | None = None  # the first bracket after MOST_BRACKETS
-        self.sensors = {each.name: k for k, each in enumerate(among(tokens, kit).readings)}
-        self.actuators = {each.name: k for k, each in enumerate(kit.actuators)}
+        self.sensors = {device.name: k for k, device in enumerate(among(tokens, kit).readings)}
+        self.actuators = {device.name: k for k, device in enumerate(kit.actuators)}
         self.variables: dict[str, int] = {}
         self.own: dict[str, int] = {}  # the values of the DEF that is open
         self.count = 0  # of variables so far, with the values of DEFs

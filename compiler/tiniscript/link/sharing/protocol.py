@@ -62,9 +62,9 @@ def greeting(data: bytes) -> Greeting | None:
 
     Raises BadMessage where data is no greeting.
     """
-    found = _GREETING.match(data)
-    if found is not None:
-        return Greeting(found[1], found[2].decode("ascii"), data[found.end() :])
+    match = _GREETING.match(data)
+    if match is not None:
+        return Greeting(match[1], match[2].decode("ascii"), data[match.end() :])
     if data[:1] != b"{" or b"\n" in data or len(data) > GREETING_BYTES:
         raise BadMessage
     return None
@@ -122,7 +122,9 @@ def data(message: JsonMessage, name: str) -> bytes:
 
 def plain(values: Mapping[str, int | bytes]) -> JsonMessage:
     """Return the fields of a reply or an event in a form for JSON: bytes become hex."""
-    return {name: each.hex() if isinstance(each, bytes) else each for name, each in values.items()}
+    return {
+        name: value.hex() if isinstance(value, bytes) else value for name, value in values.items()
+    }
 
 
 def values(message: JsonMessage) -> dict[str, int | bytes]:
@@ -131,8 +133,8 @@ def values(message: JsonMessage) -> dict[str, int | bytes]:
     if not isinstance(found, dict):
         raise BadMessage
     return {
-        key: number(found, key) if type(each) is int else data(found, key)
-        for key, each in found.items()
+        key: number(found, key) if type(value) is int else data(found, key)
+        for key, value in found.items()
     }
 
 
@@ -180,4 +182,4 @@ def event_of(name: str, values: Mapping[str, int | bytes]) -> Event:
 @cache
 def _types(kind: Hashable) -> dict[str, object]:
     """Return the type of each field, without an event's name."""
-    return {name: each for name, each in get_type_hints(kind).items() if each in (int, bytes)}
+    return {name: value for name, value in get_type_hints(kind).items() if value in (int, bytes)}

@@ -56,7 +56,11 @@ def all_found() -> list[Registration]:
     tidy()
     with suppress(OSError):
         paths = sorted(_folder().glob(f"{_computer()}-*.json"))
-        return [each for each in map(_read, paths) if each is not None and not each.is_alias]
+        return [
+            registration
+            for registration in map(_read, paths)
+            if registration is not None and not registration.is_alias
+        ]
     return []
 
 

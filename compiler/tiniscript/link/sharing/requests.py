@@ -52,13 +52,13 @@ class ClientRequests(Requester):
 def _fields(given: Mapping[str, object]) -> JsonMessage:
     """Return the fields of a message: bytes are hex, and a tuple's own stand beside the others."""
     fields: JsonMessage = {}
-    for name, each in given.items():
-        if hasattr(each, "_asdict"):
-            fields |= _fields(each._asdict())
-        elif isinstance(each, (bytes, tuple)):
-            fields[name] = bytes(each).hex()
-        elif each is not None:
-            fields[name] = each
+    for name, value in given.items():
+        if hasattr(value, "_asdict"):
+            fields |= _fields(value._asdict())
+        elif isinstance(value, (bytes, tuple)):
+            fields[name] = bytes(value).hex()
+        elif value is not None:
+            fields[name] = value
     return fields
 
 

@@ -103,8 +103,8 @@ class Server:
         self._selector.register(self._listening, selectors.EVENT_READ)
         self._selector.register(self._wire, selectors.EVENT_READ)
         try:
-            for each in self._names:
-                registry.write(each)
+            for registration in self._names:
+                registry.write(registration)
         except OSError:
             self._close_all()
             raise

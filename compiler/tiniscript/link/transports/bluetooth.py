@@ -141,14 +141,21 @@ class BluetoothPort(PushedTransport):
         async with _turn():  # BlueZ fails where two connections are made at once
             await asyncio.wait_for(client.connect(), CONNECT_S)
         for module in MODULES:
-            service = next((each for each in client.services if each.uuid == module.service), None)
+            service = next(
+                (
+                    bleak_gattservice
+                    for bleak_gattservice in client.services
+                    if bleak_gattservice.uuid == module.service
+                ),
+                None,
+            )
             if service is None:
                 continue
             writes = service.get_characteristic(module.writes)
             notifies = service.get_characteristic(module.notifies)
             if writes is None or notifies is None:
                 continue
-            if not any(each.startswith("write") for each in writes.properties):
+            if not any(property.startswith("write") for property in writes.properties):
                 continue
             self._writes, self._is_paced = writes, module.is_paced
             await client.start_notify(notifies, lambda _, data: self.bring(data))

@@ -87,10 +87,10 @@ def resolved(port: str) -> str:
 
 def opened(port: str, baud: int, limit_s: float) -> BrokerPort:
     """Return the port of a robot. Raises PortError, after CONNECT_S at the latest."""
-    found = _PORT.fullmatch(port)
-    if found is None or int(found[2]) >= 1 << 16:
+    match = _PORT.fullmatch(port)
+    if match is None or int(match[2]) >= 1 << 16:
         raise PortError(errors.NO_PORT, port)
-    return connected(found[1], int(found[2])).robot(found[3].lower(), found[4].lower())
+    return connected(match[1], int(match[2])).robot(match[3].lower(), match[4].lower())
 
 
 def connected(host: str, port: int) -> Broker:
@@ -223,10 +223,10 @@ class Broker:
 
         Return whether it has gone to the broker. Raises OSError.
         """
-        said = self.publish(f"{ROOT}/{group}/stop", bytes(STOP_BYTES))
+        mqttmessage_info = self.publish(f"{ROOT}/{group}/stop", bytes(STOP_BYTES))
         with suppress(RuntimeError, ValueError):
-            said.wait_for_publish(LEAVE_S)
-            return said.is_published()
+            mqttmessage_info.wait_for_publish(LEAVE_S)
+            return mqttmessage_info.is_published()
         return False
 
     def publish(self, topic: str, data: bytes) -> mqtt.MQTTMessageInfo:

@@ -48,8 +48,8 @@ class Listed(Protocol):
 
 
 def listed() -> list[Listed]:
-    found: list[Listed] = list_ports.comports()
-    return found
+    ports: list[Listed] = list_ports.comports()
+    return ports
 
 
 def resolved(port: str) -> str:

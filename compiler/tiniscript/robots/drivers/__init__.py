@@ -11,10 +11,10 @@ from tiniscript.robots.profile import Wiring
 
 def _found() -> dict[tuple[str, str], Driver]:
     """Return the drivers of this folder, by the table and kind of [board] that uses them."""
-    made: list[Driver] = [
+    drivers: list[Driver] = [
         import_module(f"{__name__}.{module.name}").DRIVER for module in iter_modules(__path__)
     ]
-    return {(driver.used_by, driver.name): driver for driver in made}
+    return {(driver.used_by, driver.name): driver for driver in drivers}
 
 
 DRIVERS = _found()
@@ -27,35 +27,35 @@ def drivers_for(used_by: str) -> tuple[str, ...]:
 
 def driver_of(used_by: str, wiring: Wiring) -> Driver:
     """Return the driver of a wiring. Raises LookupError where no file has it."""
-    found = DRIVERS.get((used_by, wiring.driver))
-    if found is None:
+    driver = DRIVERS.get((used_by, wiring.driver))
+    if driver is None:
         raise LookupError(f"robots/drivers has no driver {wiring.driver} for {used_by}")
-    return found
+    return driver
 
 
 def motors_of(wiring: Wiring) -> MotorDriver:
     """Return the driver of a robot's motors. Raises LookupError where no file has it."""
-    found = driver_of("motors", wiring)
-    assert isinstance(found, MotorDriver)
-    return found
+    driver = driver_of("motors", wiring)
+    assert isinstance(driver, MotorDriver)
+    return driver
 
 
 def discs_of(wiring: Wiring) -> DiscDriver:
     """Return the driver of the discs on a robot's wheels. Raises LookupError where there is none."""
-    found = driver_of("discs", wiring)
-    assert isinstance(found, DiscDriver)
-    return found
+    driver = driver_of("discs", wiring)
+    assert isinstance(driver, DiscDriver)
+    return driver
 
 
 def sensor_of(kind: str, wiring: Wiring) -> SensorDriver:
     """Return the driver of a sensor of a kind. Raises LookupError where no file has it."""
-    found = driver_of(f"sensors {kind}", wiring)
-    assert isinstance(found, SensorDriver)
-    return found
+    driver = driver_of(f"sensors {kind}", wiring)
+    assert isinstance(driver, SensorDriver)
+    return driver
 
 
 def actuator_of(kind: str, wiring: Wiring) -> ActuatorDriver:
     """Return the driver of an actuator of a kind. Raises LookupError where no file has it."""
-    found = driver_of(f"actuators {kind}", wiring)
-    assert isinstance(found, ActuatorDriver)
-    return found
+    driver = driver_of(f"actuators {kind}", wiring)
+    assert isinstance(driver, ActuatorDriver)
+    return driver

@@ -171,7 +171,7 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
         lines.append(_tag(pin.name, edge - 29 * inward, pin.y))
     if pin.number in ROW_AT_THE_END and plan.chip.name == "mega":
         first = min(
-            each.y for each in layout.pins if each.number in ROW_AT_THE_END and each.side == RIGHT
+            pin.y for pin in layout.pins if pin.number in ROW_AT_THE_END and pin.side == RIGHT
         )
         if pin.y == first:
             words = text("row_at_the_end", plan.language)
@@ -181,7 +181,7 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
 
 def _first(name: str, layout: Layout) -> Pin:
     """Return the pin of a rail that has its tag: the first one of the left side, if it has one."""
-    return min((pin for pin in layout.pins if pin.name == name), key=lambda each: each[:2])
+    return min((pin for pin in layout.pins if pin.name == name), key=lambda pin: pin[:2])
 
 
 # -- wires

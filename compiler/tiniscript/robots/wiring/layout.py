@@ -196,7 +196,7 @@ class _Layout:
         ordered = sorted(parts, key=self._middle)
         y = MARGIN + STEP
         for k, part in enumerate(ordered):
-            latest = bottom - sum(_room(each) for each in ordered[k:])
+            latest = bottom - sum(_room(part) for part in ordered[k:])
             wanted = min(self._wanted(part), latest)
             y = max(y, _snapped(int(wanted)))
             self.tops[id(part)] = y
@@ -225,7 +225,7 @@ class _Layout:
             around.append(wire.number)
             channels[home].spans[wire.number] = (self.pin_y[wire.pin], lanes[wire.number])
             channels[side].spans[wire.number] = (lanes[wire.number], y)
-        widths = [TRACK * (len(each.spans) + 1) for each in channels]
+        widths = [TRACK * (len(channel.spans) + 1) for channel in channels]
         has_motors = [
             any(part.shape.motors and self._side_of(part) == side for part in self.plan.parts)
             for side in (LEFT, RIGHT)

@@ -103,7 +103,7 @@ def _look_at(body: ir.Body, around: Around, look: Look) -> None:
 
 
 def _inside(statement: ir.Statement, around: Around, is_last: bool) -> Around:
-    """Return what the bodies of a statement are in; `is_last`: no other stands behind it."""
+    """Return what the bodies of a statement are in; `is_last`: no other stands after it."""
     asks = isinstance(statement, (ir.If, ir.While))
     inside = around._replace(
         loop=None,

@@ -112,9 +112,9 @@ class _Conditions:
         self._look.report(codes.FROZEN_UNTIL, move.span, **values)
 
     def _with(self, move: ir.Move, written: str) -> str:
-        """Return a move as it is written, with another condition behind UNTIL."""
+        """Return a move as it is written, with another condition after UNTIL."""
         text = self._source[move.span]
-        end = max((each.start() for each in re.finditer(r"(?i)\bUNTIL\b", text)), default=0)
+        end = max((match.start() for match in re.finditer(r"(?i)\bUNTIL\b", text)), default=0)
         return f"{text[:end].rstrip()} UNTIL({written})" if end else ""
 
     # -- WHILE and IF -------------------------------------------------------------------------
@@ -184,7 +184,7 @@ class _Conditions:
         if not held:
             return
         name = self._program.variables[variables[0]]
-        sensor = next(k for k, each in enumerate(self._kit.readings) if each.name == held[name])
+        sensor = next(k for k, device in enumerate(self._kit.readings) if device.name == held[name])
         used = self._look.variables.used_in(outermost)
         if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & used:
             return  # it is shown beside what is measured now, or the rounds need it
@@ -213,14 +213,14 @@ class _Conditions:
             if any(term in expression for expression in ir.expressions(each))
         )
         shown = {
-            term for each in ir.walk(loop.body) if isinstance(each, ir.Show) for term in each.value
+            term for show in ir.walk(loop.body) if isinstance(show, ir.Show) for term in show.value
         }
-        others = [each for each in shown if each.op in _CHANGING or each.op == "VARIABLE"]
+        others = [term for term in shown if term.op in _CHANGING or term.op == "VARIABLE"]
         is_before = sets[0].span.end <= loop.span.start
         if not (is_before and is_only_shown and others == [term] and show in _each_round(loop)):
             return False
         name, said = self._program.variables[variable], self._source[sets[0].span]
-        if not any(each.values.get("thrown") == name for each in self._look.found):
+        if not any(diagnostic.values.get("thrown") == name for diagnostic in self._look.found):
             within = f"{said};{self._source[show.span]}"
             self._look.report(codes.FROZEN_WHILE, show.span, thrown=name, within=within)
         return True
@@ -283,7 +283,7 @@ class _Conditions:
         self, condition: ir.Expression, held: Mapping[str, str], span: Span, word: str,
         direction: str = "",
     ) -> str:  # fmt: skip
-        """Return a condition as it is written behind `word`, asking the sensors themselves.
+        """Return a condition as it is written after `word`, asking the sensors themselves.
 
         Nothing where it is none to write, as where a move in this direction never makes it true.
         """

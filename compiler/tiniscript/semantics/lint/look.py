@@ -52,12 +52,12 @@ class Look:
         return Variables(self.program, self.kit)
 
     def condition(self, span: Span, word: str) -> str:
-        """Return what is in the brackets behind `word`, the last of that name in `span`.
+        """Return what is in the brackets after `word`, the last of that name in `span`.
 
         Nothing where it is long, or goes over several lines.
         """
         text = self.source[span]
-        places = [each.end() for each in re.finditer(rf"\b{word}\s*\(", text, re.IGNORECASE)]
+        places = [match.end() for match in re.finditer(rf"\b{word}\s*\(", text, re.IGNORECASE)]
         if not places:
             return ""
         begin = places[-1] if word == "UNTIL" else places[0]

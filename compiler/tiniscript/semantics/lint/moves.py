@@ -1,8 +1,8 @@
 """Warns of what comes of a move: it is looked at when the move is over, or nobody sees it.
 
 `F(5, 60)`, then `IF(DISTANCE < 20); S; ENDIF`, where while the robot moves was meant: the repair is
-the move with that condition behind UNTIL. `SI|M(2, 80)` and `M(80, 80); S`, where W is missing: the
-program ends right behind an M, or the motors change at once.
+the move with that condition after UNTIL. `SI|M(2, 80)` and `M(80, 80); S`, where W is missing: the
+program ends right after an M, or the motors change at once.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ class _LateConditions:
         before = _nearest(body, range(k - 1, -1, -1))
         after = _nearest(body, range(k + 1, len(body)))
         stands = [each for each in branch.arms[0].body if isinstance(each, (ir.Move, ir.Beep))]
-        if any(isinstance(each, ir.Move) and each.direction == "W" for each in stands):
+        if any(isinstance(move, ir.Move) and move.direction == "W" for move in stands):
             return  # S with its wait is a pause
         pauses = bool(stands)
         for move, place in ((before, "move"), (after, "next")):

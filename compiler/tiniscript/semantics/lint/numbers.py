@@ -34,12 +34,12 @@ LOW_HERTZ = 100_000  # thousandths: a power was meant
 ANGLES = (360 * SECOND, 720 * SECOND)
 _PART = 45 * SECOND  # turns of more than one round have such parts
 _LENGTHS = ("cm", "mm", "m")
-_ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing behind its 0
+_ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing after its 0
 _ZERO_OF_TURN = re.compile(r"(?i)[LR]\s*\(\s*(0[1-9])\s*,\s*[1-9]")  # `L(03, 60)`
-# `R(90`, with brackets in a calculation, and what is behind it: the power, and UNTIL.
+# `R(90`, with brackets in a calculation, and what is after it: the power, and UNTIL.
 _FIRST = re.compile(r"\w+\s*\((\s*(?:[^(),/]|/(?!/)|\((?:[^()]|\([^()]*\))*\))*?)(\s*[,)].*)", re.S)
 _UNTIL = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its condition
-_OF_ROUND = 4  # tokens behind its word, up to the second value
+_OF_ROUND = 4  # tokens after its word, up to the second value
 LITTLE_POWER = 10_000  # thousandths of a percent
 
 
@@ -134,7 +134,7 @@ def _measured(move: Move, kit: Kit, text: str) -> list[Diagnostic]:
 def _of_power(move: Move) -> list[Diagnostic]:
     """Return the warning about a power that moves no robot, or that is too much."""
     time, power = known_value(move.time), known_value(move.power)
-    found = [] if move.power is None else _cut(move.power, POWER, move.span, move.direction)
+    diagnostics = [] if move.power is None else _cut(move.power, POWER, move.span, move.direction)
     if (
         power is not None
         and 0 <= power < LITTLE_POWER
@@ -146,8 +146,8 @@ def _of_power(move: Move) -> list[Diagnostic]:
         if 0 < power < ONE:  # `F(2, 0.8)`
             values["percent"] = as_text(power * 100)
             values["whole"] = f"{move.direction}({shown}, {as_text(power * 100)})"
-        found.append(Diagnostic(codes.LITTLE_POWER, move.span, values))
-    return found
+        diagnostics.append(Diagnostic(codes.LITTLE_POWER, move.span, values))
+    return diagnostics
 
 
 def _long(move: Move, time: int, power: int | None, kit: Kit, text: str) -> list[Diagnostic]:
@@ -162,7 +162,7 @@ def _long(move: Move, time: int, power: int | None, kit: Kit, text: str) -> list
     length = as_text(time)
     parts = _FIRST.fullmatch(text)
     first, rest = parts.groups() if parts else ("", f", {shown})")
-    way = first and f"{word}({first} {UNIT_OF.get(word, '')}{rest}"  # not behind a note
+    way = first and f"{word}({first} {UNIT_OF.get(word, '')}{rest}"  # not after a note
     speed = kit.speed or USUAL_SPEED
     is_far = is_round and time >= LONG_TIME and speed * (power or 0) * time >= FAR
     if turns and _is_turn(time, kit, is_long) and not (is_very_long and time % _PART):
@@ -212,7 +212,7 @@ def of_beep(beep: Beep, around: Around, look: Look) -> None:
 
 def swapped_rounds(look: Look) -> None:
     """`ROUND(1, DISTANCE)`: a whole number is rounded, to as many decimals as something else."""
-    tokens = [each for each in look.scan.tokens if each.kind is not NEWLINE]
+    tokens = [token for token in look.scan.tokens if token.kind is not NEWLINE]
     for k, token in enumerate(tokens[:-_OF_ROUND]):
         if token.text != "ROUND":
             continue
@@ -224,7 +224,7 @@ def swapped_rounds(look: Look) -> None:
         while depth:
             depth += (tokens[end].kind == "(") - (tokens[end].kind == ")")
             end += 1
-        if any(each.kind is WORD for each in tokens[k + 4 : end - 1]):
+        if any(token.kind is WORD for token in tokens[k + 4 : end - 1]):
             value = look.source[Span(start.start, tokens[end - 2].end)]
             fix = f"ROUND({value}, {number.text})"
             span = Span(token.start, tokens[end - 1].end)

@@ -2,7 +2,7 @@
 
 The lower of two waits, or never gets the motors; that is not said where a task lets the motors go
 now and then, as far as that can be seen. `TASK;BEEP(0.2, 440);W(1);END_TASK` waits before nothing,
-and behind `WHEN(DISTANCE < 10);S;END_WHEN` a loop drives on.
+and after `WHEN(DISTANCE < 10);S;END_WHEN` a loop drives on.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ def kept_motors(look: Look) -> None:
     program = look.program
     motors = _Motors(program)
     all_of = partial(ir.with_calls, procedures=program.procedures)
-    higher = [each.body for each in program.tasks if each.look is not None]
-    tasks = [each for each in program.tasks if each.look is None]
-    lower = [*(each.body for each in tasks), program.body]
+    higher = [task.body for task in program.tasks if task.look is not None]
+    tasks = [task for task in program.tasks if task.look is None]
+    lower = [*(task.body for task in tasks), program.body]
     for task in tasks:
         del lower[0]
         is_stopped = any(isinstance(each, ir.Stop) for body in higher for each in all_of(body))
@@ -40,7 +40,7 @@ def kept_motors(look: Look) -> None:
                     look.report(codes.NO_MOTORS, waiting.span, line=line)
             return
         higher.append(task.body)
-    _take_turns([each.body for each in tasks], look)
+    _take_turns([task.body for task in tasks], look)
 
 
 def _take_turns(tasks: list[ir.Body], look: Look) -> None:
@@ -67,24 +67,24 @@ class _Motors:
         return self._repeated(rest, False) is not None or self._repeated(rest, True) is True
 
     def _after(self, body: ir.Body, wants: bool) -> bool | None:
-        """Return whether the motors are wanted behind a body, None where it may let them go."""
+        """Return whether the motors are wanted after a body, None where it may let them go."""
         found: bool | None = wants
-        for each in body:
-            if found is None or isinstance(each, ir.Break):
+        for call in body:
+            if found is None or isinstance(call, ir.Break):
                 return None
-            if isinstance(each, ir.Motors):
+            if isinstance(call, ir.Motors):
                 found = True
-            elif isinstance(each, ir.Stop) or _drives(each):
+            elif isinstance(call, ir.Stop) or _drives(call):
                 found = False
-            elif isinstance(each, (ir.Move, ir.Beep)):
+            elif isinstance(call, (ir.Move, ir.Beep)):
                 found = found or None
-            elif isinstance(each, ir.Call):
-                found = self._after(self._procedures[each.procedure].body, found)
-            elif isinstance(each, ir.If):
-                arms = [self._after(arm, found) for arm in ir.bodies(each)]
+            elif isinstance(call, ir.Call):
+                found = self._after(self._procedures[call.procedure].body, found)
+            elif isinstance(call, ir.If):
+                arms = [self._after(arm, found) for arm in ir.bodies(call)]
                 found = None if None in arms else all(arms)
-            elif isinstance(each, (ir.Loop, ir.While)):
-                found = self._repeated(each.body, found)
+            elif isinstance(call, (ir.Loop, ir.While)):
+                found = self._repeated(call.body, found)
         return found
 
     def _repeated(self, body: ir.Body, wants: bool) -> bool | None:
@@ -98,7 +98,7 @@ class _Motors:
 def brief_tasks(look: Look) -> None:
     """Warn of a TASK that is done once, and of a WHEN whose S lasts no longer than its answer."""
     program = look.program
-    lower = [program.body, *(each.body for each in program.tasks if each.look is None)]
+    lower = [program.body, *(task.body for task in program.tasks if task.look is None)]
     driving = [
         body[-1] for body in lower
         if any(map(_drives, ir.with_calls(_endless(body), program.procedures)))
@@ -128,9 +128,9 @@ def _done_once(task: ir.Task, source: Source) -> Diagnostic:
     text = source[task.span]
     end = re.search(r"\w+\Z", text)
     assert end is not None
-    behind, before = task.word.end, task.span.start + end.start()
+    after, before = task.word.end, task.span.start + end.start()
     between = "\n" if "\n" in text else ";"
-    edits = (Edit(Span(behind, behind), f"{between}LOOP(FOREVER)"),
+    edits = (Edit(Span(after, after), f"{between}LOOP(FOREVER)"),
              Edit(Span(before, before), f"END_LOOP{between}"))  # fmt: skip
     return Diagnostic(codes.TASK_DONE_ONCE, task.word, {}, None, Repair(edits, False))
 

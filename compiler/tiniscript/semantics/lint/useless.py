@@ -1,6 +1,6 @@
 """Warns of what is written for nothing: the robot never does it, or nothing comes of it.
 
-Instructions behind an endless loop or in a note, a DEF that nobody calls, a variable or a reading
+Instructions after an endless loop or in a note, a DEF that nobody calls, a variable or a reading
 that nobody uses, a loop that only repeats, a block with nothing inside.
 """
 
@@ -21,7 +21,7 @@ from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import NEWLINE, Token
 
 _LASTING = (ir.Move, ir.Beep, ir.Motors)
-_NOTE_BEHIND = r"[ \t;]{0,99}//"
+_NOTE_AFTER = r"[ \t;]{0,99}//"
 MANY = 12  # instructions that an example has
 _CALL = r"(?:[FBLRM]|BEEP)\(\s*-?[0-9.]+\s*,\s*-?[0-9.]+\s*\)|W\(\s*[0-9.]+\s*\)"
 # Few programs have notes: these are not compiled before there are some.
@@ -34,7 +34,7 @@ LONGEST = 200  # characters of a note that is looked at
 
 
 def never_reached(body: ir.Body, around: Around, look: Look) -> None:
-    """What stands behind a loop without an end, or behind BREAK."""
+    """What stands after a loop without an end, or after BREAK."""
     for before, after in pairwise(body):
         if not ir.goes_on((before,)):
             values = {"found": look.source[after.span].split("\n")[0]}
@@ -49,16 +49,16 @@ def never_reached(body: ir.Body, around: Around, look: Look) -> None:
 def in_notes(look: Look) -> None:
     """`F(2, 80)//R(1, 60)`: instructions that stand in a note.
 
-    Only a note that is a row of calls with numbers, or that has such a call behind a `;`, is taken
-    for a slip, and only behind an instruction, where a `;` would do: a whole line may be set aside,
-    and behind a header or `SI|` a note tells what comes.
+    Only a note that is a row of calls with numbers, or that has such a call after a `;`, is taken
+    for a slip, and only after an instruction, where a `;` would do: a whole line may be set aside,
+    and after a header or `SI|` a note tells what comes.
     """
     source, tokens = look.source, look.scan.tokens
     short = [comment for comment in look.scan.comments if len(comment.text) <= LONGEST]
     if all(token.kind in AT_END for token in tokens):
         _all_of_it(short, look)
         return
-    rows = [each for each in short if re.fullmatch(_CALLS, each.text) or swallowed(each.text)]
+    rows = [token for token in short if re.fullmatch(_CALLS, token.text) or swallowed(token.text)]
     is_ping = [token.text for token in tokens[:2]] == ["PING", "|"]
     depth = k = 0
     for note in rows:
@@ -84,11 +84,11 @@ def _all_of_it(notes: Sequence[Token], look: Look) -> None:
 
 
 def swallowed(note: str) -> list[str]:
-    """Return the instructions behind the words of a note: `// voy; W(2) // compro`.
+    """Return the instructions after the words of a note: `// voy; W(2) // compro`.
 
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
-    first, *others = (each.strip() for each in re.split(r";|//", note.removeprefix("//")))
+    first, *others = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
     found = [other for other in others if re.fullmatch(_CALL_IN_IT, other)]
     is_row = all(each in found or not set("()") & set(each) for each in (first, *others))
     is_row = is_row and bool(found) and found != ["S"] * len(found)
@@ -138,32 +138,32 @@ def empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
     """`LOOP(4)`, `END_LOOP`, and the moves below: beside what was probably meant to be in it.
 
     Nothing is said of an endless LOOP or a WHILE, which wait, nor of a block with a note inside or
-    behind its end.
+    after its end.
     """
     source = look.source
     for k, statement in enumerate(body):
         if not _is_empty(statement):
             continue
         text = source[statement.span]
-        is_noted = re.compile(_NOTE_BEHIND).match(source.text, statement.span.end)
+        is_noted = re.compile(_NOTE_AFTER).match(source.text, statement.span.end)
         if "//" in text or is_noted:
             continue
         word = "IF" if isinstance(statement, ir.If) else "LOOP"
         span = Span(statement.span.start, statement.span.start + _end_of_head(text))
-        behind = _said(body[k + 1 :], source)
-        before = [] if behind else _said(body[k - 1 :: -1] if k else (), source)[::-1]
-        if not behind and not before:
+        after = _said(body[k + 1 :], source)
+        before = [] if after else _said(body[k - 1 :: -1] if k else (), source)[::-1]
+        if not after and not before:
             continue
         shown, end = " ".join(source[span].split()), BLOCK_ENDS[word]
         values = {"head": shown, "end": end}
-        for name, rows in (("example", behind), ("before", before)):
+        for name, rows in (("example", after), ("before", before)):
             if 0 < len(rows) <= MANY:
                 values[name] = "; ".join((shown, *rows, end))
         look.report(codes.EMPTY_BLOCK, span, **values)
 
 
 def _end_of_head(text: str) -> int:
-    """Return the place behind the brackets of a header at the beginning of a right text."""
+    """Return the place after the brackets of a header at the beginning of a right text."""
     depth = 0
     for k, sign in enumerate(text):
         depth += (sign == "(") - (sign == ")")

@@ -431,9 +431,9 @@ function hideConnections(list) {
 /** Hides what Blockly measures texts with, which it makes when it first needs it. */
 function hideMeasure() {
   new MutationObserver((_, observer) => {
-    const found = document.querySelector('.blocklyComputeCanvas');
-    if (!found) return;
-    found.setAttribute('aria-hidden', 'true');
+    const canvas = document.querySelector('.blocklyComputeCanvas');
+    if (!canvas) return;
+    canvas.setAttribute('aria-hidden', 'true');
     observer.disconnect();
   }).observe(document.body, { childList: true });
   document.querySelector('.blocklyComputeCanvas')?.setAttribute('aria-hidden', 'true');

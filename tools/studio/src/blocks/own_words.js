@@ -56,7 +56,7 @@ export const DEF = {
     changed(this, () => this.setNames(this.names().slice(0, -1)));
   },
 
-  /** @this {any} adds the fields and buttons behind its own name */
+  /** @this {any} adds the fields and buttons after its own name */
   addNames() {
     const row = this.appendDummyInput('NAMES');
     for (const [name, act] of [['more', () => this.more()], ['less', () => this.less()]]) {

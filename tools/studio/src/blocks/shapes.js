@@ -113,16 +113,16 @@ function add(block, message, what, kindOf, isFolded = false) {
     else if (!/^%\d$/.test(part)) label += part;
     else {
       flush();
-      const found = what(Number(part[1]));
-      if (typeof found !== 'string') {
-        fields.push(found);
+      const shape = what(Number(part[1]));
+      if (typeof shape !== 'string') {
+        fields.push(shape);
         continue;
       }
-      if (isFolded && kindOf(found) === 'truth') {
+      if (isFolded && kindOf(shape) === 'truth') {
         endRow();
         block.appendEndRowInput();
       }
-      const input = block.appendValueInput(found).setCheck(CHECKS[kindOf(found)]);
+      const input = block.appendValueInput(shape).setCheck(CHECKS[kindOf(shape)]);
       for (const field of fields) input.appendField(field, field.name);
       fields = [];
     }

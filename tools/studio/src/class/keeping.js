@@ -25,16 +25,16 @@ export async function saveWork() {
 
 /** Opens a file; returns the work of how many was in it, or null where it is no such file. @param {File} file */
 export async function openWork(file) {
-  let found;
+  let kept;
   try {
     if (file.size > CLASS.file_bytes) return null;
-    found = JSON.parse(await file.text());
+    kept = JSON.parse(await file.text());
   } catch {
     return null;
   }
-  if (found?.tiniscript_class !== CLASS.form || !Array.isArray(found.pupils)) return null;
+  if (kept?.tiniscript_class !== CLASS.form || !Array.isArray(kept.pupils)) return null;
   let count = 0;
-  for (const each of found.pupils.slice(0, CLASS.most_works)) {
+  for (const each of kept.pupils.slice(0, CLASS.most_works)) {
     const { name, text: program, robot, lessons } = each ?? {};
     if (![name, program, robot].every((part) => typeof part === 'string') || !Array.isArray(lessons)) continue;
     const isTaken = await post({ do: 'class_bring', name, text: program, robot, lessons }).then(() => true, () => false);

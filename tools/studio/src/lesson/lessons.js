@@ -187,13 +187,13 @@ export class Lessons {
     element('lesson_hint_said', HTMLElement).replaceChildren(filled('span', hint));
     element('lesson_steps', HTMLElement).replaceChildren(...this.#steps.map((_, k) => {
       const isTask = k === this.#steps.length - 1;
-      const found = button('', () => {
+      const tile = button('', () => {
         this.#go(k);
         element('lesson_steps', HTMLElement).querySelectorAll('button')[k]?.focus();
       }, isTask ? '★' : String(k + 1));
-      found.ariaLabel = isTask ? text('lesson_task') : text('lesson_step', { number: k + 1 });
-      if (k === step) found.setAttribute('aria-current', 'step');
-      return made('li', '', found);
+      tile.ariaLabel = isTask ? text('lesson_task') : text('lesson_step', { number: k + 1 });
+      if (k === step) tile.setAttribute('aria-current', 'step');
+      return made('li', '', tile);
     }));
     this.#lay();
   }

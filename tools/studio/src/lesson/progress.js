@@ -9,8 +9,8 @@ const MOST = 100;
 
 /** @returns {Set<string>} names of lessons */
 export function lessonsDone() {
-  const found = keptForm(PLACE);
-  return new Set(Array.isArray(found) ? found.filter((name) => typeof name === 'string' && /^\w{1,60}$/.test(name)).slice(0, MOST) : []);
+  const kept = keptForm(PLACE);
+  return new Set(Array.isArray(kept) ? kept.filter((name) => typeof name === 'string' && /^\w{1,60}$/.test(name)).slice(0, MOST) : []);
 }
 
 /** Keeps that a lesson is done; returns whether that was possible. @param {string} name */

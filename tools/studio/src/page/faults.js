@@ -3,7 +3,7 @@
 import { shown } from '../robot/plain_text.js';
 import { hasText, text } from './texts.js';
 
-/** @param {unknown} fault its name @returns {string} a sentence that stands behind its line */
+/** @param {unknown} fault its name @returns {string} a sentence that stands after its line */
 export function faultSaid(fault) {
   const name = shown(String(fault));
   const key = `fault_${name}`;

@@ -10,13 +10,13 @@ import { text } from './texts.js';
  * @returns {HTMLElementTagNameMap[K]}
  */
 export function made(kind, key = '', ...inside) {
-  const found = document.createElement(kind);
+  const element = document.createElement(kind);
   if (key) {
-    found.dataset['text'] = key;
-    found.textContent = text(key);
+    element.dataset['text'] = key;
+    element.textContent = text(key);
   }
-  found.append(...inside);
-  return found;
+  element.append(...inside);
+  return element;
 }
 
 /** @param {import('./texts.js').Key | ''} key @param {(event: MouseEvent) => void} pressed @param {(Node | string)[]} inside */
@@ -34,8 +34,8 @@ export function labelled(key, field) {
 
 /** A drawing, or a part of one. @param {string} name @param {Record<string, string | number>} values @param {Node[]} inside */
 export function drawn(name, values, ...inside) {
-  const found = /** @type {SVGElement} */ (document.createElementNS('http://www.w3.org/2000/svg', name));
-  for (const [key, value] of Object.entries(values)) found.setAttribute(key, String(value));
-  found.append(...inside);
-  return found;
+  const element = /** @type {SVGElement} */ (document.createElementNS('http://www.w3.org/2000/svg', name));
+  for (const [key, value] of Object.entries(values)) element.setAttribute(key, String(value));
+  element.append(...inside);
+  return element;
 }

@@ -72,9 +72,9 @@ export function known(key) {
  * @returns {string}
  */
 export function text(key, values = {}) {
-  const found = texts[known(key)] ?? '';
-  const said = typeof found === 'string' ? found : found[formOf(Number(values['count']))] ?? '';
-  return said.replace(/\{(\w+)\}/g, (gap, name) => (name in values ? String(values[name]) : gap));
+  const entry = texts[known(key)] ?? '';
+  const sentence = typeof entry === 'string' ? entry : entry[formOf(Number(values['count']))] ?? '';
+  return sentence.replace(/\{(\w+)\}/g, (gap, name) => (name in values ? String(values[name]) : gap));
 }
 
 /** @param {number} count @returns {number} which form of a text is for it: rules repeat after a hundred */
@@ -84,8 +84,8 @@ function formOf(count) {
 
 /** @param {string} group of keys @returns {Record<string, string>} its texts as they are, by what follows in their keys */
 export function textsOf(group) {
-  const found = Object.entries(texts).filter(([key]) => key.startsWith(`${group}/`));
-  return Object.fromEntries(found.map(([key, said]) => [key.slice(group.length + 1), String(said)]));
+  const entries = Object.entries(texts).filter(([key]) => key.startsWith(`${group}/`));
+  return Object.fromEntries(entries.map(([key, said]) => [key.slice(group.length + 1), String(said)]));
 }
 
 /** @param {Record<string, string>} labels of a world, a robot or a device by language, or none @returns {string} what it is called */

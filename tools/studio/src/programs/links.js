@@ -1,4 +1,4 @@
-// A program in the address of the page, behind `#program=`: no server sees that part.
+// A program in the address of the page, after `#program=`: no server sees that part.
 //
 // It is JSON with the text and the robot's name, deflated, in the letters of base64url. Whatever
 // somebody else has put there is only ever shown as text.
@@ -44,9 +44,9 @@ export async function sharedIn(hash) {
   if (packed.length > MOST_READ || !/^[\w-]+$/.test(packed)) throw new Error('not a program');
   const letters = atob(packed.replaceAll('-', '+').replaceAll('_', '/'));
   const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
-  const found = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(await inflated(bytes)));
-  if (typeof found?.text !== 'string' || !isRobot(found.robot)) throw new Error('not a program');
-  return { text: found.text, robot: found.robot };
+  const shared = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(await inflated(bytes)));
+  if (typeof shared?.text !== 'string' || !isRobot(shared.robot)) throw new Error('not a program');
+  return { text: shared.text, robot: shared.robot };
 }
 
 /**

@@ -13,8 +13,8 @@ export const MOST_CHARACTERS = 400_000; // in all; a browser keeps about five mi
 
 /** @returns {Version[]} */
 export function versions() {
-  const found = keptForm(PLACE);
-  return Array.isArray(found) ? found.filter(isVersion).slice(0, MOST) : [];
+  const kept = keptForm(PLACE);
+  return Array.isArray(kept) ? kept.filter(isVersion).slice(0, MOST) : [];
 }
 
 /**

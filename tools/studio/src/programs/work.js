@@ -49,7 +49,7 @@ export function keep(work) {
 
 /**
  * Keeps the texts of the worlds that were drawn: the newest, and of those before it as many as fit in.
- * The next tab finds those of other tabs, too: as they are now, behind the ones before. Returns whether it does.
+ * The next tab finds those of other tabs, too: as they are now, after the ones before. Returns whether it does.
  * @param {string} newest
  * @param {string[]} before the last one first
  * @returns {boolean}

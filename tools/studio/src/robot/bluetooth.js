@@ -51,11 +51,11 @@ export class BluetoothPort {
     let out;
     try {
       const server = await this.#device.gatt.connect();
-      const found = await this.#service(server);
-      this.#in = found.in;
-      out = found.out;
+      const service = await this.#service(server);
+      this.#in = service.in;
+      out = service.out;
       // An HM-10 loses bytes that come faster than its UART passes them on.
-      if (found.isSlow) this.#pauseMs = Math.ceil((MOST * 10_000) / this.#baud);
+      if (service.isSlow) this.#pauseMs = Math.ceil((MOST * 10_000) / this.#baud);
       out.addEventListener('characteristicvaluechanged', (/** @type {any} */ event) => {
         const { value } = event.target;
         heard(new Uint8Array(value.buffer, value.byteOffset, value.byteLength));

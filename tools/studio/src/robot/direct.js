@@ -64,10 +64,10 @@ export class DirectRobot extends Asking {
    */
   async connect(robot, language, keys) {
     /** @type {Promise<never>} */
-    const left = new Promise((_, reject) => {
+    const disconnected = new Promise((_, reject) => {
       this.#fails = reject;
     });
-    return Promise.race([this.#open(robot, language, keys), left]);
+    return Promise.race([this.#open(robot, language, keys), disconnected]);
   }
 
   /** @param {string} robot @param {string} language @param {string} keys */

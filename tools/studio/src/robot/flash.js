@@ -22,8 +22,8 @@ const MOST_BYTES = 0x50_0000; // of a file; a full flash of an ESP32 has 4 MB
  * @param {Watching} watching
  */
 export async function firmwareOf(which, board, watching) {
-  const found = which instanceof File ? await which.slice(0, MOST_BYTES).arrayBuffer() : await fetched(which, board, watching);
-  return new Uint8Array(found);
+  const data = which instanceof File ? await which.slice(0, MOST_BYTES).arrayBuffer() : await fetched(which, board, watching);
+  return new Uint8Array(data);
 }
 
 /** Has what writes onto a board fetched. @param {string} board @returns {Promise<unknown>} */
@@ -64,9 +64,9 @@ export async function firmwares(watching) {
 async function fetched({ robot, language }, board, watching) {
   const list = await firmwares(watching);
   const titles = [`${robot}_${language}`, robot];
-  const found = titles.map((title) => list.find((each) => each.title === title && each.board === board)).find(Boolean);
-  if (!found) throw new Failed('flash_none');
-  return fetchedBytes(found.file, watching);
+  const firmware = titles.map((title) => list.find((each) => each.title === title && each.board === board)).find(Boolean);
+  if (!firmware) throw new Failed('flash_none');
+  return fetchedBytes(firmware.file, watching);
 }
 
 /** @param {string} name @param {Watching} [watching] */

@@ -1,5 +1,5 @@
 // A robot at a port of this computer, which `tsc studio` has. It is asked by POST with the token of
-// its run. The address that it opens has a code behind the #, for which a page gets the token once. In
+// its run. The address that it opens has a code after the #, for which a page gets the token once. In
 // a class the token is the teacher's, and pupils get tokens of their own.
 //
 // The main thread asks many times a second; when it hangs or the page sleeps, `tsc studio` hears

@@ -26,7 +26,7 @@ export function md5(data) {
     }
     sum = [a, b, c, d].map((each, k) => (each + (sum[k] ?? 0)) | 0);
   }
-  const said = new DataView(new ArrayBuffer(16));
-  sum.forEach((each, k) => said.setInt32(4 * k, each, true));
-  return [...new Uint8Array(said.buffer)].map((each) => each.toString(16).padStart(2, '0')).join('');
+  const digest = new DataView(new ArrayBuffer(16));
+  sum.forEach((each, k) => digest.setInt32(4 * k, each, true));
+  return [...new Uint8Array(digest.buffer)].map((each) => each.toString(16).padStart(2, '0')).join('');
 }

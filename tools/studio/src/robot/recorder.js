@@ -75,12 +75,12 @@ export class Recorder {
       if (event.is_program && event.program) this.#record(event.program, performance.now());
       else this.end('STOPPED');
     }
-    const said = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', RESTARTED: 'LOST', LOST: 'LOST', MISSED: 'MISSED' }[event.event];
-    if (!said || this.#isOver) return;
+    const row = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', RESTARTED: 'LOST', LOST: 'LOST', MISSED: 'MISSED' }[event.event];
+    if (!row || this.#isOver) return;
     this.#began ??= performance.now();
-    if (event.event !== 'SHOW') this.end(said);
+    if (event.event !== 'SHOW') this.end(row);
     else if (this.#events.length >= MOST || this.#ms > MOST_MS) this.end('STOPPED');
-    else this.#events.push({ ms: this.#ms, event: said });
+    else this.#events.push({ ms: this.#ms, event: row });
     this.#show();
   }
 
@@ -117,8 +117,8 @@ export class Recorder {
     const { python, world } = this.#page;
     try {
       const request = { do: 'replay', robot: pageState.robotName.value, world: world(), text: pageState.programText.value, language: currentLanguage() };
-      const found = await python.ask(request, data);
-      this.#tell(() => said(found));
+      const answer = await python.ask(request, data);
+      this.#tell(() => said(answer));
     } catch (why) {
       this.#tell(() => bugSaid(why));
     }

@@ -31,9 +31,9 @@ export class Speech {
   /** @param {Failed} why @param {() => string} [more] that is said with it */
   fail(why, more = () => '') {
     const key = `why_${why.reason}`;
-    const said = shown(why.said, SAID_CHARACTERS);
-    const isOurs = hasText(key) && (!said || why.reason.startsWith('link_'));
-    this.#put(() => `${isOurs ? text(key) : said || text('why_bug')} ${more()}`.trim(), why.reason);
+    const sentence = shown(why.said, SAID_CHARACTERS);
+    const isOurs = hasText(key) && (!sentence || why.reason.startsWith('link_'));
+    this.#put(() => `${isOurs ? text(key) : sentence || text('why_bug')} ${more()}`.trim(), why.reason);
   }
 
   /**

@@ -105,9 +105,9 @@ class Board {
       this.#came = []; // the start of a sketch, or an answer that came late
       if (!(await this.#ask([SYNC], 0, SYNC_MS))) continue;
       while (await this.#hears(1, SYNC_MS / 5)) this.#came = []; // those to earlier tries
-      const found = await this.#ask([SIGNATURE], 3, ANSWER_MS);
-      if (!found) continue;
-      if (hex(found) !== CHIP) throw new Failed('flash_other_chip');
+      const signature = await this.#ask([SIGNATURE], 3, ANSWER_MS);
+      if (!signature) continue;
+      if (hex(signature) !== CHIP) throw new Failed('flash_other_chip');
       return true;
     }
     return false;
@@ -126,8 +126,8 @@ class Board {
     }
     for (let at = 0; at < whole.length; at += PAGE) {
       await this.#goTo(at);
-      const found = await this.#must([READ, 0, PAGE, FLASH], PAGE);
-      if (hex(found) !== hex(whole.subarray(at, at + PAGE))) throw new Failed('flash_differs');
+      const page = await this.#must([READ, 0, PAGE, FLASH], PAGE);
+      if (hex(page) !== hex(whole.subarray(at, at + PAGE))) throw new Failed('flash_differs');
       progress(0.5 + (at + PAGE) / whole.length / 2);
     }
     this.#cancelled = undefined; // it is written, whatever comes now
@@ -141,9 +141,9 @@ class Board {
 
   /** @param {number[]} command @param {number} bytes of the answer */
   async #must(command, bytes) {
-    const found = await this.#ask(command, bytes, ANSWER_MS);
-    if (!found) throw new Failed('flash_broken_off');
-    return found;
+    const answer = await this.#ask(command, bytes, ANSWER_MS);
+    if (!answer) throw new Failed('flash_broken_off');
+    return answer;
   }
 
   /**
@@ -166,8 +166,8 @@ class Board {
       if (this.#isGone) throw new Failed(this.#isWriting ? 'flash_broken_off' : 'port_gone');
       return null;
     }
-    const found = this.#came.splice(0, bytes + 2);
-    return found[0] === IN_SYNC && found.at(-1) === OK ? Uint8Array.from(found.slice(1, -1)) : null;
+    const reply = this.#came.splice(0, bytes + 2);
+    return reply[0] === IN_SYNC && reply.at(-1) === OK ? Uint8Array.from(reply.slice(1, -1)) : null;
   }
 
   #heed() {

@@ -59,7 +59,7 @@ function show(robots, isLate) {
   const red = made('span');
   red.className = 'wrong';
   red.textContent = silent || '';
-  const said = isNone ? text('stops_none') : robots ? text('stops_confirmed', { confirmed, count: robots.length }) : '';
-  if (place.textContent === said + (silent ? ` ${silent}` : '')) return; // who hears the page hears each thing once
-  place.replaceChildren(said, ...(silent ? [' ', red] : []));
+  const sentence = isNone ? text('stops_none') : robots ? text('stops_confirmed', { confirmed, count: robots.length }) : '';
+  if (place.textContent === sentence + (silent ? ` ${silent}` : '')) return; // who hears the page hears each thing once
+  place.replaceChildren(sentence, ...(silent ? [' ', red] : []));
 }

@@ -24,11 +24,11 @@ export function showTrim(trim) {
 
 /** @param {import('./transport.js').Pace} pace @returns {string} */
 function told({ speed_40, speed_80, turn_40, turn_80 }) {
-  const said = [
+  const rows = [
     speed_80 ? text('trim_speed', { at_40: speed_40, at_80: speed_80 }) : '',
     turn_80 ? text('trim_turn', { at_40: turn_40, at_80: turn_80 }) : '',
   ].filter(Boolean);
-  return said.join(' ') || text('trim_kits_pace');
+  return rows.join(' ') || text('trim_kits_pace');
 }
 
 /** @returns {Trim} what is typed; the pace stays as it is */

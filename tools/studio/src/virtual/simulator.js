@@ -107,7 +107,7 @@ export class Simulator {
   }
 
   async push() {
-    if (this.state) await this.#ask({ do: 'push' }); // behind what is under way
+    if (this.state) await this.#ask({ do: 'push' }); // after what is under way
   }
 
   /** Stops the robot over its link; it confirms. Requests that are under way come before. */

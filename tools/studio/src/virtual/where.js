@@ -53,9 +53,9 @@ function placeSaid([x = 0, y = 0, heading = 0]) {
 
 /** @param {NonNullable<RobotState['score']>} score what a run is worth, for eyes and ears */
 function scoreSaid({ stars, points, taken, of }) {
-  const found = [text('score_flags', { taken, of }), text('score_points', { points })];
-  if (stars) found.push(text('score_stars', { stars, most: STARS }));
-  return found.join(' ');
+  const rows = [text('score_flags', { taken, of }), text('score_points', { points })];
+  if (stars) rows.push(text('score_stars', { stars, most: STARS }));
+  return rows.join(' ');
 }
 
 /** @param {number} stars */

@@ -30,7 +30,7 @@ import { OWN_WORLD } from '../programs/work.js';
  */
 
 const BROUGHT = ':brought'; // no name of a shipped world
-const BEFORE = ':before'; // nor this, with a number behind it
+const BEFORE = ':before'; // nor this, with a number after it
 
 export class WorldChoice {
   #work;

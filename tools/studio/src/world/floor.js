@@ -62,7 +62,7 @@ function drawGoal(pen, { x_cm: x, y_cm: y, is_flag, radius_cm, around }) {
 }
 
 /**
- * A flag of the world: taken, the next one, or one of those behind it.
+ * A flag of the world: taken, the next one, or one of those after it.
  * @param {Pen} pen
  * @param {import('./parts.js').Flag} flag
  * @param {number} behind the next one, by so many flags

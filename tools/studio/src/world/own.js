@@ -72,9 +72,9 @@ export class OwnWorlds {
     const { newest, before } = keptWorlds();
     if (!newest && !before.length) return true;
     await this.#python.ready;
-    const found = await Promise.all([newest, ...before].map((text) => this.#read(text)));
-    this.newest = found[0] ?? null;
-    this.before = found.slice(1).filter((world) => world !== null).slice(0, MOST_BEFORE);
+    const worlds = await Promise.all([newest, ...before].map((text) => this.#read(text)));
+    this.newest = worlds[0] ?? null;
+    this.before = worlds.slice(1).filter((world) => world !== null).slice(0, MOST_BEFORE);
     return !newest || this.newest !== null;
   }
 

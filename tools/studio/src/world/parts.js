@@ -217,7 +217,7 @@ export function withDrawn(world, kind, way) {
   return { ...world, [kind]: [...world[kind], part] };
 }
 
-/** Adds a point behind a chosen one, or the last. @param {World} world @param {Part} part @param {number} point @returns {{world: World, point: number} | null} */
+/** Adds a point after a chosen one, or the last. @param {World} world @param {Part} part @param {number} point @returns {{world: World, point: number} | null} */
 export function withPoint(world, part, point) {
   const value = valueOf(world, part);
   if (!value?.points || value.points.length >= WORLD_LIMITS.points) return null;

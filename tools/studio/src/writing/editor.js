@@ -24,13 +24,13 @@ const setRunning = StateEffect.define();
 const running = StateField.define({
   create: () => Decoration.none,
   update(marks, transaction) {
-    let found = transaction.docChanged ? Decoration.none : marks;
+    let decorations = transaction.docChanged ? Decoration.none : marks;
     for (const effect of transaction.effects) {
       if (!effect.is(setRunning)) continue;
       const marks = effect.value.filter(({ from, to }) => from < to);
-      found = Decoration.set(marks.map(({ from, to }) => Decoration.mark({ class: 'cm-running' }).range(from, to)), true);
+      decorations = Decoration.set(marks.map(({ from, to }) => Decoration.mark({ class: 'cm-running' }).range(from, to)), true);
     }
-    return found;
+    return decorations;
   },
   provide: (field) => EditorView.decorations.from(field),
 });

@@ -25,7 +25,7 @@ export function rangeAt(places, at) {
  * @param {Places} places
  * @param {Place} at
  * @param {boolean} isLine the part that begins first in this line
- * @returns {Place | null} the beginning of the part; null behind the last line with one
+ * @returns {Place | null} the beginning of the part; null after the last line with one
  */
 export function partAt(places, at, isLine) {
   const begins = places.map(startOf).sort((one, other) => one.line - other.line || one.column - other.column);

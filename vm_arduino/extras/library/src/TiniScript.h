@@ -68,7 +68,7 @@ struct TiniKit {
 // Loads images and runs one. There is one player in a sketch: it is what the machine asks.
 class TiniPlayer {
  public:
-  // `memory` has `bytes` for an image, up to 4 of them for what lies behind it; `readings` has a
+  // `memory` has `bytes` for an image, up to 4 of them for what lies after it; `readings` has a
   // place for each sensor.
   TiniPlayer(TiniRobot* robot, const TiniKit* kit, uint8_t* memory, uint16_t bytes,
              int32_t* readings);
@@ -84,7 +84,7 @@ class TiniPlayer {
   // Begins the image that was loaded. `seed` is where RANDOM begins, not 0.
   void start(uint32_t now_ms, uint32_t seed = 1);
 
-  // Runs code that is verified and has its ends behind it.
+  // Runs code that is verified and has its ends after it.
   void start_code(const uint8_t* code, uint16_t length, uint32_t now_ms, uint32_t seed);
 
   // Goes on a little; call it in each turn of loop(), with millis().

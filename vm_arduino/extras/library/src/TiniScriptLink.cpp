@@ -20,7 +20,7 @@ const uint8_t no_words[] tini_progmem = {0, 0};
 
 uint32_t checksum_of(const uint8_t* image) {
   uint32_t found = 0;
-  for (uint8_t k = kBehindChecksum; k-- > kChecksumAt;) found = found << 8 | image[k];
+  for (uint8_t k = kAfterChecksum; k-- > kChecksumAt;) found = found << 8 | image[k];
   return found;
 }
 

@@ -159,10 +159,10 @@ void begin() {
 }
 
 void connect() {
-  const WifiState found = line_connect();
-  if (found == WifiState::kSearching) return;
-  if (found != WifiState::kReady)
-    return hang_up(found == WifiState::kOff ? WifiState::kSearching : found);
+  const WifiState wifi_state = line_connect();
+  if (wifi_state == WifiState::kSearching) return;
+  if (wifi_state != WifiState::kReady)
+    return hang_up(wifi_state == WifiState::kOff ? WifiState::kSearching : wifi_state);
   char client[sizeof "tini-" + sizeof(RadioName::id)] = "tini-";
   __builtin_memcpy(client + 5, radio_name().id, sizeof(RadioName::id));
   char will[kNameBytes + 2] = {kGone};

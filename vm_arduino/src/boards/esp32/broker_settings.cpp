@@ -119,9 +119,9 @@ Answer broker_set(WifiStep step, const uint8_t* text, uint8_t length) {
     return Answer::kBadValue;
   }
   if (step != WifiStep::kUseBroker) return Answer::kOk;
-  const Answer found = kept.keep(wanted);
-  if (found == Answer::kOk) clear();
-  return found;
+  const Answer answer = kept.keep(wanted);
+  if (answer == Answer::kOk) clear();
+  return answer;
 }
 
 Answer broker_forget() {
@@ -132,14 +132,14 @@ Answer broker_forget() {
 void broker_has_memory(bool is_so) { lacks_memory = !is_so; }
 
 // What it says of those before is over when the main loop learns that it has taken these.
-bool broker_changed(BrokerSettings* found) {
+bool broker_changed(BrokerSettings* broker_settings) {
   if (!kept.is_new()) return false;
   broker_note(WifiState::kSearching);
-  return kept.changed(found);
+  return kept.changed(broker_settings);
 }
 
-void broker_note(WifiState found) {
-  __atomic_store_n(&state, static_cast<uint8_t>(found), __ATOMIC_RELAXED);
+void broker_note(WifiState wifi_state) {
+  __atomic_store_n(&state, static_cast<uint8_t>(wifi_state), __ATOMIC_RELAXED);
 }
 
 }  // namespace tiniscript

@@ -42,9 +42,9 @@ void broker_has_memory(bool is_so);
 
 // The broker's task: whether the settings have changed since the last call; then they are in
 // `*found`.
-bool broker_changed(BrokerSettings* found);
+bool broker_changed(BrokerSettings* broker_settings);
 
 // The broker's task says whether the robot is connected, or why not.
-void broker_note(WifiState found);
+void broker_note(WifiState wifi_state);
 
 }  // namespace tiniscript

@@ -24,7 +24,7 @@ constexpr uint8_t kWillRetain = 0x20;
 constexpr uint8_t kHasPassword = 0x40;
 constexpr uint8_t kHasUser = 0x80;
 constexpr uint8_t kNotGranted = 0x80;
-constexpr size_t kGrants = 2;  // behind the number of the request, for each topic
+constexpr size_t kGrants = 2;  // after the number of the request, for each topic
 constexpr uint8_t kLastShift = 21;  // a length has four bytes at most
 
 }  // namespace

@@ -87,9 +87,9 @@ class Pipe {
   // nobody hears.
   bool begin() {
     if (rings_ == nullptr) {
-      Rings* const made = static_cast<Rings*>(__builtin_calloc(1, sizeof(Rings)));
-      if (made == nullptr) return false;
-      __atomic_store_n(&rings_, made, __ATOMIC_RELEASE);
+      Rings* const rings = static_cast<Rings*>(__builtin_calloc(1, sizeof(Rings)));
+      if (rings == nullptr) return false;
+      __atomic_store_n(&rings_, rings, __ATOMIC_RELEASE);
     }
     const uint16_t turn = static_cast<uint16_t>(began_ / kOutPlaces + 1);
     const uint16_t began = static_cast<uint16_t>(turn * kOutPlaces + rings_->out.end());

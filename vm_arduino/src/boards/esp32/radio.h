@@ -14,7 +14,7 @@
 
 namespace tiniscript {
 
-// Silence behind which a client's place goes to another one that comes; never before.
+// Silence after which a client's place goes to another one that comes; never before.
 constexpr uint32_t kPlaceMs = 10000;
 
 // What the main loop calls: begins the radios when the robot knows its name; takes what they have

@@ -55,7 +55,7 @@ volatile uint8_t overrun;
 uint8_t zeroed;      // of the spoiled bytes, those that have counted as a zero
 uint8_t waited_ms;   // for the first of the others
 uint8_t watched;     // errors before the line was last seen high
-uint8_t low_ms;      // since then, behind an error and without a byte
+uint8_t low_ms;      // since then, after an error and without a byte
 bool was_high;       // since the reset or since the line was last held low; else it has no sender
 
 void on_error(hardwareSerial_error_t error) {
@@ -97,7 +97,7 @@ void take(uint8_t byte) {
   firmware_on_rx_byte(Transport::kCable, byte, static_cast<uint16_t>(millis()));
 }
 
-// Each spoiled byte counts as a zero. Which byte it is the driver does not say: the zero comes behind
+// Each spoiled byte counts as a zero. Which byte it is the driver does not say: the zero comes after
 // the first one that follows, so that nothing of a line or frame with an error in it is done.
 void take_zeros() {
   waited_ms = 0;

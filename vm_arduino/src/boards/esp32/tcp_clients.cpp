@@ -32,7 +32,7 @@ struct Client {
   bool has_key() const { return is_admitted && radio_pipe(transport).has_key(); }
   size_t first_length;
   StopFinder finder;   // in them
-  bool was_silent;     // for a second behind one of them, of which the main loop does not know
+  bool was_silent;     // for a second after one of them, of which the main loop does not know
   uint8_t first[kFirstBytes];
   size_t out_length;
   size_t out_sent;
@@ -147,7 +147,7 @@ void look(Client* client, const uint8_t* bytes, size_t length) {
   pass_on(client, bytes + more, length - more);
 }
 
-// A second of silence ends a typed stop while something runs, and a line begins behind it. It lets
+// A second of silence ends a typed stop while something runs, and a line begins after it. It lets
 // nobody in.
 void end_silence(Client* client) {
   if (client->finder.is_at_stop()) radio_pipe(client->transport).stop(true);

@@ -80,10 +80,10 @@ Reset cause_of(esp_reset_reason_t reason) {
 // A supply that sags deeply comes back as power-on. The bytes of a chip that has been without power
 // are lost; that they are there says that it was gone for a moment.
 Reset cause_now() {
-  const Reset found = cause_of(esp_reset_reason());
-  const bool has_sagged = found == Reset::kPower && runs == kRuns;
+  const Reset reset = cause_of(esp_reset_reason());
+  const bool has_sagged = reset == Reset::kPower && runs == kRuns;
   runs = 0;
-  return has_sagged ? Reset::kBrownOut : found;
+  return has_sagged ? Reset::kBrownOut : reset;
 }
 
 // The timer's task. It counts its looks, not the time: while a page of flash is erased, up to 400 ms

@@ -93,8 +93,8 @@ bool is_announced;
 bool is_host;  // its access point is there
 Settings used;
 
-void set_state(WifiState found) {
-  __atomic_store_n(&state, static_cast<uint8_t>(found), __ATOMIC_RELAXED);
+void set_state(WifiState wifi_state) {
+  __atomic_store_n(&state, static_cast<uint8_t>(wifi_state), __ATOMIC_RELAXED);
 }
 
 void clear(Settings* settings) { __builtin_memset(settings, 0, sizeof *settings); }
@@ -120,13 +120,13 @@ bool has_restarted_too_often() {
 
 // Has what came kept: a new beginning.
 Answer keep() {
-  const Answer found = kept.keep(wanted);
-  if (found != Answer::kOk) return found;
+  const Answer answer = kept.keep(wanted);
+  if (answer != Answer::kOk) return answer;
   clear(&wanted);
   firmware_wifi_rests(false);
   const CriticalSection critical;
   starts &= ~kRestarts;
-  return found;
+  return answer;
 }
 
 Answer set(WifiMode mode) {
@@ -277,8 +277,8 @@ Answer board_set_wifi(WifiStep step, const uint8_t* text, uint8_t length) {
       return set(WifiMode::kAccessPoint);
     case WifiStep::kForget: {
       clear(&wanted);
-      const Answer found = broker_forget();
-      return found == Answer::kOk ? keep() : found;
+      const Answer answer = broker_forget();
+      return answer == Answer::kOk ? keep() : answer;
     }
     case WifiStep::kBroker:
     case WifiStep::kBrokerUser:

@@ -25,7 +25,7 @@
 typedef enum { MBEDTLS_SSL_HANDSHAKE_OVER = 16 } mbedtls_ssl_states;  // 27 in version 3
 
 typedef struct mbedtls_ssl_context {
-  int state;  // since version 3 behind mbedtls_ssl_is_handshake_over
+  int state;  // since version 3 after mbedtls_ssl_is_handshake_over
   void* inner[96];
 } mbedtls_ssl_context;
 typedef enum { MBEDTLS_SSL_VERSION_TLS1_2 = 0x0303 } mbedtls_ssl_protocol_version;

@@ -1,0 +1,163 @@
+"""What a release compiled compiles still, and a robot does the same, but for what Breaking names.
+
+`programs_of_0_2_0.txt` has the programs of the documents, examples, cases, lessons and pupils of
+that version, with the trace that its `tsc run` printed: a row `= robot`, the program, and rows of
+the trace after `>`. Of a long one the first rows, how many there are, and the checksum of all. A
+later file has the programs that no earlier one has.
+
+`python -m tests.vm.test_programs_of_releases` writes the file of this version, which a release does
+once: afterwards it only grows old.
+"""
+
+from __future__ import annotations
+
+import re
+import zlib
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from tests.support.casefile import ROOT, all_cases, example_robot
+from tiniscript import ProgramError, __version__, check, robots, run
+from tiniscript.base.kit import KIT_WORDS_SINCE
+from tiniscript.base.words import SINCE, WORDS
+from tiniscript.lessons import catalogue
+from tiniscript.library.named_robot import name_in
+
+FOLDER = Path(__file__).parent
+FIRST = "0.2.0"
+READINGS = (50, 9, 300, 20)  # of each sensor, as far as it reaches
+ROWS = 12  # of a trace that are written out
+
+
+class Old(NamedTuple):
+    robot: str
+    text: str
+    trace: str
+
+
+def file_of(version: str) -> Path:
+    return FOLDER / f"programs_of_{version.replace('.', '_')}.txt"
+
+
+def versions() -> list[str]:
+    """Return the versions whose programs are kept, the first one first."""
+    names = (path.stem.removeprefix("programs_of_") for path in FOLDER.glob("programs_of_*.txt"))
+    return sorted(name.replace("_", ".") for name in names)
+
+
+def programs(version: str = FIRST) -> list[Old]:
+    parts = re.findall(r"(?m)^= (\w+)\n((?:.*\n)*?)((?:> .*\n)*)(?:\n|\Z)(?=\Z|= )",
+                       file_of(version).read_text(encoding="utf-8"))  # fmt: skip
+    return [Old(robot, text, trace) for robot, text, trace in parts]
+
+
+def trace_of(old: Old) -> str:
+    """Return the trace as the file has it."""
+    kit = robots.load(old.robot).kit
+    sensors: dict[str, list[float | bool]] = {
+        sensor.name: [False, True, False, True] if sensor.is_yes_no
+        else [min(max(value, sensor.low / 1000), sensor.high / 1000) for value in READINGS]
+        for sensor in kit.sensors
+    }  # fmt: skip
+    trace = str(run(old.text, old.robot, sensors=sensors, max_time=20, max_steps=100_000))
+    rows = trace.splitlines()
+    shown = "".join(f"> {row}\n" for row in rows[:ROWS])
+    return shown + f"> ... {len(rows)} rows, {zlib.crc32(trace.encode()):08x}\n" * (
+        len(rows) > ROWS
+    )
+
+
+def names_a_newer_word(text: str) -> bool:
+    return any(re.search(rf"(?i)\b(?:{word}\s*=|DEF\s+{word})", text) for word in SINCE)
+
+
+def of_this_version() -> Iterator[Old]:
+    """Yield the programs of documents, examples, cases and lessons: some compile, some do not."""
+    for path in sorted((ROOT / "examples").glob("*.ts")):
+        yield Old(example_robot(path), path.read_text(encoding="utf-8"), "")
+    for case in all_cases():
+        named = re.search(r"(?m)^robot = (\w+)", case.parts.get("senses", ""))
+        yield Old(named[1] if named else "tinibot", case.parts.get("tiniscript", ""), "")
+    for folder in catalogue.folders():
+        robot = catalogue.load(folder).robot
+        for answers in catalogue.answers(folder):
+            yield from (Old(robot, answer.program, "") for answer in answers)
+
+
+def written() -> str:
+    """Return the file of this version."""
+    before = [version for version in versions() if version != __version__]
+    earlier = {old[:2] for version in before for old in programs(version)}
+    parts: dict[tuple[str, str], str] = {}
+    for old in of_this_version():
+        text = old.text.rstrip("\n") + "\n"
+        robot = name_in(text.encode()) or old.robot
+        is_plain = text.strip() and not re.search("(?m)^[=>] ", text)
+        if is_plain and (robot, text) not in earlier and robot in robots.names():
+            with suppress(ProgramError):
+                parts[robot, text] = trace_of(Old(robot, text, ""))
+    return "\n".join(f"= {robot}\n{text}{trace}" for (robot, text), trace in parts.items())
+
+
+@pytest.mark.parametrize("version", versions())
+def test_they_compile_still_and_do_the_same(version: str) -> None:
+    olds = [old for old in programs(version) if not names_a_newer_word(old.text)]
+    assert len(olds) > (300 if version == FIRST else 0)
+    changed = []
+    for old in olds:
+        try:
+            found = trace_of(old)
+        except ProgramError as error:
+            found = str(error)
+        if found != old.trace:
+            changed.append((old.text, old.trace, found))
+    assert not changed, f"{len(changed)}, the first: {changed[0]}"
+
+
+def test_a_newer_word_of_the_kit_gives_way_and_a_warning_says_so() -> None:
+    """Each of these words is a name in one of them."""
+    named = set()
+    for old in programs():
+        messages = [message for message in check(old.text, old.robot) if message.code == "TS842"]
+        if messages:
+            assert all(message.severity == "warning" for message in messages)
+            named |= {message.message.split()[0] for message in messages}
+    assert named == KIT_WORDS_SINCE.keys()
+
+
+def test_of_those_with_a_newer_word_as_a_name_it_is_told_since_when() -> None:
+    olds = [old for old in programs() if names_a_newer_word(old.text)]
+    assert len(olds) >= 5
+    for old in olds:
+        (message,) = check(old.text, old.robot)
+        assert message.code == "TS105" and "is a word of TiniScript since 0.3" in message.message
+        word = message.message.split()[0]
+        assert message.fix.startswith(f"MY_{word}")
+        new = re.sub(rf"(?i)\b{word}\b", f"MY_{word}", old.text)  # as it says
+        assert trace_of(old._replace(text=new)) == old.trace
+
+
+@pytest.mark.parametrize("path", ["CHANGELOG.md", "docs/en/versions.md"])
+def test_the_documents_name_the_newer_words(path: str) -> None:
+    said = (ROOT / path).read_text(encoding="utf-8")
+    breaking = next(part for part in re.split(r"\n(?=- |\n)", said)
+                    if "`CM`" in part and "0.3" in part)  # fmt: skip
+    assert all(f"`{word}`" in breaking for word in SINCE)
+    assert set(SINCE) <= set(WORDS)
+
+
+def test_each_release_has_its_programs() -> None:
+    """From the first one on that kept them, as CHANGELOG names them: a patch has no new ones."""
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    released = re.findall(r"(?m)^## (\d+\.\d+\.0) \(", text)
+    assert released[released.index(FIRST) :: -1] == versions(), (
+        "python -m tests.vm.test_programs_of_releases writes those of this version"
+    )
+
+
+if __name__ == "__main__":
+    file_of(__version__).write_text(written(), encoding="utf-8")
