@@ -116,3 +116,19 @@ def test_the_same_code_of_another_text_is_called_as_that_text_says() -> None:
     maps[program] = mapped(second)
     names += [finder.of(event(program, at)), finder.of(event(program, at, run=2))]
     assert [each and each.text for each in names] == ["NEAR", "NEAR", "FAR"], "until its next run"
+
+
+@pytest.mark.usefixtures("cache")
+def test_a_run_keeps_the_text_that_it_began_with() -> None:
+    """Where its first value comes late, and where its number was that of another run."""
+    texts = [compiled(f"{name} = TIME; SHOW({name})") for name in ("NEAR", "FAR", "THIRD")]
+    program, at = checksum(texts[0].image), rows(texts[0].code)[-1].offset
+    maps: dict[int, Map] = {}
+    finder = Finder(maps)
+    for run, found in enumerate(texts):
+        maps[program] = mapped(found)
+        finder.begin(run % 2, program)
+    names = [finder.of(event(program, at, run)) for run in (1, 0, 1)]
+    assert [each and each.text for each in names] == ["FAR", "THIRD", "FAR"]
+    finder.begin(1, program + 1)
+    assert finder.of(event(program + 1, at, 1)) is None
