@@ -13,15 +13,18 @@ from typing import Any
 import pytest
 
 from tests.support.link_events import event
-from tiniscript import robots
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.disassembly import rows
+from tiniscript.bytecode.image import checksum
 from tiniscript.library import connection, opening
 from tiniscript.library.connection import RobotConnection
 from tiniscript.library.errors import RobotError
 from tiniscript.link.messages import SAVED_STORED
-from tiniscript.link.outcomes import Event, RestartedEvent, StartedEvent
-from tiniscript.link.payloads import DoneEvent, ReceiptReply, StatusReply
+from tiniscript.link.outcomes import Event, RestartedEvent, ShownEvent, StartedEvent
+from tiniscript.link.payloads import DoneEvent, FaultEvent, ReceiptReply, StatusReply
 from tiniscript.link.requests import OK, Reply
 
+KIT = robots.load("tinibot").kit
 PROGRAM = 7
 
 
@@ -29,11 +32,11 @@ class Line:
     """A robot that runs what it is told, and what its client did with it."""
 
     def __init__(self, *_: object) -> None:
-        self.run = 0
+        self.run, self.program = 0, PROGRAM
         self.events: list[tuple[int, Event]] = []
         self.did: list[str] = []
         self.drives_another = self.holds_for_others = False
-        self.device_info = SimpleNamespace(kit=robots.load("tinibot").kit.fingerprint, name="")
+        self.device_info = SimpleNamespace(kit=KIT.fingerprint, name="")
 
     def meet(self) -> Any:
         return self.device_info
@@ -46,7 +49,7 @@ class Line:
             )
         self.run += 1
         fields = dict.fromkeys(ReceiptReply._fields, 0)
-        return Reply(OK, 0, ReceiptReply(**{**fields, "program": PROGRAM, "run": self.run}))
+        return Reply(OK, 0, ReceiptReply(**{**fields, "program": self.program, "run": self.run}))
 
     def send_program(self, *_: object, **__: object) -> Reply[Any]:
         return self.ask(None)
@@ -139,3 +142,23 @@ def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> N
         robot, line = connected(monkeypatch)
         happens(robot, line, story)
         assert left(robot, line, None) == found, story
+
+
+def test_what_a_program_tells_late_is_of_its_own_text(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The next one has the same code. Its own events nobody has looked at before that."""
+    robot, line = connected(monkeypatch)
+    for name, end in (("NEAR", "; "), ("FAR", "\n")):
+        made = compile_text(f"SI|{name} = TIME{end}SHOW({name} / 0)", KIT)
+        assert made.image
+        program = checksum(made.image)
+        line.program = program
+        robot.upload(made.source.text, save=False)
+        at = rows(made.code)[-1].offset
+        late: list[Event] = [
+            ShownEvent(1000, 0, line.run, program, at), FaultEvent(line.run, 1, at, program),
+        ]  # fmt: skip
+        line.events += [(int(monotonic() * 1000), each) for each in late]
+    told = list(robot.events(0.2))
+    assert [(each.values.get("name"), each.values["line"]) for each in told] == [
+        ("NEAR / 0", 1), (None, 1), ("FAR / 0", 2), (None, 2),
+    ]  # fmt: skip

@@ -132,3 +132,19 @@ def test_a_value_is_called_so_whatever_was_shown_before() -> None:
             for shown_before in before:
                 finder.of(shown_before)
             assert finder.of(shown_last) == Finder(known).of(shown_last), (before, shown_last)
+
+
+@pytest.mark.usefixtures("cache")
+def test_a_run_keeps_the_text_that_it_began_with() -> None:
+    """Where its first value comes late, and where its number was that of another run."""
+    texts = [compiled(f"{name} = TIME; SHOW({name})") for name in ("NEAR", "FAR", "THIRD")]
+    program, at = checksum(texts[0].image), rows(texts[0].code)[-1].offset
+    maps: dict[int, Map] = {}
+    finder = Finder(maps)
+    for run, found in enumerate(texts):
+        maps[program] = mapped(found)
+        finder.begin(run % 2, program)
+    names = [finder.of(event(program, at, run)) for run in (1, 0, 1)]
+    assert [each and each.text for each in names] == ["FAR", "THIRD", "FAR"]
+    finder.begin(1, program + 1)
+    assert finder.of(event(program + 1, at, 1)) is None

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Iterator
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -338,6 +338,42 @@ def test_what_the_robot_shows_has_the_name_of_its_show(page: Page) -> None:
         shown.filter(has_text=f"{line.split()[0]} 4").wait_for()
 
 
+def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> None:
+    """The next one has the same code, and is sent before the last values of the one before come."""
+    shown = page.locator("#link_shown")
+    late: list[dict[str, Any]] = []
+    has_begun: list[bool] = []
+
+    def hold(route: Route) -> None:
+        response = route.fetch()
+        answer = response.json()
+        news = answer.get("news", [])
+        if any(each.get("event") == "STARTED" for each in news):
+            news[:0] = late
+            has_begun.append(True)
+        elif not has_begun:
+            values = [each for each in news if each.get("event") == "SHOW"]
+            answer["news"] = [each for each in news if each not in values]
+            late.extend({key: each[key] for key in each if key != "number"} for each in values)
+        route.fulfill(response=response, json=answer)
+
+    write(page, "NEAR = 4;\nLOOP(FOREVER);\nSHOW(NEAR);\nW(0.1);\nEND_LOOP")
+    page.click("#link_upload")
+    said(page, "The robot has it")
+    shown.filter(has_text="NEAR 4").wait_for()
+    page.route("**/robots", hold)
+    hears(page, lambda: len(late) > 2, "values are held back")
+    write(page, "FAR = 4;\nLOOP(FOREVER);\nSHOW(FAR);\nW(0.1);\nEND_LOOP")
+    page.click("#link_upload")
+    said(page, "The robot has it")
+    shown.filter(has_text="FAR 4").wait_for()
+    names = [line.split()[0] for line in shown.inner_text().splitlines()]
+    assert names[: len(late)] == ["NEAR"] * len(late), names
+    page.unroute_all(behavior="wait")
+    page.click("#stop")
+    said(page, "Stopped: the robot has confirmed it")
+
+
 def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
     write(page, "SHOW(5);\nW(60);\nSHOW(6)")
     page.click("#link_upload")
@@ -359,6 +395,18 @@ def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
     page.click("#link_leave")
     page.locator("#link_ways").wait_for()
     assert events(page) == ["SHOW 5", "LOST"]
+
+
+def test_who_compares_a_program_that_reads_keys_is_told_that_they_are_not_recorded(
+    page: Page,
+) -> None:
+    page.click("#link_teacher summary")
+    page.locator("#record_compare").wait_for()
+    told = page.locator("#record_keys")
+    for text, is_told in (("S", False), ("M(PAD_Y, 0)", True), ("WHEN(", False), ("S", False)):
+        write(page, text)
+        checked(page)
+        assert told.is_visible() is is_told, text
 
 
 def test_a_program_of_the_button_is_recorded_from_its_first_event(

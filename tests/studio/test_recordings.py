@@ -8,7 +8,7 @@ import pytest
 
 from tiniscript import compile
 from tiniscript.studio import recordings, worker
-from tiniscript.studio.recordings import BadRecording, Parting, read, replay
+from tiniscript.studio.recordings import BadRecording, Parting, Recorded, read, replay
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 
@@ -30,6 +30,15 @@ def parting(*events: tuple[int, str], text: str = LOOKS) -> Parting:
 def test_readings_of_the_recording_are_those_of_the_virtual_sensors() -> None:
     """Its world has nothing at 17.5 cm: and what is calculated of the reading is the same."""
     assert parting(*LINES) == Parting("same", 5)
+
+
+@pytest.mark.parametrize(("text", "found"), [
+    (LOOKS.replace("DISTANCE", "PAD_Y"), Parting("same", 5)),
+    (LOOKS.replace("SHOW(DISTANCE)", "SHOW(PAD_Y + 0)").replace("DISTANCE", "PAD_Y"),
+     Parting("value", 0, 3, Recorded(1000, "SHOW 17.5"), Recorded(1000, "SHOW 0"))),
+])  # fmt: skip
+def test_of_what_was_pressed_the_virtual_robot_has_what_is_shown(text: str, found: Parting) -> None:
+    assert parting(*LINES, text=text) == found
 
 
 def test_the_first_value_or_time_that_differs_is_told_with_its_line() -> None:

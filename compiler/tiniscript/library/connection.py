@@ -343,6 +343,8 @@ class RobotConnection:
 
     def _begun(self, receipt: ReceiptReply, is_running: bool, is_detached: bool) -> Receipt:
         # a program that waits for the button has no run number yet
+        if is_running:
+            self._reader.begin(receipt.run, receipt.program)
         self._follower = Follower(receipt.run if is_running else None)
         self._ending = None
         self._is_replaced = False

@@ -8,13 +8,13 @@ from typing import Literal, NamedTuple
 
 from tiniscript.base.fixed_point import value_of
 from tiniscript.base.source import printable
-from tiniscript.library import source_map
 from tiniscript.library.endings import DONE, FAULT
 from tiniscript.library.runs import Fault, Value, fault_of
 from tiniscript.library.shows import Finder
 from tiniscript.library.source_map import Map
 from tiniscript.link.names import cause_name, fault_name
 from tiniscript.link.outcomes import Event
+from tiniscript.link.payloads import FaultEvent
 
 
 class RobotEvent(NamedTuple):
@@ -52,6 +52,10 @@ class Reader:
         self._shows = Finder(self.maps)
         self._began_ms = int(monotonic() * 1000)
 
+    def begin(self, run: int, program: int) -> None:
+        """Note that a run begins: all that it tells is of the text that its program has now."""
+        self._shows.begin(run, program)
+
     def told(self, time_ms: int, event: Event) -> RobotEvent | None:
         """Return an event as data, or None for an internal event of the link."""
         found: dict[str, Value] = {}
@@ -63,7 +67,7 @@ class Reader:
         elif event.name == "STARTED":
             found = {"checksum": event.program}
         elif event.name == "FAULT":
-            found = self._fault(event.fault, event.at, event.program)
+            found = self._fault(event)
         elif event.name == "STOPPED":
             found = {"cause": cause_name(event.cause)}
         elif event.name == "MISSED":
@@ -74,10 +78,10 @@ class Reader:
             return None
         return RobotEvent(time_ms - self._began_ms, event.name, found)
 
-    def _fault(self, number: int, offset: int, program: int) -> dict[str, Value]:
-        places = self.maps.get(program) or source_map.recall(program)
-        fault = fault_of(fault_name(number), offset, places)
-        found: dict[str, Value] = {"fault": fault.name, "offset": offset}
+    def _fault(self, event: FaultEvent) -> dict[str, Value]:
+        places = self._shows.map_of(event.run, event.program)
+        fault = fault_of(fault_name(event.fault), event.at, places)
+        found: dict[str, Value] = {"fault": fault.name, "offset": event.at}
         if fault.line is not None and fault.column is not None:
             found |= {"line": fault.line, "column": fault.column}
         return found

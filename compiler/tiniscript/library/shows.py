@@ -1,7 +1,7 @@
 """Which SHOW of a program's text has shown a value: its expression names the value.
 
-Two programs with the same code have one map, the newest. A value whose program is not known here
-has no name, and neither has a plain number.
+Two programs with the same code have one map, the newest; what runs keeps its own. A value whose
+program is not known here has no name, and neither has a plain number.
 """
 
 from __future__ import annotations
@@ -57,21 +57,35 @@ class Shows:
 
 class Finder:
     """Finds the SHOW of a value. `own` has the maps of programs that are known here, by checksum;
-    those of others are in the cache."""
+    those of others are in the cache. A run keeps the text that its program had when it began, or
+    when it was first heard of: another one may have the same code."""
 
     def __init__(self, own: Mapping[int, Map] | None = None) -> None:
         self._own = {} if own is None else own
-        self._found: tuple[int, int, Shows] | None = None  # run, program
+        self._runs: dict[int, tuple[int, Map]] = {}  # its program, which comes round again
+        self._shows: tuple[Map, Shows] | None = None
+
+    def begin(self, run: int, program: int) -> None:
+        """Note that a run begins."""
+        self._runs.pop(run, None)
+        self.map_of(run, program)
+
+    def map_of(self, run: int, program: int) -> Map | None:
+        """Return the map of a run's program."""
+        begun, places = self._runs.get(run, (-1, None))
+        if begun != program:
+            places = self._own.get(program) or source_map.recall(program)
+            if places is not None:
+                self._runs[run] = program, places
+        return places
 
     def of(self, event: ShownEvent) -> Show | None:
-        if event.at < 0:
+        places = self.map_of(event.run, event.program) if event.at >= 0 else None
+        if places is None:
             return None
-        if self._found is None or self._found[:2] != (event.run, event.program):
-            places = self._own.get(event.program) or source_map.recall(event.program)
-            if places is None:
-                return None
-            self._found = event.run, event.program, Shows(places)
-        return self._found[2].at(event.at)
+        if self._shows is None or self._shows[0] is not places:
+            self._shows = places, Shows(places)
+        return self._shows[1].at(event.at)
 
 
 def expression_of(places: Map, place: MapLocation) -> str:

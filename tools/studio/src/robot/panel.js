@@ -57,6 +57,8 @@ export class RobotPanel {
   #sent = null;
   /** The newest programs and lines that were sent, by checksum: what they show is named. @type {Map<string, Checked>} */
   #known = new Map();
+  /** The text of what runs, as it was when that began: another one may have the same code. @type {Checked | undefined} */
+  #running;
   #speech = new Speech();
   #stopping = new Stopping(this.#speech);
   #list = element('link_port', HTMLSelectElement);
@@ -249,6 +251,7 @@ export class RobotPanel {
     this.#way = null;
     this.#about = null;
     this.#sent = null;
+    this.#running = undefined;
     this.#page.recorder.end('LOST');
     this.#page.place.end();
     const unconfirmed = this.#stopping.end();
@@ -382,8 +385,10 @@ export class RobotPanel {
     else if (event.event === 'DONE') this.#speech.say('say_done');
     else if (event.event === 'FAULT') this.#fault(event);
     else if (event.event === 'LOST') this.#lose();
-    else if (event.event === 'STARTED') this.#stopping.forget();
-    else if (event.event === 'STOPPING') this.#stopping.begin();
+    else if (event.event === 'STARTED') {
+      this.#stopping.forget();
+      this.#running = this.#textOf(event.program);
+    } else if (event.event === 'STOPPING') this.#stopping.begin();
     else if (event.event === 'RESTARTED') this.#speech.say('why_restarted');
     else if (event.event === 'STOPPED') {
       this.#page.pad.letGo();
@@ -399,11 +404,17 @@ export class RobotPanel {
     for (const [oldest] of this.#known) if (this.#known.size > KNOWN) this.#known.delete(oldest);
   }
 
-  /** The name of a value; nothing where its program is not one of this page. @param {RobotEvent} event */
-  #nameOf({ program = '', at }) {
+  /** The text of a program, if it is one of this page. @param {string} [program] */
+  #textOf(program = '') {
     const seen = pageState.checked.value;
-    const of = this.#known.get(program) ?? (program && seen?.program === program ? seen : undefined);
-    const show = of && showAt(of, at);
+    return this.#known.get(program) ?? (program && seen?.program === program ? seen : undefined);
+  }
+
+  /** The name of a value; nothing where its program is not one of this page. @param {RobotEvent} event */
+  #nameOf({ program, at }) {
+    if (!program) return '';
+    if (this.#running?.program !== program) this.#running = this.#textOf(program);
+    const show = this.#running && showAt(this.#running, at);
     return show ? nameOfShow(show, show[1], false) : '';
   }
 

@@ -2,7 +2,7 @@
 //
 // The form of a recording is that of `recordings.py`, which reads it.
 
-import { element } from '../page/elements.js';
+import { element, hide } from '../page/elements.js';
 import { bugSaid } from '../page/faults.js';
 import { bytesOf, download, whenChosen } from '../page/files.js';
 import { pageState } from '../page/page_state.js';
@@ -43,6 +43,7 @@ export class Recorder {
       }
     });
     pageState.language.subscribe(() => this.#say());
+    pageState.checked.subscribe((program) => hide(element('record_keys', HTMLElement), !program?.remote.length));
     this.#show();
   }
 
