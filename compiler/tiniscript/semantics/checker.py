@@ -200,10 +200,10 @@ class _Checker(Scope):
             wanted = (WAYS[UNIT_OF[word.text]], *wanted[1:])
         said = len(self.diagnostics)
         values = [
-            self.types.value(each)
+            self.types.value(argument)
             if its is VALUE
-            else self.number(each, its, word.text, (node, word))
-            for each, its in zip(arguments[forever:], wanted[forever:], strict=True)
+            else self.number(argument, its, word.text, (node, word))
+            for argument, its in zip(arguments[forever:], wanted[forever:], strict=True)
         ]
         if len(self.diagnostics) > said:
             self.wrong.values(node, word, said)
