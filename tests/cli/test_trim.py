@@ -102,7 +102,7 @@ def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> No
     done = on(pty_robot, "--exchange", "yes", "--reverse-right", "yes")
     assert done.out.endswith(
         "keeps: motors swapped, right wheel reversed, right wheel 5 % weaker, "
-        "wheels move from 12 % on, centimetres and degrees by the numbers of its kit\n"
+        "the wheels start to move at 12 %, centimetres and degrees by the numbers of its kit\n"
     )
     assert keeps(pty_robot) == Trim(True, False, True, -5, 12, Pace())
     assert on(pty_robot, "--exchange", "no", "--balance", "0").code == 0

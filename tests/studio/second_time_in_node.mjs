@@ -259,7 +259,7 @@ const PARTS = {
     new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled: async () => PROGRAM, remember() {}, pad: { offer: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
     await settles();
     const line = page.byId('time_at');
-    const seen = () => [page.byId('time_line').hidden || [line.min, line.max, line.value], page.byId('doing').textContent, page.byId('trace').textContent, page.byId('values').children.map((row) => row.children.map((each) => each.textContent)), structuredClone(pageState.fault.value)];
+    const seen = () => [line.disabled || [line.min, line.max, line.value], page.byId('doing').textContent, page.byId('trace').textContent, page.byId('values').children.map((row) => row.children.map((each) => each.textContent)), structuredClone(pageState.fault.value)];
     return async (chance, isGood) => {
       notes.splice(0);
       robot = virtualRobot(chance, isGood);
@@ -269,7 +269,7 @@ const PARTS = {
         await passes(100 + chance.below(300));
         notes.push(seen());
         const pressed = page.byId(chance.of(['pause', 'step', 'push', 'time_at', 'nothing']));
-        if (pressed === line && !page.byId('time_line').hidden) {
+        if (pressed === line && !line.disabled) {
           line.value = String(chance.below(3000));
           line.dispatchEvent(new Event('input'));
           notes.push(seen());

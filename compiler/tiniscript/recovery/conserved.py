@@ -51,7 +51,7 @@ _SENSES = {"<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>"
            "=!": "<>", "≤": "<", "≥": ">", "≠": "<>"}  # fmt: skip
 _UNITS = ("s", "cm", "°", "%", "Hz")
 _OF_WAYS = tuple(way.unit for way in WAYS.values())
-_STORED = "="  # the unit of what a variable keeps that no use of it has: a move takes seconds
+_STORED = "="  # the unit of what a variable keeps that nothing reads: a move would take seconds
 _COUNTED_UNITS = (*_UNITS, "turns")  # with a number before them
 _ARMS = ("ELSE", "ELSEIF")
 _HEADS = frozenset((*BLOCK_ENDS, *_ARMS))
@@ -407,6 +407,7 @@ class _Said:
             elif token is _END:
                 around = [[""]]
             slots[k] = around[-1][0]
+        counts = Counter(token.text for token in self.tokens)
         triples = zip(self.tokens, self.tokens[1:], self.tokens[2:], strict=False)
         for k, (one, sign, other) in enumerate(triples):
             if sign.text in _SENSES or sign.text == "=":
@@ -415,7 +416,8 @@ class _Said:
                 slots[k] = slots[k] or self.units.get(other.text, "")
                 before = self.tokens[k - 1] if k else _END
                 is_set = sign.text == "=" and before.text in ("|", ";", _END.text)
-                slots[at] = slots[at] or (_STORED if is_set else "")
+                is_stored = is_set and counts[one.text] == 1
+                slots[at] = slots[at] or (_STORED if is_stored else "")
         return slots
 
     def _arguments(self, k: int) -> list[str]:

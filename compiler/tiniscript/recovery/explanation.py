@@ -324,15 +324,15 @@ class _Explainer:
 
     def unended(self, k: int, part: Change) -> Unended:
         """Return what is said of a block that lacks its end on the line where it begins."""
-        now, at = texts(part.after), added_end(part.before, part.after) or 0
-        found = Unended(ENDED.get(now[at], ""), now[at])
+        now, at = texts(part.after), added_end(part.before, part.after)
+        end = next((it for it in now if it in ENDED), "") if at is None else now[at]
+        found = Unended(ENDED.get(end, ""), end)
         inside = [each for each in instructions(part.after[:at]) if each]
-        is_here = found.word in now[:at]
-        if is_here:
+        above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
+        if at is not None and found.word in now[:at]:
             found.behind = laid_out(inside[-1]) if inside else ""
             found.places = shown(possible_places(part.after[header_of(part.after, at) : at]))
-        above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
-        if not is_here and k and above:  # its indentation says where it ends
+        elif k and above:  # its indentation says where it ends
             found.line, found.last = str(above.last + 1), _first_line(above)
         return found
 

@@ -25,6 +25,7 @@ _LABEL = re.compile(
     r"(?P<count>\d{1,3}(?:\.\d{1,2})*|[A-Ha-h])(?P<sign>[ºª°]?[ \t]*[.):\]–—-]+|[ºª°])?"
     r"(?P<space>[ \t]*)(?=(?P<next>[^\W\d]\w*)[ \t]*(?P<after>[|(=])?)"
 )
+_NAME = re.compile(r"\bDEF\s+(\w+)\b|\b(\w+)\s*[=(]")
 
 
 @lru_cache(100)
@@ -52,12 +53,13 @@ def _in_lines(text: str) -> Iterator[Span]:
     start, is_open = 0, False
     for line in text.split("\n"):
         body = without_note(line)[0]
+        depth = read = 0  # of brackets, up to where they are counted
         for place in _PLACE.finditer(body):
-            before = body[: place.start()]
+            depth += body.count("(", read, place.start()) - body.count(")", read, place.start())
+            read = place.start()
             label = _LABEL.match(body, place.end())
-            if label and not is_open and before.count("(") <= before.count(")"):
-                if _is_label(label, text):
-                    yield Span(start + label.start(), start + label.end())
+            if label and not is_open and depth <= 0 and _is_label(label, text):
+                yield Span(start + label.start(), start + label.end())
         is_open = body.rstrip()[-1:] in ("(", ",")  # it goes on in the next line
         start += len(line) + 1
 
@@ -94,4 +96,9 @@ def _is_free(word: str, text: str) -> bool:
 
 def _is_name(word: str, text: str) -> bool:
     """Whether a text sets a word, teaches it or calls it."""
-    return re.search(rf"(?i)\bDEF\s+{word}\b|\b{word}\s*[=(]", plain(text)) is not None
+    return plain(word) in _names(text)
+
+
+@lru_cache(1)
+def _names(text: str) -> frozenset[str]:
+    return frozenset(match[1] or match[2] for match in _NAME.finditer(plain(text)))

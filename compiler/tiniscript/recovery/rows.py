@@ -156,7 +156,7 @@ SIGNS = r"""
     | tsc live "SI|F(2, 80)" => SI|F(2, 80)
 ⟨(?<=\w)\s+\[\s*$$¦^^\s*\]\s*$$⟩
     | `⟨ {¦}⟩` | TS047 | applied
-    | REPEAT 6 [⏎F(1, 50)⏎⟨]¦ ]⟩ => LOOP(6);⏎F(1, 50)⏎END_LOOP
+    | REPEAT 6 [⏎F(1, 50)⏎] => LOOP(6);⏎F(1, 50)⏎END_LOOP
 ^\s*[•·►▶✔✓*–—-]\s+(?=[A-Za-z]) | `` | TS054 | applied | ⟨*¦•⟩ F(2,80) => F(2,80)
 ^\s*(?:-(?=[A-Z]\w*\()|[=-]?>+\s*) | `` | TS054 | applied | ⟨> ¦=> ¦-> ¦-⟩F(2,80) => F(2,80)
 ^\s*(?![⛔✋🛑])[➤↑↓⏫⏬⬅-⬇\u2600-\u27A1\U0001F300-\U0001FAFF]\uFE0F?\s*(?=[A-Za-z]+\s*\()
@@ -660,6 +660,9 @@ d=@device ( ⟨lit¦dark¦most¦least⟩ )
     | ⟨ABRIR PINZA¦cerrar la garra¦prende el LED¦apagar el foco⟩ =>
     ⟨GRIPPER(180)¦GRIPPER(0)¦LED(TRUE)¦LED(FALSE)⟩
 # DEF and its calls: kind, other
+^ n=@defw = a=@num|@val , b=@num|@val $
+    | $n ( $a , $b ) | 1 | TS015 | offered
+    | DEF LADO(X, Y)⏎F(X, Y)⏎END_DEF⏎LADO = 3, 60 => DEF LADO(X, Y)⏎F(X, Y)⏎END_DEF⏎LADO(3, 60)
 ^ TO n=@word ':' v=@name ⟨¦':' u=@name⟩ $
     | DEF $n ( $v ⟨¦, $u⟩ ) | 1 | TS102 | applied
     | TO SQUARE :SIZE⟨¦ :SPEED⟩⏎F(SIZE, ⟨50¦SPEED⟩)⏎END⏎SQUARE(⟨3¦3, 60⟩) =>

@@ -123,6 +123,11 @@ class _Text:
         self.begun = "".join(re.findall(r"\A\s*(S[IB])\s*\|", source.text.upper()))
         self.lacks_loop = False  # an END_LOOP is left for a header
 
+    @cached_property
+    def is_ended(self) -> bool:
+        """Whether any block has an end."""
+        return _ENDS.search(plain(self.source.text)) is not None
+
     def is_in_wrong_def(self, found: Diagnostic, told: Sequence[Diagnostic]) -> bool:
         """Whether a name is in the body of a DEF that names no values in its brackets."""
         starts = (it.span.end for it in told if it.code is codes.PARAMETER_NEEDS_NAME)
@@ -305,7 +310,7 @@ class Found:
             return own
         if word == "SHOW" and (given := [it for it in self.words if it in self.names.variables]):
             return f"{word}({given[0]})"
-        is_ended = _ENDS.search(plain(self.text)) is not None
+        is_ended = word in BLOCK_ENDS and self.around.is_ended
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
         found = lines.read(self.row, self.names) if word == "LOOP" else []  # else a guess
@@ -419,7 +424,8 @@ class Found:
         """A word behind a number, which is no value: a unit of something else, or nothing."""
         before = self.before()
         calls = [one.text for one, after in pairwise(before) if after.text == "("]
-        word, found = WORDS.get("".join(calls[-1:])), plain(self.source[self.found.span])
+        here = self.source[self.found.span]
+        word, found = WORDS.get("".join(calls[-1:])), plain(here)
         is_word = found.isidentifier() and found not in WORDS and not self.names.is_name(found)
         if word is None or not word.arguments or before[-1].kind is not NUMBER or not is_word:
             return None
@@ -430,7 +436,7 @@ class Found:
         is_of_way = bool(way) and unit == (WAYS[way].unit, "1000")
         said = f"{before[-1].text} {way}" if is_of_way else ""
         return (
-            _NoValue(word, argument, before[-1].text, found, unit[0] if unit else "", said)
+            _NoValue(word, argument, before[-1].text, here, unit[0] if unit else "", said)
             if (argument.unit in _WANTED)
             else None
         )

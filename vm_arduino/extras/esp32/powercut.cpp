@@ -74,7 +74,7 @@ void starts(const Entries& entries, Area area, const std::vector<Content>& allow
     run(&store);
     const Content content = read(store, area);
     bool is_allowed = false;
-    for (const Content& content : allowed) is_allowed = is_allowed || content == content;
+    for (const Content& one : allowed) is_allowed = is_allowed || content == one;
     if (!is_allowed) wrong(content.empty() ? "nothing is there" : "there is a third thing");
     if (k > 0 && content != first) wrong("another one at a later start");
     first = content;

@@ -102,8 +102,8 @@ Content look(const Store& store, const Expected& expected) {
     if (read(store, area) != expected.others[k]) wrong("another area has changed");
   }
   const Content content = read(store, expected.area);
-  for (const Content& content : expected.allowed) {
-    if (content == content) return content;
+  for (const Content& allowed : expected.allowed) {
+    if (content == allowed) return content;
   }
   wrong("there is a third thing");
 }

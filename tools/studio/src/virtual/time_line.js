@@ -1,6 +1,6 @@
 // The line under the world: how the run was, at any moment of it.
 
-import { element, hide } from '../page/elements.js';
+import { element } from '../page/elements.js';
 import { Moments } from './moments.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
@@ -16,7 +16,6 @@ export class TimeLine {
   /** @type {{at_ms: number, kind: string}[]} */
   #marks = [];
   #bumps = 0;
-  #place = element('time_line', HTMLElement);
   #line = element('time_at', HTMLInputElement);
   #canvas = element('time_marks', HTMLCanvasElement);
   #changed;
@@ -77,7 +76,7 @@ export class TimeLine {
   /** Draws what there is. */
   show() {
     const { length, first_ms, last_ms } = this.#moments;
-    hide(this.#place, length < 2);
+    this.#line.disabled = length < 2;
     if (length < 2) return;
     Object.assign(this.#line, { min: String(first_ms), max: String(last_ms) });
     const { now_ms, began_ms } = this.#moments.at(this.#at);
