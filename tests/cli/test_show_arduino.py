@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.support.command import PROGRAM, Tsc
+from tiniscript import robots
+
+READINGS = robots.load("tinibot").kit.readings
+OWN = len(robots.load("tinibot").kit.sensors)
 
 
 def test_it_prints_a_sketch(tsc: Tsc) -> None:
@@ -43,3 +49,26 @@ def test_what_cannot_be_is_said(tsc: Tsc, tmp_path: Path) -> None:
     assert done.code == 2 and "--arduino" in done.err and not (tmp_path / "b.ino").exists()
     done = tsc("show", "--arduino", "-e", PROGRAM, "--robot", "tinibot32")
     assert done.code == 2 and "no sketches for the board esp32dev" in done.err
+
+
+@pytest.mark.parametrize("k", range(len(READINGS)), ids=lambda k: READINGS[k].name)
+def test_a_reading_is_in_a_sketch_or_is_said_to_have_none(tsc: Tsc, k: int) -> None:
+    name = READINGS[k].name
+    condition = name if READINGS[k].is_yes_no else f"{name} > 5"
+    for text in (name, f"SHOW({name})", f"X = {name}", f"W(1) UNTIL({condition})",
+                 f"IF({condition});S;ENDIF", f"DEF DEF_1;{name};END_DEF;LOOP(2);DEF_1;END_LOOP",
+                 f"WHILE({condition});S;END_WHILE"):  # fmt: skip
+        done = tsc("show", "--arduino", "-e", f"SI|{text}")
+        if k < OWN:
+            done.gives(0, out="void loop()")
+        else:
+            done.gives(2, "no remote control")
+    for task in ("TASK;W(1);END_TASK", f"WHEN({condition});S;END_WHEN"):
+        tsc("show", "--arduino", "-e", task).gives(2, "no TASK and no WHEN")
+
+
+def test_a_way_that_is_calculated_is_said_to_have_no_sketch(tsc: Tsc) -> None:
+    for move in ("F(X CM, 60)", "B(30 CM, X)", "R(X DEG, 60)"):
+        tsc("show", "--arduino", "-e", f"X = DISTANCE;{move}").gives(2, "CM and DEG take numbers")
+    for move in ("F(30 CM, 60)", "R(90 DEG, 60)"):
+        tsc("show", "--arduino", "-e", move).gives(0, "", out="void loop()")

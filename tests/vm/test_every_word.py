@@ -38,9 +38,7 @@ from tiniscript.base.words import (
     Argument,
     Word,
 )
-from tiniscript.codegen.sketch.writing import sketch_of
-from tiniscript.semantics.ir import every
-from tiniscript.semantics.ways import is_open_way
+from tiniscript.codegen.sketch.writing import lacks, sketch_of
 from tiniscript.syntax.formatter import formatted
 
 ROBOT = with_wide_kit()
@@ -72,7 +70,7 @@ def check(text: str) -> bool:
     check_program(text.encode(), KIT, SENSES)
     program = compiled.program
     assert program is not None
-    if not program.tasks and not any(map(is_open_way, every(program))):
+    if lacks(program, KIT) is None:
         assert sketch_of(compiled.source, program, ROBOT, "en")
     return True
 

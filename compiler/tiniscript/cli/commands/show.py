@@ -8,10 +8,8 @@ from tiniscript.cli import compiling, images, inputs, outputs
 from tiniscript.cli.disassembling import print_disassembly, print_json
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import say
-from tiniscript.codegen.sketch.writing import BOARDS, sketch_of
+from tiniscript.codegen.sketch.writing import BOARDS, lacks, sketch_of
 from tiniscript.robots.profile import Robot
-from tiniscript.semantics.ir import every
-from tiniscript.semantics.ways import is_open_way
 
 
 def run(options: Namespace, language: str) -> int:
@@ -46,13 +44,8 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     if not compiled.is_right:
         return 1
     assert compiled.program is not None
-    if compiled.program.tasks:
-        raise CommandError(2, "sketch_no_tasks", file=inputs.shown(given.name))
-    assert compiled.verdict is not None
-    if robot.kit.asks_remote(compiled.verdict.uses):
-        raise CommandError(2, "sketch_no_remote", file=inputs.shown(given.name))
-    if any(map(is_open_way, every(compiled.program))):
-        raise CommandError(2, "sketch_no_ways", file=inputs.shown(given.name))
+    if missing := lacks(compiled.program, robot.kit):
+        raise CommandError(2, f"sketch_no_{missing}", file=inputs.shown(given.name))
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
     if outputs.put(options.output, sketch):
         name = inputs.shown(robot.labels[language]["robot"])

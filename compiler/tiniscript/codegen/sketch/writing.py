@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterable
 from textwrap import wrap
 
+from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source
 from tiniscript.codegen.sketch import helpers, numbers
 from tiniscript.codegen.sketch.expressions import FUNCTIONS, Expressions, is_float
@@ -18,6 +19,7 @@ from tiniscript.codegen.sketch.wiring import SketchPlan, is_count, is_small
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import constant
+from tiniscript.semantics.ways import is_open_way
 from tiniscript.syntax.lexer import scan
 
 
@@ -68,8 +70,25 @@ _WORD = re.compile(r"\$(\w+?)(?=_\$|_PIN\b|\b)")
 BOARDS = {"uno": "Uno", "nano": "Nano", "mega": "Mega 2560"}
 
 
+def lacks(program: ir.Program, kit: Kit) -> str | None:
+    """Return what a program needs and no sketch has: "tasks", "remote" or "ways".
+
+    Tasks are TASK and WHEN, ways are CM and DEG that are calculated. None where there is a sketch.
+    """
+    statements = list(ir.every(program))
+    read = {statement.sensor for statement in statements if isinstance(statement, ir.Read)}
+    if program.tasks:
+        return "tasks"
+    if any(k >= len(kit.sensors) for k in read | ir.named("SENSOR", statements)):
+        return "remote"
+    return "ways" if any(map(is_open_way, statements)) else None
+
+
 def sketch_of(source: Source, program: ir.Program, robot: Robot, language: str) -> str:
-    """Return the sketch of a checked program, for a robot on an AVR; see `robots.firmware.fits`."""
+    """Return the sketch of a checked program that `lacks` nothing, for a robot on an AVR.
+
+    See `robots.firmware.fits`.
+    """
     return _Sketch(source, program, robot, language).text()
 
 
