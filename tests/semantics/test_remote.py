@@ -281,12 +281,12 @@ def test_a_sketch_has_none(tsc: Tsc) -> None:
     assert tsc("show", "--arduino", "-e", "KEY_A = 1;SHOW(KEY_A)").code == 0
 
 
-@pytest.mark.parametrize(("robot", "has"), [("tinibot", True), ("grabber", True), ("liner", False),
+@pytest.mark.parametrize(("robot", "has"), [("tinibot", True), ("grabber", True), ("liner", True),
                                             ("tinibot2", False), ("tinibot32", True)])  # fmt: skip
 def test_a_robot_without_room_for_it_is_told_before_anything_is_sent(
     tsc: Tsc, robot: str, has: bool
 ) -> None:
-    """A Nano, and an Uno with discs; what sends nothing takes the program."""
+    """An Uno with discs; what sends nothing takes the program."""
     text = "SHOW(1)\nF(1, 50) UNTIL(KEY_A)\n"
     of = ("-e", text, "--robot", robot)
     for sends in (["compile", "--text"], ["upload", "--virtual"]) if not has else []:
