@@ -83,14 +83,14 @@ void Reader::find_in_kit() {
 // Notes that the sensor that was named has been asked, and returns its bit.
 SensorBits Reader::ask() {
   const SensorBits bit = static_cast<SensorBits>(SensorBits{1} << number_);
-  if (kWordsGiveWay) asked_ |= bit;
+  if (kHasRemote) asked_ |= bit;
   return bit;
 }
 
 // Whether the word may become a name of the program; then nobody asks it.
 bool Reader::is_free() {
   const SensorBits before = asked_;
-  return found_ == 0 || (kWordsGiveWay && (found_ & kGivesWay) != 0 && (ask() & before) == 0);
+  return found_ == 0 || (kHasRemote && (found_ & kGivesWay) != 0 && (ask() & before) == 0);
 }
 
 void Reader::find_name() {

@@ -131,10 +131,6 @@ constexpr bool kHasRemote = true;
 constexpr bool kHasRemote = false;
 #endif
 
-// Whether the reader lets a program take a word of the kit that came after 0.2.0 for a name of its own: an
-// ATmega328P has no room for that.
-constexpr bool kWordsGiveWay = kHasRemote && kReadsDefs;
-
 #ifdef tiniscript_has_draft
 constexpr bool kTextIsInProgram = false;
 #else
