@@ -247,18 +247,22 @@ def test_a_firmware_that_the_board_does_not_hold_is_refused_before_it_is_written
     assert not ready.files(ready.cache())
 
 
-def test_a_firmware_that_is_too_large_with_tasks_is_built_without_and_says_so(
-    clone: Path, tmp_path: Path
+@pytest.mark.parametrize(
+    ("chip", "lacks"), [("uno", "sin TASK ni WHEN"), ("nano", "sin control remoto")]
+)
+def test_a_firmware_that_is_too_large_is_built_with_less_and_says_so(
+    chip: str, lacks: str, clone: Path, tmp_path: Path
 ) -> None:
     body = f"""
 {MAKES}
 name = sys.argv[sys.argv.index("-e") + 1]
-if name == "uno":
+if name == "{chip}":
     {TOO_LARGE}
 make(name, ":00000001FF\\n")
 """
-    done = built(clone, pretending(tmp_path, body), "--lang", "es").gives(0)
-    assert done.err.count("queda sin TASK ni WHEN") == 1, done
+    words = ("--chip", chip, "--lang", "es")
+    done = built(clone, pretending(tmp_path, body), *words).gives(0)
+    assert done.err.count(f"queda {lacks}") == 1, done
     assert len(list(ready.cache().glob("*.hex"))) == 1
 
 

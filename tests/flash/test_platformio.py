@@ -17,7 +17,7 @@ from tests.support.needs import need
 from tests.support.platformio import OFFLINE, SKETCH, copied, pio, prepared
 from tiniscript import compile_text, robots
 from tiniscript.cli import main
-from tools.bench.firmware_size import environments
+from tools.bench.firmware_size import SMALLER, environments
 from tools.builds.platformio_offline import ARDUINO, BOARDS, DEBIAN
 
 FLASH_BYTES, RAM_BYTES = 32_256, 2048  # of an Uno
@@ -121,7 +121,7 @@ ESP32 = {"esp32dev": "tinibot32", "esp32c3": "tinibotc3"}
 def test_every_robot_has_a_sketch_for_its_board() -> None:
     text = (SKETCH / "platformio.ini").read_text(encoding="utf-8")
     named = re.findall(r"\[env:(\w+)\]", text)
-    assert set(named) == {*SKETCHES, *NEW_NANOS, *ESP32, "uno_without_tasks", "native"}
+    assert set(named) == {*SKETCHES, *NEW_NANOS, *ESP32, *SMALLER, "native"}
     assert set(environments()) == set(SKETCHES)
     for board, name in ESP32.items():
         assert robots.load(name).board.chip == board

@@ -13,11 +13,9 @@ from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tests.text.test_plain import NUMBERS
 from tiniscript import robots
-from tiniscript.base.kit import KIT_WORDS_SINCE
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.codegen.text.problems import LONGEST, PROBLEMS
 from tiniscript.robots.text_levels import LEVELS, OF_TASKS_AND_WAYS, UNREAD
-from tiniscript.syntax.later_words import in_program
 from tiniscript.syntax.lexer import scan
 
 KIT = robots.load("tinibot").kit
@@ -268,12 +266,11 @@ def test_a_reader_without_defs_reads_all_else() -> None:
     cases = [case.parts.get("tiniscript", "S") for case in all_cases()]
     for text in (*texts, *WRONG, *cases):
         answer, words = small.read(text.encode()), {token.text for token in scan(text).tokens}
-        gives = words & KIT_WORDS_SINCE.keys()  # none of them does there
-        if text in texts or not ((lacks | UNREAD) & words or gives):
+        if text in texts or not (lacks | UNREAD) & words:
             other = large.read(text.encode())  # whose FOREVER waits for tasks
             assert answer == other or (answer.problem == "FOREVER_HERE" and other.problem), text
         else:
-            assert answer.problem or (gives and not in_program(text, KIT).given), text
+            assert answer.problem, text
     small.close()
     large.close()
 

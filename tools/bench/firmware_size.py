@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript import robots
+from tiniscript.flash import building
 from tools import ROOT, uno
 from tools.bench import firmware_stack
 from tools.builds.platformio_offline import config_of
@@ -21,7 +22,7 @@ from tools.builds.platformio_offline import config_of
 PROJECT = ROOT / "vm_arduino"
 DEFAULT = "tinibot"  # where the name of an environment has no robot
 NEW_NANO = "nano_new"
-WITHOUT_TASKS = "uno_without_tasks"  # not what a shipped robot gets
+SMALLER = tuple(name for name, _ in building.SMALLER.values())  # not what a shipped robot gets
 PLATFORM = "atmelavr"
 
 
@@ -40,7 +41,7 @@ def environments() -> list[str]:
     Those of a Nano with a new bootloader build what the others of a Nano do.
     """
     config = config_of(PROJECT)
-    return [name for name in config.envs() if not name.startswith((NEW_NANO, WITHOUT_TASKS))
+    return [name for name in config.envs() if not name.startswith((NEW_NANO, *SMALLER))
             and config.get(f"env:{name}", "platform").split()[0] == PLATFORM]  # fmt: skip
 
 

@@ -21,6 +21,7 @@ from pathlib import Path
 
 from tests.support.images import image_of
 from tiniscript import robots
+from tiniscript.flash import building
 from tools import uno
 from tools.bench import avr_bench, firmware_size
 from tools.bench.firmware_stack import connected, must
@@ -54,7 +55,7 @@ def main() -> int:
         return 2
     try:
         firmware = firmware_size.measured("uno").firmware
-        without = firmware_size.measured(firmware_size.WITHOUT_TASKS).firmware
+        without = firmware_size.measured(building.SMALLER["uno"][0]).firmware
     except RuntimeError as failed:
         print(failed, file=sys.stderr)
         return 2

@@ -15,7 +15,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts import say_aside, text
 from tiniscript.flash import building, ready
-from tiniscript.flash.building import LESS, CannotBuild, Seen, Sources
+from tiniscript.flash.building import LESS_REMOTE, LESS_TASKS, CannotBuild, Seen, Sources
 from tiniscript.flash.ready import Ready
 from tiniscript.library import install_advice
 from tiniscript.robots.ports import AVRS, ESP32S
@@ -95,9 +95,9 @@ def _built(
 
     def look(seen: Seen) -> None:
         nonlocal fetched
-        if seen.phase == LESS:
+        if seen.phase in (LESS_TASKS, LESS_REMOTE):
             progress.end()
-            say_aside("flash_less", language, **values)
+            say_aside(f"flash_{seen.phase}", language, **values)
             return
         progress.label = text(f"flash_{seen.phase}", language)
         if seen.what and seen.what != fetched:

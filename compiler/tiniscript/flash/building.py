@@ -32,10 +32,14 @@ HEADER = "src/boards/kits/own.h"
 MADE_BY = "tsc firmware, from a robot profile."
 
 FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
-LESS = "less"  # it is too large, and is built once more, without tasks
+# It is too large, and is built once more, without tasks or without a remote control.
+LESS_TASKS, LESS_REMOTE = "less_tasks", "less_remote"
 CORE_FILES = 26  # of Arduino's core, about
-# For a robot that does not fit on its board with TASK and WHEN: one of more devices than tinibot.
-WITHOUT_TASKS = {"uno": "uno_without_tasks"}
+# For a robot that does not fit on its board with all of it: one of more devices than tinibot.
+SMALLER = {
+    "uno": ("uno_without_tasks", LESS_TASKS),
+    "nano": ("nano_without_remote", LESS_REMOTE),
+}
 # For a robot with discs on its wheels, which have the place of the reader of text.
 WITH_DISCS = {"uno": "uno_tinibot2", "nano": "nano_tinibot2"}
 PLATFORMIO_MB = 4  # what pip fetches, measured
@@ -187,10 +191,10 @@ def build(made_from: Sources, robot: Robot, look: Callable[[Seen], None]) -> byt
         try:
             project.build(look, is_hex=True)
         except CannotBuild as why:
-            if why.why != CannotBuild.TOO_LARGE or project.environment not in WITHOUT_TASKS:
+            if why.why != CannotBuild.TOO_LARGE or project.environment not in SMALLER:
                 raise
-            project.environment = WITHOUT_TASKS[project.environment]
-            look(Seen(LESS, 0))
+            project.environment, less = SMALLER[project.environment]
+            look(Seen(less, 0))
             project.build(look, is_hex=True)
         return project.made.read_bytes()
 

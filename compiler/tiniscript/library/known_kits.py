@@ -7,6 +7,7 @@ from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused
 from tiniscript.bytecode.verify import Refused, check
 from tiniscript.robots import given
 from tiniscript.robots.boards import CHIPS
+from tiniscript.robots.ports import AVR_328P, AVRS
 from tiniscript.robots.profile import Robot
 
 
@@ -73,10 +74,11 @@ def lacks(needs: int, robot: Robot) -> bool:
 
 
 def has_remote(robot: Robot) -> bool:
-    """Return whether the robot's firmware has a remote control: a Nano lacks the flash, an Uno with
-    discs the memory."""
-    chip = CHIPS[robot.board.chip]
-    return bool(chip.has & TASKS) and not (robot.board.discs and chip.name == "uno")
+    """Return whether the robot's firmware has a remote control.
+
+    An Uno or a Nano with discs lacks the memory.
+    """
+    return not robot.board.discs or AVRS.get(robot.board.chip) is not AVR_328P
 
 
 def lacking(needs: int, robot: Robot) -> str:

@@ -23,12 +23,10 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
     """Return what a robot of this level lacks for a checked program."""
     parsed = parse(source)
     tokens = list(spelled_out(parsed.scan.tokens))
-    # A reader that lacks words has no room either for those that give way to a program.
-    lacks = level.lacks and level.lacks | kit.given
     diagnostics = [
         Diagnostic(codes.LEVEL_WORD, token.span, {"level": level.name, "word": token.text})
         for token in tokens
-        if token.kind is WORD and (token.text in lacks or len(token.text) > LONGEST_WORD)
+        if token.kind is WORD and (token.text in level.lacks or len(token.text) > LONGEST_WORD)
     ]
     if "DEF" not in level.lacks and any(procedure.values for procedure in program.procedures):
         diagnostics += _values(program, kit, level)

@@ -34,7 +34,7 @@ void hold(const uint8_t* header) {
 
 bool is_in_memory() { return is_whole; }
 
-uint16_t held_bytes() {
+tini_noinline uint16_t held_bytes() {
   return static_cast<uint16_t>(static_cast<uint8_t>(more_header + kHeaderBytes) +
                                robot_status.length);
 }

@@ -37,7 +37,7 @@ bool is_latched() { return port_status().state >= State::kStopped; }
 
 }  // namespace
 
-tini_noinline void Console::pass(uint16_t passed_ms, uint16_t silence_left_ms) {
+void Console::pass(uint16_t passed_ms, uint16_t silence_left_ms) {
   is_due_ = true;
   run_down(left_ms_, kTimes, passed_ms);
   if (left_ms_[kWait] == 0 && silence_left_ms <= (is_brief_ ? kSilenceMs - kBriefMs : 0)) {
@@ -45,7 +45,7 @@ tini_noinline void Console::pass(uint16_t passed_ms, uint16_t silence_left_ms) {
   }
 }
 
-tini_noinline void Console::discard() {
+void Console::discard() {
   left_ms_[kWait] = kSilenceMs;
   is_discarding_ = true;
   is_brief_ = has_told_ = is_open_ = false;

@@ -20,7 +20,7 @@ uint16_t seed_of(uint8_t type) {
 
 }  // namespace
 
-tini_noinline bool same_bytes(const uint32_t* number, const uint8_t* bytes) {
+bool same_bytes(const uint32_t* number, const uint8_t* bytes) {
   const uint8_t* here = reinterpret_cast<const uint8_t*>(number);
   for (uint8_t k = 0; k < sizeof *number; k++) {
     if (here[k] != bytes[k]) return false;
@@ -28,7 +28,7 @@ tini_noinline bool same_bytes(const uint32_t* number, const uint8_t* bytes) {
   return true;
 }
 
-tini_noinline uint16_t get16(const uint8_t* bytes) {
+uint16_t get16(const uint8_t* bytes) {
   return static_cast<uint16_t>(bytes[0] | static_cast<uint16_t>(bytes[1]) << 8);
 }
 

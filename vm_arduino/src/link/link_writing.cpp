@@ -80,7 +80,7 @@ tini_noinline void Link::confirm(Cause cause) {
   due_ |= kDueStopped;
 }
 
-bool Link::show(int32_t value, bool is_yes_no) {
+tini_noinline bool Link::show(int32_t value, bool is_yes_no) {
   const bool is_heard = is_listened_to();
   if (!is_heard && !console_.is_talking()) return true;
   // An answer in text waits until no frames come: a value for a client does not wait for that.

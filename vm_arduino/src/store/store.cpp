@@ -96,7 +96,7 @@ uint16_t plus(uint16_t place, uint16_t more) { return static_cast<uint16_t>(plac
 
 // A byte of the body of the slot at `place`. The first byte is stored XOR the generation, so that
 // the checksum is wrong under another generation.
-tini_noinline uint8_t body_byte(uint16_t place, uint16_t at) {
+uint8_t body_byte(uint16_t place, uint16_t at) {
   const uint8_t byte = nvm_read(plus(place, plus(kBodyAt, at)));
   return at == 0 ? byte ^ nvm_read(place) : byte;
 }
@@ -123,7 +123,7 @@ uint8_t record_bytes(uint8_t slot) { return slot < kFirstOwnerSlot ? kRecordByte
 
 }  // namespace
 
-tini_noinline void Store::boot() {
+void Store::boot() {
   for (uint8_t& held : held_) held = kNothing;
   state_ = StoreState::kSettling;
   is_busy_ = true;
@@ -186,7 +186,7 @@ bool Store::is_ready_to_commit() const {
 // The write of a commit byte has begun and is not finished.
 bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ > waits_from_; }
 
-tini_noinline void Store::give_up() {
+void Store::give_up() {
   if (!is_ready_to_commit() || state_ != StoreState::kSaving) return;
   state_ = StoreState::kIdle;
   is_busy_ = false;
@@ -198,7 +198,7 @@ tini_noinline bool Store::begin_save(const uint8_t* image) {
   return length != 0 && near(this)->begin_write(Area::kProgram, image, length);
 }
 
-tini_noinline bool Store::begin_keep(Area area, uint8_t* record) {
+bool Store::begin_keep(Area area, uint8_t* record) {
   if (is_busy_) return false;
   const uint8_t length = record_bytes(static_cast<uint8_t>(2 * static_cast<uint8_t>(area)));
   const uint32_t check =
@@ -207,14 +207,14 @@ tini_noinline bool Store::begin_keep(Area area, uint8_t* record) {
   return near(this)->begin_write(area, record, length);
 }
 
-tini_noinline void Store::refuse() {
+void Store::refuse() {
   const uint8_t slot = used(Area::kProgram);
   if (slot != kNoSlot) held_[slot] |= kRefused;
 }
 
 void Store::readmit(uint8_t slot) { held_[slot] &= static_cast<uint8_t>(~kRefused); }
 
-tini_noinline bool Store::fetch(Area area, uint16_t at, uint8_t* byte) const {
+bool Store::fetch(Area area, uint16_t at, uint8_t* byte) const {
   const uint8_t slot = used(area);
   if (slot == kNoSlot || !nvm_is_ready()) return false;
   *byte = body_byte(start_of(slot), at);

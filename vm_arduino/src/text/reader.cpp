@@ -60,7 +60,7 @@ const uint8_t kSigns[] tini_progmem = {
 
 }  // namespace
 
-tini_noinline void Reader::begin(uint8_t* buffer, uint16_t room) {
+void Reader::begin(uint8_t* buffer, uint16_t room) {
   const bool is_after_cr = is_after_cr_;
   __builtin_memset(static_cast<void*>(this), 0, sizeof *this);
   is_after_cr_ = is_after_cr;

@@ -141,10 +141,10 @@ class Reader {
   void call();
 
   // expressions, in reader_values.cpp
-  tini_noinline void begin_value();
+  void begin_value();
   void open_bracket();
   Problem operand(uint8_t token);
-  tini_noinline void number();
+  void number();
   Problem name_value();
   Problem operators(uint8_t token);
   Problem binary(uint8_t op);

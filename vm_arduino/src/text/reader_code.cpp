@@ -22,7 +22,7 @@ static_assert(byte_of(Op::kPushMilli) == tini_push_milli, "");
 
 }  // namespace
 
-tini_noinline bool Reader::is_stop_after(uint8_t before) const {
+bool Reader::is_stop_after(uint8_t before) const {
   return length_ == static_cast<uint8_t>(before + 1) && buffer_[before] == byte_of(Op::kStop);
 }
 
@@ -30,7 +30,7 @@ bool Reader::wants_room() const {
   return stack_ - (buffer_ + length_) < kTight + letters_;
 }
 
-tini_noinline void Reader::move(uint8_t* buffer, uint16_t room) {
+void Reader::move(uint8_t* buffer, uint16_t room) {
 #ifdef __AVR__
   static_assert(offsetof(Reader, buffer_) == tini_buffer_at, "");
   static_assert(offsetof(Reader, stack_) == tini_waiting_at, "");

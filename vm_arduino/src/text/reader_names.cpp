@@ -24,7 +24,7 @@ void Reader::end_word() {
 
 // Returns the number of the word after the code in a table in flash, or that of the table's end.
 // Its last letter is marked; `unmark` takes that off again.
-tini_noinline uint8_t Reader::find(const uint8_t* table, uint8_t unmark) {
+uint8_t Reader::find(const uint8_t* table, uint8_t unmark) {
   uint8_t* const word = buffer_ + length_;
   uint8_t* const last = word + letters_ - 1;
   *last |= kLastLetter;
@@ -81,16 +81,16 @@ void Reader::find_in_kit() {
 }
 
 // Notes that the sensor that was named has been asked, and returns its bit.
-tini_noinline SensorBits Reader::ask() {
+SensorBits Reader::ask() {
   const SensorBits bit = static_cast<SensorBits>(SensorBits{1} << number_);
-  if (kWordsGiveWay) asked_ |= bit;
+  if (kHasRemote) asked_ |= bit;
   return bit;
 }
 
 // Whether the word may become a name of the program; then nobody asks it.
 bool Reader::is_free() {
   const SensorBits before = asked_;
-  return found_ == 0 || (kWordsGiveWay && (found_ & kGivesWay) != 0 && (ask() & before) == 0);
+  return found_ == 0 || (kHasRemote && (found_ & kGivesWay) != 0 && (ask() & before) == 0);
 }
 
 void Reader::find_name() {

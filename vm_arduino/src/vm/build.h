@@ -40,10 +40,10 @@
 #define tiniscript_reads_defs
 #endif
 
-// A remote control takes about 250 bytes of flash and 39 of RAM. Of robots with an ATmega328P an Uno has
-// it where it has tasks; a Nano lacks the flash, a robot with discs the RAM.
+// A remote control takes about 250 bytes of flash and 37 of RAM. An ATmega328P has it with the compiler's
+// options of platformio.ini (`tiniscript_with_remote`), but for a robot with discs, which lacks the RAM.
 #if !defined(__AVR_ATmega328P__) || \
-    (defined(tiniscript_with_tasks) && !defined(tiniscript_with_discs))
+    (defined(tiniscript_with_remote) && !defined(tiniscript_with_discs))
 #define tiniscript_has_remote
 #endif
 
@@ -130,10 +130,6 @@ constexpr bool kHasRemote = true;
 #else
 constexpr bool kHasRemote = false;
 #endif
-
-// Whether the reader lets a program take a word of the kit that came after 0.2.0 for a name of its own: an
-// ATmega328P has no room for that.
-constexpr bool kWordsGiveWay = kHasRemote && kReadsDefs;
 
 #ifdef tiniscript_has_draft
 constexpr bool kTextIsInProgram = false;

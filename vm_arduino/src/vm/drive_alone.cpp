@@ -25,7 +25,7 @@ bool Drive::watch(uint32_t move_ms) {
 }
 
 // Keeps the move or wait that an UNTIL watches; its check begins after this instruction.
-tini_noinline void Drive::keep_move(uint32_t move_ms) {
+void Drive::keep_move(uint32_t move_ms) {
   TaskRecord* const me = task_.me;
   me->rest_ms = move_ms;
   me->check = task_.pc;

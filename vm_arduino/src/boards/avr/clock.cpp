@@ -38,7 +38,7 @@ void begin_timers() {
 
 }  // namespace
 
-uint32_t clock_ms() {
+tini_noinline uint32_t clock_ms() {
   const CriticalSection critical;
   return clock.now_ms;
 }

@@ -49,7 +49,7 @@ void on_stall() {
   actuators_off(true);
 }
 
-tini_noinline void be_alive() { last.mark = kAlive; }
+void be_alive() { last.mark = kAlive; }
 
 tini_noinline uint32_t hung_mark() { return kHung ^ last.place.program ^ last.place.at; }
 

@@ -1,0 +1,37 @@
+"""A remote control drives the firmware of an Uno and of a Nano: from its word to the motor pins.
+
+`python -m tools.bench.keys` measures the same 300 times, and with another baud.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tiniscript import robots
+from tiniscript.link.remote import NOTHING
+from tools.bench.keys import (
+    AHEAD,
+    AT_ONCE,
+    HELD_MOST_MS,
+    LET_GO_MOST_MS,
+    LOST_MOST_MS,
+    Hand,
+)
+
+BAUD = robots.load("tinibot").board.baud
+TRIES = 5
+
+
+@pytest.mark.parametrize("sketch_name", ["uno", "nano"])
+def test_what_a_hand_holds_reaches_the_motors(
+    sketch_name: str, sketches: Callable[[str], Path]
+) -> None:
+    """Also what it lets go; and a lost line lets all go."""
+    with Hand(sketches(sketch_name), BAUD, AT_ONCE) as hand:
+        for _ in range(TRIES):
+            assert 0 < hand.change(AHEAD) <= HELD_MOST_MS[BAUD]
+            assert 0 < hand.change(NOTHING) <= LET_GO_MOST_MS[BAUD]
+        assert 0 < hand.lose() <= LOST_MOST_MS
