@@ -126,7 +126,7 @@ def main() -> int:
     ):
         bench = Bench(pty_robot, folder)
         for name in ("tsc upload, opens the port", "tsc upload, tsc monitor --hold holds it"):
-            link = bench.start("monitor", "--hold") if "link" in name else None
+            link = bench.start("monitor", "--hold") if "--hold" in name else None
             if link is not None:
                 assert link.stdout
                 link.stdout.readline()
