@@ -1,15 +1,21 @@
-"""`python -m tools.bench` prints the figures of the page, in its order, and no others."""
+"""`python -m tools.bench` prints the figures of the page, in its order, and no others.
+
+The page is the form: a benchmark names the rows that it fills in, and no table prints another one.
+"""
 
 from __future__ import annotations
 
 import subprocess
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tools import uno
 from tools.bench import __main__ as bench
+from tools.bench import link, page
 
 PAGE = """From `python -m tools.bench.link`, and `python -m tools.bench.ways`;
 again `python -m tools.bench.link`, (`python -m
@@ -52,3 +58,55 @@ def test_all_that_the_page_names_is_there() -> None:
     assert {"compiler", "machine", "link", "studio"} <= {*names}
     for name in names:
         assert find_spec(f"tools.bench.{name}"), name
+
+
+# Their tables on the page were measured once, change by change; or it is one figure in a sentence.
+NO_TABLE = ("firmware_size", "code_size")
+FILLED = [name for name in dict.fromkeys(n for n, *_ in bench.commands()) if name not in NO_TABLE]
+
+
+@pytest.mark.parametrize("name", FILLED)
+def test_a_benchmark_fills_in_the_rows_of_its_tables(name: str) -> None:
+    """In their order; what follows those of a table was measured once."""
+    module = import_module(f"tools.bench.{name}")
+    rows = [*(module.ROWS.values() if isinstance(module.ROWS, dict) else module.ROWS)]
+    rows += module.OTHERS.values() if name == "link" else ()
+    tables = page.tables(name)
+    shown = [page.cells(row)[0] for table in tables for row in table.rows]
+    assert shown[: len(rows)] == rows
+    assert len(shown) == len(rows) or name == "machine"
+
+
+def test_no_other_row_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    name = "text"
+    row, other = (page.cells(each) for each in page.tables(name)[0].rows)
+    page.show(name, [other, ["`SI|F(2,80)`", "1.00 ms", "2.00 ms"]])
+    head, rule, first, second, _ = capsys.readouterr().out.split("\n", 4)
+    assert (head, rule) == page.tables(name)[0][:2]
+    assert (first, page.cells(second)) == (r"| `SI\|F(2,80)` | 1.00 ms | 2.00 ms |", other)
+    with pytest.raises(LookupError, match="no row a robot"):
+        page.show(name, [["a robot", "1 ms", "2 ms"]])
+    with pytest.raises(ValueError, match="other columns"):
+        page.show(name, [row[:2]])
+    assert capsys.readouterr().out == ""
+
+
+def test_the_firmware_is_measured_at_each_baud(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def measure(_: Path, baud: int) -> float:
+        if baud == 9600 and breaks:
+            raise RuntimeError("it did not move")
+        return baud / 100
+
+    breaks = False
+    monkeypatch.setattr(link, "built", lambda baud, folder: folder / str(baud))
+    monkeypatch.setattr(uno, "missing", lambda: "")
+    for most, code in ((2000.0, 0), (100.0, 1)):
+        found = link.on_each_baud(measure, lambda its, _: max(its.values()) <= most)  # noqa: B023
+        assert found == code
+    breaks = True
+    assert link.on_each_baud(measure, lambda *_: True) == 2
+    assert "it did not move" in capsys.readouterr().err
+    monkeypatch.setattr(uno, "missing", lambda: "no simavr")
+    assert link.on_each_baud(measure, lambda *_: True) == 2

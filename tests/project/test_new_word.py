@@ -14,7 +14,7 @@ import tiniscript
 from tests.oracle.interpreter import run as run_by_reference
 from tests.oracle.words import FIXED
 from tests.support.casefile import ROOT
-from tests.support.new_word import DANCE, HORN, SAID, WIGGLE, with_texts
+from tests.support.new_word import DANCE, HORN, SAID, SHAKE, WIGGLE, with_texts
 from tests.support.rows import each_row
 from tests.text.test_line import check_line
 from tiniscript import compile_text, robots
@@ -49,6 +49,8 @@ def _has_horn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(FIXED, WIGGLE.text, (("N",), WIGGLE.stands_for))
     monkeypatch.setitem(WORDS, DANCE.text, DANCE)
     monkeypatch.setitem(FIXED, DANCE.text, (("SECONDS", "N"), DANCE.stands_for))
+    monkeypatch.setitem(WORDS, SHAKE.text, SHAKE)
+    monkeypatch.setitem(FIXED, SHAKE.text, (("BEATS", "POWER"), SHAKE.stands_for))
 
 
 def test_it_does_what_it_stands_for() -> None:
@@ -76,6 +78,10 @@ def test_it_does_what_it_stands_for() -> None:
         ("WIGGLE(FOREVER)", codes.FOREVER_NOT_HERE),
         ("WIGGLE(2) UNTIL(DISTANCE < 10)", codes.UNTIL_NOT_HERE),
         ("N = WIGGLE(2)", codes.NO_VALUE),
+        ("SHAKE(99, 60)", codes.OUT_OF_RANGE),
+        ("SHAKE(3, 101)", codes.OUT_OF_RANGE),
+        ("SHAKE(3)", codes.ARGUMENT_COUNT),
+        ("SHAKE(3, TRUE)", codes.WANTS_NUMBER),
     ],
 )
 def test_what_is_wrong_with_it_is_said(program: str, code: codes.Code) -> None:
@@ -93,6 +99,9 @@ def test_what_is_wrong_with_it_is_said(program: str, code: codes.Code) -> None:
          "DEF A(N);LOOP(N);L(0.2, 60);R(0.2, 60);END_LOOP;END_DEF;A(2)"),
         ("IF(TRUE);WIGGLE(2);ENDIF;W(1)",
          "IF(TRUE);LOOP(2);L(0.2, 60);R(0.2, 60);END_LOOP;ENDIF;W(1)"),
+        ("SHAKE(RANDOM(1, 3), RANDOM(40, 60))",
+         "SHAKE_POWER = RANDOM(40, 60);LOOP(RANDOM(1, 3));L(0.2, SHAKE_POWER);R(0.2, SHAKE_POWER)"
+         ";END_LOOP"),
         ("N = 2;DANCE(N + 1, N)",
          "N = 2;BEEP(N + 1, 440);BEEP(0.5, 440);LOOP(N);L(0.2, 60);R(0.2, 60);END_LOOP"),
     ],
@@ -123,16 +132,18 @@ def test_a_value_is_named_where_it_is_wrong() -> None:
 
 
 def test_a_value_of_such_a_word_is_the_whole_of_one_value() -> None:
-    """Twice, a RANDOM in it would be two numbers; in `N * 2` it would need brackets.
+    """Twice, a RANDOM in it would be two numbers, so what is needed twice is set to a variable.
 
-    A name that is a word would mean the word: `F(TIME, 80)` goes as long as the program has run.
+    In `N * 2` it would need brackets. A name that is a word would mean the word: `F(TIME, 80)` goes
+    as long as the program has run.
     """
     for word in WORDS.values():
         for name in (its.name.upper() for its in word.arguments if word.stands_for):
             said = rf"(?<!\w){name}(?!\w)"
             assert name not in WORDS, word
             assert len(re.findall(said, word.stands_for)) == 1, word
-            assert re.search(rf"[(,] *{said} *[,)]", word.stands_for), word
+            is_whole = rf"[(,] *{said} *[,)]|= *{said} *(?:;|$)"
+            assert re.search(is_whole, word.stands_for), word
 
 
 def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
@@ -239,7 +250,9 @@ def test_a_page_that_is_full_is_an_error(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_it_is_in_the_references(document: str, language: str, says: str) -> None:
     row = rf"(?m)^- {says}: .*`HORN` = `BEEP\(0\.5, 440\)` (.*)$"
     found = re.search(row, language_document(document, language))
-    with_values = {"WIGGLE(N)": WIGGLE, "DANCE(SECONDS, N)": DANCE}
+    with_values = {
+        "WIGGLE(N)": WIGGLE, "DANCE(SECONDS, N)": DANCE, "SHAKE(BEATS, POWER)": SHAKE,
+    }  # fmt: skip
     assert found
     assert found[1] == " ".join(
         f"`{usage}` = `{word.stands_for}`" for usage, word in with_values.items()

@@ -22,6 +22,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
@@ -262,12 +263,6 @@ class SessionSide:
             session.tells_places = True
             return
         actions: dict[str, Callable[[], PendingRequest[Any]]] = {
-            "hello": session.hello,
-            "ping": session.ping,
-            "status": session.status,
-            "clear": session.clear,
-            "fetch": session.fetch,
-            "undo": session.undo,
             "start": lambda: session.start("detached" in flags),
             "live": lambda: session.live(data),
             "name": lambda: session.name(data),
@@ -278,7 +273,9 @@ class SessionSide:
                 kit=int(flags["kit"]) if "kit" in flags else None,
             ),
         }
-        self.pending.append(actions[words[0]]())
+        values = {name: int(value, 0) for name, value in flags.items() if value.isdecimal()}
+        ask = actions.get(words[0]) or partial(getattr(session, words[0]), **values)
+        self.pending.append(ask())
 
     def poll(self, now_ms: int) -> bytes:
         self.now_ms = now_ms

@@ -1,4 +1,4 @@
-"""Words that the language could have: they stand for instructions, two of them with values."""
+"""Words that the language could have: they stand for instructions, three of them with values."""
 
 from __future__ import annotations
 
@@ -6,12 +6,17 @@ import shutil
 from pathlib import Path
 
 from tiniscript.base.languages import FOLDER
-from tiniscript.base.words import ROLES, SECONDS, Argument, Word
+from tiniscript.base.words import POWER, ROLES, SECONDS, Argument, Word
 
 HORN = Word("HORN", ROLES["fixed"], stands_for="BEEP(0.5, 440)")
 SAID = {"en": "honks", "es": "toca la bocina"}
 TIMES = Argument("n", "", 1000, 9000, "3")
 WIGGLE = Word("WIGGLE", ROLES["fixed"], (TIMES,), "LOOP(N);L(0.2, 60);R(0.2, 60);END_LOOP")
+# Values of a kind of its own, of which one is needed twice: it goes into a variable first.
+SHAKE = Word(
+    "SHAKE", ROLES["fixed"], (Argument("beats", "beats", 1000, 20_000, "4"), POWER),
+    "SHAKE_POWER = POWER;LOOP(BEATS);L(0.2, SHAKE_POWER);R(0.2, SHAKE_POWER);END_LOOP",
+)  # fmt: skip
 DANCE = Word("DANCE", ROLES["fixed"], (SECONDS, TIMES), "BEEP(SECONDS, 440);HORN;WIGGLE(N)")
 
 
@@ -20,5 +25,6 @@ def with_texts(folder: Path) -> Path:
     shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("*.texts"))
     for language, said in SAID.items():
         with (folder / language / "studio.toml").open("a", encoding="utf-8") as file:
-            file.write(f'"block/{HORN.text}" = "{{{HORN.text}}} {said}"\n')
+            for word in (HORN, SHAKE):
+                file.write(f'"block/{word.text}" = "{{{word.text}}} {said}"\n')
     return folder

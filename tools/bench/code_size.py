@@ -76,10 +76,7 @@ def measured() -> Measured:
 
 def main() -> None:
     found = measured()
-    print(
-        f"{found.programs} programs, {found.statements} statements, {found.code_bytes} code_bytes: "
-        f"{found.per_statement:.2f} bytes a statement"
-    )
+    print(f"A statement takes {found.per_statement:.1f} bytes.")
 
 
 if __name__ == "__main__":

@@ -11,15 +11,17 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 from tiniscript import compile_text, robots
 from tools import ROOT
+from tools.bench import page
 
 KIT = robots.load(robots.DEFAULT).kit
 OBSTACLE = "SI|START;LOOP(FOREVER);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP"
 PROGRAMS = ("SI|F(5,80)", "SI|LOOP(3);F(2,50);END_LOOP", OBSTACLE)
+ROWS = *(f"`{text}`" for text in PROGRAMS[:2]), "the paper's obstacle program"
 
 
 def main() -> None:
@@ -27,22 +29,12 @@ def main() -> None:
     processes()
 
 
-def table(title: str, head: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
-    lines = [head, *([str(cell) for cell in row] for row in rows)]
-    widths = [max(len(line[k]) for line in lines) for k in range(len(head))]
-    print(f"\n{title}")
-    for line in lines:
-        first, *rest = zip(line, widths, strict=True)
-        print(first[0].ljust(first[1]), *(cell.rjust(width) for cell, width in rest), sep="   ")
-
-
 def sizes() -> None:
-    ours = [compile_text(text, KIT) for text in PROGRAMS]
-    rows: list[tuple[object, ...]] = [
-        ("code_bytes", *(len(our.code) for our in ours)),
-        ("image_bytes", *(len(our.image) for our in ours)),
-    ]
-    table("Bytes", ("", "F(5,80)", "LOOP(3) ...", "obstacle"), rows)
+    found = []
+    for name, text in zip(ROWS, PROGRAMS, strict=True):
+        ours = compile_text(text, KIT)
+        found.append((name, *(f"{len(each)} bytes" for each in (ours.code, ours.image))))
+    page.show("compiler", found)
 
 
 def median_pair(ours: Callable[[], object], theirs: Callable[[], object], runs: int) -> list[float]:
@@ -74,9 +66,8 @@ def processes() -> None:
 
         command = start("compile", str(program))
         command()  # what is cached is cached now
-        ours, theirs, ratio = median_pair(command, bare, 21)
-    row = ("tsc compile", *(f"{each * 1000:.0f} ms" for each in (ours, theirs)), f"{ratio:.1f}x")
-    table("Whole processes (medians of 21 pairs)", ("", "tsc", "python -c pass", "ratio"), [row])
+        ratio = median_pair(command, bare, 21)[-1]
+    print(f"A whole `tsc compile` takes about {ratio:.1f} times as long as `python -c pass`.")
 
 
 if __name__ == "__main__":

@@ -10,16 +10,16 @@ from __future__ import annotations
 import random
 import statistics
 import sys
-import tempfile
 from pathlib import Path
 
 from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.link.messages import HOLD_MS
 from tiniscript.link.remote import GAP_MS, NOTHING, Pressed
-from tools import ROOT, uno
+from tools import ROOT
+from tools.bench import page
 from tools.bench.firmware_stack import connected, must
-from tools.bench.link import BAUDS, KIT, MOTORS, ROBOT, built, row
+from tools.bench.link import KIT, MOTORS, ROBOT, on_each_baud
 from tools.uno import CYCLES_PER_MS, Uno
 
 AT_ONCE = "SI|LOOP(FOREVER); M(PAD_Y, PAD_Y); END_LOOP"
@@ -39,9 +39,10 @@ LOST_MOST_MS = HOLD_MS + 3  # the clock and the program look after that time
 ROWS = (
     "what is held, to the motor pins",
     "what is let go, to the motor pins",
-    "what is held, to the motor pins, by `examples/remote.ts`",
-    "a lost line, to motors off",
+    "what is held, to the motor pins, by `examples/remote.ts`, which looks 20 times in a second",
+    f"a lost line, to motors off, in {TRIES} of {TRIES}",
 )
+FORMS = (".1f", ".1f", ".1f", ".0f")
 
 
 class Hand:
@@ -112,22 +113,17 @@ def measured(firmware: Path, baud: int) -> list[list[float]]:
 
 
 def main() -> int:
-    if uno.missing():
-        print(uno.missing(), file=sys.stderr)
-        return 2
-    with tempfile.TemporaryDirectory() as name:
-        try:
-            found = {baud: measured(built(baud, Path(name)), baud) for baud in BAUDS}
-        except RuntimeError as why:
-            print(why, file=sys.stderr)
-            return 2
-    head = " | ".join(f"{baud} baud, half | slowest" for baud in BAUDS)
-    print(f"| on a simulated Uno, each {TRIES} times, ms | {head} |")
-    print("|---|---:|---:|---:|---:|")
-    for number, what in enumerate(ROWS):
-        times = [rows[number] for rows in found.values()]
-        row(what, [f"{of(ms):.1f}" for ms in times for of in (statistics.median, max)])
-    return int(not all(is_kept(baud, *rows) for baud, rows in found.items()))
+    return on_each_baud(measured, shown)
+
+
+def shown(found: dict[int, list[list[float]]], _: Path) -> bool:
+    """Print the figures, half and the slowest of each; return whether they are kept."""
+    by_row = zip(*found.values(), strict=True)
+    page.show("keys", [
+        (row, *(f"{statistics.median(ms):{form}} and {max(ms):{form}} ms" for ms in its))
+        for row, form, its in zip(ROWS, FORMS, by_row, strict=True)
+    ])  # fmt: skip
+    return all(is_kept(baud, *rows) for baud, rows in found.items())
 
 
 def is_kept(

@@ -12,12 +12,13 @@ from collections.abc import Sequence
 from struct import pack
 
 from tools import uno
-from tools.bench import avr_bench, firmware_size, sketch_cycles, workloads
-from tools.bench.compiler import table
+from tools.bench import avr_bench, firmware_size, page, sketch_cycles, workloads
 from tools.bench.workloads import Work, check, code_of
 
 BUDGET = 100  # jumps back in a call of `tick`: it may take 200,000 cycles
 DONE = 2  # Status::kDone
+# All of `tick`; and with all that comes between, the main loop of the sketch and its interrupts.
+ROWS = ("TiniScript", "TiniScript, in the shipped sketch")
 
 
 def count(code: bytes, readings: Sequence[int], budget: int, *more: str) -> tuple[list[int], int]:
@@ -57,18 +58,8 @@ def cycles() -> None:
         firmware = firmware_size.measured("uno").firmware
         found = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
         sketch = [f"{each:,.0f}" for each in found]
-    rows = [
-        ("all of `tick`", *alone),
-        ("in the shipped sketch", *sketch),
-    ]
-    title = "Cycles of one iteration on a simulated ATmega328P"
-    table(title, ("", *(work.name for work in workloads.WORKS)), rows)
-    for work in workloads.WORKS:
-        print(f"\n{work.name}: `{work.body[:-1]}`, {work.times:,} times.", end="")
-    print(
-        f"\n`tick` is called for {BUDGET} times around a loop. In the sketch all "
-        "between is counted, its main loop and its interrupts."
-    )
+    rows = zip(ROWS, (alone, sketch), strict=True)
+    page.show("machine", [(row, "thousandths", *its) for row, its in rows])
     for why in filter(None, (avr_bench.missing(), uno.missing())):
         print(f"\n{why}")
 

@@ -21,6 +21,7 @@ from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Driving
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tools import ROOT
+from tools.bench import page
 
 SECONDS = 1800  # of the robot's time
 SEEDS = 20
@@ -28,6 +29,11 @@ STUCK_S = 5
 STUCK_CM = 3.0
 LOOK_MS = 500
 PROGRAMS = ("away.ts", "obstacle.ts", "explore.ts")
+ROWS = (
+    "`away.ts`, four lines with a `WHEN`",
+    "`obstacle.ts`, the paper's",
+    "`explore.ts`, with a `WHEN`",
+)
 ROBOT = "tinibot32"
 
 
@@ -38,9 +44,8 @@ class Drive(NamedTuple):
 
 
 def main() -> None:
-    head = ("program", "contacts: median", "most", "metres: median", "longest in a place", "stuck")
-    print("{:14} {:>16} {:>5} {:>14} {:>18} {:>8}".format(*head))
-    for name in PROGRAMS:
+    found = []
+    for row, name in zip(ROWS, PROGRAMS, strict=True):
         text = (ROOT / "examples" / name).read_text(encoding="utf-8")
         with ProcessPoolExecutor() as pool:
             drives = list(pool.map(partial(drive, text), range(SEEDS)))
@@ -48,8 +53,10 @@ def main() -> None:
         metres = median(each.driven_m for each in drives)
         stood_s = max(each.stood_s for each in drives)
         stuck = sum(each.stood_s >= STUCK_S for each in drives)
-        print(f"{name:14} {median(contacts):16.0f} {max(contacts):5} {metres:14.0f}"
-              f" {stood_s:16.1f} s {stuck:2} of {SEEDS}", flush=True)  # fmt: skip
+        longest = f"{stood_s:.1f} s" if stood_s < STUCK_S else f"{stood_s:.0f} s"
+        found.append((row, f"{median(contacts):.0f}", f"{max(contacts)}", f"{metres:.0f}", longest,
+                      f"{stuck} of {SEEDS}"))  # fmt: skip
+    page.show("obstacles", found)
 
 
 def drive(text: str, seed: int) -> Drive:

@@ -135,7 +135,7 @@ PORT_USED = """port_identity(); port_status(); port_device_info(); sink = port_r
 LINK = """{ static Link link;
         link.begin(&receiver, sink); sink = receiver.put(sink, sink);
         link.pass_time(sink); link.tick(); sink = link.has_tx_byte();
-        link.tell(); link.seal();
+        link.send_due(); link.seal();
         uint8_t byte; while (link.next_tx_byte(&byte)) sink = byte;
         link.done(); link.faulted(); link.stopped(Cause::kButton);
         link.expire(); sink = link.confirm_claim(); sink = link.show(sink, sink); }"""

@@ -23,7 +23,7 @@ from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.flash import building
 from tools import uno
-from tools.bench import avr_bench, firmware_size
+from tools.bench import avr_bench, firmware_size, page
 from tools.bench.firmware_stack import connected, must
 from tools.bench.machine import BUDGET, count
 from tools.bench.sketch_cycles import SENSOR_PIN
@@ -44,8 +44,10 @@ PARTS = {
         r"tiniscript_moves|Machine::(take|want|sends|motors|set_motors|drive|end_move|watch|until|block|keep_move)"
         r"|robot_motors",
     "verifier": r"::pass\(|kForm|to_the_end",
-    "the start of a run, and all else": "",
+    "the start of a run, and all else: 20 bytes of RAM for each of four more tasks": "",
 }  # fmt: skip
+COUNTING_ROWS = {0: "none", 3: "three"}
+ROWS = (*COUNTING_ROWS.values(), *PARTS)
 SYMBOL = re.compile(r"\d+ (\d+) (\w) (.*)")
 
 
@@ -59,20 +61,18 @@ def main() -> int:
     except RuntimeError as failed:
         print(failed, file=sys.stderr)
         return 2
-    print("tasks beside the main one   cycles of a turn of one more")
+    page.show("tasks", [(row, f"{jitter_ms(firmware, others):.2f} ms")
+                        for others, row in COUNTING_ROWS.items()])  # fmt: skip
     rounds = [turns_cycles(tasks) for tasks in range(5)]
-    for tasks, (before, after) in enumerate(pairwise(rounds), 1):
-        print(f"{tasks:25} {(after - before) / TURNS:30,.0f}")
-    print("tasks that count   latest look after the earliest one")
-    for others in range(4):
-        spread_ms = jitter_ms(firmware, others)
-        print(f"{others:16} {spread_ms * 1000:37.0f} us")
-    print(f"{'part of the tasks':46} flash   RAM")
+    first, *more = [(after - before) / TURNS for before, after in pairwise(rounds)]
+    least, most = min(more), max(more)
+    print(f"A turn of a task takes {first:,.0f} cycles where it is the only one, and {least:,.0f} "
+          f"to {most:,.0f} where it is the second to the fourth.\n")  # fmt: skip
     less = parts_of(without)
-    for part, size in parts_of(firmware).items():
-        print(
-            f"{part:46} {size['flash'] - less[part]['flash']:5} {size['ram'] - less[part]['ram']:5}"
-        )
+    page.show("tasks", [
+        (part, *(f"{size[what] - less[part][what] or ''}" for what in ("flash", "ram")))
+        for part, size in parts_of(firmware).items()
+    ], which=1)  # fmt: skip
     return 0
 
 

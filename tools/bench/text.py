@@ -7,15 +7,15 @@ terminal does: no session, no frames. Cycles are exact; radio modules and USB ch
 from __future__ import annotations
 
 import sys
-import tempfile
 from pathlib import Path
 
-from tools import uno
+from tools.bench import page
 from tools.bench.compiler import OBSTACLE
-from tools.bench.link import BAUDS, PHASE_CYCLES, built, first_move, row
+from tools.bench.link import PHASE_CYCLES, first_move, on_each_baud
 from tools.uno import CYCLES_PER_MS, Uno
 
 SHORT = "SI|F(2,80)"
+ROWS = (f"`{SHORT}`", "the paper's obstacle program")
 SILENCE_MS = 1100  # what comes sooner after a stop is ignored
 TRIES = 20  # the main loop is elsewhere each time: the slowest counts
 MUST_MS = 5.0  # for the short line
@@ -47,21 +47,15 @@ def measured(firmware: Path, baud: int) -> list[float]:
 
 
 def main() -> int:
-    if uno.missing():
-        print(uno.missing(), file=sys.stderr)
-        return 2
-    with tempfile.TemporaryDirectory() as name:
-        try:
-            found = {baud: measured(built(baud, Path(name)), baud) for baud in BAUDS}
-        except RuntimeError as why:
-            print(why, file=sys.stderr)
-            return 2
-    head = " | ".join(f"{baud} baud" for baud in BAUDS)
-    print(f"| typed on a simulated Uno, from its end to the motor pins, ms | {head} |")
-    print("|---|---:|---:|")
-    for number, line in enumerate((f"`{SHORT}`", "the paper's obstacle program")):
-        row(line, [f"{each[number]:.2f}" for each in found.values()])
-    return int(any(each[0] > MUST_MS for each in found.values()))
+    return on_each_baud(measured, shown)
+
+
+def shown(found: dict[int, list[float]], _: Path) -> bool:
+    """Print the figures; return whether the short line's are kept."""
+    by_line = zip(*found.values(), strict=True)
+    page.show("text", [(row, *(f"{ms:.2f} ms" for ms in its))
+                       for row, its in zip(ROWS, by_line, strict=True)])  # fmt: skip
+    return all(short_ms <= MUST_MS for short_ms, _ in found.values())
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ where the command opens the port itself, and where `tsc monitor --hold` holds it
 that does nothing, in turn. The robot is the whole firmware on this computer, behind a
 pseudo-terminal.
 
-Then thirty robots, against one: until the last of them moves, and until the last has stopped.
+Then thirty robots: until the last of them moves, and until the last has stopped.
 """
 
 from __future__ import annotations
@@ -23,14 +23,20 @@ from tests.support.pty_robot import PtyRobot
 from tests.support.robot_fleet import RobotFleet
 from tiniscript import robots
 from tools import ROOT
-from tools.bench.compiler import table
+from tools.bench import page
 
-RUNS = 15
-MUST = 10  # times a process that does nothing, and the wire
+RUNS = 21
 LIMIT_S = 20.0
-CROWDS = (1, 30)
+CROWD = 30
 UPLOAD = ("upload", str(ROOT / "examples" / "obstacle.ts"), "--detach", "--no-save")
 BYTES_PER_MS = 12  # about 115200 baud
+ROWS = (
+    "with `tsc monitor --hold` on the port",
+    "opening the port itself (an Uno resets then: 1.4 s more)",
+    "a Python process that does nothing",
+    "`upload` to thirty robots, until the last one moves",
+    "`stop` of thirty robots, until the last one stands",
+)
 
 
 def environment(folder: str) -> dict[str, str]:
@@ -56,11 +62,10 @@ class Bench:
         subprocess.run([sys.executable, "-c", "pass"], env=self.environ, check=True)
         return (time.perf_counter() - begin_s) * 1000
 
-    def moves_ms(self) -> tuple[float, int]:
-        """Return the time from the start of an upload to motion, and the bytes to the robot."""
+    def moves_ms(self) -> float:
+        """Return the time from the start of an upload to motion."""
         if self.start("stop").wait():
             raise RuntimeError("the robot did not stop")
-        heard = len(self.pty_robot.heard)
         begin_s = time.perf_counter()
         upload = self.start(*UPLOAD)
         while not self.pty_robot.moves:
@@ -68,24 +73,17 @@ class Bench:
             if time.perf_counter() - begin_s > LIMIT_S:
                 raise RuntimeError("the robot did not move")
         took_ms = (time.perf_counter() - begin_s) * 1000
-        sent = len(self.pty_robot.heard) - heard
         if upload.wait():
             raise RuntimeError("the upload failed")
-        return took_ms, sent
+        return took_ms
 
 
-def measured(bench: Bench, runs: int) -> tuple[float, float, float, int]:
-    """Return the medians of an upload (ms), of nothing (ms), of their ratio, and of the bytes."""
-    rows = []
+def measured(bench: Bench, runs: int) -> tuple[float, float]:
+    """Return the medians (ms) of an upload and of a process that does nothing, taken in turn."""
     bench.moves_ms()  # what is cached is cached now
-    for _ in range(runs):
-        nothing_ms = bench.nothing_ms()
-        moves_ms, sent = bench.moves_ms()
-        rows.append((moves_ms, nothing_ms, moves_ms / nothing_ms, sent))
-    moves_ms, nothing_ms, ratio, sent = (
-        statistics.median(each) for each in zip(*rows, strict=True)
-    )
-    return moves_ms, nothing_ms, ratio, int(sent)
+    found = [(bench.moves_ms(), bench.nothing_ms()) for _ in range(runs)]
+    moves_ms, nothing_ms = (statistics.median(each) for each in zip(*found, strict=True))
+    return moves_ms, nothing_ms
 
 
 def crowd(count: int, runs: int, folder: str) -> tuple[float, float]:
@@ -118,34 +116,21 @@ def main() -> int:
         print(missing(), file=sys.stderr)
         return 2
     runs = int(sys.argv[1]) if len(sys.argv) > 1 else RUNS
-    rows: list[tuple[object, ...]] = []
     kit = robots.load("tinibot").kit
     with (
         tempfile.TemporaryDirectory() as folder,
         PtyRobot(kit, bytes_per_ms=BYTES_PER_MS) as pty_robot,
     ):
         bench = Bench(pty_robot, folder)
-        for name in ("tsc upload, opens the port", "tsc upload, tsc monitor --hold holds it"):
-            link = bench.start("monitor", "--hold") if "link" in name else None
-            if link is not None:
-                assert link.stdout
-                link.stdout.readline()
-            moves_ms, nothing_ms, ratio, sent = measured(bench, runs)
-            rows.append((name, f"{moves_ms:.0f} ms", f"{ratio:.1f}x", f"{sent} bytes on the wire"))
-            if link is not None:
-                link.terminate()
-                link.wait()
-    rows.append((f"  must {MUST}x and the wire, with tsc monitor --hold", "", "", ""))
-    rows.append(("python -c pass", f"{nothing_ms:.0f} ms", "1x", ""))
-    head = ("to the first motor command", "median", "against pass", "")
-    table(f"A new process, obstacle program, {runs} runs", head, rows)
-    rows = []
-    with tempfile.TemporaryDirectory() as folder:
-        for count in CROWDS:
-            moving_ms, stopping_ms = crowd(count, max(1, runs // 3), folder)
-            name = "1 robot" if count == 1 else f"{count} robots"
-            rows.append((name, f"{moving_ms:.0f} ms", f"{stopping_ms:.0f} ms"))
-    table("Many robots, a new process", ("", "tsc upload: all move", "tsc stop: all stand"), rows)
+        holder = bench.start("monitor", "--hold")
+        assert holder.stdout
+        holder.stdout.readline()
+        held_ms, _ = measured(bench, runs)
+        holder.terminate()
+        holder.wait()
+        opening_ms, nothing_ms = measured(bench, runs)
+        found_ms = held_ms, opening_ms, nothing_ms, *crowd(CROWD, max(1, runs // 3), folder)
+    page.show("upload", [(row, f"{ms:.0f} ms") for row, ms in zip(ROWS, found_ms, strict=True)])
     return 0
 
 

@@ -13,6 +13,7 @@ from tiniscript import robots
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import VirtualRobot
 from tools import ROOT
+from tools.bench import page
 
 SECONDS = 60
 RUNS = 3
@@ -23,13 +24,15 @@ PROGRAMS = (
     ("light.ts", "tinibot", "light"),
     ("line.ts", "liner", "line"),
 )
+ROWS = tuple(f"`{name}`" for name, _, _ in PROGRAMS)
 
 
 def main() -> None:
-    print(f"{'program':20} {'world':10} times real time")
+    found = []
     for name, robot, world in PROGRAMS:
-        alone = max(SECONDS / _alone_s(name, robot, world) for _ in range(RUNS))
-        print(f"{name:20} {world:10} {alone:15.0f}")
+        times = max(SECONDS / _alone_s(name, robot, world) for _ in range(RUNS))
+        found.append((f"`{name}`", f"`{world}`", f"{times:,.0f}"))
+    page.show("virtual", found)
 
 
 def _alone_s(name: str, robot: str, world: str) -> float:

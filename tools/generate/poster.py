@@ -98,7 +98,8 @@ def _with_fixed(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]
             _said(code, language),
         )
         for word in WORDS.values():
-            if word.stands_for and f"{{{word.stands_for.partition('(')[0]}}}" in code:
+            first = word.stands_for.partition("(")[0].rpartition(";")[2]  # the first call
+            if first and f"{{{first}}}" in code:
                 says = translated("studio", f"block/{word.text}", language)
                 yield word.example, says.partition("} ")[2] if says else f"= {word.stands_for}"
 

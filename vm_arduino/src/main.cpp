@@ -2,7 +2,8 @@
 //
 // The board passes button, radio module and time to the firmware; the firmware controls motors,
 // sensors and light of the board (`firmware/board.h`, `robot.h`). Interrupts carry the bytes of the
-// link: the chip's `uart.cpp` calls `firmware_on_rx_byte` and `firmware_next_tx_byte`.
+// link: the chip's `uart.cpp` calls `firmware_on_rx_byte`, or `firmware_take_rx_byte` where its
+// interrupt has looked for a stop itself, and does what `firmware_next_tx_byte` does.
 //
 // Empty without Arduino, so that a build for a computer may take this whole folder.
 

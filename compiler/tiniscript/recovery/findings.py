@@ -83,34 +83,6 @@ def _carried(found: Diagnostic, text: str) -> Diagnostic:
     return found._replace(values={**found.values, "carried": carried}, repair=repair)
 
 
-def _way(unit: str) -> str:
-    """Return the word for a unit behind the first value of a move, "" where none is."""
-    said = said_of(plain(unit), "unit")
-    return next((way for way, its in WAYS.items() if said and its.unit == said[0]), "")
-
-
-def _uses(name: str, way: str) -> re.Pattern[str]:
-    """Return the pattern of the moves that go so much of a unit, and have none."""
-    moves = "|".join(move for move in MOVES if UNIT_OF[move] == way)
-    return re.compile(rf"(?i)\b(?:{moves})\s*\(\s*{name}(?P<unit>)\s*,[^();\n]*\)")
-
-
-def _in_bodies(written: str, meant: str) -> Iterator[tuple[Span, re.Match[str], str]]:
-    """Give where a name has a unit in the brackets of a DEF, and the moves that take it, each."""
-    for head in _HEAD.finditer(written):
-        body = re.search(rf"(?is)\bDEF\s+{head[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant)
-        for each in _VALUE.finditer(written, head.start("values"), head.end()):
-            way = _way(each[2])
-            for use in _uses(each[1], way).finditer(meant, *body.span()) if body and way else ():
-                yield Span(*each.span()), use, way
-
-
-def _with_units(written: str, meant: str) -> str:
-    """Return a program in whose DEFs the moves have the units that stood at their values."""
-    edits = [Edit(Span(*it.span("unit")), f" {way}") for _, it, way in _in_bodies(written, meant)]
-    return applied(meant, edits)
-
-
 def _either(found: Diagnostic, told: Explanation, others: Sequence[Explanation]) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
     fixes = (each.fix for each in others if each.place == told.place)
@@ -135,6 +107,7 @@ def _in_brackets(one: str, other: str) -> tuple[str, str]:
 
 
 def _diagnostic(told: Explanation, meant: Candidate, found: Sequence[Diagnostic]) -> Diagnostic:
+    """Return an explanation as a diagnostic; as the checker has it where that counts the values."""
     is_said = told.code is not codes.ASKED_AFTER or "BREAK" in meant.text.upper()  # how often
     is_sure = meant.is_applied or (meant.is_whole and told.is_sure)
     repair = Repair(tuple(told.edits), is_said and is_sure)
@@ -185,3 +158,34 @@ def _moved(found: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Diagnost
             values |= {"open": move.name}  # its end is in no line
     repair = Repair((trimmed(0, text, made),), meant.is_applied and not lost)
     return found._replace(values=values, repair=repair)
+
+
+# -- units that stand in a variable, or in the brackets of a DEF -----------------------------------
+
+
+def _way(unit: str) -> str:
+    """Return the word for a unit behind the first value of a move, "" where none is."""
+    said = said_of(plain(unit), "unit")
+    return next((way for way, its in WAYS.items() if said and its.unit == said[0]), "")
+
+
+def _uses(name: str, way: str) -> re.Pattern[str]:
+    """Return the pattern of the moves that go so much of a unit, and have none."""
+    moves = "|".join(move for move in MOVES if UNIT_OF[move] == way)
+    return re.compile(rf"(?i)\b(?:{moves})\s*\(\s*{name}(?P<unit>)\s*,[^();\n]*\)")
+
+
+def _in_bodies(written: str, meant: str) -> Iterator[tuple[Span, re.Match[str], str]]:
+    """Give where a name has a unit in the brackets of a DEF, and the moves that take it, each."""
+    for head in _HEAD.finditer(written):
+        body = re.search(rf"(?is)\bDEF\s+{head[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant)
+        for each in _VALUE.finditer(written, head.start("values"), head.end()):
+            way = _way(each[2])
+            for use in _uses(each[1], way).finditer(meant, *body.span()) if body and way else ():
+                yield Span(*each.span()), use, way
+
+
+def _with_units(written: str, meant: str) -> str:
+    """Return a program in whose DEFs the moves have the units that stood at their values."""
+    edits = [Edit(Span(*it.span("unit")), f" {way}") for _, it, way in _in_bodies(written, meant)]
+    return applied(meant, edits)

@@ -64,7 +64,10 @@ class Step(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """What a line may mean. `items` is None while it is not right yet."""
+    """What a line may mean. `items` is None while it is not right yet.
+
+    `is_sure`: no step was a guess, and `search` takes that back where a rival costs about the same.
+    """
 
     cost: float
     tokens: list[Lexeme]
@@ -153,6 +156,8 @@ _Successors = Callable[[Reading, Failure], Iterator[Reading]]
 
 
 class _Search:
+    """Reads a line by what `rewritten` makes of it, and where that reads nothing by slips."""
+
     def __init__(self, names: Names) -> None:
         self.names = names
 
@@ -172,6 +177,7 @@ class _Search:
         return readings
 
     def search(self, first: Reading, states: int, successors: _Successors) -> list[Reading]:
+        """Return up to RIVALS right readings, the cheapest first, after `states` lines at most."""
         order = count()
         heap = [(first.cost, next(order), first)]
         seen: set[tuple[str, ...]] = set()
@@ -222,6 +228,7 @@ class _Search:
         return reading
 
     def rewritten(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
+        """Give what a reading becomes where it fails: by rows, calls in words, meanings."""
         ways = (self._by_rows, self._by_slots, self._by_words)
         return map(self.at_once, chain(*(way(reading, failure) for way in ways)))
 

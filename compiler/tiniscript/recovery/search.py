@@ -96,7 +96,11 @@ class _Text:
 
 
 class Recovery:
-    """What may have been meant by a wrong program; each line of it is read once."""
+    """What may have been meant by a wrong program; each line of it is read once.
+
+    What a line may be read as (`choices`) gets its blocks and is asked about (`candidate`), until
+    `whole` has a program without mistakes.
+    """
 
     def __init__(self, program: str, kit: Kit, mistakes: Mistakes) -> None:
         self.program = program
@@ -198,6 +202,7 @@ class Recovery:
         self.lines = kept
 
     def read_line(self, line: _Text) -> None:
+        """Find the cheapest reading of a line, sure if no rival costs about as much; else parts."""
         tokens, names = lexemes(line.body), self.names
         items = lines.right(tokens, names)
         if not isinstance(items, Failure):

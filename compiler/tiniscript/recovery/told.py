@@ -2,7 +2,8 @@
 
 The first of `READERS` that says something is told. The rest of the text is read as if its edits
 were made, so that no consequence of a mistake is reported; `usage` says what no reader does. What
-is told in all is held to the laws, each by a function that `told_of` names.
+is told in all is held to the laws, each by a function that `told_of` names. Of a given text
+`python -m tools.readers TEXT` shows all of it.
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ def told_of(
     told = _read(Wrong(source, found, check, kit), ROUNDS)
     told = without_wrong(told, text, check)  # what is offered is right
     told = conserving(told, text, kit)  # what is made keeps what was written
-    told = with_sample(told, text, kit)  # what was not written is said to be an example
+    told = with_sample(told, text, kit)  # of a distance that nobody wrote it says: an example
     return codes.in_order([pointed(each, source) for each in told])
 
 
@@ -87,8 +88,8 @@ def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
         rest = applied(wrong.source.text, edits)
         left = wrong.check(rest)
         if any(each.is_mistake for each in left):  # else its warnings come when it is repaired
-            behind = _read(Wrong(Source(rest), left, wrong.check, wrong.kit), rounds - 1)
-            told = [*told, *(moved_back(each, edits, wrong.source) for each in behind)]
+            later = _read(Wrong(Source(rest), left, wrong.check, wrong.kit), rounds - 1)
+            told = [*told, *(moved_back(each, edits, wrong.source) for each in later)]
     return dedupe(told, wrong.source)
 
 
@@ -101,7 +102,7 @@ def _labels(wrong: Wrong) -> Findings:
 
 
 def _keys(wrong: Wrong) -> Findings:
-    """Return what is wrong with the keys that are asked for, of which one stands for an unknown."""
+    """Return what is wrong with keys that are asked for; the rest is read with one that exists."""
     told = asked_keys(wrong.source, wrong.kit)
     edits = _with_edits(told).edits
     return Findings(told, edits + [Edit(it.span, KEYS[0]) for it in told if not it.repair])
@@ -133,6 +134,7 @@ def _leftovers(wrong: Wrong) -> Findings:
 
 
 def _other_beginning(wrong: Wrong) -> Findings:
+    """Return that another word stands in the place of `SI|`, for which the rest is read."""
     begun = other_word(wrong.source, wrong.found)
     if begun is None:
         return Findings([], [])
@@ -148,12 +150,12 @@ def _meant_surely(wrong: Wrong) -> Findings:
     return _with_edits(meant_in(wrong.source, wrong.found, recovery, is_sure=True))
 
 
-def _words_behind(wrong: Wrong) -> Findings:
+def _words_after(wrong: Wrong) -> Findings:
     """Return what words say after instructions, or in the place of one."""
-    behind = suggested(wrong.source.text, wrong.kit)
+    after = suggested(wrong.source.text, wrong.kit)
     if recovery := wrong.recovery:  # they belong to the instruction by its sign: `X = 20 x 3`
-        behind = [each for each in behind if not recovery.has_signs(each.passed.span.start)]
-    return Findings([each.diagnostic for each in behind], [each.passed for each in behind])
+        after = [each for each in after if not recovery.has_signs(each.passed.span.start)]
+    return Findings([each.diagnostic for each in after], [each.passed for each in after])
 
 
 def _guessed(wrong: Wrong) -> Findings:
@@ -174,9 +176,10 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
     return Findings(told, [Edit(each.span, each.values["near"]) for each in told])
 
 
+# Laws of their own come before what a search finds surely, and what it guesses comes last.
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
     _labels, _beginning, _keys, _calls, _counters, _frame, _other_beginning, _meant_surely,
-    _leftovers, _words_behind, _guessed, _words_of_blocks,
+    _leftovers, _words_after, _guessed, _words_of_blocks,
 )  # fmt: skip
 
 

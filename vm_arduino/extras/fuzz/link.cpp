@@ -56,7 +56,7 @@ void turn() {
   for (uint8_t k = 0; k < kReplies; k++) {
     link_half.pass_time(static_cast<uint16_t>(now_ms));
     link_half.tick();
-    link_half.tell();
+    link_half.send_due();
     uint8_t byte;
     while (link_half.next_tx_byte(&byte)) sent.push_back(static_cast<char>(byte));
   }
@@ -72,7 +72,7 @@ void arrive(uint8_t byte) {
   if (!looks()) return;
   link_half.pass_time(static_cast<uint16_t>(now_ms));
   link_half.tick();
-  link_half.tell();
+  link_half.send_due();
 }
 
 void send_frame(uint8_t type, Input* input) {

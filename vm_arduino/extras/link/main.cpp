@@ -65,13 +65,13 @@ void answer_step(RequestReader* request, Writer* answer) {
     if (how == 1 && !is_last) continue;
     link_half.pass_time(static_cast<uint16_t>(now_ms));
     link_half.tick();
-    link_half.tell();
+    link_half.send_due();
     uint8_t byte = 0;
     for (uint8_t turns = 0; turns < 8; turns++) {
       while ((how != 2 || is_last) && link_half.next_tx_byte(&byte))
         sent += static_cast<char>(byte);
       link_half.tick();
-      link_half.tell();
+      link_half.send_due();
     }
   }
   answer->text(sent);

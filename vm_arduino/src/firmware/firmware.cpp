@@ -40,7 +40,7 @@ void firmware_turn() {
   link.tick();
   tick_run();
   tick_identify();
-  link.tell();
+  link.send_due();
   tick_persistence();
 }
 

@@ -81,7 +81,7 @@ void Link::turn() {
     halt(cause);
   }
   const bool is_there = receiver_->has_frame();  // the whole frame has arrived
-  check();
+  take_arrived();
   if (is_there && receiver_->frame_may_stop()) {
     receiver_->let_frame();
     if (!check_.is_whole()) halt(Cause::kText);
@@ -101,7 +101,7 @@ void Link::turn() {
   if (kHasOwners && left_ms_[kListen] <= kListenMs - kAuthorityMs) expire();
 }
 
-void Link::tell() {
+void Link::send_due() {
   Link* const self = near(this);
   if (self->unsealed_ != nullptr) self->seal();
   if (self->due_ != 0 && self->left_ == 0) self->send();
@@ -142,8 +142,8 @@ tini_noinline void Link::halt(Cause cause) {
   if (cause == Cause::kText) console_.discard_briefly();
 }
 
-// Takes the bytes of a packet that have arrived.
-inline void Link::check() {
+// Takes the bytes of a packet that have arrived; a LIVE is made when all of its payload has.
+inline void Link::take_arrived() {
   if (receiver_->has_begun()) {
     check_.begin();
     ahead_ = 0;

@@ -44,7 +44,7 @@ class Link {
 
   // Call it after the motors are served: seals a program that came in one frame and starts to send
   // what is due.
-  void tell();
+  void send_due();
 
   // Seals that program now, because its checksum is needed.
   void seal();
@@ -186,20 +186,20 @@ class Link {
     uint16_t detail;
   };
 
-  void pass(uint16_t now_ms);
-  void end_silence(bool is_held, bool is_at_stop, uint16_t before_ms);
   // The purpose of an image: to be stored, to run once, or to run as soon as its frame ends.
   enum class Use : uint8_t { kStored, kLive, kAhead };
 
+  // frames and their answers: `link.cpp`, in the order of their calls
+  void pass(uint16_t now_ms);
+  void end_silence(bool is_held, bool is_at_stop, uint16_t before_ms);
   void turn();
-  void check();
-  void on_frame();
-  void prepare();
-  bool go_live();
   void halt(Cause cause);
-  void confirm(Cause cause);
+  void take_arrived();
+  void on_frame();
+  bool is_next(uint8_t seq, uint8_t epoch) const;
   void handle(uint8_t end);
   uint8_t answer(Message message, const uint8_t* payload, uint8_t length);
+  Answer clear();
   Answer set_trim(const uint8_t* payload, uint8_t length);
 #ifdef tiniscript_has_remote
   Answer hold(const RemoteKeys& remote_keys);
@@ -207,28 +207,29 @@ class Link {
   static Answer hold(const RemoteKeys&) { return Answer::kOk; }
 #endif
   uint8_t hello(const uint8_t* payload);
-  uint8_t take_short(bool is_live, const uint8_t* payload, uint8_t length);
+  void renew();
+
+  // programs: `link_programs.cpp`
+  void prepare();
+  bool go_live();
+  uint8_t refuse(Answer answer, uint16_t detail);
+  uint8_t allow(uint8_t mode, const uint8_t* isa);
+  uint8_t make_room(Use use, uint16_t length);
   uint8_t fill(Use use, const uint8_t* payload, uint8_t length);
   uint8_t make(Use use, uint8_t start, const uint8_t* code, uint8_t length, bool is_other_kit);
+  uint8_t take_short(bool is_live, const uint8_t* payload, uint8_t length);
   uint8_t begin_program(const uint8_t* payload);
   uint8_t add_data(const uint8_t* payload, uint8_t length);
   uint8_t commit(const uint8_t* payload);
   void finish(uint8_t mode, bool is_live);
   void start(uint8_t mode, bool is_live);
-  bool is_next(uint8_t seq, uint8_t epoch) const;
-  uint8_t refuse(Answer answer, uint16_t detail);
-  uint8_t allow(uint8_t mode, const uint8_t* isa);
-  uint8_t make_room(Use use, uint16_t length);
-  bool is_listened_to() const;
-  void renew();
 
-  // owners
+  // owners: `link_owners.cpp`
   bool is_forbidden(uint8_t type) const;
   bool may(bool has_right) const;
   Answer claim(const uint8_t* payload, uint8_t length);
   uint8_t authenticate(const uint8_t* payload, uint8_t length);
   Answer allow_text(const uint8_t* payload);
-  Answer clear();
 
 #ifdef tiniscript_transports
   void note_halt() { has_halted_ = true; }
@@ -280,11 +281,8 @@ class Link {
   static void seal_out() {}
 #endif
 
-  // writing
-  void send();
+  // text: `link_text.cpp`
   bool talks() const { return console_.is_talking() && !is_listened_to(); }
-
-  // text
   void talk();
 #ifdef tiniscript_without_text
   static void drop_answer() {}
@@ -301,7 +299,12 @@ class Link {
   bool is_typed() const { return is_typed_; }
   void note_typed(bool is_so) { is_typed_ = is_so; }
 #endif
+
+  // writing: `link_writing.cpp`
+  bool is_listened_to() const;
   void note_end(uint8_t due);
+  void confirm(Cause cause);
+  void send();
   void reply();
   void describe();
   void fetch();

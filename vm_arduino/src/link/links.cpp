@@ -73,10 +73,10 @@ void Links::spread(State before) {
   is_held_back_ = is_held_back;
 }
 
-void Links::tell() {
+void Links::send_due() {
   for (uint8_t place = 0; place < kTransports; place++) {
     enter(place);
-    links_[place].tell();
+    links_[place].send_due();
     leave();
   }
 }

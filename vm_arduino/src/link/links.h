@@ -25,7 +25,7 @@ class Links {
   void begin(uint8_t epoch);
   void pass_time(uint16_t now_ms);
   void tick();
-  void tell();
+  void send_due();
   void seal();
   bool has_due_live() const;
   bool stop_is_due() const;

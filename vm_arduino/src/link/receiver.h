@@ -40,11 +40,11 @@ class PacketPlaces {
  protected:
   uint8_t looked_at() const { return looked_at_; }
   uint8_t filled() const { return filled_; }
-  void look_on() { looked_at_ = behind(looked_at_); }
-  void fill_on() { filled_ = behind(filled_); }
+  void look_on() { looked_at_ = after(looked_at_); }
+  void fill_on() { filled_ = after(filled_); }
 
  private:
-  static uint8_t behind(uint8_t place) { return static_cast<uint8_t>((place + 1) % kPlaces); }
+  static uint8_t after(uint8_t place) { return static_cast<uint8_t>((place + 1) % kPlaces); }
 
   volatile uint8_t looked_at_;
   volatile uint8_t filled_;
@@ -60,6 +60,20 @@ class PacketPlaces<1> {
 };
 
 class Receiver : private PacketPlaces<kWindow> {
+  // Where the next byte belongs. Below kBegin it is text; from kFrame on no line may end here.
+  enum class State : uint8_t {
+    kText,   // between two lines of text, or in one
+    kLost,   // in a line of text whose bytes have found no room
+    kBegin,  // after a 0x00
+    kLine,   // in a frame, or in a line of text: all of it is printable
+    kFrame,  // in a frame
+    kHeld,   // in a frame with a typed stop in it
+  };
+
+  // What has come of a line of text: nothing, a stop that waits for silence, bytes that are skipped,
+  // some of it, or some before a second of silence and nothing since.
+  enum class Line : uint8_t { kNothing, kHeld, kSkipped, kSome, kPaused };
+
  public:
   // Takes a byte at the time `now_ms`. Returns whether the motors go off at once: it completes a run
   // of four zeros, the stop sequence, or a typed stop. Eight zeros are two stops. A byte with a
@@ -166,19 +180,6 @@ class Receiver : private PacketPlaces<kWindow> {
   uint8_t dropped() const { return dropped_; }
 
  private:
-  enum class State : uint8_t {
-    kText,   // between two lines of text, or in one
-    kLost,   // in a line of text whose bytes have found no room
-    kBegin,  // after a 0x00
-    kLine,   // in a frame, or in a line of text: all of it is printable
-    kFrame,  // in a frame
-    kHeld,   // in a frame with a typed stop in it
-  };
-
-  // What has come of a line of text: nothing, a stop that waits for silence, bytes that are skipped,
-  // some of it, or some before a second of silence and nothing since.
-  enum class Line : uint8_t { kNothing, kHeld, kSkipped, kSome, kPaused };
-
   // Read where the interrupt may write.
   State state() const { return *const_cast<const volatile State*>(&state_); }
   Line line() const { return *const_cast<const volatile Line*>(&line_); }

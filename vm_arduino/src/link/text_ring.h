@@ -11,10 +11,10 @@ namespace tiniscript {
 
 class TextRing {
  public:
-  bool is_empty() const { return first_ == behind_; }
+  bool is_empty() const { return first_ == end_; }
 
   // Whether whatever a byte makes of a line finds room: it, a mark after it, and the last place.
-  bool has_room() const { return static_cast<uint8_t>(first_ - behind_ - 1) % kTextBytes > 2; }
+  bool has_room() const { return static_cast<uint8_t>(first_ - end_ - 1) % kTextBytes > 2; }
 
   // Puts a byte. False: there is no room. The last place is for `put_last`.
   bool put(uint8_t byte) { return put(byte, 2); }
@@ -24,7 +24,7 @@ class TextRing {
 
   bool take(uint8_t* byte) {
     const uint8_t first = first_;
-    if (first == behind_) return false;
+    if (first == end_) return false;
     *byte = bytes_[first];
     asm volatile("" ::: "memory");  // barrier: the byte is read before its place is free
     first_ = static_cast<uint8_t>(first + 1) % kTextBytes;
@@ -33,17 +33,17 @@ class TextRing {
 
  private:
   tini_noinline bool put(uint8_t byte, uint8_t wanted_room) {
-    const uint8_t at = behind_;
-    const uint8_t behind = static_cast<uint8_t>(at + 1) % kTextBytes;
-    if (static_cast<uint8_t>(first_ - behind) % kTextBytes < wanted_room) return false;
+    const uint8_t at = end_;
+    const uint8_t after = static_cast<uint8_t>(at + 1) % kTextBytes;
+    if (static_cast<uint8_t>(first_ - after) % kTextBytes < wanted_room) return false;
     bytes_[at] = byte;
     asm volatile("" ::: "memory");  // barrier: `take` reads the byte after the index
-    behind_ = behind;
+    end_ = after;
     return true;
   }
 
   volatile uint8_t first_;
-  volatile uint8_t behind_;
+  volatile uint8_t end_;
   uint8_t bytes_[kTextBytes];
 };
 

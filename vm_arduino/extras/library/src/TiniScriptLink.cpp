@@ -72,7 +72,7 @@ void TiniLink::tick(uint32_t now_ms) {
       }
     }
   }
-  link_.tell();
+  link_.send_due();
 }
 
 uint16_t TiniLink::room() const {

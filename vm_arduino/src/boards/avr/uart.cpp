@@ -1,3 +1,6 @@
+// The UART of an AVR. A byte comes in at the end of this file, `uart_receive_vect`: that looks for a
+// stop (`tiniscript_on_zero`), and then `receive` gives the byte to the firmware (`take`).
+
 #ifdef __AVR__
 
 #include "../uart.h"

@@ -1,0 +1,90 @@
+"""Every driver has values: what is at its pins changes a reading, and what is set changes its pins.
+
+Seen on a simulated board, for each file of `robots/drivers/` that a device may have; what the
+values are, `test_board_devices.py` says. A driver whose pins are of a new kind has a row in FELT.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tests.firmware.test_boards import START, pulses, started
+from tests.machines.board import Board
+from tests.wiring.test_wiring import DEVICES, robot_with
+from tiniscript.robots.boards import CHIPS
+from tiniscript.robots.driver import Driver, SensorDriver
+from tiniscript.robots.profile import Wiring
+
+SENSORS = [driver for driver in DEVICES if isinstance(driver, SensorDriver)]
+ACTUATORS = [driver for driver in DEVICES if driver not in SENSORS]
+MANY = robot_with("l298n", DEVICES)
+SHOWN = {
+    "number": "SI|M({0} * 10, 0);W(5)",
+    "yes/no": "SI|IF({0});M(50, 0);ELSE;M(0, 0);ENDIF;W(5)",
+}
+SET = {"number": ("0", "4"), "yes/no": ("FALSE", "TRUE")}  # of a range to 5
+SET_MS = 500
+
+
+def _analog(board: Board, wiring: Wiring, is_much: bool) -> None:
+    channel = wiring.pins["pin"] - (CHIPS[board.board].first_analog or 0)
+    board.analog(channel, 5000 if is_much else 0)
+
+
+# What a sensor feels, little of it or much, by what its pin is for.
+FELT: dict[str, Callable[[Board, Wiring, bool], None]] = {
+    "analog": _analog,
+    "input": lambda board, wiring, is_much: board.level(0, wiring.pins["pin"], is_much),
+    "echo": lambda board, wiring, is_much: board.echoes(
+        wiring.pins["trigger"], wiring.pins["echo"], [5000 if is_much else 175]
+    ),
+}
+
+
+def wired_as(driver: Driver) -> tuple[str, Wiring]:
+    """Return how the device of a driver is called, and where it is."""
+    board = MANY.board
+    wirings = board.sensors if isinstance(driver, SensorDriver) else board.actuators
+    devices = MANY.kit.sensors if isinstance(driver, SensorDriver) else MANY.kit.actuators
+    name = f"D{DEVICES.index(driver)}"
+    return name, wirings[[each.name for each in devices].index(name)]
+
+
+def names(drivers: list[Driver]) -> list[str]:
+    return [f"{driver.used_by} {driver.name}" for driver in drivers]
+
+
+@pytest.mark.parametrize("driver", SENSORS, ids=names(list(SENSORS)))
+def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
+    name, wiring = wired_as(driver)
+    found = set()
+    for is_much in (False, True):
+        board = started(MANY, SHOWN[driver.used_by.split()[1]].format(name))
+        FELT[driver.pins[-1].need](board, wiring, is_much)
+        found.add(board.ran(START + 40).motors(START + 35))
+    assert len(found) == 2, "its reading is the same whatever it feels"
+
+
+@pytest.mark.parametrize("driver", ACTUATORS, ids=names(ACTUATORS))
+def test_what_an_actuator_is_set_to_is_at_its_pins(driver: Driver) -> None:
+    name, wiring = wired_as(driver)
+    less, more = SET[driver.used_by.split()[1]]
+    board = started(MANY, f"SI|{name}({less});W({SET_MS / 1000});{name}({more});W(1)")
+    pins = wiring.pins.values()
+    for pin in pins:
+        board.watch(pin)
+    board.ran(START + 2 * SET_MS)
+
+    def seen(after_ms: float) -> list[tuple[str, list[int]]]:
+        begins = START + after_ms
+        return [
+            (
+                "" if pulses(board, pin)[1:] else board.pin(pin, begins),
+                [round(us) for ms, us in pulses(board, pin) if begins - 60 < ms < begins][:1],
+            )
+            for pin in pins
+        ]
+
+    assert seen(SET_MS - 20) != seen(2 * SET_MS - 20), "its pins are the same whatever it is set to"

@@ -1,0 +1,38 @@
+"""Who reads a wrong program, and by which rows."""
+
+from __future__ import annotations
+
+import pytest
+
+from tiniscript.recovery.told import READERS
+from tools import readers
+
+
+def test_the_readers_that_ask_what_was_meant_are_there() -> None:
+    assert {*readers.OF_WHOLE_LINES} <= {reader.__name__ for reader in READERS}
+
+
+def test_a_rewrite_names_its_row(capsys: pytest.CaptureFixture[str]) -> None:
+    readers.main(["SI|REPEAT 4;F(1, 50);END"])
+    first, *rest = capsys.readouterr().out.splitlines()
+    assert first == "SI|REPEAT 4;F(1, 50);END: meant_surely"
+    assert any("->  LOOP ( 4 ) ; F ( 1 , 50 )" in line for line in rest)
+    assert "    by the row of repite 4: ⏎ F(1, 60) => LOOP(4) ⏎ F(1, 60) ⏎ END_LOOP" in rest
+    assert rest[-1] == "TS023 {'found': 'END', 'right': 'END_LOOP'} made"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("F(2, 80)", []),
+        ("1. F(2, 80)", ["1. F(2, 80): labels", "TS054 {'found': '1.'} made"]),
+        ("W(2×3)", ["W(2×3): meant_surely", "    by the row of W(2×3) => W(2*3)"]),
+        ("avanza 2 segundos", ["    by no row (slots.py, or a sign: lines.py)"]),
+        ("F(2, 80", ["F(2, 80: meant_surely"]),
+        ("W(1); XYZZY", ["W(1); XYZZY: no reader, so usage.py says what it knows of the mistake"]),
+    ],
+)
+def test_what_is_said_of_a_text(text: str, said: list[str]) -> None:
+    found = "\n".join(readers.told(text)).splitlines()
+    assert [line for line in found if line in said] == said
+    assert bool(found) == bool(said)

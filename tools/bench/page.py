@@ -1,0 +1,69 @@
+"""The tables of `docs/en/figures.md`: a benchmark fills in those of its section, and no others.
+
+The page is the form: its heads and its rows are what a benchmark prints, with what it has found. A
+row that the page does not show is refused; one that was measured once is left out.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tools import ROOT
+
+PAGE = ROOT / "docs" / "en" / "figures.md"
+# A paragraph that says where the figures below it come from, or a heading.
+_BEGINS = re.compile(r"^(?:From `python -m ([\w.]+)[^`]*`|#)")
+
+
+class Table(NamedTuple):
+    """A table of the page, as it is written: its head, its rule, and its rows."""
+
+    head: str
+    rule: str
+    rows: tuple[str, ...]
+
+    def row_of(self, keys: Sequence[str]) -> int:
+        """Return the place of the row with these first cells. Raises LookupError without one."""
+        for place, row in enumerate(self.rows):
+            if cells(row)[: len(keys)] == [*keys]:
+                return place
+        raise LookupError(f"{PAGE.name} has no row {' | '.join(keys)}")
+
+
+def cells(row: str) -> list[str]:
+    """Return the cells of a row, in which a bar of the text is `|` again."""
+    return [part.strip().replace("\\|", "|") for part in re.split(r"(?<!\\)\|", row)[1:-1]]
+
+
+def written(row: Sequence[str]) -> str:
+    return "".join(f"| {cell.replace('|', chr(92) + '|')} " for cell in row) + "|"
+
+
+def tables(name: str) -> list[Table]:
+    """Return the tables in the section of a benchmark, `link`."""
+    found: list[list[str]] = []
+    is_inside = is_table = False
+    for line in PAGE.read_text(encoding="utf-8").splitlines():
+        if begun := _BEGINS.match(line):
+            is_inside = begun[1] == f"tools.bench.{name}"
+        if line.startswith("|") and is_inside:
+            if not is_table:
+                found.append([])
+            found[-1].append(line)
+        is_table = line.startswith("|")
+    return [Table(head, rule, tuple(rows)) for head, rule, *rows in found]
+
+
+def show(name: str, found: Sequence[Sequence[str]], which: int = 0, keys: int = 1) -> None:
+    """Print a table of the page with these rows, each known by its first cells, `keys` of them.
+
+    Raises LookupError for a row that the page lacks, ValueError for one with more cells or fewer.
+    """
+    table = tables(name)[which]
+    placed = sorted((table.row_of(row[:keys]), written(row)) for row in found)
+    for place, row in placed:
+        if len(cells(row)) != len(cells(table.rows[place])):
+            raise ValueError(f"{PAGE.name} has other columns than {row}")
+    print(table.head, table.rule, *(row for _, row in placed), "", sep="\n", flush=True)

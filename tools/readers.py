@@ -1,0 +1,90 @@
+"""Who reads a wrong program, and by which rows: `python -m tools.readers 'SI|REPEAT 4'`.
+
+Follows a text through `recovery.told`: each reader that finds something, each rewrite of the lines
+that it reads as a whole, and what people are told in the end, when the laws have been kept.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable, Iterator
+
+from tiniscript import robots
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source, applied
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.library.compiling import analyzed, check_text
+from tiniscript.library.named_robot import robot_of
+from tiniscript.recovery import rewrites
+from tiniscript.recovery.lines import Step
+from tiniscript.recovery.meanings import Names, lexemes, setup_of, texts
+from tiniscript.recovery.told import READERS, ROUNDS, Wrong
+
+OF_WHOLE_LINES = ("_meant_surely", "_guessed")  # the readers that ask `search` what was meant
+
+
+def told(text: str) -> Iterator[str]:
+    """Give lines on who reads a text, round by round, and on what is told of it."""
+    kit = robot_of(text.encode(), robots.load(robots.DEFAULT)).kit
+    rest = text
+    for _ in range(ROUNDS):
+        found = analyzed(rest, kit).diagnostics
+        if not any(each.is_mistake for each in found):
+            break
+        wrong = Wrong(Source(rest), found, lambda each: analyzed(each, kit).diagnostics, kit)
+        findings = ((reader, reader(wrong)) for reader in READERS)
+        reader, its = next((each for each in findings if each[1].told), (None, None))
+        if reader is None or its is None:
+            yield f"{_line(rest)}: no reader, so usage.py says what it knows of the mistake"
+            break
+        yield f"{_line(rest)}: {reader.__name__.strip('_')}"
+        is_whole = reader.__name__ in OF_WHOLE_LINES and wrong.recovery is not None
+        candidate = wrong.recovery.whole if is_whole and wrong.recovery else None
+        for change in candidate.changes if candidate else ():
+            for step in change.steps:
+                yield f"  {_shown(step)}\n    by {row_of(step, kit)}"
+        rest = applied(rest, its.edits)
+    yield from map(_told, check_text(text, kit).diagnostics)
+
+
+def row_of(step: Step, kit: Kit) -> str:
+    """Return the example of the row that makes a rewrite, or which module makes it without one."""
+    head = len(setup_of(step.before))
+    line = rewrites.Encoded(step.before[head:], Names([step.before], kit))
+    for row in rewrites.of_tokens():
+        for match in line.matches(row.pattern) if row.code is step.code else ():
+            made = line.rewritten(row, match)
+            if made is not None and texts(made) == texts(step.after)[head:]:
+                return f"the row of {_line(' => '.join(row.example))}"
+    written = "".join((each.space or "") + (each.source or each.text) for each in step.before)
+    for sign in rewrites.of_signs():
+        if texts(lexemes(sign.pattern.sub(sign.becomes, written, count=1))) == texts(step.after):
+            return f"the row of {_line(' => '.join(sign.example))}"
+    is_word = len(step.before) == len(step.after)
+    return "a word's meaning (meanings.py)" if is_word else "no row (slots.py, or a sign: lines.py)"
+
+
+def _line(text: str) -> str:
+    return text.strip().replace("\n", " ⏎ ")
+
+
+def _shown(step: Step) -> str:
+    return f"{step.code.number}  {' '.join(texts(step.before))}  ->  {' '.join(texts(step.after))}"
+
+
+def _told(diagnostic: Diagnostic) -> str:
+    values = {name: its for name, its in diagnostic.values.items() if its}
+    how = "" if diagnostic.repair is None else "made" if diagnostic.repair.is_sure else "offered"
+    return f"{diagnostic.code.number} {values} {how}".rstrip()
+
+
+def main(arguments: Iterable[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description="Say who reads a wrong program.")
+    parser.add_argument("text", nargs="?", help="a program; without one it is read from stdin")
+    text = parser.parse_args(None if arguments is None else [*arguments]).text
+    print(*told(sys.stdin.read() if text is None else text), sep="\n")
+
+
+if __name__ == "__main__":
+    main()
