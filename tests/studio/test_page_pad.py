@@ -207,13 +207,12 @@ def drives_by(
     word = page.locator("#link_said")
     for _ in range(UPLOADS):
         press()
-        began_ms = robot.robot_ms
-        hears(
-            page,
-            lambda: "Stopped: " in word.inner_text()
-            or (robot.moves and robot.robot_ms >= began_ms + least_ms),
-            "it drives or is stopped",
-        )
+
+        def is_over(began_ms: int = robot.robot_ms) -> bool:
+            has_driven = robot.moves and robot.robot_ms >= began_ms + least_ms
+            return has_driven or "Stopped: " in word.inner_text()
+
+        hears(page, is_over, "it drives or is stopped")
         if "Stopped: " not in word.inner_text():
             return
         let_go()
