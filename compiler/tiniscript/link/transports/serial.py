@@ -41,7 +41,7 @@ _REASONS = {
 }
 
 
-class _Device(serial.Serial):
+class _Device(serial.Serial):  # type: ignore[misc] # pyserial has no types
     """A port of this computer. What another program has read before us is no end of it: a stop that
     goes past the lock of a suspended command reads what that command had been told of."""
 
