@@ -123,10 +123,29 @@ def suspended(command: Command) -> Command:
     return command
 
 
+# Who waits for bytes is told of them, and reads them a while later: others may have them by then.
+TOLD = """
+import select, sys, time
+from tiniscript.cli import main
+waited = select.select
+def told(readers, *others):
+    found = waited(readers, *others)
+    if found[0]:
+        time.sleep(0.3)
+    return found
+select.select = told
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.parametrize("code", ["", TOLD], ids=["anywhere", "before it reads"])
 @pytest.mark.parametrize("verb", ["monitor", "monitor --hold"])
-def test_a_stop_gets_through_beside_a_suspended_tsc(pty_robot: PtyRobot, verb: str) -> None:
+def test_a_stop_gets_through_beside_a_suspended_tsc(
+    pty_robot: PtyRobot, verb: str, code: str
+) -> None:
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
-    holder = Command(*verb.split(), "--port", pty_robot.port)
+    pty_robot.heard = b""
+    holder = Command(*verb.split(), "--port", pty_robot.port, code=code)
     until(lambda: registry.found(pty_robot.port) is not None, "it shares its port")
     pty_robot.until(lambda: b"\x04" in pty_robot.heard, "it talks to the robot")
     suspended(holder)

@@ -20,6 +20,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.pty_robot import PtyRobot
+from tests.support.simulated_port import simulated
 from tests.support.texts import said as command_texts
 from tiniscript import robots
 from tiniscript.cli import main
@@ -111,7 +112,9 @@ def test_what_a_guide_types_prints_what_it_shows(
         name = next((word for word in step.words if word in PORTS), name)
         if step.words == ["set", "owner"]:
             pty_robot.hold(after_ms=HAND_MS, times=3)  # a hand that tries again
-        with redirect_stderr(sys.stdout):  # a terminal shows both in the order of their writing
+        # In the robot's time, as a late answer counts as none; a terminal shows both streams in the
+        # order of their writing.
+        with simulated(pty_robot), redirect_stderr(sys.stdout):
             main([pty_robot.port if word in PORTS else word for word in step.words])
         pty_robot.let_go()
         printed.append((step, capsys.readouterr().out.replace(pty_robot.port, name)))

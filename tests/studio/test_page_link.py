@@ -98,8 +98,7 @@ def page(first: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     connect(found, robot)
     yield found
     found.click("#side_real")
-    if found.locator("html[data-robot=connected]").count():
-        found.click("#link_leave")
+    found.locator("#link_leave").dispatch_event("click")  # seen or not: it may just have left
     found.locator("html:not([data-robot=connected])").wait_for(state="attached")
     wrong, pages.wrong[:] = pages.wrong[:], []
     assert not wrong
@@ -229,7 +228,7 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     )
 
 
-def test_everything_is_seen_and_axe_finds_nothing(page: Page) -> None:
+def test_everything_is_seen_and_axe_finds_nothing(page: Page, robot: PtyRobot) -> None:
     for is_connected in (True, False):
         for language, (width, height) in product(("en", "es"), SCREENS):
             page.set_viewport_size({"width": width, "height": height})
@@ -238,11 +237,12 @@ def test_everything_is_seen_and_axe_finds_nothing(page: Page) -> None:
             turn(page, "robot")
             assert page.evaluate(LOOK) == [], (width, language, is_connected)
         if is_connected:
-            page.click("#link_teacher summary")
-            assert axe(page) == []
-            page.click("#link_teacher summary")
             page.click("#link_leave")
             page.locator("#link_connect").wait_for()
+    speak(page, "en")
+    connect(page, robot)
+    page.click("#link_teacher summary")
+    assert axe(page) == []
 
 
 def test_nothing_that_a_robot_says_becomes_markup(page: Page, robot: PtyRobot) -> None:

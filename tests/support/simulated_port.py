@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from unittest import mock
 
 from tiniscript.cli.robot import recorder, run_monitor
+from tiniscript.doctor import examination
 from tiniscript.link.transports import serial as serial_transport
 
 if TYPE_CHECKING:
@@ -125,4 +126,5 @@ def simulated(*ends: PtyPort) -> Iterator[None]:
         if len(ends) == 1:
             for module in (recorder, run_monitor):
                 stack.enter_context(mock.patch.object(module, "monotonic", now_s))
+            stack.enter_context(mock.patch.object(examination, "perf_counter", now_s))
         yield

@@ -396,7 +396,11 @@ def write(page: Page, text: str) -> None:
 
 
 def axe(page: Page, *rules: str, within: str = "html") -> list[tuple[str, str]]:
-    """Return what axe finds in an element, of these rules or of all: the rule, the first place."""
+    """Return what axe finds in an element, of these rules or of all: the rule, the first place.
+
+    The page hangs meanwhile, for seconds where the computer is busy: a robot that it drives is
+    stopped, and one to which it is connected is left. So this comes last, where there is one.
+    """
     if not page.evaluate("'axe' in window"):
         page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
     found: list[tuple[str, str]] = page.evaluate(_AXE, [within, *rules])

@@ -21,7 +21,6 @@ from tiniscript.recovery.writing import in_one_line, laid_out
 # Codes whose sentence names what is right.
 _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OTHER_ASSIGNMENT)
 _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
-_CR_ALONE = re.compile(r"\r(?!\n)")
 _SET = re.compile(r"(\w+) = -?[0-9.]+")
 _CLOSED = re.compile(r"(?:[^()]|\((?:[^()]|\([^()]*\))*\))*")
 _UNIT = re.compile(r"[^\d\s.]+$")
@@ -40,7 +39,7 @@ def meant_in(
     if meant is None:
         return []
     text = recovery.program
-    written = _CR_ALONE.sub("\n", source.text)  # its lines are those of the recovery
+    written = source.text
     told = explained(written, meant)
     if not told and meant.is_whole:
         misplaced = [each for each in found if each.code in rows.MISPLACED]

@@ -8,6 +8,7 @@ is told in all is held to the laws, each by a function that `told_of` names. Of 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import NamedTuple
@@ -34,6 +35,7 @@ from tiniscript.recovery.usage import with_usage
 from tiniscript.syntax.parser import ENOUGH
 
 ROUNDS = 20  # of reading what follows a mistake from the repaired text
+_CR_ALONE = re.compile(r"\r(?!\n)")
 LONGEST = 4_000  # characters of a text that is read as a whole
 
 
@@ -69,8 +71,12 @@ class Wrong:
 def told_of(
     source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
-    """Return what is told of a wrong text, of which the parser and the checker say `found`."""
-    text = source.text
+    """Return what is told of a wrong text, of which the parser and the checker say `found`.
+
+    The readers know one end of a line that is a character: what the text has instead takes as much.
+    """
+    text = _CR_ALONE.sub("\n", source.text)
+    source = Source(text, source.name)
     told = _read(Wrong(source, found, check, kit), ROUNDS)
     told = without_wrong(told, text, check)  # what is offered is right
     told = conserving(told, text, kit)  # what is made keeps what was written

@@ -8,8 +8,10 @@ Knows pyserial, and what its exceptions mean. Knows no robot and no sentences.
 from __future__ import annotations
 
 import errno
+import select
+import sys
 from threading import Thread
-from typing import Protocol
+from typing import Any, Protocol
 
 import serial
 from serial.tools import list_ports
@@ -37,6 +39,27 @@ _REASONS = {
     )
     for name in names.split()
 }
+
+
+class _Device(serial.Serial):  # type: ignore[misc] # pyserial has no types
+    """A port of this computer. What another program has read before us is no end of it: a stop that
+    goes past the lock of a suspended command reads what that command had been told of."""
+
+    def read(self, size: int = 1) -> bytes:
+        try:
+            return bytes(super().read(size))
+        except serial.SerialException:
+            if not self._is_there():
+                raise
+            return b""
+
+    def _is_there(self) -> bool:
+        """Whether the system still has it; False where nobody tells."""
+        if sys.platform == "win32" or self.fd is None:
+            return False
+        poll = select.poll()
+        poll.register(self.fd, 0)
+        return not poll.poll(0)  # else it is hung up
 
 
 class Listed(Protocol):
@@ -83,11 +106,17 @@ def _open(port: str, baud: int) -> serial.SerialBase:
     settings = {"timeout": READ_S, "write_timeout": WRITE_S, "exclusive": True}
     if port.startswith("rfc2217://"):
         del settings["write_timeout"]  # pyserial does not support it here
-    return serial.serial_for_url(port, baudrate=baud, **settings)
+    return _made(port, baud, settings)
 
 
 def _open_shared(port: str, baud: int) -> serial.SerialBase:
-    return serial.serial_for_url(port, baudrate=baud, timeout=READ_S, write_timeout=WRITE_S)
+    return _made(port, baud, {"timeout": READ_S, "write_timeout": WRITE_S})
+
+
+def _made(port: str, baud: int, settings: dict[str, Any]) -> serial.SerialBase:
+    if "://" in port:
+        return serial.serial_for_url(port, baudrate=baud, **settings)
+    return _Device(port, baudrate=baud, **settings)
 
 
 def _failure(failure: BaseException) -> PortError:

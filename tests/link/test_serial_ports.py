@@ -1,0 +1,54 @@
+"""Serial ports: what another program reads at the same time, and what ends one."""
+
+from __future__ import annotations
+
+import os
+import select
+import tty
+from collections.abc import Iterator
+from io import FileIO
+from typing import NamedTuple
+
+import pytest
+
+from tiniscript.link.transports import Port, serial
+
+pty = pytest.importorskip("pty")
+
+
+class Line(NamedTuple):
+    ours: FileIO  # the other end
+    port: Port
+
+
+@pytest.fixture(params=[True, False], ids=["alone", "past a lock"])
+def line(request: pytest.FixtureRequest) -> Iterator[Line]:
+    end, theirs = pty.openpty()
+    tty.setraw(theirs)
+    device = serial.opened(os.ttyname(theirs), 9600, 20.0, is_exclusive=request.param)
+    os.close(theirs)
+    with FileIO(end, "r+") as ours:
+        yield Line(ours, device)
+    device.close()
+
+
+@pytest.fixture
+def ready(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who waits for bytes is told of some at once, as one who was suspended after that."""
+    monkeypatch.setattr(select, "select", lambda readers, *_: (readers[:1], [], []))
+
+
+@pytest.mark.usefixtures("ready")
+def test_what_another_program_has_read_ends_nothing(line: Line) -> None:
+    line.ours.write(b"ab")
+    assert [line.port.read(1) for _ in range(4)] == [b"a", b"b", b"", b""]
+    line.ours.write(b"c")
+    assert line.port.read(1) == b"c"
+
+
+def test_a_port_that_is_gone_says_so(line: Line) -> None:
+    line.ours.write(b"a")
+    assert line.port.read(1) == b"a"
+    line.ours.close()
+    with pytest.raises(OSError):
+        line.port.read(1)
