@@ -446,7 +446,21 @@ def all_seen(scene: Scene, how: Behind, rng: random.Random) -> list[object]:
                 scene.robot.until(scene.session, scene.session.hello())
             scene.ask(name, asks[name], rng)
             scene.talk(RUNS_MS)
-    return scene.told
+    return [*scene.told, *in_the_end(scene, how)]
+
+
+def in_the_end(scene: Scene, how: Behind) -> list[object]:
+    """Stop the robot; return who it says it is, and what it keeps."""
+    robot, session = scene.robot, scene.next_session()
+    robot.supply(False)
+    robot.wait(UNHEARD_MS, bytes(4))
+    robot.until(session, session.hello())
+    assert session.robot
+    values = session.robot.values
+    trim = robot.done(session, session.trim())
+    robot.talk(session, 1500)
+    kept = robot.memory() if how.is_cut else b""
+    return [(values.id, values.name, values.features, trim), kept]
 
 
 @lru_cache(maxsize=1)

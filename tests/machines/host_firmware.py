@@ -25,7 +25,7 @@ TICKS = 20  # in a millisecond
 POWER_ON, RESET_BUTTON = 1, 2
 SPREAD, UNTIL_SENT = 1, 2  # how time passes
 # What it says of itself is wrong whatever it was told.
-WRONG = ("MARK", "MEASURED", "UNVERIFIED", "CHANGED", "SOUND", "LIGHT")
+WRONG = ("MARK", "MEASURED", "UNVERIFIED", "CHANGED", "SOUND", "LIGHT", "PROGRAM")
 T = TypeVar("T")
 
 

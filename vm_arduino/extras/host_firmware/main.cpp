@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "../../src/firmware/firmware.h"
+#include "../../src/firmware/program.h"
 #include "../../src/firmware/remote.h"
 #include "../../src/firmware/trim.h"
 #include "../../src/link/frames.h"
@@ -79,6 +80,7 @@ struct Tabletop {
   uint32_t now_ms = 0;
   bool has_tone = false;    // of a program
   uint32_t tone_end_ms = 0;
+  bool is_other = false;    // what it holds, than what STATUS says
   uint16_t wrong_light_ms = 0;  // for which the light has not told what a press would do
   std::string code;                // that was started last
   std::vector<std::string> codes;  // all that nobody has asked for
@@ -128,8 +130,9 @@ void check_code() {
   }
 }
 
-// Says once what is wrong whatever the robot was told: a tone that goes on after its program, and a light
-// that does not tell whether a press would start one. A robot that shows itself blinks faster.
+// Says once what is wrong whatever the robot was told: a tone that goes on after its program, a
+// light that does not tell whether a press would start one, and a program that is not the one of its
+// STATUS. A robot that shows itself blinks faster.
 void check_signs() {
   constexpr uint16_t kSteadyMs = 400;
   const RobotStatus& status = port_status();
@@ -139,6 +142,10 @@ void check_signs() {
     table.log += "SOUND after the program\n";
     table.has_tone = false;
   }
+  const bool is_it = status.program == get32(program + kChecksumAt) &&
+                     status.length == get16(program + kCodeLengthAt);
+  if (is_in_memory() && !is_it && !table.is_other) table.log += "PROGRAM is another one\n";
+  table.is_other = is_in_memory() && !is_it;
   const bool has_program = status.saved != Saved::kNothing && status.saved != Saved::kOtherVersion;
   const bool is_right = table.is_lit == (!is_running && has_program);
   if (is_right || table.wrong_light_ms > kSteadyMs) {
@@ -416,7 +423,10 @@ Supply board_supply() {
   return table.is_low ? Supply::kLow : Supply::kEnough;
 }
 
-void board_light(bool is_on) { table.is_lit = is_on; }
+void board_light(bool is_on) {
+  table.is_lit = is_on;
+  table.wrong_light_ms = 0;
+}
 
 void board_finished() { table.log += "FINISHED\n"; }
 
