@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "../../src/firmware/firmware.h"
+#include "../../src/firmware/persistence.h"
 #include "../../src/firmware/program.h"
 #include "../../src/firmware/remote.h"
 #include "../../src/firmware/trim.h"
@@ -146,7 +147,8 @@ void check_signs() {
                      status.length == get16(program + kCodeLengthAt);
   if (is_in_memory() && !is_it && !table.is_other) table.log += "PROGRAM is another one\n";
   table.is_other = is_in_memory() && !is_it;
-  const bool has_program = status.saved != Saved::kNothing && status.saved != Saved::kOtherVersion;
+  const bool has_program = has_booted() && status.saved != Saved::kNothing &&
+                           status.saved != Saved::kOtherVersion;
   const bool is_right = table.is_lit == (!is_running && has_program);
   if (is_right || table.wrong_light_ms > kSteadyMs) {
     if (is_right) table.wrong_light_ms = 0;
