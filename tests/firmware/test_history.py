@@ -2,7 +2,8 @@
 
 Computers and people do anything with a robot: they ask for everything, give up in the middle of it,
 type lines and parts of lines, push the button, pull the cable. Then it is stopped, and its twin is
-switched on: a robot with the same memory. From here on both do the same, whatever is asked of them.
+switched on: a robot with the same memory. From here on both do the same, whatever is asked of them
+and whatever their clocks say.
 
 `python -m tests.firmware.test_history 2000` tries more.
 """
@@ -22,10 +23,12 @@ from tests.firmware.test_second_time import READINGS, SmallRobot, drawn, without
 from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import image_of
+from tests.support.owners import Keys, Owned
 from tests.text.test_bytes_around import PIECES
+from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, encoded
-from tiniscript.link.messages import BY_NAME
+from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, KEY_OWNER, KEY_TEACHER
 from tiniscript.link.outcomes import TextEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -34,11 +37,13 @@ Asks = Callable[[Session, random.Random], PendingRequest[Any]]
 PRESSED, RELEASED, STALLED, UNPLUGGED, SURE = 1, 2, 4, 8, 32
 LONG = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
 SHORT = "SI|F(0.1, 80);SHOW(2);B(0.1, 30)"
+TONE = "BEEP(0.9, 440);W(0.1)"
 TRIMS = ((0, 0, 0), (1, 0, 0), (0, 30, 0), (6, -20, 25), (9, 0, 0))
 NO_ZERO = b"// Lines end with Enter, not with 0\r\n"
 LOST = b"// The old program is lost.\r\n"
 UNHEARD_MS = 4200  # then no client is listened to any more
 RUNS_MS = 700
+BEGUN_MS = 60_000  # since a computer was switched on
 IDENTIFIES_MS = 3300
 FORGETS_MS = 65_000  # then nobody knows whether lines end here
 
@@ -50,7 +55,9 @@ def starts(rng: random.Random) -> str:
 
 def sensible(rng: random.Random) -> str:
     """Return a program of the size of a line, with no readings."""
-    return "SI|" + without_readings(rng.choice((SHORT[3:], "BEEP(0.001, 31);M(20, 30);W(0.2)")))
+    return "SI|" + without_readings(
+        rng.choice((SHORT[3:], "BEEP(0.001, 31);M(20, 30);W(0.2)", TONE))
+    )
 
 
 # -- what can be asked and typed ----------------------------------------------------------------
@@ -88,6 +95,12 @@ HELD: dict[str, Asks] = {
     "start": lambda session, rng: session.start(),
     "fetch": lambda session, rng: session.fetch(),
 }
+WHO = ("owner", "owner", "teacher", "stranger", "thief")
+OWNERS: dict[str, Asks] = {
+    "a teacher's stop": lambda session, rng: session.hold_back(),
+    "text": lambda session, rng: session.allow_text(rng.random() < 0.5),
+    "a claim": lambda session, rng: session.claim(rng.choice((KEY_OWNER, KEY_TEACHER))),
+}
 LINES = (
     "SI|F(0.1, 80);SHOW(3)", "SI|X = 2;SHOW(X)", "SB|B(0.2, 40)", "F(0.1, 30)", "FOO(1)", "F(1,",
     "HELP", "PING|CHECK_CONNECTION", "SI|LOOP(2)", "W(0.05)", "END_LOOP", "LOOP(2)", "S", "stop",
@@ -108,23 +121,36 @@ STOPS = (bytes(4), b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0)), b"\0S\
 TYPED_STOP = b"\nSI|W(9)\nS\n"  # it ends an open block, in which S would be an instruction
 
 
+Owners = dict[str, RobotKey]  # the keys that the robot has
+
+
 class Scene:
     """A robot, with whoever talks to it."""
 
-    def __init__(self, kind: type[HostFirmware], memory: bytes, write_ms: float) -> None:
-        self.robot = kind(KIT, memory, write_ms=write_ms)
+    def __init__(
+        self, kind: type[HostFirmware], memory: bytes, write_ms: float, clock_ms: int, keys: Owners
+    ) -> None:
+        self.robot = kind(KIT, memory, write_ms=write_ms, clock_ms=clock_ms - BEGUN_MS)
+        self.robot.now_ms = BEGUN_MS
         self.robot.sense(*READINGS)
         self.robot.wait(300)
         self.nonce = 0
+        self.keys = keys
         self.session = self.next_session()
         self.is_down = False  # the button
         self.has_faulted = False
         self.is_saved = True  # the program that it holds
         self.told: list[object] = []  # all that can be seen
 
-    def next_session(self) -> Session:
+    def next_session(self, who: str = "owner") -> Session:
+        """Let the next computer come: that of who has this key, a wrong one, or none."""
         self.nonce += 1
-        self.session = Session(self.nonce, 9600, KIT.fingerprint)
+        keys = Keys()
+        if who in self.keys:
+            keys.found = [self.keys[who]]
+        elif who == "thief" and self.keys:
+            keys.found = [self.keys["owner"]._replace(key=bytes(range(16)))]
+        self.session = Session(self.nonce, 9600, KIT.fingerprint, keys=keys)
         return self.session
 
     def note(self, what: str, begun_ms: int, said: bytes = b"") -> None:
@@ -275,6 +301,27 @@ def the_rest(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
         scene.robot.wait(rng.choice((30, 1100, UNHEARD_MS)))
 
 
+def an_owner_s_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+    """Somebody comes who has a key, a wrong one, or none."""
+    scene.next_session(rng.choice(WHO))
+    for _ in range(rng.choice((1, 1, 2, 4))):
+        name = rng.choice([*asks])
+        scene.ask(name, asks[name], rng, rng.choice((1, 4, 15, 50, 2000)))
+        scene.robot.talk(scene.session, rng.choice((0, 1, 30, 300)))
+
+
+def a_long_press(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+    """Two seconds of the button let text drive, or confirm a claim that was asked for."""
+    robot, session = scene.robot, scene.session
+    if rng.random() < 0.5:
+        session.claim(rng.choice((KEY_OWNER, KEY_TEACHER)))
+        robot.talk(session, rng.choice((1, 20, 400)))
+    down_ms = rng.choice((700, 1500, 2100))
+    for milliseconds, flags in ((30, PRESSED), (down_ms, SURE), (40, RELEASED)):
+        robot.talk(session, 1, flags)
+        robot.talk(session, milliseconds)
+
+
 class Before(NamedTuple):
     """Steps, what is asked in them, and whether they change what is kept."""
 
@@ -290,12 +337,20 @@ BEFORE = {
     "requests": Before((a_request, half_a_request, noise, the_button, the_rest), ASKS, False),
     "whole lines": Before((a_whole_line,), {}, False),
     "lines": Before((a_line, a_line, a_line, pieces, the_button), {}, False),
+    "owners": Before(
+        (an_owner_s_request, an_owner_s_request, a_line, a_long_press, the_button, the_rest),
+        {**ASKS, **MORE, **OWNERS, "fetch": HELD["fetch"]}, True),
 }  # fmt: skip
 
 
-def settled(scene: Scene, saves: bool) -> bytes:
+def settled(scene: Scene, saves: bool, rng: random.Random) -> bytes:
     """Let go of everything, and wait until what is to be kept is; return it."""
     robot = scene.robot
+    if scene.keys:  # the button lets go of what only a teacher may, and text drives no more
+        robot.wait(AUTHORITY_MS)
+        robot.push()
+        session = scene.next_session()
+        robot.until(session, session.allow_text(False), 60_000)
     robot.supply(False)
     if scene.is_down:
         robot.step(flags=RELEASED)
@@ -304,11 +359,13 @@ def settled(scene: Scene, saves: bool) -> bytes:
         robot.wait(2, bytes(4))
         robot.wait(IDENTIFIES_MS)
     memory = robot.memory()
-    while saves and robot.now_ms < 200_000:
+    while saves and robot.now_ms < BEGUN_MS + 200_000:
         robot.wait(800)
         if robot.memory() == memory:
             break
         memory = robot.memory()
+    if robot.is_latched:  # what happens then is over before the next program
+        robot.step(flags=rng.choice((0, STALLED, UNPLUGGED)))
     return memory
 
 
@@ -326,6 +383,12 @@ class Behind(NamedTuple):
 
 def behind(rng: random.Random, before: str) -> Behind:
     """Return how a robot is stopped. A person who types comes when no client is heard any more."""
+    how = drawn_behind(rng, before)
+    # Of a robot with an owner nobody else gets what it holds.
+    return how._replace(is_cut=False) if before == "owners" else how
+
+
+def drawn_behind(rng: random.Random, before: str) -> Behind:
     is_typed = "lines" in before or (before == "anything" and rng.random() < 0.5)
     if before == "whole lines":
         return Behind(b"", 0, False, rng.choice((1, 2, 4)), True, True)
@@ -366,7 +429,7 @@ def stopped(scene: Scene, how: Behind) -> None:
 
 def all_seen(scene: Scene, how: Behind, rng: random.Random) -> list[object]:
     """Ask for things; return all that can be seen."""
-    asks = {**ASKS, **MORE, **(HELD if how.is_cut else {})}
+    asks = {**ASKS, **MORE, **(HELD if how.is_cut else {}), **(OWNERS if scene.keys else {})}
     if not how.is_cut:
         for name in ("undo", "status", "hello"):
             del asks[name]
@@ -378,9 +441,26 @@ def all_seen(scene: Scene, how: Behind, rng: random.Random) -> list[object]:
             scene.press(rng.choice((40, 300)))
         else:
             name = rng.choice([*asks])
+            if scene.keys and rng.random() < 0.5:
+                scene.next_session(rng.choice(WHO))
+                scene.robot.until(scene.session, scene.session.hello())
             scene.ask(name, asks[name], rng)
             scene.talk(RUNS_MS)
-    return scene.told
+    return [*scene.told, *in_the_end(scene, how)]
+
+
+def in_the_end(scene: Scene, how: Behind) -> list[object]:
+    """Stop the robot; return who it says it is, and what it keeps."""
+    robot, session = scene.robot, scene.next_session()
+    robot.supply(False)
+    robot.wait(UNHEARD_MS, bytes(4))
+    robot.until(session, session.hello())
+    assert session.robot
+    values = session.robot.values
+    trim = robot.done(session, session.trim())
+    robot.talk(session, 1500)
+    kept = robot.memory() if how.is_cut else b""
+    return [(values.id, values.name, values.features, trim), kept]
 
 
 @lru_cache(maxsize=1)
@@ -391,20 +471,36 @@ def new_memory() -> bytes:
     return robot.memory()
 
 
+@lru_cache(maxsize=1)
+def claimed() -> tuple[bytes, Owners]:
+    """Return what a robot keeps that has an owner and a teacher, and their keys."""
+    table, keys = Owned(new_memory()), Keys()
+    for which in (KEY_OWNER, KEY_TEACHER):
+        table.claimed(keys, which)
+    table.robot.wait(1000)
+    return table.robot.memory(), dict(zip(("owner", "teacher"), keys.found, strict=True))
+
+
+def clock(rng: random.Random) -> int:
+    """Return what a clock says at first; mostly a part of it wraps around soon, or in the story."""
+    return rng.choice((0, 2**16, 2**31, 2**32)) - rng.choice((0, 500, 3000, 12_000, 30_000))
+
+
 def check(seed: int, kind: str, before: str) -> int:
     """Compare a robot with its twin; return how much there was to be seen."""
     rng = random.Random(f"{seed} {kind} {before}")
     write_ms = rng.choice((3.4, 3.4, 12))
-    scene = Scene(KINDS[kind], new_memory(), write_ms)
+    first, keys = claimed() if before == "owners" else (new_memory(), {})
+    scene = Scene(KINDS[kind], first, write_ms, clock(rng), keys)
     for _ in range(rng.choice((1, 2, 4, 8))):
         rng.choice(BEFORE[before].steps)(scene, rng, BEFORE[before].asks)
     scene.talk(0)
     saves = BEFORE[before].saves or scene.has_faulted
-    memory = settled(scene, saves)
+    memory = settled(scene, saves, rng)
     assert saves or memory == new_memory()
     history = scene.told[:]
     how = behind(rng, before)
-    twin = Scene(KINDS[kind], memory, write_ms)
+    twin = Scene(KINDS[kind], memory, write_ms, clock(rng), keys)
     drawn_alike = rng.random()
     found = []
     for each in (scene, twin):

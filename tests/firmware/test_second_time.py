@@ -39,6 +39,7 @@ KIT = robots.load("tinibot").kit
 ESP32 = robots.load("tinibot32")
 MARK = "BEEP(0.001, 31);"  # tells when a program begins
 MARKED = ("BEEP 31 1", "TONE 31")
+CLOCKS_MS = (0, 2**16 - 900, 2**31 - 900, 2**32 - 900)  # what a robot's clock says at first
 RUNS_MS = 600  # of the second program that are looked at
 STOP_MESSAGE = b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0))
 
@@ -52,8 +53,10 @@ class SmallRobot(HostFirmware):
 class Scene:
     """A robot, and the computer that talks to it."""
 
-    def __init__(self, kind: str) -> None:
+    def __init__(self, kind: str, clock_ms: int = 0) -> None:
         self.robot = KINDS[kind]()
+        if not isinstance(self.robot, Esp32Robot):
+            self.robot.clock_ms = clock_ms % 2**32
         self.robot.wait(300)
         self.session = computer()
         self.count = 1
@@ -208,7 +211,8 @@ def story(rng: random.Random, starts: str, kind: str) -> Story:
 def drawn(rng: random.Random) -> str:
     """Return a program that begins with the mark, and draws nothing by itself."""
     text = re.sub(r"RANDOM\(\d, \d\)", str(rng.randint(0, 3)), task_program(rng)[0])
-    moves = rng.choice(("", "F(60, 80);", "X = 0;W(0.05);SHOW(1 / X);", "M(30, -30);"))
+    moves = rng.choice(("", "F(60, 80);", "X = 0;W(0.05);SHOW(1 / X);", "M(30, -30);",
+                        "BEEP(3, 262);"))  # fmt: skip
     return MARK + text.replace("\n", ";") + ";" + moves
 
 
@@ -293,7 +297,7 @@ def fitting(rng: random.Random, starts: str, kind: str) -> tuple[Story, list[str
 
 def check(seed: int, starts: str, kind: str) -> str:
     tale, want, wanted_words = fitting(random.Random(f"{seed} {starts} {kind}"), starts, kind)
-    scene = after(tale, Scene(kind))
+    scene = after(tale, Scene(kind, random.Random(seed).choice(CLOCKS_MS)))
     goes_on = not scene.robot.is_latched  # until the second begins
     did, heard = seen(scene, tale)
     heard, wanted_words = without_the_first(heard), without_the_first(wanted_words)

@@ -24,16 +24,20 @@ EMPTY = bytes(1024).replace(b"\0", b"\xff")  # what a new EEPROM holds
 TICKS = 20  # in a millisecond
 POWER_ON, RESET_BUTTON = 1, 2
 SPREAD, UNTIL_SENT = 1, 2  # how time passes
+# What it says of itself is wrong whatever it was told.
+WRONG = ("MARK", "MEASURED", "UNVERIFIED", "CHANGED", "SOUND", "LIGHT", "PROGRAM")
 T = TypeVar("T")
 
 
 class HostFirmware(Process):
-    """A robot that is switched on. `write_ms` is how long its memory takes for a byte.
+    """A robot that is switched on. `write_ms` is how long its memory takes for a byte, `clock_ms`
+    what its clock of 32 bits says at 0 ms.
 
     One that has no draft reads text where the program is that it holds, as an Uno does.
     """
 
     has_draft = True
+    clock_ms = 0
 
     def __init__(
         self,
@@ -46,11 +50,12 @@ class HostFirmware(Process):
         sources: Path = SOURCES,
         language: str = "en",
         defines: tuple[str, ...] = (),
+        clock_ms: int = 0,
     ) -> None:
         if not self.has_draft:
             defines += ("tiniscript_no_draft",)
         super().__init__([built(sources, defines)], "the C++ robot")
-        self.now_ms = 0
+        self.now_ms, self.clock_ms = 0, clock_ms % 2**32
         self.did: list[str] = []
         self.is_lit, self.is_latched = False, True
         head = pack("<HBBB", kit.fingerprint, len(kit.sensors), len(kit.actuators), reset)
@@ -62,11 +67,11 @@ class HostFirmware(Process):
     def step(self, data: bytes = b"", flags: int = 0, ticks: int = TICKS) -> bytes:
         """Let a millisecond pass in which bytes arrive; return what is sent."""
         self.now_ms += 1
-        head = pack("<IBHI", self.now_ms, flags, ticks, len(data))
+        head = pack("<IBHI", self._clock(self.now_ms), flags, ticks, len(data))
         answer = self.ask(b"S", head + data)
         sent, rest = first_text(answer)
         did, rest = first_text(rest)
-        self.did += [f"{self.now_ms} {line}" for line in did.decode().splitlines()]
+        self._note([f"{self.now_ms} {line}" for line in did.decode().splitlines()])
         self.is_lit, self.is_latched = bool(rest[0]), bool(rest[1])
         return sent
 
@@ -88,15 +93,25 @@ class HostFirmware(Process):
         return self._pass(milliseconds, b"", UNTIL_SENT)[0]
 
     def _pass(self, milliseconds: int, data: bytes, how: int) -> tuple[bytes, list[bool]]:
-        head = pack("<IIHBI", self.now_ms + 1, milliseconds, TICKS, how, len(data))
+        head = pack("<IIHBI", self._clock(self.now_ms + 1), milliseconds, TICKS, how, len(data))
         sent, rest = first_text(self.ask(b"W", head + data))
         did, rest = first_text(rest)
-        self.did += did.decode().splitlines()
+        rows = (line.split(" ", 1) for line in did.decode().splitlines())
+        self._note([f"{(int(ms) - self.clock_ms) % 2**32} {what}" for ms, what in rows])
         self.is_lit = bool(rest[0])
         latched = [bool(each) for each in first_text(rest[1:])[0]]
         self.now_ms += len(latched)
         self.is_latched = latched[-1]
         return sent, latched
+
+    def _clock(self, now_ms: int) -> int:
+        return (now_ms + self.clock_ms) % 2**32
+
+    def _note(self, lines: list[str]) -> None:
+        """Note what the robot has done."""
+        self.did += lines
+        wrong = [line for line in lines if line.split()[1] in WRONG]
+        assert not wrong, f"{wrong} after {self.did[-9:]}"
 
     def push(self, milliseconds: int = 100) -> None:
         """Push the start button, and let it go."""

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "../../src/firmware/firmware.h"
+#include "../../src/firmware/persistence.h"
+#include "../../src/firmware/program.h"
 #include "../../src/firmware/remote.h"
 #include "../../src/firmware/trim.h"
 #include "../../src/link/frames.h"
@@ -64,7 +66,7 @@ struct Tabletop {
   Wheel wheels[2];
   bool is_latched = true;
   bool is_lit = false;
-  bool has_stalled = false;
+  bool has_stalled = false;  // since it was asked
   bool is_low = false;  // the supply
   bool writes_mark = false;
   uint8_t measures = 0;    // of it, each fourth says something
@@ -76,6 +78,11 @@ struct Tabletop {
   uint8_t write_ticks = 0;  // as many as this
   uint8_t sends_ticks = 0;  // that each byte takes which the robot sends; 0: none,
   uint8_t line_ticks = 0;   // and so many are left of the last one
+  uint32_t now_ms = 0;
+  bool has_tone = false;    // of a program
+  uint32_t tone_end_ms = 0;
+  bool is_other = false;    // what it holds, than what STATUS says
+  uint16_t wrong_light_ms = 0;  // for which the light has not told what a press would do
   std::string code;                // that was started last
   std::vector<std::string> codes;  // all that nobody has asked for
 };
@@ -124,6 +131,32 @@ void check_code() {
   }
 }
 
+// Says once what is wrong whatever the robot was told: a tone that goes on after its program, a
+// light that does not tell whether a press would start one, and a program that is not the one of its
+// STATUS. A robot that shows itself blinks faster.
+void check_signs() {
+  constexpr uint16_t kSteadyMs = 400;
+  const RobotStatus& status = port_status();
+  const bool is_running = status.state == State::kRunning;
+  if (static_cast<int32_t>(table.now_ms - table.tone_end_ms) >= 0) table.has_tone = false;
+  if (table.has_tone && !is_running) {
+    table.log += "SOUND after the program\n";
+    table.has_tone = false;
+  }
+  const bool is_it = status.program == get32(program + kChecksumAt) &&
+                     status.length == get16(program + kCodeLengthAt);
+  if (is_in_memory() && !is_it && !table.is_other) table.log += "PROGRAM is another one\n";
+  table.is_other = is_in_memory() && !is_it;
+  const bool has_program = has_booted() && status.saved != Saved::kNothing &&
+                           status.saved != Saved::kOtherVersion;
+  const bool is_right = table.is_lit == (!is_running && has_program);
+  if (is_right || table.wrong_light_ms > kSteadyMs) {
+    if (is_right) table.wrong_light_ms = 0;
+  } else if (++table.wrong_light_ms > kSteadyMs) {
+    table.log += "LIGHT is wrong\n";
+  }
+}
+
 // B: power on, with what the memory holds.
 void answer_begin(RequestReader* request, Writer*) {
   table.kit = request->u16();
@@ -147,6 +180,7 @@ void answer_begin(RequestReader* request, Writer*) {
 // Lets so many ticks of a millisecond pass, and as many more as bytes arrive, one in each tick.
 // Returns what the robot sends.
 std::string pass(uint32_t now_ms, uint16_t ticks, const uint8_t* heard, size_t length) {
+  table.now_ms = now_ms;
   table.wheels[0].pass_millisecond(table.left);
   table.wheels[1].pass_millisecond(table.right);
   std::string sent;
@@ -163,6 +197,7 @@ std::string pass(uint32_t now_ms, uint16_t ticks, const uint8_t* heard, size_t l
       table.line_ticks = table.sends_ticks;
     }
   }
+  check_signs();
   return sent;
 }
 
@@ -179,7 +214,7 @@ void answer_step(RequestReader* request, Writer* answer) {
     firmware_on_rx_byte(heard.data[next++], static_cast<uint16_t>(now_ms));
   }
   table.log.clear();
-  table.has_stalled = (flags & 4) != 0;
+  if ((flags & 4) != 0) table.has_stalled = true;
   if ((flags & 1) != 0) firmware_on_pressed();
   if ((flags & 2) != 0) firmware_on_released();
   if ((flags & 8) != 0) firmware_on_disconnect();
@@ -200,7 +235,6 @@ void answer_wait(RequestReader* request, Writer* answer) {
   const uint8_t how = request->u8();
   const bool is_spread = how == 1;
   const Bytes heard = request->bytes();
-  table.has_stalled = false;
   std::string sent;
   std::string did;
   std::string latched;
@@ -304,7 +338,10 @@ uint16_t board_edges(bool is_right) {
   return static_cast<uint16_t>(static_cast<uint64_t>(table.wheels[is_right].turned));
 }
 
-void robot_off() { turn(0, 0); }
+void robot_off() {
+  turn(0, 0);
+  table.has_tone = false;
+}
 
 bool robot_read(uint8_t sensor, int32_t* value) {
   *value = sensor < table.sensors
@@ -315,6 +352,8 @@ bool robot_read(uint8_t sensor, int32_t* value) {
 
 void robot_beep(uint16_t hertz, uint32_t duration_ms) {
   say("BEEP", hertz, static_cast<int32_t>(duration_ms));
+  table.has_tone = port_status().state == State::kRunning;
+  table.tone_end_ms = table.now_ms + duration_ms;
 }
 
 void robot_set(uint8_t actuator, int32_t value) {
@@ -386,7 +425,10 @@ Supply board_supply() {
   return table.is_low ? Supply::kLow : Supply::kEnough;
 }
 
-void board_light(bool is_on) { table.is_lit = is_on; }
+void board_light(bool is_on) {
+  table.is_lit = is_on;
+  table.wrong_light_ms = 0;
+}
 
 void board_finished() { table.log += "FINISHED\n"; }
 
