@@ -94,7 +94,6 @@ class Part extends EventTarget {
   options = [];
   textContent = '';
   value = '';
-  src = '';
   open = false;
   hidden = false;
   disabled = false;
@@ -102,6 +101,8 @@ class Part extends EventTarget {
   classList = { toggle() {}, add() {}, remove() {} };
   style = { setProperty() {}, removeProperty() {} };
 
+  get src() { return this.attributes['src'] ?? ''; }
+  set src(address) { this.attributes['src'] = address; }
   get parentElement() { return this.parent; }
   get lastElementChild() { return this.children.at(-1); }
   append(...parts) {
@@ -125,7 +126,11 @@ class Part extends EventTarget {
   focus() {}
   toggleAttribute() {}
   showModal() { this.open = true; }
-  close() { this.open = false; }
+  close() {
+    if (!this.open) return;
+    this.open = false;
+    this.dispatchEvent(new Event('close'));
+  }
   insertBefore(part, next) {
     this.children = this.children.filter((each) => each !== part);
     part.parent = this;

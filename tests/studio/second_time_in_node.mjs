@@ -115,7 +115,8 @@ const PARTS = {
     };
   },
 
-  // A pupil in a class, and in another one, or again after a teacher has taken them out.
+  // A pupil in a class, and in another one, or again after a teacher has taken them out, until it is over. The class has
+  // what was written and pressed last, the page goes to its robot once in a turn, and takes what it is given once.
   async pupil() {
     const page = freshPage();
     document.documentElement.dataset['class'] = '';
@@ -123,23 +124,34 @@ const PARTS = {
     playsNavigator({});
     await learns(page);
     const { Pupil } = await page.load('class/pupil.js');
+    const { kept } = await page.load('page/kept.js');
     let room = null;
     playsFetch((_, { headers, body }) => room.asked(headers['X-TiniScript-Token'], JSON.parse(body)));
     const notes = [];
     const panel = { isFree: true, byHost: () => notes.push('to the robot') };
     const work = { text: 'F(1)', robot: 'tinibot' };
-    new Pupil({ panel, work, put: (given) => notes.push(['given', given.text]), empty: () => notes.push('empty') });
+    const puts = (given) => {
+      notes.push(['given', given.text]);
+      work.text = given.text;
+    };
+    new Pupil({ panel, work, put: puts, empty: () => notes.push('empty') });
     const box = page.byId('class_pupil');
     const [join, , buttons] = box.children;
-    const [ask, quit] = buttons.children;
+    const [ask, quit, connect] = buttons.children;
     const hand = page.byId('stop').placedBefore;
     let entries = 0;
     return async (chance, isGood) => {
       notes.length = 0;
       const began_ms = now();
       const token = `token ${(entries += 1)}`;
-      let place = -1;
-      let isUp = false;
+      panel.isFree = true;
+      work.text = 'F(1)';
+      const has = { text: '', place: -1, isUp: false };
+      const wanted = { place: -1, isUp: false };
+      let turns = 0;
+      let over = '';
+      let late = 0; // asked after the class was over
+      let isCalm = false; // nothing is lost
       let ends = 'goes on';
       const end = isGood ? 'goes on' : 'removed';
       const told = isGood && { key: 'one', text: 'given', robot: 'tinibot', lessons: [] };
@@ -151,27 +163,58 @@ const PARTS = {
             return { ok: false, status: 403 };
           }
           notes.push([now() - began_ms, { ...request }]);
+          if (over) late += 1;
           const isOut = ends === 'removed';
           await later(isGood ? 5 : 5 + chance.below(900));
-          if (!isGood && chance() < 0.2) throw new Broken();
+          if (!isCalm && chance() < (isGood ? 0.4 : 0.2)) throw new Broken();
           if (isOut) return { ok: false, status: 403 };
-          isUp = request.hand ?? isUp;
-          if (request.wants !== undefined) place = request.wants ? 0 : -1;
-          return answers({ place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: isUp, ...(told && !request.took && { given: told }) });
+          if (request.text !== undefined) has.text = request.text;
+          has.isUp = request.hand ?? has.isUp;
+          const before = has.place;
+          if (request.wants !== undefined) has.place = request.wants ? 0 : -1;
+          if (has.place === 0 && before !== 0) turns += 1;
+          if (over) return answers({ over });
+          return answers({ place: has.place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: has.isUp, ...(told && !request.took && { given: told }) });
         },
       };
+      const presses = {
+        ask: () => { wanted.place = 0; ask.click(); },
+        quit: () => { wanted.place = -1; quit.click(); },
+        hand: () => { wanted.isUp = hand.attributes['aria-pressed'] !== 'true'; hand.click(); },
+        writes: () => { work.text = `F(${chance.below(1000)})`; },
+        nothing: () => {},
+      };
       join.dispatchEvent(new Event('submit', { cancelable: true }));
-      if (isGood && chance() < 0.5) hand.click(); // before the class has said how it is
+      await settles();
+      if (isGood && chance() < 0.5) presses.hand(); // before the class has said how it is
       await passes(500);
       for (let k = 1 + chance.below(4); k > 0; k -= 1) {
-        chance.of([() => ask.click(), () => quit.click(), () => hand.click(), () => {}])();
-        await passes(chance.below(1500));
+        presses[chance.of(Object.keys(presses))]();
+        await passes(chance.of([2, chance.below(1500)]));
       }
       if (!isGood && chance() < 0.7) chance.of([ask, quit, hand]).click(); // whose answer may come after the end
       ends = end;
       for (let k = chance.below(isGood ? 1 : 4); k > 0; k -= 1) chance.of([ask, quit, hand]).click();
       while (!isGood && join.hidden) await passes(50 + chance.below(50));
-      return { ends: [ends], seen: [notes.map((each) => structuredClone(each)), document.documentElement.dataset['pupil'], join.hidden, hand.attributes] };
+      if (!isGood) return { ends: [ends], seen: [] };
+      presses.writes();
+      await passes(2);
+      presses.writes(); // while the one before is on its way
+      isCalm = true;
+      panel.isFree = chance() < 0.5;
+      await passes(3000);
+      const seen = notes.map((each) => structuredClone(each));
+      const does = (what) => notes.filter((each) => each === what || each[0] === what).length;
+      if (has.text !== work.text) throw new Error(`the class has ${has.text} in place of ${work.text}`);
+      if (has.place !== wanted.place || has.isUp !== wanted.isUp) throw new Error(`not what was pressed last: ${JSON.stringify([has, wanted])}`);
+      if (does('to the robot') > turns || does('given') > 1) throw new Error(`${does('to the robot')} times to the robot in ${turns} turns, given ${does('given')} times`);
+      if (connect.hidden !== (has.place !== 0 || !panel.isFree)) throw new Error('who cannot connect may, or who can may not');
+      seen.push([document.documentElement.dataset['pupil'], join.hidden, hand.attributes]);
+      over = chance.of(['', 'kept', 'erased']);
+      await passes(5000);
+      if (over && (!join.hidden || late > 1 || kept('tiniscript.pupil', 'sessionStorage'))) throw new Error(`it is over, and goes on: ${late}`);
+      if (does('empty') !== Number(over === 'erased') || Boolean(kept('tiniscript.pupil_before')) !== (over !== 'erased')) throw new Error(`${over}: ${does('empty')} ${kept('tiniscript.pupil_before')}`);
+      return { ends: [ends], seen: [seen, document.documentElement.dataset['pupil']] };
     };
   },
 
@@ -650,37 +693,100 @@ const PARTS = {
     };
   },
 
-  // The programs of pupils on the teacher's page, which come over a network that loses some.
+  // The wall of the teacher's page, over a network that loses some: the tiles are of who is in the class, with pictures of
+  // what they have now, and no other picture is kept; what is seen large is as it is now, or closed.
   async wall() {
-    const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
+    const page = freshPage({
+      generate: () => ({ toCanvas() {} }), correction: {},
+      Blocks: class {
+        words = 'words';
+        showWords() { this.words = `words ${languages}`; }
+        async pictureOf({ text }) { await later(20); return `${text} ${this.words}`; }
+      },
+    });
+    let languages = 0;
+    const open = new Map(); // what is in a picture, by its address
+    let addresses = 0;
+    URL.createObjectURL = (what) => {
+      open.set(`blob:${(addresses += 1)}`, what);
+      return `blob:${addresses}`;
+    };
+    URL.revokeObjectURL = (address) => open.delete(address);
     document.documentElement.dataset['class'] = '';
     playsNavigator({});
     playsFetch(async () => { throw new Broken(); });
     await learns(page);
     let room = async () => { throw new Broken(); };
     playsFetch((_, { body }) => room(JSON.parse(body)));
+    const { pageState } = await page.load('page/page_state.js');
     const { Teacher } = await page.load('class/teacher.js');
-    new Teacher({ get ready() { return Promise.reject(new Broken()); }, ask() {} });
+    new Teacher({ ready: Promise.resolve(), ask: async (_, data) => { await later(10); return { text: new TextDecoder().decode(data) }; } });
+    await passes(10);
     const wall = page.byId('class').children.at(-2);
     const large = document.body.children.find(({ id }) => id === 'big_pupil');
+    const giving = document.body.children.find(({ id }) => id === 'class_giving');
+    let versions = 0;
+    /** Who is in the class, by name. @type {Map<string, {number: number, text: string, version: number}>} */
+    const here = new Map();
+    const kept = new Map();
+    const seenLarge = () => large.open && [large.children[0].children[0].textContent, large.children[1].children[1].textContent, open.get(large.children[1].children[0].children[0].src)];
     return async (chance, isGood) => {
       let lost = false;
+      let isLate = () => !isGood;
       room = async (request) => {
-        await later(isGood ? 5 : chance.below(300));
-        if (!isGood && chance() < 0.5) {
+        const [pupils, works] = [[...here], [...kept]].map((all) => structuredClone(all));
+        await later(isLate() ? chance.below(300) : 5);
+        if (isLate() && chance() < 0.5) {
           lost ||= request.do === 'class_text';
           throw new Broken();
         }
-        if (request.do === 'class_text') return answers({ text: `of ${request.pupil}`, robot: 'tinibot', version: 1 });
-        const pupils = [1, 2].map((number) => ({ number, name: `P${number}`, silent_s: 0, place: 0, robot: '', left_s: 0, version: 1, is_right: true, hand: 0, lessons: [] }));
-        return answers({ code: '1', turn_s: 60, places: 2, over: '', goes_on: false, lessons: 1, kept: [], pupils, robots: [] });
+        if (request.do === 'class_text') {
+          const [, found] = [...pupils, ...works].find(([name, { number }]) => (request.pupil ? number === request.pupil : name === request.key)) ?? [];
+          return answers({ text: found?.text ?? '', robot: 'tinibot', version: found?.version ?? 0 });
+        }
+        const rows = pupils.map(([name, { number, version }]) => ({ number, name, silent_s: 0, place: 0, robot: '', left_s: 0, version, is_right: true, hand: 0, lessons: [] }));
+        const keptRows = works.map(([name]) => ({ key: name, name, lessons: [], given: 0, alike: [] }));
+        return answers({ code: '1', turn_s: 60, places: 2, over: '', goes_on: false, lessons: 1, kept: keptRows, pupils: rows, robots: [] });
       };
-      await passes(isGood ? 5000 : 300 + chance.below(3000));
-      const seen = isGood && wall.children.map(({ children }) => {
-        children.at(-3).click(); // then it is seen large
-        return large.children[1].children.map((each) => each.textContent);
-      });
-      return { ends: [lost ? 'lost' : 'came'], seen };
+      const name = () => chance.of(['Ana', 'Luz', 'Teo', 'Eva']);
+      const acts = {
+        comes: () => { const who = name(); if (!here.has(who)) here.set(who, { number: (versions += 1), text: '', version: 0 }); },
+        writes: () => { const found = here.get(name()); if (found) Object.assign(found, { text: chance() < 0.2 ? '' : `W(${versions})`, version: (versions += 1) }); },
+        goes: () => { here.delete(name()); },
+        kept: () => { const key = `old ${name()}`; if (!kept.delete(key)) kept.set(key, { text: `S(${versions})`, version: 0 }); },
+        speaks: () => { languages += 1; pageState.language.set('en'); },
+        looks: () => { const tile = chance.of([...wall.children, null]); tile?.children.at(-3).click(); },
+        closes: () => large.close(),
+        gives: () => giving.showModal(),
+        waits: () => {},
+      };
+      for (let k = 3 + chance.below(12); k > 0; k -= 1) {
+        acts[chance.of([...Object.keys(acts), 'comes', 'writes', 'writes'])]();
+        await passes(chance.of([20, 1050, chance.below(1500)]));
+      }
+      if (!isGood) return { ends: [lost ? 'lost' : 'came'], seen: false };
+      isLate = () => false;
+      const isLarge = large.open;
+      await passes(12_000);
+      const all = [...here, ...kept].sort(([one], [other]) => one.localeCompare(other));
+      const tiles = wall.children.map(({ children }) => [children[0].textContent, open.get(children[1].children[0].src), children[1].children[0].src]);
+      const wanted = all.map(([who, { text }]) => [who, text && (languages ? `${text} words ${languages}` : `${text} words`)]);
+      if (`${tiles.map(([who, picture = '']) => [who, picture])}` !== `${wanted}`) throw new Error(`${JSON.stringify(tiles)} in place of ${JSON.stringify(wanted)}`);
+      const shown = new Set(tiles.map(([, , address]) => address).filter(Boolean));
+      if (shown.size !== open.size) throw new Error(`${open.size} pictures are kept, and ${shown.size} are seen`);
+      if (large.open && !isLarge) throw new Error('what was closed is seen large again');
+      const big = seenLarge();
+      const own = big && all.find(([who]) => who === big[0]);
+      if (big && !own) throw new Error(`${big[0]} is seen large, and is not here`);
+      if (own && own[1].text && (big[1] !== own[1].text || big[2] !== wanted[all.indexOf(own)][1])) throw new Error(`${big} is seen large in place of ${own[1].text}`);
+      if (giving.open && !kept.size) throw new Error('there is nothing to give');
+      here.clear();
+      kept.clear();
+      large.close();
+      giving.close();
+      await passes(5000);
+      if (wall.children.length || open.size) throw new Error(`${wall.children.length} tiles and ${open.size} pictures of nobody`);
+      return { ends: ['good'], seen: [] };
     };
   },
 
