@@ -124,6 +124,8 @@ class Part extends EventTarget {
   getAttribute(name) { return this.attributes[name] ?? null; }
   click() { this.dispatchEvent(new Event('click')); }
   focus() {}
+  select() {}
+  setPointerCapture() {}
   toggleAttribute() {}
   showModal() { this.open = true; }
   close() {
@@ -140,8 +142,13 @@ class Part extends EventTarget {
 
 class Store {
   #kept = new Map();
+  room = Infinity; // characters
   getItem(key) { return this.#kept.get(key) ?? null; }
-  setItem(key, value) { this.#kept.set(key, value); }
+  setItem(key, value) {
+    const others = [...this.#kept].reduce((sum, [each, whole]) => sum + (each === key ? 0 : whole.length), 0);
+    if (others + value.length > this.room) throw new Error('QuotaExceededError');
+    this.#kept.set(key, value);
+  }
   removeItem(key) { this.#kept.delete(key); }
 }
 
@@ -157,6 +164,8 @@ stands('matchMedia', () => ({ matches: false }));
 stands('Option', Part);
 stands('self', globalThis);
 stands('location', { hash: '', pathname: '/', search: '', href: 'http://127.0.0.1/' });
+const goesTo = (_, __, address) => { location.hash = new URL(address, location.href).hash; };
+stands('history', { replaceState: goesTo, pushState: goesTo });
 AbortSignal.timeout = () => new AbortController().signal;
 
 let pages = 0;
@@ -170,11 +179,11 @@ export function freshPage(given = {}) {
   stands('window', Object.assign(new EventTarget(), { setTimeout: setLater, sessionStorage: new Store(), localStorage: new Store() }));
   const heard = new EventTarget();
   for (const name of ['addEventListener', 'dispatchEvent']) stands(name, heard[name].bind(heard));
-  stands('document', {
+  stands('document', Object.assign(new EventTarget(), {
     documentElement: new Part(), body: new Part(), getElementById: byId, querySelectorAll: () => [],
     createElement: () => new Part(), createElementNS: () => new Part(),
-    addEventListener() {}, visibilityState: 'visible', querySelector: byId,
-  });
+    visibilityState: 'visible', hidden: false, querySelector: byId,
+  }));
   const load = (name) => import(pathToFileURL(`${sources}/${name}`).href + query);
   return { load, byId };
 }

@@ -772,6 +772,7 @@ const PARTS = {
       const tiles = wall.children.map(({ children }) => [children[0].textContent, open.get(children[1].children[0].src), children[1].children[0].src]);
       const wanted = all.map(([who, { text }]) => [who, text && (languages ? `${text} words ${languages}` : `${text} words`)]);
       if (`${tiles.map(([who, picture = '']) => [who, picture])}` !== `${wanted}`) throw new Error(`${JSON.stringify(tiles)} in place of ${JSON.stringify(wanted)}`);
+      if (tiles.some(([, picture, address]) => address && !picture)) throw new Error('a picture that is kept no more is in a tile');
       const shown = new Set(tiles.map(([, , address]) => address).filter(Boolean));
       if (shown.size !== open.size) throw new Error(`${open.size} pictures are kept, and ${shown.size} are seen`);
       if (large.open && !isLarge) throw new Error('what was closed is seen large again');
@@ -913,6 +914,119 @@ const PARTS = {
       own.keep('tinibot');
       await passes(2000);
       return { ends: ['good'], seen: keptWorlds().newest };
+    };
+  },
+
+  // The programs that were in the editor, as they are kept: none is lost while there is room, and the oldest go first.
+  async programs() {
+    const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
+    playsNavigator({});
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { Programs } = await page.load('programs/programs.js');
+    const { keptWork } = await page.load('programs/work.js');
+    const { MOST_CHARACTERS, versions } = await page.load('programs/versions.js');
+    const { linkOf } = await page.load('programs/links.js');
+    const { FIRST_PROGRAM } = await page.load('start/beginnings.js');
+    const work = { text: FIRST_PROGRAM, robot: 'tinibot', world: 'obstacles', language: 'en', name: '', view: 'text', level: 'few', words: false, sound: true };
+    const programs = new Programs({ python: { ask: async () => ({ text: 'a line' }) }, work, put: (program) => Object.assign(work, program), picturing() {} });
+    let count = 0;
+    const inForm = ({ text, robot, name }) => JSON.stringify([text, robot, name]);
+    return async (chance, isGood) => {
+      const store = window.localStorage;
+      const ends = new Set();
+      const acts = {
+        writes: () => { work.text = `// ${(count += 1)}\n${'F(1);'.repeat(chance.of([1, 20, 30_000, 60_000, 90_000]))}`; },
+        again: () => { work.text = chance.of(versions())?.text ?? work.text; },
+        blank: () => { work.text = ' '; },
+        run: () => page.byId('run').click(),
+        opens: () => page.byId('my_programs').click(),
+        new: () => page.byId('new').click(),
+        lesson: () => programs.replace({ text: `S; // ${(count += 1)}`, robot: chance.of(['tinibot', 'liner']), name: '' }),
+        older: () => {
+          page.byId('my_programs').click();
+          chance.of([...page.byId('versions').children, null])?.children.at(-1).click();
+        },
+        names: () => {
+          page.byId('program_name').value = `name ${(count += 1)}`;
+          page.byId('program_name').dispatchEvent(new Event('input'));
+        },
+        hides: () => {
+          document.hidden = true;
+          document.dispatchEvent(new Event('visibilitychange'));
+          document.hidden = false;
+        },
+        leaves: () => dispatchEvent(new Event('pagehide')),
+        link: async () => {
+          const link = await linkOf({ text: `B(${(count += 1)});`, robot: 'tinibot' }, location.href);
+          location.hash = link.slice(link.indexOf('#'));
+          dispatchEvent(new Event('hashchange'));
+          for (let k = 0; work.text !== `B(${count});` && k < 2000; k += 1) await settles(); // it waits for the real clock
+          if (work.text !== `B(${count});`) throw new Error('the program of a link is not seen');
+        },
+      };
+      const keeping = ['run', 'opens', 'new', 'lesson', 'older', 'names', 'hides', 'leaves', 'link'];
+      for (let k = 4 + chance.below(16); k > 0; k -= 1) {
+        if (chance() < 0.1) store.room = chance.of([Infinity, Infinity, 400_000, 100_000, 0]);
+        const act = chance.of(Object.keys(acts));
+        const before = { ...work, ...(act === 'names' && { name: `name ${count + 1}.ts` }) };
+        const kept = versions();
+        pageState.note.set('');
+        let told = '';
+        pageState.note.subscribe((said) => { told ||= said; });
+        await acts[act]();
+        const now = versions();
+        if (!keeping.includes(act) || !before.text.trim() || before.text === FIRST_PROGRAM) continue;
+        if (act === 'names' && store.room === Infinity && keptWork()?.name !== before.name) throw new Error(`its name is ${keptWork()?.name}`);
+        const others = kept.filter(({ text, robot }) => text !== before.text || robot !== before.robot);
+        const wanted = [before, ...others].map(inForm);
+        if (before.text.length > MOST_CHARACTERS || !now.length || inForm(now[0]) !== wanted[0]) {
+          if (before.text.length <= MOST_CHARACTERS && store.room >= 2 * before.text.length + 1000) throw new Error(`${act} loses ${before.text.slice(0, 20)}`);
+          if (!told) throw new Error(`${act}: nobody says that it is not kept`);
+          ends.add('full');
+          continue;
+        }
+        const fits = now.length === wanted.length || now.length === 40 || store.room < Infinity
+          || now.reduce((sum, { text }) => sum + text.length, 0) + others[now.length - 1].text.length > MOST_CHARACTERS;
+        if (`${now.map(inForm)}` !== `${wanted.slice(0, now.length)}` || !fits) throw new Error(`${act}: ${now.length} are kept of ${wanted.length}`);
+        if (now.length > 40 || (now.length > 1 && now.reduce((sum, { text }) => sum + text.length, 0) > MOST_CHARACTERS)) throw new Error('too many are kept');
+        ends.add('kept');
+      }
+      store.room = Infinity;
+      return { ends: [...ends], seen: [] };
+    };
+  },
+
+  // The floor, and the robot on it, as they are drawn.
+  async arena() {
+    const page = freshPage();
+    const drawn = [];
+    const pen = (name) => noting(drawn, name, { measureText: () => ({ width: 9 }), getTransform: () => ({ a: 1, e: 0, f: 0 }) });
+    document.createElement = () => Object.assign(page.byId('floor'), { getContext: () => floorPen });
+    const floorPen = pen('floor'), robotPen = pen('robot');
+    globalThis.Path2D = class {};
+    const { Arena } = await page.load('virtual/arena.js');
+    const { ROBOTS, WORLDS } = await page.load('page/words.js');
+    const canvas = Object.assign(page.byId('canvas'), { clientWidth: 400, clientHeight: 300, getContext: () => robotPen });
+    const arena = new Arena(canvas);
+    arena.resize();
+    return async (chance, isGood) => {
+      const world = isGood ? { ...chance.of(WORLDS) } : chance.of(WORLDS);
+      const robot = chance.of(ROBOTS).name;
+      const from = drawn.length;
+      arena.begin(world, robot, []);
+      arena.draw(null);
+      let now_ms = 0;
+      for (let k = isGood ? 5 : 2 + chance.below(20); k > 0; k -= 1) {
+        now_ms += chance.below(900);
+        const state = { now_ms, began_ms: 0, pose: [chance.below(100), chance.below(100), chance.below(360)], motors: [chance.below(100), 50], is_running: chance() < 0.8, touches: null,
+          score: { taken: isGood ? 0 : chance.below(3), of: 3, points: 0, stars: 0 }, actuators: [], readings: [], fault: '' };
+        arena.follow(state);
+        if (!isGood && chance() < 0.3) arena.say(`${chance.below(9)}`, now_ms);
+        if (!isGood && chance() < 0.3) arena.showBeep(now_ms, now_ms + 5000);
+        arena.draw(state);
+      }
+      return { ends: [now_ms > 3000 ? 'long' : 'short'], seen: isGood && drawn.slice(from) };
     };
   },
 
