@@ -302,15 +302,25 @@ const PARTS = {
     new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled: async () => PROGRAM, remember() {}, pad: { offer: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
     await settles();
     const line = page.byId('time_at');
+    const marked = [];
+    Object.assign(page.byId('time_marks'), { clientWidth: 200, clientHeight: 20, getContext: () => ({ fillRect: (x) => marked.push(x) }) });
     const seen = () => [line.disabled || [line.min, line.max, line.value], page.byId('doing').textContent, page.byId('trace').textContent, page.byId('values').children.map((row) => row.children.map((each) => each.textContent)), structuredClone(pageState.fault.value)];
     return async (chance, isGood) => {
       notes.splice(0);
       robot = virtualRobot(chance, isGood);
+      pageState.programText.set('F(9)');
       page.byId('run').click();
       if (!isGood && robot.does === 'runs' && chance() < 0.2) page.byId('run').click(); // twice
       for (let k = chance.below(6); k > 0; k -= 1) {
         await passes(100 + chance.below(300));
+        marked.length = 0;
         notes.push(seen());
+        if (chance() < 0.1) {
+          pageState.programText.set(`F(${chance.below(9)})`);
+          await passes(200);
+          if (pageState.virtualRun.value.ranges.length) throw new Error('it runs in another text');
+        }
+        notes.push([...marked]);
         const pressed = page.byId(chance.of(['pause', 'step', 'push', 'time_at', 'nothing']));
         if (pressed === line && !line.disabled) {
           line.value = String(chance.below(3000));
@@ -566,7 +576,8 @@ const PARTS = {
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
     await passes(500);
-    const said = () => [page.byId('lesson_said').textContent, page.byId('lesson_said').dataset['verdict'], page.byId('lesson_stars').textContent, page.byId('lesson_end').hidden];
+    const said = () => [page.byId('lesson_said').textContent, page.byId('lesson_said').dataset['verdict'], page.byId('lesson_stars').textContent, page.byId('lesson_end').hidden,
+      page.byId('lesson_findings').children.length, page.byId('lesson_next').hidden, page.byId('lesson_end').textContent, page.byId('lesson_check').hidden];
     const acts = {
       check: () => page.byId('lesson_check').click(),
       end: () => page.byId('lesson_end').click(),
@@ -811,10 +822,11 @@ const PARTS = {
             this.isOver = true;
             throw new Failed(failure || 'left');
           }
-          return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, is_running: false };
+          return { name: `A${ways.length}`, id: '1', robot: 'tinibot', owner: 'free', room: 300, is_running: false, has_remote: true };
         }
         async ask({ do: what }) {
           await later(late());
+          if (this.isOver) throw new Failed('left');
           return { ok: true, program: 'ff', trim: what === 'trim' ? null : undefined };
         }
         stop() { notes.push('stop'); }
@@ -835,10 +847,13 @@ const PARTS = {
     const { RobotPanel } = await page.load('robot/panel.js');
     pageState.robotName.set('tinibot');
     pageState.checked.set({ ...PROGRAM, program: 'ff', bytes: 9 });
-    const panel = new RobotPanel({ python: null, goTo() {}, recorder: noting(notes, 'recorder'), place: new RobotPlace(), pad: noting(notes, 'pad') });
+    const { text } = await page.load('page/texts.js');
+    const panel = new RobotPanel({ python: { again() {} }, goTo() {}, recorder: noting(notes, 'recorder'), place: new RobotPlace(), pad: noting(notes, 'pad') });
     await passes(10);
-    const EVENTS = [{ event: 'STARTED', program: 'ff', is_program: true }, { event: 'PLACE', program: 'ff', at: 0 }, { event: 'SHOW', value: '1' }, { event: 'DONE' }, { event: 'LOST' }, { event: 'STOPPED', cause: 'MESSAGE' }];
-    const seen = () => [page.byId('link_said').textContent, page.byId('link_shown').textContent, document.documentElement.dataset['robot'], structuredClone(pageState.robotRun.value)];
+    const EVENTS = [{ event: 'STARTED', program: 'ff', is_program: true }, { event: 'PLACE', program: 'ff', at: 0 }, { event: 'SHOW', value: '1' }, { event: 'DONE' }, { event: 'LOST' }, { event: 'STOPPED', cause: 'MESSAGE' }, { event: 'FAULT', fault: 'STUCK', program: 'ff', at: 0 }];
+    const said = () => page.byId('link_said').textContent;
+    const seen = () => [said(), page.byId('link_shown').textContent, page.byId('link_name').textContent, page.byId('link_rename_to').value, document.documentElement.dataset['robot'], structuredClone(pageState.robotRun.value)];
+    const noted = (...what) => notes.some((each) => `${each}` === `${what}`);
     return async (chance, isGood) => {
       const before = ways;
       ways = [];
@@ -848,16 +863,66 @@ const PARTS = {
       panel.byHost('p');
       const all = [structuredClone(pageState.robotRun.value), document.documentElement.dataset['robot']];
       await passes(isGood ? 50 : chance.below(600));
-      for (let k = 1 + chance.below(6); k > 0; k -= 1) {
+      const isMet = () => document.documentElement.dataset['robot'] === 'connected';
+      let stop = ''; // pressed, or done, since the newest start
+      const acts = {
+        tells() {
+          const event = chance.of(EVENTS);
+          notes.length = 0;
+          if (event.event === 'STOPPED' && stop === '') page.byId('link_said').textContent = '';
+          ways[0]?.tell(event);
+          if (!ways[0] || ways[0].isOver) return;
+          const isOpen = stop === 'pressed';
+          if (event.event === 'STARTED' && stop === 'done') stop = '';
+          if (event.event !== 'STOPPED') return;
+          if (!noted('pad', 'letGo')) throw new Error('what is held is held on after a stop');
+          if (!isOpen && stop === '' && said() !== text('stopped_MESSAGE')) throw new Error(`of a stop after a start it says ${said()}`);
+          stop = 'done';
+        },
+        stops() {
+          notes.length = 0;
+          panel.stop();
+          if (!ways[0] || ways[0].isOver) return;
+          if (!noted('stop')) throw new Error('nobody stops');
+          stop = 'pressed';
+        },
+        uploads() {
+          if (!isMet()) return;
+          page.byId('link_upload').click();
+          if (page.byId('link_shown').textContent) throw new Error('what the program before has shown is there still');
+        },
+        breaks() {
+          if (!isMet()) return;
+          pageState.checked.set({ ...PROGRAM, image: '', program: '' });
+          notes.length = 0;
+          page.byId('link_upload').click();
+          if (!noted('stop')) throw new Error('what runs is not what is seen');
+          stop = 'pressed';
+          pageState.checked.set({ ...PROGRAM, program: 'ff', bytes: 9 });
+        },
+        async renames() {
+          if (!isMet()) return;
+          page.byId('link_rename_to').value = 'Bo';
+          page.byId('link_rename').click();
+          await passes(400);
+          if (isMet() && page.byId('link_name').textContent !== 'Bo') throw new Error('it has its name of before');
+        },
+      };
+      for (let k = 1 + chance.below(8); k > 0; k -= 1) {
         if (isGood && before.length) before[0].end('unheard'); // once more, and late
-        ways[0]?.tell(chance.of(EVENTS));
+        await acts[chance.of(['tells', 'tells', 'tells', ...Object.keys(acts)])]();
         all.push(seen());
         await passes(chance.below(300));
       }
       const end = failure || (isGood ? 'stays' : chance.of(['left', 'unheard']));
+      const wasMet = isMet();
+      const isUnsaid = stop === 'pressed' && !failure;
+      notes.length = 0;
       if (end === 'left') ways[0].leave();
       if (end === 'unheard') ways[0].end('unheard');
       if (!isGood) await passes(1000);
+      if (!isGood && wasMet && !noted('recorder', 'end', 'LOST')) throw new Error('the recording of who is gone goes on');
+      if (!isGood && wasMet && isUnsaid && !said().includes(text('say_not_confirmed'))) throw new Error(`nobody says that the stop is not confirmed: ${said()}`);
       return { ends: [end], seen: [all, [...notes]] };
     };
   },
