@@ -144,9 +144,10 @@ class Store {
   #kept = new Map();
   room = Infinity; // characters
   getItem(key) { return this.#kept.get(key) ?? null; }
+  /** How many characters there is room for at a place. */
+  roomFor(key) { return this.room - [...this.#kept].reduce((sum, [each, whole]) => sum + (each === key ? 0 : whole.length), 0); }
   setItem(key, value) {
-    const others = [...this.#kept].reduce((sum, [each, whole]) => sum + (each === key ? 0 : whole.length), 0);
-    if (others + value.length > this.room) throw new Error('QuotaExceededError');
+    if (value.length > this.roomFor(key)) throw new Error('QuotaExceededError');
     this.#kept.set(key, value);
   }
   removeItem(key) { this.#kept.delete(key); }

@@ -1046,7 +1046,7 @@ const PARTS = {
         const others = kept.filter(({ text, robot }) => text !== before.text || robot !== before.robot);
         const wanted = [before, ...others].map(inForm);
         if (before.text.length > MOST_CHARACTERS || !now.length || inForm(now[0]) !== wanted[0]) {
-          if (before.text.length <= MOST_CHARACTERS && store.room >= 2 * before.text.length + 1000) throw new Error(`${act} loses ${before.text.slice(0, 20)}`);
+          if (before.text.length <= MOST_CHARACTERS && store.roomFor('tiniscript.versions') >= before.text.length + 1000) throw new Error(`${act} loses ${before.text.slice(0, 20)}`);
           if (!told) throw new Error(`${act}: nobody says that it is not kept`);
           ends.add('full');
           continue;
