@@ -626,8 +626,8 @@ def _amounts(before: _Said, after: _Said) -> Iterator[str]:
     yield from (amount.written for amount in gone)
     units = {unit for it in after.amounts for unit in it.unit.split("/")}
     units |= {after.units.get(token.text, "") for token in after.tokens}
-    kept = Counter(after.loose)
-    yield from (each[1] for each in before.loose if each[0] not in units and not kept[each])
+    loose = Counter(after.loose)
+    yield from (each[1] for each in before.loose if each[0] not in units and not loose[each])
 
 
 class _Stock:
