@@ -26,7 +26,9 @@ from tiniscript.base.words import (
     WORDS,
     lexicon,
 )
-from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.fixing import edits_of
 from tiniscript.recovery.keys import key_edits
 from tiniscript.recovery.labels import labels
 from tiniscript.recovery.meanings import (
@@ -80,6 +82,9 @@ _LETTERS = str.maketrans("oOlI", "0011")
 _WITH_UNIT = re.compile(r"[\d.]+\s*([^\W\d]+|[%°])")
 _SEPARATORS = ";\n"
 _LONGEST = 3  # parts of a number
+# What is written, as far as a change may cut it out; and which messages name what they do.
+_WRITTEN = re.compile(r"\d[\d.]*|[^\W\d]\w*|[<>≤≥≠]=?|[=!]=")
+_NAMING = (codes.EXTRA_WORD, codes.WORDS_AFTER, codes.NAMED_ARGUMENT, codes.LOOP_COUNTS)
 _NAME = re.compile(r"[A-Za-z_]\w*")
 _END = lexemes(";")[0]
 _ASKS_NEAR = re.compile(rf"DISTANCE [<>]=? {NEAR_CM}(?![\d.])")
@@ -124,17 +129,17 @@ def difference(text: str, repaired: str, kit: Kit) -> Difference:
 def conserving(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
     """Return diagnostics of which no repair is sure that loses something, or does more.
 
-    It is shown together with what is `lost`, and so is what was not sure before and loses a unit.
+    It is shown together with what is `lost`, and so is what was not sure before.
     """
     sure = [it for it in diagnostics if it.repair and it.repair.is_sure and it.repair.edits]
     lost = _lost_by_sure(sure, text, kit)
-    shown = [it for it in diagnostics if it.repair and it.repair.edits
-             and not it.repair.is_sure and not it.values.get("lost")]  # fmt: skip
-    its_units = zip(shown, _lost_by(shown, text, kit), strict=True)
-    units = {id(it): found for it, its in its_units if (found := _units_in(it, its.lost))}
+    shown = [it for it in diagnostics if id(it) not in lost and not it.values.get("lost")
+             and not (it.repair and it.repair.is_sure) and edits_of(it)]  # fmt: skip
+    gone = zip(shown, _lost_by(shown, text, kit), strict=True)
+    left_out = {id(it): found for it, its in gone if (found := _unsaid(it, its.lost, text))}
     return [
         _shown(it, lost[id(it)].lost) if id(it) in lost
-        else _shown(it, units[id(it)]) if id(it) in units else it
+        else _shown(it, left_out[id(it)]) if id(it) in left_out else it
         for it in diagnostics
     ]  # fmt: skip
 
@@ -161,7 +166,7 @@ def _lost_by(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Dif
     Where they are many, they are looked at together: halves of them while there are looks left. Of
     what many lose together each loses what stands in its own instructions.
     """
-    edits = [it.repair.edits if it.repair else () for it in diagnostics]
+    edits = [edits_of(it) or () for it in diagnostics]
     changing = [k for k, its in enumerate(edits) if its]
     left = min(LOOKS, LOOKED_AT // (len(text) + 1))
     found = [NOTHING] * len(edits)
@@ -220,14 +225,23 @@ def _around(edits: Sequence[Edit], text: str) -> str:
     return text[begin : min((it for it in behind if it >= 0), default=len(text))]
 
 
-def _units_in(diagnostic: Diagnostic, lost: Sequence[str]) -> list[str]:
-    """Return the units of numbers that a shown repair loses, and does not name.
+def _unsaid(diagnostic: Diagnostic, lost: Sequence[str], text: str) -> list[str]:
+    """Return what a shown change leaves out and does not say: a unit, or what it only cuts out.
 
     A minus is none of these: a move goes the other way then.
     """
-    made = "".join(edit.text for edit in diagnostic.repair.edits) if diagnostic.repair else ""
-    matches = ((each, _WITH_UNIT.fullmatch(each)) for each in lost)
-    return [each for each, unit in matches if unit and unit[1].upper() not in made.upper()]
+    edits = edits_of(diagnostic) or []
+    made = " ".join(edit.text for edit in edits).upper()
+    gone = {*_WRITTEN.findall(" ".join(text[slice(*edit.span)] for edit in edits).upper())}
+    kept = {*_WRITTEN.findall(made)}
+    is_cut = kept <= gone and diagnostic.code not in _NAMING
+    found = []
+    for each in lost:
+        unit = _WITH_UNIT.fullmatch(each) if diagnostic.repair else None
+        is_unit = unit is not None and unit[1].upper() not in made
+        if is_unit or (is_cut and each.upper() in gone - kept):
+            found.append(each)
+    return found
 
 
 def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
@@ -249,9 +263,9 @@ def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[
 
 
 def _shown(diagnostic: Diagnostic, lost: Sequence[str]) -> Diagnostic:
-    edits = diagnostic.repair.edits if diagnostic.repair else ()
     values = {**diagnostic.values, "lost": ", ".join(lost)} if lost else diagnostic.values
-    return diagnostic._replace(values=values, repair=Repair(edits, False))
+    repair = diagnostic.repair and diagnostic.repair._replace(is_sure=False)
+    return diagnostic._replace(values=values, repair=repair)
 
 
 class _Said:

@@ -17,6 +17,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, without_wrong
 from tiniscript.recovery import slips
+from tiniscript.recovery.bracketed import bracketed
 from tiniscript.recovery.calls import misplaced_values
 from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.counters import counters
@@ -71,8 +72,10 @@ def told_of(
     """Return what is told of a wrong text, of which the parser and the checker say `found`."""
     text = source.text
     told = _read(Wrong(source, found, check, kit), ROUNDS)
+    told = [bracketed(each, text, is_offered=True) for each in told]
     told = without_wrong(told, text, check)  # what is offered is right
     told = conserving(told, text, kit)  # what is made keeps what was written
+    told = [bracketed(each, text, is_offered=False) for each in told]
     told = with_sample(told, text, kit)  # what was not written is said to be an example
     return codes.in_order([pointed(each, source) for each in told])
 
