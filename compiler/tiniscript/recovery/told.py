@@ -23,6 +23,7 @@ from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.counters import counters
 from tiniscript.recovery.dedupe import dedupe
 from tiniscript.recovery.findings import meant_in
+from tiniscript.recovery.invisible import invisible
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
 from tiniscript.recovery.leftovers import leftovers, of_its_frame
@@ -77,6 +78,7 @@ def told_of(
     told = conserving(told, text, kit)  # what is made keeps what was written
     told = [bracketed(each, text, is_offered=False) for each in told]
     told = with_sample(told, text, kit)  # what was not written is said to be an example
+    told = [invisible(each, text) for each in told]
     return codes.in_order([pointed(each, source) for each in told])
 
 
