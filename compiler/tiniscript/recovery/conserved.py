@@ -84,7 +84,13 @@ _SEPARATORS = ";\n"
 _LONGEST = 3  # parts of a number
 # What is written, as far as a change may cut it out; and which messages name what they do.
 _WRITTEN = re.compile(r"\d[\d.]*|[^\W\d]\w*|[<>≤≥≠]=?|[=!]=")
-_NAMING = (codes.EXTRA_WORD, codes.WORDS_AFTER, codes.NAMED_ARGUMENT, codes.LOOP_COUNTS)
+_NAMING = (
+    codes.EXTRA_WORD,
+    codes.WORDS_AFTER,
+    codes.NAMED_ARGUMENT,
+    codes.LOOP_COUNTS,
+    codes.MIXED_COMPARE,
+)
 _NAME = re.compile(r"[A-Za-z_]\w*")
 _END = lexemes(";")[0]
 _ASKS_NEAR = re.compile(rf"DISTANCE [<>]=? {NEAR_CM}(?![\d.])")
