@@ -19,11 +19,13 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, without_wrong
 from tiniscript.recovery import slips
+from tiniscript.recovery.bracketed import bracketed
 from tiniscript.recovery.calls import misplaced_values
 from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.counters import counters
 from tiniscript.recovery.dedupe import dedupe
 from tiniscript.recovery.findings import meant_in
+from tiniscript.recovery.invisible import invisible
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
 from tiniscript.recovery.leftovers import leftovers, of_its_frame
@@ -78,9 +80,12 @@ def told_of(
     text = _CR_ALONE.sub("\n", source.text)
     source = Source(text, source.name)
     told = _read(Wrong(source, found, check, kit), ROUNDS)
+    told = [bracketed(each, text, is_offered=True) for each in told]
     told = without_wrong(told, text, check)  # what is offered is right
     told = conserving(told, text, kit)  # what is made keeps what was written
+    told = [bracketed(each, text, is_offered=False) for each in told]
     told = with_sample(told, text, kit)  # of a distance that nobody wrote it says: an example
+    told = [invisible(each, text) for each in told]
     return codes.in_order([pointed(each, source) for each in told])
 
 
