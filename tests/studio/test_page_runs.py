@@ -136,7 +136,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
 
 
 def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path) -> None:
-    data, rows = recorded(4)
+    data, rows = next(run for run in map(recorded, range(99)) if b'"robot":"liner"' in run[0])
     opened(page, data, tmp_path / "run.tsr")
     told(page, f"The virtual robot did all of it again. Rows: {len(rows)}.")
     first = json.loads(data.splitlines()[0])
@@ -167,7 +167,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     ("data", "said"),
     [
         (b"a letter", "It is damaged, or no run (line 1)."),
-        (real((1, "DONE")).encode()[:-12], "Its end is missing (after line 2)."),
+        (real((1, "DONE")).encode()[:-10], "Its end is missing (after line 2)."),
         (b'{"tiniscript_recording": 1}', "It is of an older version"),
         (real((1, "DONE")).replace('run":1', 'run":9').encode(), "It comes from a newer version."),
         (b" " * 1_100_000, "It is too long"),

@@ -38,6 +38,8 @@ export class Run {
   shapes;
   /** It cannot be played again: somebody else has driven it. */
   isJudged = false;
+  /** The file that it was opened from; nothing of one that was recorded here. */
+  file = '';
   /** When it is now, for a run that is still recorded. @type {(() => number) | null} */
   clock = null;
   /** Where it and the recorded one part, once it was played again. @type {import('../python.js').Parting | null} */
@@ -58,7 +60,7 @@ export class Run {
 
   /** @returns {number} characters */
   get size() {
-    return this.moments.size + this.#size;
+    return this.moments.size + this.#size + this.file.length;
   }
 
   /** @returns {number} seconds */
@@ -75,9 +77,9 @@ export class Run {
     }
     if (state.bumps > this.#bumps) this.mark(state.now_ms, 'BUMP');
     this.#bumps = state.bumps;
-    for (const row of state.rows ?? []) {
-      if (/^KEYS (?!0 0 0$)/.test(row[1])) this.mark(row[0], 'KEYS');
-      if (this.of.of === 'virtual') this.put(row);
+    if (this.of.of === 'virtual' && !this.file) {
+      this.markKeys(state.rows ?? []);
+      for (const row of state.rows ?? []) this.put(row);
     }
     if (state.parting && !this.parting) {
       this.parting = state.parting;
@@ -93,6 +95,11 @@ export class Run {
     this.marks = [];
     this.parting = null;
     this.#bumps = 0;
+  }
+
+  /** @param {Row[]} rows in which somebody may have pressed keys */
+  markKeys(rows) {
+    for (const [at_ms, what] of rows) if (/^KEYS (?!0 0 0$)/.test(what)) this.mark(at_ms, 'KEYS');
   }
 
   /** @param {number} at_ms @param {string} kind */

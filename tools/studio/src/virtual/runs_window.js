@@ -9,7 +9,7 @@ import { known, text } from '../page/texts.js';
 
 /** @typedef {import('./runs.js').Run} Run */
 /** @typedef {import('./runs.js').Row} Row */
-/** @typedef {{text: string, robot: string, of: 'virtual' | 'real', world: unknown, end_ms: number, shapes: import('../world/parts.js').World | null, rows: Row[], is_by_button: boolean}} Opened */
+/** @typedef {{text: string, robot: string, of: 'virtual' | 'real', world: unknown, end_ms: number, shapes: import('../world/parts.js').World | null, rows: Row[], is_by_button: boolean, file: string}} Opened */
 
 const ENDING = '.tsr';
 
@@ -63,11 +63,12 @@ export class RunsWindow {
       return;
     }
     this.#window.close();
-    this.#page.play(answer);
+    this.#page.play({ ...answer, file: new TextDecoder().decode(data) });
   }
 
   /** @param {Run} run @returns {Promise<string>} its file */
   async fileOf(run) {
+    if (run.file) return run.file;
     const { of, rows, end_ms } = run;
     const answer = await this.#page.python.ask({ do: 'write_run', ...of, rows, end_ms: end_ms ?? run.clock?.() ?? rows.at(-1)?.[0] ?? 0 });
     return answer.file;
@@ -92,7 +93,7 @@ export class RunsWindow {
         this.#page.see(run);
       }, what);
       const save = button('run_save', () => this.#save(run));
-      save.disabled = run.isJudged || !run.rows.length;
+      save.disabled = run.isJudged || !(run.file || run.rows.length);
       return made('li', '', see, made('code', '', begun(run.of.text)), save);
     });
     element('runs_list', HTMLElement).replaceChildren(...rows);

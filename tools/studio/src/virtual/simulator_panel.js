@@ -248,6 +248,7 @@ export class SimulatorPanel {
     if (run.moments.length < 2 || !run.shapes) {
       this.#again = run;
       await this.#window.openData(new TextEncoder().encode(await this.#window.fileOf(run)));
+      this.#again = null; // where it cannot be played
       return;
     }
     if (this.#simulator.phase === 'running') this.#pauseIt();
@@ -448,14 +449,14 @@ export class SimulatorPanel {
    */
   #runOf(program, world, played) {
     const run = played?.again ?? new Run({ of: 'virtual', text: pageState.programText.value, robot: pageState.robotName.value, program: program.program, world }, program, null);
-    if (played?.opened.of === 'real' && !played.again) {
-      run.of = { ...run.of, of: 'real', is_by_button: played.opened.is_by_button };
-      for (const row of played.opened.rows) run.put(row);
-      run.end_ms = played.opened.end_ms;
+    if (played && !played.again) {
+      run.of = { ...run.of, of: played.opened.of };
+      run.file = played.opened.file;
     }
     run.shapes = this.#world.shapes;
     run.program = program;
     run.again();
+    if (played) run.markKeys(played.opened.rows);
     if (!played?.again) this.runs.begin(run);
     return run;
   }
