@@ -20,7 +20,7 @@ from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import Settings
 
-ROBOTS = ("tinibot", "tinibot2", "tinibot32", "liner")  # an Uno, one with discs, an ESP32, another
+ROBOTS = ("tinibot", "tinibot2", "tinibot32", "grabber")  # an Uno, discs, an ESP32, a Mega
 
 
 def recorded(number: int) -> tuple[bytes, list[Row]]:

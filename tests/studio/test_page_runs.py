@@ -115,8 +115,10 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
     page.click("#run")
     in_phase(page, "running")
     page.focus("#arena")
-    page.click("#pad_letters button >> nth=0", delay=300)
+    page.locator("#pad_letters button").first.hover()
+    page.mouse.down()
     page.locator("#trace", has_text="SHOW").wait_for(state="attached")
+    page.mouse.up()
     page.click("#stop")
     in_phase(page, "ended")
     kept(page)
@@ -136,7 +138,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
 
 
 def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path) -> None:
-    data, rows = next(run for run in map(recorded, range(99)) if b'"robot":"liner"' in run[0])
+    data, rows = next(run for run in map(recorded, range(99)) if b'"tinibot32"' in run[0])
     opened(page, data, tmp_path / "run.tsr")
     told(page, f"The virtual robot did all of it again. Rows: {len(rows)}.")
     first = json.loads(data.splitlines()[0])
