@@ -40,6 +40,11 @@ def run(options: Namespace, language: str) -> int:
     is_followed = ready.image.start == "SI" and not (options.no_run or options.detach)
     if options.record is not None and (is_many or not is_followed):
         raise CommandError(2, "record_follows")
+    if options.record is not None:
+        from tiniscript.cli.robot.recorded_run import known_robot, source_text
+
+        known_robot(robot)
+        options.recorded_text = source_text(given)
     if is_many:
         from tiniscript.cli.robot.fleet_upload import upload_to_many
 
@@ -103,11 +108,13 @@ def _upload(
     recorder = None
     if options.record is not None:
         from tiniscript.cli.robot.recorder import Recorder
+        from tiniscript.studio import recordings
 
-        robot = connection.profile.name
         own = connection.simulator
         robot_ms = None if own is None else own.told_ms
-        recorder = Recorder(options.record, values.program, robot, began_s, robot_ms)
+        text, robot = options.recorded_text, connection.profile
+        head = recordings.head(recordings.REAL, text, robot, values.program)
+        recorder = Recorder(options.record, head, began_s, robot_ms)
         printer.rows = recorder.add
     saving = Saving(connection, printer, values)
     try:
