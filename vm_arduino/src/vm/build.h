@@ -52,6 +52,11 @@
 #define tiniscript_reads_keys
 #endif
 
+// Places where a program halts, so that a computer follows it step by step: an ATmega328P has no room.
+#ifndef __AVR_ATmega328P__
+#define tiniscript_has_breakpoints
+#endif
+
 // An ATmega328P reads a program where the one is that it holds; tiniscript_no_draft is for tests of
 // that. Others have room for both.
 #if (!defined(__AVR__) || defined(__AVR_ATmega2560__)) && !defined(tiniscript_no_draft)
@@ -129,6 +134,12 @@ constexpr bool kReadsDefs = false;
 constexpr bool kHasRemote = true;
 #else
 constexpr bool kHasRemote = false;
+#endif
+
+#ifdef tiniscript_has_breakpoints
+constexpr bool kHasBreakpoints = true;
+#else
+constexpr bool kHasBreakpoints = false;
 #endif
 
 // Whether the reader lets a program take a word of the kit that came after 0.2.0 for a name of its own: an
