@@ -76,9 +76,9 @@ def test_a_step_is_a_statement() -> None:
     "text",
     [
         DRIVE,
-        "SI|F(1, 80) UNTIL(DISTANCE < 20 AND LIGHT_L > 5);IF(DISTANCE > 20 OR LIGHT_R < 3);STOP;ENDIF",
-        "SI|WHEN(LIGHT_R > 5);B(0.1, 50);END_WHEN;TASK;F(FOREVER, 40) UNTIL(DISTANCE < 10);END_TASK;W(1)",
-        "SI|DEF SIDE(SIZE, SPEED);F(SIZE, SPEED);R(90 DEG, 50);END_DEF;LOOP(3);SIDE(2, 60);END_LOOP",
+        "SI|F(1, 80) UNTIL(DISTANCE < 20 AND LIGHT_L > 5);IF(DISTANCE > 20 OR LIGHT_R < 3);STOP",
+        "SI|WHEN(LIGHT_R > 5);B(0.1, 50);END_WHEN;TASK;F(9, 40) UNTIL(DISTANCE < 10);END_TASK;W(1)",
+        "SI|DEF SIDE(SIZE, SPEED);F(SIZE, SPEED);R(90 DEG, 50);END_DEF;LOOP(3);SIDE(2, 60)",
     ],
 )
 def test_what_begins_no_statement_is_no_place(text: str) -> None:
@@ -211,8 +211,8 @@ def test_what_ends_a_run_ends_a_halted_one(way: str) -> None:
         assert it.halt() == Halt(1, MAIN), "it begins anew, and halts there again"
         expected = STATE_RUNNING
     elif way == "hello":
-        session = it.session = computer(99)
-        assert robot.until(session, session.hello()) == OK
+        it.session = computer(99)
+        assert robot.until(it.session, it.session.hello()) == OK
     elif way == "text":
         robot.wait(5, b"\0")
         robot.wait(1200)
@@ -256,7 +256,7 @@ def test_a_new_session_has_no_places() -> None:
 
 
 def test_nothing_halts_where_nobody_is_there() -> None:
-    robot, session = switched_on(), computer()
+    robot = switched_on()
     it = Debugged("SI|LOOP(FOREVER);F(1.2, 80);END_LOOP", robot)
     assert it.places(1) == OK
     it.start(is_detached=True)
@@ -333,7 +333,7 @@ def test_a_way_that_discs_measure_goes_on_with_its_rest() -> None:
 def test_a_check_that_is_repeated_halts_once() -> None:
     it = Debugged("SI|LOOP(2);F(0.3, 40) UNTIL(DISTANCE < 10);END_LOOP;SHOW(1)")
     code = it.image.code
-    watch, check = begins(code)[1:3]
+    _, check = begins(code)[1:3]
     it.robot.sense(*[30_000] * len(KIT.sensors))
     assert it.places(check) == OK
     it.start()
@@ -455,12 +455,13 @@ def test_a_step_stays_in_its_task_and_a_place_of_another_one_ends_it() -> None:
 
 
 def test_a_program_that_is_typed_halts_as_well() -> None:
-    robot = switched_on()
-    robot.wait(1200, b"SI|LOOP(FOREVER);W(0.1);SHOW(1);END_LOOP\n")
-    session = computer()
+    robot, session = switched_on(), computer()
+    robot.wait(200, b"SI|LOOP(FOREVER);W(0.1);SHOW(1);END_LOOP\n")
     assert robot.until(session, session.hello()) == OK
-    if robot.done(session, session.status()).state == STATE_RUNNING:
-        assert robot.until(session, session.break_at((1,))) == OK
+    assert robot.done(session, session.status()).state == STATE_RUNNING
+    assert robot.until(session, session.break_at((1,))) == OK
+    robot.talk(session, 500)
+    assert robot.done(session, session.read_tasks()).is_halted
 
 
 def test_a_session_asks_no_robot_that_cannot_halt() -> None:

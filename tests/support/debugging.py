@@ -14,7 +14,6 @@ from tiniscript.link.messages import RESUME_GO, RESUME_STEP
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import HaltedEvent
 from tiniscript.link.requests import OK
-from tiniscript.link.session import Session
 
 
 class Halt(NamedTuple):

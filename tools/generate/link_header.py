@@ -79,7 +79,8 @@ def header(command: str) -> str:
         "The numbers of the link: messages, where the fields of their requests begin,",
         "statuses, states, times. Knows no behaviour. `docs/develop/link.md` says what they mean.",
     )
-    return cpp_file(command, "link/messages.h", about, "\n".join(parts), "../vm/build.h", "../vm/cpu.h")
+    body = "\n".join(parts)
+    return cpp_file(command, "link/messages.h", about, body, "../vm/build.h", "../vm/cpu.h")
 
 
 def tables(command: str) -> str:

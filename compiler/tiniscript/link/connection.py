@@ -111,8 +111,8 @@ class Requester:
         return self._ask("press", EmptyReply, keys=keys, x=x, y=y, speaker=speaker)
 
     def break_at(self, places: Sequence[int]) -> PendingRequest[EmptyReply]:
-        """Have what runs halt at these offsets of its code, or else the program that the robot holds;
-        MOST_BREAKPOINTS at most, none takes them away."""
+        """Have what runs halt at these offsets of its code, MOST_BREAKPOINTS at most, or else the
+        program that the robot holds; none takes them away."""
         packed = b"".join(place.to_bytes(2, "little") for place in places)
         return self._ask("break_at", EmptyReply, places=packed)
 

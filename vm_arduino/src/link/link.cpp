@@ -9,6 +9,19 @@
 
 namespace tiniscript {
 
+#ifdef tiniscript_has_breakpoints
+// Of a robot that halts nothing.
+__attribute__((weak)) Answer port_set_breakpoints(const uint8_t*, uint8_t) {
+  return Answer::kUnknownMessage;
+}
+__attribute__((weak)) void port_forget_breakpoints() {}
+__attribute__((weak)) bool port_is_halted() { return false; }
+__attribute__((weak)) uint8_t port_halted_task() { return 0; }
+__attribute__((weak)) void port_resume(ResumeHow) {}
+__attribute__((weak)) const int32_t* port_variables() { return nullptr; }
+__attribute__((weak)) bool port_report_task(uint8_t, TaskReport*) { return false; }
+#endif
+
 namespace {
 
 constexpr uint8_t kLiveByte = static_cast<uint8_t>(Message::kLive);

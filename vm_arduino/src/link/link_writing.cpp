@@ -235,7 +235,7 @@ void Link::describe() {
 void Link::tell_variables() {
   put(port_status().run);
   put(port_is_halted());
-  if (port_status().state != State::kRunning) return;
+  if (port_status().state != State::kRunning || port_variables() == nullptr) return;
   const uint8_t seal = kHasSeals && (out_[kTypeAt] & kSealed) != 0 ? kTagBytes : 0;
   const uint8_t most = static_cast<uint8_t>(kSmallFrame - kCrcBytes - seal - sizeof(int32_t));
   for (uint8_t k = byte_of(said_.detail); k < kVariables && size_ <= most; k++) {

@@ -175,6 +175,8 @@ uint16_t port_shown_at();
 const uint8_t* port_run_image();
 
 #ifdef tiniscript_has_breakpoints
+// Where no build defines these, nothing halts.
+
 // A task, as READ_TASKS sends it: how long until its clock is reached, or 0.
 struct tini_packed TaskReport {
   TaskState state;
@@ -195,7 +197,7 @@ uint8_t port_halted_task();
 // Lets it go on.
 void port_resume(ResumeHow how);
 
-// The values of what runs; only while something runs.
+// The values of what runs, or nullptr; only while something runs.
 const int32_t* port_variables();
 
 // Reports a task of what runs, from 0 on. False: there are no more.

@@ -42,6 +42,8 @@ def run(options: Namespace, language: str) -> int:
     is_followed = ready.image.start == "SI" and not (options.no_run or options.detach)
     if options.record is not None and (is_many or not is_followed):
         raise CommandError(2, "record_follows")
+    if options.breaks and (is_many or not is_followed):
+        raise CommandError(2, "break_follows")
     if is_many:
         _keep_map(ready)
         from tiniscript.cli.robot.fleet_upload import upload_to_many
