@@ -6,7 +6,7 @@ from collections.abc import Callable
 from struct import iter_unpack
 from typing import NamedTuple
 
-from tests.firmware.test_host_firmware import computer, switched_on
+from tests.firmware.test_host_firmware import KIT, switched_on
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tiniscript.bytecode.image import Image
@@ -14,6 +14,7 @@ from tiniscript.link.messages import RESUME_GO, RESUME_STEP
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import HaltedEvent
 from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
 
 
 class Halt(NamedTuple):
@@ -24,11 +25,13 @@ class Halt(NamedTuple):
 class Debugged:
     """A robot that holds a program, and its computer."""
 
-    def __init__(self, image: Image | str, robot: HostFirmware | None = None, **how: bool) -> None:
-        self.robot, self.session = robot or switched_on(), computer()
+    def __init__(
+        self, image: Image | str, robot: HostFirmware | None = None, kit: int = KIT.fingerprint
+    ) -> None:  # fmt: skip
+        self.robot, self.session = robot or switched_on(), Session(1, 9600, kit)
         self.image = image_of(image) if isinstance(image, str) else image
         self.events: list[Event] = []
-        upload = self.session.upload(self.image, runs=False, saves=False, **how)
+        upload = self.session.upload(self.image, runs=False, saves=False)
         assert self.robot.until(self.session, upload) == OK
 
     def places(self, *places: int) -> int:
