@@ -52,8 +52,9 @@
 #define tiniscript_reads_keys
 #endif
 
-// Places where a program halts, so that a computer follows it step by step: an ATmega328P has no room.
-#ifndef __AVR_ATmega328P__
+// Places where a program halts, so that a computer follows it step by step: an ATmega328P has no room;
+// tiniscript_without_breakpoints is for tests.
+#if !defined(__AVR_ATmega328P__) && !defined(tiniscript_without_breakpoints)
 #define tiniscript_has_breakpoints
 #endif
 
