@@ -76,9 +76,9 @@ def test_a_step_is_a_statement() -> None:
     "text",
     [
         DRIVE,
-        "SI|F(1, 80) UNTIL(DISTANCE < 20 AND LIGHT_L > 5);IF(DISTANCE > 20 OR LIGHT_R < 3);STOP",
+        "SI|F(1, 80) UNTIL(DISTANCE < 20 AND LIGHT_L > 5);IF(LIGHT_L > 2 OR LIGHT_R < 3);STOP;ENDIF",
         "SI|WHEN(LIGHT_R > 5);B(0.1, 50);END_WHEN;TASK;F(9, 40) UNTIL(DISTANCE < 10);END_TASK;W(1)",
-        "SI|DEF SIDE(SIZE, SPEED);F(SIZE, SPEED);R(90 DEG, 50);END_DEF;LOOP(3);SIDE(2, 60)",
+        "SI|DEF SIDE(SIZE, SPEED);F(SIZE, SPEED);R(9 DEG, 50);END_DEF;LOOP(3);SIDE(2, 60);END_LOOP",
     ],
 )
 def test_what_begins_no_statement_is_no_place(text: str) -> None:

@@ -54,7 +54,8 @@ def built(name: str, sources: Path = SOURCES, *more: str, chip: str = CHIP) -> b
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "program.elf"
         completed = subprocess.run(
-            ["avr-g++", f"-mmcu={chip}", *FLAGS[1:], *more, *WARNINGS, *map(str, code), "-o", str(program)],
+            ["avr-g++", f"-mmcu={chip}", *FLAGS[1:], *more, *WARNINGS]
+            + [*map(str, code), "-o", str(program)],
             capture_output=True,
             text=True,
         )
