@@ -76,7 +76,7 @@ def test_a_step_is_a_statement() -> None:
     "text",
     [
         DRIVE,
-        "SI|F(1, 80) UNTIL(DISTANCE < 20 AND LIGHT_L > 5);IF(LIGHT_L > 2 OR LIGHT_R < 3);STOP;ENDIF",
+        "SI|N = 1;F(1, 80) UNTIL(DISTANCE < 9 AND LIGHT_L > 5);IF(N > 2 OR LIGHT_R < 3);STOP;ENDIF",
         "SI|WHEN(LIGHT_R > 5);B(0.1, 50);END_WHEN;TASK;F(9, 40) UNTIL(DISTANCE < 10);END_TASK;W(1)",
         "SI|DEF SIDE(SIZE, SPEED);F(SIZE, SPEED);R(9 DEG, 50);END_DEF;LOOP(3);SIDE(2, 60);END_LOOP",
     ],

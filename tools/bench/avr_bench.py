@@ -53,9 +53,9 @@ def built(name: str, sources: Path = SOURCES, *more: str, chip: str = CHIP) -> b
     code += [sources / "src" / each for each in MORE.get(name, ())]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "program.elf"
+        flags = f"-mmcu={chip}", *FLAGS[1:], *more, *WARNINGS
         completed = subprocess.run(
-            ["avr-g++", f"-mmcu={chip}", *FLAGS[1:], *more, *WARNINGS]
-            + [*map(str, code), "-o", str(program)],
+            ["avr-g++", *flags, *map(str, code), "-o", str(program)],
             capture_output=True,
             text=True,
         )

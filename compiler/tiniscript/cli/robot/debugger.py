@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from functools import partial
 from struct import iter_unpack
 
 from tiniscript.base.fixed_point import value_text
@@ -16,6 +17,7 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.terminal.keys import Keys, is_in_front
 from tiniscript.cli.texts import text
 from tiniscript.library.source_map import Map, MapLocation
+from tiniscript.link.connection import Requester
 from tiniscript.link.messages import (
     BREAKPOINTS,
     MOST_BREAKPOINTS,
@@ -133,8 +135,7 @@ class Debugger:
         """Return the names and the values, in thousandths, of the variables that have names."""
         names, values = self.map.variables, list[int]()
         while len(values) < len(names):
-            first = len(values)
-            reply = self.connection.ask(lambda session, first=first: session.read_variables(first))
+            reply = self.connection.ask(partial(Requester.read_variables, first=len(values)))
             piece = [value for (value,) in iter_unpack("<i", reply.values.values)]
             if not piece:
                 break
