@@ -45,6 +45,8 @@ def run(options: Namespace, language: str) -> int:
 
         known_robot(robot)
         options.recorded_text = source_text(given)
+    if options.breaks and (is_many or not is_followed):
+        raise CommandError(2, "break_follows")
     if is_many:
         from tiniscript.cli.robot.fleet_upload import upload_to_many
 

@@ -207,6 +207,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--no-save", "upload class"),
     Option("--detach", "upload start class"),
     Option("--record", "upload", RECORDING, A_FILE),
+    Option("--break", "upload", NUMBER, N, "breaks", repeats=True),
     Option("--verbose", "upload class"),
     Option("--ask", "ports"),
     Option("--count", "doctor", NUMBER, N),
