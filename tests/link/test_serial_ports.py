@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import select
-import tty
 from collections.abc import Iterator
 from io import FileIO
 from typing import NamedTuple
@@ -13,7 +12,9 @@ import pytest
 
 from tiniscript.link.transports import Port, serial
 
-pty = pytest.importorskip("pty")
+NO_PTY = "Windows has no pseudo-terminals"
+pty = pytest.importorskip("pty", reason=NO_PTY)
+tty = pytest.importorskip("tty", reason=NO_PTY)
 
 
 class Line(NamedTuple):

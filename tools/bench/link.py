@@ -32,7 +32,7 @@ SHORT = PROGRAMS[0]
 
 # At most: ms from the first start bit to the pins, by baud; us.
 MUST_MS = {9600: 25.0, 115_200: 4.0}
-LIVE_US = 150
+LIVE_US = 100
 STOP_US = 12
 TOGETHER_US = 12.0  # on an ATmega328P; a Mega's timers and ports have longer instructions
 ROWS = (
