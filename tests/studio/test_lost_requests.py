@@ -20,6 +20,7 @@ from tests.support.needs import need
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import until
 from tiniscript import compile, robots
+from tiniscript.studio import classroom
 from tiniscript.studio import hosting as hosting_of
 from tiniscript.studio.attending import Attending
 from tiniscript.studio.building import SOURCES
@@ -304,8 +305,11 @@ def robot() -> Iterator[PtyRobot]:
 
 
 @pytest.fixture(params=["page", "pupil"])
-def asker(request: pytest.FixtureRequest, robot: PtyRobot) -> Iterator[Asker]:
-    """One that has met its robot."""
+def asker(
+    request: pytest.FixtureRequest, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Asker]:
+    """One that has met its robot, and may ask as often as a test looks."""
+    monkeypatch.setattr(classroom, "REQUESTS", (1e9, 1e9))
     hosting = Hosting()
     if request.param == "page":
         made = Asker(hosting.answer, robot.port)

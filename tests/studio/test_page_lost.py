@@ -153,8 +153,8 @@ class Mute:
         self._kinds = kinds
         page.route("**/robots", self._handle)
 
-    def has_kept(self, count: int) -> bool:
-        return len(self.kept) == count
+    def keeps(self, is_any: bool) -> bool:
+        return bool(self.kept) == is_any
 
     def _handle(self, route: Route) -> None:
         response = route.fetch()
@@ -208,10 +208,11 @@ def test_who_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
         mute = Mute(page, "STOPPED")
         page.evaluate(LISTEN)
         page.dblclick("#stop")
-        hears(page, partial(mute.has_kept, 2), "it has stopped twice")
+        hears(page, partial(mute.keeps, True), "it has stopped")
+        page.wait_for_timeout(300)  # for the second stop, unless both were one
         mute.is_open = True
         said(page, CONFIRMED)
-        hears(page, partial(mute.has_kept, 0), "all is told")
+        hears(page, partial(mute.keeps, False), "all is told")
         page.wait_for_timeout(300)
         page.unroute_all(behavior="wait")
         assert page.evaluate("window.told") == ["Stopping…", CONFIRMED]

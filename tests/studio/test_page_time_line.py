@@ -77,7 +77,7 @@ def test_what_runs_stands_still_while_somebody_looks_back_and_goes_on_from_now(
     assert running(page) == "F(0.3, 60)"
     page.click(f"#{button}")
     page.locator("#doing", has_not_text="Looking back").wait_for()
-    assert value(page, "X") == value(page, "SHOW(X)") != "1"
+    assert value(page, "X") != "1" and value(page, "SHOW(X)") != "1"  # it may run meanwhile
     in_phase(page, {"pause": "running", "step": "paused", "stop": "ended"}[button])
 
 
