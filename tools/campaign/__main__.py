@@ -9,6 +9,7 @@ table of `docs/en/guarantees.md`. Calls the campaigns of the tests; has none of 
 from __future__ import annotations
 
 import argparse
+import signal
 import subprocess
 import sys
 import time
@@ -99,4 +100,6 @@ def piece(goal: Goal, before: Result | None, commit: str) -> Result:
 
 
 if __name__ == "__main__":
+    # A shell has Ctrl-C ignored by what runs in its background, and so by each command under test.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.exit(main())
