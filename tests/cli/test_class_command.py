@@ -246,8 +246,10 @@ def test_what_became_of_the_robots_is_the_exit_code(
     ))  # fmt: skip
     monkeypatch.setattr(classroom, "together", lambda *_: code)
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
-    for name in ("upload", "stop"):
-        monkeypatch.setattr(f"tiniscript.cli.commands.{name}.run", lambda *_: code)
+    monkeypatch.setattr("tiniscript.cli.inputs.program", lambda *_: SimpleNamespace(name="P"))
+    monkeypatch.setattr("tiniscript.cli.inputs.robot_for", lambda *_: None)
+    monkeypatch.setattr("tiniscript.cli.images.ready", lambda *_, **__: "a program")
+    monkeypatch.setattr(classroom, "upload_to_many", lambda *_: code)
     done = {"list": classroom.list_robots, "upload": classroom.upload, "stop": classroom.stop}
     is_usual = verb.startswith("show") and code == 2
     assert done.get(verb, classroom.show)(room) == (0 if is_usual else code)
@@ -281,7 +283,8 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
         asked.append(given)
         return 7
 
-    monkeypatch.setattr("tiniscript.cli.commands.stop.run", ask)
+    monkeypatch.setattr(classroom, "together", ask)
+    monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
     if is_there:
         assert classroom.stop(cast(Classroom, room)) == 7 and len(asked) == 1
     else:

@@ -8,6 +8,7 @@ is told in all is held to the laws, each by a function that `told_of` names. Of 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import NamedTuple
@@ -18,11 +19,13 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, without_wrong
 from tiniscript.recovery import slips
+from tiniscript.recovery.bracketed import bracketed
 from tiniscript.recovery.calls import misplaced_values
 from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.counters import counters
 from tiniscript.recovery.dedupe import dedupe
 from tiniscript.recovery.findings import meant_in
+from tiniscript.recovery.invisible import invisible
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
 from tiniscript.recovery.leftovers import leftovers, of_its_frame
@@ -34,6 +37,7 @@ from tiniscript.recovery.usage import with_usage
 from tiniscript.syntax.parser import ENOUGH
 
 ROUNDS = 20  # of reading what follows a mistake from the repaired text
+_CR_ALONE = re.compile(r"\r(?!\n)")
 LONGEST = 4_000  # characters of a text that is read as a whole
 
 
@@ -69,12 +73,19 @@ class Wrong:
 def told_of(
     source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
-    """Return what is told of a wrong text, of which the parser and the checker say `found`."""
-    text = source.text
+    """Return what is told of a wrong text, of which the parser and the checker say `found`.
+
+    The readers know one end of a line that is a character: what the text has instead takes as much.
+    """
+    text = _CR_ALONE.sub("\n", source.text)
+    source = Source(text, source.name)
     told = _read(Wrong(source, found, check, kit), ROUNDS)
+    told = [bracketed(each, text, is_offered=True) for each in told]
     told = without_wrong(told, text, check)  # what is offered is right
     told = conserving(told, text, kit)  # what is made keeps what was written
+    told = [bracketed(each, text, is_offered=False) for each in told]
     told = with_sample(told, text, kit)  # of a distance that nobody wrote it says: an example
+    told = [invisible(each, text) for each in told]
     return codes.in_order([pointed(each, source) for each in told])
 
 

@@ -75,7 +75,7 @@ PICTURE = Kind("file", writes="unwritable_at --plot")
 REPORT = Kind("file", writes="unwritable_at --report")
 ROWS = Kind("file", writes="unwritable_more --csv")
 RECORDING = Kind("file", writes="unwritable_more --record")
-OLD_RECORDING = Kind("file", reads="path_recording")
+RUN = Kind("file", writes="unwritable_at --record")
 KEYS = Kind("file", reads="path_keys")
 NEW_KEYS = Kind("file", writes="unwritable_more --export")
 MEMORY = Kind("file", reads="path_memory", writes="unwritable_at --memory")
@@ -177,7 +177,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--show", "run"),
     Option("--pace", "run", NUMBER, N),
     Option("--machine", "run", MACHINE, "python|cpp"),
-    Option("--replay", "run", OLD_RECORDING, A_FILE),
+    Option("--record", "run", RUN, A_FILE),
     Option("--world", "run", WORLD, A_ROBOT),
     # another machine or robot
     Option("--machine", "conform", TEXT, "COMMAND"),
@@ -207,6 +207,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--no-save", "upload class"),
     Option("--detach", "upload start class"),
     Option("--record", "upload", RECORDING, A_FILE),
+    Option("--break", "upload", NUMBER, N, "breaks", repeats=True),
     Option("--verbose", "upload class"),
     Option("--ask", "ports"),
     Option("--count", "doctor", NUMBER, N),

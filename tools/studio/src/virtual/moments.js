@@ -6,6 +6,7 @@
 
 const WHOLE = 64; // of so many moments one is kept whole
 const LEAST_MS = 40; // of the robot's time between two moments in which nothing happens
+const NOT_KEPT = new Set(['rows', 'is_full', 'is_over', 'parting']); // of the run, not of a moment
 const MOST = 2_000_000; // characters; then of the moments in which nothing happens every other one is forgotten
 
 export class Moments {
@@ -73,7 +74,7 @@ export class Moments {
    * @param {RobotState} state
    */
   add(state) {
-    const keys = new Map(Object.entries(state).map(([key, value]) => [key, JSON.stringify(value, rounded)]));
+    const keys = new Map(Object.entries(state).filter(([key]) => !NOT_KEPT.has(key)).map(([key, value]) => [key, JSON.stringify(value, rounded)]));
     const isPart = keys.get('places') !== this.#last.get('places') || keys.get('at') !== this.#last.get('at');
     const isEvent = state.events.length > 0 || keys.get('bumps') !== this.#last.get('bumps');
     if (this.length && !isPart && !isEvent && state.is_running && state.now_ms - this.last_ms < LEAST_MS) return;
@@ -119,6 +120,15 @@ export class Moments {
     const state = {};
     for (let row = k - (k % WHOLE); row <= k; row += 1) Object.assign(state, JSON.parse(this.#rows[row] ?? '{}'));
     return /** @type {RobotState} */ (state);
+  }
+
+  /** Each moment, one after the other. @returns {Generator<RobotState>} */
+  *all() {
+    let state = {};
+    for (const row of this.#rows) {
+      state = { ...state, ...JSON.parse(row) };
+      yield /** @type {RobotState} */ (state);
+    }
   }
 
   /** @param {number} at_ms of the robot's time @returns {number} the last moment until then */
