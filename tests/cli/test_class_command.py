@@ -27,6 +27,7 @@ from tests.support.pty_robot import on
 from tests.support.rows import each_row
 from tests.support.waiting import HANGS_S, until
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.options import Options
 from tiniscript.cli.robot import classroom, robot_broker
 from tiniscript.cli.robot.classroom import Classroom, Listener
 from tiniscript.cli.robot.connect import Connection
@@ -185,6 +186,21 @@ def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
         assert options.verb == verb  # of an upload, who no longer reads stops the robots
         assert hasattr(options, "attend") == attends
         assert options.ports == ["mqtt://h:1/c/00000001"]
+
+
+def test_a_fleet_is_asked_for_no_option_that_a_class_lacks() -> None:
+    """What the class does not take is as the verb of a fleet has it where nobody gave it."""
+    own = Options("class", "en").read(["upload"])
+    room = SimpleNamespace(
+        place=("h", 1), group="c", options=own, broker=SimpleNamespace(attend=print)
+    )
+    alone = Options("upload", "en").read([])
+    assert own is not None and alone is not None
+    for verb in ("class", "stop", "upload"):
+        options = vars(Classroom.targets(cast(Classroom, room), [], verb))
+        lacks = {name: value for name, value in vars(alone).items() if name not in vars(own)}
+        assert len(lacks) > 5
+        assert {name: options.get(name, "none") for name in lacks} == lacks
 
 
 def test_values_are_collected(room: Class, tmp_path: Path) -> None:

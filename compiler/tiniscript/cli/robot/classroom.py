@@ -24,6 +24,7 @@ from tiniscript.cli.robot.recorder import Rows
 from tiniscript.cli.robot.stopping import stop_one
 from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.cli.texts import say, say_aside, text
+from tiniscript.cli.texts.options import of_verb
 from tiniscript.link.errors import NOT_INSTALLED, PortError
 from tiniscript.link.port_connection import now_ms
 
@@ -31,10 +32,7 @@ if TYPE_CHECKING:
     from tiniscript.link.transports.broker import Access, Broker, Present
 
 STOPS = 3  # messages to all, as each may be lost
-WITHOUT: dict[str, object] = {  # what a fleet asks of options that this verb has not
-    "ports": [], "port": None, "all": False, "baud": None, "virtual": False, "plot": None,
-    "record": None,
-}  # fmt: skip
+UPLOAD = "upload"  # the verb that asks most of a fleet's options
 
 
 class Classroom:
@@ -88,9 +86,10 @@ class Classroom:
         from tiniscript.link.transports.broker import port_of
 
         ports = [port_of(*self.place, self.group, each.id) for each in found if each.is_here]
-        own = Namespace(**{**WITHOUT, **vars(self.options)})
+        of_fleet = {option.name: option.unset for option in of_verb(UPLOAD)}
+        own = Namespace(**{**of_fleet, "port": None, **vars(self.options)})
         own.ports, own.verb = ports, verb
-        if verb == "upload":
+        if verb == UPLOAD:
             own.attend = self.broker.attend
         return own
 
@@ -107,7 +106,7 @@ def list_robots(room: Classroom) -> int:
 
 def upload(room: Classroom) -> int:
     """Send a program to all at once, and follow it until it ends on each."""
-    own = room.targets(room.present(), "upload")
+    own = room.targets(room.present(), UPLOAD)
     given = inputs.program(own)
     robot = inputs.robot_for(given, own, room.language)
     ready = images.ready(given, robot, room.language, is_strict=True)

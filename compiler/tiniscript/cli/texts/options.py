@@ -53,6 +53,11 @@ class Option(NamedTuple):
         """Its name in the code."""
         return self.dest or self.flags.split()[-1].lstrip("-").replace("-", "_")
 
+    @property
+    def unset(self) -> object:
+        """Its value where nobody has given it."""
+        return [] if self.repeats else False if self.kind is None else None
+
     def help(self, language: str) -> str:
         """Return what it does."""
         return said(f"option/{self.flags}/{self.verbs.split()[0]}", language)
