@@ -251,7 +251,12 @@ def _unsaid(diagnostic: Diagnostic, lost: Sequence[str], text: str) -> list[str]
 
 
 def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
-    """Return diagnostics that say so where they ask for what is near, which has no number."""
+    """Return diagnostics that have a `sample` where they compare a distance that nobody wrote.
+
+    That is only what a pupil called near: `DISTANCE < 15` for "near a wall". Where the text has
+    that number, or where the message shows an example anyway, nothing changes; and of no other
+    value does this say anything.
+    """
     guesses = [
         diagnostic
         for diagnostic in diagnostics

@@ -108,44 +108,47 @@ def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
 
 
 def _labels(wrong: Wrong) -> Findings:
-    """Return what counts the instructions of a text, before each of them."""
+    """Return what counts the instructions of a text, before each of them (`labels`)."""
     return _with_edits(labelled(wrong.source))
 
 
 def _keys(wrong: Wrong) -> Findings:
-    """Return what is wrong with keys that are asked for; the rest is read with one that exists."""
+    """Return what is wrong with keys that are asked for (`keys`).
+
+    The rest is read with a key that exists.
+    """
     told = asked_keys(wrong.source, wrong.kit)
     edits = _with_edits(told).edits
     return Findings(told, edits + [Edit(it.span, KEYS[0]) for it in told if not it.repair])
 
 
 def _beginning(wrong: Wrong) -> Findings:
-    """Return what is wrong with the lines before the program, and with its `SI|`."""
+    """Return what is wrong with the lines before the program, and with its `SI|` (`setup`)."""
     return _with_edits(beginning(wrong.source, wrong.found, wrong.check, wrong.kit))
 
 
 def _calls(wrong: Wrong) -> Findings:
-    """Return what is wrong with calls that have all their values in another form."""
+    """Return what is wrong with calls that have all their values in another form (`calls`)."""
     return _with_edits(misplaced_values(wrong.source))
 
 
 def _counters(wrong: Wrong) -> Findings:
-    """Return what is wrong with loops that count, in whose place LOOP counts nothing."""
+    """Return what is wrong with loops that count, where LOOP counts nothing (`counters`)."""
     return _with_edits(counters(wrong.source))
 
 
 def _frame(wrong: Wrong) -> Findings:
-    """Return what begins a program once more, and what ends it, which needs no word."""
+    """Return what begins a program once more, or ends it, which needs no word (`leftovers`)."""
     return _with_edits(of_its_frame(wrong.source, wrong.kit))
 
 
 def _leftovers(wrong: Wrong) -> Findings:
-    """Return words that are left over in instructions, which are whole without them."""
+    """Return words left over in instructions, which are whole without them (`leftovers`)."""
     return _with_edits(leftovers(wrong.source, wrong.kit))
 
 
 def _other_beginning(wrong: Wrong) -> Findings:
-    """Return that another word stands in the place of `SI|`, for which the rest is read."""
+    """Return that another word stands in the place of `SI|` (`setup`); the rest is read with SI."""
     begun = other_word(wrong.source, wrong.found)
     if begun is None:
         return Findings([], [])
@@ -154,7 +157,7 @@ def _other_beginning(wrong: Wrong) -> Findings:
 
 
 def _meant_surely(wrong: Wrong) -> Findings:
-    """Return what is wrong with a text that is read wholly and surely."""
+    """Return what is wrong with a text that is read wholly and surely (`search`, `findings`)."""
     recovery = wrong.recovery
     if recovery is None:
         return Findings([], [])
@@ -162,7 +165,7 @@ def _meant_surely(wrong: Wrong) -> Findings:
 
 
 def _words_after(wrong: Wrong) -> Findings:
-    """Return what words say after instructions, or in the place of one."""
+    """Return what words say after instructions, or in the place of one (`suggestions`)."""
     after = suggested(wrong.source.text, wrong.kit)
     if recovery := wrong.recovery:  # they belong to the instruction by its sign: `X = 20 x 3`
         after = [each for each in after if not recovery.has_signs(each.passed.span.start)]
@@ -170,7 +173,7 @@ def _words_after(wrong: Wrong) -> Findings:
 
 
 def _guessed(wrong: Wrong) -> Findings:
-    """Return what is wrong with the lines that are read, if not surely."""
+    """Return what is wrong with the lines that are read, if not surely (`search`, `findings`)."""
     recovery = wrong.recovery
     if recovery is None:
         return Findings([], [])
