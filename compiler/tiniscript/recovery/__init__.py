@@ -15,6 +15,10 @@ The laws, from which no row and no reader is exempt, and where each is kept:
   or in a block (`rewrites` for `^` and `$`, `writing` for the end of a line).
 - Two readings that cost about the same are both shown, and none is made (`search`).
 - A number that nobody wrote is an example, and is shown as one (`conserved`, `with_sample`).
+- A yes or no, as `KEY_A`, is a question wherever a comparison is, and nothing is compared with it
+  (`meanings`, `Names.is_yes_no`).
+- A question behind an instruction, `F(2, 80) IF(KEY_A);S`, may be of what is before it: no block
+  is made of what comes after unless its end is written (`blocks`).
 - What follows from a mistake that is told is not told beside it (`consequences`), and what is
   wrong at several places is told once (`dedupe`).
 - A mistake points at what its message names (`pointing`), and a sign that nobody sees has a name

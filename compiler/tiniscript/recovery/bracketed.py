@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import re
 
+from tiniscript.base.kit import Kit
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.recovery.meanings import Names, lexemes, texts
 
 _INSIDE = re.compile(r"[ \t]*\(((?:[^()\n;]|\([^()\n;]*\))+)\)")
 _ASKED = re.compile(r"[<>=]")
@@ -19,7 +21,7 @@ _ASKS = {
 _SAID = ("fix", "head", "named", "lost")  # gaps that say what becomes of it
 
 
-def bracketed(diagnostic: Diagnostic, text: str, is_offered: bool) -> Diagnostic:
+def bracketed(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> Diagnostic:
     """Return a mistake of needless brackets with what becomes of what is in them.
 
     `is_offered`: where it is a question, that is asked; else it is named as lost.
@@ -33,7 +35,9 @@ def bracketed(diagnostic: Diagnostic, text: str, is_offered: bool) -> Diagnostic
     if inside is None or "\n" in text[diagnostic.span.start : at]:
         return diagnostic
     what, word = inside[1].strip(), values.get("word", "").upper()
-    asks = _ASKS.get(word, "") if _ASKED.search(what) else ""
+    names = Names([lexemes(what)], kit)
+    is_asked = bool(_ASKED.search(what)) or any(map(names.is_yes_no, texts(lexemes(what))))
+    asks = _ASKS.get(word, "") if is_asked else ""
     if asks and is_offered:
         return diagnostic._replace(values={**values, "fix": asks.format(what=what)})
     return diagnostic if is_offered else diagnostic._replace(values={**values, "lost": what})

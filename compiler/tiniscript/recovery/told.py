@@ -80,10 +80,10 @@ def told_of(
     text = _CR_ALONE.sub("\n", source.text)
     source = Source(text, source.name)
     told = _read(Wrong(source, found, check, kit), ROUNDS)
-    told = [bracketed(each, text, is_offered=True) for each in told]
+    told = [bracketed(each, text, kit, is_offered=True) for each in told]
     told = without_wrong(told, text, check)  # what is offered is right
     told = conserving(told, text, kit)  # what is made keeps what was written
-    told = [bracketed(each, text, is_offered=False) for each in told]
+    told = [bracketed(each, text, kit, is_offered=False) for each in told]
     told = with_sample(told, text, kit)  # of a distance that nobody wrote it says: an example
     told = [invisible(each, text) for each in told]
     return codes.in_order([pointed(each, source) for each in told])
