@@ -167,7 +167,7 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
             "from a newer tsc",
             "viene de un tsc más nuevo",
         ),
-        (HEAD.replace('"tinibot"', '"mine"').encode(), "does not bring", "no trae"),
+        (HEAD.replace('"tinibot"', '"mine"').encode(), "does not come with", "no trae"),
         (real().replace(b"SHOW(5)", b"SHOW(6)"), "means something else", "significa otra cosa"),
         (real((999_999, "DONE")), "ten minutes at most", "diez minutos como máximo"),
         (HEAD.encode() + b" " * 1_100_000, "is too long", "es demasiado largo"),
