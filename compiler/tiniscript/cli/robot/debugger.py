@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from functools import partial
 from struct import iter_unpack
 
-from tiniscript.base.fixed_point import value_text
+from tiniscript.base.fixed_point import value_of, value_text
 from tiniscript.bytecode.statements import begins
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.images import Ready
@@ -118,7 +118,7 @@ class Debugger:
         line = 0 if place is None else place.line
         what = "" if place is None else self.map.line(line)[place.column - 1 :].split(";")[0]
         said = [text("halted", language).format(line=line, what=what.strip())]
-        values = ", ".join(f"{name} = {value_text(value, False)}" for name, value in variables)
+        values = ", ".join(f"{name} = {value_text(*value)}" for name, *value in variables)
         said += [f"  {values}"] * bool(values)
         for state, where in tasks:
             key = f"halted_task_{TASK_STATES[state][0]}"
@@ -127,12 +127,13 @@ class Debugger:
             said.append(text("halted_keys", language))
         self.printer.say(
             0, "HALTED", str(line), "\n".join(said), line=line, at=at,
-            variables={name: value / 1000 for name, value in variables},
+            variables={name: value_of(*value) for name, *value in variables},
             tasks=[{"state": TASK_STATES[state][0], "line": where} for state, where in tasks],
         )  # fmt: skip
 
-    def _variables(self) -> list[tuple[str, int]]:
-        """Return the names and the values, in thousandths, of the variables that have names."""
+    def _variables(self) -> list[tuple[str, int, bool]]:
+        """Return name, value in thousandths and whether it is a yes/no of the variables that have
+        names."""
         names, values = self.map.variables, list[int]()
         while len(values) < len(names):
             reply = self.connection.ask(partial(Requester.read_variables, first=len(values)))
@@ -140,7 +141,8 @@ class Debugger:
             if not piece:
                 break
             values += piece
-        return list(zip(names, values, strict=False))
+        yes_no = self.map.yes_no or [False] * len(names)  # of a map of an earlier version
+        return list(zip(names, values, yes_no, strict=False))
 
     def _tasks(self, halted: int) -> list[tuple[int, int]]:
         """Return state and line of each task beside the one that is halted, and has not ended."""
