@@ -99,13 +99,12 @@ class Debugger:
         return True
 
     def look(self) -> None:
-        """Do what a key says."""
-        if not self.has_keys or not self.is_halted:
-            return
-        for key in self.keys.pressed():
-            if key in STEP or key in GO:
-                self._resume(RESUME_STEP if key in STEP else RESUME_GO)
-                return
+        """Do what the first key says that was pressed at this halt; while the program runs, none
+        does anything."""
+        pressed = self.keys.pressed() if self.has_keys else ""
+        key = next((key for key in pressed if key in STEP + GO), "")
+        if key and self.is_halted:
+            self._resume(RESUME_STEP if key in STEP else RESUME_GO)
 
     def _resume(self, how: int) -> None:
         self.is_halted, self.is_stepping = False, how == RESUME_STEP
