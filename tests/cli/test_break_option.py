@@ -42,9 +42,9 @@ def program(tmp_path: Path, pty_robot: PtyRobot) -> Path:
 
 
 def at_a_terminal(robot: PtyRobot, program: Path, *lines: int) -> Terminal:
-    breaks = (word for line in lines for word in ("--break", str(line)))
-    words = ("upload", program, "--no-save", "--port", robot.port, *breaks)
-    return Terminal(*words, size=(100, 50))
+    breaks = [word for line in lines for word in ("--break", str(line))]
+    port = ("--port", robot.port)
+    return Terminal("upload", program, "--no-save", *port, *breaks, size=(100, 50))
 
 
 def told(terminal: Terminal) -> list[str]:

@@ -117,7 +117,9 @@ class Debugger:
         line = 0 if place is None else place.line
         what = "" if place is None else self.map.line(line)[place.column - 1 :].split(";")[0]
         said = [text("halted", language).format(line=line, what=what.strip())]
-        values = ", ".join(f"{name} = {value_text(*value)}" for name, *value in variables)
+        values = ", ".join(
+            f"{name} = {value_text(value, is_yes_no)}" for name, value, is_yes_no in variables
+        )
         said += [f"  {values}"] * bool(values)
         for state, where in tasks:
             key = f"halted_task_{TASK_STATES[state][0]}"
@@ -126,7 +128,7 @@ class Debugger:
             said.append(text("halted_keys", language))
         self.printer.say(
             0, "HALTED", str(line), "\n".join(said), line=line, at=at,
-            variables={name: value_of(*value) for name, *value in variables},
+            variables={name: value_of(value, is_yes_no) for name, value, is_yes_no in variables},
             tasks=[{"state": TASK_STATES[state][0], "line": where} for state, where in tasks],
         )  # fmt: skip
 
