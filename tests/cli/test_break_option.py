@@ -11,6 +11,8 @@ from tests.support.command import Tsc
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
 from tiniscript.cli.robot import debugger
+from tiniscript.cli.terminal.keys import Keys
+from tiniscript.link.messages import RESUME_STEP
 
 PROGRAM = """SI|N = 1
 FAR = DISTANCE > 20
@@ -186,3 +188,19 @@ def test_a_robot_that_cannot_halt_gets_nothing(
     monkeypatch.setattr(debugger, "BREAKPOINTS", 0)
     on(pty_robot, "upload", program, "--break", "4").gives(3, "breakpoint")
     assert on(pty_robot, "start").code == 3, "it holds no program"
+
+
+def test_a_key_that_is_pressed_while_the_program_runs_does_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    it = debugger.Debugger.__new__(debugger.Debugger)
+    it.has_keys, it.is_halted, typed, asked = True, False, ["g", "", "s"], list[int]()
+    monkeypatch.setattr(debugger.Debugger, "_resume", lambda self, how: asked.append(how))
+    it.keys = Keys()
+    monkeypatch.setattr(it.keys, "pressed", lambda: typed.pop(0))
+    it.look()
+    it.is_halted = True
+    it.look()
+    assert asked == []
+    it.look()
+    assert asked == [RESUME_STEP]
