@@ -51,13 +51,14 @@ class Machine : public Scheduler {
   // The begin of the instruction that runs or has faulted.
   uint16_t at() const { return at_; }
 
-#ifdef tiniscript_has_breakpoints
+  // For breakpoints: `halt.cpp`, where kHasBreakpoints.
+
   // After kHalted: goes on with the instruction there, in whose place the kTrap no longer is. An
   // instruction of the text begins there, so the stack is empty.
   void resume();
 
   // Whose turn it is, as the number of its record; not between two rounds.
-  uint8_t turn() const { return static_cast<uint8_t>(task_.me - task_.records); }
+  uint8_t turn() const;
 
   // Where a task goes on. Where the innermost open call of the one whose turn it is goes on.
   uint16_t place_of(uint8_t task) const;
@@ -65,7 +66,6 @@ class Machine : public Scheduler {
 
   // Sets the motors again as the program has them, to what is left of a way.
   void set_motors_again();
-#endif
 
   // Where the SHOW is whose value `robot_show` gets, also if it gets it again: it is a byte, and a
   // task goes on after it.

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from functools import partial
 from struct import iter_unpack
 
-from tiniscript.base.fixed_point import value_text
+from tiniscript.base.fixed_point import value_of, value_text
 from tiniscript.bytecode.statements import begins
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.images import Ready
@@ -99,13 +99,12 @@ class Debugger:
         return True
 
     def look(self) -> None:
-        """Do what a key says."""
-        if not self.has_keys or not self.is_halted:
-            return
-        for key in self.keys.pressed():
-            if key in STEP or key in GO:
-                self._resume(RESUME_STEP if key in STEP else RESUME_GO)
-                return
+        """Do what the first key says that was pressed at this halt; while the program runs, none
+        does anything."""
+        pressed = self.keys.pressed() if self.has_keys else ""
+        key = next((key for key in pressed if key in STEP + GO), "")
+        if key and self.is_halted:
+            self._resume(RESUME_STEP if key in STEP else RESUME_GO)
 
     def _resume(self, how: int) -> None:
         self.is_halted, self.is_stepping = False, how == RESUME_STEP
@@ -118,7 +117,9 @@ class Debugger:
         line = 0 if place is None else place.line
         what = "" if place is None else self.map.line(line)[place.column - 1 :].split(";")[0]
         said = [text("halted", language).format(line=line, what=what.strip())]
-        values = ", ".join(f"{name} = {value_text(value, False)}" for name, value in variables)
+        values = ", ".join(
+            f"{name} = {value_text(value, is_yes_no)}" for name, value, is_yes_no in variables
+        )
         said += [f"  {values}"] * bool(values)
         for state, where in tasks:
             key = f"halted_task_{TASK_STATES[state][0]}"
@@ -127,12 +128,13 @@ class Debugger:
             said.append(text("halted_keys", language))
         self.printer.say(
             0, "HALTED", str(line), "\n".join(said), line=line, at=at,
-            variables={name: value / 1000 for name, value in variables},
+            variables={name: value_of(value, is_yes_no) for name, value, is_yes_no in variables},
             tasks=[{"state": TASK_STATES[state][0], "line": where} for state, where in tasks],
         )  # fmt: skip
 
-    def _variables(self) -> list[tuple[str, int]]:
-        """Return the names and the values, in thousandths, of the variables that have names."""
+    def _variables(self) -> list[tuple[str, int, bool]]:
+        """Return name, value in thousandths and whether it is a yes/no of the variables that have
+        names."""
         names, values = self.map.variables, list[int]()
         while len(values) < len(names):
             reply = self.connection.ask(partial(Requester.read_variables, first=len(values)))
@@ -140,7 +142,8 @@ class Debugger:
             if not piece:
                 break
             values += piece
-        return list(zip(names, values, strict=False))
+        yes_no = self.map.yes_no or [False] * len(names)  # of a map of an earlier version
+        return list(zip(names, values, yes_no, strict=False))
 
     def _tasks(self, halted: int) -> list[tuple[int, int]]:
         """Return state and line of each task beside the one that is halted, and has not ended."""
