@@ -68,7 +68,7 @@ def server(browser: Browser) -> Iterator[serving.Server]:
 
 @pytest.fixture
 def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
-    found = Pages(browser, server.address, 15)
+    found = Pages(browser, server.address)
     yield found
     found.close()
 
