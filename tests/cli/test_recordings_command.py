@@ -190,7 +190,7 @@ def test_a_file_that_cannot_be_played_says_why(
         (("run", "-e", TEXT, "--world", "line"), "--world is for --record"),
         (("run", "p.bin", "--record", "new"), "needs the program as text"),
         (("run", "-e", TEXT, "--record", "new", "--world", "nowhere"), "nowhere"),
-        (("run", "-e", TEXT, "--record", "new", "--robot", "own.toml"), "robots that come with tsc"),
+        (("run", "-e", TEXT, "--record", "new", "--robot", "own.toml"), "that come with tsc"),
         (("run", "-e", TEXT, "--record", "new", "--machine", "cpp"), "--machine does not go with"),
         (("run", "-e", TEXT, "--record", "new", "--show"), "--show does not go with --record"),
         (("run", "-e", TEXT, "--record", "new", "--pace", "0"), "--pace does not go with"),

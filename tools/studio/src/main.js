@@ -96,7 +96,7 @@ const driving = new SimulatorPanel({
 });
 const programs = new Programs({ python, work, put: putProgram, picturing: () => views.picture() });
 
-const recorder = new Recorder({ runs: driving.runs, see: (run) => driving.see(run) });
+const recorder = new Recorder({ runs: driving.runs, play: (run) => driving.playAgain(run) });
 const place = new RobotPlace();
 const panel = new RobotPanel({
   recorder,

@@ -78,7 +78,7 @@ def record(given: Input, options: Namespace, language: str) -> int:
     _print(rows, began_ms)
     head = recordings.head(VIRTUAL, source, robot, image.checksum, world=form, seed=seed, told=told)
     whole = recordings.written(head, rows, end_ms)
-    outputs.write(Path(options.record), whole.encode(), "unwritable_at --record")
+    outputs.write(Path(options.record), whole.encode(), "unwritable_more --record")
     if fault:
         said = fault_text(fault, fault_at or 0, found.places, given.is_image, language)
         print(said, file=sys.stderr)

@@ -80,7 +80,6 @@ PICTURE = Kind("file", writes="unwritable_at --plot")
 REPORT = Kind("file", writes="unwritable_at --report")
 ROWS = Kind("file", writes="unwritable_more --csv")
 RECORDING = Kind("file", writes="unwritable_more --record")
-RUN = Kind("file", writes="unwritable_at --record")
 KEYS = Kind("file", reads="path_keys")
 NEW_KEYS = Kind("file", writes="unwritable_more --export")
 MEMORY = Kind("file", reads="path_memory", writes="unwritable_at --memory")
@@ -182,7 +181,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--show", "run"),
     Option("--pace", "run", NUMBER, N),
     Option("--machine", "run", MACHINE, "python|cpp"),
-    Option("--record", "run", RUN, A_FILE),
+    Option("--record", "run", RECORDING, A_FILE),
     Option("--world", "run", WORLD, A_ROBOT),
     # another machine or robot
     Option("--machine", "conform", TEXT, "COMMAND"),

@@ -21,10 +21,10 @@ export class Recorder {
   #isOver = true;
   #play = element('record_play', HTMLButtonElement);
 
-  /** @param {{runs: import('../virtual/runs.js').Runs, see: (run: Run) => void}} page */
+  /** @param {{runs: import('../virtual/runs.js').Runs, play: (run: Run) => void}} page */
   constructor(page) {
     this.#page = page;
-    this.#play.addEventListener('click', () => this.#run && page.see(this.#run));
+    this.#play.addEventListener('click', () => this.#run && page.play(this.#run));
     this.#show();
   }
 

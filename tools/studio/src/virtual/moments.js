@@ -76,7 +76,7 @@ export class Moments {
   add(state) {
     const keys = new Map(Object.entries(state).filter(([key]) => !NOT_KEPT.has(key)).map(([key, value]) => [key, JSON.stringify(value, rounded)]));
     const isPart = keys.get('places') !== this.#last.get('places') || keys.get('at') !== this.#last.get('at');
-    const isEvent = state.events.length > 0 || keys.get('bumps') !== this.#last.get('bumps');
+    const isEvent = state.events.some(isSeen) || keys.get('bumps') !== this.#last.get('bumps');
     if (this.length && !isPart && !isEvent && state.is_running && state.now_ms - this.last_ms < LEAST_MS) return;
     const k = this.length;
     if (isEvent) this.#events.push(k);
@@ -151,6 +151,11 @@ export class Moments {
   shows(k) {
     return this.#shows.slice(0, countUntil(this.#shows.map(([moment]) => moment), k)).map(([, event]) => event);
   }
+}
+
+/** Whether it is something that the robot did: a program that waits reads its sensors fifty times in a second. @param {[number, string, number]} event */
+export function isSeen([, what]) {
+  return !what.startsWith('READ ');
 }
 
 /** How many of ascending numbers are at most so large. @param {readonly number[]} numbers @param {number} most */

@@ -1,6 +1,6 @@
 // The runs that the page keeps while it is open: how each was, moment by moment, and what its file has.
 
-import { Moments } from './moments.js';
+import { isSeen, Moments } from './moments.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
 /** @typedef {import('../python.js').Checked} Checked */
@@ -71,7 +71,7 @@ export class Run {
 
   /** @param {RobotState} state the next one of a virtual robot's run */
   add(state) {
-    for (const [at_ms, what] of state.events) {
+    for (const [at_ms, what] of state.events.filter(isSeen)) {
       const [word = ''] = what.split(' ');
       this.mark(at_ms, WORDS.has(word) ? word : '');
     }

@@ -22,7 +22,7 @@ export class RunsWindow {
    * @param {import('../python.js').Python} page.python
    * @param {import('./runs.js').Runs} page.runs
    * @param {(run: Run) => void} page.see one of them
-   * @param {(opened: Opened) => void} page.play the run of a file
+   * @param {(opened: Opened, again: Run | null) => void} page.play the run of a file, which may be kept already
    */
   constructor(page) {
     this.#page = page;
@@ -55,15 +55,15 @@ export class RunsWindow {
     }
   }
 
-  /** @param {Uint8Array} data @param {string} [name] */
-  async openData(data, name = '') {
+  /** @param {Uint8Array} data @param {string} [name] @param {Run | null} [again] that is kept already */
+  async openData(data, name = '', again = null) {
     const answer = await this.#page.python.ask({ do: 'open_run' }, data);
     if (answer.what) {
       this.#refuse(name, text(known(`record_${answer.what}`), { line: answer.line }));
       return;
     }
     this.#window.close();
-    this.#page.play({ ...answer, file: new TextDecoder().decode(data) });
+    this.#page.play({ ...answer, file: new TextDecoder().decode(data) }, again);
   }
 
   /** @param {Run} run @returns {Promise<string>} its file */

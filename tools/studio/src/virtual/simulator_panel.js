@@ -59,8 +59,6 @@ export class SimulatorPanel {
   #window;
   /** The newest one. @type {Run | null} */
   #newest = null;
-  /** That is played, if it is kept already. @type {Run | null} */
-  #again = null;
   #bumps = 0; // that were seen
   /** What each SHOW has shown last. @type {Map<string, string>} */
   #shown = new Map();
@@ -94,7 +92,7 @@ export class SimulatorPanel {
   constructor(page) {
     const { python, work, remember } = page;
     this.#page = page;
-    this.#window = new RunsWindow({ python, runs: this.runs, see: (run) => this.see(run), play: (opened) => this.#play(opened) });
+    this.#window = new RunsWindow({ python, runs: this.runs, see: (run) => this.#see(run), play: (opened, again) => this.#play(opened, again) });
     this.#world = new WorldChoice(python, work, () => this.#enter());
     this.#simulator = new Simulator(python, (state) => {
       if (state) this.#keep(state);
@@ -243,12 +241,15 @@ export class SimulatorPanel {
     return of.text === pageState.programText.value ? program.places : [];
   }
 
+  /** Plays a run that is kept, with its own program. @param {Run} run */
+  async playAgain(run) {
+    await this.#window.openData(new TextEncoder().encode(await this.#window.fileOf(run)), '', run);
+  }
+
   /** Shows a run that is kept, at its end; a real robot's is played first. @param {Run} run */
-  async see(run) {
+  async #see(run) {
     if (run.moments.length < 2 || !run.shapes) {
-      this.#again = run;
-      await this.#window.openData(new TextEncoder().encode(await this.#window.fileOf(run)));
-      this.#again = null; // where it cannot be played
+      await this.playAgain(run);
       return;
     }
     if (this.#simulator.phase === 'running') this.#pauseIt();
@@ -268,10 +269,8 @@ export class SimulatorPanel {
     return this.#window.open(file);
   }
 
-  /** Plays a recorded run. @param {import('./runs_window.js').Opened} opened */
-  async #play(opened) {
-    const again = this.#again;
-    this.#again = null;
+  /** Plays a recorded run, which may be kept already. @param {import('./runs_window.js').Opened} opened @param {Run | null} again */
+  async #play(opened, again) {
     await this.#simulator.stop();
     this.#page.put(opened);
     if (typeof opened.world === 'string') this.#world.choose(opened.world);

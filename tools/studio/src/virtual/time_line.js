@@ -5,8 +5,8 @@ import { Run } from './runs.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
 
-/** The color of each kind of mark; what comes later is drawn over what comes before. */
-const COLORS = { '': '#8593a0', KEYS: '#7a2fb8', BEEP: '#8a5a00', SHOW: '#0b66c2', BUMP: '#c0281a', FAULT: '#c0281a', PART: '#c0281a' };
+/** The color of each kind of mark, by its name in the style; what comes later is drawn over what comes before. */
+const COLORS = { '': '--edge', KEYS: '--said-number', BEEP: '--said-warn', SHOW: '--said-blue', BUMP: '--said-wrong', FAULT: '--said-wrong', PART: '--said-wrong' };
 const NOTHING = new Run({ of: 'virtual', text: '', robot: '', program: '' }, { places: [], shows: [], variables: [] }, null);
 
 export class TimeLine {
@@ -92,9 +92,10 @@ export class TimeLine {
     Object.assign(canvas, { width: Math.round(canvas.clientWidth * ratio), height: Math.round(canvas.clientHeight * ratio) });
     const { moments: { first_ms, last_ms }, marks } = this.#run;
     const wide = (canvas.width - 2 * ratio) / Math.max(1, last_ms - first_ms);
+    const style = getComputedStyle(canvas);
     for (const [kind, color] of Object.entries(COLORS)) {
       const height = kind ? canvas.height : canvas.height / 2;
-      pen.fillStyle = color;
+      pen.fillStyle = style.getPropertyValue(color);
       const places = marks.filter((mark) => mark.kind === kind && mark.at_ms >= first_ms).map(({ at_ms }) => Math.round((at_ms - first_ms) * wide));
       for (const x of new Set(places)) pen.fillRect(x, canvas.height - height, (kind === 'PART' ? 4 : 2) * ratio, height);
     }
