@@ -640,7 +640,7 @@ def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
     assert page.locator(f"{PROGRAM} .wrong").count() == 1
 
 
-def test_what_stands_at_the_top_is_put_in_no_other_block(page: Page) -> None:
+def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
     page.select_option("#robot", "tinibot32")
     for group, words, own in (
         ("Events", "each time", "WHEN(DISTANCE < 20);\nEND_WHEN;\n"),
@@ -652,18 +652,61 @@ def test_what_stands_at_the_top_is_put_in_no_other_block(page: Page) -> None:
         inside = 20 - round(box_of(loop)["height"])
         drag(page, group, words, loop, off=(12, inside))
         becomes_other(page, "SI|LOOP(3);\nEND_LOOP;\n")
-        assert own in text_of(page) and "LOOP(3);\nEND_LOOP;\n" in text_of(page)
+        loops = "LOOP(3);\nEND_LOOP;\n"
+        becomes(page, f"SI|{own}{loops}" if own.startswith("DEF") else f"SI|{loops}{own}")
+        hat, program = box_of(block(page, words)), box_of(block(page, "repeat"))
+        assert hat["y"] > program["bottom"] or hat["x"] > program["right"], (words, hat, program)
+
+
+def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page) -> None:
+    first, then = (f"WHEN(DISTANCE < {n});\n  W(3);\nEND_WHEN;\n" for n in (10, 20))
+    text = f"SI|S;\nDEF SPIN;\n  L(1, 50);\nEND_DEF;\nW(2);\nSPIN;\n{first}{then}"
+    start(page, text, "usual")
+    assert text_of(page) == text
+    drag(page, "Move", "back", block(page, "stop"))
+    kept = text.replace("SI|S;\n", "SI|S;\nB(2, 80);\n")
+    becomes(page, kept)  # what nobody moves keeps its place
+    hats = page.locator(f"{PROGRAM} > .blocklyDraggable", has_text="each time")
+    box, above = box_of(hats.last), box_of(hats.first)
+    page.mouse.move(box["x"] + 12, box["y"] + 16)
+    page.mouse.down()
+    page.mouse.move(box["right"] + 24, above["y"] - 40, steps=8)
+    page.mouse.up()
+    moved = kept.replace(first + then, then + first)
+    becomes(page, moved)
+    last = page.locator(f"{PROGRAM} > .blocklyDraggable", has_text="20")
+    place = box_of(last)
+    assert place["x"] > above["right"] and place["y"] < above["y"]
+    page.click("#undo")
+    becomes(page, kept)
+    page.click("#redo")
+    becomes(page, moved)
+    assert box_of(last)["x"] == pytest.approx(place["x"], abs=1)
+
+
+NUMBERS = """all => all.map((field, k) => ({field, k, box: field.getBoundingClientRect()}))
+  .map(({field, k, box}) => {
+    const top = field.closest('.blocklyBlockCanvas > .blocklyDraggable');
+    return [/when\\s+it\\s+starts/.test(top.textContent) ? 0 : 1, box.y, box.x, k];
+  })
+  .sort((a, b) => a[0] - b[0] || Math.round(a[1] - b[1]) || a[2] - b[2]).map((row) => row[3])"""
+
+
+def numbers_of(page: Page) -> list[int]:
+    """Return the fields of numbers as a person reads them: the program's, then those of hats."""
+    found: list[int] = page.locator(f"{PROGRAM} .blocklyNumberField").evaluate_all(NUMBERS)
+    return found
 
 
 # What is dragged where, and which numbers are typed then: the first one is number 0.
 IN_BLOCKS = {
     13: ([("Repeat", "forever", "when it starts", "below"), ("Move", "forward", "forever", "in"),
-          ("Events", "each time", "forever", "below"), ("Move", "turn right", "each time", "in"),
-          ("Move", "back", "each time", "in")],
+          ("Events", "each time", "forever", "below"), ("Move", "turn right", "each time", "below"),
+          ("Move", "back", "each time", "below")],
          {1: "60", 2: "30", 3: "0.4", 4: "60"}),
     14: ([("Move", "forward", "when it starts", "below"), ("Move", "turn left", "forward", "below"),
           ("Move", "forward", "turn left", "below"), ("Events", "same time", "forward", "below"),
-          ("Repeat", "times", "same time", "in"), ("Wait", "wait", "times", "in"),
+          ("Repeat", "times", "same time", "below"), ("Wait", "wait", "times", "in"),
           ("Robot", "lamp", "times", "in"), ("Wait", "wait", "times", "in"),
           ("Robot", "lamp", "times", "in")],
          {0: "5", 1: "60", 2: "0.51", 4: "3.33", 5: "60", 6: "15", 7: "0.3", 8: "0.3"}),
@@ -684,14 +727,14 @@ def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, n
     dragged, numbers = IN_BLOCKS[number]
     for group, words, target, place in dragged:
         before, to = text_of(page), block(page, target)
-        inside = (76 if target == "each time" else 40) - round(box_of(to)["height"])
+        inside = 40 - round(box_of(to)["height"])
         drag(page, group, words, to, off=(12, inside) if place == "in" else (0, 0))
         becomes_other(page, before)
     if number == 14:  # every other time the lamp goes out
         page.locator(f"{PROGRAM} .blocklyDropdownText", has_text="yes").last.click()
         page.locator(".blocklyMenuItem", has_text="no").click()
     for k, typed in numbers.items():
-        page.locator(f"{PROGRAM} .blocklyNumberField").nth(k).click()
+        page.locator(f"{PROGRAM} .blocklyNumberField").nth(numbers_of(page)[k]).click()
         page.keyboard.press("Control+a")
         page.keyboard.type(typed)
         page.keyboard.press("Enter")
@@ -717,11 +760,15 @@ def test_more_cases_of_an_if(page: Page) -> None:
 
 
 def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
-    start(page, "SI|DEF HOP(A);\n  F(A, 50);\n  A = A + 1;\nEND_DEF;\nHOP(2);\nHOP(3);\n", "usual")
+    start(
+        page, "SI|DEF JUMP(A);\n  F(A, 50);\n  A = A + 1;\nEND_DEF;\nJUMP(2);\nJUMP(3);\n", "usual"
+    )
     canvas = page.locator("#blocks .blocklyBlockCanvas")
     canvas.locator("image[*|href$='more.svg']").first.click()
     page.locator("#blocks[data-state=shown]").wait_for()
-    begin = "SI|DEF HOP({}, C);\n  F({}, 50);\n  {} = {} + 1;\nEND_DEF;\nHOP(2, 1);\nHOP(3, 1);\n"
+    begin = (
+        "SI|DEF JUMP({}, C);\n  F({}, 50);\n  {} = {} + 1;\nEND_DEF;\nJUMP(2, 1);\nJUMP(3, 1);\n"
+    )
     becomes(page, begin.format(*"AAAA"))
     canvas.locator(".blocklyEditableField", has_text=re.compile("^A$")).last.click()
     page.keyboard.type("size")
@@ -730,7 +777,7 @@ def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
     said = {text.strip() for text in canvas.locator(".blocklyText").all_text_contents()}
     assert {"SIZE", "C"} <= said
     body = "  F(SIZE, 50);\n  SIZE = SIZE + 1;\nEND_DEF;\n"
-    for head, calls in (("HOP(SIZE)", "HOP(2);\nHOP(3);\n"), ("HOP", "HOP;\nHOP;\n")):
+    for head, calls in (("JUMP(SIZE)", "JUMP(2);\nJUMP(3);\n"), ("JUMP", "JUMP;\nJUMP;\n")):
         canvas.locator("image[*|href$='less.svg']").first.click()
         page.locator("#blocks[data-state=shown]").wait_for()
         becomes(page, f"SI|DEF {head};\n{body}{calls}")

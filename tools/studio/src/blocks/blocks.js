@@ -3,7 +3,7 @@
 // The text is what is kept: a change of the blocks is told to the page, which asks for their text.
 
 import * as Blockly from 'blockly/core';
-import { clear, drawForm, formOf, keepPlaces, showForm } from './form.js';
+import { clear, drawForm, formOf, isLoose, keepPlaces, makeRoom, showForm } from './form.js';
 import { follow, labelCalls } from './own_words.js';
 import { setActuators } from './places.js';
 import { Checker, defineBlocks, setRobot } from './shapes.js';
@@ -200,6 +200,7 @@ export class Blocks {
   resize() {
     if (!this.#place.clientWidth) return; // hidden: Blockly would forget what was seen
     Blockly.svgResize(this.#workspace);
+    if (!this.isBusy) makeRoom(this.#workspace, true);
     this.#seeBeginning();
     for (const [id] of this.#places) if (!this.#put(id)) this.#badgeOf(id)?.setBubbleVisible(false);
   }
@@ -252,6 +253,7 @@ export class Blocks {
 
   /** @returns {{form: Form, ids: string[]}} */
   read() {
+    makeRoom(this.#workspace);
     const found = formOf(this.#workspace);
     this.#use(found.form);
     this.#greyLoose();
@@ -260,7 +262,7 @@ export class Blocks {
 
   /** What is not joined to the program looks it, and is found where it is now. */
   #greyLoose() {
-    this.#mark('loose', this.#workspace.getTopBlocks(false).filter((block) => block.type !== 'program').map(({ id }) => id));
+    this.#mark('loose', this.#workspace.getTopBlocks(false).filter(isLoose).map(({ id }) => id));
     if (this.#stood.size > MOST_STOOD) this.#stood.clear();
     keepPlaces(this.#workspace, this.#stood);
   }
