@@ -664,8 +664,8 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     start(page, text, "usual")
     assert text_of(page) == text
     drag(page, "Move", "back", block(page, "stop"))
-    kept = text.replace("SI|S;\n", "SI|S;\nB(2, 80);\n")
-    becomes(page, kept)  # what nobody moves keeps its place
+    kept = text.replace("W(2);\n", "B(2, 80);\nW(2);\n")
+    becomes(page, kept)  # a hat that nobody moves stays after the block that it stood after
     hats = page.locator(f"{PROGRAM} > .blocklyDraggable", has_text="each time")
     box, above = box_of(hats.last), box_of(hats.first)
     page.mouse.move(box["x"] + 12, box["y"] + 16)
@@ -684,9 +684,34 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     assert box_of(last)["x"] == pytest.approx(place["x"], abs=1)
 
 
+def test_a_hat_that_comes_back_is_put_where_it_is_seen(page: Page) -> None:
+    """One that is there stays out of sight, where somebody put it."""
+    word = "SI|DEF HOP;\n  F(1, 50);\nEND_DEF;\nHOP;\n"
+
+    def end() -> float:
+        pane: float = page.locator("#blocks").evaluate("e => e.getBoundingClientRect().bottom")
+        return pane
+
+    start(page, word, "usual")
+    hat = page.locator(f"{PROGRAM} > .blocklyDraggable", has_text="new word")
+    box = box_of(hat)
+    page.mouse.move(box["x"] + 8, box["y"] + 24)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 8, end() - 60, steps=8)
+    page.mouse.up()
+    assert text_of(page) == word
+    place = box_of(hat)["bottom"]
+    page.set_viewport_size({"width": 1366, "height": 600})
+    start(page, f"{word}S;\n", "usual")
+    assert box_of(hat)["bottom"] == pytest.approx(place, abs=1) and place > end()
+    start(page, "SI|S;\n", "usual")
+    start(page, word, "usual")
+    assert box_of(hat)["bottom"] < end()
+
+
 NUMBERS = """all => all.map((field, k) => ({field, k, box: field.getBoundingClientRect()}))
   .map(({field, k, box}) => {
-    const top = field.closest('.blocklyBlockCanvas > .blocklyDraggable');
+    const top = field.closest('.blocklyBlockCanvas > *');
     return [/when\\s+it\\s+starts/.test(top.textContent) ? 0 : 1, box.y, box.x, k];
   })
   .sort((a, b) => a[0] - b[0] || Math.round(a[1] - b[1]) || a[2] - b[2]).map((row) => row[3])"""
@@ -760,15 +785,11 @@ def test_more_cases_of_an_if(page: Page) -> None:
 
 
 def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
-    start(
-        page, "SI|DEF JUMP(A);\n  F(A, 50);\n  A = A + 1;\nEND_DEF;\nJUMP(2);\nJUMP(3);\n", "usual"
-    )
+    start(page, "SI|DEF HOP(A);\n  F(A, 50);\n  A = A + 1;\nEND_DEF;\nHOP(2);\nHOP(3);\n", "usual")
     canvas = page.locator("#blocks .blocklyBlockCanvas")
     canvas.locator("image[*|href$='more.svg']").first.click()
     page.locator("#blocks[data-state=shown]").wait_for()
-    begin = (
-        "SI|DEF JUMP({}, C);\n  F({}, 50);\n  {} = {} + 1;\nEND_DEF;\nJUMP(2, 1);\nJUMP(3, 1);\n"
-    )
+    begin = "SI|DEF HOP({}, C);\n  F({}, 50);\n  {} = {} + 1;\nEND_DEF;\nHOP(2, 1);\nHOP(3, 1);\n"
     becomes(page, begin.format(*"AAAA"))
     canvas.locator(".blocklyEditableField", has_text=re.compile("^A$")).last.click()
     page.keyboard.type("size")
@@ -777,7 +798,7 @@ def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
     said = {text.strip() for text in canvas.locator(".blocklyText").all_text_contents()}
     assert {"SIZE", "C"} <= said
     body = "  F(SIZE, 50);\n  SIZE = SIZE + 1;\nEND_DEF;\n"
-    for head, calls in (("JUMP(SIZE)", "JUMP(2);\nJUMP(3);\n"), ("JUMP", "JUMP;\nJUMP;\n")):
+    for head, calls in (("HOP(SIZE)", "HOP(2);\nHOP(3);\n"), ("HOP", "HOP;\nHOP;\n")):
         canvas.locator("image[*|href$='less.svg']").first.click()
         page.locator("#blocks[data-state=shown]").wait_for()
         becomes(page, f"SI|DEF {head};\n{body}{calls}")

@@ -128,11 +128,30 @@ export function keepPlaces(workspace, stood) {
   for (const top of tops) stood.set(JSON.stringify(stackOf(top)), []);
   for (const top of tops) stood.get(JSON.stringify(stackOf(top)))?.push(top.getRelativeToSurfaceXY());
   const shown = SHOWN.get(workspace);
-  const hats = itemsOf(workspace).flatMap(({ ids }) => workspace.getBlockById(ids[0] ?? '') ?? []).filter(isHat);
+  const hats = hatsOf(workspace);
   for (const [k, name] of namesOf(hats).entries()) {
     const hat = /** @type {Blockly.Block} */ (hats[k]);
     if (isMoved(hat) || shown?.hats.get(hat.id)?.isOwn) stood.set(name, [hat.getRelativeToSurfaceXY()]);
+    else stood.delete(name);
   }
+}
+
+/**
+ * Those places that blocks may be put at again: what comes back, once it was gone, is put where it is seen.
+ * @param {Blockly.WorkspaceSvg} workspace
+ * @param {Stood} stood
+ * @returns {Stood}
+ */
+export function knownPlaces(workspace, stood) {
+  const { left, top, width, height } = workspace.getMetricsManager().getViewMetrics(true);
+  const view = new Blockly.utils.Rect(top, top + height - CORNER, left, left + width - CORNER);
+  const here = new Set([...namesOf(hatsOf(workspace)), ...topsOf(workspace).filter(isLoose).map((each) => JSON.stringify(stackOf(each)))]);
+  return new Map([...stood].map(([name, places]) => [name, places.filter(({ x, y }) => here.has(name) || view.contains(x, y))]));
+}
+
+/** @param {Blockly.WorkspaceSvg} workspace @returns {Blockly.Block[]} in the order of the text */
+function hatsOf(workspace) {
+  return itemsOf(workspace).flatMap(({ ids }) => workspace.getBlockById(ids[0] ?? '') ?? []).filter(isHat);
 }
 
 /** @param {Blockly.Block[]} hats in the order of the text @returns {string[]} a name for each: of its kind and word the how manieth it is */
