@@ -263,6 +263,11 @@ export function showForm(workspace, form, stood) {
     Blockly.renderManagement.triggerQueuedRenders(workspace);
     stand(workspace, tops, stood); // while they were drawn, blocks pushed each other
   });
+  makeRoom(workspace);
+  for (const [id, put] of SHOWN.get(workspace)?.hats ?? []) {
+    const { x, y } = workspace.getBlockById(id)?.getRelativeToSurfaceXY() ?? put;
+    Object.assign(put, { x, y }); // nobody has moved it there
+  }
   workspace.resizeContents();
   return ids;
 }
