@@ -63,8 +63,7 @@ def test_they_are_told_beside_another_mistake_and_in_words() -> None:
         ("TS102", "END_LOOP"), ("TS102", "END_WHILE"),
     ]  # fmt: skip
     assert (
-        codes_and_fixes(text)[2][1]
-        == "Write END_WHILE here, and END_LOOP where END_WHILE is now"
+        codes_and_fixes(text)[2][1] == "Write END_WHILE here, and END_LOOP where END_WHILE is now"
     )
 
 
