@@ -709,24 +709,6 @@ def test_a_hat_that_comes_back_is_put_where_it_is_seen(page: Page) -> None:
     assert box_of(hat)["bottom"] < end()
 
 
-def test_no_hat_stands_on_another_in_another_language_and_width(page: Page) -> None:
-    word = "DEF HOP;\n  F(1, 50);\nEND_DEF;\n"
-    start(page, f"SI|{word}HOP;\nTASK;\n  W(1);\nEND_TASK;\n", "usual")
-    hats = page.locator(f"{PROGRAM} > .blocklyDraggable")
-    hat, call = box_of(block(page, "same time")), box_of(block(page, "do"))
-    page.mouse.move(hat["x"] + 12, hat["y"] + 24)
-    page.mouse.down()
-    page.mouse.move(call["x"] + 20, call["bottom"] + 90, steps=8)
-    page.mouse.up()
-    shown(page)
-    page.set_viewport_size({"width": 390, "height": 844})
-    speak(page, "es")
-    shown(page)
-    boxes = hats.evaluate_all("all => all.map(e => e.getBoundingClientRect().toJSON())")
-    one, other = sorted(boxes, key=lambda box: box["y"])
-    assert one["bottom"] <= other["top"] or one["right"] <= other["left"], boxes
-
-
 NUMBERS = """all => all.map((field, k) => ({field, k, box: field.getBoundingClientRect()}))
   .map(({field, k, box}) => {
     const top = field.closest('.blocklyBlockCanvas > *');
